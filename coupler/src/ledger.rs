@@ -1,0 +1,70 @@
+//! The ledger: every window's mass, momentum and energy, summed over the run (requirements CON-2).
+
+/// One line: the sum of |Σ terms| over the windows, against the sum of Σ|terms|.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Line {
+    /// Signed sum over the windows of what did not close.
+    pub drift: f64,
+    /// Sum over the windows of |Σ terms|.
+    pub error: f64,
+    /// Sum over the windows of Σ |terms|.
+    pub throughput: f64,
+}
+
+impl Line {
+    /// Books one window: `sum` of the signed terms, `magnitude` the sum of their magnitudes.
+    pub fn book(&mut self, sum: f64, magnitude: f64) {
+        self.drift += sum;
+        self.error += sum.abs();
+        self.throughput += magnitude;
+    }
+
+    /// The error relative to the throughput; zero where nothing moved.
+    pub fn relative_error(&self) -> f64 {
+        if self.throughput > 0.0 {
+            self.error / self.throughput
+        } else {
+            self.error
+        }
+    }
+}
+
+/// The ledger of a run. Gas amounts count in process time: where the gas stores over the motion
+/// span (`accelerated`), what it stored counts AF times (requirements TSM-4).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ledger {
+    /// Gas mass in kg.
+    pub mass: Line,
+    /// Gas and particle energy together, in J.
+    pub energy: Line,
+    /// What one side gave against what the other took, in J.
+    pub energy_exchange: Line,
+    /// The impulse of drag on the gas against that on the particles, in N s.
+    pub momentum_exchange: Line,
+    /// The gas' own momentum balance (residual of pressure and momentum solves), in N s.
+    pub gas_momentum: Line,
+}
+
+impl Ledger {
+    /// Lines by their stable names.
+    pub fn lines(&self) -> [(&'static str, &'static str, Line); 5] {
+        [
+            ("mass", "kg", self.mass),
+            ("energy", "J", self.energy),
+            ("energy_exchange", "J", self.energy_exchange),
+            ("momentum", "N s", self.momentum_exchange),
+            ("gas_momentum", "N s", self.gas_momentum),
+        ]
+    }
+
+    /// The same lines, to be restored from a checkpoint.
+    pub fn lines_mut(&mut self) -> [&mut Line; 5] {
+        [
+            &mut self.mass,
+            &mut self.energy,
+            &mut self.energy_exchange,
+            &mut self.momentum_exchange,
+            &mut self.gas_momentum,
+        ]
+    }
+}

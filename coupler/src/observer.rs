@@ -1,0 +1,89 @@
+//! Observers: output, progress and timing look at the run after each committed window.
+
+use std::path::Path;
+use std::time::Duration;
+
+use thiserror::Error;
+
+use crate::ledger::Ledger;
+use crate::mesh::Mesh;
+use crate::part::{About, Bed, Convergence, GasFields, ParticleFields};
+use crate::time::{Clocks, Window};
+
+/// Wall time spent in each stage since this process began the run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Timing {
+    /// Waiting for the gas.
+    pub gas: Duration,
+    /// Waiting for the particles.
+    pub particles: Duration,
+    /// Inside particles.
+    pub interior: Duration,
+    /// Base mapping of particles onto cells.
+    pub mapping: Duration,
+    /// Building and applying the smoother.
+    pub smoother: Duration,
+    /// Laws between the phases and the exchange.
+    pub exchange: Duration,
+    /// Observers and checkpoints.
+    pub output: Duration,
+}
+
+/// The state of the run after a commit.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<'a> {
+    /// Windows committed so far.
+    pub windows: u64,
+    /// Both clocks now.
+    pub clocks: Clocks,
+    /// The window just committed; `None` at the start of a run or right after a resume.
+    pub window: Option<&'a Window>,
+    /// The gas mesh.
+    pub mesh: &'a Mesh,
+    /// The gas.
+    pub gas: GasFields<'a>,
+    /// The bed that the gas saw.
+    pub bed: &'a Bed,
+    /// The particles.
+    pub particles: ParticleFields<'a>,
+    /// Particle temperatures in K, in the order of `particles`.
+    pub particle_temperature: &'a [f64],
+    /// Mean heat flow into each particle over the window in W.
+    pub particle_heat: &'a [f64],
+    /// The ledger so far.
+    pub ledger: &'a Ledger,
+    /// Convergence of the gas in the window.
+    pub convergence: &'a Convergence,
+    /// Wall times by stage.
+    pub timing: &'a Timing,
+    /// The two solvers.
+    pub about: [&'a About; 2],
+}
+
+/// An observer that could not do its work, for example because a disk is full.
+#[derive(Debug, Error)]
+#[error("{doing}: {cause}")]
+pub struct ObserverError {
+    /// What it was doing, with the path.
+    pub doing: String,
+    /// Why it failed.
+    #[source]
+    pub cause: Box<dyn std::error::Error + Send + Sync>,
+}
+
+/// Looks at the run; never changes it.
+pub trait Observer {
+    /// Called once before the first window of this process: at the start of a run
+    /// (`windows` is 0) or after a resume.
+    fn start(&mut self, moment: &Moment<'_>) -> Result<(), ObserverError>;
+
+    /// Called after each committed window.
+    fn window(&mut self, moment: &Moment<'_>) -> Result<(), ObserverError>;
+
+    /// Called while a checkpoint is written: what the observer needs to go on from here goes into
+    /// `directory`.
+    fn checkpoint(&mut self, moment: &Moment<'_>, directory: &Path) -> Result<(), ObserverError>;
+
+    /// Called once after the last window.
+    fn finish(&mut self, moment: &Moment<'_>) -> Result<(), ObserverError>;
+}

@@ -1,0 +1,234 @@
+//! The three parts' traits and the plain data that passes between them and the coordinator.
+//!
+//! All per-cell and per-particle arrays are extensive where that makes an exchange exact:
+//! a coefficient is "per cell" in W/K, not "per volume".
+
+use std::path::Path;
+
+use calcine_physics::Vec3;
+
+use crate::error::PartError;
+use crate::mesh::Mesh;
+use crate::supervisor::Supervisor;
+use crate::time::Window;
+
+/// What a part says of itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct About {
+    /// Name, for example "OpenFOAM".
+    pub name: String,
+    /// Version as the solver prints it.
+    pub version: String,
+    /// Number of ranks it runs on.
+    pub ranks: usize,
+}
+
+/// What every participant can do.
+pub trait Part {
+    /// Name, version, ranks.
+    fn about(&self) -> &About;
+
+    /// Takes the last attempt as the new start of attempts.
+    fn commit(&mut self) -> Result<(), PartError>;
+
+    /// Writes the committed state into `directory`, then re-initialises from what it wrote, so
+    /// that an uninterrupted run takes the same path as a resumed one.
+    fn checkpoint(&mut self, directory: &Path) -> Result<(), PartError>;
+
+    /// Ends the part in an orderly way; what it started is gone afterwards.
+    fn finish_run(&mut self, supervisor: &Supervisor) -> Result<(), PartError>;
+}
+
+/// The gas as the coordinator sees it after a commit or an attempt, one value per cell.
+#[derive(Clone, Copy, Debug)]
+pub struct GasFields<'a> {
+    /// Temperature in K.
+    pub temperature: &'a [f64],
+    /// Absolute pressure in Pa, hydrostatic part included.
+    pub pressure: &'a [f64],
+    /// Density of the gas itself (not times the void fraction) in kg/m³.
+    pub density: &'a [f64],
+    /// Interstitial velocity in m/s.
+    pub velocity: &'a [Vec3],
+    /// The cell gradient of the total pressure that the momentum equation used, in Pa/m.
+    pub pressure_gradient: &'a [Vec3],
+}
+
+/// What the gas is told of the bed, one value per cell, valid at the end of the window.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bed {
+    /// Void fraction ε = 1 − α, positive.
+    pub void_fraction: Vec<f64>,
+}
+
+/// Exchange terms that the gas treats implicitly, one value per cell, extensive (summed over the
+/// cell, not per volume):
+///
+/// heat to the gas of cell c in W: Q_c = `heat_source` − `heat_coefficient` · T_c,
+/// force on the gas in N:          F_c = `drag_source` − `drag_coefficient` · u_c.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CellExchange {
+    /// Σ W K_A in kg/s (requirements DRG-1, model A: the pressure force is separate).
+    pub drag_coefficient: Vec<f64>,
+    /// Explicit part of the drag on the gas in N.
+    pub drag_source: Vec<Vec3>,
+    /// Σ W K_eff in W/K.
+    pub heat_coefficient: Vec<f64>,
+    /// Explicit part of the heat to the gas in W.
+    pub heat_source: Vec<f64>,
+}
+
+/// One conserved quantity of the gas over a window, in kg, J or N s of the gas' storage span
+/// (momentum: of the motion span). Signs: + is into the gas.
+/// In exact arithmetic and with exact linear solves `stored − boundary − exchange − source = 0`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Balance {
+    /// Sum over cells of (end − start).
+    pub stored: f64,
+    /// Sum over cells of |end − start|.
+    pub stored_magnitude: f64,
+    /// Net inflow through the boundary, diffusion included.
+    pub boundary: f64,
+    /// Sum over boundary faces of |flow|.
+    pub boundary_magnitude: f64,
+    /// Received from the particles.
+    pub exchange: f64,
+    /// Other sources (gravity, pressure …).
+    pub source: f64,
+    /// Sum of the magnitudes of the other sources.
+    pub source_magnitude: f64,
+}
+
+/// What the gas reports of an attempt.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CellReceived {
+    /// Mean heat flow into the gas of each cell over the window in W, as the solved enthalpy
+    /// equation took it.
+    pub heat: Vec<f64>,
+    /// Mean drag on the gas of each cell over the window in N (pressure force excluded).
+    pub drag: Vec<Vec3>,
+    /// Gas mass in kg.
+    pub mass: Balance,
+    /// Gas enthalpy in J.
+    pub energy: Balance,
+    /// Gas momentum along x, y, z in N s.
+    pub momentum: [Balance; 3],
+}
+
+/// How well the gas solved an attempt.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Convergence {
+    /// Outer iterations done.
+    pub outer_iterations: u32,
+    /// Sum of inner iterations of all linear solvers.
+    pub linear_iterations: u32,
+    /// Largest scaled initial residual in the last outer iteration.
+    pub residual: f64,
+    /// Mismatch between the mass that continuity carries and the equation of state, largest over
+    /// the cells, relative to the cell's gas mass (requirements CON-2).
+    pub volume_residual: f64,
+    /// False where the outer loop ended at its limit; said in words by the log.
+    pub converged: bool,
+}
+
+/// Flow, enthalpy and species on a finite-volume mesh.
+pub trait Gas: Part {
+    /// The mesh of the undecomposed domain.
+    fn mesh(&self) -> &Mesh;
+
+    /// Fields after the last finished attempt (initially: the start of the run).
+    fn fields(&self) -> GasFields<'_>;
+
+    /// Starts an attempt from the last commit; does not wait.
+    fn start(
+        &mut self,
+        window: &Window,
+        bed: &Bed,
+        exchange: &CellExchange,
+    ) -> Result<(), PartError>;
+
+    /// Waits for the attempt started last.
+    fn finish(
+        &mut self,
+        supervisor: &Supervisor,
+        received: &mut CellReceived,
+    ) -> Result<Convergence, PartError>;
+}
+
+/// Particles as the coordinator sees them, in ascending id.
+#[derive(Clone, Copy, Debug)]
+pub struct ParticleFields<'a> {
+    /// Ids, ascending, never reused.
+    pub id: &'a [u64],
+    /// Index of the population in the case file (LIGGGHTS: atom type − 1).
+    pub population: &'a [u32],
+    /// Centres in m.
+    pub position: &'a [Vec3],
+    /// Velocities in m/s of motion time.
+    pub velocity: &'a [Vec3],
+    /// Angular velocities in rad/s of motion time.
+    pub angular_velocity: &'a [Vec3],
+    /// Radii in m.
+    pub radius: &'a [f64],
+    /// Masses in kg.
+    pub mass: &'a [f64],
+}
+
+impl ParticleFields<'_> {
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.id.len()
+    }
+
+    /// True where there is no particle.
+    pub fn is_empty(&self) -> bool {
+        self.id.is_empty()
+    }
+}
+
+/// A particle that came in or went out during a window.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParticleEvent {
+    /// Its id.
+    pub id: u64,
+    /// Came in (true) or went out (false).
+    pub inserted: bool,
+    /// Its mass in kg.
+    pub mass: f64,
+    /// Its momentum in kg m/s.
+    pub momentum: Vec3,
+}
+
+/// What the particles are told, in the order of `ParticleFields`; constant over the window.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ParticlePush {
+    /// Force of the gas on each particle in N.
+    pub force: Vec<Vec3>,
+}
+
+/// What the particles report of a window, in the order of the push.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ParticleReceived {
+    /// Impulse of the pushed force as applied over the motion span in N s; a frozen particle is
+    /// held, and its support takes it up.
+    pub impulse: Vec<Vec3>,
+}
+
+/// Positions, velocities, contacts.
+pub trait Particles: Part {
+    /// State after the last commit (initially: the start of the run).
+    fn fields(&self) -> ParticleFields<'_>;
+
+    /// Particles in and out during the last window.
+    fn events(&self) -> &[ParticleEvent];
+
+    /// Starts the window; does not wait.
+    fn start(&mut self, window: &Window, push: &ParticlePush) -> Result<(), PartError>;
+
+    /// Waits for the window started last. Particles have one attempt only.
+    fn finish(
+        &mut self,
+        supervisor: &Supervisor,
+        received: &mut ParticleReceived,
+    ) -> Result<(), PartError>;
+}

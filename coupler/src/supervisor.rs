@@ -1,0 +1,272 @@
+//! The supervisor: the one place that waits. It holds every peer's pidfd, the deadline and the
+//! user's interrupts, so that the death of one solver is noticed while another computes.
+
+use std::fs;
+use std::os::fd::OwnedFd;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::{Duration, Instant};
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::process::{Pid, PidfdFlags, WaitId, WaitIdOptions, pidfd_open, waitid};
+
+use crate::error::{FailureKind, PartError};
+use crate::time::Window;
+
+/// How long one slice of a wait may last before every peer is looked at again.
+const SLICE: Duration = Duration::from_millis(20);
+/// How many lines of a log an error shows.
+const LOG_LINES: usize = 12;
+
+/// A process that the run depends on.
+#[derive(Debug)]
+struct Peer {
+    name: String,
+    pid: u32,
+    pidfd: OwnedFd,
+    log: Option<PathBuf>,
+}
+
+/// Interrupts of the user, counted by a signal handler: one asks for a checkpoint at the end of
+/// the window, two end the run at once.
+#[derive(Clone, Debug, Default)]
+pub struct Interrupts(Arc<AtomicU32>);
+
+impl Interrupts {
+    /// One more Ctrl-C or SIGTERM.
+    pub fn raise(&self) {
+        self.0.fetch_add(1, Ordering::SeqCst);
+    }
+
+    /// Number of interrupts so far.
+    pub fn count(&self) -> u32 {
+        self.0.load(Ordering::SeqCst)
+    }
+}
+
+/// Holds the peers' pidfds, the deadline and the interrupts.
+#[derive(Debug)]
+pub struct Supervisor {
+    peers: Vec<Peer>,
+    deadline: Duration,
+    interrupts: Interrupts,
+}
+
+impl Supervisor {
+    /// A supervisor without peers; `deadline` is the longest a peer may stay silent.
+    pub fn new(deadline: Duration, interrupts: Interrupts) -> Self {
+        Self {
+            peers: Vec::new(),
+            deadline,
+            interrupts,
+        }
+    }
+
+    /// Interrupts so far.
+    pub fn interrupts(&self) -> &Interrupts {
+        &self.interrupts
+    }
+
+    /// Watches a process from now on. `name` as in "OpenFOAM (gas, rank 0)".
+    pub fn watch(&mut self, name: &str, pid: u32, log: Option<&Path>) -> Result<(), PartError> {
+        let gone = |message: String| {
+            PartError::new(label(name, pid), FailureKind::Died, message)
+                .with_log(log.map(log_end).unwrap_or_default())
+        };
+        let raw = i32::try_from(pid)
+            .ok()
+            .and_then(Pid::from_raw)
+            .ok_or_else(|| gone(format!("{pid} is not a process id")))?;
+        let pidfd = pidfd_open(raw, PidfdFlags::empty())
+            .map_err(|error| gone(format!("ended before it could be watched: {error}")))?;
+        self.peers.push(Peer {
+            name: name.into(),
+            pid,
+            pidfd,
+            log: log.map(Path::to_owned),
+        });
+        Ok(())
+    }
+
+    /// Stops watching a process, before it is asked to end.
+    pub fn forget(&mut self, pid: u32) {
+        self.peers.retain(|peer| peer.pid != pid);
+    }
+
+    /// An error that names the first peer found dead, with the end of its log.
+    pub fn check(&self, window: Option<&Window>) -> Result<(), PartError> {
+        let mut dead = None;
+        for peer in &self.peers {
+            if has_ended(&peer.pidfd, Duration::ZERO) {
+                dead = Some(peer);
+                break;
+            }
+        }
+        let Some(peer) = dead else { return Ok(()) };
+        let mut error = PartError::new(
+            label(&peer.name, peer.pid),
+            FailureKind::Died,
+            format!("died: {}", ending(&peer.pidfd)),
+        )
+        .with_log(peer.log.as_deref().map(log_end).unwrap_or_default());
+        error.window = window.copied();
+        Err(error)
+    }
+
+    /// Calls `poll` with short time slices until it yields a value, watching every peer, the
+    /// deadline and the interrupts in between. `poll` must return within its slice.
+    pub fn wait<T>(
+        &self,
+        who: &str,
+        window: Option<&Window>,
+        mut poll: impl FnMut(Duration) -> Result<Option<T>, PartError>,
+    ) -> Result<T, PartError> {
+        let begun = Instant::now();
+        loop {
+            if let Some(value) = poll(SLICE)? {
+                return Ok(value);
+            }
+            self.check(window)?;
+            if self.interrupts.count() >= 2 {
+                return Err(self.failure(
+                    who,
+                    window,
+                    FailureKind::Interrupted,
+                    "interrupted".into(),
+                ));
+            }
+            if begun.elapsed() > self.deadline {
+                let message = format!("silent for {} s", self.deadline.as_secs_f64());
+                return Err(self.failure(who, window, FailureKind::Silent, message));
+            }
+        }
+    }
+
+    fn failure(
+        &self,
+        who: &str,
+        window: Option<&Window>,
+        kind: FailureKind,
+        message: String,
+    ) -> PartError {
+        let peer = self.peers.iter().find(|peer| peer.name.starts_with(who));
+        let log = peer
+            .and_then(|peer| peer.log.as_deref())
+            .map(log_end)
+            .unwrap_or_default();
+        let name = peer.map_or_else(|| who.to_owned(), |peer| label(&peer.name, peer.pid));
+        let mut error = PartError::new(name, kind, message).with_log(log);
+        error.window = window.copied();
+        error
+    }
+}
+
+fn label(name: &str, pid: u32) -> String {
+    format!("{name}, pid {pid}")
+}
+
+/// True where the process of a pidfd has ended, waiting at most `patience`.
+pub fn has_ended(pidfd: &OwnedFd, patience: Duration) -> bool {
+    let timeout = Timespec {
+        tv_sec: patience.as_secs() as i64,
+        tv_nsec: i64::from(patience.subsec_nanos()),
+    };
+    let mut fds = [PollFd::new(pidfd, PollFlags::IN)];
+    matches!(poll(&mut fds, Some(&timeout)), Ok(ready) if ready > 0)
+}
+
+/// How a process ended, in words; only a child's status can be read.
+fn ending(pidfd: &OwnedFd) -> String {
+    use std::os::fd::AsFd;
+    let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
+    match waitid(WaitId::PidFd(pidfd.as_fd()), options) {
+        Ok(Some(status)) => match (status.exit_status(), status.terminating_signal()) {
+            (Some(code), _) => format!("exit code {code}"),
+            (None, Some(signal)) => format!("signal {signal} ({})", signal_name(signal)),
+            (None, None) => "its process has ended".into(),
+        },
+        _ => "its process has ended".into(),
+    }
+}
+
+fn signal_name(signal: i32) -> &'static str {
+    match signal {
+        4 => "SIGILL",
+        6 => "SIGABRT",
+        7 => "SIGBUS",
+        8 => "SIGFPE",
+        9 => "SIGKILL",
+        11 => "SIGSEGV",
+        13 => "SIGPIPE",
+        15 => "SIGTERM",
+        _ => "see signal(7)",
+    }
+}
+
+/// The last lines of a log file; empty where it cannot be read.
+pub fn log_end(path: &Path) -> Vec<String> {
+    let Ok(bytes) = fs::read(path) else {
+        return Vec::new();
+    };
+    let text = String::from_utf8_lossy(&bytes[bytes.len().saturating_sub(64 * 1024)..]);
+    let lines: Vec<String> = text
+        .lines()
+        .map(str::trim_end)
+        .filter(|line| !line.is_empty())
+        .map(str::to_owned)
+        .collect();
+    lines[lines.len().saturating_sub(LOG_LINES)..].to_vec()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::process::Command;
+
+    #[test]
+    fn the_death_of_a_peer_is_noticed_within_a_second_and_named_with_its_log() {
+        let directory = tempfile::tempdir().unwrap();
+        let log = directory.path().join("log.gas");
+        fs::write(&log, "starting\nTime = 3\n\n").unwrap();
+        let mut child = Command::new("sleep").arg("60").spawn().unwrap();
+        let mut supervisor = Supervisor::new(Duration::from_secs(30), Interrupts::default());
+        supervisor
+            .watch("OpenFOAM (gas, rank 0)", child.id(), Some(&log))
+            .unwrap();
+        child.kill().unwrap();
+        let begun = Instant::now();
+        let error = supervisor
+            .wait("OpenFOAM", Some(&Window::default()), |slice| {
+                std::thread::sleep(slice);
+                Ok(None::<()>)
+            })
+            .unwrap_err();
+        assert!(begun.elapsed() < Duration::from_secs(1));
+        let text = error.to_string();
+        assert!(text.contains("OpenFOAM (gas, rank 0)"), "{text}");
+        assert!(text.contains("signal 9 (SIGKILL)"), "{text}");
+        assert!(text.contains("Time = 3"), "{text}");
+        assert_eq!(error.kind, FailureKind::Died);
+        child.wait().unwrap();
+    }
+
+    #[test]
+    fn a_silent_peer_and_a_second_interrupt_end_a_wait() {
+        let supervisor = Supervisor::new(Duration::from_millis(50), Interrupts::default());
+        let silent = |slice| {
+            std::thread::sleep(slice);
+            Ok(None::<()>)
+        };
+        assert_eq!(
+            supervisor.wait("gas", None, silent).unwrap_err().kind,
+            FailureKind::Silent
+        );
+        supervisor.interrupts().raise();
+        supervisor.interrupts().raise();
+        assert_eq!(
+            supervisor.wait("gas", None, silent).unwrap_err().kind,
+            FailureKind::Interrupted
+        );
+    }
+}

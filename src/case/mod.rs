@@ -1,0 +1,3 @@
+//! Case files: TOML to a checked [`model::Case`].
+
+pub mod model;

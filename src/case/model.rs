@@ -1,0 +1,304 @@
+//! A checked case: plain SI values, nothing left to parse.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::GasSetup;
+use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
+
+/// A checked case.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// File stem, for example `heated-column`.
+    pub name: String,
+    /// Title for people.
+    pub title: String,
+    /// The case file.
+    pub path: PathBuf,
+    /// SHA-256 (hex) of the case's effective TOML, `--set` applied.
+    pub hash: String,
+    /// Effective TOML text, `--set` applied, as written next to the results.
+    pub effective: String,
+    /// Clocks.
+    pub time: Time,
+    /// The gas mesh.
+    pub mesh: MeshSpec,
+    /// Materials, in the order of the file.
+    pub materials: Vec<Material>,
+    /// The gas.
+    pub gas: GasSetup,
+    /// Populations, in the order of the file.
+    pub particles: Vec<Population>,
+    /// Laws between and inside the phases.
+    pub laws: Laws,
+    /// How gas and particles are coupled.
+    pub coupling: Coupling,
+    /// What only an OpenFOAM gas needs.
+    pub openfoam: External,
+    /// What only LIGGGHTS particles need.
+    pub liggghts: External,
+    /// What is written.
+    pub output: Output,
+    /// Lines along which fields are sampled.
+    pub probes: Vec<Probe>,
+    /// Quantities of interest with their bands.
+    pub quantities: Vec<Quantity>,
+}
+
+/// Clocks and checkpoints.
+#[derive(Clone, Debug)]
+pub struct Time {
+    /// End of the run, process time.
+    pub end: Ticks,
+    /// Length of a coupling window, motion time.
+    pub motion_window: Ticks,
+    /// Acceleration factor over process time.
+    pub acceleration: Acceleration,
+    /// Over which clock the gas stores.
+    pub storage: GasStorage,
+    /// A checkpoint each so much process time; `None`: only on interrupt.
+    pub checkpoint_every: Option<Ticks>,
+    /// A checkpoint each so much wall time.
+    pub checkpoint_wall: Option<Duration>,
+}
+
+/// Where the gas mesh comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MeshSpec {
+    /// A box, generated. Patches by default `side` (x−, x+, y−, y+), `bottom` (z−), `top` (z+).
+    Box {
+        /// Corner with the smallest coordinates in m.
+        origin: Vec3,
+        /// Edge lengths in m.
+        size: Vec3,
+        /// Cells along x, y, z.
+        cells: [usize; 3],
+        /// Patch names of x−, x+, y−, y+, z−, z+; equal names make one patch.
+        patches: [String; 6],
+    },
+    /// An OpenFOAM polyMesh folder (absolute path).
+    PolyMesh(PathBuf),
+}
+
+/// A solid material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Name.
+    pub name: String,
+    /// Density in kg/m³.
+    pub density: f64,
+    /// Specific heat capacity in J/kg/K.
+    pub heat_capacity: f64,
+    /// Thermal conductivity in W/m/K.
+    pub conductivity: Option<f64>,
+    /// Young's modulus in Pa.
+    pub young: Option<f64>,
+    /// Poisson's ratio.
+    pub poisson: Option<f64>,
+}
+
+/// Particles of one kind.
+#[derive(Clone, Debug)]
+pub struct Population {
+    /// Name.
+    pub name: String,
+    /// Index into `Case::materials`.
+    pub material: usize,
+    /// Diameter in m.
+    pub diameter: f64,
+    /// How the particles move.
+    pub motion: Motion,
+    /// Where they are at the start.
+    pub place: Place,
+    /// Start temperature in K.
+    pub temperature: f64,
+}
+
+/// How particles move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// They stay where they are.
+    Frozen,
+}
+
+/// Where particles are at the start.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Place {
+    /// A regular stacking: `counts` particles along x, y, z from `first` on.
+    Grid {
+        /// Centre of the first particle in m.
+        first: Vec3,
+        /// Distances between centres along x, y, z in m.
+        spacing: Vec3,
+        /// Number along x, y, z.
+        counts: [usize; 3],
+    },
+    /// Read from a file (absolute path): CSV with the columns x, y, z in m.
+    File(PathBuf),
+}
+
+/// Laws; each is stated in the case file, none has a default.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Laws {
+    /// Drag on a particle.
+    pub drag: DragLaw,
+    /// Heat transfer between gas and particle.
+    pub heat_transfer: HeatLaw,
+}
+
+/// Drag laws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DragLaw {
+    /// No drag.
+    None,
+    /// Ergun below a void fraction of 0.8, Wen and Yu above (requirements COR-6).
+    ErgunWenYu,
+}
+
+/// Heat transfer laws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HeatLaw {
+    /// No heat transfer.
+    None,
+    /// Gunn 1978 (requirements COR-3).
+    Gunn,
+    /// Ranz and Marshall (requirements COR-1).
+    RanzMarshall,
+}
+
+/// Mapping, smoother, exchange.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coupling {
+    /// Base mapping of a particle onto cells.
+    pub mapping: Mapping,
+    /// Largest solid fraction of a cell after smoothing, below 1.
+    pub max_solid_fraction: f64,
+    /// The smoother stops when the excess left is below this share of the solid volume.
+    pub smoother_tolerance: f64,
+    /// A window is repeated while the mismatch of the exchange, relative to its magnitude, is
+    /// above this.
+    pub exchange_tolerance: f64,
+    /// Attempts per window at most.
+    pub exchange_attempts: u32,
+    /// The longest a solver may stay silent.
+    pub deadline: Duration,
+}
+
+/// Base mappings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mapping {
+    /// All of a particle in the cell of its centre.
+    Centroid,
+    /// Satellite points inside the particle, each in its cell.
+    Divided,
+    /// Exact volume of the sphere in each cell.
+    Overlap,
+}
+
+/// What only an external solver needs.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct External {
+    /// Template (absolute path); `None`: all inputs are generated.
+    pub template: Option<PathBuf>,
+    /// Ranks.
+    pub ranks: usize,
+}
+
+/// What is written.
+#[derive(Clone, Debug)]
+pub struct Output {
+    /// A snapshot each so much process time (and one at the start and the end).
+    pub every: Ticks,
+    /// A row of the time series each so much process time; `None`: with every snapshot.
+    pub series_every: Option<Ticks>,
+    /// Gas fields of the snapshots: temperature, velocity, pressure, density, void_fraction.
+    pub gas: Vec<String>,
+    /// Particle fields of the snapshots: temperature, velocity, heat.
+    pub particles: Vec<String>,
+}
+
+/// A line of sample points.
+#[derive(Clone, Debug)]
+pub struct Probe {
+    /// Name.
+    pub name: String,
+    /// First point in m.
+    pub from: Vec3,
+    /// Last point in m.
+    pub to: Vec3,
+    /// Number of points.
+    pub points: usize,
+}
+
+/// A quantity of interest.
+#[derive(Clone, Debug)]
+pub struct Quantity {
+    /// Name.
+    pub name: String,
+    /// How it is measured.
+    pub measure: Measure,
+    /// Unit as printed.
+    pub unit: &'static str,
+    /// Largest difference between pairings.
+    pub agree: Option<Band>,
+    /// Expected value.
+    pub expect: Option<Expect>,
+}
+
+/// How a quantity is measured.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Measure {
+    /// Area mean on the first patch minus that on the second, of a gas field.
+    Difference {
+        /// Field: `pressure` (Pa) or `temperature` (K).
+        field: String,
+        /// The two patches.
+        patches: [String; 2],
+    },
+    /// Statistic over all particles.
+    Particles {
+        /// Field: `temperature` (K).
+        field: String,
+        /// `mean`, `min` or `max`.
+        statistic: Statistic,
+    },
+    /// One particle, by its place in the order of ids, counted from 1.
+    Particle {
+        /// Field: `temperature` (K).
+        field: String,
+        /// Which one.
+        number: usize,
+    },
+}
+
+/// Statistics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Statistic {
+    /// Arithmetic mean.
+    Mean,
+    /// Smallest.
+    Min,
+    /// Largest.
+    Max,
+}
+
+/// A band around a value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Band {
+    /// Fraction of the value.
+    Relative(f64),
+    /// In the unit of the quantity.
+    Absolute(f64),
+}
+
+/// An expected value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expect {
+    /// Process time in s at which it holds; `None`: at the end.
+    pub at: Option<f64>,
+    /// The value, in the unit of the quantity.
+    pub value: f64,
+    /// The band.
+    pub within: Band,
+}

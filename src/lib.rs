@@ -1,0 +1,3 @@
+//! Calcine: reactive granular beds, gas and grains coupled.
+
+pub mod case;
