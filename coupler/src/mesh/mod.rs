@@ -1,6 +1,9 @@
 //! Finite-volume meshes of general polyhedra, numbered as in an OpenFOAM polyMesh: internal faces
 //! first, then each patch's; a face's normal points from owner to neighbour, or out of the domain.
 
+pub mod block;
+pub mod polymesh;
+
 use calcine_physics::Vec3;
 use thiserror::Error;
 

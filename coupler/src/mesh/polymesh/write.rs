@@ -1,0 +1,94 @@
+//! Writing a polyMesh folder.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use super::PolyMeshError;
+use crate::mesh::Mesh;
+
+/// Writes the five files of a mesh, in ASCII, into a polyMesh folder, which is made if it is not
+/// there. Coordinates are written with as many digits (at most 17) as read back to the same bits;
+/// every patch gets the type `patch`.
+pub fn write(mesh: &Mesh, dir: &Path) -> Result<(), PolyMeshError> {
+    fs::create_dir_all(dir).map_err(|cause| PolyMeshError::Io {
+        file: dir.to_path_buf(),
+        cause,
+    })?;
+    let note = format!(
+        "nPoints:{}  nCells:{}  nFaces:{}  nInternalFaces:{}",
+        mesh.topology().points.len(),
+        mesh.cells(),
+        mesh.faces(),
+        mesh.internal_faces()
+    );
+    let files = [
+        ("points", "vectorField", None, points(mesh)),
+        ("faces", "faceList", None, faces(mesh)),
+        ("owner", "labelList", Some(&note), labels(mesh.owner())),
+        (
+            "neighbour",
+            "labelList",
+            Some(&note),
+            labels(mesh.neighbour()),
+        ),
+        ("boundary", "polyBoundaryMesh", None, boundary(mesh)),
+    ];
+    for (name, class, note, body) in files {
+        let file = dir.join(name);
+        let text = format!("{}\n{body}\n", header(name, class, note));
+        fs::write(&file, text).map_err(|cause| PolyMeshError::Io { file, cause })?;
+    }
+    Ok(())
+}
+
+fn header(object: &str, class: &str, note: Option<&String>) -> String {
+    let note = note.map_or(String::new(), |note| {
+        format!("    note        \"{note}\";\n")
+    });
+    format!(
+        "FoamFile\n{{\n    version     2.0;\n    format      ascii;\n    class       {class};\n\
+         {note}    location    \"constant/polyMesh\";\n    object      {object};\n}}\n"
+    )
+}
+
+// Writing into a String cannot fail, so the results of write! below carry nothing.
+
+fn points(mesh: &Mesh) -> String {
+    let points = &mesh.topology().points;
+    let mut text = format!("{}\n(\n", points.len());
+    for point in points {
+        let _ = writeln!(text, "({:e} {:e} {:e})", point.x, point.y, point.z);
+    }
+    text + ")\n"
+}
+
+fn faces(mesh: &Mesh) -> String {
+    let mut text = format!("{}\n(\n", mesh.faces());
+    for face in 0..mesh.faces() {
+        let points: Vec<_> = mesh.face_points(face).iter().map(u32::to_string).collect();
+        let _ = writeln!(text, "{}({})", points.len(), points.join(" "));
+    }
+    text + ")\n"
+}
+
+fn labels(list: &[u32]) -> String {
+    let mut text = format!("{}\n(\n", list.len());
+    for label in list {
+        let _ = writeln!(text, "{label}");
+    }
+    text + ")\n"
+}
+
+fn boundary(mesh: &Mesh) -> String {
+    let mut text = format!("{}\n(\n", mesh.patches().len());
+    for patch in mesh.patches() {
+        let _ = writeln!(
+            text,
+            "    {}\n    {{\n        type            patch;\n        nFaces          {};\n        \
+             startFace       {};\n    }}",
+            patch.name, patch.count, patch.start
+        );
+    }
+    text + ")\n"
+}
