@@ -1,3 +1,4 @@
 //! Calcine: reactive granular beds, gas and grains coupled.
 
 pub mod case;
+pub mod results;

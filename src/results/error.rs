@@ -1,0 +1,134 @@
+//! Errors of writing and reading results.
+
+use std::path::{Path, PathBuf};
+
+use calcine_coupler::observer::ObserverError;
+use miette::Diagnostic;
+use thiserror::Error;
+
+/// Results that cannot be written or read.
+#[derive(Debug, Error, Diagnostic)]
+pub enum ResultsError {
+    /// The directory belongs to another run.
+    #[error(
+        "{} holds the results of another run of `{case}` ({verdict}, process time {time} s)",
+        path.display()
+    )]
+    #[diagnostic(help(
+        "write elsewhere with `--out DIR`, go on with that run by `--resume`, or remove the \
+         directory"
+    ))]
+    Occupied {
+        /// The directory.
+        path: PathBuf,
+        /// Name of the case whose results it holds.
+        case: String,
+        /// That run's verdict.
+        verdict: String,
+        /// How far that run came, in s of process time.
+        time: f64,
+    },
+    /// A checkpoint of another case.
+    #[error(
+        "{} is a checkpoint of a case with the hash {stored}, this case has {hash}",
+        path.display()
+    )]
+    #[diagnostic(help("resume with the case file and the `--set` values that the run began with"))]
+    OtherCase {
+        /// The checkpoint's file.
+        path: PathBuf,
+        /// The hash it stores.
+        stored: String,
+        /// The hash of this case.
+        hash: String,
+    },
+    /// A file that could not be read or written.
+    #[error("cannot {action} {}: {source}", path.display())]
+    #[diagnostic(help("check the space on the disk and the permissions of the directory"))]
+    File {
+        /// What was tried: `read`, `write`, `copy` …
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// The cause.
+        source: std::io::Error,
+    },
+    /// A file whose content is not what Calcine writes.
+    #[error("{} is not as Calcine writes it: {fact}", path.display())]
+    #[diagnostic(help("the file was changed or cut short; resume from the last checkpoint"))]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        fact: String,
+    },
+    /// A probe with no point in the gas mesh.
+    #[error("no point of the probe `{probe}` lies inside the gas mesh")]
+    #[diagnostic(help("move `line.from` and `line.to` of the probe into the mesh"))]
+    ProbeOutside {
+        /// Name of the probe.
+        probe: String,
+    },
+    /// Lists of a moment that contradict each other.
+    #[error("{list} has {found} values where {expected} are needed")]
+    Length {
+        /// Which list.
+        list: String,
+        /// Its length.
+        found: usize,
+        /// The length needed.
+        expected: usize,
+    },
+    /// A patch that the mesh lacks.
+    #[error("the quantity `{quantity}` names the patch `{patch}`, which the mesh lacks")]
+    #[diagnostic(help("use one of the mesh's patches in `measure.patches`: {patches}"))]
+    NoPatch {
+        /// Name of the quantity.
+        quantity: String,
+        /// The patch.
+        patch: String,
+        /// The patches that there are.
+        patches: String,
+    },
+    /// HDF5 failed.
+    #[cfg(feature = "hdf5")]
+    #[error("cannot {action} {}: {source}", path.display())]
+    #[diagnostic(help("check the space on the disk and the permissions of the directory"))]
+    Store {
+        /// What was tried.
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// The cause.
+        source: hdf5::Error,
+    },
+}
+
+impl ResultsError {
+    /// A failed file operation.
+    pub(crate) fn file(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::File {
+            action,
+            path,
+            source,
+        }
+    }
+
+    /// A file with unexpected content.
+    pub(crate) fn content(path: &Path, fact: impl Into<String>) -> Self {
+        Self::Content {
+            path: path.to_owned(),
+            fact: fact.into(),
+        }
+    }
+}
+
+impl From<ResultsError> for ObserverError {
+    fn from(error: ResultsError) -> Self {
+        ObserverError {
+            doing: "writing results".into(),
+            cause: Box::new(error),
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! Files that appear whole or not at all.
+
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::ResultsError;
+
+/// Replaces a file at once: a reader sees the old content or the new, never a part.
+pub(crate) fn replace(path: &Path, content: &[u8]) -> Result<(), ResultsError> {
+    let mut draft = path.as_os_str().to_owned();
+    draft.push(".new");
+    let draft = Path::new(&draft);
+    let written = File::create(draft).and_then(|mut file| {
+        file.write_all(content)?;
+        file.flush()
+    });
+    written.map_err(ResultsError::file("write", draft))?;
+    fs::rename(draft, path).map_err(ResultsError::file("replace", path))
+}
+
+/// Replaces a JSON file at once.
+pub(crate) fn replace_json(path: &Path, value: &impl Serialize) -> Result<(), ResultsError> {
+    let mut text = serde_json::to_string_pretty(value)
+        .map_err(|error| ResultsError::content(path, error.to_string()))?;
+    text.push('\n');
+    replace(path, text.as_bytes())
+}
+
+/// Copies a file so that the copy appears whole, and survives a power cut once this returns.
+pub(crate) fn copy(from: &Path, to: &Path) -> Result<(), ResultsError> {
+    let mut draft = to.as_os_str().to_owned();
+    draft.push(".new");
+    let draft = Path::new(&draft);
+    fs::copy(from, draft)
+        .and_then(|_| File::open(draft)?.sync_all())
+        .map_err(ResultsError::file("copy", from))?;
+    fs::rename(draft, to).map_err(ResultsError::file("replace", to))
+}
+
+/// Creates a directory with its parents.
+pub(crate) fn directory(path: &Path) -> Result<(), ResultsError> {
+    fs::create_dir_all(path).map_err(ResultsError::file("create", path))
+}
+
+/// Reads a text file.
+pub(crate) fn read(path: &Path) -> Result<String, ResultsError> {
+    fs::read_to_string(path).map_err(ResultsError::file("read", path))
+}

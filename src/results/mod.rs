@@ -1,0 +1,35 @@
+//! Results of a run: what is written while it runs, and how it is read back.
+//!
+//! A result directory holds `summary.json`, `status.json`, `series.csv`, `results.h5`, `case.toml`,
+//! `gas.pvd` with `gas/gas_NNNN.vtu` and `particles.pvd` with `particles/particles_NNNN.vtp`.
+//! Every time in them is process time, unless its name begins with `motion_`.
+
+mod error;
+mod files;
+mod locate;
+pub mod quantities;
+
+mod recorder;
+mod resume;
+mod series;
+mod snapshot;
+mod status;
+#[cfg(feature = "hdf5")]
+mod store;
+pub mod summary;
+mod vtk;
+
+pub use error::ResultsError;
+pub use recorder::{Recorder, RunInfo};
+pub use summary::{Summary, Verdict};
+
+/// Name of the summary in a result directory.
+pub const SUMMARY: &str = "summary.json";
+/// Name of the file to watch while a run goes on.
+pub const STATUS: &str = "status.json";
+/// Name of the time series.
+pub const SERIES: &str = "series.csv";
+/// Name of the HDF5 file.
+pub const STORE: &str = "results.h5";
+/// Name of the effective case, `--set` applied.
+pub const CASE: &str = "case.toml";

@@ -1,0 +1,179 @@
+//! Quantities of interest: how each is measured at a moment, and its verdict.
+
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::observer::Moment;
+use serde::{Deserialize, Serialize};
+
+use super::ResultsError;
+use super::summary::{QuantityResult, Verdict};
+use crate::case::model::{Band, Case, Expect, Measure, Quantity, Statistic};
+
+/// The largest distance from a value that a band allows, in the value's unit.
+pub fn allowance(band: Band, value: f64) -> f64 {
+    match band {
+        Band::Relative(share) => share * value.abs(),
+        Band::Absolute(distance) => distance,
+    }
+}
+
+/// A statistic over values; NaN where there are none.
+pub(crate) fn statistic(statistic: Statistic, values: &[f64]) -> f64 {
+    if values.is_empty() {
+        return f64::NAN;
+    }
+    match statistic {
+        Statistic::Mean => values.iter().sum::<f64>() / values.len() as f64,
+        Statistic::Min => values.iter().copied().fold(f64::INFINITY, f64::min),
+        Statistic::Max => values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    }
+}
+
+/// Refuses patches that the mesh lacks.
+pub(super) fn check(quantity: &Quantity, mesh: &Mesh) -> Result<(), ResultsError> {
+    let Measure::Difference { patches, .. } = &quantity.measure else {
+        return Ok(());
+    };
+    match patches.iter().find(|name| mesh.patch(name).is_none()) {
+        None => Ok(()),
+        Some(patch) => Err(ResultsError::NoPatch {
+            quantity: quantity.name.clone(),
+            patch: patch.clone(),
+            patches: mesh
+                .patches()
+                .iter()
+                .map(|patch| patch.name.as_str())
+                .collect::<Vec<_>>()
+                .join(", "),
+        }),
+    }
+}
+
+/// The quantity at a moment, in its unit; NaN where it does not exist (a particle that is gone).
+pub(super) fn evaluate(quantity: &Quantity, moment: &Moment<'_>) -> f64 {
+    match &quantity.measure {
+        Measure::Difference { field, patches } => {
+            area_mean(moment, field, &patches[0]) - area_mean(moment, field, &patches[1])
+        }
+        Measure::Particles {
+            statistic: which, ..
+        } => statistic(*which, moment.particle_temperature),
+        Measure::Particle { number, .. } => number
+            .checked_sub(1)
+            .and_then(|place| moment.particle_temperature.get(place))
+            .copied()
+            .unwrap_or(f64::NAN),
+    }
+}
+
+/// Area mean of a gas field on a patch: the pressure is carried from the cell to the face centre
+/// with the cell's gradient, p_f = p_c + ∇p·(x_f − x_c); a temperature is the cell's.
+fn area_mean(moment: &Moment<'_>, field: &str, patch: &str) -> f64 {
+    let mesh = moment.mesh;
+    let Some(patch) = mesh.patch(patch) else {
+        return f64::NAN;
+    };
+    let (mut sum, mut area) = (0.0, 0.0);
+    for face in patch.faces() {
+        let cell = mesh.owner()[face] as usize;
+        let value = match field {
+            "pressure" => {
+                let arm = mesh.face_centre()[face] - mesh.cell_centre()[cell];
+                moment.gas.pressure[cell] + moment.gas.pressure_gradient[cell].dot(&arm)
+            }
+            "temperature" => moment.gas.temperature[cell],
+            _ => f64::NAN,
+        };
+        let weight = mesh.face_area()[face].norm();
+        sum += weight * value;
+        area += weight;
+    }
+    sum / area
+}
+
+/// The value of each quantity that its expectation speaks of, once it is known.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Captured {
+    /// One (value, process time in s) per quantity, in the order of the case.
+    values: Vec<Option<(f64, f64)>>,
+}
+
+impl Captured {
+    /// Nothing known yet of so many quantities.
+    pub fn new(quantities: usize) -> Self {
+        Self {
+            values: vec![None; quantities],
+        }
+    }
+
+    /// Takes the value of each quantity at the first moment at or after its time; a quantity
+    /// without a time keeps its latest value where `latest` is set.
+    pub fn take(&mut self, case: &Case, moment: &Moment<'_>, latest: bool) {
+        let time = moment.clocks.process.seconds();
+        for (slot, quantity) in self.values.iter_mut().zip(&case.quantities) {
+            let wanted = match expected_at(quantity) {
+                Some(at) => slot.is_none() && time >= at,
+                None => latest,
+            };
+            if wanted {
+                *slot = Some((evaluate(quantity, moment), time));
+            }
+        }
+    }
+
+    /// True where some quantity's time has come and its value is still to be taken.
+    pub fn is_due(&self, case: &Case, process_time: f64) -> bool {
+        let mut pairs = self.values.iter().zip(&case.quantities);
+        pairs.any(|(slot, quantity)| {
+            slot.is_none() && expected_at(quantity).is_some_and(|at| process_time >= at)
+        })
+    }
+
+    /// The results by name; `over` where the run has reached its end.
+    pub fn results(
+        &self,
+        case: &Case,
+        over: bool,
+    ) -> std::collections::BTreeMap<String, QuantityResult> {
+        let pairs = case.quantities.iter().zip(&self.values);
+        pairs
+            .map(|(quantity, slot)| (quantity.name.clone(), result(quantity, *slot, over)))
+            .collect()
+    }
+}
+
+fn expected_at(quantity: &Quantity) -> Option<f64> {
+    quantity.expect.and_then(|expect| expect.at)
+}
+
+fn result(quantity: &Quantity, slot: Option<(f64, f64)>, over: bool) -> QuantityResult {
+    let band = quantity.expect.map(|Expect { value, within, .. }| {
+        let distance = allowance(within, value);
+        (value - distance, value + distance)
+    });
+    let known = over || (expected_at(quantity).is_some() && slot.is_some());
+    let verdict = match (band, slot) {
+        (None, _) => Verdict::None,
+        (Some(_), _) if !known => Verdict::Running,
+        (Some((low, high)), Some((value, _))) if low <= value && value <= high => Verdict::Pass,
+        (Some(_), _) => Verdict::Fail,
+    };
+    QuantityResult {
+        value: slot.map(|(value, _)| value),
+        unit: quantity.unit.into(),
+        at_s: slot.map(|(_, at)| at),
+        band,
+        verdict,
+    }
+}
+
+/// The verdict of a finished run: `Fail` where one quantity fails, `Pass` where one passes and
+/// none fails, `None` where nothing is expected.
+pub(super) fn overall<'a>(results: impl Iterator<Item = &'a QuantityResult>) -> Verdict {
+    results.fold(Verdict::None, |so_far, result| {
+        match (so_far, result.verdict) {
+            (Verdict::Fail, _) | (_, Verdict::Fail) => Verdict::Fail,
+            (Verdict::Pass, _) | (_, Verdict::Pass) => Verdict::Pass,
+            _ => Verdict::None,
+        }
+    })
+}

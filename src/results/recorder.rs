@@ -1,0 +1,463 @@
+//! The recorder: the observer that writes the results of a run.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use calcine_coupler::ledger::Line as LedgerSums;
+use calcine_coupler::observer::{Moment, Observer, ObserverError, Timing};
+use calcine_coupler::part::About;
+use calcine_coupler::time::Ticks;
+
+use super::locate::Line;
+use super::quantities::{self, Captured};
+use super::resume::{self, Counters};
+use super::series::{self, Row, TRACKED_PARTICLES, Table};
+use super::status::{Status, Watch};
+use super::summary::{
+    Backends, CaseName, Ledger, LedgerLine, Solver, Solvers, Summary, Verdict, WallTimes,
+};
+use super::vtk::{self, Cells};
+use super::{CASE, ResultsError, SUMMARY, files, snapshot};
+use crate::case::model::Case;
+
+/// So many rows are gathered before they go to the HDF5 file.
+const BATCH: usize = 256;
+
+/// What the summary says of a run beside its case.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RunInfo {
+    /// Kind of the gas solver: `native`, `openfoam`.
+    pub gas: String,
+    /// Kind of the particle solver: `native`, `liggghts`.
+    pub particles: String,
+    /// How the coordinator talks to them: `none`, `shared-memory`, `mpi`.
+    pub transport: String,
+}
+
+/// What exists once the first moment is known.
+struct Open {
+    table: Table,
+    lines: Vec<Line>,
+    cells: Cells,
+    /// Rows not yet in the HDF5 file.
+    #[cfg(feature = "hdf5")]
+    pending: Vec<Row>,
+    #[cfg(feature = "hdf5")]
+    store: super::store::Store,
+}
+
+/// Writes the results of a run.
+pub struct Recorder {
+    case: Case,
+    info: RunInfo,
+    directory: PathBuf,
+    resumed: bool,
+    counters: Counters,
+    /// Wall times of the processes before this one.
+    before: WallTimes,
+    watch: Watch,
+    open: Option<Open>,
+    summary: Option<Summary>,
+}
+
+impl Recorder {
+    /// Prepares the result directory `out`. With `resume`, a checkpoint directory that
+    /// [`Observer::checkpoint`] filled, the results go on from there; without, a directory that
+    /// holds the results of another run is refused.
+    pub fn create(
+        case: &Case,
+        info: RunInfo,
+        out: &Path,
+        resume: Option<&Path>,
+    ) -> Result<Self, ResultsError> {
+        if resume.is_none() && out.join(SUMMARY).exists() {
+            return Err(occupied(out));
+        }
+        for folder in ["gas", "particles"] {
+            files::directory(&out.join(folder))?;
+        }
+        let counters = match resume {
+            Some(checkpoint) => resume::restore(checkpoint, out, &case.hash)?,
+            None => Counters {
+                case_hash: case.hash.clone(),
+                captured: Captured::new(case.quantities.len()),
+                ..Counters::default()
+            },
+        };
+        files::replace(&out.join(CASE), case.effective.as_bytes())?;
+        Ok(Self {
+            case: case.clone(),
+            info,
+            directory: out.to_owned(),
+            resumed: resume.is_some(),
+            before: counters.wall,
+            counters,
+            watch: Watch::new(out, 0.0),
+            open: None,
+            summary: None,
+        })
+    }
+
+    /// The summary as written last; `None` before the run has started.
+    pub fn summary(&self) -> Option<&Summary> {
+        self.summary.as_ref()
+    }
+
+    /// Says in summary and status that the run stopped early (an interrupt, an error).
+    pub fn stopped(&mut self) -> Result<(), ResultsError> {
+        let Some(summary) = &mut self.summary else {
+            return Ok(());
+        };
+        summary.verdict = Verdict::Stopped;
+        let status = status_of(summary);
+        summary.replace(&self.directory)?;
+        self.watch.replace(status)
+    }
+
+    fn begin(&mut self, moment: &Moment<'_>) -> Result<(), ResultsError> {
+        self.watch = Watch::new(&self.directory, moment.clocks.process.seconds());
+        for quantity in &self.case.quantities {
+            quantities::check(quantity, moment.mesh)?;
+        }
+        if !self.resumed && moment.particles.len() <= TRACKED_PARTICLES {
+            self.counters.tracked = moment.particles.id.to_vec();
+        }
+        let columns = series::columns(&self.case, moment);
+        let lines = self
+            .case
+            .probes
+            .iter()
+            .map(|probe| Line::new(probe, moment.mesh))
+            .collect::<Result<Vec<_>, _>>()?;
+        let tracked = &self.counters.tracked;
+        let table = if self.resumed {
+            Table::resume(&self.directory, &columns, tracked)?
+        } else {
+            Table::create(&self.directory, &columns, tracked)?
+        };
+        #[cfg(feature = "hdf5")]
+        let store = {
+            use super::store::Store;
+            let path = self.directory.join(super::STORE);
+            if self.resumed {
+                Store::resume(&path, &columns, self.counters.rows)?
+            } else {
+                Store::create(&path, &self.case, moment.mesh, &columns, tracked, &lines)?
+            }
+        };
+        self.open = Some(Open {
+            table,
+            lines,
+            cells: Cells::new(moment.mesh),
+            #[cfg(feature = "hdf5")]
+            pending: Vec::new(),
+            #[cfg(feature = "hdf5")]
+            store,
+        });
+        self.collect()?;
+        if !self.resumed {
+            self.row(moment)?;
+            self.snapshot(moment)?;
+        }
+        self.flush()?;
+        self.summarise(moment, Verdict::Running)
+    }
+
+    fn advance(&mut self, moment: &Moment<'_>) -> Result<(), ResultsError> {
+        self.count(moment);
+        let now = moment.clocks.process;
+        if self.counters.captured.is_due(&self.case, now.seconds()) {
+            self.counters.captured.take(&self.case, moment, false);
+        }
+        if now.count() >= self.counters.next_row {
+            self.row(moment)?;
+        }
+        if now.count() >= self.counters.next_snapshot {
+            self.snapshot(moment)?;
+        }
+        if self.watch.is_due() {
+            if let Some(open) = &mut self.open {
+                open.table.flush()?;
+            }
+            self.watch.replace(self.status(moment, Verdict::Running))?;
+        }
+        Ok(())
+    }
+
+    fn save(&mut self, moment: &Moment<'_>, directory: &Path) -> Result<(), ResultsError> {
+        self.flush()?;
+        let mut counters = self.counters.clone();
+        counters.wall = self.wall(moment.timing);
+        resume::save(&self.directory, directory, &counters)?;
+        self.summarise(moment, Verdict::Running)
+    }
+
+    fn end(&mut self, moment: &Moment<'_>) -> Result<(), ResultsError> {
+        let now = Some(moment.clocks.process.count());
+        if self.counters.last_row != now {
+            self.row(moment)?;
+        }
+        if self.counters.last_snapshot != now {
+            self.snapshot(moment)?;
+        }
+        self.flush()?;
+        self.counters.captured.take(&self.case, moment, true);
+        let results = self.counters.captured.results(&self.case, true);
+        self.summarise(moment, quantities::overall(results.values()))
+    }
+
+    /// Adds the window's convergence.
+    fn count(&mut self, moment: &Moment<'_>) {
+        let (sums, window) = (&mut self.counters.convergence, moment.convergence);
+        sums.unconverged_windows += u64::from(!window.converged);
+        sums.outer_iterations += u64::from(window.outer_iterations);
+        sums.linear_iterations += u64::from(window.linear_iterations);
+        sums.largest_residual = sums.largest_residual.max(window.residual);
+        sums.largest_volume_residual = sums.largest_volume_residual.max(window.volume_residual);
+    }
+
+    fn row(&mut self, moment: &Moment<'_>) -> Result<(), ResultsError> {
+        let acceleration = match moment.window {
+            Some(window) => window.acceleration(),
+            None => self.case.time.acceleration.at(moment.clocks.process).0,
+        };
+        let row = series::row(&self.case, moment, acceleration, &self.counters.tracked);
+        let every = self
+            .case
+            .output
+            .series_every
+            .unwrap_or(self.case.output.every);
+        let now = moment.clocks.process;
+        self.counters.last_row = Some(now.count());
+        self.counters.next_row = following(now, every);
+        self.counters.rows += 1;
+        let Some(open) = &mut self.open else {
+            return Ok(());
+        };
+        open.table.append(&row)?;
+        open.keep(row)
+    }
+
+    fn snapshot(&mut self, moment: &Moment<'_>) -> Result<(), ResultsError> {
+        let gas = snapshot::gas(&self.case.output, moment)?;
+        let particles = snapshot::particles(&self.case.output, moment)?;
+        let number = self.counters.snapshots.len();
+        let now = moment.clocks.process;
+        let Some(open) = &mut self.open else {
+            return Ok(());
+        };
+        let path = self.directory.join(resume::gas_file(number));
+        vtk::write_gas(&path, moment.mesh, &open.cells, now.seconds(), &gas)?;
+        let path = self.directory.join(resume::particle_file(number));
+        vtk::write_particles(&path, moment.particles.position, now.seconds(), &particles)?;
+        #[cfg(feature = "hdf5")]
+        open.store
+            .snapshot(number, moment, &gas, &particles, &open.lines)?;
+        self.counters.snapshots.push(now.seconds());
+        self.counters.last_snapshot = Some(now.count());
+        self.counters.next_snapshot = following(now, self.case.output.every);
+        self.collect()?;
+        self.flush()
+    }
+
+    /// Replaces the two `.pvd` files.
+    fn collect(&self) -> Result<(), ResultsError> {
+        let files: [(&str, fn(usize) -> String); 2] = [
+            ("gas.pvd", resume::gas_file),
+            ("particles.pvd", resume::particle_file),
+        ];
+        for (name, file) in files {
+            let entries: Vec<_> = self
+                .counters
+                .snapshots
+                .iter()
+                .enumerate()
+                .map(|(number, &time)| (time, file(number)))
+                .collect();
+            vtk::write_collection(&self.directory.join(name), &entries)?;
+        }
+        Ok(())
+    }
+
+    fn flush(&mut self) -> Result<(), ResultsError> {
+        match &mut self.open {
+            Some(open) => open.flush(),
+            None => Ok(()),
+        }
+    }
+
+    fn wall(&self, timing: &Timing) -> WallTimes {
+        let sum = |before: f64, now: Duration| before + now.as_secs_f64();
+        WallTimes {
+            total: sum(self.before.total, self.watch.elapsed()),
+            gas: sum(self.before.gas, timing.gas),
+            particles: sum(self.before.particles, timing.particles),
+            interior: sum(self.before.interior, timing.interior),
+            mapping: sum(self.before.mapping, timing.mapping),
+            smoother: sum(self.before.smoother, timing.smoother),
+            exchange: sum(self.before.exchange, timing.exchange),
+            output: sum(self.before.output, timing.output),
+        }
+    }
+
+    fn status(&self, moment: &Moment<'_>, verdict: Verdict) -> Status {
+        let (now, end) = (moment.clocks.process, self.case.time.end);
+        Status {
+            state: verdict.word().into(),
+            process_time_s: now.seconds(),
+            process_end_s: end.seconds(),
+            motion_time_s: moment.clocks.motion.seconds(),
+            acceleration: self.case.time.acceleration.at(now).0,
+            windows: moment.windows,
+            fraction_done: now.seconds() / end.seconds(),
+            wall_time_left_s: None,
+        }
+    }
+
+    fn summarise(&mut self, moment: &Moment<'_>, verdict: Verdict) -> Result<(), ResultsError> {
+        let case = &self.case;
+        let over = verdict != Verdict::Running;
+        let mut captured = self.counters.captured.clone();
+        captured.take(case, moment, true);
+        let steps = case.time.acceleration.steps();
+        let summary = Summary {
+            format: 1,
+            calcine: env!("CARGO_PKG_VERSION").into(),
+            case: CaseName {
+                name: case.name.clone(),
+                title: case.title.clone(),
+                hash: case.hash.clone(),
+            },
+            verdict,
+            backend: Backends {
+                gas: self.info.gas.clone(),
+                particles: self.info.particles.clone(),
+            },
+            solver: Solvers {
+                gas: solver(moment.about[0]),
+                particles: solver(moment.about[1]),
+            },
+            transport: self.info.transport.clone(),
+            storage: case.time.storage.name().into(),
+            acceleration: steps
+                .iter()
+                .map(|&(from, factor)| (from.seconds(), factor))
+                .collect(),
+            motion_time_s: moment.clocks.motion.seconds(),
+            process_time_s: moment.clocks.process.seconds(),
+            process_end_s: case.time.end.seconds(),
+            windows: moment.windows,
+            particles: moment.particles.len(),
+            cells: moment.mesh.cells(),
+            ledger: Ledger {
+                lines: moment
+                    .ledger
+                    .lines()
+                    .into_iter()
+                    .map(|(name, unit, line)| (name.to_owned(), ledger_line(unit, line)))
+                    .collect(),
+                ..Ledger::default()
+            },
+            wall_time_s: self.wall(moment.timing),
+            quantities: captured.results(case, over),
+            convergence: self.counters.convergence,
+        };
+        summary.replace(&self.directory)?;
+        self.summary = Some(summary);
+        let status = self.status(moment, verdict);
+        self.watch.replace(status)
+    }
+}
+
+impl Open {
+    #[cfg(feature = "hdf5")]
+    fn keep(&mut self, row: Row) -> Result<(), ResultsError> {
+        self.pending.push(row);
+        if self.pending.len() >= BATCH {
+            self.flush()?;
+        }
+        Ok(())
+    }
+
+    #[cfg(not(feature = "hdf5"))]
+    fn keep(&mut self, _row: Row) -> Result<(), ResultsError> {
+        Ok(())
+    }
+
+    fn flush(&mut self) -> Result<(), ResultsError> {
+        #[cfg(feature = "hdf5")]
+        {
+            self.store.append(&self.pending)?;
+            self.pending.clear();
+            self.store.flush()?;
+        }
+        self.table.flush()
+    }
+}
+
+/// The first multiple of `every` after a time, in ps.
+fn following(now: Ticks, every: Ticks) -> i64 {
+    let every = every.count().max(1);
+    (now.count() / every + 1).saturating_mul(every)
+}
+
+fn occupied(out: &Path) -> ResultsError {
+    match Summary::read(out) {
+        Ok(summary) => ResultsError::Occupied {
+            path: out.to_owned(),
+            case: summary.case.name,
+            verdict: summary.verdict.word().into(),
+            time: summary.process_time_s,
+        },
+        Err(error) => error,
+    }
+}
+
+fn status_of(summary: &Summary) -> Status {
+    Status {
+        state: summary.verdict.word().into(),
+        process_time_s: summary.process_time_s,
+        process_end_s: summary.process_end_s,
+        motion_time_s: summary.motion_time_s,
+        acceleration: 1.0,
+        windows: summary.windows,
+        fraction_done: summary.process_time_s / summary.process_end_s,
+        wall_time_left_s: None,
+    }
+}
+
+fn solver(about: &About) -> Solver {
+    Solver {
+        name: about.name.clone(),
+        version: about.version.clone(),
+        ranks: about.ranks,
+    }
+}
+
+fn ledger_line(unit: &str, line: LedgerSums) -> LedgerLine {
+    LedgerLine {
+        relative_error: line.relative_error(),
+        drift: line.drift,
+        error: line.error,
+        throughput: line.throughput,
+        unit: unit.into(),
+    }
+}
+
+impl Observer for Recorder {
+    fn start(&mut self, moment: &Moment<'_>) -> Result<(), ObserverError> {
+        Ok(self.begin(moment)?)
+    }
+
+    fn window(&mut self, moment: &Moment<'_>) -> Result<(), ObserverError> {
+        Ok(self.advance(moment)?)
+    }
+
+    fn checkpoint(&mut self, moment: &Moment<'_>, directory: &Path) -> Result<(), ObserverError> {
+        Ok(self.save(moment, directory)?)
+    }
+
+    fn finish(&mut self, moment: &Moment<'_>) -> Result<(), ObserverError> {
+        Ok(self.end(moment)?)
+    }
+}

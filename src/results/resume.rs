@@ -1,0 +1,118 @@
+//! What the recorder leaves in a checkpoint, and how it goes on from one.
+
+use std::fs;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::quantities::Captured;
+use super::summary::{ConvergenceSummary, WallTimes};
+use super::{ResultsError, SERIES, STORE, files};
+
+/// Name of the counters in a checkpoint directory.
+const COUNTERS: &str = "recorder.json";
+
+/// Where the recorder stands; with the copies of `series.csv` and `results.h5` all that it needs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Counters {
+    /// Hash of the case.
+    pub case_hash: String,
+    /// Process time of the next row at the earliest, in ps.
+    pub next_row: i64,
+    /// Process time of the next snapshot at the earliest, in ps.
+    pub next_snapshot: i64,
+    /// Process time of the last row in ps.
+    pub last_row: Option<i64>,
+    /// Process time of the last snapshot in ps.
+    pub last_snapshot: Option<i64>,
+    /// Rows written.
+    pub rows: usize,
+    /// Process times in s of the snapshots written.
+    pub snapshots: Vec<f64>,
+    /// Ids of the particles that have a column of their own.
+    pub tracked: Vec<u64>,
+    /// Quantities whose time has come.
+    pub captured: Captured,
+    /// Convergence so far.
+    pub convergence: ConvergenceSummary,
+    /// Wall times so far.
+    pub wall: WallTimes,
+}
+
+/// Name of a snapshot's gas file.
+pub(super) fn gas_file(number: usize) -> String {
+    format!("gas/gas_{number:04}.vtu")
+}
+
+/// Name of a snapshot's particle file.
+pub(super) fn particle_file(number: usize) -> String {
+    format!("particles/particles_{number:04}.vtp")
+}
+
+/// Copies a result directory's files and the counters into a checkpoint directory.
+pub(super) fn save(
+    results: &Path,
+    checkpoint: &Path,
+    counters: &Counters,
+) -> Result<(), ResultsError> {
+    files::directory(checkpoint)?;
+    files::copy(&results.join(SERIES), &checkpoint.join(SERIES))?;
+    if cfg!(feature = "hdf5") {
+        files::copy(&results.join(STORE), &checkpoint.join(STORE))?;
+    }
+    files::replace_json(&checkpoint.join(COUNTERS), counters)
+}
+
+/// Brings a result directory back to where a checkpoint stands: restores the series and the HDF5
+/// file and removes later snapshots.
+pub(super) fn restore(
+    checkpoint: &Path,
+    results: &Path,
+    case_hash: &str,
+) -> Result<Counters, ResultsError> {
+    let path = checkpoint.join(COUNTERS);
+    let counters: Counters = serde_json::from_str(&files::read(&path)?)
+        .map_err(|error| ResultsError::content(&path, error.to_string()))?;
+    if counters.case_hash != case_hash {
+        return Err(ResultsError::OtherCase {
+            path,
+            stored: counters.case_hash,
+            hash: case_hash.into(),
+        });
+    }
+    let count = counters.snapshots.len();
+    for number in 0..count {
+        for name in [gas_file(number), particle_file(number)] {
+            let file = results.join(name);
+            if !file.is_file() {
+                let fact = "it is missing, but the checkpoint counts on it";
+                return Err(ResultsError::content(&file, fact));
+            }
+        }
+    }
+    files::copy(&checkpoint.join(SERIES), &results.join(SERIES))?;
+    if cfg!(feature = "hdf5") {
+        files::copy(&checkpoint.join(STORE), &results.join(STORE))?;
+    }
+    for folder in ["gas", "particles"] {
+        remove_later(&results.join(folder), count)?;
+    }
+    Ok(counters)
+}
+
+/// Removes the snapshots of a folder from a number on, and drafts.
+fn remove_later(folder: &Path, count: usize) -> Result<(), ResultsError> {
+    let entries = fs::read_dir(folder).map_err(ResultsError::file("list", folder))?;
+    for entry in entries {
+        let path = entry.map_err(ResultsError::file("list", folder))?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let number = name
+            .split(['_', '.'])
+            .nth(1)
+            .and_then(|digits| digits.parse::<usize>().ok());
+        if number.is_some_and(|number| number >= count) || name.ends_with(".new") {
+            fs::remove_file(&path).map_err(ResultsError::file("remove", &path))?;
+        }
+    }
+    Ok(())
+}

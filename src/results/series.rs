@@ -1,0 +1,260 @@
+//! The time series: columns that stay the same over a run, and `series.csv`.
+
+use std::fmt::Write as _;
+use std::fs::{File, OpenOptions};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use calcine_coupler::observer::Moment;
+
+use super::quantities::{evaluate, statistic};
+use super::{ResultsError, SERIES};
+use crate::case::model::{Case, Statistic};
+
+/// Up to so many particles each has a column of its own; beyond, the series holds statistics.
+pub(super) const TRACKED_PARTICLES: usize = 1000;
+
+/// A column of the series.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Column {
+    /// Group, empty or one of `quantities`, `ledger`, `gas`, `particles`.
+    pub group: &'static str,
+    /// Name inside the group.
+    pub name: String,
+    /// Unit, `1` for pure numbers.
+    pub unit: String,
+    /// What it is, in a sentence.
+    pub description: String,
+}
+
+impl Column {
+    fn new(group: &'static str, name: &str, unit: &str, description: &str) -> Self {
+        Self {
+            group,
+            name: name.into(),
+            unit: unit.into(),
+            description: description.into(),
+        }
+    }
+
+    /// The name with its group, as in the head of `series.csv`.
+    pub fn full_name(&self) -> String {
+        if self.group.is_empty() {
+            self.name.clone()
+        } else {
+            format!("{}.{}", self.group, self.name)
+        }
+    }
+}
+
+/// The columns of a case, particles apart.
+pub(super) fn columns(case: &Case, moment: &Moment<'_>) -> Vec<Column> {
+    let mut list = vec![
+        Column::new("", "process_time", "s", "process (real) time"),
+        Column::new("", "motion_time", "s", "motion time"),
+        Column::new("", "acceleration", "1", "acceleration factor of the window"),
+        Column::new("", "windows", "1", "windows committed"),
+    ];
+    for quantity in &case.quantities {
+        let text = "quantity of interest, as the case measures it";
+        list.push(Column::new(
+            "quantities",
+            &quantity.name,
+            quantity.unit,
+            text,
+        ));
+    }
+    for name in ["mean", "min", "max"] {
+        let text = format!("{name} of all particle temperatures");
+        list.push(Column::new(
+            "particles",
+            &format!("temperature_{name}"),
+            "K",
+            &text,
+        ));
+    }
+    for name in ["min", "max"] {
+        let text = format!("{name} of all gas temperatures");
+        list.push(Column::new(
+            "gas",
+            &format!("temperature_{name}"),
+            "K",
+            &text,
+        ));
+    }
+    list.push(Column::new(
+        "gas",
+        "outer_iterations",
+        "1",
+        "outer iterations of the window",
+    ));
+    list.push(Column::new(
+        "gas",
+        "linear_iterations",
+        "1",
+        "linear iterations of the window",
+    ));
+    list.push(Column::new(
+        "gas",
+        "residual",
+        "1",
+        "largest scaled residual of the window",
+    ));
+    list.push(Column::new(
+        "gas",
+        "volume_residual",
+        "1",
+        "largest mismatch of continuity and equation of state of the window",
+    ));
+    for (name, unit, _) in moment.ledger.lines() {
+        let text = "error over throughput since the start";
+        list.push(Column::new(
+            "ledger",
+            &format!("{name}_relative_error"),
+            "1",
+            text,
+        ));
+        let text = "signed sum of what did not close since the start";
+        list.push(Column::new("ledger", &format!("{name}_drift"), unit, text));
+        let text = "sum of what moved since the start";
+        list.push(Column::new(
+            "ledger",
+            &format!("{name}_throughput"),
+            unit,
+            text,
+        ));
+    }
+    list
+}
+
+/// One row.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Row {
+    /// Values in the order of the columns.
+    pub values: Vec<f64>,
+    /// Temperatures in K of the tracked particles; NaN where one is gone.
+    pub particles: Vec<f64>,
+}
+
+/// The row of a moment, in the order of [`columns`].
+pub(super) fn row(case: &Case, moment: &Moment<'_>, acceleration: f64, tracked: &[u64]) -> Row {
+    let mut values = vec![
+        moment.clocks.process.seconds(),
+        moment.clocks.motion.seconds(),
+        acceleration,
+        moment.windows as f64,
+    ];
+    values.extend(
+        case.quantities
+            .iter()
+            .map(|quantity| evaluate(quantity, moment)),
+    );
+    for which in [Statistic::Mean, Statistic::Min, Statistic::Max] {
+        values.push(statistic(which, moment.particle_temperature));
+    }
+    for which in [Statistic::Min, Statistic::Max] {
+        values.push(statistic(which, moment.gas.temperature));
+    }
+    values.push(f64::from(moment.convergence.outer_iterations));
+    values.push(f64::from(moment.convergence.linear_iterations));
+    values.push(moment.convergence.residual);
+    values.push(moment.convergence.volume_residual);
+    for (_, _, line) in moment.ledger.lines() {
+        values.extend([line.relative_error(), line.drift, line.throughput]);
+    }
+    let temperature = |id: &u64| {
+        let place = moment.particles.id.binary_search(id).ok()?;
+        moment.particle_temperature.get(place).copied()
+    };
+    let particles = tracked
+        .iter()
+        .map(|id| temperature(id).unwrap_or(f64::NAN))
+        .collect();
+    Row { values, particles }
+}
+
+/// The file `series.csv`.
+pub(super) struct Table {
+    path: PathBuf,
+    file: BufWriter<File>,
+}
+
+impl Table {
+    /// Begins the file with its head.
+    pub fn create(
+        directory: &Path,
+        columns: &[Column],
+        tracked: &[u64],
+    ) -> Result<Self, ResultsError> {
+        let path = directory.join(SERIES);
+        let file = File::create(&path).map_err(ResultsError::file("create", &path))?;
+        let mut table = Self {
+            path,
+            file: BufWriter::new(file),
+        };
+        table.write(&head(columns, tracked))?;
+        Ok(table)
+    }
+
+    /// Goes on with a file whose head is the same.
+    pub fn resume(
+        directory: &Path,
+        columns: &[Column],
+        tracked: &[u64],
+    ) -> Result<Self, ResultsError> {
+        let path = directory.join(SERIES);
+        let text = super::files::read(&path)?;
+        if !text.starts_with(&head(columns, tracked)) {
+            return Err(ResultsError::content(
+                &path,
+                "its columns are not this case's",
+            ));
+        }
+        let file = OpenOptions::new()
+            .append(true)
+            .open(&path)
+            .map_err(ResultsError::file("open", &path))?;
+        Ok(Self {
+            path,
+            file: BufWriter::new(file),
+        })
+    }
+
+    /// Appends a row; numbers are written so that they read back to the same bits.
+    pub fn append(&mut self, row: &Row) -> Result<(), ResultsError> {
+        let mut line = String::new();
+        for (place, value) in row.values.iter().chain(&row.particles).enumerate() {
+            let comma = if place == 0 { "" } else { "," };
+            // Writing to a String cannot fail.
+            let _ = write!(line, "{comma}{value:?}");
+        }
+        line.push('\n');
+        self.write(&line)
+    }
+
+    /// Hands what is buffered to the operating system.
+    pub fn flush(&mut self) -> Result<(), ResultsError> {
+        self.file
+            .flush()
+            .map_err(ResultsError::file("write", &self.path))
+    }
+
+    fn write(&mut self, text: &str) -> Result<(), ResultsError> {
+        self.file
+            .write_all(text.as_bytes())
+            .map_err(ResultsError::file("write", &self.path))
+    }
+}
+
+fn head(columns: &[Column], tracked: &[u64]) -> String {
+    let mut names: Vec<String> = columns
+        .iter()
+        .map(|column| format!("{} [{}]", column.full_name(), column.unit))
+        .collect();
+    names.extend(
+        tracked
+            .iter()
+            .map(|id| format!("particle_temperature.{id} [K]")),
+    );
+    names.join(",") + "\n"
+}

@@ -1,0 +1,164 @@
+//! Fields of a snapshot: the columns that the case asks for, with unit and description.
+
+use calcine_coupler::observer::Moment;
+use calcine_coupler::physics::Vec3;
+
+use super::ResultsError;
+use crate::case::model::Output;
+
+/// Values of a field, one per cell or particle.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Values<'a> {
+    /// One number each.
+    Scalar(&'a [f64]),
+    /// Three components each.
+    Vector(&'a [Vec3]),
+    /// Whole numbers.
+    Whole(&'a [u64]),
+    /// Small whole numbers.
+    Small(&'a [u32]),
+}
+
+impl Values<'_> {
+    /// How many.
+    pub fn len(&self) -> usize {
+        match self {
+            Values::Scalar(list) => list.len(),
+            Values::Vector(list) => list.len(),
+            Values::Whole(list) => list.len(),
+            Values::Small(list) => list.len(),
+        }
+    }
+}
+
+/// A field of a snapshot.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Field<'a> {
+    /// Name as in the case file.
+    pub name: &'static str,
+    /// Unit, `1` for pure numbers.
+    pub unit: &'static str,
+    /// What it is.
+    pub description: &'static str,
+    /// The values.
+    pub values: Values<'a>,
+}
+
+const fn field<'a>(
+    name: &'static str,
+    unit: &'static str,
+    description: &'static str,
+    values: Values<'a>,
+) -> Field<'a> {
+    Field {
+        name,
+        unit,
+        description,
+        values,
+    }
+}
+
+/// The gas fields that the case asks for, in a fixed order.
+pub(super) fn gas<'a>(
+    output: &Output,
+    moment: &Moment<'a>,
+) -> Result<Vec<Field<'a>>, ResultsError> {
+    use Values::{Scalar, Vector};
+    let gas = moment.gas;
+    let all = [
+        field(
+            "temperature",
+            "K",
+            "gas temperature",
+            Scalar(gas.temperature),
+        ),
+        field(
+            "velocity",
+            "m/s",
+            "interstitial gas velocity",
+            Vector(gas.velocity),
+        ),
+        field("pressure", "Pa", "absolute pressure", Scalar(gas.pressure)),
+        field(
+            "density",
+            "kg/m^3",
+            "density of the gas itself",
+            Scalar(gas.density),
+        ),
+        field(
+            "void_fraction",
+            "1",
+            "void fraction that the gas saw in the last window",
+            Scalar(&moment.bed.void_fraction),
+        ),
+    ];
+    chosen(&all, &output.gas, moment.mesh.cells(), "gas")
+}
+
+/// What every particle snapshot holds, then the particle fields that the case asks for.
+pub(super) fn particles<'a>(
+    output: &Output,
+    moment: &Moment<'a>,
+) -> Result<Vec<Field<'a>>, ResultsError> {
+    use Values::{Scalar, Small, Vector, Whole};
+    let bed = moment.particles;
+    let always = [
+        field("id", "1", "particle id, never reused", Whole(bed.id)),
+        field(
+            "population",
+            "1",
+            "index of the population in the case",
+            Small(bed.population),
+        ),
+        field("radius", "m", "particle radius", Scalar(bed.radius)),
+    ];
+    let all = [
+        field(
+            "temperature",
+            "K",
+            "particle temperature",
+            Scalar(moment.particle_temperature),
+        ),
+        field(
+            "velocity",
+            "m/s",
+            "particle velocity in motion time",
+            Vector(bed.velocity),
+        ),
+        field(
+            "heat",
+            "W",
+            "mean heat flow into the particle over the last window",
+            Scalar(moment.particle_heat),
+        ),
+    ];
+    let count = bed.len();
+    let mut fields = always.to_vec();
+    fields.extend(chosen(&all, &output.particles, count, "particle")?);
+    match fields.iter().find(|field| field.values.len() != count) {
+        None => Ok(fields),
+        Some(field) => Err(wrong_length(field, count, "particle")),
+    }
+}
+
+fn chosen<'a>(
+    all: &[Field<'a>],
+    names: &[String],
+    count: usize,
+    what: &str,
+) -> Result<Vec<Field<'a>>, ResultsError> {
+    let is_wanted = |field: &&Field<'a>| names.iter().any(|name| name == field.name);
+    let fields: Vec<_> = all.iter().filter(is_wanted).copied().collect();
+    match fields.iter().find(|field| field.values.len() != count) {
+        None => Ok(fields),
+        Some(field) => Err(wrong_length(field, count, what)),
+    }
+}
+
+fn wrong_length(field: &Field<'_>, expected: usize, what: &str) -> ResultsError {
+    ResultsError::Length {
+        list: format!("the {what} field `{}`", field.name),
+        found: field.values.len(),
+        expected,
+    }
+}

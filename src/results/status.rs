@@ -1,0 +1,74 @@
+//! `status.json`: how far a run is, to be watched from outside; replaced atomically, at most once a
+//! second.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+
+use super::{ResultsError, STATUS, files};
+
+/// The shortest time between two replacements.
+const PAUSE: Duration = Duration::from_secs(1);
+
+/// What the file holds.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Status {
+    /// `running`, or how the run ended.
+    pub state: String,
+    /// Process time in s.
+    pub process_time_s: f64,
+    /// Process time at which the run ends, in s.
+    pub process_end_s: f64,
+    /// Motion time in s.
+    pub motion_time_s: f64,
+    /// Acceleration factor of the last window.
+    pub acceleration: f64,
+    /// Windows committed.
+    pub windows: u64,
+    /// Share of the process time done.
+    pub fraction_done: f64,
+    /// Wall time left in s at the mean pace of this process; `None` before the first window.
+    pub wall_time_left_s: Option<f64>,
+}
+
+/// Replaces the file, but not too often.
+pub(super) struct Watch {
+    path: PathBuf,
+    last: Option<Instant>,
+    begun: Instant,
+    begun_at: f64,
+}
+
+impl Watch {
+    /// A watch over a run that stands at a process time in s.
+    pub fn new(directory: &Path, process_time: f64) -> Self {
+        Self {
+            path: directory.join(STATUS),
+            last: None,
+            begun: Instant::now(),
+            begun_at: process_time,
+        }
+    }
+
+    /// True where the last replacement is long enough ago.
+    pub fn is_due(&self) -> bool {
+        self.last.is_none_or(|last| last.elapsed() >= PAUSE)
+    }
+
+    /// Wall time since this process began the run.
+    pub fn elapsed(&self) -> Duration {
+        self.begun.elapsed()
+    }
+
+    /// Replaces the file; fills in the time left.
+    pub fn replace(&mut self, mut status: Status) -> Result<(), ResultsError> {
+        let done = status.process_time_s - self.begun_at;
+        let left = status.process_end_s - status.process_time_s;
+        status.wall_time_left_s =
+            (done > 0.0).then(|| left / done * self.begun.elapsed().as_secs_f64());
+        files::replace_json(&self.path, &status)?;
+        self.last = Some(Instant::now());
+        Ok(())
+    }
+}

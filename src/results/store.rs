@@ -1,0 +1,354 @@
+//! `results.h5`: mesh, time series, snapshots and probes, each with unit and description.
+//!
+//! Arrays are shuffled and deflated at level 1, which every HDF5 reader knows.
+
+use std::path::{Path, PathBuf};
+
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::observer::Moment;
+use calcine_coupler::physics::Vec3;
+use hdf5::types::VarLenUnicode;
+use hdf5::{Dataset, File, Group, H5Type, Location};
+use ndarray::{Array2, ArrayView1, ArrayView2};
+
+use super::ResultsError;
+use super::locate::Line;
+use super::series::{Column, Row};
+use super::snapshot::{Field, Values};
+use crate::case::model::Case;
+
+/// Rows of one chunk of the series.
+const CHUNK_ROWS: usize = 256;
+/// Values of one chunk of a field.
+const CHUNK_VALUES: usize = 1 << 16;
+
+/// The open file.
+pub(super) struct Store {
+    path: PathBuf,
+    file: File,
+    columns: Vec<Dataset>,
+    particles: Option<Dataset>,
+    rows: usize,
+}
+
+impl Store {
+    /// Begins a file: the mesh, an empty series, the points of the probes.
+    pub fn create(
+        path: &Path,
+        case: &Case,
+        mesh: &Mesh,
+        columns: &[Column],
+        tracked: &[u64],
+        lines: &[Line],
+    ) -> Result<Self, ResultsError> {
+        let begin = || -> hdf5::Result<Self> {
+            let file = File::create(path)?;
+            file.new_attr::<i64>().create("format")?.write_scalar(&1)?;
+            note(&file, "case", &case.name)?;
+            note(&file, "case_hash", &case.hash)?;
+            note(&file, "title", &case.title)?;
+            write_mesh(&file.create_group("mesh")?, mesh)?;
+            let series = file.create_group("series")?;
+            let columns = columns
+                .iter()
+                .map(|column| create_column(&series, column))
+                .collect::<hdf5::Result<_>>()?;
+            let particles = create_tracks(&series, tracked)?;
+            file.create_group("snapshots")?;
+            create_probes(&file.create_group("probes")?, lines)?;
+            Ok(Self {
+                path: path.to_owned(),
+                file,
+                columns,
+                particles,
+                rows: 0,
+            })
+        };
+        begin().map_err(failure("create", path))
+    }
+
+    /// Opens a file that holds so many rows.
+    pub fn resume(path: &Path, columns: &[Column], rows: usize) -> Result<Self, ResultsError> {
+        let begin = || -> hdf5::Result<Self> {
+            let file = File::open_rw(path)?;
+            let series = file.group("series")?;
+            let columns = columns
+                .iter()
+                .map(|column| series.dataset(&place(column)))
+                .collect::<hdf5::Result<_>>()?;
+            let particles = series
+                .link_exists("particle_temperature")
+                .then(|| series.dataset("particle_temperature"))
+                .transpose()?;
+            Ok(Self {
+                path: path.to_owned(),
+                file,
+                columns,
+                particles,
+                rows,
+            })
+        };
+        let store = begin().map_err(failure("open", path))?;
+        match store.columns.iter().find(|column| column.size() != rows) {
+            None => Ok(store),
+            Some(column) => Err(ResultsError::content(
+                path,
+                format!(
+                    "the dataset `{}` has {} rows, the checkpoint {rows}",
+                    column.name(),
+                    column.size()
+                ),
+            )),
+        }
+    }
+
+    /// Appends rows to the series.
+    pub fn append(&mut self, rows: &[Row]) -> Result<(), ResultsError> {
+        if rows.is_empty() {
+            return Ok(());
+        }
+        let (from, to) = (self.rows, self.rows + rows.len());
+        let write = || -> hdf5::Result<()> {
+            for (place, column) in self.columns.iter().enumerate() {
+                let values: Vec<f64> = rows.iter().map(|row| row.values[place]).collect();
+                column.resize(to)?;
+                column.write_slice(ArrayView1::from(&values), from..to)?;
+            }
+            if let Some(dataset) = &self.particles {
+                let width = rows[0].particles.len();
+                let values: Vec<f64> = rows
+                    .iter()
+                    .flat_map(|row| row.particles.iter().copied())
+                    .collect();
+                let block = Array2::from_shape_vec((rows.len(), width), values)
+                    .map_err(|error| hdf5::Error::Internal(error.to_string()))?;
+                dataset.resize((to, width))?;
+                dataset.write_slice(&block, (from..to, ..))?;
+            }
+            Ok(())
+        };
+        write().map_err(failure("write the series of", &self.path))?;
+        self.rows = to;
+        Ok(())
+    }
+
+    /// Writes a snapshot and the probes' values.
+    pub fn snapshot(
+        &mut self,
+        number: usize,
+        moment: &Moment<'_>,
+        gas: &[Field<'_>],
+        particles: &[Field<'_>],
+        lines: &[Line],
+    ) -> Result<(), ResultsError> {
+        let write = || -> hdf5::Result<()> {
+            let group = self.file.create_group(&format!("snapshots/{number:04}"))?;
+            let times = [
+                ("process_time", moment.clocks.process.seconds()),
+                ("motion_time", moment.clocks.motion.seconds()),
+                ("windows", moment.windows as f64),
+            ];
+            for (name, value) in times {
+                group.new_attr::<f64>().create(name)?.write_scalar(&value)?;
+            }
+            let gas_group = group.create_group("gas")?;
+            for field in gas {
+                write_field(&gas_group, field)?;
+            }
+            let bed = group.create_group("particles")?;
+            let position = Field {
+                name: "position",
+                unit: "m",
+                description: "particle centres",
+                values: Values::Vector(moment.particles.position),
+            };
+            for field in std::iter::once(&position).chain(particles) {
+                write_field(&bed, field)?;
+            }
+            for line in lines {
+                let probe = self.file.group("probes")?.group(&line.name)?;
+                for field in gas {
+                    write_probe(&probe, line, field, number)?;
+                }
+            }
+            Ok(())
+        };
+        write().map_err(failure("write a snapshot to", &self.path))
+    }
+
+    /// Hands everything to the operating system.
+    pub fn flush(&self) -> Result<(), ResultsError> {
+        self.file.flush().map_err(failure("flush", &self.path))
+    }
+}
+
+fn failure(action: &'static str, path: &Path) -> impl FnOnce(hdf5::Error) -> ResultsError {
+    let path = path.to_owned();
+    move |source| ResultsError::Store {
+        action,
+        path,
+        source,
+    }
+}
+
+fn place(column: &Column) -> String {
+    if column.group.is_empty() {
+        column.name.clone()
+    } else {
+        format!("{}/{}", column.group, column.name)
+    }
+}
+
+/// Writes a text attribute.
+fn note(location: &Location, name: &str, text: &str) -> hdf5::Result<()> {
+    let text: VarLenUnicode = text
+        .parse()
+        .map_err(|_| hdf5::Error::Internal(format!("`{name}` holds a zero byte")))?;
+    let attribute = location.new_attr::<VarLenUnicode>().create(name)?;
+    attribute.write_scalar(&text)
+}
+
+fn describe(dataset: &Dataset, unit: &str, description: &str) -> hdf5::Result<()> {
+    note(dataset, "unit", unit)?;
+    note(dataset, "description", description)
+}
+
+fn create_column(series: &Group, column: &Column) -> hdf5::Result<Dataset> {
+    if !column.group.is_empty() && !series.link_exists(column.group) {
+        series.create_group(column.group)?;
+    }
+    let dataset = series
+        .new_dataset::<f64>()
+        .shape(0..)
+        .chunk(CHUNK_ROWS)
+        .shuffle()
+        .deflate(1)
+        .create(place(column).as_str())?;
+    describe(&dataset, &column.unit, &column.description)?;
+    Ok(dataset)
+}
+
+/// The matrix time × particle, where there are particles to follow.
+fn create_tracks(series: &Group, tracked: &[u64]) -> hdf5::Result<Option<Dataset>> {
+    if tracked.is_empty() {
+        return Ok(None);
+    }
+    let ids = series
+        .new_dataset::<u64>()
+        .shape(tracked.len())
+        .create("particle_id")?;
+    ids.write(ArrayView1::from(tracked))?;
+    describe(&ids, "1", "ids of the columns of particle_temperature")?;
+    let dataset = series
+        .new_dataset::<f64>()
+        .shape((0.., tracked.len()))
+        .chunk((CHUNK_ROWS, tracked.len().min(64)))
+        .shuffle()
+        .deflate(1)
+        .create("particle_temperature")?;
+    let text = "particle temperatures, time by particle; NaN where a particle is gone";
+    describe(&dataset, "K", text)?;
+    Ok(Some(dataset))
+}
+
+fn write_mesh(group: &Group, mesh: &Mesh) -> hdf5::Result<()> {
+    let centres = Field {
+        name: "cell_centre",
+        unit: "m",
+        description: "centres of the gas cells",
+        values: Values::Vector(mesh.cell_centre()),
+    };
+    let volumes = Field {
+        name: "cell_volume",
+        unit: "m^3",
+        description: "volumes of the gas cells",
+        values: Values::Scalar(mesh.cell_volume()),
+    };
+    write_field(group, &centres)?;
+    write_field(group, &volumes)
+}
+
+fn write_field(group: &Group, field: &Field<'_>) -> hdf5::Result<()> {
+    let dataset = match field.values {
+        Values::Scalar(list) => write_list(group, field.name, list)?,
+        Values::Whole(list) => write_list(group, field.name, list)?,
+        Values::Small(list) => write_list(group, field.name, list)?,
+        Values::Vector(list) => write_vectors(group, field.name, list)?,
+    };
+    describe(&dataset, field.unit, field.description)
+}
+
+fn write_list<T: H5Type>(group: &Group, name: &str, list: &[T]) -> hdf5::Result<Dataset> {
+    let builder = group.new_dataset::<T>().shape(list.len());
+    if list.is_empty() {
+        return builder.create(name);
+    }
+    let dataset = builder
+        .chunk(list.len().min(CHUNK_VALUES))
+        .shuffle()
+        .deflate(1)
+        .create(name)?;
+    dataset.write(ArrayView1::from(list))?;
+    Ok(dataset)
+}
+
+fn write_vectors(group: &Group, name: &str, list: &[Vec3]) -> hdf5::Result<Dataset> {
+    let builder = group.new_dataset::<f64>().shape((list.len(), 3));
+    if list.is_empty() {
+        return builder.create(name);
+    }
+    let dataset = builder
+        .chunk((list.len().min(CHUNK_VALUES), 3))
+        .shuffle()
+        .deflate(1)
+        .create(name)?;
+    let flat: Vec<f64> = list
+        .iter()
+        .flat_map(|vector| vector.iter().copied())
+        .collect();
+    let view = ArrayView2::from_shape((list.len(), 3), &flat)
+        .map_err(|error| hdf5::Error::Internal(error.to_string()))?;
+    dataset.write(view)?;
+    Ok(dataset)
+}
+
+fn create_probes(group: &Group, lines: &[Line]) -> hdf5::Result<()> {
+    for line in lines {
+        let probe = group.create_group(&line.name)?;
+        let dataset = write_vectors(&probe, "position", &line.points)?;
+        describe(&dataset, "m", "points of the probe")?;
+    }
+    Ok(())
+}
+
+/// Appends one snapshot's row to a probe's matrix snapshot × point; vectors by their magnitude.
+fn write_probe(group: &Group, line: &Line, field: &Field<'_>, number: usize) -> hdf5::Result<()> {
+    let points = line.cells.len();
+    let value = |cell: Option<usize>| match (cell, field.values) {
+        (Some(cell), Values::Scalar(list)) => list[cell],
+        (Some(cell), Values::Vector(list)) => list[cell].norm(),
+        _ => f64::NAN,
+    };
+    let row: Vec<f64> = line.cells.iter().map(|&cell| value(cell)).collect();
+    let dataset = if group.link_exists(field.name) {
+        group.dataset(field.name)?
+    } else {
+        let dataset = group
+            .new_dataset::<f64>()
+            .shape((0.., points))
+            .chunk((16, points))
+            .shuffle()
+            .deflate(1)
+            .create(field.name)?;
+        let text = format!(
+            "{} of the cell that holds each point (vectors: magnitude), snapshot by point",
+            field.description
+        );
+        describe(&dataset, field.unit, &text)?;
+        dataset
+    };
+    let view = ArrayView2::from_shape((1, points), &row)
+        .map_err(|error| hdf5::Error::Internal(error.to_string()))?;
+    dataset.resize((number + 1, points))?;
+    dataset.write_slice(view, (number..number + 1, ..))
+}

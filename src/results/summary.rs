@@ -1,0 +1,225 @@
+//! `summary.json`: what was run and what came out, under stable names.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::{ResultsError, SUMMARY, files};
+
+/// How a quantity, or the run, stands against what the case expects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// The run goes on, or was killed.
+    Running,
+    /// The run stopped early, at a checkpoint or with an error.
+    Stopped,
+    /// Inside its band.
+    Pass,
+    /// Outside its band.
+    Fail,
+    /// Nothing is expected.
+    None,
+}
+
+impl Verdict {
+    /// The word in the file.
+    pub fn word(self) -> &'static str {
+        match self {
+            Verdict::Running => "running",
+            Verdict::Stopped => "stopped",
+            Verdict::Pass => "pass",
+            Verdict::Fail => "fail",
+            Verdict::None => "none",
+        }
+    }
+}
+
+/// The file; wall times are in s, other units are in the names or beside the values.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Version of these names.
+    pub format: u32,
+    /// Version of Calcine.
+    pub calcine: String,
+    /// The case.
+    pub case: CaseName,
+    /// The verdict over all quantities.
+    pub verdict: Verdict,
+    /// The kinds of solver, `native`, `openfoam`, `liggghts`.
+    pub backend: Backends,
+    /// The two solvers with version and ranks.
+    pub solver: Solvers,
+    /// How the coordinator talks to the solvers.
+    pub transport: String,
+    /// Over which clock the gas stores.
+    pub storage: String,
+    /// The acceleration schedule: process time in s from which a factor holds, and the factor.
+    pub acceleration: Vec<(f64, f64)>,
+    /// Motion time reached, in s.
+    pub motion_time_s: f64,
+    /// Process time reached, in s.
+    pub process_time_s: f64,
+    /// Process time at which the case ends, in s.
+    pub process_end_s: f64,
+    /// Windows committed.
+    pub windows: u64,
+    /// Particles in the bed.
+    pub particles: usize,
+    /// Cells of the gas mesh.
+    pub cells: usize,
+    /// The ledger.
+    pub ledger: Ledger,
+    /// Wall times by stage in s, over all processes of the run.
+    pub wall_time_s: WallTimes,
+    /// Quantities of interest by name.
+    pub quantities: BTreeMap<String, QuantityResult>,
+    /// Convergence of the gas, over the run.
+    pub convergence: ConvergenceSummary,
+}
+
+/// The case of a run.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CaseName {
+    /// Its name.
+    pub name: String,
+    /// Its title.
+    pub title: String,
+    /// SHA-256 of its effective text.
+    pub hash: String,
+}
+
+/// One entry for the gas, one for the particles.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Backends {
+    /// Kind of the gas solver.
+    pub gas: String,
+    /// Kind of the particle solver.
+    pub particles: String,
+}
+
+/// The solvers as they name themselves.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Solvers {
+    /// The gas solver.
+    pub gas: Solver,
+    /// The particle solver.
+    pub particles: Solver,
+}
+
+/// One solver.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Solver {
+    /// Its name.
+    pub name: String,
+    /// Its version.
+    pub version: String,
+    /// Ranks it ran on.
+    pub ranks: usize,
+}
+
+/// The ledger's lines by their stable names; elements get a table of their own.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Ledger {
+    /// `mass`, `energy`, `energy_exchange`, `momentum`, `gas_momentum`.
+    #[serde(flatten)]
+    pub lines: BTreeMap<String, LedgerLine>,
+    /// One line per element.
+    pub elements: BTreeMap<String, LedgerLine>,
+}
+
+/// One line of the ledger.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LedgerLine {
+    /// Error over throughput (requirements CON-2).
+    pub relative_error: f64,
+    /// Signed sum of what did not close, in `unit`.
+    pub drift: f64,
+    /// Sum over windows of the magnitude of what did not close, in `unit`.
+    pub error: f64,
+    /// Sum over windows of what moved, in `unit`.
+    pub throughput: f64,
+    /// Unit of the three amounts.
+    pub unit: String,
+}
+
+/// Wall times in s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct WallTimes {
+    /// Everything.
+    pub total: f64,
+    /// Waiting for the gas.
+    pub gas: f64,
+    /// Waiting for the particles.
+    pub particles: f64,
+    /// Inside particles.
+    pub interior: f64,
+    /// Mapping particles onto cells.
+    pub mapping: f64,
+    /// The smoother.
+    pub smoother: f64,
+    /// Laws between the phases.
+    pub exchange: f64,
+    /// Results and checkpoints.
+    pub output: f64,
+}
+
+impl WallTimes {
+    /// The stages by name, without the total.
+    pub fn stages(&self) -> [(&'static str, f64); 7] {
+        [
+            ("gas", self.gas),
+            ("particles", self.particles),
+            ("interior", self.interior),
+            ("mapping", self.mapping),
+            ("smoother", self.smoother),
+            ("exchange", self.exchange),
+            ("output", self.output),
+        ]
+    }
+}
+
+/// A quantity at the end of the run, or at the process time at which a value is expected.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct QuantityResult {
+    /// Its value in `unit`; `null` where it is not known yet.
+    pub value: Option<f64>,
+    /// Its unit.
+    pub unit: String,
+    /// Process time of the value in s.
+    pub at_s: Option<f64>,
+    /// Smallest and largest value that pass, in `unit`; `null` where nothing is expected.
+    pub band: Option<(f64, f64)>,
+    /// `pass`, `fail`, `none`, or `running` before the value is known.
+    pub verdict: Verdict,
+}
+
+/// How the gas converged, over the run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ConvergenceSummary {
+    /// Windows whose outer loop ended at its limit.
+    pub unconverged_windows: u64,
+    /// Outer iterations of all windows.
+    pub outer_iterations: u64,
+    /// Iterations of the linear solvers in all windows.
+    pub linear_iterations: u64,
+    /// Largest scaled residual at the end of a window.
+    pub largest_residual: f64,
+    /// Largest volume residual of a window (requirements CON-2).
+    pub largest_volume_residual: f64,
+}
+
+impl Summary {
+    /// Reads the summary of a result directory.
+    pub fn read(directory: &Path) -> Result<Self, ResultsError> {
+        let path = directory.join(SUMMARY);
+        serde_json::from_str(&files::read(&path)?)
+            .map_err(|error| ResultsError::content(&path, error.to_string()))
+    }
+
+    /// Replaces the summary of a result directory.
+    pub(super) fn replace(&self, directory: &Path) -> Result<(), ResultsError> {
+        files::replace_json(&directory.join(SUMMARY), self)
+    }
+}
