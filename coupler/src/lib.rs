@@ -1,11 +1,14 @@
 //! The coordinator of Calcine: three parts, two clocks, one loop.
 
+pub mod checkpoint;
 pub mod error;
 pub mod ledger;
+pub mod mapping;
 pub mod mesh;
 pub mod observer;
 pub mod part;
 pub mod setup;
+pub mod smoother;
 pub mod supervisor;
 pub mod time;
 
