@@ -1,0 +1,165 @@
+//! Weights of particles in cells: the base operator W₀ and its transpose.
+
+use rayon::prelude::*;
+
+use super::MappingError;
+
+/// For each particle the cells it lies in and its share in each; the shares of a particle sum to 1
+/// (requirements CON-6). Kept by particle and by cell, so that both directions gather and results
+/// do not depend on the number of threads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Weights {
+    by_particle: Rows,
+    by_cell: Rows,
+}
+
+/// A sparse matrix by rows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Rows {
+    offsets: Vec<usize>,
+    columns: Vec<u32>,
+    values: Vec<f64>,
+}
+
+/// What a particle or a cell holds: a number or a vector.
+pub(crate) trait Amount:
+    Copy
+    + Send
+    + Sync
+    + std::ops::AddAssign
+    + std::ops::Sub<Output = Self>
+    + std::ops::Mul<f64, Output = Self>
+{
+    const ZERO: Self;
+}
+
+impl Amount for f64 {
+    const ZERO: Self = 0.0;
+}
+
+impl Amount for calcine_physics::Vec3 {
+    const ZERO: Self = Self::new(0.0, 0.0, 0.0);
+}
+
+impl Rows {
+    pub fn from_rows(rows: impl IntoIterator<Item = Vec<(u32, f64)>>) -> Self {
+        let mut matrix = Self {
+            offsets: vec![0],
+            ..Self::default()
+        };
+        for row in rows {
+            matrix.columns.extend(row.iter().map(|&(column, _)| column));
+            matrix.values.extend(row.iter().map(|&(_, value)| value));
+            matrix.offsets.push(matrix.columns.len());
+        }
+        matrix
+    }
+
+    pub fn len(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let range = self.offsets[row]..self.offsets[row + 1];
+        let columns = self.columns[range.clone()].iter();
+        columns
+            .map(|&column| column as usize)
+            .zip(self.values[range].iter().copied())
+    }
+
+    /// The transpose, each row in ascending order of its columns.
+    pub fn transposed(&self, columns: usize) -> Self {
+        let mut offsets = vec![0usize; columns + 1];
+        for &column in &self.columns {
+            offsets[column as usize + 1] += 1;
+        }
+        for column in 0..columns {
+            offsets[column + 1] += offsets[column];
+        }
+        let mut next = offsets.clone();
+        let mut transposed = Self {
+            offsets,
+            columns: vec![0; self.columns.len()],
+            values: vec![0.0; self.values.len()],
+        };
+        for row in 0..self.len() {
+            for (column, value) in self.row(row) {
+                let slot = next[column];
+                transposed.columns[slot] = row as u32;
+                transposed.values[slot] = value;
+                next[column] += 1;
+            }
+        }
+        transposed
+    }
+
+    /// The sum of one row with what its columns hold.
+    pub fn gather<T: Amount>(&self, row: usize, from: &[T]) -> T {
+        let mut sum = T::ZERO;
+        for (column, value) in self.row(row) {
+            sum += from[column] * value;
+        }
+        sum
+    }
+
+    /// The product with a vector.
+    pub fn apply<T: Amount>(&self, from: &[T], to: &mut [T]) {
+        debug_assert_eq!(to.len(), self.len());
+        to.par_iter_mut()
+            .with_min_len(1024)
+            .enumerate()
+            .for_each(|(row, value)| *value = self.gather(row, from));
+    }
+}
+
+impl Weights {
+    /// Weights of a mesh of `cells` cells from shares by particle, scaled to the sum 1.
+    pub fn new(cells: usize, mut by_particle: Vec<Vec<(u32, f64)>>) -> Result<Self, MappingError> {
+        for (particle, row) in by_particle.iter_mut().enumerate() {
+            let total: f64 = row.iter().map(|&(_, share)| share).sum();
+            let valid = |&(cell, share): &(u32, f64)| (cell as usize) < cells && share >= 0.0;
+            if !(total > 0.0 && total.is_finite() && row.iter().all(valid)) {
+                return Err(MappingError::Shares { particle, total });
+            }
+            row.sort_unstable_by_key(|&(cell, _)| cell);
+            for (_, share) in row.iter_mut() {
+                *share /= total;
+            }
+        }
+        let by_particle = Rows::from_rows(by_particle);
+        Ok(Self {
+            by_cell: by_particle.transposed(cells),
+            by_particle,
+        })
+    }
+
+    /// Number of particles.
+    pub fn particles(&self) -> usize {
+        self.by_particle.len()
+    }
+
+    /// Number of cells.
+    pub fn cells(&self) -> usize {
+        self.by_cell.len()
+    }
+
+    /// The cells of a particle with its share in each, by ascending cell.
+    pub fn of_particle(&self, particle: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.by_particle.row(particle)
+    }
+
+    /// The particles of a cell with their shares in it, by ascending particle.
+    pub fn of_cell(&self, cell: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.by_cell.row(cell)
+    }
+
+    /// W₀ x: what particles carry, spread over cells.
+    pub(crate) fn spread<T: Amount>(&self, per_particle: &[T], per_cell: &mut [T]) {
+        self.by_cell.apply(per_particle, per_cell);
+    }
+
+    /// W₀ᵀ y: what particles see of the cells.
+    pub(crate) fn sample<T: Amount>(&self, per_cell: &[T], per_particle: &mut [T]) {
+        self.by_particle.apply(per_cell, per_particle);
+    }
+}
