@@ -1,4 +1,5 @@
 //! Calcine: reactive granular beds, gas and grains coupled.
 
 pub mod case;
+pub mod report;
 pub mod results;

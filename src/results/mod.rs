@@ -5,9 +5,10 @@
 //! Every time in them is process time, unless its name begins with `motion_`.
 
 mod error;
-mod files;
+pub(crate) mod files;
 mod locate;
 pub mod quantities;
+pub mod read;
 
 mod recorder;
 mod resume;

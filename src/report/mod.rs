@@ -1,0 +1,346 @@
+//! The report of a run: one self-contained HTML page made from a result directory.
+
+pub(crate) mod colour;
+pub(crate) mod number;
+pub(crate) mod page;
+mod picture;
+pub(crate) mod plot;
+mod section;
+
+use std::path::{Path, PathBuf};
+
+use self::number::{figure, span, with_unit};
+use self::page::{Page, badge, bars, escape, table, tiles};
+use self::plot::{Curve, Plot};
+use crate::results::read::Series;
+use crate::results::summary::{QuantityResult, Solver};
+use crate::results::{CASE, ResultsError, Summary, files};
+
+/// Name of the page in a result directory.
+pub const REPORT: &str = "report.html";
+/// Up to so many particles are named in the legend of their plot.
+const NAMED_PARTICLES: usize = 20;
+/// Label of every time axis.
+const TIME: &str = "process time in s";
+
+/// Writes `report.html` into a result directory, from the files that are in it.
+pub fn write(directory: &Path) -> Result<PathBuf, ResultsError> {
+    let summary = Summary::read(directory)?;
+    let series = Series::read(directory)?;
+    let case = files::read(&directory.join(CASE))?;
+    let kicker = format!(
+        "{} · {} gas · {} particles",
+        summary.case.name, summary.backend.gas, summary.backend.particles
+    );
+    let mut page = Page::new(&kicker, &summary.case.title, &badge(summary.verdict));
+    page.raw(&headline(&summary));
+    page.section("Quantities of interest", "", &quantities(&summary));
+    page.section(
+        "Bed and gas",
+        "A cut through the middle, seen from the side: gas cells and particles in one colour scale.",
+        &picture::render(directory)?,
+    );
+    page.section("Over time", "", &plots(&summary, &series));
+    page.section(
+        "Ledger",
+        "What did not close, relative to all that moved, over the whole run.",
+        &ledger(&summary),
+    );
+    page.section("Where the wall time went", "", &timing(&summary));
+    page.section(
+        "Convergence of the gas",
+        &converged(&summary),
+        &residuals(&series),
+    );
+    page.section("What was run", "", &provenance(&summary));
+    let text = format!(
+        "<details><summary>The case as it was run</summary><pre>{}</pre></details>",
+        escape(&case)
+    );
+    page.section("Case file", "", &text);
+    let footer = format!(
+        "Calcine {} · all times are process (real) time unless said otherwise",
+        summary.calcine
+    );
+    let path = directory.join(REPORT);
+    files::replace(&path, page.finish(&footer).as_bytes())?;
+    Ok(path)
+}
+
+fn headline(summary: &Summary) -> String {
+    let largest = summary
+        .acceleration
+        .iter()
+        .map(|step| step.1)
+        .fold(1.0, f64::max);
+    let wall = summary.wall_time_s.total;
+    let energy = summary.ledger.lines.get("energy");
+    tiles(&[
+        (
+            "process time",
+            span(summary.process_time_s),
+            format!("of {}", span(summary.process_end_s)),
+        ),
+        (
+            "motion time",
+            span(summary.motion_time_s),
+            format!("acceleration up to {}", figure(largest, 4)),
+        ),
+        (
+            "windows",
+            summary.windows.to_string(),
+            format!("gas stores: {}", summary.storage),
+        ),
+        (
+            "particles",
+            summary.particles.to_string(),
+            format!("{} gas cells", summary.cells),
+        ),
+        (
+            "wall time",
+            span(wall),
+            format!(
+                "{} s of process a second",
+                figure(summary.process_time_s / wall, 3)
+            ),
+        ),
+        (
+            "energy closes to",
+            energy.map_or("–".into(), |line| figure(line.relative_error, 2)),
+            "relative to all that moved".into(),
+        ),
+    ])
+}
+
+fn quantities(summary: &Summary) -> String {
+    let band = |result: &QuantityResult| match result.band {
+        Some((low, high)) => {
+            format!("{} … {}", figure(low, 5), with_unit(high, 5, &result.unit))
+        }
+        None => "none stated".into(),
+    };
+    let rows: Vec<_> = summary
+        .quantities
+        .iter()
+        .map(|(name, result)| {
+            vec![
+                escape(&name.replace('_', " ")),
+                result
+                    .value
+                    .map_or("–".into(), |value| with_unit(value, 6, &result.unit)),
+                result.at_s.map_or("–".into(), span),
+                band(result),
+                verdict(result),
+            ]
+        })
+        .collect();
+    table(
+        &["quantity", "#value", "#at", "#expected", "verdict"],
+        &rows,
+    )
+}
+
+fn verdict(result: &QuantityResult) -> String {
+    use crate::results::Verdict::{Fail, None, Pass, Running, Stopped};
+    let word = match result.verdict {
+        Pass => "inside",
+        Fail => "outside",
+        Running | Stopped => "not known yet",
+        None => "–",
+    };
+    match result.verdict {
+        None => word.into(),
+        verdict => format!("<span class=\"badge {}\">{word}</span>", verdict.word()),
+    }
+}
+
+fn plots(summary: &Summary, series: &Series) -> String {
+    let time = series.column("process_time");
+    let motion = series.column("motion_time");
+    let plot = |title: String, band, curves| Plot {
+        title,
+        x_label: TIME,
+        logarithmic: false,
+        above: Some(("motion time in s", time, motion)),
+        band,
+        curves,
+    };
+    let mut html = plot(
+        "Particle temperature in K".into(),
+        None,
+        particle_curves(series, time),
+    )
+    .render();
+    for (name, result) in &summary.quantities {
+        let curve = Curve {
+            label: String::new(),
+            colour: colour::line(0),
+            x: time,
+            y: series.column(&format!("quantities.{name}")),
+            dashed: false,
+        };
+        let title = format!("{} in {}", name.replace('_', " "), result.unit);
+        html.push_str(&plot(title, result.band, vec![curve]).render());
+    }
+    format!("<div class=\"plots\">{html}</div>")
+}
+
+/// One line per particle from cold to hot along the order of ids; mean, least and largest where
+/// there are too many.
+fn particle_curves<'a>(series: &'a Series, time: &'a [f64]) -> Vec<Curve<'a>> {
+    let tracks = series.particles();
+    if tracks.is_empty() {
+        let names = ["mean", "min", "max"];
+        return names
+            .iter()
+            .enumerate()
+            .map(|(place, name)| Curve {
+                label: (*name).into(),
+                colour: colour::line(place),
+                x: time,
+                y: series.column(&format!("particles.temperature_{name}")),
+                dashed: place > 0,
+            })
+            .collect();
+    }
+    let (named, last) = (tracks.len() <= NAMED_PARTICLES, tracks.len().max(2) - 1);
+    tracks
+        .iter()
+        .enumerate()
+        .map(|(place, (id, values))| Curve {
+            label: if named { (*id).into() } else { String::new() },
+            // The ends of the scale are too dark and too light for a line.
+            colour: colour::scale(0.2 + 0.62 * place as f64 / last as f64),
+            x: time,
+            y: values,
+            dashed: false,
+        })
+        .collect()
+}
+
+fn ledger(summary: &Summary) -> String {
+    let lines = summary.ledger.lines.iter().chain(&summary.ledger.elements);
+    let rows: Vec<_> = lines
+        .map(|(name, line)| {
+            vec![
+                escape(&name.replace('_', " ")),
+                figure(line.relative_error, 3),
+                with_unit(line.drift, 3, &line.unit),
+                with_unit(line.throughput, 4, &line.unit),
+            ]
+        })
+        .collect();
+    table(
+        &["balance", "#relative error", "#drift", "#moved in all"],
+        &rows,
+    )
+}
+
+fn timing(summary: &Summary) -> String {
+    let wall = &summary.wall_time_s;
+    let mut entries: Vec<_> = wall.stages().to_vec();
+    let other = wall.total - entries.iter().map(|entry| entry.1).sum::<f64>();
+    entries.push(("other", other.max(0.0)));
+    entries.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let bar = |&(name, seconds): &(&'static str, f64)| {
+        let share = 100.0 * seconds / wall.total.max(f64::MIN_POSITIVE);
+        (
+            name,
+            seconds,
+            format!("{} · {} %", span(seconds), figure(share, 2)),
+        )
+    };
+    bars(&entries.iter().map(bar).collect::<Vec<_>>())
+}
+
+fn converged(summary: &Summary) -> String {
+    let sums = &summary.convergence;
+    let per_window = |count: u64| figure(count as f64 / summary.windows.max(1) as f64, 3);
+    format!(
+        "{} of {} windows ended at the limit of outer iterations; {} outer and {} linear \
+         iterations a window; largest residual {}, largest volume residual {}.",
+        sums.unconverged_windows,
+        summary.windows,
+        per_window(sums.outer_iterations),
+        per_window(sums.linear_iterations),
+        figure(sums.largest_residual, 2),
+        figure(sums.largest_volume_residual, 2),
+    )
+}
+
+fn residuals(series: &Series) -> String {
+    let time = series.column("process_time");
+    let curve = |label: &str, name: &str, number| Curve {
+        label: label.into(),
+        colour: colour::line(number),
+        x: time,
+        y: series.column(name),
+        dashed: false,
+    };
+    let plot = |title: &str, logarithmic, curves| {
+        let plot = Plot {
+            title: title.into(),
+            x_label: TIME,
+            logarithmic,
+            above: None,
+            band: None,
+            curves,
+        };
+        plot.render()
+    };
+    let left = plot(
+        "Residuals of the window",
+        true,
+        vec![
+            curve("residual", "gas.residual", 0),
+            curve("volume residual", "gas.volume_residual", 1),
+        ],
+    );
+    let right = plot(
+        "Iterations of the window",
+        true,
+        vec![
+            curve("outer", "gas.outer_iterations", 0),
+            curve("linear", "gas.linear_iterations", 1),
+        ],
+    );
+    format!("<div class=\"plots\">{left}{right}</div>")
+}
+
+fn provenance(summary: &Summary) -> String {
+    let solver = |solver: &Solver, backend: &str| {
+        let ranks = if solver.ranks == 1 { "rank" } else { "ranks" };
+        format!(
+            "{} {} ({}), {} {ranks}",
+            escape(&solver.name),
+            escape(&solver.version),
+            escape(backend),
+            solver.ranks
+        )
+    };
+    let schedule: Vec<_> = summary
+        .acceleration
+        .iter()
+        .map(|&(from, factor)| format!("{} from {}", figure(factor, 4), span(from)))
+        .collect();
+    let rows = [
+        ("case", escape(&summary.case.name)),
+        (
+            "SHA-256 of the case",
+            format!("<code>{}</code>", escape(&summary.case.hash)),
+        ),
+        ("gas", solver(&summary.solver.gas, &summary.backend.gas)),
+        (
+            "particles",
+            solver(&summary.solver.particles, &summary.backend.particles),
+        ),
+        ("transport", escape(&summary.transport)),
+        ("storage of the gas", escape(&summary.storage)),
+        ("acceleration", schedule.join(", ")),
+        ("Calcine", escape(&summary.calcine)),
+    ];
+    table(
+        &["", ""],
+        &rows.map(|(name, value)| vec![name.into(), value]),
+    )
+}

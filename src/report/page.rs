@@ -1,0 +1,158 @@
+//! The shell of a page: styles, headings, tables, tiles. Nothing is loaded from elsewhere.
+
+use std::fmt::Write as _;
+
+use crate::results::Verdict;
+
+const STYLE: &str = include_str!("style.css");
+
+/// Text made safe for HTML and SVG.
+pub(crate) fn escape(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => safe.push_str("&amp;"),
+            '<' => safe.push_str("&lt;"),
+            '>' => safe.push_str("&gt;"),
+            '"' => safe.push_str("&quot;"),
+            _ => safe.push(c),
+        }
+    }
+    safe
+}
+
+/// A page in the making.
+pub(crate) struct Page {
+    body: String,
+    title: String,
+}
+
+impl Page {
+    /// A page with its title, a line above it, and a badge.
+    pub fn new(kicker: &str, title: &str, badge: &str) -> Self {
+        let body = format!(
+            "<header><p class=\"kicker\">{}</p><h1>{}{badge}</h1></header>",
+            escape(kicker),
+            escape(title)
+        );
+        Self {
+            body,
+            title: title.into(),
+        }
+    }
+
+    /// A section with a heading and a sentence (both plain text) over its content (HTML).
+    pub fn section(&mut self, heading: &str, sentence: &str, content: &str) {
+        if content.is_empty() {
+            return;
+        }
+        // Writing to a String cannot fail.
+        let _ = write!(self.body, "<section><h2>{}</h2>", escape(heading));
+        if !sentence.is_empty() {
+            let _ = write!(self.body, "<p class=\"note\">{}</p>", escape(sentence));
+        }
+        let _ = write!(self.body, "{content}</section>");
+    }
+
+    /// Content outside sections, as HTML.
+    pub fn raw(&mut self, content: &str) {
+        self.body.push_str(content);
+    }
+
+    /// The whole page.
+    pub fn finish(self, footer: &str) -> String {
+        format!(
+            "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
+             <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\
+             <title>{}</title><style>{STYLE}</style></head><body><main>{}\
+             <footer>{}</footer></main></body></html>\n",
+            escape(&self.title),
+            self.body,
+            escape(footer)
+        )
+    }
+}
+
+/// A coloured word.
+pub(crate) fn badge(verdict: Verdict) -> String {
+    let text = match verdict {
+        Verdict::Running => "running",
+        Verdict::Stopped => "stopped early",
+        Verdict::Pass => "inside its bands",
+        Verdict::Fail => "outside its bands",
+        Verdict::None => "finished",
+    };
+    format!("<span class=\"badge {}\">{text}</span>", verdict.word())
+}
+
+/// Large figures with a word each.
+pub(crate) fn tiles(entries: &[(&str, String, String)]) -> String {
+    let tiles: String = entries
+        .iter()
+        .map(|(label, value, detail)| {
+            format!(
+                "<div class=\"tile\"><span>{}</span><b>{}</b><small>{}</small></div>",
+                escape(label),
+                escape(value),
+                escape(detail)
+            )
+        })
+        .collect();
+    format!("<div class=\"tiles\">{tiles}</div>")
+}
+
+/// A table; columns whose heading begins with `#` hold figures and are set to the right. Cells are
+/// HTML.
+pub(crate) fn table(head: &[&str], rows: &[Vec<String>]) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    let class = |place: usize| match head.get(place) {
+        Some(name) if name.starts_with('#') => " class=\"n\"",
+        _ => "",
+    };
+    let mut html = String::from("<div class=\"scroll\"><table>");
+    if head.iter().any(|name| !name.is_empty()) {
+        html.push_str("<thead><tr>");
+        for (place, name) in head.iter().enumerate() {
+            let _ = write!(
+                html,
+                "<th{}>{}</th>",
+                class(place),
+                escape(name.trim_start_matches('#'))
+            );
+        }
+        html.push_str("</tr></thead>");
+    }
+    html.push_str("<tbody>");
+    for row in rows {
+        html.push_str("<tr>");
+        for (place, cell) in row.iter().enumerate() {
+            let _ = write!(html, "<td{}>{cell}</td>", class(place));
+        }
+        html.push_str("</tr>");
+    }
+    html.push_str("</tbody></table></div>");
+    html
+}
+
+/// Horizontal bars: name, value, text beside it.
+pub(crate) fn bars(entries: &[(&str, f64, String)]) -> String {
+    let longest = entries
+        .iter()
+        .map(|entry| entry.1)
+        .fold(f64::MIN_POSITIVE, f64::max);
+    let rows: String = entries
+        .iter()
+        .map(|(name, value, text)| {
+            format!(
+                "<div class=\"bar\"><span>{}</span><div><i style=\"width:{:.2}%\"></i></div>\
+                 <em>{}</em></div>",
+                escape(name),
+                100.0 * value / longest,
+                escape(text)
+            )
+        })
+        .collect();
+    format!("<div class=\"bars\">{rows}</div>")
+}

@@ -1,0 +1,152 @@
+//! The picture of bed and gas: a side view at several times, one colour scale for all.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use super::colour::Range;
+use super::number::span;
+use super::section::{self, Circle, Polygon, Spot};
+use crate::results::ResultsError;
+use crate::results::read::{self, Array, Arrays};
+
+const HEIGHT: f64 = 460.0;
+const WIDEST: f64 = 1050.0;
+const BAR: f64 = 110.0;
+
+/// One snapshot, cut.
+struct View {
+    time: f64,
+    gas: Arrays,
+    particles: Arrays,
+    polygons: Vec<Polygon>,
+    circles: Vec<Circle>,
+}
+
+/// Side views at the start, the end and times between; empty where there are no snapshots.
+pub(super) fn render(directory: &Path) -> Result<String, ResultsError> {
+    let gas = read::collection(directory, "gas.pvd")?;
+    let particles = read::collection(directory, "particles.pvd")?;
+    let count = gas.len().min(particles.len());
+    let Some((_, first)) = gas.first() else {
+        return Ok(String::new());
+    };
+    let outline = read::arrays(first)?;
+    let plane = section::plane(&outline);
+    let Some((low, high)) = extent(&section::polygons(&outline, plane)) else {
+        return Ok(String::new());
+    };
+    let aspect = (high[0] - low[0]) / (high[1] - low[1]);
+    let shown = frames(aspect).min(count);
+    let views = (0..shown)
+        .map(|frame| {
+            let number = frame * (count - 1) / (shown - 1).max(1);
+            let (time, gas_file) = &gas[number];
+            let gas = read::arrays(gas_file)?;
+            let bed = read::arrays(&particles[number].1)?;
+            Ok(View {
+                time: *time,
+                polygons: section::polygons(&gas, plane),
+                circles: section::circles(&bed, plane),
+                gas,
+                particles: bed,
+            })
+        })
+        .collect::<Result<Vec<_>, ResultsError>>()?;
+    Ok(draw(&views, low, high))
+}
+
+/// How many views fit side by side: narrow columns leave room for six.
+fn frames(aspect: f64) -> usize {
+    match aspect {
+        a if a < 0.3 => 6,
+        a if a < 0.6 => 4,
+        a if a < 1.2 => 3,
+        _ => 2,
+    }
+}
+
+fn extent(polygons: &[Polygon]) -> Option<(Spot, Spot)> {
+    let corners = || polygons.iter().flat_map(|polygon| polygon.corners.iter());
+    let x = Range::of(corners().map(|corner| corner[0]))?;
+    let z = Range::of(corners().map(|corner| corner[1]))?;
+    Some(([x.low, z.low], [x.high, z.high]))
+}
+
+fn temperature(arrays: &Arrays) -> &[f64] {
+    match arrays.get("temperature") {
+        Some(Array {
+            components: 1,
+            values,
+        }) => values,
+        _ => &[],
+    }
+}
+
+fn draw(views: &[View], low: Spot, high: Spot) -> String {
+    let values = views.iter().flat_map(|view| {
+        temperature(&view.gas)
+            .iter()
+            .chain(temperature(&view.particles))
+    });
+    let range = Range::of(values.copied());
+    let (wide, tall) = (high[0] - low[0], high[1] - low[1]);
+    let gap = 34.0;
+    let room = (WIDEST - BAR) / views.len() as f64 - gap;
+    let scale = (HEIGHT / tall).min(room / wide);
+    let (wide, tall) = (wide * scale, tall * scale);
+    let column = wide.max(64.0) + gap;
+    let (width, height) = (column * views.len() as f64 + BAR, tall + 84.0);
+    let mut svg = format!(
+        "<figure class=\"picture\"><svg viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" \
+         role=\"img\" aria-label=\"Side views of bed and gas\">"
+    );
+    for (number, view) in views.iter().enumerate() {
+        let left = column * number as f64 + (column - wide) / 2.0;
+        let spot = |at: Spot| {
+            [
+                left + (at[0] - low[0]) * scale,
+                40.0 + (high[1] - at[1]) * scale,
+            ]
+        };
+        let colour = |values: &[f64], place: usize| match (range, values.get(place)) {
+            (Some(range), Some(&value)) => range.colour(value),
+            _ => "var(--rule)".into(),
+        };
+        for polygon in &view.polygons {
+            let fill = colour(temperature(&view.gas), polygon.cell);
+            svg.push_str("<polygon points=\"");
+            for corner in &polygon.corners {
+                let [x, y] = spot(*corner);
+                // Writing to a String cannot fail.
+                let _ = write!(svg, "{x:.1},{y:.1} ");
+            }
+            let _ = write!(
+                svg,
+                "\" fill=\"{fill}\" stroke=\"{fill}\" stroke-width=\".6\"/>"
+            );
+        }
+        for circle in &view.circles {
+            let [x, y] = spot(circle.centre);
+            let _ = write!(
+                svg,
+                "<circle class=\"sphere\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{:.2}\" fill=\"{}\"/>",
+                circle.radius * scale,
+                colour(temperature(&view.particles), circle.particle)
+            );
+        }
+        let _ = write!(
+            svg,
+            "<rect class=\"hull\" x=\"{left:.1}\" y=\"40\" width=\"{wide:.1}\" height=\"{tall:.1}\"/>\
+             <text class=\"label\" text-anchor=\"middle\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
+            left + wide / 2.0,
+            tall + 62.0,
+            span(view.time)
+        );
+    }
+    if let Some(range) = range {
+        let bar = tall.min(320.0);
+        svg.push_str(&range.bar(width - BAR + 26.0, 40.0 + (tall - bar) / 2.0, bar, "T in K"));
+    }
+    svg.push_str("</svg></figure>");
+    svg
+}

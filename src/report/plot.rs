@@ -1,0 +1,345 @@
+//! Line plots as SVG.
+
+use std::fmt::Write as _;
+
+use super::colour::Range;
+use super::number::figure;
+use super::page::escape;
+
+/// Points of a curve at most; more would not be seen.
+const POINTS: usize = 600;
+const WIDTH: f64 = 560.0;
+const HEIGHT: f64 = 300.0;
+const LEFT: f64 = 66.0;
+const RIGHT: f64 = 14.0;
+const TOP: f64 = 34.0;
+const BOTTOM: f64 = 44.0;
+
+/// One line of a plot.
+pub(crate) struct Curve<'a> {
+    /// Its name in the legend; empty: not in the legend.
+    pub label: String,
+    /// CSS colour.
+    pub colour: String,
+    /// Values along x.
+    pub x: &'a [f64],
+    /// Values along y.
+    pub y: &'a [f64],
+    /// True: a broken line.
+    pub dashed: bool,
+}
+
+/// A plot over time.
+pub(crate) struct Plot<'a> {
+    /// What is shown, with the unit.
+    pub title: String,
+    /// Label of the axis of x.
+    pub x_label: &'a str,
+    /// True: powers of ten along y.
+    pub logarithmic: bool,
+    /// A second scale above: label, and its values at the x of `over`.
+    pub above: Option<(&'a str, &'a [f64], &'a [f64])>,
+    /// A band of y to shade.
+    pub band: Option<(f64, f64)>,
+    /// The lines.
+    pub curves: Vec<Curve<'a>>,
+}
+
+/// Where values lie on the picture.
+struct Frame {
+    x: Range,
+    y: Range,
+    logarithmic: bool,
+}
+
+impl Frame {
+    fn across(&self, x: f64) -> f64 {
+        let span = (self.x.high - self.x.low).max(f64::MIN_POSITIVE);
+        LEFT + (x - self.x.low) / span * (WIDTH - LEFT - RIGHT)
+    }
+
+    /// Upwards; `y` already as logarithm where the scale is one.
+    fn up(&self, y: f64) -> f64 {
+        let span = (self.y.high - self.y.low).max(f64::MIN_POSITIVE);
+        HEIGHT - BOTTOM - (y - self.y.low) / span * (HEIGHT - TOP - BOTTOM)
+    }
+
+    fn value(&self, y: f64) -> f64 {
+        if self.logarithmic { y.log10() } else { y }
+    }
+}
+
+impl Plot<'_> {
+    /// The plot with its title and legend, as a figure of the page; empty where nothing is finite.
+    pub fn render(&self) -> String {
+        let Some(frame) = self.frame() else {
+            return String::new();
+        };
+        let mut svg = format!(
+            "<figure><figcaption>{}</figcaption><svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" \
+             role=\"img\" aria-label=\"{0}\">",
+            escape(&self.title)
+        );
+        if let Some((low, high)) = self.band {
+            let (low, high) = (
+                frame.value(low).max(frame.y.low),
+                frame.value(high).min(frame.y.high),
+            );
+            if low < high {
+                let _ = write!(
+                    svg,
+                    "<rect class=\"band\" x=\"{LEFT}\" width=\"{}\" y=\"{:.1}\" height=\"{:.1}\"/>",
+                    WIDTH - LEFT - RIGHT,
+                    frame.up(high),
+                    frame.up(low) - frame.up(high)
+                );
+            }
+        }
+        self.axes(&frame, &mut svg);
+        for curve in &self.curves {
+            let dash = if curve.dashed {
+                " stroke-dasharray=\"6 4\""
+            } else {
+                ""
+            };
+            let _ = write!(
+                svg,
+                "<path class=\"curve\" stroke=\"{}\"{dash} d=\"{}\"/>",
+                curve.colour,
+                path(curve, &frame)
+            );
+        }
+        svg.push_str("</svg>");
+        svg.push_str(&self.legend());
+        svg.push_str("</figure>");
+        svg
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        let x = Range::of(self.curves.iter().flat_map(|curve| curve.x.iter().copied()))?;
+        let values = self.curves.iter().flat_map(|curve| curve.y.iter().copied());
+        let y = if self.logarithmic {
+            let range = Range::of(values.filter(|&y| y > 0.0).map(f64::log10))?;
+            Range {
+                low: range.low.floor(),
+                high: range.high.ceil().max(range.low.floor() + 1.0),
+            }
+        } else {
+            padded(Range::of(values)?)
+        };
+        Some(Frame {
+            x,
+            y,
+            logarithmic: self.logarithmic,
+        })
+    }
+
+    fn axes(&self, frame: &Frame, svg: &mut String) {
+        let (right, floor) = (WIDTH - RIGHT, HEIGHT - BOTTOM);
+        let ups = if self.logarithmic {
+            decades(frame.y)
+        } else {
+            ticks(frame.y, 5)
+        };
+        for y in ups {
+            let at = frame.up(y);
+            let text = figure(if self.logarithmic { 10f64.powf(y) } else { y }, 5);
+            let _ = write!(
+                svg,
+                "<line class=\"grid\" x1=\"{LEFT}\" x2=\"{right}\" y1=\"{at:.1}\" y2=\"{at:.1}\"/>\
+                 <text text-anchor=\"end\" x=\"{}\" y=\"{:.1}\">{text}</text>",
+                LEFT - 8.0,
+                at + 4.0
+            );
+        }
+        for x in ticks(frame.x, 6) {
+            let at = frame.across(x);
+            let _ = write!(
+                svg,
+                "<line class=\"tick\" x1=\"{at:.1}\" x2=\"{at:.1}\" y1=\"{floor}\" y2=\"{}\"/>\
+                 <text text-anchor=\"middle\" x=\"{at:.1}\" y=\"{}\">{}</text>",
+                floor + 5.0,
+                floor + 19.0,
+                figure(x, 5)
+            );
+            if let Some((_, over, values)) = self.above {
+                let _ = write!(
+                    svg,
+                    "<line class=\"tick\" x1=\"{at:.1}\" x2=\"{at:.1}\" y1=\"{TOP}\" y2=\"{}\"/>\
+                     <text class=\"faint\" text-anchor=\"middle\" x=\"{at:.1}\" y=\"{}\">{}</text>",
+                    TOP - 4.0,
+                    TOP - 8.0,
+                    figure(between(over, values, x), 4)
+                );
+            }
+        }
+        let _ = write!(
+            svg,
+            "<line class=\"axis\" x1=\"{LEFT}\" x2=\"{right}\" y1=\"{floor}\" y2=\"{floor}\"/>\
+             <text class=\"label\" text-anchor=\"middle\" x=\"{}\" y=\"{}\">{}</text>",
+            (LEFT + right) / 2.0,
+            HEIGHT - 8.0,
+            escape(self.x_label)
+        );
+        if let Some((label, _, _)) = self.above {
+            let _ = write!(
+                svg,
+                "<line class=\"axis thin\" x1=\"{LEFT}\" x2=\"{right}\" y1=\"{TOP}\" y2=\"{TOP}\"/>\
+                 <text class=\"faint\" x=\"0\" y=\"{}\">{}</text>",
+                TOP - 22.0,
+                escape(label)
+            );
+        }
+    }
+
+    fn legend(&self) -> String {
+        let named = self.curves.iter().filter(|curve| !curve.label.is_empty());
+        let chips: String = named
+            .map(|curve| {
+                format!(
+                    "<span><i style=\"background:{}\"></i>{}</span>",
+                    curve.colour,
+                    escape(&curve.label)
+                )
+            })
+            .collect();
+        if chips.is_empty() {
+            chips
+        } else {
+            format!("<div class=\"legend\">{chips}</div>")
+        }
+    }
+}
+
+/// A range with some air around it; a flat one gets a visible height.
+fn padded(range: Range) -> Range {
+    let span = range.high - range.low;
+    let least = 1e-6 * range.high.abs().max(range.low.abs()).max(1e-30);
+    let air = if span > least {
+        0.06 * span
+    } else {
+        50.0 * least
+    };
+    Range {
+        low: range.low - air,
+        high: range.high + air,
+    }
+}
+
+fn path(curve: &Curve<'_>, frame: &Frame) -> String {
+    let count = curve.x.len().min(curve.y.len());
+    let stride = count.div_ceil(POINTS).max(1);
+    let mut places: Vec<usize> = (0..count).step_by(stride).collect();
+    if count > 0 && (count - 1) % stride != 0 {
+        places.push(count - 1);
+    }
+    let (mut text, mut pen_down) = (String::new(), false);
+    for place in places {
+        let (x, y) = (curve.x[place], frame.value(curve.y[place]));
+        if !y.is_finite() {
+            pen_down = false;
+            continue;
+        }
+        let verb = if pen_down { 'L' } else { 'M' };
+        let _ = write!(text, "{verb}{:.1} {:.1}", frame.across(x), frame.up(y));
+        pen_down = true;
+    }
+    text
+}
+
+/// Round values inside a range, about so many.
+fn ticks(range: Range, about: usize) -> Vec<f64> {
+    let span = range.high - range.low;
+    if span <= 0.0 {
+        return vec![range.low];
+    }
+    let raw = span / about as f64;
+    let power = 10f64.powf(raw.log10().floor());
+    let step = [1.0, 2.0, 2.5, 5.0, 10.0]
+        .into_iter()
+        .map(|factor| factor * power)
+        .find(|&step| step >= raw)
+        .unwrap_or(10.0 * power);
+    let first = (range.low / step - 1e-9).ceil() as i64;
+    let last = (range.high / step + 1e-9).floor() as i64;
+    (first..=last).map(|n| n as f64 * step).collect()
+}
+
+fn decades(range: Range) -> Vec<f64> {
+    let count = (range.high - range.low).round() as usize;
+    let step = count.div_ceil(5).max(1);
+    (0..=count)
+        .step_by(step)
+        .map(|n| range.low + n as f64)
+        .collect()
+}
+
+/// The value at `x` of a line through points with ascending `over`.
+pub(crate) fn between(over: &[f64], values: &[f64], x: f64) -> f64 {
+    let count = over.len().min(values.len());
+    let next = over[..count].partition_point(|&at| at < x);
+    if next < count && over[next] == x {
+        return values[next];
+    }
+    if next == 0 || next == count {
+        let edge = if next == 0 {
+            values.first()
+        } else {
+            values[..count].last()
+        };
+        return edge.copied().unwrap_or(f64::NAN);
+    }
+    let share = (x - over[next - 1]) / (over[next] - over[next - 1]);
+    values[next - 1] + share * (values[next] - values[next - 1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_inside_the_range() {
+        let range = Range {
+            low: 0.0,
+            high: 300.0,
+        };
+        assert_eq!(
+            ticks(range, 6),
+            [0.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0]
+        );
+        let narrow = Range {
+            low: 17.93,
+            high: 18.07,
+        };
+        for tick in ticks(narrow, 5) {
+            assert!((17.93..=18.07).contains(&tick), "{tick}");
+        }
+    }
+
+    #[test]
+    fn a_value_between_two_points_lies_on_the_line() {
+        assert_eq!(between(&[0.0, 2.0], &[10.0, 20.0], 1.0), 15.0);
+        assert_eq!(between(&[0.0, 2.0], &[10.0, 20.0], 2.0), 20.0);
+        assert_eq!(between(&[0.0, 2.0], &[10.0, 20.0], 9.0), 20.0);
+        assert!(between(&[], &[], 1.0).is_nan());
+    }
+
+    #[test]
+    fn a_curve_without_finite_values_leaves_no_plot() {
+        let plot = Plot {
+            title: "nothing".into(),
+            x_label: "x",
+            logarithmic: false,
+            above: None,
+            band: None,
+            curves: vec![Curve {
+                label: String::new(),
+                colour: "red".into(),
+                x: &[0.0, 1.0],
+                y: &[f64::NAN, f64::NAN],
+                dashed: false,
+            }],
+        };
+        assert_eq!(plot.render(), "");
+    }
+}

@@ -1,0 +1,198 @@
+//! The plane section of a snapshot: polygons of gas cells and circles of particles, seen along y.
+
+use crate::results::read::Arrays;
+
+/// Corners of the twelve edges of a hexahedron in VTK's order.
+const EDGES: [[usize; 2]; 12] = [
+    [0, 1],
+    [1, 2],
+    [2, 3],
+    [3, 0],
+    [4, 5],
+    [5, 6],
+    [6, 7],
+    [7, 4],
+    [0, 4],
+    [1, 5],
+    [2, 6],
+    [3, 7],
+];
+
+/// A point of the picture: x to the right, z upwards, in m.
+pub(super) type Spot = [f64; 2];
+
+/// A gas cell cut by the plane.
+pub(super) struct Polygon {
+    /// Index of the cell.
+    pub cell: usize,
+    /// Corners, counter-clockwise.
+    pub corners: Vec<Spot>,
+}
+
+/// A particle cut by the plane.
+pub(super) struct Circle {
+    /// Index of the particle in its file.
+    pub particle: usize,
+    /// Its centre.
+    pub centre: Spot,
+    /// Radius of the cut in m.
+    pub radius: f64,
+}
+
+/// The height y of the plane through the middle of the gas, off by a millionth of the depth so that
+/// it does not run along faces.
+pub(super) fn plane(gas: &Arrays) -> f64 {
+    let points = gas.get("points").map_or(&[][..], |array| &array.values);
+    let ys = points.iter().skip(1).step_by(3);
+    let (low, high) = ys.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &y| {
+        (low.min(y), high.max(y))
+    });
+    0.5 * (low + high) + 1e-6 * (high - low)
+}
+
+/// The cells that the plane cuts.
+pub(super) fn polygons(gas: &Arrays, plane: f64) -> Vec<Polygon> {
+    let list = |name: &str| gas.get(name).map_or(&[][..], |array| &array.values);
+    let points = list("points");
+    let (corners, ends) = (list("connectivity"), list("offsets"));
+    let (faces, face_ends) = (list("faces"), list("faceoffsets"));
+    let mut polygons = Vec::new();
+    let (mut start, mut face_start) = (0, 0);
+    for (cell, &end) in ends.iter().enumerate() {
+        let end = (end as usize).min(corners.len());
+        let nodes = &corners[start.min(end)..end];
+        start = end;
+        let face_end = face_ends.get(cell).copied().unwrap_or(-1.0);
+        let edges = if face_end < 0.0 {
+            hexahedron_edges(nodes)
+        } else {
+            let face_end = (face_end as usize).min(faces.len());
+            let stream = &faces[face_start.min(face_end)..face_end];
+            face_start = face_end;
+            polyhedron_edges(stream)
+        };
+        let cuts = edges.iter().filter_map(|&edge| cut(points, edge, plane));
+        let corners = hull(cuts.collect());
+        if corners.len() > 2 {
+            polygons.push(Polygon { cell, corners });
+        }
+    }
+    polygons
+}
+
+/// The particles that the plane cuts.
+pub(super) fn circles(particles: &Arrays, plane: f64) -> Vec<Circle> {
+    let list = |name: &str| particles.get(name).map_or(&[][..], |array| &array.values);
+    let centres = list("points").chunks_exact(3);
+    centres
+        .zip(list("radius"))
+        .enumerate()
+        .filter_map(|(particle, (centre, radius))| {
+            let squared = radius * radius - (centre[1] - plane).powi(2);
+            (squared > 0.0).then(|| Circle {
+                particle,
+                centre: [centre[0], centre[2]],
+                radius: squared.sqrt(),
+            })
+        })
+        .collect()
+}
+
+fn hexahedron_edges(nodes: &[f64]) -> Vec<[usize; 2]> {
+    if nodes.len() != 8 {
+        return Vec::new();
+    }
+    EDGES
+        .iter()
+        .map(|edge| edge.map(|corner| nodes[corner] as usize))
+        .collect()
+}
+
+/// Edges of a polyhedron from VTK's stream: number of faces, then each face's size and points.
+fn polyhedron_edges(stream: &[f64]) -> Vec<[usize; 2]> {
+    let mut edges = Vec::new();
+    let mut rest = stream.get(1..).unwrap_or_default();
+    while let Some((&size, after)) = rest.split_first() {
+        let size = (size as usize).min(after.len());
+        let face = &after[..size];
+        for place in 0..size {
+            edges.push([face[place] as usize, face[(place + 1) % size] as usize]);
+        }
+        rest = &after[size..];
+    }
+    edges
+}
+
+fn cut(points: &[f64], edge: [usize; 2], plane: f64) -> Option<Spot> {
+    let a = points.get(3 * edge[0]..3 * edge[0] + 3)?;
+    let b = points.get(3 * edge[1]..3 * edge[1] + 3)?;
+    if (a[1] < plane) == (b[1] < plane) {
+        return None;
+    }
+    let share = (plane - a[1]) / (b[1] - a[1]);
+    Some([a[0] + share * (b[0] - a[0]), a[2] + share * (b[2] - a[2])])
+}
+
+/// The convex hull of points, counter-clockwise (Andrew's monotone chain).
+fn hull(mut spots: Vec<Spot>) -> Vec<Spot> {
+    spots.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    spots.dedup();
+    if spots.len() < 3 {
+        return spots;
+    }
+    let turn =
+        |o: Spot, a: Spot, b: Spot| (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
+    let half = |spots: &mut dyn Iterator<Item = Spot>| {
+        let mut chain: Vec<Spot> = Vec::new();
+        for spot in spots {
+            while let [.., o, a] = chain[..] {
+                if turn(o, a, spot) > 0.0 {
+                    break;
+                }
+                chain.pop();
+            }
+            chain.push(spot);
+        }
+        chain.pop();
+        chain
+    };
+    let mut chain = half(&mut spots.iter().copied());
+    chain.extend(half(&mut spots.iter().rev().copied()));
+    chain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_hull_of_a_square_with_points_inside_and_on_its_edges_is_the_square() {
+        let spots = vec![
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [1.0, 1.0],
+            [0.0, 1.0],
+            [0.5, 0.5],
+            [0.5, 0.0],
+        ];
+        assert_eq!(
+            hull(spots),
+            [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+        );
+    }
+
+    #[test]
+    fn a_tetrahedron_given_as_faces_is_cut_in_a_triangle() {
+        let stream = [
+            4.0, 3.0, 0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 3.0, 3.0, 1.0, 2.0, 3.0, 3.0, 0.0, 2.0, 3.0,
+        ];
+        let points = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0];
+        let edges = polyhedron_edges(&stream);
+        assert_eq!(edges.len(), 12);
+        let cuts = edges
+            .iter()
+            .filter_map(|&edge| cut(&points, edge, 0.5))
+            .collect();
+        assert_eq!(hull(cuts), [[0.0, 0.0], [0.5, 0.0], [0.0, 0.5]]);
+    }
+}
