@@ -1,2 +1,177 @@
-//! Placeholder.
-fn main() {}
+//! Set-up, run, test, benchmarks and installation of Calcine, from a clone:
+//! `cargo xtask …`. The standard library alone, so that it builds in seconds.
+
+mod adapters;
+mod headers;
+mod packages;
+mod sources;
+mod steps;
+mod tasks;
+mod workspace;
+
+use std::env;
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use packages::Needs;
+use steps::{Outcome, Stop, say};
+use workspace::Workspace;
+
+const USAGE: &str = "\
+usage: cargo xtask TASK
+
+  run CASE …              set up and build what the run needs, then `calcine run CASE …`
+  calcine SUBCOMMAND …    the same for any other subcommand, for example `compare CASE`
+  test [--native] …       set up and build everything and run all tests; words go to `cargo test`
+  setup [--native|--all]  install packages, prepare headers, build (default: --all)
+        [--no-build]      without building
+  install --prefix DIR    build, then copy to DIR/bin and DIR/libexec/calcine
+        [--native]        without the adapters for OpenFOAM and LIGGGHTS
+  bench …                 run the benchmarks; words go to `cargo bench`";
+
+/// Exit code of a wrong command line, as `calcine` has it.
+const USAGE_CODE: u8 = 2;
+
+fn main() -> ExitCode {
+    let words: Vec<OsString> = env::args_os().skip(1).collect();
+    let Some(task) = read(&words) else {
+        say(USAGE);
+        let asked = words
+            .first()
+            .is_some_and(|word| word == "help" || word == "--help");
+        return if asked {
+            ExitCode::SUCCESS
+        } else {
+            ExitCode::from(USAGE_CODE)
+        };
+    };
+    match perform(task) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Stop(message)) => {
+            say(&message);
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// What the user asks for.
+#[derive(Debug, PartialEq)]
+enum Task {
+    SetUp { needs: Needs, build: bool },
+    Calcine(Vec<OsString>),
+    Test { native: bool, words: Vec<OsString> },
+    Bench(Vec<OsString>),
+    Install { prefix: PathBuf, needs: Needs },
+}
+
+fn read(words: &[OsString]) -> Option<Task> {
+    let (task, rest) = words.split_first()?;
+    match task.to_str()? {
+        "setup" => set_up(rest),
+        "run" => Some(Task::Calcine(words.to_vec())),
+        "calcine" if !rest.is_empty() => Some(Task::Calcine(rest.to_vec())),
+        "test" => {
+            let native = rest.first().is_some_and(|word| word == "--native");
+            Some(Task::Test {
+                native,
+                words: rest[usize::from(native)..].to_vec(),
+            })
+        }
+        "bench" => Some(Task::Bench(rest.to_vec())),
+        "install" => install(rest),
+        _ => None,
+    }
+}
+
+fn set_up(words: &[OsString]) -> Option<Task> {
+    let (mut needs, mut build) = (Needs::ALL, true);
+    for word in words {
+        match word.to_str()? {
+            "--native" => needs = Needs::NATIVE,
+            "--all" => needs = Needs::ALL,
+            "--no-build" => build = false,
+            _ => return None,
+        }
+    }
+    Some(Task::SetUp { needs, build })
+}
+
+fn install(words: &[OsString]) -> Option<Task> {
+    let mut needs = Needs {
+        tests: false,
+        ..Needs::ALL
+    };
+    let mut prefix = None;
+    let mut words = words.iter();
+    while let Some(word) = words.next() {
+        match word.to_str() {
+            Some("--native") => needs = Needs::NATIVE,
+            Some("--prefix") => prefix = Some(PathBuf::from(words.next()?)),
+            Some(text) => prefix = Some(PathBuf::from(text.strip_prefix("--prefix=")?)),
+            None => return None,
+        }
+    }
+    Some(Task::Install {
+        prefix: prefix?,
+        needs,
+    })
+}
+
+fn perform(task: Task) -> Outcome<()> {
+    let workspace = Workspace::find()?;
+    match task {
+        Task::SetUp { needs, build } => tasks::set_up(&workspace, needs, build),
+        Task::Calcine(words) => tasks::run(&workspace, &words),
+        Task::Test { native, words } => tasks::test(&workspace, native, &words),
+        Task::Bench(words) => tasks::bench(&workspace, &words),
+        Task::Install { prefix, needs } => tasks::install(&workspace, &prefix, needs),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words(line: &str) -> Vec<OsString> {
+        line.split_whitespace().map(OsString::from).collect()
+    }
+
+    #[test]
+    fn run_and_calcine_hand_their_words_on() {
+        assert_eq!(
+            read(&words("run a.toml")),
+            Some(Task::Calcine(words("run a.toml")))
+        );
+        assert_eq!(
+            read(&words("calcine check a")),
+            Some(Task::Calcine(words("check a")))
+        );
+        assert_eq!(read(&words("calcine")), None);
+    }
+
+    #[test]
+    fn set_up_is_of_everything_unless_told() {
+        let task = |needs, build| Some(Task::SetUp { needs, build });
+        assert_eq!(read(&words("setup")), task(Needs::ALL, true));
+        assert_eq!(
+            read(&words("setup --native --no-build")),
+            task(Needs::NATIVE, false)
+        );
+        assert_eq!(read(&words("setup --everything")), None);
+    }
+
+    #[test]
+    fn an_installation_needs_a_prefix() {
+        let needs = Needs {
+            tests: false,
+            ..Needs::ALL
+        };
+        let prefix = PathBuf::from("/opt/calcine");
+        let task = Some(Task::Install { prefix, needs });
+        assert_eq!(read(&words("install --prefix /opt/calcine")), task);
+        assert_eq!(read(&words("install --prefix=/opt/calcine")), task);
+        assert_eq!(read(&words("install")), None);
+        assert_eq!(read(&words("install /opt/calcine")), None);
+    }
+}

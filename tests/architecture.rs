@@ -1,0 +1,220 @@
+//! The architecture is a test: the arrows between crates, the length of files, and nothing in
+//! them that belongs to one machine only.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+
+/// All arrows there may be: a crate and the crates of this workspace that it may use. Another
+/// arrow is a change of the design (CONTRIBUTING.md), not of this table alone.
+const ARROWS: [(&str, &[&str]); 9] = [
+    (
+        "calcine",
+        &["calcine-adapters", "calcine-coupler", "calcine-native"],
+    ),
+    ("calcine-adapters", &["calcine-coupler", "calcine-wire"]),
+    ("calcine-coupler", &["calcine-interior", "calcine-physics"]),
+    ("calcine-interior", &["calcine-physics"]),
+    ("calcine-liggghts", &["calcine-wire"]),
+    ("calcine-native", &["calcine-coupler"]),
+    ("calcine-physics", &[]),
+    ("calcine-wire", &[]),
+    ("xtask", &[]),
+];
+
+/// Libraries that only some crates may use: the coupler and the solvers know neither
+/// transports, nor TOML, nor HDF5.
+const KEPT_TO: [(&str, &[&str]); 5] = [
+    ("hdf5-metno", &["calcine"]),
+    ("toml", &["calcine"]),
+    ("toml_edit", &["calcine"]),
+    ("clap", &["calcine"]),
+    ("iceoryx2", &["calcine-wire"]),
+];
+
+/// Longest source file, in lines.
+const LONGEST: usize = 800;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Each crate of the workspace with all its direct dependencies, those of its tests included.
+fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
+    let output = Command::new(env!("CARGO"))
+        .args([
+            "metadata",
+            "--no-deps",
+            "--offline",
+            "--format-version",
+            "1",
+        ])
+        .current_dir(root())
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let metadata: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let name = |value: &Value| value["name"].as_str().unwrap().to_owned();
+    let packages = metadata["packages"].as_array().unwrap();
+    packages
+        .iter()
+        .map(|package| {
+            let uses = package["dependencies"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .map(name)
+                .collect();
+            (name(package), uses)
+        })
+        .collect()
+}
+
+/// Files of the clone that are ours; without git (an archive) everything but Cargo's output.
+fn files() -> Vec<PathBuf> {
+    let listed = Command::new("git")
+        .args([
+            "ls-files",
+            "-z",
+            "--cached",
+            "--others",
+            "--exclude-standard",
+        ])
+        .current_dir(root())
+        .output();
+    if let Ok(output) = listed
+        && output.status.success()
+    {
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        let all = text
+            .split('\0')
+            .filter(|name| !name.is_empty())
+            .map(|name| root().join(name));
+        return all.filter(|path| path.is_file()).collect();
+    }
+    let mut found = Vec::new();
+    let mut folders = vec![root().to_path_buf()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap().flatten() {
+            let path = entry.path();
+            let name = entry.file_name();
+            if path.is_dir()
+                && !["target", ".git", "results"]
+                    .iter()
+                    .any(|skip| name == *skip)
+            {
+                folders.push(path);
+            } else if path.is_file() {
+                found.push(path);
+            }
+        }
+    }
+    found
+}
+
+fn shown(path: &Path) -> String {
+    path.strip_prefix(root())
+        .unwrap_or(path)
+        .display()
+        .to_string()
+}
+
+#[test]
+fn only_the_arrows_of_the_design_run_between_crates() {
+    let all = dependencies();
+    let allowed: BTreeMap<&str, &[&str]> = ARROWS.into_iter().collect();
+    let known: Vec<&str> = allowed.keys().copied().collect();
+    assert_eq!(
+        all.keys().collect::<Vec<_>>(),
+        known,
+        "crates of the workspace"
+    );
+    let mut wrong = Vec::new();
+    for (from, uses) in &all {
+        let may = allowed[from.as_str()];
+        let ours = uses.iter().filter(|to| all.contains_key(*to));
+        wrong.extend(
+            ours.filter(|to| !may.contains(&to.as_str()))
+                .map(|to| (from, to)),
+        );
+    }
+    assert!(
+        wrong.is_empty(),
+        "arrows that the design does not have: {wrong:?}"
+    );
+}
+
+#[test]
+fn libraries_of_one_concern_stay_in_their_crate() {
+    let mut wrong = Vec::new();
+    for (from, uses) in dependencies() {
+        for (library, may) in KEPT_TO {
+            if uses.contains(library) && !may.contains(&from.as_str()) {
+                wrong.push(format!("{from} -> {library}"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "kept to other crates: {wrong:?}");
+}
+
+#[test]
+fn the_build_tool_uses_the_standard_library_alone() {
+    assert_eq!(dependencies()["xtask"], BTreeSet::new());
+}
+
+#[test]
+fn no_source_file_is_longer_than_one_can_read() {
+    let mut wrong = Vec::new();
+    let mut seen = 0;
+    for path in files() {
+        let extension = path
+            .extension()
+            .and_then(|text| text.to_str())
+            .unwrap_or_default();
+        if ["rs", "C", "H", "h", "cpp"].contains(&extension) {
+            seen += 1;
+            let lines = fs::read_to_string(&path).unwrap().lines().count();
+            if lines > LONGEST {
+                wrong.push(format!("{}: {lines} lines", shown(&path)));
+            }
+        }
+    }
+    assert!(
+        seen > 20,
+        "only {seen} source files found below {}",
+        root().display()
+    );
+    assert!(wrong.is_empty(), "longer than {LONGEST} lines: {wrong:#?}");
+}
+
+#[test]
+fn no_file_holds_a_path_of_the_machine_it_was_written_on() {
+    // The clone's own place, unless that is too short to mean anything, and home folders.
+    let clone = root().to_string_lossy().into_owned();
+    let homes = [
+        ["/ho", "me/"].concat(),
+        ["/ro", "ot/"].concat(),
+        ["/Use", "rs/"].concat(),
+    ];
+    let mut wrong = Vec::new();
+    for path in files() {
+        let Ok(text) = fs::read_to_string(&path) else {
+            continue;
+        };
+        let place = clone.matches('/').count() >= 2 && text.contains(&clone);
+        if place || homes.iter().any(|home| text.contains(home.as_str())) {
+            wrong.push(shown(&path));
+        }
+    }
+    assert!(
+        wrong.is_empty(),
+        "files with a path of one machine: {wrong:?}"
+    );
+}

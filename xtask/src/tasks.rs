@@ -1,0 +1,269 @@
+//! The tasks: set-up, run, test, bench, install.
+
+use std::ffi::{OsStr, OsString};
+use std::fs;
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::adapters::OpenfoamAdapter;
+use crate::packages::{self, Needs};
+use crate::steps::{Outcome, Stop, loud_step, say, step, visibly};
+use crate::workspace::{Profile, Workspace};
+
+/// Installs the packages, prepares the headers and, with `build`, builds for runs.
+pub fn set_up(workspace: &Workspace, needs: Needs, build: bool) -> Outcome<()> {
+    let _lock = workspace.lock()?;
+    packages::install(needs, &workspace.logs)?;
+    if build {
+        build_parts(workspace, needs, Profile::Release)?;
+    } else if needs.openfoam {
+        OpenfoamAdapter::new(workspace)?;
+    }
+    Ok(())
+}
+
+/// Sets up and builds what the subcommand of Calcine needs, then becomes it.
+pub fn run(workspace: &Workspace, words: &[OsString]) -> Outcome<()> {
+    let needs = needs_of(words);
+    set_up(workspace, needs, true)?;
+    let calcine = workspace
+        .target
+        .join(Profile::Release.folder())
+        .join("calcine");
+    let cause = Command::new(&calcine).args(words).exec();
+    Err(Stop::io(&calcine, &cause))
+}
+
+/// Sets up and builds everything, then runs all tests; natively: those without other solvers.
+pub fn test(workspace: &Workspace, native: bool, words: &[OsString]) -> Outcome<()> {
+    let needs = if native { Needs::NATIVE } else { Needs::ALL };
+    {
+        let _lock = workspace.lock()?;
+        packages::install(needs, &workspace.logs)?;
+        if !native {
+            build_parts(workspace, needs, Profile::Dev)?;
+        }
+    }
+    let mut command = workspace.cargo("test");
+    if !native && !chooses_packages(words) {
+        command.arg("--workspace");
+    }
+    loud_step("all tests", || visibly(command.args(words)))
+}
+
+/// Runs the benchmarks of every package that has some.
+pub fn bench(workspace: &Workspace, words: &[OsString]) -> Outcome<()> {
+    let folders = [
+        ".",
+        "coupler",
+        "coupler/physics",
+        "coupler/interior",
+        "native-solver",
+    ];
+    let more = ["adapters", "adapters/wire"];
+    let holds = |folder: &&&str| workspace.root.join(folder).join("benches").is_dir();
+    let found: Vec<_> = folders.iter().chain(&more).filter(holds).collect();
+    if found.is_empty() {
+        say("no package holds a folder `benches` yet: nothing to measure");
+        return Ok(());
+    }
+    packages::install(Needs::NATIVE, &workspace.logs)?;
+    for folder in found {
+        let manifest = workspace.root.join(folder).join("Cargo.toml");
+        let mut command = workspace.cargo("bench");
+        command
+            .args(["--bench", "*", "--manifest-path"])
+            .arg(manifest)
+            .args(words);
+        loud_step(&format!("benchmarks in {folder}"), || visibly(&mut command))?;
+    }
+    Ok(())
+}
+
+/// Copies the command to PREFIX/bin and its adapters to PREFIX/libexec/calcine.
+pub fn install(workspace: &Workspace, prefix: &Path, needs: Needs) -> Outcome<()> {
+    set_up(workspace, needs, true)?;
+    let built = workspace.target.join(Profile::Release.folder());
+    let (bin, libexec) = (prefix.join("bin"), prefix.join("libexec/calcine"));
+    let mut copies = vec![(built.join("calcine"), bin.join("calcine"))];
+    if needs.liggghts {
+        copies.push((
+            built.join("calcine-liggghts"),
+            libexec.join("calcine-liggghts"),
+        ));
+    }
+    if needs.openfoam {
+        for path in OpenfoamAdapter::new(workspace)?.products()? {
+            let name = path.file_name().unwrap_or_default().to_owned();
+            copies.push((path, libexec.join(name)));
+        }
+    }
+    step(
+        &format!("copy {} files below {}", copies.len(), prefix.display()),
+        || copies.iter().try_for_each(|(from, to)| copy(from, to)),
+    )?;
+    say(&format!("the command is {}", bin.join("calcine").display()));
+    Ok(())
+}
+
+/// One call of Cargo for all packages, so that shared dependencies are built once, then the C++.
+fn build_parts(workspace: &Workspace, needs: Needs, profile: Profile) -> Outcome<()> {
+    let adapter = needs
+        .openfoam
+        .then(|| OpenfoamAdapter::new(workspace))
+        .transpose()?;
+    let mut command = workspace.cargo("build");
+    command.args(["--profile", profile.name()]);
+    if profile == Profile::Dev {
+        command.arg("--workspace");
+    } else {
+        command.args(["-p", "calcine"]);
+        if adapter
+            .as_ref()
+            .is_some_and(|adapter| !adapter.is_current())
+        {
+            command.args(["-p", "calcine-wire"]);
+        }
+        if needs.liggghts {
+            command.args(["-p", "calcine-liggghts"]);
+        }
+    }
+    loud_step("build the Rust parts", || visibly(&mut command))?;
+    adapter.map_or(Ok(()), |adapter| adapter.build(workspace, profile))
+}
+
+/// What a subcommand of Calcine needs, from its words: `run --gas openfoam`, `compare
+/// --pairings all` (its default), and so on.
+fn needs_of(words: &[OsString]) -> Needs {
+    let texts: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
+    let mut needs = Needs::NATIVE;
+    let mut name = |value: &str, everything: bool| {
+        needs.openfoam |= everything || value.contains("openfoam");
+        needs.liggghts |= everything || value.contains("liggghts");
+    };
+    let mut pairings = false;
+    for (at, word) in texts.iter().enumerate() {
+        let (option, value) = match word.split_once('=') {
+            Some((option, value)) => (option, value),
+            None => (&**word, texts.get(at + 1).map_or("", |next| &**next)),
+        };
+        match option {
+            "--gas" | "--particles" => name(value, false),
+            "--pairings" => {
+                pairings = true;
+                name(value, value == "all");
+            }
+            _ => {}
+        }
+    }
+    if texts.first().is_some_and(|word| word == "compare") && !pairings {
+        name("", true);
+    }
+    needs
+}
+
+/// True if the words for `cargo test` say which packages.
+fn chooses_packages(words: &[OsString]) -> bool {
+    words.iter().take_while(|word| *word != "--").any(|word| {
+        let text = word.to_string_lossy();
+        text.starts_with("-p") || text.starts_with("--package") || text == "--workspace"
+    })
+}
+
+/// Copies by way of a temporary name, so that a program that runs is replaced, not changed.
+fn copy(from: &Path, to: &Path) -> Outcome<()> {
+    let folder = to.parent().unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).map_err(|cause| Stop::io(folder, &cause))?;
+    let mut name = OsString::from(".");
+    name.push(to.file_name().unwrap_or(OsStr::new("file")));
+    name.push(format!(".{}", std::process::id()));
+    let temporary: PathBuf = folder.join(name);
+    fs::copy(from, &temporary).map_err(|cause| Stop::io(from, &cause))?;
+    fs::rename(&temporary, to).map_err(|cause| Stop::io(to, &cause))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn needs(line: &str) -> Needs {
+        needs_of(
+            &line
+                .split_whitespace()
+                .map(OsString::from)
+                .collect::<Vec<_>>(),
+        )
+    }
+
+    #[test]
+    fn a_run_sets_up_only_the_solvers_it_names() {
+        assert_eq!(needs("run case.toml"), Needs::NATIVE);
+        assert_eq!(needs("run openfoam.toml --gas native"), Needs::NATIVE);
+        let openfoam = Needs {
+            openfoam: true,
+            ..Needs::NATIVE
+        };
+        assert_eq!(needs("run case.toml --gas openfoam"), openfoam);
+        assert_eq!(
+            needs("run case.toml --gas=openfoam --particles native"),
+            openfoam
+        );
+        let liggghts = Needs {
+            liggghts: true,
+            ..Needs::NATIVE
+        };
+        assert_eq!(needs("run --particles liggghts case.toml"), liggghts);
+    }
+
+    #[test]
+    fn a_comparison_needs_the_solvers_of_its_pairings() {
+        let both = Needs {
+            openfoam: true,
+            liggghts: true,
+            tests: false,
+        };
+        assert_eq!(needs("compare case.toml"), both);
+        assert_eq!(needs("compare case.toml --pairings all"), both);
+        let one = Needs {
+            openfoam: true,
+            ..Needs::NATIVE
+        };
+        assert_eq!(
+            needs("compare case.toml --pairings native+native,openfoam+native"),
+            one
+        );
+        assert_eq!(needs("check case.toml"), Needs::NATIVE);
+    }
+
+    #[test]
+    fn packages_named_by_the_user_replace_the_workspace() {
+        let words = |line: &str| {
+            line.split_whitespace()
+                .map(OsString::from)
+                .collect::<Vec<_>>()
+        };
+        assert!(chooses_packages(&words("-p calcine-wire")));
+        assert!(!chooses_packages(&words("a_law -- -p")));
+    }
+
+    #[test]
+    fn a_copy_replaces_and_keeps_the_right_to_execute() {
+        use std::os::unix::fs::PermissionsExt;
+        let root = std::env::temp_dir().join(format!("xtask copy {}", std::process::id()));
+        fs::create_dir_all(&root).unwrap();
+        let (from, to) = (root.join("from here"), root.join("to there/program"));
+        for text in ["old", "new"] {
+            fs::write(&from, text).unwrap();
+            fs::set_permissions(&from, fs::Permissions::from_mode(0o755)).unwrap();
+            copy(&from, &to).unwrap();
+        }
+        assert_eq!(fs::read_to_string(&to).unwrap(), "new");
+        assert_eq!(
+            fs::metadata(&to).unwrap().permissions().mode() & 0o777,
+            0o755
+        );
+        assert_eq!(fs::read_dir(to.parent().unwrap()).unwrap().count(), 1);
+        fs::remove_dir_all(&root).unwrap();
+    }
+}
