@@ -1,1 +1,7 @@
-//! Placeholder.
+//! What happens inside and between particles.
+
+mod model;
+mod thin;
+
+pub use model::ParticleModel;
+pub use thin::Thin;

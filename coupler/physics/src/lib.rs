@@ -1,7 +1,11 @@
 //! Laws of reactive granular beds as pure functions of local state, one law a file.
 #![warn(missing_docs)]
 
+pub mod drag;
 pub mod gas;
+pub mod heat_transfer;
+pub mod local;
+pub mod numbers;
 
 /// A vector in space.
 pub type Vec3 = nalgebra::Vector3<f64>;
