@@ -39,8 +39,9 @@ impl ParticleModel for Thin {
     }
 
     fn advance(&mut self, heat: &[f64], span: f64) {
-        for p in 0..self.temperature.len() {
-            self.temperature[p] = self.committed[p] + heat[p] * span / self.heat_capacity[p];
+        let start = self.committed.iter().zip(&self.heat_capacity).zip(heat);
+        for (temperature, ((committed, mc), q)) in self.temperature.iter_mut().zip(start) {
+            *temperature = committed + q * span / mc;
         }
     }
 
