@@ -13,7 +13,14 @@ use serde_json::Value;
 const ARROWS: [(&str, &[&str]); 9] = [
     (
         "calcine",
-        &["calcine-adapters", "calcine-coupler", "calcine-native"],
+        &[
+            "calcine-adapters",
+            "calcine-coupler",
+            "calcine-interior",
+            "calcine-native",
+            "calcine-physics",
+            "calcine-wire",
+        ],
     ),
     ("calcine-adapters", &["calcine-coupler", "calcine-wire"]),
     ("calcine-coupler", &["calcine-interior", "calcine-physics"]),

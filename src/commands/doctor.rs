@@ -1,0 +1,350 @@
+//! `calcine doctor`: what of the machine Calcine can use, and what installs the rest.
+//!
+//! It looks, it starts no solver, and it works where none is installed.
+
+use std::env;
+use std::fmt;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Free shared memory in bytes below which a coupled run may not start: Docker gives a
+/// container 64 MB in all.
+const LITTLE_MEMORY: u64 = 64 << 20;
+
+/// What was found on this machine. [`fmt::Display`] shows it to the user.
+#[derive(Clone, Debug, Default)]
+pub struct DoctorReport {
+    /// Name of the system.
+    pub system: Option<String>,
+    /// Processors that this process may use.
+    pub processors: usize,
+    /// Version of the HDF5 library in use; `None` if this binary was built without.
+    pub hdf5: Option<String>,
+    /// `mpirun` and its version.
+    pub mpi: Option<String>,
+    /// Version of Debian's package openfoam.
+    pub openfoam: Option<String>,
+    /// Our solver on OpenFOAM.
+    pub openfoam_adapter: Adapter,
+    /// Version of Debian's LIGGGHTS library.
+    pub liggghts: Option<String>,
+    /// Our host of LIGGGHTS.
+    pub liggghts_adapter: Adapter,
+    /// Free and total bytes of /dev/shm.
+    pub shared_memory: Option<(u64, u64)>,
+}
+
+/// A program that stands between Calcine and a solver.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Adapter {
+    /// Not built, or not where Calcine looks for it.
+    #[default]
+    Missing,
+    /// There, but these shared libraries of its are not.
+    Broken(PathBuf, Vec<String>),
+    /// There.
+    Found(PathBuf),
+}
+
+impl Adapter {
+    fn find(name: &str, folders: &[PathBuf]) -> Self {
+        let Some(path) = folders
+            .iter()
+            .map(|folder| folder.join(name))
+            .find(|path| path.is_file())
+        else {
+            return Self::Missing;
+        };
+        let path = path.canonicalize().unwrap_or(path);
+        let libraries = output(Command::new("ldd").arg(&path)).unwrap_or_default();
+        let absent: Vec<String> = libraries
+            .lines()
+            .filter(|line| line.ends_with("not found"))
+            .filter_map(|line| line.split_whitespace().next())
+            .map(str::to_owned)
+            .collect();
+        if absent.is_empty() {
+            Self::Found(path)
+        } else {
+            Self::Broken(path, absent)
+        }
+    }
+
+    fn works(&self) -> bool {
+        matches!(self, Self::Found(_))
+    }
+}
+
+impl fmt::Display for Adapter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Missing => f.write_str("not found"),
+            Self::Broken(path, libraries) => {
+                write!(
+                    f,
+                    "{}, but without {}",
+                    path.display(),
+                    libraries.join(", ")
+                )
+            }
+            Self::Found(path) => write!(f, "{}", path.display()),
+        }
+    }
+}
+
+/// Looks at this machine.
+pub fn run() -> DoctorReport {
+    let folders = adapter_folders();
+    DoctorReport {
+        system: system(),
+        processors: std::thread::available_parallelism().map_or(1, usize::from),
+        hdf5: hdf5_version(),
+        mpi: mpi(),
+        openfoam: package_version("openfoam"),
+        openfoam_adapter: Adapter::find("calcineGasFoam", &folders),
+        liggghts: package_version("libliggghts-dev").or_else(|| package_version("liggghts")),
+        liggghts_adapter: Adapter::find("calcine-liggghts", &folders),
+        shared_memory: shared_memory(Path::new("/dev/shm")),
+    }
+}
+
+/// Folders in which adapters lie: beside the command, installed (PREFIX/libexec/calcine), and in
+/// Cargo's target folder, where the command itself lies in TARGET/PROFILE.
+fn adapter_folders() -> Vec<PathBuf> {
+    let own = env::current_exe()
+        .and_then(|path| path.canonicalize())
+        .unwrap_or_default();
+    let Some(folder) = own.parent() else {
+        return Vec::new();
+    };
+    let mut folders = vec![folder.to_path_buf()];
+    for other in ["../libexec/calcine", "../openfoam/bin"] {
+        folders.push(folder.join(other));
+    }
+    folders
+}
+
+fn system() -> Option<String> {
+    let text = fs::read_to_string("/etc/os-release").ok()?;
+    let name = text
+        .lines()
+        .find_map(|line| line.strip_prefix("PRETTY_NAME="))?;
+    Some(name.trim_matches('"').to_owned())
+}
+
+#[cfg(feature = "hdf5")]
+fn hdf5_version() -> Option<String> {
+    let (major, minor, patch) = hdf5::library_version();
+    Some(format!("{major}.{minor}.{patch}"))
+}
+
+#[cfg(not(feature = "hdf5"))]
+fn hdf5_version() -> Option<String> {
+    None
+}
+
+fn mpi() -> Option<String> {
+    let text = output(Command::new("mpirun").arg("--version"))?;
+    text.lines()
+        .next()
+        .map(|line| line.trim().to_owned())
+        .filter(|line| !line.is_empty())
+}
+
+fn package_version(package: &str) -> Option<String> {
+    let format = "${db:Status-Status} ${Version}\\n";
+    let text = output(Command::new("dpkg-query").args(["-W", "-f", format, package]))?;
+    text.lines()
+        .find_map(|line| line.strip_prefix("installed "))
+        .map(str::to_owned)
+}
+
+fn shared_memory(folder: &Path) -> Option<(u64, u64)> {
+    let data = rustix::fs::statvfs(folder).ok()?;
+    Some((data.f_bavail * data.f_frsize, data.f_blocks * data.f_frsize))
+}
+
+/// What a program printed; `None` if it is not there or fails.
+fn output(command: &mut Command) -> Option<String> {
+    let output = command
+        .env("LC_ALL", "C.UTF-8")
+        .stdin(Stdio::null())
+        .stderr(Stdio::null())
+        .output()
+        .ok()?;
+    output
+        .status
+        .success()
+        .then(|| String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+impl DoctorReport {
+    /// True if the gas can be OpenFOAM's.
+    pub fn openfoam_works(&self) -> bool {
+        self.openfoam.is_some() && self.mpi.is_some() && self.openfoam_adapter.works()
+    }
+
+    /// True if the particles can be LIGGGHTS'.
+    pub fn liggghts_works(&self) -> bool {
+        self.liggghts.is_some() && self.mpi.is_some() && self.liggghts_adapter.works()
+    }
+
+    /// Names of what is missing.
+    fn missing(&self) -> Vec<&'static str> {
+        let all = [
+            ("HDF5", self.hdf5.is_some()),
+            ("MPI", self.mpi.is_some()),
+            ("OpenFOAM", self.openfoam.is_some()),
+            ("calcineGasFoam", self.openfoam_adapter.works()),
+            ("LIGGGHTS", self.liggghts.is_some()),
+            ("calcine-liggghts", self.liggghts_adapter.works()),
+        ];
+        all.into_iter()
+            .filter(|(_, here)| !here)
+            .map(|(name, _)| name)
+            .collect()
+    }
+
+    /// Pairings that can run here.
+    fn pairings(&self) -> Vec<&'static str> {
+        let (foam, grains) = (self.openfoam_works(), self.liggghts_works());
+        let all = [
+            ("native+native", true),
+            ("native+liggghts", grains),
+            ("openfoam+native", foam),
+            ("openfoam+liggghts", foam && grains),
+        ];
+        all.into_iter()
+            .filter(|(_, works)| *works)
+            .map(|(name, _)| name)
+            .collect()
+    }
+}
+
+impl fmt::Display for DoctorReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let or_not = |version: &Option<String>| version.clone().unwrap_or("not found".to_owned());
+        let hdf5 = self.hdf5.as_deref().unwrap_or("left out of this binary");
+        let system = self.system.as_deref().unwrap_or("an unknown system");
+        let version = env!("CARGO_PKG_VERSION");
+        writeln!(
+            f,
+            "calcine {version} on {system}, {} processors",
+            self.processors
+        )?;
+        writeln!(f, "  HDF5              {hdf5}")?;
+        writeln!(f, "  MPI               {}", or_not(&self.mpi))?;
+        writeln!(f, "  OpenFOAM          {}", or_not(&self.openfoam))?;
+        writeln!(f, "  calcineGasFoam    {}", self.openfoam_adapter)?;
+        writeln!(f, "  LIGGGHTS          {}", or_not(&self.liggghts))?;
+        writeln!(f, "  calcine-liggghts  {}", self.liggghts_adapter)?;
+        match self.shared_memory {
+            None => writeln!(
+                f,
+                "  shared memory     no /dev/shm: only native+native runs here"
+            )?,
+            Some((free, total)) => {
+                let (free_mb, total_mb) = (free as f64 / 1e6, total as f64 / 1e6);
+                writeln!(
+                    f,
+                    "  shared memory     {free_mb:.0} of {total_mb:.0} MB free in /dev/shm"
+                )?;
+                if free < LITTLE_MEMORY {
+                    writeln!(
+                        f,
+                        "    that is little for a coupled run: enlarge it, in Docker with \
+                         `--shm-size=1g`"
+                    )?;
+                }
+            }
+        }
+        write!(f, "pairings that run here: {}", self.pairings().join(", "))?;
+        let missing = self.missing();
+        if missing.is_empty() {
+            return Ok(());
+        }
+        write!(
+            f,
+            "\nmissing: {}. In a clone of Calcine, this installs and builds it:\n  \
+             cargo xtask setup --all",
+            missing.join(", ")
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn whole() -> DoctorReport {
+        let adapter = |name: &str| Adapter::Found(Path::new("/opt").join(name));
+        DoctorReport {
+            hdf5: Some("1.10.8".into()),
+            mpi: Some("mpirun (Open MPI) 4.1.4".into()),
+            openfoam: Some("1912.200626-1+b1".into()),
+            openfoam_adapter: adapter("calcineGasFoam"),
+            liggghts: Some("3.8.0+repack1-9+b2".into()),
+            liggghts_adapter: adapter("calcine-liggghts"),
+            shared_memory: Some((1 << 30, 1 << 30)),
+            ..DoctorReport::default()
+        }
+    }
+
+    #[test]
+    fn a_machine_with_nothing_runs_natively_and_names_one_command() {
+        let text = DoctorReport::default().to_string();
+        assert!(
+            text.contains("pairings that run here: native+native\n"),
+            "{text}"
+        );
+        assert!(text.ends_with("cargo xtask setup --all"), "{text}");
+        assert!(
+            text.contains("missing: HDF5, MPI, OpenFOAM, calcineGasFoam, LIGGGHTS"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn a_machine_with_everything_runs_all_pairings() {
+        let text = whole().to_string();
+        let all = "native+native, native+liggghts, openfoam+native, openfoam+liggghts";
+        assert!(text.ends_with(all), "{text}");
+        assert!(!text.contains("missing"), "{text}");
+    }
+
+    #[test]
+    fn an_adapter_without_its_libraries_is_named_with_them() {
+        let lost = Adapter::Broken(
+            "/opt/calcine-liggghts".into(),
+            vec!["libliggghts.so".into()],
+        );
+        let report = DoctorReport {
+            liggghts_adapter: lost,
+            ..whole()
+        };
+        let text = report.to_string();
+        assert!(!report.liggghts_works());
+        assert!(
+            text.contains("/opt/calcine-liggghts, but without libliggghts.so"),
+            "{text}"
+        );
+        assert!(text.contains("missing: calcine-liggghts."), "{text}");
+    }
+
+    #[test]
+    fn little_shared_memory_is_said_with_its_remedy() {
+        let report = DoctorReport {
+            shared_memory: Some((1 << 20, 64 << 20)),
+            ..whole()
+        };
+        assert!(report.to_string().contains("--shm-size=1g"));
+    }
+
+    #[test]
+    fn this_machine_can_be_looked_at() {
+        let report = run();
+        assert!(report.processors >= 1);
+        assert!(report.to_string().contains("native+native"));
+    }
+}
