@@ -14,6 +14,9 @@ use crate::steps::{Outcome, Stop, new_log, quietly, step};
 /// A complete tree of headers holds this file: written last, before the tree gets its name.
 const STAMP: &str = ".complete";
 
+/// End of the name of a folder in which headers are being prepared.
+const PART: &str = ".headers.part";
+
 /// Files that one `#include`s, templates in `.C` among them.
 const INCLUDED: [&str; 7] = ["H", "C", "h", "hpp", "cpp", "cxx", "I"];
 
@@ -28,8 +31,8 @@ pub fn prepare(folder: &Path, logs: &Path) -> Outcome<PathBuf> {
         return Ok(tree);
     }
     fs::create_dir_all(folder).map_err(|cause| Stop::io(folder, &cause))?;
-    let work = folder.join("headers.part");
-    remove(&work)?;
+    let work = folder.join(format!("{}{PART}", std::process::id()));
+    remove_leftovers(folder);
     let log = new_log(logs, "openfoam-headers")?;
     step(
         &format!("fetch Debian's sources of openfoam {version} (45 MB)"),
@@ -190,6 +193,15 @@ fn subfolders(folder: &Path) -> Outcome<Vec<PathBuf>> {
 
 fn write(path: &Path, text: &str) -> Outcome<()> {
     fs::write(path, text).map_err(|cause| Stop::io(path, &cause))
+}
+
+/// Removes what interrupted preparations left. What a dying one still writes can stay for once.
+fn remove_leftovers(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if entry.file_name().to_string_lossy().ends_with(PART) {
+            let _ = fs::remove_dir_all(entry.path());
+        }
+    }
 }
 
 fn remove(folder: &Path) -> Outcome<()> {
