@@ -1,7 +1,10 @@
 //! The coordinator of Calcine: three parts, two clocks, one loop.
 
 pub mod checkpoint;
+pub mod closures;
+pub mod coordinator;
 pub mod error;
+pub mod exchange;
 pub mod ledger;
 pub mod mapping;
 pub mod mesh;

@@ -1,0 +1,151 @@
+//! Laws between the phases, evaluated once per window, here and nowhere else.
+
+use std::f64::consts::PI;
+
+use calcine_physics::Vec3;
+use calcine_physics::drag::Drag;
+use calcine_physics::gas::GasProperties;
+use calcine_physics::heat_transfer::HeatTransfer;
+use calcine_physics::local::LocalGas;
+use calcine_physics::numbers::VoidFraction;
+use thiserror::Error;
+
+use crate::part::{Bed, GasFields, ParticleFields};
+use crate::smoother::Operator;
+
+/// The laws of a run.
+#[derive(Debug)]
+pub struct Closures {
+    /// Properties of the gas.
+    pub gas: GasProperties,
+    /// Drag on a particle.
+    pub drag: Box<dyn Drag>,
+    /// Heat transfer between gas and particle.
+    pub heat_transfer: Box<dyn HeatTransfer>,
+}
+
+/// A law that got a state it is not defined for.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ClosureError {
+    /// A void fraction outside (0, 1].
+    #[error("particle {id} sees a void fraction of {value}, which is not in (0, 1]")]
+    VoidFraction {
+        /// The particle's id.
+        id: u64,
+        /// The void fraction.
+        value: f64,
+    },
+    /// A coefficient that is negative or not finite.
+    #[error(
+        "the {law} coefficient of particle {id} is {value} {unit} at a gas temperature of {temperature} K and a slip of {slip} m/s"
+    )]
+    Coefficient {
+        /// Which law.
+        law: &'static str,
+        /// The particle's id.
+        id: u64,
+        /// The coefficient.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// Gas temperature that the particle sees, in K.
+        temperature: f64,
+        /// Slip velocity in m/s.
+        slip: f64,
+    },
+}
+
+/// The gas that each particle sees: Wᵀ applied to the gas.
+#[derive(Clone, Debug, Default)]
+pub struct Seen {
+    /// Temperature in K.
+    pub temperature: Vec<f64>,
+    /// Density in kg/m³.
+    pub density: Vec<f64>,
+    /// Interstitial velocity in m/s.
+    pub velocity: Vec<Vec3>,
+    /// Void fraction.
+    pub void_fraction: Vec<f64>,
+}
+
+impl Seen {
+    /// Samples all that the laws need.
+    pub fn sample(&mut self, operator: &Operator, gas: &GasFields<'_>, bed: &Bed) {
+        let particles = operator.particles();
+        self.temperature.resize(particles, 0.0);
+        self.density.resize(particles, 0.0);
+        self.velocity.resize(particles, Vec3::zeros());
+        self.void_fraction.resize(particles, 0.0);
+        operator.sample(gas.temperature, &mut self.temperature);
+        operator.sample(gas.density, &mut self.density);
+        operator.sample_vectors(gas.velocity, &mut self.velocity);
+        operator.sample(&bed.void_fraction, &mut self.void_fraction);
+    }
+}
+
+/// Coefficients per particle, fixed over the window.
+#[derive(Clone, Debug, Default)]
+pub struct Coefficients {
+    /// Drag coefficient K_A in kg/s (requirements DRG-1).
+    pub drag: Vec<f64>,
+    /// Heat conductance h A in W/K.
+    pub conductance: Vec<f64>,
+}
+
+impl Closures {
+    /// Evaluates all laws. Slip is u − v/AF (requirements TSM-7).
+    pub fn evaluate(
+        &self,
+        seen: &Seen,
+        particles: &ParticleFields<'_>,
+        acceleration: f64,
+        coefficients: &mut Coefficients,
+    ) -> Result<(), ClosureError> {
+        let count = particles.len();
+        coefficients.drag.resize(count, 0.0);
+        coefficients.conductance.resize(count, 0.0);
+        for p in 0..count {
+            let id = particles.id[p];
+            let temperature = seen.temperature[p];
+            let void_fraction = VoidFraction::new(seen.void_fraction[p]).map_err(|_| {
+                ClosureError::VoidFraction {
+                    id,
+                    value: seen.void_fraction[p],
+                }
+            })?;
+            let local = LocalGas {
+                void_fraction,
+                density: seen.density[p],
+                viscosity: self.gas.viscosity(temperature),
+                conductivity: self.gas.conductivity(temperature),
+                heat_capacity: self.gas.heat_capacity,
+                slip: (seen.velocity[p] - particles.velocity[p] / acceleration).norm(),
+            };
+            let diameter = 2.0 * particles.radius[p];
+            let drag = self.drag.coefficient(&local, diameter);
+            // h A = (Nu κ/d) π d²
+            let conductance =
+                self.heat_transfer.nusselt(&local, diameter) * local.conductivity * PI * diameter;
+            let laws = [
+                (self.drag.name(), drag, "kg/s"),
+                (self.heat_transfer.name(), conductance, "W/K"),
+            ];
+            for (law, value, unit) in laws {
+                if !(value.is_finite() && value >= 0.0) {
+                    let slip = local.slip;
+                    return Err(ClosureError::Coefficient {
+                        law,
+                        id,
+                        value,
+                        unit,
+                        temperature,
+                        slip,
+                    });
+                }
+            }
+            coefficients.drag[p] = drag;
+            coefficients.conductance[p] = conductance;
+        }
+        Ok(())
+    }
+}

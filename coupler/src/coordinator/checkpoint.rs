@@ -1,0 +1,215 @@
+//! Checkpoints: one folder, replaced atomically, from which every participant re-initialises.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use rustix::fs::{CWD, RenameFlags, renameat_with};
+use thiserror::Error;
+
+use super::{Run, RunError};
+use crate::checkpoint::StateFile;
+use crate::observer::Observer;
+use crate::time::{Clocks, Ticks};
+
+/// Where checkpoints are: `checkpoint/` inside the results folder, complete at any moment.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct CheckpointPaths {
+    results: PathBuf,
+}
+
+/// A checkpoint that could not be written or taken up.
+#[derive(Debug, Error)]
+pub enum CheckpointError {
+    /// A folder could not be made, renamed or removed.
+    #[error("checkpoint {path}: {doing}: {cause}")]
+    Io {
+        /// The folder.
+        path: PathBuf,
+        /// What was tried.
+        doing: &'static str,
+        /// Why it failed.
+        cause: io::Error,
+    },
+    /// The checkpoint is of another case.
+    #[error(
+        "the checkpoint in {path} is of another case (its hash is {found}, this case's {expected}); \
+         `--from` continues from a changed case's results"
+    )]
+    OtherCase {
+        /// The folder.
+        path: PathBuf,
+        /// Hash in the checkpoint.
+        found: String,
+        /// Hash of the case.
+        expected: String,
+    },
+    /// Numbers of particles that differ.
+    #[error("the checkpoint in {path} holds {found} particles, the run has {expected}")]
+    Particles {
+        /// The folder.
+        path: PathBuf,
+        /// Particles in the checkpoint.
+        found: usize,
+        /// Particles of the run.
+        expected: usize,
+    },
+}
+
+impl CheckpointPaths {
+    /// The paths inside a results folder.
+    pub fn new(results: &Path) -> Self {
+        Self {
+            results: results.to_owned(),
+        }
+    }
+
+    /// The last complete checkpoint, where there is one.
+    pub fn committed(&self) -> PathBuf {
+        self.results.join("checkpoint")
+    }
+
+    /// The one being written.
+    fn fresh(&self) -> PathBuf {
+        self.results.join("checkpoint.part")
+    }
+
+    /// Makes the fresh checkpoint the committed one; at no moment is there none.
+    fn publish(&self) -> Result<(), CheckpointError> {
+        let (fresh, committed) = (self.fresh(), self.committed());
+        let failed = |doing, cause: io::Error| CheckpointError::Io {
+            path: committed.clone(),
+            doing,
+            cause,
+        };
+        sync(&fresh).map_err(|cause| failed("flushing it", cause))?;
+        if committed.exists() {
+            renameat_with(CWD, &fresh, CWD, &committed, RenameFlags::EXCHANGE)
+                .map_err(|cause| failed("exchanging it with the last one", cause.into()))?;
+            fs::remove_dir_all(&fresh).map_err(|cause| failed("removing the last one", cause))?;
+        } else {
+            fs::rename(&fresh, &committed).map_err(|cause| failed("renaming it", cause))?;
+        }
+        sync(&self.results).map_err(|cause| failed("flushing its folder", cause))
+    }
+}
+
+/// Flushes the entries of a folder to disk.
+fn sync(directory: &Path) -> io::Result<()> {
+    fs::File::open(directory)?.sync_all()
+}
+
+impl Run<'_> {
+    /// Writes a checkpoint of all participants; each goes on from what it wrote.
+    pub(super) fn checkpoint(
+        &mut self,
+        observers: &mut [&mut dyn Observer],
+    ) -> Result<(), RunError> {
+        let begun = Instant::now();
+        let fresh = self.plan.checkpoint.fresh();
+        let failed = |doing, cause| CheckpointError::Io {
+            path: fresh.clone(),
+            doing,
+            cause,
+        };
+        if fresh.exists() {
+            fs::remove_dir_all(&fresh).map_err(|cause| failed("clearing it", cause))?;
+        }
+        let (gas, particles) = (fresh.join("gas"), fresh.join("particles"));
+        for directory in [&gas, &particles] {
+            fs::create_dir_all(directory).map_err(|cause| failed("creating it", cause))?;
+        }
+        self.parts.gas.checkpoint(&gas)?;
+        self.parts.particles.checkpoint(&particles)?;
+        self.own_state().write(&fresh.join("coordinator.state"))?;
+        for observer in observers.iter_mut() {
+            observer.checkpoint(&self.moment(None), &fresh)?;
+        }
+        self.plan.checkpoint.publish()?;
+        self.timing.output += begun.elapsed();
+        Ok(())
+    }
+
+    fn own_state(&self) -> StateFile {
+        let mut state = StateFile::new();
+        let ledger: Vec<f64> = self
+            .ledger
+            .lines()
+            .iter()
+            .flat_map(|(_, _, line)| [line.drift, line.error, line.throughput])
+            .collect();
+        let clocks = [
+            self.windows,
+            self.clocks.motion.count().cast_unsigned(),
+            self.clocks.process.count().cast_unsigned(),
+        ];
+        let hash = self
+            .plan
+            .case_hash
+            .bytes()
+            .map(u64::from)
+            .collect::<Vec<_>>();
+        state.set_f64s("ledger", &ledger);
+        state.set_u64s("windows_and_clocks", &clocks);
+        state.set_u64s("case_hash", &hash);
+        state.set_f64s(
+            "particle_temperature",
+            self.parts.interior.committed_temperature(),
+        );
+        state.set_f64s("particle_heat", &self.work.exchange.heat);
+        state
+    }
+
+    /// Takes up the committed checkpoint. Gas and particles were built from its folders already.
+    pub fn resume(&mut self) -> Result<(), RunError> {
+        let directory = self.plan.checkpoint.committed();
+        let state = StateFile::read(&directory.join("coordinator.state"))?;
+        let found: String = state
+            .u64s("case_hash")?
+            .iter()
+            .map(|&byte| char::from(u8::try_from(byte).unwrap_or(b'?')))
+            .collect();
+        if found != self.plan.case_hash {
+            let expected = self.plan.case_hash.clone();
+            return Err(CheckpointError::OtherCase {
+                path: directory,
+                found,
+                expected,
+            }
+            .into());
+        }
+        let temperature = state.f64s("particle_temperature")?;
+        let heat = state.f64s("particle_heat")?;
+        let expected = self.parts.particles.fields().len();
+        if temperature.len() != expected || heat.len() != expected {
+            let found = temperature.len();
+            return Err(CheckpointError::Particles {
+                path: directory,
+                found,
+                expected,
+            }
+            .into());
+        }
+        self.parts.interior.restore(temperature);
+        self.work.exchange.heat.copy_from_slice(heat);
+        for (line, values) in self
+            .ledger
+            .lines_mut()
+            .into_iter()
+            .zip(state.f64s("ledger")?.chunks_exact(3))
+        {
+            line.drift = values[0];
+            line.error = values[1];
+            line.throughput = values[2];
+        }
+        if let [windows, motion, process] = *state.u64s("windows_and_clocks")? {
+            self.windows = windows;
+            self.clocks = Clocks {
+                motion: Ticks::new(motion.cast_signed()),
+                process: Ticks::new(process.cast_signed()),
+            };
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,264 @@
+//! The loop: windows, attempts, commits, checkpoints.
+
+mod checkpoint;
+mod window;
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use calcine_interior::ParticleModel;
+use calcine_physics::Vec3;
+use thiserror::Error;
+
+pub use checkpoint::{CheckpointError, CheckpointPaths};
+
+use crate::checkpoint::StateFileError;
+use crate::closures::{ClosureError, Closures, Coefficients, Seen};
+use crate::error::PartError;
+use crate::exchange::Exchange;
+use crate::ledger::Ledger;
+use crate::mapping::{Mapper, MappingError, Method};
+use crate::mesh::Mesh;
+use crate::observer::{Moment, Observer, ObserverError, Timing};
+use crate::part::{Bed, CellReceived, Convergence, Gas, ParticlePush, ParticleReceived, Particles};
+use crate::smoother::{Operator, Smoother, SmootherError};
+use crate::supervisor::Supervisor;
+use crate::time::{Acceleration, Clocks, GasStorage, Ticks, TimeError};
+
+/// When windows, checkpoints and the run end, and how exactly a window is exchanged.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// End of the run, process time.
+    pub end: Ticks,
+    /// Length of a window, motion time.
+    pub motion_window: Ticks,
+    /// Acceleration factor over process time.
+    pub acceleration: Acceleration,
+    /// Over which clock the gas stores.
+    pub storage: GasStorage,
+    /// A checkpoint each so much process time.
+    pub checkpoint_every: Option<Ticks>,
+    /// A checkpoint each so much wall time.
+    pub checkpoint_wall: Option<Duration>,
+    /// Base mapping.
+    pub mapping: Method,
+    /// A window is repeated while more than this share of the exchange is misplaced.
+    pub exchange_tolerance: f64,
+    /// Attempts per window at most.
+    pub exchange_attempts: u32,
+    /// Hash of the case, compared on resume.
+    pub case_hash: String,
+    /// Where checkpoints go.
+    pub checkpoint: CheckpointPaths,
+}
+
+/// How a run ended without an error.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// At the end of process time.
+    Finished,
+    /// On the user's interrupt, with a checkpoint in this folder.
+    Checkpointed(PathBuf),
+}
+
+/// A run that could not go on.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// A part failed.
+    #[error(transparent)]
+    Part(#[from] PartError),
+    /// Particles could not be mapped onto cells.
+    #[error(transparent)]
+    Mapping(#[from] MappingError),
+    /// The bed does not fit the mesh.
+    #[error(transparent)]
+    Smoother(#[from] SmootherError),
+    /// A law met a state that it is not defined for.
+    #[error("window {window}: {cause}")]
+    Closure {
+        /// Index of the window.
+        window: u64,
+        /// What the law said.
+        cause: ClosureError,
+    },
+    /// The clock ended.
+    #[error(transparent)]
+    Time(#[from] TimeError),
+    /// An observer failed, for example because a disk is full.
+    #[error(transparent)]
+    Observer(#[from] ObserverError),
+    /// A checkpoint could not be written or read.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// A state file could not be written or read.
+    #[error(transparent)]
+    StateFile(#[from] StateFileError),
+}
+
+/// The parts that a run is made of.
+pub struct Parts {
+    /// The gas.
+    pub gas: Box<dyn Gas>,
+    /// The particles.
+    pub particles: Box<dyn Particles>,
+    /// What is inside the particles.
+    pub interior: Box<dyn ParticleModel>,
+}
+
+/// Bed and operator, valid for the positions they were made from.
+struct Mapped {
+    operator: Operator,
+    bed: Bed,
+    position: Vec<Vec3>,
+    radius: Vec<f64>,
+    solid_volume: Vec<f64>,
+}
+
+/// Memory of one window, reused.
+#[derive(Default)]
+struct Workspace {
+    seen: Seen,
+    coefficients: Coefficients,
+    exchange: Exchange,
+    received: CellReceived,
+    particle_received: ParticleReceived,
+    push: ParticlePush,
+    pressure_force: Vec<Vec3>,
+}
+
+/// A run: the parts, the laws, the state of the loop.
+pub struct Run<'m> {
+    plan: Plan,
+    mesh: &'m Mesh,
+    mapper: Mapper<'m>,
+    smoother: Smoother,
+    closures: Closures,
+    parts: Parts,
+    mapped: Mapped,
+    clocks: Clocks,
+    windows: u64,
+    ledger: Ledger,
+    timing: Timing,
+    convergence: Convergence,
+    work: Workspace,
+}
+
+impl<'m> Run<'m> {
+    /// Maps the bed for the first time; the clocks stand at zero.
+    pub fn new(
+        plan: Plan,
+        mesh: &'m Mesh,
+        smoother: Smoother,
+        closures: Closures,
+        parts: Parts,
+    ) -> Result<Self, RunError> {
+        let mapper = Mapper::new(mesh);
+        let mapped = window::map(&mapper, plan.mapping, &smoother, &*parts.particles)?;
+        let mut work = Workspace::default();
+        work.exchange
+            .heat
+            .resize(parts.particles.fields().len(), 0.0);
+        Ok(Self {
+            plan,
+            mesh,
+            mapper,
+            smoother,
+            closures,
+            parts,
+            mapped,
+            clocks: Clocks::default(),
+            windows: 0,
+            ledger: Ledger::default(),
+            timing: Timing::default(),
+            convergence: Convergence::default(),
+            work,
+        })
+    }
+
+    /// Runs to the end, to an interrupt's checkpoint, or to an error.
+    pub fn run(
+        &mut self,
+        supervisor: &Supervisor,
+        observers: &mut [&mut dyn Observer],
+    ) -> Result<Ending, RunError> {
+        for observer in observers.iter_mut() {
+            observer.start(&self.moment(None))?;
+        }
+        let mut last_checkpoint = Instant::now();
+        while self.clocks.process < self.plan.end {
+            let window = self.next_window()?;
+            self.advance(supervisor, &window)?;
+
+            let output = Instant::now();
+            for observer in observers.iter_mut() {
+                observer.window(&self.moment(Some(&window)))?;
+            }
+            self.timing.output += output.elapsed();
+
+            let interrupted = supervisor.interrupts().count() > 0;
+            let finished = self.clocks.process >= self.plan.end;
+            let due = self.checkpoint_due(window.start.process, last_checkpoint.elapsed());
+            if (interrupted || due) && !finished {
+                self.checkpoint(observers)?;
+                last_checkpoint = Instant::now();
+            }
+            if interrupted && !finished {
+                let directory = self.plan.checkpoint.committed();
+                self.finish_parts(supervisor)?;
+                return Ok(Ending::Checkpointed(directory));
+            }
+        }
+        for observer in observers.iter_mut() {
+            observer.finish(&self.moment(None))?;
+        }
+        self.finish_parts(supervisor)?;
+        Ok(Ending::Finished)
+    }
+
+    fn finish_parts(&mut self, supervisor: &Supervisor) -> Result<(), PartError> {
+        let gas = self.parts.gas.finish_run(supervisor);
+        let particles = self.parts.particles.finish_run(supervisor);
+        gas.and(particles)
+    }
+
+    /// True where a multiple of `checkpoint_every` lies in (start, now], or wall time is up.
+    fn checkpoint_due(&self, start: Ticks, since_last: Duration) -> bool {
+        let crossed = self.plan.checkpoint_every.is_some_and(|every| {
+            every.count() > 0
+                && start.count() / every.count() < self.clocks.process.count() / every.count()
+        });
+        crossed
+            || self
+                .plan
+                .checkpoint_wall
+                .is_some_and(|wall| since_last >= wall)
+    }
+
+    fn moment<'a>(&'a self, window: Option<&'a crate::time::Window>) -> Moment<'a> {
+        Moment {
+            windows: self.windows,
+            clocks: self.clocks,
+            window,
+            mesh: self.mesh,
+            gas: self.parts.gas.fields(),
+            bed: &self.mapped.bed,
+            particles: self.parts.particles.fields(),
+            particle_temperature: self.parts.interior.temperature(),
+            particle_heat: &self.work.exchange.heat,
+            ledger: &self.ledger,
+            convergence: &self.convergence,
+            timing: &self.timing,
+            about: [self.parts.gas.about(), self.parts.particles.about()],
+        }
+    }
+
+    /// Wall times so far.
+    pub fn timing(&self) -> &Timing {
+        &self.timing
+    }
+
+    /// The ledger so far.
+    pub fn ledger(&self) -> &Ledger {
+        &self.ledger
+    }
+}

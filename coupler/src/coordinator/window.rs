@@ -1,0 +1,267 @@
+//! One coupling window (design: "One window").
+
+use std::f64::consts::PI;
+use std::time::{Duration, Instant};
+
+use calcine_physics::Vec3;
+
+use super::{Mapped, Run, RunError};
+use crate::exchange::Setting;
+use crate::ledger::Ledger;
+use crate::mapping::{Mapper, Method};
+use crate::part::{Balance, Bed, Particles};
+use crate::smoother::Smoother;
+use crate::supervisor::Supervisor;
+use crate::time::Window;
+
+/// Adds the time that a stage takes to its account.
+fn timed<T>(account: &mut Duration, stage: impl FnOnce() -> T) -> T {
+    let begun = Instant::now();
+    let value = stage();
+    *account += begun.elapsed();
+    value
+}
+
+/// Base mapping and smoother for the present positions.
+pub(super) fn map(
+    mapper: &Mapper<'_>,
+    method: Method,
+    smoother: &Smoother,
+    particles: &dyn Particles,
+) -> Result<Mapped, RunError> {
+    let fields = particles.fields();
+    let solid_volume: Vec<f64> = fields
+        .radius
+        .iter()
+        .map(|r| 4.0 / 3.0 * PI * r.powi(3))
+        .collect();
+    let weights = mapper.fill(method, fields.position, fields.radius)?;
+    let operator = smoother.operator(weights, &solid_volume)?;
+    let void_fraction = operator
+        .solid_fraction()
+        .iter()
+        .map(|alpha| 1.0 - alpha)
+        .collect();
+    Ok(Mapped {
+        operator,
+        bed: Bed { void_fraction },
+        position: fields.position.to_vec(),
+        radius: fields.radius.to_vec(),
+        solid_volume,
+    })
+}
+
+impl Run<'_> {
+    pub(super) fn next_window(&self) -> Result<Window, RunError> {
+        let span =
+            self.plan
+                .acceleration
+                .span(self.clocks, self.plan.motion_window, self.plan.end)?;
+        Ok(Window {
+            index: self.windows,
+            attempt: 0,
+            start: self.clocks,
+            span,
+        })
+    }
+
+    /// One window: bed, laws, attempts of gas and interior, particles last, commit, ledger.
+    pub(super) fn advance(
+        &mut self,
+        supervisor: &Supervisor,
+        window: &Window,
+    ) -> Result<(), RunError> {
+        self.map_if_moved()?;
+        self.evaluate_laws(window)?;
+        self.exchange_with_gas(supervisor, *window)?;
+        self.move_particles(supervisor, window)?;
+        self.commit(window)
+    }
+
+    fn map_if_moved(&mut self) -> Result<(), RunError> {
+        let fields = self.parts.particles.fields();
+        if fields.position == self.mapped.position && fields.radius == self.mapped.radius {
+            return Ok(());
+        }
+        let begun = Instant::now();
+        self.mapped = map(
+            &self.mapper,
+            self.plan.mapping,
+            &self.smoother,
+            &*self.parts.particles,
+        )?;
+        self.timing.mapping += begun.elapsed();
+        Ok(())
+    }
+
+    fn evaluate_laws(&mut self, window: &Window) -> Result<(), RunError> {
+        let begun = Instant::now();
+        let (mapped, work) = (&self.mapped, &mut self.work);
+        let particles = self.parts.particles.fields();
+        let acceleration = window.acceleration();
+        work.seen
+            .sample(&mapped.operator, &self.parts.gas.fields(), &mapped.bed);
+        self.closures
+            .evaluate(&work.seen, &particles, acceleration, &mut work.coefficients)
+            .map_err(|cause| RunError::Closure {
+                window: window.index,
+                cause,
+            })?;
+        let span = window.span.process.seconds();
+        work.exchange.conductance.resize(particles.len(), 0.0);
+        self.parts.interior.eliminated(
+            &work.coefficients.conductance,
+            span,
+            &mut work.exchange.conductance,
+        );
+        self.timing.exchange += begun.elapsed();
+        Ok(())
+    }
+
+    /// Repeats the window of gas and interior until the exchange is where it belongs.
+    fn exchange_with_gas(
+        &mut self,
+        supervisor: &Supervisor,
+        mut window: Window,
+    ) -> Result<(), RunError> {
+        let acceleration = window.acceleration();
+        let span = window.span.process.seconds();
+        let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
+        loop {
+            let setting = Setting {
+                operator: &mapped.operator,
+                particles: self.parts.particles.fields(),
+                temperature: self.parts.interior.committed_temperature(),
+                coefficients: &work.coefficients,
+                acceleration,
+            };
+            timed(&mut timing.exchange, || {
+                work.exchange.linearise(&setting, &self.parts.gas.fields());
+            });
+            self.convergence = timed(&mut timing.gas, || {
+                self.parts
+                    .gas
+                    .start(&window, &mapped.bed, &work.exchange.cells)?;
+                self.parts.gas.finish(supervisor, &mut work.received)
+            })?;
+            let misplaced = timed(&mut timing.exchange, || {
+                work.exchange
+                    .credit(&setting, &self.parts.gas.fields(), &work.received)
+            });
+            timed(&mut timing.interior, || {
+                self.parts.interior.advance(&work.exchange.heat, span)
+            });
+            window.attempt += 1;
+            if misplaced <= self.plan.exchange_tolerance
+                || window.attempt >= self.plan.exchange_attempts
+            {
+                return Ok(());
+            }
+        }
+    }
+
+    fn move_particles(&mut self, supervisor: &Supervisor, window: &Window) -> Result<(), RunError> {
+        let begun = Instant::now();
+        let work = &mut self.work;
+        work.exchange.push(
+            &self.mapped.operator,
+            &self.parts.gas.fields(),
+            &self.mapped.solid_volume,
+            &mut work.pressure_force,
+            &mut work.push,
+        );
+        self.parts.particles.start(window, &work.push)?;
+        self.parts
+            .particles
+            .finish(supervisor, &mut work.particle_received)?;
+        self.timing.particles += begun.elapsed();
+        Ok(())
+    }
+
+    fn commit(&mut self, window: &Window) -> Result<(), RunError> {
+        self.close_ledger(window);
+        self.parts.gas.commit()?;
+        self.parts.particles.commit()?;
+        self.parts.interior.commit();
+        self.clocks = window.end()?;
+        self.windows += 1;
+        Ok(())
+    }
+
+    /// Books the window (requirements CON-2). Gas amounts count in process time.
+    fn close_ledger(&mut self, window: &Window) {
+        let (process, motion) = (window.span.process.seconds(), window.span.motion.seconds());
+        let scale = process / self.plan.storage.span(window);
+        let (work, ledger) = (&self.work, &mut self.ledger);
+        let received = &work.received;
+
+        let (sum, magnitude) = open(&received.mass);
+        ledger.mass.book(scale * sum, scale * magnitude);
+        book_energy(
+            ledger,
+            received,
+            &work.exchange.heat,
+            &*self.parts.interior,
+            scale,
+            process,
+        );
+
+        let drag_on_gas: Vec3 = received.drag.iter().sum::<Vec3>() * motion;
+        let impulses = &work.particle_received.impulse;
+        let drag_on_particles: Vec3 = impulses
+            .iter()
+            .zip(&work.pressure_force)
+            .map(|(impulse, pressure)| impulse - pressure * motion)
+            .sum();
+        let moved: f64 = received
+            .drag
+            .iter()
+            .map(|force| force.norm() * motion)
+            .sum();
+        ledger
+            .momentum_exchange
+            .book((drag_on_gas + drag_on_particles).norm(), 2.0 * moved);
+        for balance in &received.momentum {
+            let (sum, magnitude) = open(balance);
+            ledger.gas_momentum.book(sum, magnitude);
+        }
+    }
+}
+
+/// What a balance leaves open, and the sum of the magnitudes of its terms.
+fn open(balance: &Balance) -> (f64, f64) {
+    (
+        balance.stored - balance.boundary - balance.exchange - balance.source,
+        balance.stored_magnitude
+            + balance.boundary_magnitude
+            + balance.exchange.abs()
+            + balance.source_magnitude,
+    )
+}
+
+/// Gas and particles together: the exchange drops out of the sum and is booked by itself.
+fn book_energy(
+    ledger: &mut Ledger,
+    received: &crate::part::CellReceived,
+    heat: &[f64],
+    interior: &dyn calcine_interior::ParticleModel,
+    scale: f64,
+    process: f64,
+) {
+    let gas = &received.energy;
+    let (stored, stored_magnitude) = interior.stored_change();
+    let to_gas: f64 = received.heat.iter().sum::<f64>() * process;
+    let to_particles: f64 = heat.iter().sum::<f64>() * process;
+    let exchanged = process
+        * (received.heat.iter().map(|q| q.abs()).sum::<f64>()
+            + heat.iter().map(|q| q.abs()).sum::<f64>());
+    ledger.energy.book(
+        scale * (gas.stored - gas.boundary - gas.source) + stored,
+        scale * (gas.stored_magnitude + gas.boundary_magnitude + gas.source_magnitude)
+            + stored_magnitude
+            + exchanged,
+    );
+    ledger
+        .energy_exchange
+        .book(to_gas + to_particles, exchanged);
+}

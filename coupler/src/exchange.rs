@@ -1,0 +1,247 @@
+//! The exchange between gas and particles: stored once, the other side derived (requirements
+//! CON-4, TSM-9, DRG-1).
+//!
+//! For a particle p that spans cells with the weights W_cp, its heat is
+//! Q_p = K_p (Σ_c W_cp T_c − T_p), K_p = h A/(1 + h A Δτ/(m c)) with the particle's own new
+//! temperature eliminated. This ties all its cells together (rank one per particle). The gas gets
+//! the majorised form: the diagonal H_c = Σ_p W_cp K_p implicitly, the rest at the last iterate
+//! (superscript k):
+//!
+//! R_c = Σ_p W_cp K_p (T_p − T̄_p^k) + H_c (T_c^k − T_c).
+//!
+//! Its sum over cells is −Σ_p K_p (T̄_p − T_p) whatever the iterate, because W is a partition of
+//! unity; iterating only moves heat between the cells of one particle. What the gas reports beyond
+//! R_c (a solver's tolerance, an enthalpy that is not linear in T) is credited to the particles of
+//! the cell by their share W_cp K_p/H_c. Drag is treated alike, with K_A in the place of K_p.
+
+use calcine_physics::Vec3;
+
+use crate::closures::Coefficients;
+use crate::part::{CellExchange, CellReceived, GasFields, ParticleFields, ParticlePush};
+use crate::smoother::Operator;
+
+/// What does not change between the attempts of a window.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting<'a> {
+    /// The operator W.
+    pub operator: &'a Operator,
+    /// The particles at the start of the window.
+    pub particles: ParticleFields<'a>,
+    /// Committed particle temperatures in K.
+    pub temperature: &'a [f64],
+    /// Coefficients of drag and heat.
+    pub coefficients: &'a Coefficients,
+    /// The acceleration factor.
+    pub acceleration: f64,
+}
+
+/// The exchange of one window, with its scratch memory.
+#[derive(Debug, Default)]
+pub struct Exchange {
+    /// What the gas is told.
+    pub cells: CellExchange,
+    /// Mean heat flow into each particle over the window in W.
+    pub heat: Vec<f64>,
+    /// Mean drag on each particle over the window in N, pressure force excluded.
+    pub drag: Vec<Vec3>,
+    /// K_p in W/K, set by the interior before `linearise`.
+    pub conductance: Vec<f64>,
+    iterate: Iterate,
+    scalar: Vec<f64>,
+    vector: Vec<Vec3>,
+    cell_scalar: Vec<f64>,
+    cell_vector: Vec<Vec3>,
+}
+
+/// The gas at the last iterate, in cells and as the particles see it.
+#[derive(Debug, Default)]
+struct Iterate {
+    temperature: Vec<f64>,
+    velocity: Vec<Vec3>,
+    seen_temperature: Vec<f64>,
+    seen_velocity: Vec<Vec3>,
+}
+
+impl Exchange {
+    fn resize(&mut self, cells: usize, particles: usize) {
+        self.cells.drag_coefficient.resize(cells, 0.0);
+        self.cells.drag_source.resize(cells, Vec3::zeros());
+        self.cells.heat_coefficient.resize(cells, 0.0);
+        self.cells.heat_source.resize(cells, 0.0);
+        self.cell_scalar.resize(cells, 0.0);
+        self.cell_vector.resize(cells, Vec3::zeros());
+        self.heat.resize(particles, 0.0);
+        self.drag.resize(particles, Vec3::zeros());
+        self.scalar.resize(particles, 0.0);
+        self.vector.resize(particles, Vec3::zeros());
+        self.iterate.seen_temperature.resize(particles, 0.0);
+        self.iterate.seen_velocity.resize(particles, Vec3::zeros());
+    }
+
+    /// Fills what the gas is told, linearised about its present fields.
+    pub fn linearise(&mut self, setting: &Setting<'_>, gas: &GasFields<'_>) {
+        let Setting {
+            operator,
+            particles,
+            temperature,
+            coefficients,
+            acceleration,
+        } = setting;
+        let (cells, count) = (operator.cells(), operator.particles());
+        self.resize(cells, count);
+        self.iterate.temperature.clear();
+        self.iterate.temperature.extend_from_slice(gas.temperature);
+        self.iterate.velocity.clear();
+        self.iterate.velocity.extend_from_slice(gas.velocity);
+        operator.sample(gas.temperature, &mut self.iterate.seen_temperature);
+        operator.sample_vectors(gas.velocity, &mut self.iterate.seen_velocity);
+
+        operator.spread(&self.conductance, &mut self.cells.heat_coefficient);
+        for p in 0..count {
+            self.scalar[p] =
+                self.conductance[p] * (temperature[p] - self.iterate.seen_temperature[p]);
+        }
+        operator.spread(&self.scalar, &mut self.cells.heat_source);
+        for c in 0..cells {
+            self.cells.heat_source[c] += self.cells.heat_coefficient[c] * gas.temperature[c];
+        }
+
+        operator.spread(&coefficients.drag, &mut self.cells.drag_coefficient);
+        for p in 0..count {
+            self.vector[p] = coefficients.drag[p]
+                * (particles.velocity[p] / *acceleration - self.iterate.seen_velocity[p]);
+        }
+        operator.spread_vectors(&self.vector, &mut self.cells.drag_source);
+        for c in 0..cells {
+            self.cells.drag_source[c] += self.cells.drag_coefficient[c] * gas.velocity[c];
+        }
+    }
+
+    /// Gives each particle what the gas reports, and returns how far the attempt is from the
+    /// exact coupling of the cells that a particle spans: the misplaced heat and drag, as shares
+    /// of all that was exchanged.
+    pub fn credit(
+        &mut self,
+        setting: &Setting<'_>,
+        gas: &GasFields<'_>,
+        received: &CellReceived,
+    ) -> f64 {
+        let heat = self.credit_heat(setting, gas, received);
+        let drag = self.credit_drag(setting, gas, received);
+        heat.max(drag)
+    }
+
+    fn credit_heat(
+        &mut self,
+        setting: &Setting<'_>,
+        gas: &GasFields<'_>,
+        received: &CellReceived,
+    ) -> f64 {
+        let Setting {
+            operator,
+            temperature,
+            ..
+        } = setting;
+        let exchange = &self.cells;
+        // δ_c/H_c, what the gas reports beyond R_c
+        for c in 0..operator.cells() {
+            let coefficient = exchange.heat_coefficient[c];
+            let beyond =
+                received.heat[c] - (exchange.heat_source[c] - coefficient * gas.temperature[c]);
+            self.cell_scalar[c] = if coefficient > 0.0 {
+                beyond / coefficient
+            } else {
+                0.0
+            };
+        }
+        operator.sample(&self.cell_scalar, &mut self.heat);
+        operator.sample(gas.temperature, &mut self.scalar);
+        for p in 0..operator.particles() {
+            let (seen, beyond) = (self.scalar[p], self.heat[p]);
+            self.heat[p] = self.conductance[p] * (seen - temperature[p] - beyond);
+            self.scalar[p] = self.conductance[p] * (seen - self.iterate.seen_temperature[p]);
+        }
+        operator.spread(&self.scalar, &mut self.cell_scalar);
+        let (mut misplaced, mut exchanged) = (0.0, 0.0);
+        for c in 0..operator.cells() {
+            let change = gas.temperature[c] - self.iterate.temperature[c];
+            misplaced += (exchange.heat_coefficient[c] * change - self.cell_scalar[c]).abs();
+            exchanged += received.heat[c].abs();
+        }
+        share(misplaced, exchanged)
+    }
+
+    fn credit_drag(
+        &mut self,
+        setting: &Setting<'_>,
+        gas: &GasFields<'_>,
+        received: &CellReceived,
+    ) -> f64 {
+        let Setting {
+            operator,
+            particles,
+            coefficients,
+            acceleration,
+            ..
+        } = setting;
+        let exchange = &self.cells;
+        for c in 0..operator.cells() {
+            let coefficient = exchange.drag_coefficient[c];
+            let beyond =
+                received.drag[c] - (exchange.drag_source[c] - coefficient * gas.velocity[c]);
+            self.cell_vector[c] = if coefficient > 0.0 {
+                beyond / coefficient
+            } else {
+                Vec3::zeros()
+            };
+        }
+        operator.sample_vectors(&self.cell_vector, &mut self.drag);
+        operator.sample_vectors(gas.velocity, &mut self.vector);
+        for p in 0..operator.particles() {
+            let (seen, beyond) = (self.vector[p], self.drag[p]);
+            let slip = seen - particles.velocity[p] / *acceleration;
+            self.drag[p] = coefficients.drag[p] * (slip - beyond);
+            self.vector[p] = coefficients.drag[p] * (seen - self.iterate.seen_velocity[p]);
+        }
+        operator.spread_vectors(&self.vector, &mut self.cell_vector);
+        let (mut misplaced, mut exchanged) = (0.0, 0.0);
+        for c in 0..operator.cells() {
+            let change = gas.velocity[c] - self.iterate.velocity[c];
+            misplaced += (exchange.drag_coefficient[c] * change - self.cell_vector[c]).norm();
+            exchanged += received.drag[c].norm();
+        }
+        share(misplaced, exchanged)
+    }
+
+    /// The force pushed to the particles: drag and the pressure force −V_p Σ_c W_cp ∇p
+    /// (requirements DRG-1, model A). The pressure force alone goes to `pressure_force`.
+    pub fn push(
+        &self,
+        operator: &Operator,
+        gas: &GasFields<'_>,
+        solid_volume: &[f64],
+        pressure_force: &mut Vec<Vec3>,
+        push: &mut ParticlePush,
+    ) {
+        pressure_force.resize(operator.particles(), Vec3::zeros());
+        operator.sample_vectors(gas.pressure_gradient, pressure_force);
+        for (force, volume) in pressure_force.iter_mut().zip(solid_volume) {
+            *force *= -volume;
+        }
+        push.force.clear();
+        push.force.extend(
+            self.drag
+                .iter()
+                .zip(pressure_force.iter())
+                .map(|(d, p)| d + p),
+        );
+    }
+}
+
+fn share(part: f64, whole: f64) -> f64 {
+    if part == 0.0 {
+        0.0
+    } else {
+        part / whole.max(f64::MIN_POSITIVE)
+    }
+}
