@@ -166,7 +166,7 @@ fn plots(summary: &Summary, series: &Series) -> String {
         curves,
     };
     let mut html = plot(
-        "Particle temperature in K".into(),
+        "Temperature of each particle in K".into(),
         None,
         particle_curves(series, time),
     )

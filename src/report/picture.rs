@@ -12,6 +12,8 @@ use crate::results::read::{self, Array, Arrays};
 const HEIGHT: f64 = 460.0;
 const WIDEST: f64 = 1050.0;
 const BAR: f64 = 110.0;
+/// Room above for the label of the colour bar.
+const TOP: f64 = 26.0;
 
 /// One snapshot, cut.
 struct View {
@@ -95,7 +97,7 @@ fn draw(views: &[View], low: Spot, high: Spot) -> String {
     let scale = (HEIGHT / tall).min(room / wide);
     let (wide, tall) = (wide * scale, tall * scale);
     let column = wide.max(64.0) + gap;
-    let (width, height) = (column * views.len() as f64 + BAR, tall + 84.0);
+    let (width, height) = (column * views.len() as f64 + BAR, tall + 60.0);
     let mut svg = format!(
         "<figure class=\"picture\"><svg viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" \
          role=\"img\" aria-label=\"Side views of bed and gas\">"
@@ -105,7 +107,7 @@ fn draw(views: &[View], low: Spot, high: Spot) -> String {
         let spot = |at: Spot| {
             [
                 left + (at[0] - low[0]) * scale,
-                40.0 + (high[1] - at[1]) * scale,
+                TOP + (high[1] - at[1]) * scale,
             ]
         };
         let colour = |values: &[f64], place: usize| match (range, values.get(place)) {
@@ -136,16 +138,16 @@ fn draw(views: &[View], low: Spot, high: Spot) -> String {
         }
         let _ = write!(
             svg,
-            "<rect class=\"hull\" x=\"{left:.1}\" y=\"40\" width=\"{wide:.1}\" height=\"{tall:.1}\"/>\
+            "<rect class=\"hull\" x=\"{left:.1}\" y=\"{TOP}\" width=\"{wide:.1}\" height=\"{tall:.1}\"/>\
              <text class=\"label\" text-anchor=\"middle\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
             left + wide / 2.0,
-            tall + 62.0,
+            tall + TOP + 22.0,
             span(view.time)
         );
     }
     if let Some(range) = range {
         let bar = tall.min(320.0);
-        svg.push_str(&range.bar(width - BAR + 26.0, 40.0 + (tall - bar) / 2.0, bar, "T in K"));
+        svg.push_str(&range.bar(width - BAR + 26.0, TOP + (tall - bar) / 2.0, bar, "T in K"));
     }
     svg.push_str("</svg></figure>");
     svg

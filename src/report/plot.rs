@@ -141,9 +141,16 @@ impl Plot<'_> {
         } else {
             ticks(frame.y, 5)
         };
+        let step = ups
+            .windows(2)
+            .map(|pair| pair[1] - pair[0])
+            .fold(f64::INFINITY, f64::min);
         for y in ups {
             let at = frame.up(y);
-            let text = figure(if self.logarithmic { 10f64.powf(y) } else { y }, 5);
+            let text = match self.logarithmic {
+                true => figure(10f64.powf(y), 1),
+                false => figure(y, digits(frame.y, step)),
+            };
             let _ = write!(
                 svg,
                 "<line class=\"grid\" x1=\"{LEFT}\" x2=\"{right}\" y1=\"{at:.1}\" y2=\"{at:.1}\"/>\
@@ -263,6 +270,17 @@ fn ticks(range: Range, about: usize) -> Vec<f64> {
     let first = (range.low / step - 1e-9).ceil() as i64;
     let last = (range.high / step + 1e-9).floor() as i64;
     (first..=last).map(|n| n as f64 * step).collect()
+}
+
+/// Significant digits that tell neighbouring ticks apart.
+fn digits(range: Range, step: f64) -> usize {
+    let largest = range.low.abs().max(range.high.abs());
+    let places = (largest / step).log10().floor();
+    if places.is_finite() {
+        (places as usize + 2).clamp(2, 12)
+    } else {
+        5
+    }
 }
 
 fn decades(range: Range) -> Vec<f64> {

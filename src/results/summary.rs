@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::{ResultsError, SUMMARY, files};
 
@@ -133,12 +133,16 @@ pub struct Ledger {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LedgerLine {
     /// Error over throughput (requirements CON-2).
+    #[serde(deserialize_with = "number")]
     pub relative_error: f64,
     /// Signed sum of what did not close, in `unit`.
+    #[serde(deserialize_with = "number")]
     pub drift: f64,
     /// Sum over windows of the magnitude of what did not close, in `unit`.
+    #[serde(deserialize_with = "number")]
     pub error: f64,
     /// Sum over windows of what moved, in `unit`.
+    #[serde(deserialize_with = "number")]
     pub throughput: f64,
     /// Unit of the three amounts.
     pub unit: String,
@@ -205,9 +209,16 @@ pub struct ConvergenceSummary {
     /// Iterations of the linear solvers in all windows.
     pub linear_iterations: u64,
     /// Largest scaled residual at the end of a window.
+    #[serde(deserialize_with = "number")]
     pub largest_residual: f64,
     /// Largest volume residual of a window (requirements CON-2).
+    #[serde(deserialize_with = "number")]
     pub largest_volume_residual: f64,
+}
+
+/// A number, or NaN for the `null` that JSON has in its place.
+fn number<'de, D: Deserializer<'de>>(source: D) -> Result<f64, D::Error> {
+    Ok(Option::<f64>::deserialize(source)?.unwrap_or(f64::NAN))
 }
 
 impl Summary {

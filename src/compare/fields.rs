@@ -1,0 +1,313 @@
+//! Differences of fields between runs: per particle over the time series, per cell over the
+//! snapshots.
+
+use serde::Serialize;
+
+use super::quantities::{common_times, words};
+use super::{Agreement, CompareError, Source};
+use crate::case::model::{Band, Case, Measure};
+use crate::report::plot::between;
+use crate::results::read::{self, Arrays};
+
+/// Arrays of a snapshot file that are no fields.
+const GEOMETRY: [&str; 10] = [
+    "points",
+    "connectivity",
+    "offsets",
+    "types",
+    "faces",
+    "faceoffsets",
+    "id",
+    "population",
+    "radius",
+    "TimeValue",
+];
+
+/// The difference between two runs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Norms {
+    /// The two runs.
+    pub runs: [String; 2],
+    /// Root of the mean square over places and times, in the field's unit.
+    pub l2: f64,
+    /// Largest magnitude, in the field's unit.
+    pub maximum: f64,
+    /// Index of the cell, or id of the particle, of the largest.
+    pub place: u64,
+    /// Process time of the largest in s.
+    pub at_s: f64,
+}
+
+/// How far the runs differ in one field.
+#[derive(Clone, Debug, Serialize)]
+pub struct FieldDifference {
+    /// Name, for example `particles.temperature`.
+    pub name: String,
+    /// `particle` or `cell`.
+    pub per: &'static str,
+    /// Its unit.
+    pub unit: String,
+    /// Every pair of runs.
+    pub pairs: Vec<Norms>,
+    /// Largest minus smallest value over all runs, places and times; vectors by components.
+    pub span: f64,
+    /// The allowed maximum in words, if the case states one.
+    pub band: Option<String>,
+    /// Whether the largest of all pairs is allowed.
+    pub verdict: Agreement,
+}
+
+impl FieldDifference {
+    /// The pair that differs most.
+    pub fn worst(&self) -> Option<&Norms> {
+        let mut pairs = self.pairs.iter();
+        let first = pairs.next()?;
+        Some(pairs.fold(first, |worst, pair| {
+            if pair.maximum <= worst.maximum {
+                worst
+            } else {
+                pair
+            }
+        }))
+    }
+}
+
+/// Sums of a pair of runs in the making.
+#[derive(Default)]
+struct Sums {
+    norms: Norms,
+    squares: f64,
+    count: f64,
+}
+
+impl Sums {
+    fn add(&mut self, squared: f64, place: u64, time: f64) {
+        self.squares += squared;
+        self.count += 1.0;
+        let distance = squared.sqrt();
+        // A comparison with NaN is false: a missing value is the largest difference.
+        if !(distance <= self.norms.maximum) {
+            self.norms.maximum = distance;
+            self.norms.place = place;
+            self.norms.at_s = time;
+        }
+    }
+
+    fn finish(mut self) -> Norms {
+        self.norms.l2 = (self.squares / self.count.max(1.0)).sqrt();
+        self.norms
+    }
+}
+
+/// Compares the particle temperatures, then every field of the snapshots.
+pub(super) fn differences(
+    case: &Case,
+    sources: &[Source],
+) -> Result<Vec<FieldDifference>, CompareError> {
+    let mut list: Vec<_> = tracks(case, sources).into_iter().collect();
+    list.extend(snapshots(sources, "gas.pvd", "gas", "cell")?);
+    let particles = snapshots(sources, "particles.pvd", "particles", "particle")?;
+    let known: Vec<String> = list.iter().map(|field| field.name.clone()).collect();
+    list.extend(
+        particles
+            .into_iter()
+            .filter(|field| !known.contains(&field.name)),
+    );
+    Ok(list)
+}
+
+/// The temperature of each particle at all times of the series; `None` where the runs have none.
+///
+/// The band is the tightest that the case states for the temperature of a single particle: what it
+/// allows one particle it allows each.
+fn tracks(case: &Case, sources: &[Source]) -> Option<FieldDifference> {
+    let runs: Vec<_> = sources
+        .iter()
+        .map(|source| source.series.particles())
+        .collect();
+    if runs.iter().any(Vec::is_empty) {
+        return None;
+    }
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut sums = pairs(sources);
+    for time in common_times(sources) {
+        for (place, (id, _)) in runs[0].iter().enumerate() {
+            let values: Vec<f64> = sources
+                .iter()
+                .zip(&runs)
+                .map(|(source, tracks)| {
+                    let track = tracks.get(place).filter(|(other, _)| other == id);
+                    let over = source.series.column("process_time");
+                    track.map_or(f64::NAN, |(_, values)| between(over, values, time))
+                })
+                .collect();
+            for &value in &values {
+                (low, high) = (low.min(value), high.max(value));
+            }
+            for (first, second, sum) in &mut sums {
+                let squared = (values[*first] - values[*second]).powi(2);
+                sum.add(squared, id.parse().unwrap_or(place as u64), time);
+            }
+        }
+    }
+    let field = finish("particles.temperature", "particle", "K", sums, (low, high));
+    Some(judged(field, single_particle_band(case)))
+}
+
+fn single_particle_band(case: &Case) -> Option<f64> {
+    let bands =
+        case.quantities
+            .iter()
+            .filter_map(|quantity| match (&quantity.measure, quantity.agree) {
+                (Measure::Particle { .. }, Some(Band::Absolute(distance))) => Some(distance),
+                _ => None,
+            });
+    bands.reduce(f64::min)
+}
+
+fn judged(mut field: FieldDifference, band: Option<f64>) -> FieldDifference {
+    let worst = field.worst().map_or(0.0, |pair| pair.maximum);
+    field.verdict =
+        Agreement::of(band.map(|allowed| if worst == 0.0 { 0.0 } else { worst / allowed }));
+    field.band = band.map(|allowed| words(Band::Absolute(allowed), &field.unit));
+    field
+}
+
+/// Every pair of runs by its two indices.
+fn pairs(sources: &[Source]) -> Vec<(usize, usize, Sums)> {
+    let mut list = Vec::new();
+    for second in 1..sources.len() {
+        for first in 0..second {
+            let runs = [first, second].map(|place| sources[place].name.clone());
+            let norms = Norms {
+                runs,
+                ..Norms::default()
+            };
+            list.push((
+                first,
+                second,
+                Sums {
+                    norms,
+                    ..Sums::default()
+                },
+            ));
+        }
+    }
+    list
+}
+
+fn finish(
+    name: &str,
+    per: &'static str,
+    unit: &str,
+    sums: Vec<(usize, usize, Sums)>,
+    range: (f64, f64),
+) -> FieldDifference {
+    FieldDifference {
+        name: name.into(),
+        per,
+        unit: unit.into(),
+        pairs: sums.into_iter().map(|(_, _, sum)| sum.finish()).collect(),
+        span: range.1 - range.0,
+        band: None,
+        verdict: Agreement::None,
+    }
+}
+
+/// Every field of the snapshots of a collection that all runs hold, the start left out.
+fn snapshots(
+    sources: &[Source],
+    collection: &str,
+    group: &str,
+    per: &'static str,
+) -> Result<Vec<FieldDifference>, CompareError> {
+    let lists = sources
+        .iter()
+        .map(|source| read::collection(&source.directory, collection))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut found: Vec<(String, Vec<(usize, usize, Sums)>, (f64, f64))> = Vec::new();
+    let count = lists.iter().map(Vec::len).min().unwrap_or(0);
+    for number in 1..count {
+        let time = lists[0][number].0;
+        if lists.iter().any(|list| list[number].0 != time) {
+            break;
+        }
+        let arrays = lists
+            .iter()
+            .map(|list| read::arrays(&list[number].1))
+            .collect::<Result<Vec<_>, _>>()?;
+        for name in arrays[0]
+            .keys()
+            .filter(|name| !GEOMETRY.contains(&name.as_str()))
+        {
+            let place = match found.iter().position(|(other, ..)| other == name) {
+                Some(place) => place,
+                None => {
+                    let range = (f64::INFINITY, f64::NEG_INFINITY);
+                    found.push((name.clone(), pairs(sources), range));
+                    found.len() - 1
+                }
+            };
+            let (_, sums, range) = &mut found[place];
+            add(sources, &arrays, name, time, sums, range)?;
+        }
+    }
+    let named = |(name, sums, range): (String, _, _)| {
+        finish(&format!("{group}.{name}"), per, unit(&name), sums, range)
+    };
+    Ok(found.into_iter().map(named).collect())
+}
+
+fn add(
+    sources: &[Source],
+    arrays: &[Arrays],
+    name: &str,
+    time: f64,
+    sums: &mut [(usize, usize, Sums)],
+    range: &mut (f64, f64),
+) -> Result<(), CompareError> {
+    let reference = &arrays[0][name];
+    let ids = arrays[0].get("id").map(|array| &array.values);
+    let mut lists = Vec::new();
+    for (source, other) in sources.iter().zip(arrays) {
+        let values = other.get(name).map_or(&[][..], |array| &array.values);
+        if values.len() != reference.values.len() {
+            return Err(CompareError::Shape {
+                field: name.into(),
+                run: source.name.clone(),
+                found: values.len(),
+                reference: sources[0].name.clone(),
+                expected: reference.values.len(),
+            });
+        }
+        for &value in values {
+            *range = (range.0.min(value), range.1.max(value));
+        }
+        lists.push(values);
+    }
+    let width = reference.components.max(1);
+    for (first, second, sum) in sums {
+        let rows = lists[*first]
+            .chunks(width)
+            .zip(lists[*second].chunks(width));
+        for (place, (a, b)) in rows.enumerate() {
+            let squared = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
+            let id = ids
+                .and_then(|ids| ids.get(place))
+                .map_or(place as u64, |&id| id as u64);
+            sum.add(squared, id, time);
+        }
+    }
+    Ok(())
+}
+
+fn unit(field: &str) -> &'static str {
+    match field {
+        "temperature" => "K",
+        "velocity" => "m/s",
+        "pressure" => "Pa",
+        "density" => "kg/m^3",
+        "heat" => "W",
+        _ => "1",
+    }
+}

@@ -1,0 +1,134 @@
+//! Differences of the quantities of interest between runs.
+
+use serde::Serialize;
+
+use super::{Agreement, Source};
+use crate::case::model::{Band, Case, Quantity};
+use crate::report::plot::between;
+use crate::results::quantities::allowance;
+
+/// A difference at its time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Extreme {
+    /// Largest minus smallest value over the runs, in the quantity's unit.
+    pub difference: f64,
+    /// Process time in s.
+    pub at_s: f64,
+}
+
+/// How far the runs differ in one quantity.
+#[derive(Clone, Debug, Serialize)]
+pub struct QuantityDifference {
+    /// Name of the quantity.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Value at the end in each run, in the order of the runs.
+    pub end_values: Vec<f64>,
+    /// The largest difference over all times; the start counts not, nothing is computed yet.
+    pub largest: Extreme,
+    /// The difference at the end.
+    pub end: Extreme,
+    /// Largest minus smallest value over all runs and times.
+    pub span: f64,
+    /// The allowed difference in words, if the case states one.
+    pub band: Option<String>,
+    /// The largest multiple of the allowed difference over all times; 1 and below is inside.
+    pub multiple: Option<f64>,
+    /// Whether the band holds at all times.
+    pub verdict: Agreement,
+}
+
+/// Compares every quantity of the case at the times of the first run that all runs reached.
+pub(super) fn differences(case: &Case, sources: &[Source]) -> Vec<QuantityDifference> {
+    let compared = |quantity| difference(quantity, sources);
+    case.quantities.iter().map(compared).collect()
+}
+
+fn difference(quantity: &Quantity, sources: &[Source]) -> QuantityDifference {
+    let column = format!("quantities.{}", quantity.name);
+    let mut all = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut largest = Extreme {
+        difference: 0.0,
+        at_s: 0.0,
+    };
+    let mut end = largest;
+    let mut end_values = Vec::new();
+    let mut multiple = quantity.agree.map(|_| 0.0);
+    for time in common_times(sources) {
+        let values: Vec<f64> = sources
+            .iter()
+            .map(|source| {
+                let series = &source.series;
+                between(series.column("process_time"), series.column(&column), time)
+            })
+            .collect();
+        let (low, high) = extremes(&values);
+        all = (all.0.min(low), all.1.max(high));
+        end = Extreme {
+            difference: high - low,
+            at_s: time,
+        };
+        // A comparison with NaN is false: a run that has no value is the largest difference.
+        if !(end.difference <= largest.difference) {
+            largest = end;
+        }
+        if let (Some(band), Some(so_far)) = (quantity.agree, multiple.as_mut()) {
+            let allowed = allowance(band, 0.5 * (low + high));
+            let here = if end.difference == 0.0 {
+                0.0
+            } else {
+                end.difference / allowed
+            };
+            if !(here <= *so_far) {
+                *so_far = here;
+            }
+        }
+        end_values = values;
+    }
+    QuantityDifference {
+        name: quantity.name.clone(),
+        unit: quantity.unit.into(),
+        end_values,
+        largest,
+        end,
+        span: all.1 - all.0,
+        band: quantity.agree.map(|band| words(band, quantity.unit)),
+        multiple,
+        verdict: Agreement::of(multiple),
+    }
+}
+
+/// The times of the first run after its start, as far as every run came.
+pub(super) fn common_times(sources: &[Source]) -> Vec<f64> {
+    let column = |source: &Source| source.series.column("process_time").to_vec();
+    let ends = sources
+        .iter()
+        .map(|source| column(source).last().copied().unwrap_or(0.0));
+    let end = ends.fold(f64::INFINITY, f64::min);
+    let times = sources.first().map(column).unwrap_or_default();
+    times
+        .into_iter()
+        .filter(|&time| time > 0.0 && time <= end)
+        .collect()
+}
+
+/// Smallest and largest value; NaN if one is.
+pub(super) fn extremes(values: &[f64]) -> (f64, f64) {
+    if values.iter().any(|value| value.is_nan()) {
+        return (f64::NAN, f64::NAN);
+    }
+    values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| {
+            (low.min(value), high.max(value))
+        })
+}
+
+/// A band as the case writes it.
+pub(super) fn words(band: Band, unit: &str) -> String {
+    match band {
+        Band::Relative(share) => format!("{} %", 100.0 * share),
+        Band::Absolute(distance) => format!("{distance} {unit}"),
+    }
+}
