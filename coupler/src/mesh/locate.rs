@@ -1,0 +1,247 @@
+//! Finding cells by position, for general polyhedra.
+
+use std::f64::consts::TAU;
+
+use calcine_physics::Vec3;
+
+use super::Mesh;
+
+/// Finds the cells of a mesh by position: a regular grid of bins lists the cells whose bounding
+/// boxes reach into each bin; among those the faces decide.
+#[derive(Clone, Debug)]
+pub struct Locator<'m> {
+    mesh: &'m Mesh,
+    boxes: Vec<[Vec3; 2]>,
+    /// How far each face's points lie from its plane, in m; 0 to round-off for plane faces.
+    warp: Vec<f64>,
+    bins: Bins,
+}
+
+impl<'m> Locator<'m> {
+    /// The locator of a mesh.
+    pub fn new(mesh: &'m Mesh) -> Self {
+        let points = &mesh.topology().points;
+        let boxes: Vec<_> = (0..mesh.cells())
+            .map(|cell| {
+                let faces = mesh.faces_of(cell).iter();
+                bounds(
+                    faces
+                        .flat_map(|&face| mesh.face_points(face as usize))
+                        .map(|&point| points[point as usize]),
+                )
+            })
+            .collect();
+        let bins = Bins::new(&boxes);
+        let warp = (0..mesh.faces()).map(|face| warp(mesh, face)).collect();
+        Self {
+            mesh,
+            boxes,
+            warp,
+            bins,
+        }
+    }
+
+    /// How far a face's points lie from its plane, in m; 0 for plane faces (to 1e-9 of their size).
+    pub fn warp(&self, face: usize) -> f64 {
+        self.warp[face]
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &'m Mesh {
+        self.mesh
+    }
+
+    /// The cell that holds a position; `None` outside the mesh. A position on a face belongs to
+    /// one of its cells.
+    pub fn cell_at(&self, position: Vec3) -> Option<usize> {
+        let candidates = self.bins.at(position)?;
+        let mut best: Option<(usize, f64)> = None;
+        for &cell in candidates {
+            let cell = cell as usize;
+            let depth = self.depth(cell, position);
+            if best.is_none_or(|(_, deepest)| depth > deepest) {
+                best = Some((cell, depth));
+            }
+        }
+        let (cell, depth) = best?;
+        let [lower, upper] = self.boxes[cell];
+        // Round-off of coordinates, so that a position on a wall lies inside.
+        if depth >= -1e-12 * (upper - lower).norm() {
+            return Some(cell);
+        }
+        // Cells that are not convex or have warped faces: the faces of the right one surround it.
+        let surrounds = |&&cell: &&u32| self.surrounds(cell as usize, position);
+        candidates.iter().find(surrounds).map(|&cell| cell as usize)
+    }
+
+    /// A distance in m that a ball around a position may have without leaving the cell; negative
+    /// where a plane through a face, moved inwards by what the face is warped, is passed.
+    pub fn depth(&self, cell: usize, position: Vec3) -> f64 {
+        let distance = |&face: &u32| {
+            let face = face as usize;
+            let outward = self.mesh.outward(cell, face);
+            let height = outward.dot(&(self.mesh.face_centre()[face] - position)) / outward.norm();
+            height - self.warp[face]
+        };
+        let faces = self.mesh.faces_of(cell).iter();
+        faces.map(distance).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The cells whose bounding boxes reach into a ball, ascending.
+    pub fn cells_near(&self, centre: Vec3, radius: f64) -> Vec<u32> {
+        let reach = Vec3::repeat(radius);
+        let mut cells = self.bins.between(centre - reach, centre + reach);
+        cells.retain(|&cell| {
+            let [lower, upper] = self.boxes[cell as usize];
+            let nearest = centre.sup(&lower).inf(&upper);
+            (nearest - centre).norm() < radius
+        });
+        cells
+    }
+
+    /// Whether the faces of a cell wind around a position, or around one within round-off of it
+    /// towards the cell's centre.
+    fn surrounds(&self, cell: usize, position: Vec3) -> bool {
+        let inwards = (self.mesh.cell_centre()[cell] - position) * 1e-9;
+        self.winding(cell, position) > 0.5 || self.winding(cell, position + inwards) > 0.5
+    }
+
+    /// How often the faces of a cell wind around a position: 1 inside, 0 outside.
+    fn winding(&self, cell: usize, position: Vec3) -> f64 {
+        let mut angle = 0.0;
+        for &face in self.mesh.faces_of(cell) {
+            let face = face as usize;
+            let points = self.mesh.face_points(face);
+            let at = |i: usize| {
+                self.mesh.topology().points[points[i % points.len()] as usize] - position
+            };
+            let middle = (0..points.len()).map(at).sum::<Vec3>() / points.len() as f64;
+            let sign = if self.mesh.owner()[face] as usize == cell {
+                1.0
+            } else {
+                -1.0
+            };
+            for i in 0..points.len() {
+                angle += sign * solid_angle(middle, at(i), at(i + 1));
+            }
+        }
+        angle / (2.0 * TAU)
+    }
+}
+
+/// Solid angle of a triangle seen from the origin, positive where its corners run clockwise seen
+/// from there (outward normal away from the origin).
+///
+/// tan(Ω/2) = a·(b × c)/(abc + (a·b)c + (b·c)a + (c·a)b). A. Van Oosterom, J. Strackee, IEEE Trans.
+/// Biomed. Eng. 30 (1983) 125, doi:10.1109/TBME.1983.325207.
+fn solid_angle(a: Vec3, b: Vec3, c: Vec3) -> f64 {
+    let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
+    let denominator = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
+    2.0 * a.dot(&b.cross(&c)).atan2(denominator)
+}
+
+/// Greatest distance in m of a face's points from the plane through its centre, 0 below round-off.
+fn warp(mesh: &Mesh, face: usize) -> f64 {
+    let area = mesh.face_area()[face];
+    let normal = area.normalize();
+    let centre = mesh.face_centre()[face];
+    let points = mesh.face_points(face).iter();
+    let distance = |&point: &u32| {
+        let from = mesh.topology().points[point as usize] - centre;
+        normal.dot(&from).abs()
+    };
+    let greatest = points.map(distance).fold(0.0, f64::max);
+    if greatest > 1e-9 * area.norm().sqrt() {
+        greatest
+    } else {
+        0.0
+    }
+}
+
+fn bounds(points: impl Iterator<Item = Vec3>) -> [Vec3; 2] {
+    let infinity = Vec3::repeat(f64::INFINITY);
+    points.fold([infinity, -infinity], |[lower, upper], point| {
+        [lower.inf(&point), upper.sup(&point)]
+    })
+}
+
+/// A regular grid over the mesh, about as many bins as cells.
+#[derive(Clone, Debug)]
+struct Bins {
+    lower: Vec3,
+    upper: Vec3,
+    count: [usize; 3],
+    offsets: Vec<usize>,
+    cells: Vec<u32>,
+}
+
+impl Bins {
+    fn new(boxes: &[[Vec3; 2]]) -> Self {
+        let [lower, upper] = bounds(boxes.iter().flatten().copied());
+        let size = upper - lower;
+        let edge = (size.product() / boxes.len() as f64).cbrt();
+        let along = |axis: usize| ((size[axis] / edge).ceil() as usize).clamp(1, boxes.len());
+        let mut bins = Self {
+            lower,
+            upper,
+            count: [along(0), along(1), along(2)],
+            offsets: Vec::new(),
+            cells: Vec::new(),
+        };
+        let mut lists = vec![Vec::new(); bins.count.iter().product()];
+        for (cell, &[low, high]) in boxes.iter().enumerate() {
+            for bin in bins.range(low, high) {
+                lists[bin].push(cell as u32);
+            }
+        }
+        bins.offsets.push(0);
+        for list in lists {
+            bins.cells.extend(list);
+            bins.offsets.push(bins.cells.len());
+        }
+        bins
+    }
+
+    /// The bin's index along an axis, clamped into the grid.
+    fn index(&self, axis: usize, coordinate: f64) -> usize {
+        let share = (coordinate - self.lower[axis]) / (self.upper[axis] - self.lower[axis]);
+        // A float that is negative or NaN becomes 0.
+        ((share * self.count[axis] as f64) as usize).min(self.count[axis] - 1)
+    }
+
+    fn range(&self, low: Vec3, high: Vec3) -> impl Iterator<Item = usize> + use<> {
+        let span = |axis: usize| self.index(axis, low[axis])..=self.index(axis, high[axis]);
+        let [nx, ny, _] = self.count;
+        let (x, y) = (span(0), span(1));
+        span(2).flat_map(move |k| {
+            let x = x.clone();
+            y.clone()
+                .flat_map(move |j| x.clone().map(move |i| i + nx * (j + ny * k)))
+        })
+    }
+
+    /// Cells that may hold a position; `None` beyond the mesh (and for NaN).
+    fn at(&self, position: Vec3) -> Option<&[u32]> {
+        let margin = 1e-12 * (self.upper - self.lower).norm();
+        let inside = |axis: usize| {
+            position[axis] >= self.lower[axis] - margin
+                && position[axis] <= self.upper[axis] + margin
+        };
+        let bin = (0..3)
+            .all(inside)
+            .then(|| self.range(position, position).next())??;
+        Some(&self.cells[self.offsets[bin]..self.offsets[bin + 1]])
+    }
+
+    /// Cells of all bins of a box, ascending, each once.
+    fn between(&self, low: Vec3, high: Vec3) -> Vec<u32> {
+        let mut cells: Vec<u32> = self
+            .range(low, high)
+            .flat_map(|bin| &self.cells[self.offsets[bin]..self.offsets[bin + 1]])
+            .copied()
+            .collect();
+        cells.sort_unstable();
+        cells.dedup();
+        cells
+    }
+}
