@@ -1,1 +1,26 @@
-//! Placeholder.
+//! The wire between Calcine's coordinator and external solvers: records, transports, the C ABI.
+//!
+//! A link is one rank's connection. Both ends speak in messages: a [`Header`] and either columns, laid
+//! out by the [`Catalogue`] that the handshake fixed, or a text. The coordinator asks, the solver
+//! answers; only `Commit` has no answer.
+
+pub mod catalogue;
+pub mod hello;
+pub mod link;
+pub mod record;
+pub mod run;
+pub mod shared_memory;
+pub mod transport;
+
+#[allow(unsafe_code)]
+mod c_abi;
+#[allow(unsafe_code)]
+mod words;
+
+pub use catalogue::{Catalogue, Field, Record};
+pub use hello::Hello;
+pub use link::Link;
+pub use record::{Header, Kind};
+pub use run::{LinkAddress, Run};
+pub use shared_memory::SharedMemory;
+pub use transport::{Transport, WireError};

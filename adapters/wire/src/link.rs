@@ -1,0 +1,264 @@
+//! One rank's link: messages with columns or texts over any transport, checked on arrival.
+
+use std::time::{Duration, Instant};
+
+use crate::catalogue::{Catalogue, Record};
+use crate::hello::Hello;
+use crate::record::{Header, Kind, MAGIC, VERSION};
+use crate::transport::{Transport, WireError};
+use crate::words;
+
+/// One end of one rank's link.
+pub struct Link {
+    transport: Box<dyn Transport>,
+    run: u64,
+    rank: u32,
+    catalogue: Catalogue,
+    /// Header of the reserved message, and which of its columns were asked for.
+    reserved: Option<(Header, Vec<bool>)>,
+}
+
+impl Link {
+    /// A link without a catalogue; the handshake brings it.
+    pub fn new(transport: Box<dyn Transport>, run: u64, rank: u32) -> Self {
+        Self {
+            transport,
+            run,
+            rank,
+            catalogue: Catalogue::default(),
+            reserved: None,
+        }
+    }
+
+    /// The solver's rank.
+    pub fn rank(&self) -> u32 {
+        self.rank
+    }
+
+    /// Solver's side of the handshake: introduces itself, waits, compares.
+    pub fn greet(&mut self, ours: &Hello, patience: Duration) -> Result<Hello, WireError> {
+        self.send_text(Header::of(Kind::Hello), &ours.to_text())?;
+        let begun = Instant::now();
+        loop {
+            let left = patience.saturating_sub(begun.elapsed());
+            if let Some(header) = self.receive(left)? {
+                self.expect(&header, Kind::Hello, "the coordinator's introduction")?;
+                let theirs = Hello::from_text(self.text()?)?;
+                ours.agree(&theirs)?;
+                self.catalogue = ours.catalogue.clone();
+                return Ok(theirs);
+            }
+            if left.is_zero() {
+                return Err(WireError::Silent {
+                    seconds: patience.as_secs_f64(),
+                    what: "the coordinator's introduction",
+                });
+            }
+        }
+    }
+
+    /// Coordinator's side of the handshake, once a message arrived: compares, answers, and gives the
+    /// solver's introduction. A mismatch is told to the solver too.
+    pub fn answer_greeting(&mut self, ours: &Hello) -> Result<Hello, WireError> {
+        let greeting = self.read_greeting(ours);
+        match &greeting {
+            Ok(_) => self.send_text(Header::of(Kind::Hello), &ours.to_text())?,
+            Err(error) => self.send_text(Header::of(Kind::Failed), &error.to_string())?,
+        }
+        self.catalogue = ours.catalogue.clone();
+        greeting
+    }
+
+    fn read_greeting(&self, ours: &Hello) -> Result<Hello, WireError> {
+        let header = self.header()?;
+        self.expect(&header, Kind::Hello, "the solver's introduction")?;
+        let theirs = Hello::from_text(self.text()?)?;
+        ours.agree(&theirs)?;
+        Ok(theirs)
+    }
+
+    fn expect(&self, header: &Header, kind: Kind, expected: &'static str) -> Result<(), WireError> {
+        if header.kind() == Some(kind) {
+            return Ok(());
+        }
+        Err(WireError::Unexpected {
+            found: header.kind,
+            expected,
+        })
+    }
+
+    /// Sends a message without columns or text.
+    pub fn send_plain(&mut self, header: Header) -> Result<(), WireError> {
+        self.send_text(header, "")
+    }
+
+    /// Sends a text.
+    pub fn send_text(&mut self, header: Header, text: &str) -> Result<(), WireError> {
+        self.reserved = None;
+        let header = self.addressed(header, 0, text.len() as u64);
+        let payload = self.transport.loan(header, text.len().div_ceil(8))?;
+        words::bytes_mut(payload)[..text.len()].copy_from_slice(text.as_bytes());
+        self.transport.send()
+    }
+
+    /// Reserves a message with columns for `count` items; the header's kind decides which.
+    pub fn loan(&mut self, header: Header, count: usize) -> Result<(), WireError> {
+        let columns = header.kind().and_then(Record::of);
+        let words = match columns {
+            None => 0,
+            Some(record) => self
+                .catalogue
+                .words(record, count)
+                .filter(|&words| words < usize::MAX / 16)
+                .ok_or(WireError::Order {
+                    what: "that many cells or particles do not fit the memory",
+                })?,
+        };
+        let fields = columns.map_or(0, |record| self.catalogue.of(record).count());
+        let header = self.addressed(header, count as u64, 8 * words as u64);
+        self.reserved = None;
+        self.transport.loan(header, words)?;
+        self.reserved = Some((header, vec![false; fields]));
+        Ok(())
+    }
+
+    /// A column of the reserved message, to be filled in place.
+    pub fn column_words_mut(&mut self, name: &str) -> Result<&mut [u64], WireError> {
+        let order = || WireError::Order {
+            what: "there is no reserved message with columns",
+        };
+        let (header, filled) = self.reserved.as_mut().ok_or_else(order)?;
+        let record = header.kind().and_then(Record::of).ok_or_else(order)?;
+        let (index, range) = self.catalogue.column(record, name, header.count as usize)?;
+        filled[index] = true;
+        let payload = self.transport.loaned().ok_or_else(order)?;
+        payload.get_mut(range).ok_or_else(order)
+    }
+
+    /// The same, as doubles.
+    pub fn column_mut(&mut self, name: &str) -> Result<&mut [f64], WireError> {
+        Ok(words::doubles_mut(self.column_words_mut(name)?))
+    }
+
+    /// Sends the reserved message, once every column of it was asked for.
+    pub fn send(&mut self) -> Result<(), WireError> {
+        let (header, filled) = self.reserved.take().ok_or(WireError::Order {
+            what: "there is no reserved message to send",
+        })?;
+        if let Some(record) = header.kind().and_then(Record::of) {
+            let mut fields = self.catalogue.of(record).zip(&filled);
+            if let Some((field, _)) = fields.find(|(_, filled)| !**filled) {
+                return Err(WireError::Unfilled {
+                    name: field.name.clone(),
+                });
+            }
+        }
+        self.transport.send()
+    }
+
+    /// Waits at most `patience` for the next message and checks it. What the other end reports as
+    /// its failure is an error here.
+    pub fn receive(&mut self, patience: Duration) -> Result<Option<Header>, WireError> {
+        if !self.transport.receive(patience)? {
+            return Ok(None);
+        }
+        let header = self.header()?;
+        self.check(&header)?;
+        if header.kind() == Some(Kind::Failed) {
+            return Err(WireError::Failed {
+                text: self.text()?.to_owned(),
+            });
+        }
+        Ok(Some(header))
+    }
+
+    /// Header of the message received last.
+    pub fn header(&self) -> Result<Header, WireError> {
+        let message = self.transport.received().ok_or(NOTHING)?;
+        Ok(*message.0)
+    }
+
+    /// Payload of the message received last.
+    pub fn payload(&self) -> Result<&[u64], WireError> {
+        Ok(self.transport.received().ok_or(NOTHING)?.1)
+    }
+
+    /// A column of the message received last, in place.
+    pub fn column_words(&self, name: &str) -> Result<&[u64], WireError> {
+        let (header, payload) = self.transport.received().ok_or(NOTHING)?;
+        let record = header.kind().and_then(Record::of).ok_or(NOTHING)?;
+        let (_, range) = self.catalogue.column(record, name, header.count as usize)?;
+        payload.get(range).ok_or(NOTHING)
+    }
+
+    /// The same, as doubles.
+    pub fn column(&self, name: &str) -> Result<&[f64], WireError> {
+        Ok(words::doubles(self.column_words(name)?))
+    }
+
+    /// The text of the message received last.
+    pub fn text(&self) -> Result<&str, WireError> {
+        let (header, payload) = self.transport.received().ok_or(NOTHING)?;
+        let bytes = words::bytes(payload, header.bytes as usize);
+        std::str::from_utf8(bytes).map_err(|error| WireError::Text {
+            detail: error.to_string(),
+        })
+    }
+
+    fn addressed(&self, header: Header, count: u64, bytes: u64) -> Header {
+        Header {
+            magic: MAGIC,
+            version: VERSION,
+            run: self.run,
+            rank: self.rank,
+            count,
+            bytes,
+            ..header
+        }
+    }
+
+    fn check(&self, header: &Header) -> Result<(), WireError> {
+        let same = |what, found, expected| {
+            if found == expected {
+                return Ok(());
+            }
+            Err(WireError::Foreign {
+                what,
+                found,
+                expected,
+            })
+        };
+        same("mark", header.magic, MAGIC)?;
+        same("version", header.version.into(), VERSION.into())?;
+        same("run", header.run, self.run)?;
+        same("rank", header.rank.into(), self.rank.into())?;
+        let held = 8 * self.payload()?.len() as u64;
+        let kind = header.kind().ok_or(WireError::Unexpected {
+            found: header.kind,
+            expected: "a known kind",
+        })?;
+        match Record::of(kind) {
+            None => same(
+                "length (at most held)",
+                header.bytes.min(held),
+                header.bytes,
+            ),
+            Some(record) => {
+                let words = usize::try_from(header.count)
+                    .ok()
+                    .and_then(|count| self.catalogue.words(record, count));
+                let bytes = words.map_or(u64::MAX, |words| 8 * words as u64);
+                same("length", header.bytes, bytes)?;
+                same(
+                    "length (at most held)",
+                    header.bytes.min(held),
+                    header.bytes,
+                )
+            }
+        }
+    }
+}
+
+const NOTHING: WireError = WireError::Order {
+    what: "no message was received that has this",
+};

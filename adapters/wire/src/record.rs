@@ -1,0 +1,119 @@
+//! The record that stands before every payload, the same bytes in Rust, C and C++.
+
+use iceoryx2::prelude::ZeroCopySend;
+
+/// Marks a header of this wire: "calcine" and a one.
+pub const MAGIC: u64 = u64::from_le_bytes(*b"calcine\x01");
+/// Version of the protocol; both ends must have the same.
+pub const VERSION: u32 = 1;
+
+/// What a message is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Kind {
+    /// Who is there, with versions, hashes and catalogue (text); both ways, first.
+    Hello = 1,
+    /// The solver's state at the start of the run (columns).
+    State = 2,
+    /// Start an attempt (columns): the exchange of the gas, or the push on particles.
+    Start = 3,
+    /// The attempt is finished (columns): what was received, and the state.
+    Finished = 4,
+    /// Take the last attempt as the start of the next; the only request without an answer.
+    Commit = 5,
+    /// Write a checkpoint into a directory (text) and re-initialise from it.
+    Checkpoint = 6,
+    /// The checkpoint is written; the state after re-initialisation (columns).
+    Checkpointed = 7,
+    /// The sender cannot go on; why, in words (text).
+    Failed = 8,
+    /// The run ends; asked by the coordinator, answered by the solver.
+    Bye = 9,
+}
+
+impl Kind {
+    /// All kinds.
+    pub const ALL: [Kind; 9] = [
+        Kind::Hello,
+        Kind::State,
+        Kind::Start,
+        Kind::Finished,
+        Kind::Commit,
+        Kind::Checkpoint,
+        Kind::Checkpointed,
+        Kind::Failed,
+        Kind::Bye,
+    ];
+
+    /// The kind of a number on the wire.
+    pub fn from_number(number: u32) -> Option<Kind> {
+        Self::ALL.into_iter().find(|&kind| kind as u32 == number)
+    }
+}
+
+/// What stands before the columns of a message. Times in ticks of 1 ps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ZeroCopySend)]
+#[repr(C)]
+pub struct Header {
+    /// [`MAGIC`].
+    pub magic: u64,
+    /// [`VERSION`].
+    pub version: u32,
+    /// A [`Kind`] as its number.
+    pub kind: u32,
+    /// The run that the message belongs to.
+    pub run: u64,
+    /// The solver's rank.
+    pub rank: u32,
+    /// Zero for the first attempt of a window.
+    pub attempt: u32,
+    /// Number of windows committed before this one.
+    pub window: u64,
+    /// Motion clock at the start of the window.
+    pub start_motion: i64,
+    /// Process clock at the start of the window.
+    pub start_process: i64,
+    /// How far the motion clock moves.
+    pub span_motion: i64,
+    /// How far the process clock moves.
+    pub span_process: i64,
+    /// Span over which the gas stores mass, enthalpy and species.
+    pub storage_span: i64,
+    /// Cells or particles in the columns.
+    pub count: u64,
+    /// Bytes of the payload: columns, or a text in UTF-8.
+    pub bytes: u64,
+}
+
+// The C header states the same struct; these hold it to the same layout.
+const _: () = assert!(size_of::<Header>() == 96);
+const _: () = assert!(align_of::<Header>() == 8);
+const _: () = assert!(std::mem::offset_of!(Header, window) == 32);
+const _: () = assert!(std::mem::offset_of!(Header, count) == 80);
+
+impl Header {
+    /// A header of a kind, everything else zero; a link fills in run, rank and sizes.
+    pub fn of(kind: Kind) -> Self {
+        Self {
+            magic: MAGIC,
+            version: VERSION,
+            kind: kind as u32,
+            ..Self::default()
+        }
+    }
+
+    /// The same window, attempt and clocks, as another kind.
+    pub fn answer(&self, kind: Kind) -> Self {
+        Self {
+            kind: kind as u32,
+            count: 0,
+            bytes: 0,
+            ..*self
+        }
+    }
+
+    /// The kind, if the number is one.
+    pub fn kind(&self) -> Option<Kind> {
+        Kind::from_number(self.kind)
+    }
+}

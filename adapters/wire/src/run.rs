@@ -1,0 +1,307 @@
+//! The private place of a run in shared memory and on disk: names, the address that solvers get, and
+//! the removal of everything, also what dead coordinators left.
+
+use std::fs::{self, DirBuilder, File, OpenOptions};
+use std::io::ErrorKind;
+use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use rustix::fs::{FlockOperation, flock};
+
+use crate::transport::WireError;
+
+/// The variable that tells a solver which link to open.
+pub const VARIABLE: &str = "CALCINE_LINK";
+/// Where Linux keeps shared memory.
+const MEMORY: &str = "/dev/shm";
+const NAME: &str = "calcine-";
+/// A socket's path ends at 108 bytes (unix(7)); the wire appends the prefix and about 46 more.
+const LONGEST: usize = 60;
+
+static SERIAL: AtomicU32 = AtomicU32::new(0);
+
+/// Where a run keeps its files: what both ends of a link must agree on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LinkAddress {
+    /// Name of the run, `calcine-PID-STARTED-SERIAL`; begins the names of its shared memory.
+    pub name: String,
+    /// Which solver, for example "gas".
+    pub role: String,
+    /// Directory of the wire's sockets and service files.
+    pub root: PathBuf,
+}
+
+impl LinkAddress {
+    /// The text that the launcher puts into [`VARIABLE`].
+    pub fn to_text(&self) -> String {
+        let root = self.root.display();
+        format!("1 {} {} {root}", self.name, self.role)
+    }
+
+    /// Reads what [`LinkAddress::to_text`] wrote.
+    pub fn from_text(text: &str) -> Result<Self, WireError> {
+        let refuse = || WireError::Address {
+            detail: format!("holds `{text}`, which is no address of a link"),
+        };
+        let mut parts = text.splitn(4, ' ');
+        let mut next = || {
+            parts
+                .next()
+                .filter(|part| !part.is_empty())
+                .ok_or_else(refuse)
+        };
+        if next()? != "1" {
+            return Err(refuse());
+        }
+        let (name, role, root) = (
+            next()?.to_owned(),
+            next()?.to_owned(),
+            PathBuf::from(next()?),
+        );
+        // Files are removed by this name and root: nothing but a run's own may pass.
+        let own = |name: &str| owner_of(name).is_some() && !name.contains('/');
+        if !own(&name) || root.file_name().and_then(|last| last.to_str()) != Some(&name) {
+            return Err(refuse());
+        }
+        Ok(Self { name, role, root })
+    }
+
+    /// The address in this process' environment.
+    pub fn from_environment() -> Result<Self, WireError> {
+        let text = std::env::var(VARIABLE).map_err(|_| WireError::Address {
+            detail: "is not set".into(),
+        })?;
+        Self::from_text(&text)
+    }
+
+    /// The coordinator's process id and the start time that tells it from a later process.
+    pub fn coordinator(&self) -> Result<(u32, u64), WireError> {
+        owner_of(&self.name).ok_or_else(|| WireError::Address {
+            detail: format!("names the run `{}`, which has no process id", self.name),
+        })
+    }
+
+    /// The run's number on the wire: the FNV-1a hash of its name.
+    pub fn number(&self) -> u64 {
+        let mix = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        self.name.bytes().fold(0xcbf2_9ce4_8422_2325, mix)
+    }
+
+    /// Removes every file of the run.
+    pub fn remove_files(&self) {
+        remove_files(&self.name, &self.root);
+    }
+}
+
+/// A run of this process; its files go when it is dropped.
+#[derive(Debug)]
+pub struct Run {
+    name: String,
+    root: PathBuf,
+    /// Locked while this process lives.
+    _alive: File,
+}
+
+impl Run {
+    /// Makes a private place for a run, after removing what dead coordinators of this user left.
+    pub fn create() -> Result<Self, WireError> {
+        remove_stale(&std::env::temp_dir());
+        let pid = std::process::id();
+        let started = started(pid).unwrap_or_default();
+        let serial = SERIAL.fetch_add(1, Ordering::Relaxed);
+        let name = format!("{NAME}{pid}-{started:x}-{serial}");
+        let root = root_of(&name)?;
+        let alive_path = Path::new(MEMORY).join(format!("{name}_alive"));
+        let alive = OpenOptions::new()
+            .write(true)
+            .create(true)
+            .truncate(true)
+            .mode(0o600)
+            .open(&alive_path)
+            .map_err(|source| WireError::File {
+                path: alive_path.clone(),
+                source,
+            })?;
+        let run = Self {
+            name,
+            root,
+            _alive: alive,
+        };
+        flock(&run._alive, FlockOperation::NonBlockingLockExclusive).map_err(|error| {
+            WireError::File {
+                path: alive_path,
+                source: error.into(),
+            }
+        })?;
+        DirBuilder::new()
+            .mode(0o700)
+            .create(&run.root)
+            .map_err(|source| WireError::File {
+                path: run.root.clone(),
+                source,
+            })?;
+        Ok(run)
+    }
+
+    /// The address of a role's links.
+    pub fn address(&self, role: &str) -> LinkAddress {
+        LinkAddress {
+            name: self.name.clone(),
+            role: role.into(),
+            root: self.root.clone(),
+        }
+    }
+}
+
+impl Drop for Run {
+    fn drop(&mut self) {
+        remove_files(&self.name, &self.root);
+    }
+}
+
+fn root_of(name: &str) -> Result<PathBuf, WireError> {
+    let path = std::env::temp_dir().join(name);
+    // The prefix, name and an underscore, is appended to the root once more.
+    let length = path.as_os_str().len() + name.len() + 1;
+    if length <= LONGEST + NAME.len() {
+        return Ok(path);
+    }
+    Err(WireError::LongPath {
+        path,
+        length,
+        limit: LONGEST + NAME.len(),
+    })
+}
+
+/// Process id and start time in a run's name.
+fn owner_of(name: &str) -> Option<(u32, u64)> {
+    let mut parts = name.strip_prefix(NAME)?.split('-');
+    let pid = parts.next()?.parse().ok()?;
+    let started = u64::from_str_radix(parts.next()?, 16).ok()?;
+    parts.next()?.parse::<u32>().ok()?;
+    parts.next().is_none().then_some((pid, started))
+}
+
+/// When a process started, in clock ticks since boot (field 22 of /proc/PID/stat).
+pub(crate) fn started(pid: u32) -> Option<u64> {
+    let text = fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
+    let after_name = text.rsplit_once(')')?.1;
+    after_name.split_ascii_whitespace().nth(19)?.parse().ok()
+}
+
+/// True where the coordinator of a run lives: its process, or its lock, which also holds across
+/// containers that share the memory but not the process ids.
+fn lives(name: &str) -> bool {
+    let Some((pid, since)) = owner_of(name) else {
+        return true;
+    };
+    if started(pid) == Some(since) {
+        return true;
+    }
+    let Ok(lock) = File::open(Path::new(MEMORY).join(format!("{name}_alive"))) else {
+        return false;
+    };
+    flock(&lock, FlockOperation::NonBlockingLockShared).is_err()
+}
+
+/// Removes the files of runs whose coordinator is dead, of this user only.
+fn remove_stale(scratch: &Path) {
+    let user = rustix::process::geteuid().as_raw();
+    let mut names = Vec::new();
+    for directory in [Path::new(MEMORY), scratch] {
+        for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
+            let file = entry.file_name();
+            let name = file.to_str().and_then(|name| name.split('_').next());
+            let own = entry.metadata().is_ok_and(|data| data.uid() == user);
+            if let Some(name) = name.filter(|name| own && owner_of(name).is_some()) {
+                names.push(name.to_owned());
+            }
+        }
+    }
+    names.sort();
+    names.dedup();
+    for name in names.iter().filter(|name| !lives(name)) {
+        remove_files(name, &scratch.join(name));
+    }
+}
+
+/// Removes a run's shared memory and its root; what cannot be removed is told on stderr.
+fn remove_files(name: &str, root: &Path) {
+    let prefix = format!("{name}_");
+    let tell = |path: &Path, error: std::io::Error| {
+        if error.kind() != ErrorKind::NotFound {
+            eprintln!("{} could not be removed: {error}", path.display());
+        }
+    };
+    for entry in fs::read_dir(MEMORY).into_iter().flatten().flatten() {
+        let own = entry
+            .file_name()
+            .to_str()
+            .is_some_and(|name| name.starts_with(&prefix));
+        if own && let Err(error) = fs::remove_file(entry.path()) {
+            tell(&entry.path(), error);
+        }
+    }
+    if let Err(error) = fs::remove_dir_all(root) {
+        tell(root, error);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn files_of(name: &str) -> usize {
+        fs::read_dir(MEMORY)
+            .unwrap()
+            .flatten()
+            .filter(|entry| entry.file_name().to_str().unwrap().starts_with(name))
+            .count()
+    }
+
+    #[test]
+    fn an_address_survives_its_text_and_names_this_process() {
+        let run = Run::create().unwrap();
+        let address = run.address("gas");
+        assert_eq!(LinkAddress::from_text(&address.to_text()).unwrap(), address);
+        assert_eq!(address.coordinator().unwrap().0, std::process::id());
+    }
+
+    #[test]
+    fn a_run_leaves_nothing_behind() {
+        let run = Run::create().unwrap();
+        let address = run.address("gas");
+        assert_eq!(files_of(&address.name), 1);
+        assert!(address.root.is_dir());
+        drop(run);
+        assert_eq!(files_of(&address.name), 0);
+        assert!(!address.root.exists());
+    }
+
+    #[test]
+    fn a_dead_coordinators_files_go_and_a_living_ones_stay() {
+        let living = Run::create().unwrap();
+        // Process 1 lives, but did not start at tick 2^60.
+        let dead = format!("{NAME}1-1000000000000000-7");
+        fs::write(Path::new(MEMORY).join(format!("{dead}_x.data")), b"x").unwrap();
+        fs::create_dir(std::env::temp_dir().join(&dead)).unwrap();
+        let next = Run::create().unwrap();
+        assert_eq!(files_of(&dead), 0);
+        assert!(!std::env::temp_dir().join(&dead).exists());
+        assert!(living.root.is_dir() && next.root.is_dir());
+    }
+
+    #[test]
+    fn an_address_that_could_remove_other_files_is_refused() {
+        for text in [
+            "",
+            "2 calcine-1-1-0 gas /tmp/calcine-1-1-0",
+            "1 calcine-1-1-0 gas /home/user",
+            "1 other gas /tmp/other",
+            "1 calcine-1-1-0/.. gas /tmp/calcine-1-1-0/..",
+        ] {
+            assert!(LinkAddress::from_text(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,302 @@
+//! The shared-memory transport: iceoryx2, one pair of publish-subscribe services and one pair of event
+//! services per link, in a configuration that is private to the run.
+
+use std::os::fd::OwnedFd;
+use std::os::unix::ffi::OsStrExt;
+use std::time::{Duration, Instant};
+
+use iceoryx2::port::BackpressureAction;
+use iceoryx2::port::listener::Listener;
+use iceoryx2::port::notifier::Notifier;
+use iceoryx2::port::publisher::Publisher;
+use iceoryx2::port::subscriber::Subscriber;
+use iceoryx2::prelude::*;
+use iceoryx2::sample::Sample;
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::process::{Pid, PidfdFlags, pidfd_open};
+
+use crate::record::Header;
+use crate::run::{self, LinkAddress};
+use crate::transport::{Transport, WireError};
+use crate::words::{self, Loan};
+
+type Ipc = ipc_threadsafe::Service;
+
+/// Messages that may wait unread: a commit, and the start that follows it.
+const BUFFER: usize = 2;
+/// Slots of a segment: waiting, read, being written, and one that iceoryx2 adds.
+const SLOTS: u64 = BUFFER as u64 + 3;
+/// How long a full buffer may stay full before sending fails.
+const FULL_FOR: Duration = Duration::from_millis(500);
+/// How long a solver waits before it looks at the coordinator again.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Which end of a link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Asks.
+    Coordinator,
+    /// Answers, and watches the coordinator's life.
+    Solver,
+}
+
+/// The process at the other end, as a solver sees it.
+#[derive(Debug)]
+struct Peer {
+    pid: u32,
+    pidfd: Option<OwnedFd>,
+}
+
+/// Ports of one end; dropped in this order, the node last.
+struct Ports {
+    loan: Option<Loan>,
+    words: usize,
+    received: Option<Sample<Ipc, [u64], Header>>,
+    publisher: Publisher<Ipc, [u64], Header>,
+    subscriber: Subscriber<Ipc, [u64], Header>,
+    notifier: Notifier<Ipc>,
+    listener: Listener<Ipc>,
+    _node: Node<Ipc>,
+}
+
+/// One end of a link in shared memory.
+pub struct SharedMemory {
+    ports: Option<Ports>,
+    address: LinkAddress,
+    peer: Option<Peer>,
+}
+
+/// An error of the layer below as ours; its errors are plain enums that only print.
+fn failed<E: std::fmt::Debug>(doing: &'static str) -> impl FnOnce(E) -> WireError {
+    move |error| WireError::SharedMemory {
+        doing,
+        detail: format!("{error:?}"),
+    }
+}
+
+impl SharedMemory {
+    /// Opens one end of a rank's link. The coordinator opens its end before the solver starts.
+    pub fn open(address: &LinkAddress, rank: u32, end: End) -> Result<Self, WireError> {
+        set_log_level(LogLevel::Fatal);
+        let peer = match end {
+            End::Coordinator => None,
+            End::Solver => Some(watch(address)?),
+        };
+        let prefix = format!("{}_", address.name);
+        let mut config = Config::default();
+        config.global.prefix =
+            FileName::new(prefix.as_bytes()).map_err(failed("naming the run"))?;
+        let root = Path::new(address.root.as_os_str().as_bytes())
+            .map_err(failed("naming the run's directory"))?;
+        config.global.set_root_path(&root);
+        let node = NodeBuilder::new()
+            .config(&config)
+            .signal_handling_mode(SignalHandlingMode::Disabled)
+            .create::<Ipc>()
+            .map_err(failed("joining the run"))?;
+        let ports = Ports::open(node, address, rank, end)?;
+        Ok(Self {
+            ports: Some(ports),
+            address: address.clone(),
+            peer,
+        })
+    }
+
+    fn ports(&mut self) -> Result<&mut Ports, WireError> {
+        let pid = self.peer.as_ref().map_or(0, |peer| peer.pid);
+        self.ports.as_mut().ok_or(WireError::PeerDead { pid })
+    }
+
+    /// Leaves the run of a dead coordinator and removes its files.
+    fn bury(&mut self, pid: u32) -> WireError {
+        self.ports = None;
+        self.address.remove_files();
+        WireError::PeerDead { pid }
+    }
+
+    fn dead_peer(&self) -> Option<u32> {
+        let peer = self.peer.as_ref()?;
+        let Some(pidfd) = &peer.pidfd else {
+            return Some(peer.pid);
+        };
+        let now = Timespec {
+            tv_sec: 0,
+            tv_nsec: 0,
+        };
+        let mut fds = [PollFd::new(pidfd, PollFlags::IN)];
+        matches!(poll(&mut fds, Some(&now)), Ok(ready) if ready > 0).then_some(peer.pid)
+    }
+}
+
+/// Begins to watch the coordinator; without a pidfd it is already dead.
+fn watch(address: &LinkAddress) -> Result<Peer, WireError> {
+    let (pid, since) = address.coordinator()?;
+    let raw = i32::try_from(pid).ok().and_then(Pid::from_raw);
+    let pidfd = raw.and_then(|raw| pidfd_open(raw, PidfdFlags::empty()).ok());
+    // The number may belong to a later process by now.
+    let pidfd = pidfd.filter(|_| run::started(pid) == Some(since));
+    Ok(Peer { pid, pidfd })
+}
+
+impl Ports {
+    fn open(
+        node: Node<Ipc>,
+        address: &LinkAddress,
+        rank: u32,
+        end: End,
+    ) -> Result<Self, WireError> {
+        let name = |direction: &str| {
+            ServiceName::new(&format!("{}-{rank}-{direction}", address.role))
+                .map_err(failed("naming a link"))
+        };
+        let (ours, theirs) = match end {
+            End::Coordinator => (name("down")?, name("up")?),
+            End::Solver => (name("up")?, name("down")?),
+        };
+        let messages = |name: &ServiceName| {
+            node.service_builder(name)
+                .publish_subscribe::<[u64]>()
+                .user_header::<Header>()
+                .max_publishers(1)
+                .max_subscribers(1)
+                .subscriber_max_buffer_size(BUFFER)
+                .subscriber_max_borrowed_samples(1)
+                .history_size(0)
+                .enable_safe_overflow(false)
+                .payload_alignment(Alignment::ALIGN_64)
+                .open_or_create()
+                .map_err(failed("opening a link"))
+        };
+        let events = |name: &ServiceName| {
+            node.service_builder(name)
+                .event()
+                .max_notifiers(1)
+                .max_listeners(1)
+                .open_or_create()
+                .map_err(failed("opening a link's events"))
+        };
+        let subscriber = messages(&theirs)?
+            .subscriber_builder()
+            .create()
+            .map_err(failed("connecting to a link"))?;
+        let listener = events(&theirs)?
+            .listener_builder()
+            .create()
+            .map_err(failed("listening to a link"))?;
+        let publisher = messages(&ours)?
+            .publisher_builder()
+            .initial_max_slice_len(1024)
+            .max_loaned_samples(1)
+            .allocation_strategy(AllocationStrategy::PowerOfTwo)
+            .set_backpressure_handler(|info| {
+                if info.elapsed_time > FULL_FOR {
+                    return BackpressureAction::DiscardDataAndFail;
+                }
+                std::thread::sleep(Duration::from_micros(50));
+                BackpressureAction::Retry
+            })
+            .create()
+            .map_err(failed("writing to a link"))?;
+        let notifier = events(&ours)?
+            .notifier_builder()
+            .create()
+            .map_err(failed("notifying a link"))?;
+        Ok(Self {
+            loan: None,
+            words: publisher.initial_max_slice_len(),
+            received: None,
+            publisher,
+            subscriber,
+            notifier,
+            listener,
+            _node: node,
+        })
+    }
+
+    /// A segment larger than the memory is granted and then kills the process by SIGBUS when it is
+    /// filled, so the room for a larger one is checked before it is asked for.
+    fn make_room(&mut self, words: usize) -> Result<(), WireError> {
+        if words <= self.words {
+            return Ok(());
+        }
+        let segment = words.next_power_of_two();
+        let needed = SLOTS * 8 * segment as u64;
+        let memory = rustix::fs::statvfs("/dev/shm").map_err(failed("measuring /dev/shm"))?;
+        let free = memory.f_bavail * memory.f_frsize;
+        if free < needed {
+            return Err(WireError::SharedMemoryFull { free, needed });
+        }
+        self.words = segment;
+        Ok(())
+    }
+}
+
+impl Transport for SharedMemory {
+    fn loan(&mut self, header: Header, words: usize) -> Result<&mut [u64], WireError> {
+        let ports = self.ports()?;
+        ports.loan = None;
+        ports.make_room(words)?;
+        // An empty slice has no place of its own in a segment.
+        let mut loan = ports
+            .publisher
+            .loan_slice_uninit(words.max(1))
+            .map_err(failed("reserving a message"))?;
+        *loan.user_header_mut() = header;
+        Ok(words::mapped(ports.loan.insert(loan).payload_mut()))
+    }
+
+    fn loaned(&mut self) -> Option<&mut [u64]> {
+        let loan = self.ports.as_mut()?.loan.as_mut()?;
+        Some(words::mapped(loan.payload_mut()))
+    }
+
+    fn send(&mut self) -> Result<(), WireError> {
+        let ports = self.ports()?;
+        let loan = ports.loan.take().ok_or(WireError::Order {
+            what: "there is no reserved message to send",
+        })?;
+        let receivers = words::filled(loan)
+            .send()
+            .map_err(failed("sending a message"))?;
+        if receivers != 1 {
+            return Err(WireError::NotDelivered { receivers });
+        }
+        ports
+            .notifier
+            .notify()
+            .map_err(failed("waking the other end"))?;
+        Ok(())
+    }
+
+    fn receive(&mut self, patience: Duration) -> Result<bool, WireError> {
+        let begun = Instant::now();
+        // Dropped before the next is taken: only one may be held.
+        self.ports()?.received = None;
+        loop {
+            // Looked at before the queue, so that a last word of the dead is still heard.
+            let dead = self.dead_peer();
+            let ports = self.ports()?;
+            let message = ports.subscriber.receive();
+            if let Some(message) = message.map_err(failed("receiving a message"))? {
+                ports.received = Some(message);
+                return Ok(true);
+            }
+            if let Some(pid) = dead {
+                return Err(self.bury(pid));
+            }
+            let left = patience.saturating_sub(begun.elapsed());
+            if left.is_zero() {
+                return Ok(false);
+            }
+            ports
+                .listener
+                .timed_wait(|_| {}, left.min(LOOK))
+                .map_err(failed("waiting for a message"))?;
+        }
+    }
+
+    fn received(&self) -> Option<(&Header, &[u64])> {
+        let message = self.ports.as_ref()?.received.as_ref()?;
+        Some((message.user_header(), message.payload()))
+    }
+}

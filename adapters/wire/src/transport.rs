@@ -1,0 +1,170 @@
+//! What every transport does, and how it fails.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use thiserror::Error;
+
+use crate::record::Header;
+
+/// Moves messages between the two ends of a link. At most one message is reserved and at most one is
+/// held as received at a time; both stay in place, nothing is copied.
+pub trait Transport {
+    /// Reserves the next message with a payload of `words` words of 8 bytes, whose content is
+    /// unspecified until written; a reserved message that was not sent is dropped.
+    fn loan(&mut self, header: Header, words: usize) -> Result<&mut [u64], WireError>;
+
+    /// The payload of the reserved message.
+    fn loaned(&mut self) -> Option<&mut [u64]>;
+
+    /// Sends the reserved message.
+    fn send(&mut self) -> Result<(), WireError>;
+
+    /// Drops what was received before and waits at most `patience`; true where a message arrived.
+    fn receive(&mut self, patience: Duration) -> Result<bool, WireError>;
+
+    /// The message received last, in place.
+    fn received(&self) -> Option<(&Header, &[u64])>;
+}
+
+/// What can go wrong on a wire.
+#[derive(Debug, Error)]
+pub enum WireError {
+    /// The other end's process has ended.
+    #[error("coordinator (pid {pid}) died; this solver ends, and the run's files are removed")]
+    PeerDead {
+        /// Its process id.
+        pid: u32,
+    },
+    /// The handshake found two different values.
+    #[error("the handshake failed: the {what} is {ours} here, but {theirs} at the other end")]
+    Mismatch {
+        /// What was compared.
+        what: &'static str,
+        /// Our value.
+        ours: String,
+        /// The other end's value.
+        theirs: String,
+    },
+    /// The other end reported a failure.
+    #[error("{text}")]
+    Failed {
+        /// Its words.
+        text: String,
+    },
+    /// A message that is not of this run, rank, version or length.
+    #[error("a message of {what} {found} arrived, but {expected} was expected")]
+    Foreign {
+        /// What differs.
+        what: &'static str,
+        /// As it came.
+        found: u64,
+        /// As it should be.
+        expected: u64,
+    },
+    /// A kind of message that does not belong here.
+    #[error("a message of kind {found} arrived where {expected} was expected")]
+    Unexpected {
+        /// The number of the kind.
+        found: u32,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// A text that is not UTF-8, or not of the expected form.
+    #[error("the text of a message cannot be read: {detail}")]
+    Text {
+        /// What is wrong with it.
+        detail: String,
+    },
+    /// Nothing came in time.
+    #[error("no answer within {seconds} s while waiting for {what}")]
+    Silent {
+        /// How long was waited, in s.
+        seconds: f64,
+        /// For what.
+        what: &'static str,
+    },
+    /// A line that is no field of a catalogue.
+    #[error("`{line}` is no field; write `start|state name components unit item|rank`")]
+    Catalogue {
+        /// The line.
+        line: String,
+    },
+    /// No such role.
+    #[error("`{role}` is no role of a solver; there are `gas` and `particles`")]
+    Role {
+        /// The name given.
+        role: String,
+    },
+    /// A column that the catalogue does not have.
+    #[error("the {record} record has no column `{name}`")]
+    NoColumn {
+        /// The name asked for.
+        name: String,
+        /// The record.
+        record: &'static str,
+    },
+    /// A message that would leave with a column nobody filled.
+    #[error("the message was not sent: its column `{name}` was never filled")]
+    Unfilled {
+        /// The column.
+        name: String,
+    },
+    /// A call out of order.
+    #[error("{what}")]
+    Order {
+        /// What was missing.
+        what: &'static str,
+    },
+    /// Too little shared memory.
+    #[error(
+        "/dev/shm has {free} bytes free, but this link may need {needed} bytes; \
+         enlarge it (`mount -o remount,size=4G /dev/shm`; docker: `--shm-size 4g`)"
+    )]
+    SharedMemoryFull {
+        /// Bytes free.
+        free: u64,
+        /// Bytes that a link of this size may take.
+        needed: u64,
+    },
+    /// The shared-memory layer refused.
+    #[error("shared memory: {doing} failed: {detail}")]
+    SharedMemory {
+        /// What was tried.
+        doing: &'static str,
+        /// The layer's own words.
+        detail: String,
+    },
+    /// Nobody, or a full buffer, at the other end.
+    #[error("a message was not delivered: {receivers} of 1 receivers took it")]
+    NotDelivered {
+        /// Number of receivers.
+        receivers: usize,
+    },
+    /// The variable that describes a link is missing or wrong.
+    #[error(
+        "the variable CALCINE_LINK {detail}; it is set by the coordinator that starts a solver"
+    )]
+    Address {
+        /// What is wrong.
+        detail: String,
+    },
+    /// A path that is too long for a socket of the wire.
+    #[error("the scratch directory {} is too long for the wire ({length} characters, at most {limit}); set TMPDIR to a shorter one", path.display())]
+    LongPath {
+        /// The path.
+        path: PathBuf,
+        /// Its length with the names that are appended.
+        length: usize,
+        /// The limit.
+        limit: usize,
+    },
+    /// A file or directory of the run.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// Which one.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+}

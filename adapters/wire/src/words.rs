@@ -1,0 +1,51 @@
+//! Words of 8 bytes seen as numbers or text, in place. Every bit pattern is a value of each type
+//! used here, and their alignments do not exceed a word's.
+
+use iceoryx2::prelude::ipc_threadsafe::Service;
+use iceoryx2::sample_mut::SampleMut;
+use iceoryx2::sample_mut_uninit::SampleMutUninit;
+
+use crate::record::Header;
+
+/// A reserved message of the shared-memory transport.
+pub type Loan = SampleMutUninit<Service, [std::mem::MaybeUninit<u64>], Header>;
+type Filled = SampleMut<Service, [u64], Header>;
+
+/// Words as doubles.
+pub fn doubles(words: &[u64]) -> &[f64] {
+    // SAFETY: u64 and f64 have the same size and alignment, and every bit pattern is an f64.
+    unsafe { std::slice::from_raw_parts(words.as_ptr().cast(), words.len()) }
+}
+
+/// Words as doubles, to be written.
+pub fn doubles_mut(words: &mut [u64]) -> &mut [f64] {
+    // SAFETY: as above; and every f64 is a u64, so writing cannot make a word invalid.
+    unsafe { std::slice::from_raw_parts_mut(words.as_mut_ptr().cast(), words.len()) }
+}
+
+/// The first `length` bytes of words; fewer where there are no more.
+pub fn bytes(words: &[u64], length: usize) -> &[u8] {
+    let length = length.min(size_of_val(words));
+    // SAFETY: `length` bytes lie within the slice, and a byte has no alignment.
+    unsafe { std::slice::from_raw_parts(words.as_ptr().cast(), length) }
+}
+
+/// All bytes of words, to be written.
+pub fn bytes_mut(words: &mut [u64]) -> &mut [u8] {
+    // SAFETY: the bytes are those of the slice, and every byte pattern is a u64.
+    unsafe { std::slice::from_raw_parts_mut(words.as_mut_ptr().cast(), size_of_val(words)) }
+}
+
+/// Memory of a fresh loan as words. It is mapped shared memory: zeros of the kernel or the bytes of
+/// an earlier message.
+pub fn mapped(words: &mut [std::mem::MaybeUninit<u64>]) -> &mut [u64] {
+    // SAFETY: the slice lies in a mapping shared with another process, whose every byte has a value;
+    // every bit pattern is a u64; size and alignment are equal.
+    unsafe { std::slice::from_raw_parts_mut(words.as_mut_ptr().cast(), words.len()) }
+}
+
+/// A loan whose content counts as written.
+pub fn filled(loan: Loan) -> Filled {
+    // SAFETY: as in `mapped`, every byte of the loan has a value and every value is a u64.
+    unsafe { loan.assume_init() }
+}

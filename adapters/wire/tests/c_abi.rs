@@ -1,0 +1,150 @@
+//! A solver in C++ against header and static library.
+
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use calcine_wire::run::VARIABLE;
+use calcine_wire::shared_memory::End;
+use calcine_wire::{Catalogue, Header, Hello, Kind, Link, Run, SharedMemory, WireError};
+
+/// The directory of the test's own binaries' parent, where the static library lies.
+fn target() -> PathBuf {
+    let own = std::env::current_exe().unwrap();
+    own.parent().unwrap().parent().unwrap().to_owned()
+}
+
+fn compile(name: &str) -> PathBuf {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let library = target().join("libcalcine_wire.a");
+    assert!(
+        library.is_file(),
+        "{} is missing; `cargo build -p calcine-wire` makes it",
+        library.display()
+    );
+    let program = target().join(name);
+    let status = Command::new("g++")
+        .args(["-std=c++14", "-Wall", "-Wextra", "-Werror", "-o"])
+        .arg(&program)
+        .arg(source.join("tests/cpp/solver.cpp"))
+        .arg("-I")
+        .arg(source.join("include"))
+        .arg(library)
+        .args(["-lgcc_s", "-lutil", "-lrt", "-lpthread", "-lm", "-ldl"])
+        .status()
+        .unwrap();
+    assert!(status.success());
+    program
+}
+
+fn hello() -> Hello {
+    Hello {
+        role: "gas".into(),
+        name: "Calcine".into(),
+        version: "0".into(),
+        case_hash: "case".into(),
+        mesh_hash: "mesh".into(),
+        count: 3,
+        ranks: 1,
+        catalogue: Catalogue::standard("gas").unwrap(),
+    }
+}
+
+struct Solver {
+    child: Child,
+    link: Link,
+    _run: Run,
+}
+
+fn start(program: &Path, mesh: &str) -> Solver {
+    let run = Run::create().unwrap();
+    let address = run.address("gas");
+    let transport = SharedMemory::open(&address, 0, End::Coordinator).unwrap();
+    let link = Link::new(Box::new(transport), address.number(), 0);
+    let child = Command::new(program)
+        .arg(mesh)
+        .env(VARIABLE, address.to_text())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    Solver {
+        child,
+        link,
+        _run: run,
+    }
+}
+
+fn receive(link: &mut Link) -> Result<Header, WireError> {
+    Ok(link
+        .receive(Duration::from_secs(10))?
+        .expect("an answer within 10 s"))
+}
+
+#[test]
+fn a_solver_in_cpp_shakes_hands_answers_fails_and_ends() {
+    let program = compile("wire-cpp-solver");
+    let mut solver = start(&program, "mesh");
+    let link = &mut solver.link;
+    receive(link).unwrap();
+    assert_eq!(link.answer_greeting(&hello()).unwrap().name, "test");
+    assert_eq!(receive(link).unwrap().kind(), Some(Kind::State));
+    assert_eq!(link.column("temperature").unwrap(), [1.0; 3]);
+    assert_eq!(link.column("balances").unwrap().len(), 35);
+
+    let begun = Instant::now();
+    for window in 0..100u64 {
+        let start = Header {
+            window,
+            span_motion: 7,
+            ..Header::of(Kind::Start)
+        };
+        link.loan(start, 3).unwrap();
+        for field in [
+            "void_fraction",
+            "drag_coefficient",
+            "drag_source",
+            "heat_coefficient",
+        ] {
+            link.column_mut(field).unwrap().fill(0.5);
+        }
+        let sources = link.column_mut("heat_source").unwrap();
+        sources.copy_from_slice(&[0.0, 1.0, window as f64]);
+        link.send().unwrap();
+        let finished = receive(link).unwrap();
+        assert_eq!(finished.kind(), Some(Kind::Finished));
+        assert_eq!(finished.window, window);
+        let heat = link.column("heat").unwrap();
+        assert_eq!(heat, [2.0 * window as f64 + 7.0; 3]);
+        assert_eq!(heat.as_ptr() as usize % 64, 0);
+        link.send_plain(Header::of(Kind::Commit)).unwrap();
+    }
+    eprintln!("a window over the wire: {:?}", begun.elapsed() / 100);
+
+    link.send_text(Header::of(Kind::Checkpoint), "/a/directory")
+        .unwrap();
+    let failure = receive(link).unwrap_err();
+    assert_eq!(failure.to_string(), "/a/directory");
+    assert_eq!(solver.child.wait().unwrap().code(), Some(1));
+
+    let mut solver = start(&program, "mesh");
+    receive(&mut solver.link).unwrap();
+    solver.link.answer_greeting(&hello()).unwrap();
+    receive(&mut solver.link).unwrap();
+    solver.link.send_plain(Header::of(Kind::Bye)).unwrap();
+    assert_eq!(receive(&mut solver.link).unwrap().kind(), Some(Kind::Bye));
+    assert_eq!(solver.child.wait().unwrap().code(), Some(0));
+
+    let mut solver = start(&program, "another");
+    receive(&mut solver.link).unwrap();
+    let error = solver.link.answer_greeting(&hello()).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("mesh hash is mesh here, but another"),
+        "{error}"
+    );
+    let output = solver.child.wait_with_output().unwrap();
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(13), "{told}");
+    assert!(told.contains("another"), "{told}");
+}
