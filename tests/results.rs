@@ -289,12 +289,8 @@ fn the_hdf5_file_holds_the_values_of_the_csv_file_bit_for_bit() {
     assert_eq!(field.shape(), [48, 3]);
 }
 
-#[test]
-fn the_vtk_of_debian_reads_gas_particles_and_their_times() {
-    let scratch = tempfile::tempdir().unwrap();
-    let out = scratch.path().join("out");
-    fake::run(&fake::case(), &out, 0.0);
-    let script = r#"
+/// Reads the last snapshots with VTK and prints what it found.
+const READ_BACK: &str = r#"
 import sys, vtk
 import xml.etree.ElementTree as tree
 folder = sys.argv[1]
@@ -317,7 +313,13 @@ for name, reader in (("gas", vtk.vtkXMLUnstructuredGridReader()), ("particles", 
         total = sum(volumes.GetValue(i) for i in range(grid.GetNumberOfCells()))
         print("volume %.12e" % total, grid.GetCellType(0))
 "#;
-    let text = python(script, &out);
+
+#[test]
+fn the_vtk_of_debian_reads_gas_particles_and_their_times() {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("out");
+    fake::run(&fake::case(), &out, 0.0);
+    let text = python(READ_BACK, &out);
     let lines: Vec<&str> = text.lines().collect();
     assert!(
         lines[0].starts_with("gas 5 20.0 20.0 48 temperature,velocity,pressure,void_fraction"),
@@ -436,4 +438,68 @@ fn runs_of_different_cases_and_single_runs_are_not_compared() {
     case.hash = "f".repeat(64);
     let error = compare(&case, &[run.clone(), run]).err().unwrap();
     assert!(matches!(error, CompareError::OtherCase { .. }), "{error}");
+}
+
+#[test]
+fn cells_that_are_no_hexahedra_are_polyhedra_for_vtk_and_in_the_picture() {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("out");
+    fake::run_on(fake::prisms(), &fake::case(), &out, 0.0);
+    let text = python(READ_BACK, &out);
+    assert!(text.starts_with("gas 5 20.0 20.0 24 "), "{text}");
+    assert!(text.contains("\nvolume 1.200000000000e-05 42\n"), "{text}");
+    let page = fs::read_to_string(calcine::report::write(&out).unwrap()).unwrap();
+    // Each layer's two prisms are cut in five views.
+    assert_eq!(page.matches("<polygon").count(), 5 * 24);
+}
+
+#[test]
+fn a_full_disk_ends_in_an_error_that_names_the_file() {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("out");
+    let (case, mut world) = (fake::case(), fake::World::new());
+    let mut recorder = Recorder::create(&case, fake::info(), &out, None).unwrap();
+    recorder.start(&world.moment()).unwrap();
+    // The device that is always full stands in for the next snapshot.
+    std::os::unix::fs::symlink("/dev/full", out.join("gas/gas_0001.vtu.new")).unwrap();
+    let error = loop {
+        world.step(&case);
+        if let Err(error) = recorder.window(&world.moment()) {
+            break error;
+        }
+    };
+    let text = error.to_string();
+    assert!(
+        text.contains("gas/gas_0001.vtu") && text.contains("No space left"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_probe_outside_the_mesh_and_an_unknown_patch_are_refused_at_the_start() {
+    let scratch = tempfile::tempdir().unwrap();
+    let world = fake::World::new();
+    let refusal = |case: &calcine::case::model::Case, name: &str| {
+        let out = scratch.path().join(name);
+        let mut recorder = Recorder::create(case, fake::info(), &out, None).unwrap();
+        recorder.start(&world.moment()).unwrap_err().to_string()
+    };
+    let mut case = fake::case();
+    case.probes[0].from.x = 1.0;
+    case.probes[0].to.x = 1.0;
+    let text = refusal(&case, "probe");
+    assert!(
+        text.contains("no point of the probe `axis` lies inside the gas mesh"),
+        "{text}"
+    );
+    let mut case = fake::case();
+    case.quantities[0].measure = calcine::case::model::Measure::Difference {
+        field: "pressure".into(),
+        patches: ["bottom".into(), "lid".into()],
+    };
+    let text = refusal(&case, "patch");
+    assert!(
+        text.contains("names the patch `lid`, which the mesh lacks"),
+        "{text}"
+    );
 }

@@ -1,11 +1,11 @@
 //! The comparison as one self-contained page with overlaid plots.
 
 use super::table::{percent, verdict};
-use super::{Agreement, Comparison};
+use super::{Agreement, Comparison, QuantityDifference};
 use crate::report::colour;
 use crate::report::number::{figure, span, with_unit};
 use crate::report::page::{Page, bars, escape, table};
-use crate::report::plot::{Curve, Plot};
+use crate::report::plot::{Curve, Plot, Stroke, between};
 
 /// The page.
 pub(super) fn render(comparison: &Comparison) -> String {
@@ -28,7 +28,7 @@ pub(super) fn render(comparison: &Comparison) -> String {
     );
     page.section(
         "Overlaid",
-        "Where lines cover each other, the runs agree.",
+        "Where lines cover each other, their colours take turns.",
         &plots(comparison),
     );
     page.section(
@@ -145,6 +145,7 @@ fn plots(comparison: &Comparison) -> String {
             &format!("{} in {}", quantity.name.replace('_', " "), quantity.unit),
             &[&column],
         ));
+        html.push_str(&above_the_first(comparison, quantity));
     }
     let tracks = comparison.series[0].particles();
     if !tracks.is_empty() {
@@ -165,7 +166,47 @@ fn plots(comparison: &Comparison) -> String {
     format!("<div class=\"plots\">{html}</div>")
 }
 
-/// The same columns of every run in one plot; later runs are broken lines over the first.
+/// What a quantity of every other run is above that of the first.
+fn above_the_first(comparison: &Comparison, quantity: &QuantityDifference) -> String {
+    let column = format!("quantities.{}", quantity.name);
+    let first = &comparison.series[0];
+    let (times, values) = (first.column("process_time"), first.column(&column));
+    let rows: Vec<Vec<f64>> = comparison.series[1..]
+        .iter()
+        .map(|series| {
+            let (over, other) = (series.column("process_time"), series.column(&column));
+            let pairs = times.iter().zip(values);
+            pairs
+                .map(|(&time, value)| between(over, other, time) - value)
+                .collect()
+        })
+        .collect();
+    let curves = rows.iter().zip(&comparison.runs[1..]).enumerate();
+    let plot = Plot {
+        title: format!(
+            "{}: difference to {} in {}",
+            quantity.name.replace('_', " "),
+            comparison.runs[0].name,
+            quantity.unit
+        ),
+        x_label: "process time in s",
+        logarithmic: false,
+        above: None,
+        band: None,
+        curves: curves
+            .map(|(number, (row, run))| Curve {
+                label: run.name.clone(),
+                colour: colour::line(number + 1),
+                x: times,
+                y: row,
+                stroke: Stroke::Solid,
+            })
+            .collect(),
+    };
+    plot.render()
+}
+
+/// The same columns of every run in one plot; where they agree, their colours take turns.
 fn overlay(comparison: &Comparison, title: &str, columns: &[&str]) -> String {
     let mut curves = Vec::new();
     for (number, (run, series)) in comparison.runs.iter().zip(&comparison.series).enumerate() {
@@ -179,7 +220,7 @@ fn overlay(comparison: &Comparison, title: &str, columns: &[&str]) -> String {
                 colour: colour::line(number),
                 x: series.column("process_time"),
                 y: series.column(column),
-                dashed: number > 0,
+                stroke: Stroke::Share(number, comparison.runs.len()),
             });
         }
     }

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use self::number::{figure, span, with_unit};
 use self::page::{Page, badge, bars, escape, table, tiles};
-use self::plot::{Curve, Plot};
+use self::plot::{Curve, Plot, Stroke};
 use crate::results::read::Series;
 use crate::results::summary::{QuantityResult, Solver};
 use crate::results::{CASE, ResultsError, Summary, files};
@@ -100,7 +100,7 @@ fn headline(summary: &Summary) -> String {
             "wall time",
             span(wall),
             format!(
-                "{} s of process a second",
+                "{} s of process time a second",
                 figure(summary.process_time_s / wall, 3)
             ),
         ),
@@ -177,7 +177,7 @@ fn plots(summary: &Summary, series: &Series) -> String {
             colour: colour::line(0),
             x: time,
             y: series.column(&format!("quantities.{name}")),
-            dashed: false,
+            stroke: Stroke::Solid,
         };
         let title = format!("{} in {}", name.replace('_', " "), result.unit);
         html.push_str(&plot(title, result.band, vec![curve]).render());
@@ -199,7 +199,7 @@ fn particle_curves<'a>(series: &'a Series, time: &'a [f64]) -> Vec<Curve<'a>> {
                 colour: colour::line(place),
                 x: time,
                 y: series.column(&format!("particles.temperature_{name}")),
-                dashed: place > 0,
+                stroke: Stroke::Solid,
             })
             .collect();
     }
@@ -213,7 +213,7 @@ fn particle_curves<'a>(series: &'a Series, time: &'a [f64]) -> Vec<Curve<'a>> {
             colour: colour::scale(0.2 + 0.62 * place as f64 / last as f64),
             x: time,
             y: values,
-            dashed: false,
+            stroke: Stroke::Solid,
         })
         .collect()
 }
@@ -275,7 +275,7 @@ fn residuals(series: &Series) -> String {
         colour: colour::line(number),
         x: time,
         y: series.column(name),
-        dashed: false,
+        stroke: Stroke::Solid,
     };
     let plot = |title: &str, logarithmic, curves| {
         let plot = Plot {

@@ -25,8 +25,30 @@ pub(crate) struct Curve<'a> {
     pub x: &'a [f64],
     /// Values along y.
     pub y: &'a [f64],
-    /// True: a broken line.
-    pub dashed: bool,
+    /// How it is drawn.
+    pub stroke: Stroke,
+}
+
+/// How a line is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stroke {
+    /// In one piece.
+    Solid,
+    /// Broken, as the first of so many lines: where they cover each other, each shows in turn.
+    Share(usize, usize),
+}
+
+impl Stroke {
+    fn attributes(self) -> String {
+        match self {
+            Stroke::Solid => String::new(),
+            Stroke::Share(place, count) => format!(
+                " stroke-dasharray=\"8 {}\" stroke-dashoffset=\"-{}\"",
+                8 * (count.max(2) - 1),
+                8 * place
+            ),
+        }
+    }
 }
 
 /// A plot over time.
@@ -75,10 +97,13 @@ impl Plot<'_> {
         let Some(frame) = self.frame() else {
             return String::new();
         };
+        // Without a scale above, its room is cut off.
+        let cut = if self.above.is_some() { 0.0 } else { 24.0 };
         let mut svg = format!(
-            "<figure><figcaption>{}</figcaption><svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" \
+            "<figure><figcaption>{}</figcaption><svg viewBox=\"0 {cut} {WIDTH} {}\" \
              role=\"img\" aria-label=\"{0}\">",
-            escape(&self.title)
+            escape(&self.title),
+            HEIGHT - cut
         );
         if let Some((low, high)) = self.band {
             let (low, high) = (
@@ -97,15 +122,11 @@ impl Plot<'_> {
         }
         self.axes(&frame, &mut svg);
         for curve in &self.curves {
-            let dash = if curve.dashed {
-                " stroke-dasharray=\"6 4\""
-            } else {
-                ""
-            };
             let _ = write!(
                 svg,
-                "<path class=\"curve\" stroke=\"{}\"{dash} d=\"{}\"/>",
+                "<path class=\"curve\" stroke=\"{}\"{} d=\"{}\"/>",
                 curve.colour,
+                curve.stroke.attributes(),
                 path(curve, &frame)
             );
         }
@@ -355,7 +376,7 @@ mod tests {
                 colour: "red".into(),
                 x: &[0.0, 1.0],
                 y: &[f64::NAN, f64::NAN],
-                dashed: false,
+                stroke: Stroke::Solid,
             }],
         };
         assert_eq!(plot.render(), "");

@@ -82,9 +82,21 @@ pub fn duct() -> Mesh {
             bottom.push((own, None, reversed(along_z(i, j, 0))));
         }
     }
-    topology.face_offsets.push(0);
-    let mut start = inner.len();
-    for (name, list) in [("side", &side), ("bottom", &bottom), ("top", &top)] {
+    finish(topology.points, [inner, side, bottom, top])
+}
+
+/// A face: owner, neighbour, points.
+type Face<P> = (u32, Option<u32>, P);
+
+/// The mesh of internal faces, then those of `side`, `bottom`, `top`.
+fn finish<P: AsRef<[u32]>>(points: Vec<Vec3>, faces: [Vec<Face<P>>; 4]) -> Mesh {
+    let mut topology = Topology {
+        points,
+        face_offsets: vec![0],
+        ..Topology::default()
+    };
+    let mut start = faces[0].len();
+    for (name, list) in ["side", "bottom", "top"].into_iter().zip(&faces[1..]) {
         topology.patches.push(Patch {
             name: name.into(),
             start,
@@ -92,15 +104,53 @@ pub fn duct() -> Mesh {
         });
         start += list.len();
     }
-    for (owner, neighbour, points) in inner.into_iter().chain(side).chain(bottom).chain(top) {
+    for (owner, neighbour, points) in faces.into_iter().flatten() {
         topology.owner.push(owner);
         topology.neighbour.extend(neighbour);
-        topology.face_points.extend(points);
-        topology
-            .face_offsets
-            .push(topology.face_points.len() as u32);
+        topology.face_points.extend(points.as_ref());
+        let end = topology.face_points.len() as u32;
+        topology.face_offsets.push(end);
     }
     Mesh::new(topology).unwrap()
+}
+
+/// The same duct of twelve layers, each of two prisms on either side of a diagonal.
+pub fn prisms() -> Mesh {
+    let layers = CELLS[2] as u32;
+    let mut points = Vec::new();
+    for layer in 0..=layers {
+        let z = f64::from(layer) * SIZE[2] / f64::from(layers);
+        for (x, y) in [
+            (0.0, 0.0),
+            (SIZE[0], 0.0),
+            (SIZE[0], SIZE[1]),
+            (0.0, SIZE[1]),
+        ] {
+            points.push(Vec3::new(x, y, z));
+        }
+    }
+    let (mut inner, mut side, mut bottom, mut top) = (vec![], vec![], vec![], vec![]);
+    for layer in 0..layers {
+        let (low, high) = (4 * layer, 4 * layer + 4);
+        // The walls of corner a to corner b, seen from outside.
+        let wall = |a: u32, b: u32| vec![low + a, low + b, high + b, high + a];
+        let (right, left) = (2 * layer, 2 * layer + 1);
+        inner.push((right, Some(left), wall(2, 0)));
+        side.extend([(right, None, wall(0, 1)), (right, None, wall(1, 2))]);
+        side.extend([(left, None, wall(2, 3)), (left, None, wall(3, 0))]);
+        for (cell, corners) in [(right, [0, 1, 2]), (left, [0, 2, 3])] {
+            let lid = corners.map(|corner| high + corner).to_vec();
+            if layer + 1 < layers {
+                inner.push((cell, Some(cell + 2), lid));
+            } else {
+                top.push((cell, None, lid));
+            }
+            if layer == 0 {
+                bottom.push((cell, None, corners.into_iter().rev().collect()));
+            }
+        }
+    }
+    finish(points, [inner, side, bottom, top])
 }
 
 fn triples(a: usize, b: usize, c: usize) -> impl Iterator<Item = (usize, usize, usize)> {
@@ -267,7 +317,10 @@ pub struct World {
 
 impl World {
     pub fn new() -> Self {
-        let mesh = duct();
+        Self::on(duct())
+    }
+
+    pub fn on(mesh: Mesh) -> Self {
         let cells = mesh.cells();
         let about = |name: &str| About {
             name: name.into(),
@@ -416,7 +469,12 @@ pub fn info() -> RunInfo {
 
 /// Runs the case to its end with results in `out`; particles `shift` K hotter.
 pub fn run(case: &Case, out: &Path, shift: f64) -> Recorder {
-    let mut world = World::new();
+    run_on(duct(), case, out, shift)
+}
+
+/// The same on a mesh.
+pub fn run_on(mesh: Mesh, case: &Case, out: &Path, shift: f64) -> Recorder {
+    let mut world = World::on(mesh);
     world.shift = shift;
     world.evaluate();
     let mut recorder = Recorder::create(case, info(), out, None).unwrap();
