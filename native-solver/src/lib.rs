@@ -1,1 +1,6 @@
-//! Placeholder.
+//! Native gas and particle solvers of Calcine, in pure Rust.
+#![warn(missing_docs)]
+
+pub mod gas;
+pub mod numerics;
+pub mod particles;

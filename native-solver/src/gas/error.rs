@@ -1,0 +1,60 @@
+//! Setups that the native gas cannot take.
+
+use calcine_coupler::checkpoint::StateFileError;
+use thiserror::Error;
+
+/// Why a native part cannot be made or taken up again.
+#[derive(Debug, Error)]
+pub enum NativeError {
+    /// A patch of the mesh without a boundary condition.
+    #[error(
+        "patch `{patch}` of the mesh has no boundary condition; give it one in `gas.patch.{patch}`"
+    )]
+    NoCondition {
+        /// Name of the patch.
+        patch: String,
+    },
+    /// A boundary condition for a patch that the mesh does not have.
+    #[error("`gas.patch.{patch}` names no patch of the mesh, which has {present}")]
+    NoPatch {
+        /// Name of the patch.
+        patch: String,
+        /// Patches of the mesh.
+        present: String,
+    },
+    /// Nothing fixes the pressure.
+    #[error("no patch is an outlet, so nothing fixes the pressure of the gas; make one an outlet")]
+    NoOutlet,
+    /// A number that makes no sense.
+    #[error("{field} of {place} is {value} {unit}; it must be {rule}")]
+    Value {
+        /// What the number is.
+        field: &'static str,
+        /// Where it stands, for example "patch `bottom`".
+        place: String,
+        /// The number.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// What is allowed.
+        rule: &'static str,
+    },
+    /// Particles that move, which the native particles cannot do yet.
+    #[error("native particles stay where they are; set `motion = \"frozen\"` or choose LIGGGHTS")]
+    Moving,
+    /// Lists of unequal length.
+    #[error("{field} has {found} values for {expected} {of}")]
+    Length {
+        /// What the list holds.
+        field: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length it must have.
+        expected: usize,
+        /// What is counted.
+        of: &'static str,
+    },
+    /// A state file that cannot be used.
+    #[error(transparent)]
+    State(#[from] StateFileError),
+}

@@ -1,0 +1,63 @@
+//! Divergence: numbers that are not finite, or that no gas of this model can have.
+
+use calcine_coupler::physics::Vec3;
+
+use super::state::State;
+use crate::numerics::parallel::largest;
+
+/// Above this temperature in K neither the mixture's properties nor the low-Mach model mean
+/// anything.
+const HIGHEST_TEMPERATURE: f64 = 1e4;
+/// Above this speed in m/s, some thirty times that of sound in cold air, neither does.
+const HIGHEST_SPEED: f64 = 1e4;
+
+/// What is wrong with an attempt's fields, in words; `None` where nothing is.
+pub fn complaint(now: &State, centre: &[Vec3]) -> Option<String> {
+    let cells = centre.len();
+    let worst = |strangeness: &(dyn Fn(usize) -> f64 + Sync)| {
+        let (cell, value) = largest(cells, strangeness);
+        (value.is_nan() || value > 1.0).then_some(cell)
+    };
+    let say = |field: &str, value: String, cell: usize| {
+        let place = centre[cell];
+        Some(format!(
+            "diverged: {field} of {value} in cell {cell} at ({:.6}, {:.6}, {:.6}) m",
+            place.x, place.y, place.z
+        ))
+    };
+    // Each measure is at most 1 where all is well, and NaN or above where it is not.
+    let mass = |cell: usize| if now.mass[cell] > 0.0 { 0.0 } else { f64::NAN };
+    let temperature = |cell: usize| {
+        let value = now.temperature[cell];
+        if value > 0.0 {
+            value / HIGHEST_TEMPERATURE
+        } else {
+            f64::NAN
+        }
+    };
+    let speed = |cell: usize| now.velocity[cell].norm() / HIGHEST_SPEED;
+    let pressure = |cell: usize| {
+        if now.pressure[cell].is_finite() {
+            0.0
+        } else {
+            f64::NAN
+        }
+    };
+    if let Some(cell) = worst(&temperature) {
+        return say("temperature", format!("{} K", now.temperature[cell]), cell);
+    }
+    if let Some(cell) = worst(&speed) {
+        return say("speed", format!("{} m/s", now.velocity[cell].norm()), cell);
+    }
+    if let Some(cell) = worst(&pressure) {
+        return say(
+            "relative pressure",
+            format!("{} Pa", now.pressure[cell]),
+            cell,
+        );
+    }
+    if let Some(cell) = worst(&mass) {
+        return say("gas mass", format!("{} kg", now.mass[cell]), cell);
+    }
+    None
+}

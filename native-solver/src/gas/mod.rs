@@ -1,0 +1,333 @@
+//! The native gas: finite volumes on a general polyhedral mesh, low-Mach ideal gas, volume
+//! fraction in every term, one file per equation.
+
+mod attempt;
+mod balance;
+mod boundary;
+mod enthalpy;
+mod error;
+mod guard;
+mod momentum;
+mod outer;
+mod pressure;
+mod state;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use calcine_coupler::error::{FailureKind, PartError};
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::part::{
+    About, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part,
+};
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::GasSetup;
+use calcine_coupler::supervisor::Supervisor;
+use calcine_coupler::time::Window;
+
+use attempt::Frame;
+use boundary::{Boundaries, Value};
+pub use error::NativeError;
+use outer::Equations;
+use state::State;
+pub(crate) use state::{flat, vectors};
+
+use crate::numerics::grid::Grid;
+use crate::numerics::parallel::fill;
+
+/// Name of the state file in a checkpoint's folder.
+const STATE: &str = "gas.state";
+
+/// The native gas.
+#[derive(Debug)]
+pub struct NativeGas {
+    about: About,
+    mesh: Arc<Mesh>,
+    grid: Arc<Grid>,
+    setup: GasSetup,
+    boundaries: Boundaries,
+    equations: Equations,
+    committed: State,
+    /// True once a window is committed; before, the bed of an attempt says how much gas there is.
+    started: bool,
+    now: State,
+    window: Option<Window>,
+    void_fraction: Vec<f64>,
+    exchange: CellExchange,
+    /// Absolute pressure in Pa, for the eyes of others.
+    pressure: Vec<f64>,
+    /// Density of the equation of state in kg/m³, for the eyes of others.
+    density: Vec<f64>,
+}
+
+impl NativeGas {
+    /// The gas at the start of a run. Before the first window nothing is known of the bed, so
+    /// that the fields show the superficial start velocity.
+    pub fn new(mesh: impl Into<Arc<Mesh>>, setup: &GasSetup) -> Result<Self, NativeError> {
+        let mesh = mesh.into();
+        check(setup)?;
+        let boundaries = Boundaries::new(&mesh, setup)?;
+        let grid = Arc::new(Grid::new(&mesh));
+        let (cells, faces) = (mesh.cells(), mesh.faces());
+        let committed = State {
+            enthalpy: vec![setup.properties.enthalpy(setup.temperature); cells],
+            temperature: vec![setup.temperature; cells],
+            velocity: vec![setup.velocity; cells],
+            pressure: vec![0.0; cells],
+            pressure_gradient: vec![Vec3::zeros(); cells],
+            flux: vec![0.0; faces],
+            ..State::default()
+        };
+        let mut gas = Self {
+            about: About {
+                name: "native gas".into(),
+                version: env!("CARGO_PKG_VERSION").into(),
+                ranks: 1,
+            },
+            mesh,
+            equations: Equations::new(&grid),
+            grid,
+            setup: setup.clone(),
+            boundaries,
+            now: committed.clone(),
+            committed,
+            started: false,
+            window: None,
+            void_fraction: Vec::new(),
+            exchange: CellExchange::default(),
+            pressure: vec![0.0; cells],
+            density: vec![0.0; cells],
+        };
+        gas.update_fields();
+        Ok(gas)
+    }
+
+    /// Takes up the state that a checkpoint left in a folder.
+    pub fn restore(&mut self, directory: &Path) -> Result<(), NativeError> {
+        let path = directory.join(STATE);
+        self.committed = State::read(&path, self.mesh.cells(), self.mesh.faces())?;
+        self.started = !self.committed.mass.is_empty();
+        self.now.take(&self.committed);
+        self.update_fields();
+        Ok(())
+    }
+
+    fn update_fields(&mut self) {
+        let (now, setup) = (&self.now, &self.setup);
+        fill(&mut self.pressure, |cell| {
+            setup.pressure + now.pressure[cell]
+        });
+        fill(&mut self.density, |cell| {
+            let temperature = now.temperature[cell];
+            setup.properties.density(setup.pressure, temperature)
+        });
+    }
+
+    /// The committed state; before the first commit, gas of the setup in the pores of the bed.
+    fn place(&mut self) {
+        let (state, setup, grid) = (&mut self.committed, &self.setup, &self.grid);
+        let density = setup.properties.density(setup.pressure, setup.temperature);
+        state.mass.resize(grid.cells(), 0.0);
+        fill(&mut state.mass, |cell| {
+            density * self.void_fraction[cell] * grid.volume[cell]
+        });
+        fill(&mut state.velocity, |cell| {
+            setup.velocity / self.void_fraction[cell]
+        });
+        let boundaries = &self.boundaries;
+        fill(&mut state.flux, |index| {
+            let face = &grid.faces[index];
+            let closed =
+                index >= grid.internal && matches!(boundaries.at(index), Value::Wall { .. });
+            if closed {
+                0.0
+            } else {
+                density * face.area * setup.velocity.dot(&face.normal)
+            }
+        });
+        state.void_fraction.clone_from(&self.void_fraction);
+    }
+
+    fn failure(&self, kind: FailureKind, message: impl Into<String>) -> PartError {
+        PartError::new(self.about.name.clone(), kind, message)
+    }
+
+    fn check_inputs(&self, bed: &Bed, exchange: &CellExchange) -> Result<(), String> {
+        let cells = self.mesh.cells();
+        for (field, found) in [
+            ("void fraction", bed.void_fraction.len()),
+            ("drag coefficient", exchange.drag_coefficient.len()),
+            ("drag source", exchange.drag_source.len()),
+            ("heat coefficient", exchange.heat_coefficient.len()),
+            ("heat source", exchange.heat_source.len()),
+        ] {
+            if found != cells {
+                return Err(format!("the {field} has {found} values for {cells} cells"));
+            }
+        }
+        let place = |cell: usize| {
+            let centre = self.grid.centre[cell];
+            format!(
+                "cell {cell} at ({:.6}, {:.6}, {:.6}) m",
+                centre.x, centre.y, centre.z
+            )
+        };
+        let finite = |value: f64| value.is_finite();
+        let coefficient = |value: f64| value.is_finite() && value >= 0.0;
+        for cell in 0..cells {
+            let pores = bed.void_fraction[cell];
+            if !(pores > 0.0 && pores <= 1.0) {
+                let place = place(cell);
+                return Err(format!(
+                    "a void fraction of {pores} in {place}; it must be in (0, 1]"
+                ));
+            }
+            let source = exchange.drag_source[cell];
+            let allowed = coefficient(exchange.drag_coefficient[cell])
+                && coefficient(exchange.heat_coefficient[cell])
+                && finite(exchange.heat_source[cell])
+                && source.iter().all(|&value| finite(value));
+            if !allowed {
+                return Err(format!(
+                    "an exchange of {} kg/s, {} N, {} W/K, {} W in {}; coefficients must be \
+                     finite and not negative",
+                    exchange.drag_coefficient[cell],
+                    source.norm(),
+                    exchange.heat_coefficient[cell],
+                    exchange.heat_source[cell],
+                    place(cell)
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Part for NativeGas {
+    fn about(&self) -> &About {
+        &self.about
+    }
+
+    fn commit(&mut self) -> Result<(), PartError> {
+        self.committed.take(&self.now);
+        self.started = !self.committed.mass.is_empty();
+        Ok(())
+    }
+
+    fn checkpoint(&mut self, directory: &Path) -> Result<(), PartError> {
+        let failed = |gas: &Self, error: NativeError| {
+            gas.failure(FailureKind::Io, error.to_string())
+                .caused_by(error)
+        };
+        self.committed
+            .write(&directory.join(STATE))
+            .map_err(|error| failed(self, error.into()))?;
+        self.restore(directory).map_err(|error| failed(self, error))
+    }
+
+    fn finish_run(&mut self, _supervisor: &Supervisor) -> Result<(), PartError> {
+        Ok(())
+    }
+}
+
+impl Gas for NativeGas {
+    fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    fn fields(&self) -> GasFields<'_> {
+        GasFields {
+            temperature: &self.now.temperature,
+            pressure: &self.pressure,
+            density: &self.density,
+            velocity: &self.now.velocity,
+            pressure_gradient: &self.now.pressure_gradient,
+        }
+    }
+
+    fn start(
+        &mut self,
+        window: &Window,
+        bed: &Bed,
+        exchange: &CellExchange,
+    ) -> Result<(), PartError> {
+        self.check_inputs(bed, exchange).map_err(|message| {
+            self.failure(FailureKind::Protocol, message)
+                .in_window(window)
+        })?;
+        self.window = Some(*window);
+        self.void_fraction.clone_from(&bed.void_fraction);
+        self.exchange.clone_from(exchange);
+        Ok(())
+    }
+
+    fn finish(
+        &mut self,
+        _supervisor: &Supervisor,
+        received: &mut CellReceived,
+    ) -> Result<Convergence, PartError> {
+        let Some(window) = self.window.take() else {
+            return Err(self.failure(FailureKind::Protocol, "finished without a start"));
+        };
+        let spans = (
+            window.span.motion.seconds(),
+            self.setup.storage.span(&window),
+        );
+        let end = window.start.process.seconds() + window.span.process.seconds();
+        self.boundaries.update(&self.setup, end);
+        if !self.started {
+            self.place();
+        }
+        self.now.take(&self.committed);
+        self.now.void_fraction.clone_from(&self.void_fraction);
+        let frame = Frame {
+            grid: &self.grid,
+            boundary: &self.boundaries,
+            properties: &self.setup.properties,
+            reference_pressure: self.setup.pressure,
+            gravity: self.setup.gravity,
+            void_fraction: &self.void_fraction,
+            exchange: &self.exchange,
+            old: &self.committed,
+            motion_span: spans.0,
+            storage_span: spans.1,
+        };
+        let solved = self
+            .equations
+            .solve(&frame, &self.setup.controls, &mut self.now);
+        let convergence = solved.map_err(|words| {
+            self.failure(FailureKind::Diverged, words)
+                .in_window(&window)
+        })?;
+        let Equations {
+            momentum,
+            enthalpy,
+            material,
+            ..
+        } = &self.equations;
+        balance::receive(&frame, material, momentum, enthalpy, &self.now, received);
+        self.update_fields();
+        Ok(convergence)
+    }
+}
+
+fn check(setup: &GasSetup) -> Result<(), NativeError> {
+    let place = || "the gas".to_owned();
+    for (field, value, unit) in [
+        ("the start temperature", setup.temperature, "K"),
+        ("the pressure", setup.pressure, "Pa"),
+        ("the outer tolerance", setup.controls.outer_tolerance, ""),
+        ("the linear tolerance", setup.controls.linear_tolerance, ""),
+    ] {
+        if !(value.is_finite() && value > 0.0) {
+            return Err(NativeError::Value {
+                field,
+                place: place(),
+                value,
+                unit,
+                rule: "positive",
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,112 @@
+//! The outer loop of an attempt: momentum predictor, pressure corrections, continuity, enthalpy.
+
+use std::sync::Arc;
+
+use calcine_coupler::part::Convergence;
+use calcine_coupler::setup::GasControls;
+
+use super::attempt::{Frame, Material};
+use super::enthalpy::Enthalpy;
+use super::guard;
+use super::momentum::Momentum;
+use super::pressure::{self, Pressure};
+use super::state::State;
+use crate::numerics::grid::Grid;
+use crate::numerics::krylov::Krylov;
+use crate::numerics::matrix::Matrix;
+use crate::numerics::parallel::largest;
+
+/// The equations and their scratch memory, reused from window to window.
+#[derive(Debug)]
+pub struct Equations {
+    /// Momentum.
+    pub momentum: Momentum,
+    /// Pressure and mass flux.
+    pub pressure: Pressure,
+    /// Enthalpy.
+    pub enthalpy: Enthalpy,
+    /// Properties at the last temperature.
+    pub material: Material,
+    krylov: Krylov,
+}
+
+impl Equations {
+    /// Empty equations on a grid.
+    pub fn new(grid: &Arc<Grid>) -> Self {
+        let matrix = Matrix::new(grid.clone());
+        Self {
+            momentum: Momentum::new(matrix.clone()),
+            pressure: Pressure::new(matrix.clone()),
+            enthalpy: Enthalpy::new(matrix),
+            material: Material::default(),
+            krylov: Krylov::default(),
+        }
+    }
+
+    /// Advances `now`, which holds the old state, to the end of the window; the words of what
+    /// diverged otherwise.
+    pub fn solve(
+        &mut self,
+        frame: &Frame<'_>,
+        controls: &GasControls,
+        now: &mut State,
+    ) -> Result<Convergence, String> {
+        let mut convergence = Convergence::default();
+        self.material.update(frame, &now.temperature);
+        for outer in 1..=controls.outer_iterations.max(1) {
+            let (residual, iterations) = self.iterate(frame, controls, now);
+            convergence.outer_iterations = outer;
+            convergence.linear_iterations += iterations;
+            convergence.residual = residual;
+            if let Some(words) = guard::complaint(now, &frame.grid.centre) {
+                return Err(words);
+            }
+            if residual <= controls.outer_tolerance {
+                convergence.converged = true;
+                break;
+            }
+        }
+        convergence.volume_residual = self.volume_residual(frame, now);
+        Ok(convergence)
+    }
+
+    /// One outer iteration; the largest scaled initial residual, and linear iterations.
+    fn iterate(
+        &mut self,
+        frame: &Frame<'_>,
+        controls: &GasControls,
+        now: &mut State,
+    ) -> (f64, u32) {
+        let tolerance = controls.linear_tolerance;
+        let (krylov, material) = (&mut self.krylov, &mut self.material);
+
+        self.momentum.assemble(frame, material, now);
+        let mut residual = self.momentum.residual(frame, now);
+        residual = residual.max(pressure::residual(frame, material, now));
+        let mut iterations = self.momentum.predict(frame, krylov, tolerance, now);
+
+        self.pressure.assemble(frame, material, &self.momentum);
+        for _ in 0..controls.pressure_corrections.max(1) {
+            let solved =
+                self.pressure
+                    .correct(frame, material, &self.momentum, krylov, tolerance, now);
+            iterations += solved.iterations;
+        }
+        pressure::advance_mass(frame, now);
+
+        self.enthalpy.assemble(frame, material, now);
+        let (solved, heat) = self.enthalpy.solve(frame, krylov, tolerance, now);
+        iterations += solved.iterations;
+        (residual.max(heat), iterations)
+    }
+
+    fn volume_residual(&mut self, frame: &Frame<'_>, now: &State) -> f64 {
+        let gas = frame.properties;
+        let (_, worst) = largest(now.mass.len(), |cell| {
+            let density = gas.density(frame.reference_pressure, now.temperature[cell]);
+            let mass = frame.void_fraction[cell] * density * frame.grid.volume[cell];
+            (now.mass[cell] - mass).abs() / now.mass[cell]
+        });
+        worst
+    }
+}

@@ -1,0 +1,84 @@
+//! The state of the gas: what is committed, and what a checkpoint keeps.
+
+use std::path::Path;
+
+use calcine_coupler::checkpoint::{StateFile, StateFileError};
+use calcine_coupler::physics::Vec3;
+
+/// The fields of the gas; an attempt makes new ones from the committed ones.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct State {
+    /// Gas mass of each cell in kg, advanced by continuity alone; empty before the first window,
+    /// because only the bed says how much gas a cell holds.
+    pub mass: Vec<f64>,
+    /// Sensible enthalpy in J/kg.
+    pub enthalpy: Vec<f64>,
+    /// Temperature in K.
+    pub temperature: Vec<f64>,
+    /// Interstitial velocity in m/s.
+    pub velocity: Vec<Vec3>,
+    /// Pressure above the reference pressure in Pa.
+    pub pressure: Vec<f64>,
+    /// Cell gradient of the pressure in Pa/m.
+    pub pressure_gradient: Vec<Vec3>,
+    /// Superficial mass flux through each face in kg/s, out of its owner.
+    pub flux: Vec<f64>,
+    /// Void fraction.
+    pub void_fraction: Vec<f64>,
+}
+
+impl State {
+    /// Takes the values of another state into the memory that is there.
+    pub fn take(&mut self, other: &State) {
+        self.mass.clone_from(&other.mass);
+        self.enthalpy.clone_from(&other.enthalpy);
+        self.temperature.clone_from(&other.temperature);
+        self.velocity.clone_from(&other.velocity);
+        self.pressure.clone_from(&other.pressure);
+        self.pressure_gradient.clone_from(&other.pressure_gradient);
+        self.flux.clone_from(&other.flux);
+        self.void_fraction.clone_from(&other.void_fraction);
+    }
+
+    /// Writes the state.
+    pub fn write(&self, path: &Path) -> Result<(), StateFileError> {
+        let mut file = StateFile::new();
+        file.set_f64s("mass", &self.mass);
+        file.set_f64s("enthalpy", &self.enthalpy);
+        file.set_f64s("temperature", &self.temperature);
+        file.set_f64s("velocity", &flat(&self.velocity));
+        file.set_f64s("pressure", &self.pressure);
+        file.set_f64s("pressure_gradient", &flat(&self.pressure_gradient));
+        file.set_f64s("flux", &self.flux);
+        file.set_f64s("void_fraction", &self.void_fraction);
+        file.write(path)
+    }
+
+    /// Reads a state of this many cells and faces.
+    pub fn read(path: &Path, cells: usize, faces: usize) -> Result<Self, StateFileError> {
+        let file = StateFile::read(path)?;
+        let started = !file.f64s("mass")?.is_empty();
+        let placed = if started { cells } else { 0 };
+        Ok(Self {
+            mass: file.f64s_of("mass", placed)?.to_vec(),
+            enthalpy: file.f64s_of("enthalpy", cells)?.to_vec(),
+            temperature: file.f64s_of("temperature", cells)?.to_vec(),
+            velocity: vectors(file.f64s_of("velocity", 3 * cells)?),
+            pressure: file.f64s_of("pressure", cells)?.to_vec(),
+            pressure_gradient: vectors(file.f64s_of("pressure_gradient", 3 * cells)?),
+            flux: file.f64s_of("flux", faces)?.to_vec(),
+            void_fraction: file.f64s_of("void_fraction", placed)?.to_vec(),
+        })
+    }
+}
+
+/// Components of vectors, one vector after the other.
+pub(crate) fn flat(vectors: &[Vec3]) -> Vec<f64> {
+    vectors.iter().flat_map(|v| [v.x, v.y, v.z]).collect()
+}
+
+/// Vectors from their components.
+pub(crate) fn vectors(components: &[f64]) -> Vec<Vec3> {
+    let triples = components.as_chunks::<3>().0.iter();
+    triples.map(|&[x, y, z]| Vec3::new(x, y, z)).collect()
+}

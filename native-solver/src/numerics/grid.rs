@@ -1,0 +1,167 @@
+//! Geometry of faces and links between cells as the operators need them, made once from a mesh.
+
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::physics::Vec3;
+
+/// Directions shorter than this share of the distance between centres count as round-off.
+const SKEW: f64 = 1e-9;
+
+/// What a face's geometry means for differences across it. With n the unit normal (out of the
+/// owner), x_P, x_N, x_f the centres of owner, neighbour and face.
+#[derive(Clone, Copy, Debug)]
+pub struct Face {
+    /// Owner cell.
+    pub owner: usize,
+    /// Neighbour cell; `usize::MAX` on the boundary.
+    pub neighbour: usize,
+    /// Area in m².
+    pub area: f64,
+    /// Unit normal n.
+    pub normal: Vec3,
+    /// n·(x_f − x_P) in m.
+    pub owner_distance: f64,
+    /// n·(x_N − x_f) in m; zero on the boundary.
+    pub neighbour_distance: f64,
+    /// Part of x_f − x_P along the face, in m.
+    pub owner_skew: Vec3,
+    /// Part of x_N − x_f along the face, in m; zero on the boundary.
+    pub neighbour_skew: Vec3,
+}
+
+impl Face {
+    /// n·(x_N − x_P) in m; on the boundary n·(x_f − x_P).
+    pub fn distance(&self) -> f64 {
+        self.owner_distance + self.neighbour_distance
+    }
+
+    /// Weight of the owner in linear interpolation.
+    pub fn owner_weight(&self) -> f64 {
+        self.neighbour_distance / self.distance()
+    }
+}
+
+/// One face as a cell sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Link {
+    /// The face.
+    pub face: u32,
+    /// The cell on the other side; `u32::MAX` on the boundary.
+    pub other: u32,
+    /// Position of the other cell within the matrix row of this one.
+    pub slot: u32,
+    /// +1 where the face's normal points out of the cell, else −1.
+    pub sign: f64,
+}
+
+impl Link {
+    /// True on the boundary.
+    pub fn is_boundary(&self) -> bool {
+        self.other == u32::MAX
+    }
+}
+
+/// Faces, links and the graph of the matrix.
+#[derive(Clone, Debug)]
+pub struct Grid {
+    /// Cell volumes in m³.
+    pub volume: Vec<f64>,
+    /// Cell centres in m.
+    pub centre: Vec<Vec3>,
+    /// Faces, internal ones first.
+    pub faces: Vec<Face>,
+    /// Number of internal faces.
+    pub internal: usize,
+    /// True where no face needs a correction for a line between centres that misses the face's
+    /// centre or is not normal to it.
+    pub orthogonal: bool,
+    links: Vec<Link>,
+    link_offsets: Vec<u32>,
+    row_offsets: Vec<u32>,
+    columns: Vec<u32>,
+}
+
+impl Grid {
+    /// The grid of a mesh.
+    pub fn new(mesh: &Mesh) -> Self {
+        let faces: Vec<Face> = (0..mesh.faces()).map(|face| measure(mesh, face)).collect();
+        let orthogonal = faces.iter().all(|face| {
+            let skew = face.owner_skew.norm().max(face.neighbour_skew.norm());
+            skew <= SKEW * face.distance()
+        });
+        let mut grid = Self {
+            volume: mesh.cell_volume().to_vec(),
+            centre: mesh.cell_centre().to_vec(),
+            faces,
+            internal: mesh.internal_faces(),
+            orthogonal,
+            links: Vec::with_capacity(mesh.faces() + mesh.internal_faces()),
+            link_offsets: vec![0],
+            row_offsets: vec![0],
+            columns: Vec::with_capacity(2 * mesh.internal_faces()),
+        };
+        let mut others = Vec::new();
+        for cell in 0..mesh.cells() {
+            others.clear();
+            let across = |&face: &u32| mesh.across(cell, face as usize);
+            others.extend(mesh.faces_of(cell).iter().filter_map(across));
+            others.sort_unstable();
+            others.dedup();
+            grid.columns.extend(others.iter().map(|&cell| cell as u32));
+            grid.row_offsets.push(grid.columns.len() as u32);
+            for &face in mesh.faces_of(cell) {
+                let owned = mesh.owner()[face as usize] as usize == cell;
+                let other = mesh.across(cell, face as usize);
+                let slot = other.and_then(|other| others.binary_search(&other).ok());
+                grid.links.push(Link {
+                    face,
+                    other: other.map_or(u32::MAX, |cell| cell as u32),
+                    slot: slot.map_or(u32::MAX, |slot| slot as u32),
+                    sign: if owned { 1.0 } else { -1.0 },
+                });
+            }
+            grid.link_offsets.push(grid.links.len() as u32);
+        }
+        grid
+    }
+
+    /// Number of cells.
+    pub fn cells(&self) -> usize {
+        self.volume.len()
+    }
+
+    /// Links of a cell.
+    pub fn links(&self, cell: usize) -> &[Link] {
+        &self.links[self.link_offsets[cell] as usize..self.link_offsets[cell + 1] as usize]
+    }
+
+    /// Where the neighbours of each cell begin in `columns`; one more entry than cells.
+    pub fn row_offsets(&self) -> &[u32] {
+        &self.row_offsets
+    }
+
+    /// Neighbours of all cells, ascending within each cell.
+    pub fn columns(&self) -> &[u32] {
+        &self.columns
+    }
+}
+
+fn measure(mesh: &Mesh, face: usize) -> Face {
+    let owner = mesh.owner()[face] as usize;
+    let neighbour = mesh.neighbour().get(face).map(|&cell| cell as usize);
+    let area = mesh.face_area()[face].norm();
+    let normal = mesh.face_area()[face] / area;
+    let centre = mesh.face_centre()[face];
+    let inner = centre - mesh.cell_centre()[owner];
+    let outer = neighbour.map_or_else(Vec3::zeros, |cell| mesh.cell_centre()[cell] - centre);
+    let (owner_distance, neighbour_distance) = (normal.dot(&inner), normal.dot(&outer));
+    Face {
+        owner,
+        neighbour: neighbour.unwrap_or(usize::MAX),
+        area,
+        normal,
+        owner_distance,
+        neighbour_distance,
+        owner_skew: inner - owner_distance * normal,
+        neighbour_skew: outer - neighbour_distance * normal,
+    }
+}

@@ -1,0 +1,11 @@
+//! Finite volumes and linear solvers. Knows nothing of gas or particles.
+//!
+//! Every sum runs in fixed chunks and a fixed tree, so that results are the same bits on any
+//! number of threads.
+
+pub mod grid;
+pub mod krylov;
+pub mod matrix;
+pub mod operators;
+pub mod parallel;
+pub mod preconditioner;

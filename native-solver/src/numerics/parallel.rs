@@ -1,0 +1,127 @@
+//! Loops and sums in fixed chunks: the same bits on any number of threads.
+
+use rayon::prelude::*;
+
+/// Elements per chunk. Fixed, so that sums do not depend on the number of threads; what fits one
+/// chunk is computed by the caller's thread without any overhead.
+pub const CHUNK: usize = 4096;
+
+/// Sets every element to a function of its index.
+pub fn fill<T: Send>(values: &mut [T], value: impl Fn(usize) -> T + Sync) {
+    let chunk = |start: usize, values: &mut [T]| {
+        for (i, slot) in values.iter_mut().enumerate() {
+            *slot = value(start + i);
+        }
+    };
+    if values.len() <= CHUNK {
+        chunk(0, values);
+    } else {
+        values
+            .par_chunks_mut(CHUNK)
+            .enumerate()
+            .for_each(|(k, values)| chunk(k * CHUNK, values));
+    }
+}
+
+/// Changes every element, given its index.
+pub fn update<T: Send>(values: &mut [T], change: impl Fn(usize, &mut T) + Sync) {
+    let chunk = |start: usize, values: &mut [T]| {
+        for (i, slot) in values.iter_mut().enumerate() {
+            change(start + i, slot);
+        }
+    };
+    if values.len() <= CHUNK {
+        chunk(0, values);
+    } else {
+        values
+            .par_chunks_mut(CHUNK)
+            .enumerate()
+            .for_each(|(k, values)| chunk(k * CHUNK, values));
+    }
+}
+
+/// The sum of a function over `0..count`: chunk by chunk, then pairwise over the chunks.
+pub fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
+    let chunk = |from: usize| {
+        let to = count.min(from + CHUNK);
+        (from..to).fold(0.0, |sum, i| sum + term(i))
+    };
+    if count <= CHUNK {
+        return chunk(0);
+    }
+    let mut partial: Vec<f64> = (0..count.div_ceil(CHUNK))
+        .into_par_iter()
+        .map(|k| chunk(k * CHUNK))
+        .collect();
+    while partial.len() > 1 {
+        for i in 0..partial.len().div_ceil(2) {
+            partial[i] = partial[2 * i] + partial.get(2 * i + 1).unwrap_or(&0.0);
+        }
+        partial.truncate(partial.len().div_ceil(2));
+    }
+    partial[0]
+}
+
+/// The largest value of a function over `0..count`, with the first index that has it; a value
+/// that is not a number counts as larger than any other.
+pub fn largest(count: usize, value: impl Fn(usize) -> f64 + Sync) -> (usize, f64) {
+    let better = |best: (usize, f64), next: (usize, f64)| {
+        if best.1.is_nan() || (next.1 <= best.1 && !next.1.is_nan()) {
+            best
+        } else {
+            next
+        }
+    };
+    let chunk = |from: usize| {
+        let to = count.min(from + CHUNK);
+        (from..to)
+            .map(|i| (i, value(i)))
+            .fold((from, f64::NEG_INFINITY), better)
+    };
+    if count <= CHUNK {
+        return chunk(0);
+    }
+    let partial: Vec<_> = (0..count.div_ceil(CHUNK))
+        .into_par_iter()
+        .map(|k| chunk(k * CHUNK))
+        .collect();
+    partial.into_iter().fold((0, f64::NEG_INFINITY), better)
+}
+
+/// The scalar product of two vectors of equal length.
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    sum(a.len(), |i| a[i] * b[i])
+}
+
+/// The sum of magnitudes.
+pub fn magnitude(a: &[f64]) -> f64 {
+    sum(a.len(), |i| a[i].abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sum_has_the_same_bits_on_one_and_on_seven_threads() {
+        let term = |i: usize| ((i * 7919) % 1013) as f64 / 1013.0 - 0.4 + 1e-9 * i as f64;
+        let on = |threads| {
+            rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap()
+                .install(|| sum(1_000_003, term))
+        };
+        assert_eq!(on(1).to_bits(), on(7).to_bits());
+        let plain: f64 = (0..1_000_003).map(term).sum();
+        assert!((on(1) / plain - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_largest_is_found_with_its_first_index_and_nan_wins() {
+        assert_eq!(largest(3, |i| [1.0, 5.0, 5.0][i]), (1, 5.0));
+        let (index, value) = largest(20_000, |i| if i == 9_000 { f64::NAN } else { i as f64 });
+        assert_eq!(index, 9_000);
+        assert!(value.is_nan());
+    }
+}

@@ -1,0 +1,207 @@
+//! What the gas tests share: meshes, setups, and a driver of windows.
+#![allow(dead_code)]
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
+use calcine_coupler::part::{Bed, CellExchange, CellReceived, Convergence, Gas, Part};
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::gas::GasProperties;
+use calcine_coupler::setup::{GasControls, GasPatch, GasSetup, Schedule, WallHeat};
+use calcine_coupler::supervisor::{Interrupts, Supervisor};
+use calcine_coupler::time::{Clocks, GasStorage, Ticks, Window};
+use calcine_native::gas::NativeGas;
+
+/// Air as the cases have it.
+pub const AIR: GasProperties = GasProperties {
+    molar_mass: 0.028_96,
+    heat_capacity: 1005.0,
+    sutherland_coefficient: 1.4792e-6,
+    sutherland_temperature: 116.0,
+};
+/// One atmosphere in Pa.
+pub const ATMOSPHERE: f64 = 101_325.0;
+
+/// A box with `bottom` and `top` across z and four sides named `side`.
+pub fn duct(size: [f64; 3], cells: [usize; 3]) -> Arc<Mesh> {
+    let patches = ["side", "side", "side", "side", "bottom", "top"];
+    named_box(size, cells, patches)
+}
+
+pub fn named_box(size: [f64; 3], cells: [usize; 3], patches: [&str; 6]) -> Arc<Mesh> {
+    let spec = BoxSpec {
+        origin: Vec3::zeros(),
+        size: size.into(),
+        cells,
+        patches: patches.map(str::to_owned),
+    };
+    Arc::new(box_mesh(&spec).unwrap())
+}
+
+pub fn inlet(velocity: f64, temperature: f64) -> GasPatch {
+    GasPatch::Inlet {
+        superficial_velocity: Schedule::constant(velocity),
+        temperature: Schedule::constant(temperature),
+    }
+}
+
+pub fn outlet() -> GasPatch {
+    GasPatch::Outlet {
+        pressure: ATMOSPHERE,
+    }
+}
+
+pub fn slip() -> GasPatch {
+    GasPatch::Wall {
+        no_slip: false,
+        heat: WallHeat::Adiabatic,
+    }
+}
+
+pub fn no_slip() -> GasPatch {
+    GasPatch::Wall {
+        no_slip: true,
+        heat: WallHeat::Adiabatic,
+    }
+}
+
+pub fn warm_wall(temperature: f64) -> GasPatch {
+    GasPatch::Wall {
+        no_slip: true,
+        heat: WallHeat::Temperature(Schedule::constant(temperature)),
+    }
+}
+
+/// Air of 300 K at rest, without gravity, solved tightly.
+pub fn setup(patches: &[(&str, GasPatch)]) -> GasSetup {
+    GasSetup {
+        mixture: "air".into(),
+        properties: AIR,
+        storage: GasStorage::Process,
+        temperature: 300.0,
+        pressure: ATMOSPHERE,
+        velocity: Vec3::zeros(),
+        gravity: Vec3::zeros(),
+        patches: patches
+            .iter()
+            .map(|(name, patch)| ((*name).to_owned(), patch.clone()))
+            .collect(),
+        controls: GasControls {
+            outer_iterations: 50,
+            pressure_corrections: 2,
+            outer_tolerance: 1e-9,
+            linear_tolerance: 1e-12,
+        },
+    }
+}
+
+/// A gas with its inputs, driven window by window.
+pub struct Driver {
+    pub gas: NativeGas,
+    pub bed: Bed,
+    pub exchange: CellExchange,
+    pub received: CellReceived,
+    pub clocks: Clocks,
+    pub index: u64,
+    supervisor: Supervisor,
+}
+
+impl Driver {
+    /// An empty duct: void fraction 1, no exchange.
+    pub fn new(mesh: &Arc<Mesh>, setup: &GasSetup) -> Self {
+        let cells = mesh.cells();
+        Self {
+            gas: NativeGas::new(mesh.clone(), setup).unwrap(),
+            bed: Bed {
+                void_fraction: vec![1.0; cells],
+            },
+            exchange: CellExchange {
+                drag_coefficient: vec![0.0; cells],
+                drag_source: vec![Vec3::zeros(); cells],
+                heat_coefficient: vec![0.0; cells],
+                heat_source: vec![0.0; cells],
+            },
+            received: CellReceived::default(),
+            clocks: Clocks::default(),
+            index: 0,
+            supervisor: Supervisor::new(Duration::from_secs(60), Interrupts::default()),
+        }
+    }
+
+    /// An attempt of a window of this motion span in s, at an acceleration factor.
+    pub fn attempt(&mut self, motion: f64, factor: f64) -> (Window, Convergence) {
+        let window = Window {
+            index: self.index,
+            attempt: 0,
+            start: self.clocks,
+            span: Clocks {
+                motion: Ticks::from_seconds(motion).unwrap(),
+                process: Ticks::from_seconds(motion * factor).unwrap(),
+            },
+        };
+        self.gas.start(&window, &self.bed, &self.exchange).unwrap();
+        let result = self.gas.finish(&self.supervisor, &mut self.received);
+        (window, result.unwrap())
+    }
+
+    /// A window: an attempt and its commit.
+    pub fn window(&mut self, motion: f64, factor: f64) -> Convergence {
+        let (window, convergence) = self.attempt(motion, factor);
+        self.gas.commit().unwrap();
+        self.clocks = window.end().unwrap();
+        self.index += 1;
+        convergence
+    }
+
+    /// Windows until the outer loop has nothing left to do in its first iteration.
+    pub fn settle(&mut self, motion: f64, factor: f64, most: usize) -> usize {
+        for done in 1..=most {
+            let convergence = self.window(motion, factor);
+            if convergence.converged && convergence.outer_iterations == 1 {
+                return done;
+            }
+        }
+        panic!("not steady after {most} windows");
+    }
+
+    /// All fields as bits.
+    pub fn bits(&self) -> Vec<u64> {
+        let fields = self.gas.fields();
+        let scalars = [fields.temperature, fields.pressure, fields.density];
+        let vectors = [fields.velocity, fields.pressure_gradient];
+        scalars
+            .iter()
+            .flat_map(|field| field.iter())
+            .chain(vectors.iter().flat_map(|field| field.iter().flatten()))
+            .map(|value| value.to_bits())
+            .collect()
+    }
+}
+
+/// The balance's error relative to the largest of its parts.
+pub fn closure(balance: &calcine_coupler::part::Balance) -> f64 {
+    let error = balance.stored - balance.boundary - balance.exchange - balance.source;
+    let parts = [
+        balance.stored_magnitude,
+        balance.boundary_magnitude,
+        balance.exchange.abs(),
+        balance.source_magnitude,
+    ];
+    error.abs() / parts.into_iter().fold(f64::MIN_POSITIVE, f64::max)
+}
+
+/// Numbers in [0, 1), the same at each call (a linear congruential generator, Knuth's MMIX
+/// constants).
+pub fn scatter(count: usize, seed: u64) -> Vec<f64> {
+    let mut state = seed;
+    (0..count)
+        .map(|_| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        })
+        .collect()
+}
