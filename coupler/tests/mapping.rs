@@ -1,5 +1,7 @@
 //! Base mappings of particles onto cells (requirements VFS-1, CON-6) and cell location.
 
+#![allow(clippy::unwrap_used)]
+
 use calcine_coupler::mapping::{Mapper, MappingError, Method};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};

@@ -1,7 +1,10 @@
 //! Meshes: generated boxes and polyMesh folders.
 
+#![allow(clippy::unwrap_used)]
+
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
@@ -83,4 +86,220 @@ fn a_written_mesh_reads_back_to_the_bit() {
     let mesh = mesh([2, 3, 4]);
     write(&mesh, folder.path()).unwrap();
     assert_eq!(read(folder.path()).unwrap(), mesh);
+}
+
+const FILES: [&str; 5] = ["points", "faces", "owner", "neighbour", "boundary"];
+
+/// A written mesh, one file of it changed.
+fn with(folder: &Path, file: &str, change: impl FnOnce(String) -> Vec<u8>) {
+    write(&mesh([2, 1, 1]), folder).unwrap();
+    let text = fs::read_to_string(folder.join(file)).unwrap();
+    fs::write(folder.join(file), change(text)).unwrap();
+}
+
+fn error_after(file: &str, change: impl FnOnce(String) -> Vec<u8>) -> PolyMeshError {
+    let folder = tempfile::tempdir().unwrap();
+    with(folder.path(), file, change);
+    read(folder.path()).unwrap_err()
+}
+
+/// A file's header in the given format, and its class.
+fn header(class: &str, format: &str) -> Vec<u8> {
+    format!(
+        "/* banner */\nFoamFile\n{{\n version 2.0;\n format {format};\n class {class};\n \
+         arch \"LSB;label=32;scalar=64\";\n note \"a;b\";\n}}\n// * * *\n\n"
+    )
+    .into_bytes()
+}
+
+/// A binary list as OpenFOAM 1912 writes it.
+fn raw(count: usize, bytes: impl IntoIterator<Item = u8>) -> Vec<u8> {
+    let mut list = format!("{count}\n(").into_bytes();
+    list.extend(bytes);
+    list.extend(b")\n");
+    list
+}
+
+fn raw_labels(labels: &[u32]) -> Vec<u8> {
+    raw(
+        labels.len(),
+        labels.iter().flat_map(|label| label.to_le_bytes()),
+    )
+}
+
+#[test]
+fn binary_files_and_compact_faces_read_as_the_same_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = mesh([2, 3, 1]);
+    write(&mesh, folder.path()).unwrap();
+    let topology = mesh.topology();
+    let put = |name: &str, class: &str, body: Vec<u8>| {
+        fs::write(
+            folder.path().join(name),
+            [header(class, "binary"), body].concat(),
+        )
+        .unwrap();
+    };
+    let coordinates = topology.points.iter().flat_map(|p| [p.x, p.y, p.z]);
+    let bytes: Vec<u8> = coordinates.flat_map(f64::to_le_bytes).collect();
+    put("points", "vectorField", raw(topology.points.len(), bytes));
+    let faces = [
+        raw_labels(&topology.face_offsets),
+        raw_labels(&topology.face_points),
+    ];
+    put("faces", "faceCompactList", faces.concat());
+    put("owner", "labelList", raw_labels(&topology.owner));
+    put("neighbour", "labelList", raw_labels(&topology.neighbour));
+    assert_eq!(read(folder.path()).unwrap(), mesh);
+}
+
+#[test]
+fn comments_lists_without_length_and_uniform_lists_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    with(folder.path(), "owner", |text| {
+        let list = text.find("11\n(").unwrap();
+        let text = format!("{}/* eleven */ {}", &text[..list], &text[list + 3..]);
+        text.replacen('(', "( // faces\n", 1).into_bytes()
+    });
+    let neighbour = folder.path().join("neighbour");
+    fs::write(
+        &neighbour,
+        [header("labelList", "ascii"), b"1{1}".to_vec()].concat(),
+    )
+    .unwrap();
+    let boundary = folder.path().join("boundary");
+    let text = fs::read_to_string(&boundary).unwrap().replace(
+        "type            patch;",
+        "type wall; inGroups List<word> 1(wall); extra { deep { a 1; } }",
+    );
+    fs::write(&boundary, text).unwrap();
+    assert_eq!(read(folder.path()).unwrap(), mesh([2, 1, 1]));
+}
+
+#[test]
+fn errors_name_the_file_and_the_line() {
+    let text = |error: PolyMeshError| error.to_string();
+    // The list of the file `owner` begins on line 12, its entries on line 13.
+    let error = text(error_after("owner", |text| {
+        text.replacen("\n0\n", "\n0.5\n", 1).into_bytes()
+    }));
+    assert!(
+        error.ends_with("owner, line 13: expected a label, 0 or more, found `0.5`"),
+        "{error}"
+    );
+    let error = text(error_after("points", |text| {
+        text.replacen("12\n(", "13\n(", 1).into_bytes()
+    }));
+    assert!(
+        error.contains("points, line 24: a list of 12 entries that announces 13"),
+        "{error}"
+    );
+    let error = text(error_after("boundary", |text| {
+        text.replace("nFaces", "faces").into_bytes()
+    }));
+    assert!(error.contains("patch `side` lacks `nFaces`"), "{error}");
+    let error = text(error_after("faces", |_| b"1 ( )".to_vec()));
+    assert!(
+        error.contains("faces, line 1: expected the header `FoamFile`"),
+        "{error}"
+    );
+    let error = text(error_after("neighbour", |text| {
+        text.replace("ascii", "xml").into_bytes()
+    }));
+    assert!(
+        error.contains("only `ascii` and `binary` are known"),
+        "{error}"
+    );
+    let error = text(error_after("owner", |text| (text + "1").into_bytes()));
+    assert!(error.contains("text after the end of the list"), "{error}");
+    let error = text(error_after("boundary", |text| {
+        text.replace("3\n(", "4\n(").into_bytes()
+    }));
+    assert!(
+        error.contains("a list of 3 entries that announces 4"),
+        "{error}"
+    );
+}
+
+#[test]
+fn files_that_contradict_each_other_and_missing_ones_are_named() {
+    let error = error_after("owner", |text| {
+        text.replacen("\n0\n", "\n7\n", 1).into_bytes()
+    });
+    assert!(matches!(error, PolyMeshError::Mesh { .. }), "{error}");
+    let folder = tempfile::tempdir().unwrap();
+    let error = read(folder.path()).unwrap_err();
+    assert!(matches!(&error, PolyMeshError::Io { file, .. } if file.ends_with("points")));
+}
+
+/// Debian's checkMesh, where it is installed, as an independent judge of the numbering.
+#[test]
+fn openfoam_accepts_a_written_box() {
+    let case = tempfile::tempdir().unwrap();
+    write(&mesh([4, 3, 5]), &case.path().join("constant/polyMesh")).unwrap();
+    fs::create_dir(case.path().join("system")).unwrap();
+    let dictionaries = [
+        (
+            "controlDict",
+            "startFrom startTime; startTime 0; stopAt endTime; endTime 1; deltaT 1;\n\
+             writeControl timeStep; writeInterval 1;\n",
+        ),
+        (
+            "fvSchemes",
+            "ddtSchemes {} gradSchemes {} divSchemes {} laplacianSchemes {}\n",
+        ),
+        ("fvSolution", "solvers {}\n"),
+    ];
+    for (name, body) in dictionaries {
+        let head = "FoamFile\n{\n version 2.0;\n format ascii;\n class dictionary;\n object ";
+        let text = format!("{head}{name};\n}}\n{body}");
+        fs::write(case.path().join("system").join(name), text).unwrap();
+    }
+    let output = Command::new("checkMesh")
+        .args(["-allGeometry", "-allTopology", "-case"])
+        .arg(case.path())
+        .env("WM_PROJECT_DIR", "/usr/share/openfoam")
+        .output();
+    let Ok(output) = output else {
+        eprintln!("SKIPPED: checkMesh is not installed");
+        return;
+    };
+    let mut text = String::from_utf8_lossy(&output.stdout).into_owned();
+    text += &String::from_utf8_lossy(&output.stderr);
+    assert!(text.contains("Mesh OK."), "{text}");
+    assert!(text.contains("hexahedra:     60"), "{text}");
+    assert!(!text.contains("***"), "{text}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+    #[test]
+    fn mutated_files_never_panic(
+        file in 0..FILES.len(),
+        binary in any::<bool>(),
+        edits in prop::collection::vec((any::<prop::sample::Index>(), 0..4u8, any::<u8>()), 1..6),
+    ) {
+        let folder = tempfile::tempdir().unwrap();
+        with(folder.path(), FILES[file], |text| {
+            let text = if binary { text.replace("ascii", "binary") } else { text };
+            let mut bytes = text.into_bytes();
+            for (at, kind, byte) in edits {
+                if bytes.is_empty() {
+                    break;
+                }
+                let at = at.index(bytes.len());
+                match kind {
+                    0 => bytes[at] = byte,
+                    1 => bytes[at] = b"0123456789(){};/*\" -e."[byte as usize % 22],
+                    2 => drop(bytes.remove(at)),
+                    _ => bytes.truncate(at),
+                }
+            }
+            bytes
+        });
+        // Either a mesh or an error that says where.
+        if let Err(error) = read(folder.path()) {
+            prop_assert!(!error.to_string().is_empty());
+        }
+    }
 }

@@ -1,5 +1,7 @@
 //! The Volume Fraction Smoother (requirements VFS-1..8, VFS-V1).
 
+#![allow(clippy::unwrap_used)]
+
 use calcine_coupler::mapping::{Mapper, Method, Weights};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
@@ -195,6 +197,34 @@ fn excess_in_a_line_of_cells_fills_one_after_the_other() {
     for (alpha, expected) in operator.solid_fraction().iter().zip(expected) {
         assert!((alpha - expected).abs() < 2e-4, "{alpha} {expected}");
     }
+}
+
+/// VFS-4: shares in proportion to |S|/|d|. Cells of 1 x 2 x 1 have conductances of 2, 1/2, 2
+/// through their six faces, 9 in all.
+#[test]
+fn excess_is_shared_by_the_conductances_of_the_mesh() {
+    let mesh = box_mesh(&BoxSpec {
+        origin: Vec3::zeros(),
+        size: Vec3::new(3.0, 6.0, 3.0),
+        cells: [3, 3, 3],
+        patches: ["all"; 6].map(String::from),
+    })
+    .unwrap();
+    let operator = operator_of(&mesh, vec![vec![(13, 1.0)]], &[2.0]);
+    let alpha = operator.solid_fraction();
+    let excess = 1.0 - 0.64;
+    for (neighbour, share) in [
+        (12, 2.0),
+        (14, 2.0),
+        (10, 0.5),
+        (16, 0.5),
+        (4, 2.0),
+        (22, 2.0),
+    ] {
+        let expected = excess * share / 9.0;
+        assert!((alpha[neighbour] - expected).abs() < 1e-14, "{neighbour}");
+    }
+    assert!((alpha[13] - 0.64).abs() < 1e-14);
 }
 
 #[test]

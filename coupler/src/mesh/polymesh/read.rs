@@ -11,7 +11,7 @@ use crate::mesh::{Mesh, Patch, Topology};
 
 /// Reads the mesh in a polyMesh folder, ASCII or binary (as each file's header says).
 pub fn read(dir: &Path) -> Result<Mesh, PolyMeshError> {
-    let points = in_file(dir, "points", |scan, header| points(scan, header))?;
+    let points = in_file(dir, "points", points)?;
     let (face_offsets, face_points) = in_file(dir, "faces", faces)?;
     let limit = face_offsets.len();
     let owner = in_file(dir, "owner", |scan, header| labels(scan, header, limit))?;
