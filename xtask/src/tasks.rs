@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::adapters::OpenfoamAdapter;
+use crate::headers;
 use crate::packages::{self, Needs};
 use crate::steps::{Outcome, Stop, loud_step, say, step, visibly};
 use crate::workspace::{Profile, Workspace};
@@ -18,7 +19,7 @@ pub fn set_up(workspace: &Workspace, needs: Needs, build: bool) -> Outcome<()> {
     if build {
         build_parts(workspace, needs, Profile::Release)?;
     } else if needs.openfoam {
-        OpenfoamAdapter::new(workspace)?;
+        headers::prepare(&workspace.openfoam, &workspace.logs)?;
     }
     Ok(())
 }
