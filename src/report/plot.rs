@@ -242,11 +242,11 @@ impl Plot<'_> {
 /// A range with some air around it; a flat one gets a visible height.
 fn padded(range: Range) -> Range {
     let span = range.high - range.low;
-    let least = 1e-6 * range.high.abs().max(range.low.abs()).max(1e-30);
-    let air = if span > least {
-        0.06 * span
-    } else {
-        50.0 * least
+    let size = range.high.abs().max(range.low.abs());
+    let air = match size {
+        0.0 => 1.0,
+        _ if span > 1e-6 * size => 0.06 * span,
+        _ => 0.01 * size,
     };
     Range {
         low: range.low - air,

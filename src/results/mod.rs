@@ -6,6 +6,8 @@
 
 mod error;
 pub(crate) mod files;
+// Only HDF5 holds probes, units and descriptions.
+#[cfg_attr(not(feature = "hdf5"), allow(dead_code))]
 mod locate;
 pub mod quantities;
 pub mod read;
@@ -13,9 +15,10 @@ pub mod read;
 mod recorder;
 mod resume;
 mod series;
+#[cfg_attr(not(feature = "hdf5"), allow(dead_code))]
 mod snapshot;
 mod status;
-#[cfg(feature = "hdf5")]
+#[cfg_attr(not(feature = "hdf5"), path = "no_store.rs")]
 mod store;
 pub mod summary;
 mod vtk;

@@ -13,11 +13,12 @@ use super::quantities::{self, Captured};
 use super::resume::{self, Counters};
 use super::series::{self, Row, TRACKED_PARTICLES, Table};
 use super::status::{Status, Watch};
+use super::store::Store;
 use super::summary::{
     Backends, CaseName, Ledger, LedgerLine, Solver, Solvers, Summary, Verdict, WallTimes,
 };
 use super::vtk::{self, Cells};
-use super::{CASE, ResultsError, SUMMARY, files, snapshot};
+use super::{CASE, ResultsError, STORE, SUMMARY, files, snapshot};
 use crate::case::model::Case;
 
 /// So many rows are gathered before they go to the HDF5 file.
@@ -40,10 +41,8 @@ struct Open {
     lines: Vec<Line>,
     cells: Cells,
     /// Rows not yet in the HDF5 file.
-    #[cfg(feature = "hdf5")]
     pending: Vec<Row>,
-    #[cfg(feature = "hdf5")]
-    store: super::store::Store,
+    store: Store,
 }
 
 /// Writes the results of a run.
@@ -135,23 +134,17 @@ impl Recorder {
         } else {
             Table::create(&self.directory, &columns, tracked)?
         };
-        #[cfg(feature = "hdf5")]
-        let store = {
-            use super::store::Store;
-            let path = self.directory.join(super::STORE);
-            if self.resumed {
-                Store::resume(&path, &columns, self.counters.rows)?
-            } else {
-                Store::create(&path, &self.case, moment.mesh, &columns, tracked, &lines)?
-            }
+        let path = self.directory.join(STORE);
+        let store = if self.resumed {
+            Store::resume(&path, &columns, self.counters.rows)?
+        } else {
+            Store::create(&path, &self.case, moment.mesh, &columns, tracked, &lines)?
         };
         self.open = Some(Open {
             table,
             lines,
             cells: Cells::new(moment.mesh),
-            #[cfg(feature = "hdf5")]
             pending: Vec::new(),
-            #[cfg(feature = "hdf5")]
             store,
         });
         self.collect()?;
@@ -250,7 +243,6 @@ impl Recorder {
         vtk::write_gas(&path, moment.mesh, &open.cells, now.seconds(), &gas)?;
         let path = self.directory.join(resume::particle_file(number));
         vtk::write_particles(&path, moment.particles.position, now.seconds(), &particles)?;
-        #[cfg(feature = "hdf5")]
         open.store
             .snapshot(number, moment, &gas, &particles, &open.lines)?;
         self.counters.snapshots.push(now.seconds());
@@ -370,7 +362,6 @@ impl Recorder {
 }
 
 impl Open {
-    #[cfg(feature = "hdf5")]
     fn keep(&mut self, row: Row) -> Result<(), ResultsError> {
         self.pending.push(row);
         if self.pending.len() >= BATCH {
@@ -379,18 +370,10 @@ impl Open {
         Ok(())
     }
 
-    #[cfg(not(feature = "hdf5"))]
-    fn keep(&mut self, _row: Row) -> Result<(), ResultsError> {
-        Ok(())
-    }
-
     fn flush(&mut self) -> Result<(), ResultsError> {
-        #[cfg(feature = "hdf5")]
-        {
-            self.store.append(&self.pending)?;
-            self.pending.clear();
-            self.store.flush()?;
-        }
+        self.store.append(&self.pending)?;
+        self.pending.clear();
+        self.store.flush()?;
         self.table.flush()
     }
 }

@@ -1,0 +1,56 @@
+//! In place of `results.h5` where Calcine is built without HDF5: nothing is written.
+
+use std::path::Path;
+
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::observer::Moment;
+
+use super::ResultsError;
+use super::locate::Line;
+use super::series::{Column, Row};
+use super::snapshot::Field;
+use crate::case::model::Case;
+
+/// No file.
+pub(super) struct Store;
+
+impl Store {
+    /// Begins nothing.
+    pub fn create(
+        _path: &Path,
+        _case: &Case,
+        _mesh: &Mesh,
+        _columns: &[Column],
+        _tracked: &[u64],
+        _lines: &[Line],
+    ) -> Result<Self, ResultsError> {
+        Ok(Self)
+    }
+
+    /// Opens nothing.
+    pub fn resume(_path: &Path, _columns: &[Column], _rows: usize) -> Result<Self, ResultsError> {
+        Ok(Self)
+    }
+
+    /// Appends nothing.
+    pub fn append(&mut self, _rows: &[Row]) -> Result<(), ResultsError> {
+        Ok(())
+    }
+
+    /// Writes nothing.
+    pub fn snapshot(
+        &mut self,
+        _number: usize,
+        _moment: &Moment<'_>,
+        _gas: &[Field<'_>],
+        _particles: &[Field<'_>],
+        _lines: &[Line],
+    ) -> Result<(), ResultsError> {
+        Ok(())
+    }
+
+    /// Flushes nothing.
+    pub fn flush(&self) -> Result<(), ResultsError> {
+        Ok(())
+    }
+}
