@@ -10,7 +10,7 @@ use crate::words;
 
 /// One end of one rank's link.
 pub struct Link {
-    transport: Box<dyn Transport>,
+    transport: Box<dyn Transport + Send>,
     run: u64,
     rank: u32,
     catalogue: Catalogue,
@@ -20,7 +20,7 @@ pub struct Link {
 
 impl Link {
     /// A link without a catalogue; the handshake brings it.
-    pub fn new(transport: Box<dyn Transport>, run: u64, rank: u32) -> Self {
+    pub fn new(transport: Box<dyn Transport + Send>, run: u64, rank: u32) -> Self {
         Self {
             transport,
             run,

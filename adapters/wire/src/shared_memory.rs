@@ -13,7 +13,7 @@ use iceoryx2::port::subscriber::Subscriber;
 use iceoryx2::prelude::*;
 use iceoryx2::sample::Sample;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use rustix::process::{Pid, PidfdFlags, pidfd_open};
+use rustix::process::{Pid, PidfdFlags, Signal, getpid, kill_process, pidfd_open};
 
 use crate::record::Header;
 use crate::run::{self, LinkAddress};
@@ -30,6 +30,8 @@ const SLOTS: u64 = BUFFER as u64 + 3;
 const FULL_FOR: Duration = Duration::from_millis(500);
 /// How long a solver waits before it looks at the coordinator again.
 const LOOK: Duration = Duration::from_millis(50);
+/// How long after the coordinator's death a solver may take to end by itself.
+const GRACE: Duration = Duration::from_millis(400);
 
 /// Which end of a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,6 +130,29 @@ impl SharedMemory {
     }
 }
 
+/// A solver that computes does not look at its link. A thread of its own ends it when the coordinator
+/// has died and the solver did not end by itself meanwhile.
+fn end_with(address: &LinkAddress, pid: u32, pidfd: &OwnedFd) -> Result<(), WireError> {
+    let pidfd = pidfd
+        .try_clone()
+        .map_err(failed("watching the coordinator"))?;
+    let address = address.clone();
+    let watch = move || {
+        let mut fds = [PollFd::new(&pidfd, PollFlags::IN)];
+        while !matches!(poll(&mut fds, None), Ok(ready) if ready > 0) {}
+        std::thread::sleep(GRACE);
+        eprintln!("{}", WireError::PeerDead { pid });
+        address.remove_files();
+        // No handler of an exit may hold the process up: MPI's would wait for other ranks.
+        let _ = kill_process(getpid(), Signal::KILL);
+    };
+    std::thread::Builder::new()
+        .name("calcine-watch".into())
+        .spawn(watch)
+        .map_err(failed("watching the coordinator"))?;
+    Ok(())
+}
+
 /// Begins to watch the coordinator; without a pidfd it is already dead.
 fn watch(address: &LinkAddress) -> Result<Peer, WireError> {
     let (pid, since) = address.coordinator()?;
@@ -135,6 +160,9 @@ fn watch(address: &LinkAddress) -> Result<Peer, WireError> {
     let pidfd = raw.and_then(|raw| pidfd_open(raw, PidfdFlags::empty()).ok());
     // The number may belong to a later process by now.
     let pidfd = pidfd.filter(|_| run::started(pid) == Some(since));
+    if let Some(pidfd) = &pidfd {
+        end_with(address, pid, pidfd)?;
+    }
     Ok(Peer { pid, pidfd })
 }
 
