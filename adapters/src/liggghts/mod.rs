@@ -1,0 +1,1 @@
+//! Particles in Debian's LIGGGHTS, run as a library by the host `calcine-liggghts`.
