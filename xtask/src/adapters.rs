@@ -95,8 +95,15 @@ impl OpenfoamAdapter {
 
 /// A short text that differs when anything does that the C++ is made of.
 fn stamp(root: &Path, headers: &Path) -> Outcome<String> {
-    let mut files = vec![root.join("Cargo.lock")];
-    for part in ["adapters/openfoam", "adapters/wire"] {
+    let mut files = vec![
+        root.join("Cargo.lock"),
+        root.join("adapters/wire/Cargo.toml"),
+    ];
+    for part in [
+        "adapters/openfoam",
+        "adapters/wire/include",
+        "adapters/wire/src",
+    ] {
         collect(&root.join(part), &mut files)?;
     }
     files.sort();

@@ -38,13 +38,18 @@ pub fn run(workspace: &Workspace, words: &[OsString]) -> Outcome<()> {
 
 /// Sets up and builds everything, then runs all tests; natively: those without other solvers.
 pub fn test(workspace: &Workspace, native: bool, words: &[OsString]) -> Outcome<()> {
-    let needs = if native { Needs::NATIVE } else { Needs::ALL };
+    let needs = if native {
+        Needs {
+            tests: true,
+            ..Needs::NATIVE
+        }
+    } else {
+        Needs::ALL
+    };
     {
         let _lock = workspace.lock()?;
         packages::install(needs, &workspace.logs)?;
-        if !native {
-            build_parts(workspace, needs, Profile::Dev)?;
-        }
+        build_parts(workspace, needs, Profile::Dev)?;
     }
     let mut command = workspace.cargo("test");
     if !native && !chooses_packages(words) {
@@ -117,7 +122,8 @@ fn build_parts(workspace: &Workspace, needs: Needs, profile: Profile) -> Outcome
     let mut command = workspace.cargo("build");
     command.args(["--profile", profile.name()]);
     if profile == Profile::Dev {
-        command.arg("--workspace");
+        // The C ABI's test links the static library, which only `cargo build` leaves in place.
+        command.args(needs.liggghts.then_some("--workspace"));
     } else {
         command.args(["-p", "calcine"]);
         if adapter
