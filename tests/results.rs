@@ -1,4 +1,5 @@
 //! Results of a run: written by the recorder, read by others.
+#![allow(clippy::unwrap_used)]
 
 #[path = "results/fake.rs"]
 mod fake;

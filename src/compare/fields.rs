@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::quantities::{common_times, words};
+use super::quantities::{common_times, exceeds, words};
 use super::{Agreement, CompareError, Source};
 use crate::case::model::{Band, Case, Measure};
 use crate::report::plot::between;
@@ -63,10 +63,10 @@ impl FieldDifference {
         let mut pairs = self.pairs.iter();
         let first = pairs.next()?;
         Some(pairs.fold(first, |worst, pair| {
-            if pair.maximum <= worst.maximum {
-                worst
-            } else {
+            if exceeds(pair.maximum, worst.maximum) {
                 pair
+            } else {
+                worst
             }
         }))
     }
@@ -85,8 +85,7 @@ impl Sums {
         self.squares += squared;
         self.count += 1.0;
         let distance = squared.sqrt();
-        // A comparison with NaN is false: a missing value is the largest difference.
-        if !(distance <= self.norms.maximum) {
+        if exceeds(distance, self.norms.maximum) {
             self.norms.maximum = distance;
             self.norms.place = place;
             self.norms.at_s = time;
@@ -225,7 +224,7 @@ fn snapshots(
         .iter()
         .map(|source| read::collection(&source.directory, collection))
         .collect::<Result<Vec<_>, _>>()?;
-    let mut found: Vec<(String, Vec<(usize, usize, Sums)>, (f64, f64))> = Vec::new();
+    let mut found: Vec<Found> = Vec::new();
     let count = lists.iter().map(Vec::len).min().unwrap_or(0);
     for number in 1..count {
         let time = lists[0][number].0;
@@ -240,40 +239,53 @@ fn snapshots(
             .keys()
             .filter(|name| !GEOMETRY.contains(&name.as_str()))
         {
-            let place = match found.iter().position(|(other, ..)| other == name) {
+            let place = match found.iter().position(|field| field.name == *name) {
                 Some(place) => place,
                 None => {
-                    let range = (f64::INFINITY, f64::NEG_INFINITY);
-                    found.push((name.clone(), pairs(sources), range));
+                    found.push(Found {
+                        name: name.clone(),
+                        sums: pairs(sources),
+                        range: (f64::INFINITY, f64::NEG_INFINITY),
+                    });
                     found.len() - 1
                 }
             };
-            let (_, sums, range) = &mut found[place];
-            add(sources, &arrays, name, time, sums, range)?;
+            add(sources, &arrays, time, &mut found[place])?;
         }
     }
-    let named = |(name, sums, range): (String, _, _)| {
-        finish(&format!("{group}.{name}"), per, unit(&name), sums, range)
+    let named = |field: Found| {
+        let name = format!("{group}.{}", field.name);
+        finish(&name, per, unit(&field.name), field.sums, field.range)
     };
     Ok(found.into_iter().map(named).collect())
 }
 
+/// A field of the snapshots in the making.
+struct Found {
+    name: String,
+    sums: Vec<(usize, usize, Sums)>,
+    /// Smallest and largest value so far.
+    range: (f64, f64),
+}
+
+/// Adds one snapshot of all runs to a field.
 fn add(
     sources: &[Source],
     arrays: &[Arrays],
-    name: &str,
     time: f64,
-    sums: &mut [(usize, usize, Sums)],
-    range: &mut (f64, f64),
+    field: &mut Found,
 ) -> Result<(), CompareError> {
-    let reference = &arrays[0][name];
+    let Found { name, sums, range } = field;
+    let reference = &arrays[0][name.as_str()];
     let ids = arrays[0].get("id").map(|array| &array.values);
     let mut lists = Vec::new();
     for (source, other) in sources.iter().zip(arrays) {
-        let values = other.get(name).map_or(&[][..], |array| &array.values);
+        let values = other
+            .get(name.as_str())
+            .map_or(&[][..], |array| &array.values);
         if values.len() != reference.values.len() {
             return Err(CompareError::Shape {
-                field: name.into(),
+                field: name.clone(),
                 run: source.name.clone(),
                 found: values.len(),
                 reference: sources[0].name.clone(),

@@ -69,8 +69,7 @@ fn difference(quantity: &Quantity, sources: &[Source]) -> QuantityDifference {
             difference: high - low,
             at_s: time,
         };
-        // A comparison with NaN is false: a run that has no value is the largest difference.
-        if !(end.difference <= largest.difference) {
+        if exceeds(end.difference, largest.difference) {
             largest = end;
         }
         if let (Some(band), Some(so_far)) = (quantity.agree, multiple.as_mut()) {
@@ -80,7 +79,7 @@ fn difference(quantity: &Quantity, sources: &[Source]) -> QuantityDifference {
             } else {
                 end.difference / allowed
             };
-            if !(here <= *so_far) {
+            if exceeds(here, *so_far) {
                 *so_far = here;
             }
         }
@@ -97,6 +96,12 @@ fn difference(quantity: &Quantity, sources: &[Source]) -> QuantityDifference {
         multiple,
         verdict: Agreement::of(multiple),
     }
+}
+
+/// True where a difference is larger than the largest so far; one that is not a number (a run has
+/// no value) is larger than any.
+pub(super) fn exceeds(difference: f64, largest: f64) -> bool {
+    difference.is_nan() || difference > largest
 }
 
 /// The times of the first run after its start, as far as every run came.

@@ -30,7 +30,7 @@ pub(crate) fn with_unit(value: f64, digits: usize, unit: &str) -> String {
 /// A time span in the unit that suits it.
 pub(crate) fn span(seconds: f64) -> String {
     match seconds {
-        s if s == 0.0 => "0 s".into(),
+        0.0 => "0 s".into(),
         s if s < 1e-3 => format!("{} µs", figure(s * 1e6, 3)),
         s if s < 1.0 => format!("{} ms", figure(s * 1e3, 3)),
         s if s < 120.0 => format!("{} s", figure(s, 4)),

@@ -258,7 +258,7 @@ fn path(curve: &Curve<'_>, frame: &Frame) -> String {
     let count = curve.x.len().min(curve.y.len());
     let stride = count.div_ceil(POINTS).max(1);
     let mut places: Vec<usize> = (0..count).step_by(stride).collect();
-    if count > 0 && (count - 1) % stride != 0 {
+    if count > 0 && !(count - 1).is_multiple_of(stride) {
         places.push(count - 1);
     }
     let (mut text, mut pen_down) = (String::new(), false);

@@ -254,20 +254,14 @@ impl Recorder {
 
     /// Replaces the two `.pvd` files.
     fn collect(&self) -> Result<(), ResultsError> {
-        let files: [(&str, fn(usize) -> String); 2] = [
-            ("gas.pvd", resume::gas_file),
-            ("particles.pvd", resume::particle_file),
-        ];
-        for (name, file) in files {
-            let entries: Vec<_> = self
-                .counters
-                .snapshots
-                .iter()
-                .enumerate()
-                .map(|(number, &time)| (time, file(number)))
-                .collect();
-            vtk::write_collection(&self.directory.join(name), &entries)?;
-        }
+        let entries = |file: fn(usize) -> String| -> Vec<_> {
+            let times = self.counters.snapshots.iter().enumerate();
+            times.map(|(number, &time)| (time, file(number))).collect()
+        };
+        let gas = self.directory.join("gas.pvd");
+        vtk::write_collection(&gas, &entries(resume::gas_file))?;
+        let particles = self.directory.join("particles.pvd");
+        vtk::write_collection(&particles, &entries(resume::particle_file))?;
         Ok(())
     }
 

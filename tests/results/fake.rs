@@ -299,7 +299,7 @@ pub struct World {
     window: Option<Window>,
     ledger: Ledger,
     bed: Bed,
-    gas: (Vec<f64>, Vec<f64>, Vec<f64>, Vec<Vec3>, Vec<Vec3>),
+    gas: Gas,
     id: Vec<u64>,
     population: Vec<u32>,
     position: Vec<Vec3>,
@@ -313,6 +313,15 @@ pub struct World {
     about: [About; 2],
     /// Temperature added to every particle, to make two runs differ.
     pub shift: f64,
+}
+
+/// Fields of the gas.
+struct Gas {
+    temperature: Vec<f64>,
+    pressure: Vec<f64>,
+    density: Vec<f64>,
+    velocity: Vec<Vec3>,
+    pressure_gradient: Vec<Vec3>,
 }
 
 impl World {
@@ -341,13 +350,13 @@ impl World {
                     })
                     .collect(),
             },
-            gas: (
-                vec![300.0; cells],
-                vec![101_325.0; cells],
-                vec![1.2; cells],
-                vec![Vec3::new(0.0, 0.0, 0.5); cells],
-                vec![Vec3::new(0.0, 0.0, -150.0); cells],
-            ),
+            gas: Gas {
+                temperature: vec![300.0; cells],
+                pressure: vec![101_325.0; cells],
+                density: vec![1.2; cells],
+                velocity: vec![Vec3::new(0.0, 0.0, 0.5); cells],
+                pressure_gradient: vec![Vec3::new(0.0, 0.0, -150.0); cells],
+            },
             mesh,
             clocks: Clocks::default(),
             windows: 0,
@@ -382,8 +391,8 @@ impl World {
     fn evaluate(&mut self) {
         for cell in 0..self.mesh.cells() {
             let z = self.mesh.cell_centre()[cell].z;
-            self.gas.0[cell] = self.front(z) + 2.0;
-            self.gas.1[cell] = 101_325.0 + 150.0 * (0.12 - z);
+            self.gas.temperature[cell] = self.front(z) + 2.0;
+            self.gas.pressure[cell] = 101_325.0 + 150.0 * (0.12 - z);
         }
         for n in 0..10 {
             self.temperature[n] = self.front(self.position[n].z) + self.shift;
@@ -432,11 +441,11 @@ impl World {
             window: self.window.as_ref(),
             mesh: &self.mesh,
             gas: GasFields {
-                temperature: &self.gas.0,
-                pressure: &self.gas.1,
-                density: &self.gas.2,
-                velocity: &self.gas.3,
-                pressure_gradient: &self.gas.4,
+                temperature: &self.gas.temperature,
+                pressure: &self.gas.pressure,
+                density: &self.gas.density,
+                velocity: &self.gas.velocity,
+                pressure_gradient: &self.gas.pressure_gradient,
             },
             bed: &self.bed,
             particles: ParticleFields {
