@@ -52,7 +52,6 @@ impl Equations {
         now: &mut State,
     ) -> Result<Convergence, String> {
         let mut convergence = Convergence::default();
-        self.material.update(frame, &now.temperature);
         for outer in 1..=controls.outer_iterations.max(1) {
             let (residual, iterations) = self.iterate(frame, controls, now);
             convergence.outer_iterations = outer;
@@ -80,6 +79,7 @@ impl Equations {
         let tolerance = controls.linear_tolerance;
         let (krylov, material) = (&mut self.krylov, &mut self.material);
 
+        material.update(frame, &now.temperature);
         self.momentum.assemble(frame, material, now);
         let mut residual = self.momentum.residual(frame, now);
         residual = residual.max(pressure::residual(frame, material, now));

@@ -1,0 +1,156 @@
+//! The gas in boxes of many cells: rest, friction at walls, conduction, threads.
+
+mod common;
+
+use std::sync::Arc;
+
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::part::Gas;
+use calcine_coupler::physics::Vec3;
+use common::*;
+
+/// A box whose points are moved, so that no face is normal to the line between its centres.
+fn sheared(mesh: &Mesh) -> Arc<Mesh> {
+    let mut topology = mesh.topology().clone();
+    for point in &mut topology.points {
+        point.x += 0.3 * point.y + 0.2 * point.z;
+    }
+    Arc::new(Mesh::new(topology).unwrap())
+}
+
+fn still(mesh: &Arc<Mesh>) -> f64 {
+    let mut setup = setup(&[("top", outlet()), ("bottom", no_slip()), ("side", slip())]);
+    setup.gravity = Vec3::new(0.0, 0.0, -9.81);
+    let mut driver = Driver::new(mesh, &setup);
+    for (cell, share) in scatter(mesh.cells(), 7).into_iter().enumerate() {
+        driver.bed.void_fraction[cell] = 0.3 + 0.7 * share;
+        driver.exchange.drag_coefficient[cell] = 1e-5 * (1.0 - share);
+    }
+    for _ in 0..100 {
+        driver.window(1e-3, 1.0);
+    }
+    let fields = driver.gas.fields();
+    let density = AIR.density(ATMOSPHERE, 300.0);
+    for cell in 0..mesh.cells() {
+        let depth = 0.06 - mesh.cell_centre()[cell].z;
+        let exact = ATMOSPHERE + density * 9.81 * depth;
+        assert!((fields.pressure[cell] - exact).abs() < 1e-9, "hydrostatic");
+    }
+    let speeds = fields.velocity.iter().map(|u| u.norm());
+    speeds.fold(0.0, f64::max)
+}
+
+#[test]
+fn still_gas_stays_still_in_a_bed_of_random_void_fraction_under_gravity() {
+    let speed = still(&duct([0.05, 0.04, 0.06], [5, 4, 6]));
+    assert!(speed < 1e-10, "{speed} m/s");
+}
+
+#[test]
+fn still_gas_stays_still_on_a_sheared_mesh_too() {
+    let speed = still(&sheared(&duct([0.05, 0.04, 0.06], [5, 4, 6])));
+    // The explicit correction is as exact as the outer loop, 1e-9 of g in each of 100 windows.
+    assert!(speed < 1e-8, "{speed} m/s");
+}
+
+/// −dp/dz of developed flow between plates 10 mm apart, at a mean velocity of 10 mm/s.
+fn plate_gradient(across: usize) -> f64 {
+    let patches = ["side", "side", "plate", "plate", "bottom", "top"];
+    let mesh = named_box([0.01, 0.01, 0.04], [1, across, 16], patches);
+    let setup = setup(&[
+        ("side", slip()),
+        ("plate", no_slip()),
+        ("bottom", inlet(0.01, 300.0)),
+        ("top", outlet()),
+    ]);
+    let mut driver = Driver::new(&mesh, &setup);
+    for _ in 0..300 {
+        driver.window(0.05, 1.0);
+    }
+    for k in 0..16 { let cell = k * across + across / 2; println!("{across} {k} {:.6e} {:.6e} {:.6e}", driver.gas.fields().pressure_gradient[cell].z, driver.gas.fields().velocity[cell].z, driver.gas.fields().velocity[cell].y); }
+    let cell = 11 * across + across / 2;
+    -driver.gas.fields().pressure_gradient[cell].z
+}
+
+#[test]
+fn flow_between_plates_loses_pressure_as_poiseuille_found_with_second_order() {
+    let exact = 12.0 * AIR.viscosity(300.0) * 0.01 / 0.01f64.powi(2);
+    let errors = [4, 8, 16].map(|across| (plate_gradient(across) / exact - 1.0).abs());
+    println!("Poiseuille errors {errors:?}");
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!((order - 2.0).abs() < 0.15, "order {order}, errors {errors:?}");
+    }
+    assert!(errors[2] < 0.01);
+}
+
+/// Largest error in K of the steady temperature between walls of 300 and 600 K.
+fn conduction_error(cells: usize) -> f64 {
+    let patches = ["cold", "hot", "side", "side", "bottom", "top"];
+    let mesh = named_box([0.1, 0.01, 0.01], [cells, 1, 1], patches);
+    let setup = setup(&[
+        ("cold", warm_wall(300.0)),
+        ("hot", warm_wall(600.0)),
+        ("side", slip()),
+        ("bottom", slip()),
+        ("top", outlet()),
+    ]);
+    let mut driver = Driver::new(&mesh, &setup);
+    for _ in 0..40 {
+        let c = driver.window(1e-3, 1e5);
+        println!("{c:?} {:?}", driver.gas.fields().velocity[0]);
+    }
+    // κ depends on T: the integral of κ over T is linear in x (Kirchhoff). Midpoint rule.
+    let integral = |to: f64| {
+        let steps = 2000;
+        let width = (to - 300.0) / f64::from(steps);
+        (0..steps)
+            .map(|i| AIR.conductivity(300.0 + (f64::from(i) + 0.5) * width) * width)
+            .sum::<f64>()
+    };
+    let whole = integral(600.0);
+    let temperature = driver.gas.fields().temperature;
+    let mut worst = 0.0f64;
+    for cell in 0..cells {
+        let share = mesh.cell_centre()[cell].x / 0.1;
+        let slope = AIR.conductivity(temperature[cell]);
+        worst = worst.max((integral(temperature[cell]) - share * whole).abs() / slope);
+    }
+    worst
+}
+
+#[test]
+fn conduction_between_walls_converges_to_the_exact_profile_with_second_order() {
+    let errors = [5, 10, 20].map(conduction_error);
+    println!("conduction errors {errors:?} K");
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!((order - 2.0).abs() < 0.2, "order {order}, errors {errors:?}");
+    }
+}
+
+#[test]
+fn the_gas_has_the_same_bits_on_one_and_on_three_threads() {
+    let run = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.unwrap().install(|| {
+            let mesh = duct([0.1, 0.1, 0.1], [18, 18, 18]);
+            let mut setup = setup(&[
+                ("bottom", inlet(0.3, 400.0)),
+                ("top", outlet()),
+                ("side", no_slip()),
+            ]);
+            setup.controls.outer_iterations = 2;
+            let mut driver = Driver::new(&mesh, &setup);
+            let scatter = scatter(mesh.cells(), 3);
+            for (cell, share) in scatter.into_iter().enumerate() {
+                driver.bed.void_fraction[cell] = 0.4 + 0.6 * share;
+                driver.exchange.drag_coefficient[cell] = 1e-5 * (1.0 - share);
+            }
+            driver.window(1e-3, 1.0);
+            driver.window(1e-3, 1.0);
+            driver.bits()
+        })
+    };
+    assert_eq!(run(1), run(3));
+}
