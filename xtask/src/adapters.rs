@@ -147,14 +147,14 @@ mod tests {
             root.join("adapters/openfoam"),
             root.join("adapters/wire/src"),
         );
-        for folder in [&foam, &wire] {
+        for folder in [&foam, &wire, &root.join("adapters/wire/include")] {
             fs::create_dir_all(folder).unwrap();
         }
-        for file in [
-            root.join("Cargo.lock"),
-            foam.join("solver.C"),
-            wire.join("lib.rs"),
-        ] {
+        let others = ["Cargo.lock", "adapters/wire/Cargo.toml"].map(|name| root.join(name));
+        for file in others
+            .into_iter()
+            .chain([foam.join("solver.C"), wire.join("lib.rs")])
+        {
             fs::write(file, "one").unwrap();
         }
         let headers = root.join("1912");
