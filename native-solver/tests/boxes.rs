@@ -53,33 +53,35 @@ fn still_gas_stays_still_on_a_sheared_mesh_too() {
     assert!(speed < 1e-8, "{speed} m/s");
 }
 
-/// −dp/dz of developed flow between plates 10 mm apart, at a mean velocity of 10 mm/s.
+/// −dp/dz of developed flow between plates 10 mm apart, at a mean velocity of 1 mm/s.
 fn plate_gradient(across: usize) -> f64 {
     let patches = ["side", "side", "plate", "plate", "bottom", "top"];
-    let mesh = named_box([0.01, 0.01, 0.04], [1, across, 16], patches);
+    let mesh = named_box([0.01, 0.01, 0.08], [1, across, 32], patches);
     let setup = setup(&[
         ("side", slip()),
         ("plate", no_slip()),
-        ("bottom", inlet(0.01, 300.0)),
+        ("bottom", inlet(0.001, 300.0)),
         ("top", outlet()),
     ]);
     let mut driver = Driver::new(&mesh, &setup);
     for _ in 0..300 {
         driver.window(0.05, 1.0);
     }
-    for k in 0..16 { let cell = k * across + across / 2; println!("{across} {k} {:.6e} {:.6e} {:.6e}", driver.gas.fields().pressure_gradient[cell].z, driver.gas.fields().velocity[cell].z, driver.gas.fields().velocity[cell].y); }
-    let cell = 11 * across + across / 2;
+    let cell = 28 * across + across / 2;
     -driver.gas.fields().pressure_gradient[cell].z
 }
 
 #[test]
 fn flow_between_plates_loses_pressure_as_poiseuille_found_with_second_order() {
-    let exact = 12.0 * AIR.viscosity(300.0) * 0.01 / 0.01f64.powi(2);
+    let exact = 12.0 * AIR.viscosity(300.0) * 0.001 / 0.01f64.powi(2);
     let errors = [4, 8, 16].map(|across| (plate_gradient(across) / exact - 1.0).abs());
     println!("Poiseuille errors {errors:?}");
     for pair in errors.windows(2) {
         let order = (pair[0] / pair[1]).log2();
-        assert!((order - 2.0).abs() < 0.15, "order {order}, errors {errors:?}");
+        assert!(
+            (order - 2.0).abs() < 0.15,
+            "order {order}, errors {errors:?}"
+        );
     }
     assert!(errors[2] < 0.01);
 }
@@ -96,9 +98,10 @@ fn conduction_error(cells: usize) -> f64 {
         ("top", outlet()),
     ]);
     let mut driver = Driver::new(&mesh, &setup);
+    // What little the gas still moves after its expansion is stopped by drag.
+    driver.exchange.drag_coefficient.fill(1.0);
     for _ in 0..40 {
-        let c = driver.window(1e-3, 1e5);
-        println!("{c:?} {:?}", driver.gas.fields().velocity[0]);
+        driver.window(1e-3, 1e5);
     }
     // κ depends on T: the integral of κ over T is linear in x (Kirchhoff). Midpoint rule.
     let integral = |to: f64| {
@@ -125,7 +128,10 @@ fn conduction_between_walls_converges_to_the_exact_profile_with_second_order() {
     println!("conduction errors {errors:?} K");
     for pair in errors.windows(2) {
         let order = (pair[0] / pair[1]).log2();
-        assert!((order - 2.0).abs() < 0.2, "order {order}, errors {errors:?}");
+        assert!(
+            (order - 2.0).abs() < 0.2,
+            "order {order}, errors {errors:?}"
+        );
     }
 }
 

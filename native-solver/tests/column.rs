@@ -64,14 +64,23 @@ fn flow_through_a_jump_of_void_fraction_keeps_the_superficial_velocity() {
     for cell in 1..CELLS {
         let found = fields.pressure_gradient[cell].z;
         let scale = gradient(3).abs();
-        assert!((found - gradient(cell)).abs() < 1e-8 * scale, "{found} Pa/m in {cell}");
+        assert!(
+            (found - gradient(cell)).abs() < 1e-8 * scale,
+            "{found} Pa/m in {cell}"
+        );
     }
 }
 
 #[test]
 fn pressure_falls_by_resistances_in_series_down_to_the_half_cells_at_the_bed_ends() {
     let mut column = column(0.5, 300.0);
-    let drag = |cell: usize| if (3..9).contains(&cell) { 1e-4 * (cell - 2) as f64 } else { 0.0 };
+    let drag = |cell: usize| {
+        if (3..9).contains(&cell) {
+            1e-4 * (cell - 2) as f64
+        } else {
+            0.0
+        }
+    };
     for cell in 0..CELLS {
         column.exchange.drag_coefficient[cell] = drag(cell);
     }
@@ -82,7 +91,10 @@ fn pressure_falls_by_resistances_in_series_down_to_the_half_cells_at_the_bed_end
     for cell in (0..CELLS).rev() {
         let exact = ATMOSPHERE + above + 0.5 * fall(cell);
         let found = column.gas.fields().pressure[cell];
-        assert!((found - exact).abs() < 1e-8 * fall(8), "{found} against {exact} Pa in {cell}");
+        assert!(
+            (found - exact).abs() < 1e-8 * fall(8),
+            "{found} against {exact} Pa in {cell}"
+        );
         above += fall(cell);
     }
 }
@@ -107,7 +119,10 @@ fn a_heated_bed_warms_the_gas_as_the_exact_upwind_chain() {
         );
         exact = (capacity * exact + q) / (capacity + k);
         let found = column.gas.fields().temperature[cell];
-        assert!((found - exact).abs() < 1e-6, "{found} against {exact} K in {cell}");
+        assert!(
+            (found - exact).abs() < 1e-6,
+            "{found} against {exact} K in {cell}"
+        );
         assert!((column.received.heat[cell] - (q - k * found)).abs() < 1e-15);
     }
     assert!(exact > 500.0);

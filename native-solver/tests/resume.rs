@@ -90,13 +90,19 @@ fn divergence_is_said_with_field_number_cell_and_place() {
         ..Window::default()
     };
     let supervisor = Supervisor::new(Duration::from_secs(1), Interrupts::default());
-    driver.gas.start(&window, &driver.bed, &driver.exchange).unwrap();
+    driver
+        .gas
+        .start(&window, &driver.bed, &driver.exchange)
+        .unwrap();
     let mut received = CellReceived::default();
     let error = driver.gas.finish(&supervisor, &mut received).unwrap_err();
     assert_eq!(error.kind, FailureKind::Diverged);
     let text = error.to_string();
     assert!(text.contains("temperature of -"), "{text}");
-    assert!(text.contains("in cell 7 at (0.005000, 0.005000, 0.075000) m"), "{text}");
+    assert!(
+        text.contains("in cell 7 at (0.005000, 0.005000, 0.075000) m"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -105,13 +111,20 @@ fn inputs_that_no_gas_can_take_are_refused_with_their_place() {
     driver.bed.void_fraction[3] = 0.0;
     let start = |driver: &mut Driver| {
         let (bed, exchange) = (driver.bed.clone(), driver.exchange.clone());
-        driver.gas.start(&Window::default(), &bed, &exchange).unwrap_err().to_string()
+        driver
+            .gas
+            .start(&Window::default(), &bed, &exchange)
+            .unwrap_err()
+            .to_string()
     };
     let text = start(&mut driver);
     assert!(text.contains("void fraction of 0 in cell 3 at"), "{text}");
     driver.bed.void_fraction.pop();
     let text = start(&mut driver);
-    assert!(text.contains("void fraction has 11 values for 12 cells"), "{text}");
+    assert!(
+        text.contains("void fraction has 11 values for 12 cells"),
+        "{text}"
+    );
     let mut driver = column();
     driver.exchange.heat_coefficient[5] = f64::NAN;
     let text = start(&mut driver);
@@ -167,7 +180,10 @@ fn frozen_particles_weigh_what_they_should_and_hand_the_impulse_to_their_support
     particles.start(&window, &push).unwrap();
     particles.finish(&supervisor, &mut received).unwrap();
     particles.commit().unwrap();
-    assert_eq!(received.impulse, [push.force[0] * 2e-3, push.force[1] * 2e-3]);
+    assert_eq!(
+        received.impulse,
+        [push.force[0] * 2e-3, push.force[1] * 2e-3]
+    );
     assert_eq!(particles.fields().velocity, [Vec3::zeros(); 2]);
     assert_eq!(particles.fields().position, two_spheres().position);
     assert!(particles.finish(&supervisor, &mut received).is_err());
@@ -187,9 +203,18 @@ fn frozen_particles_come_back_from_a_checkpoint() {
 
 #[test]
 fn particles_that_move_or_have_no_size_are_refused() {
-    let moving = ParticleSetup { frozen: false, ..two_spheres() };
-    assert!(matches!(NativeParticles::new(&moving), Err(NativeError::Moving)));
-    let flat = ParticleSetup { radius: vec![0.005, 0.0], ..two_spheres() };
+    let moving = ParticleSetup {
+        frozen: false,
+        ..two_spheres()
+    };
+    assert!(matches!(
+        NativeParticles::new(&moving),
+        Err(NativeError::Moving)
+    ));
+    let flat = ParticleSetup {
+        radius: vec![0.005, 0.0],
+        ..two_spheres()
+    };
     let text = NativeParticles::new(&flat).unwrap_err().to_string();
     assert_eq!(text, "the radius of particle 2 is 0 m; it must be positive");
 }

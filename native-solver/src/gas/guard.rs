@@ -26,13 +26,29 @@ pub fn complaint(now: &State, centre: &[Vec3]) -> Option<String> {
         ))
     };
     // Each measure is at most 1 where all is well, larger the worse it is, and NaN where it must be.
-    let mass = |cell: usize| if now.mass[cell] > 0.0 { 0.0 } else { 2.0 - now.mass[cell] };
+    let mass = |cell: usize| {
+        if now.mass[cell] > 0.0 {
+            0.0
+        } else {
+            2.0 - now.mass[cell]
+        }
+    };
     let temperature = |cell: usize| {
         let value = now.temperature[cell];
-        if value > 0.0 { value / HIGHEST_TEMPERATURE } else { 2.0 - value }
+        if value > 0.0 {
+            value / HIGHEST_TEMPERATURE
+        } else {
+            2.0 - value
+        }
     };
     let speed = |cell: usize| now.velocity[cell].norm() / HIGHEST_SPEED;
-    let pressure = |cell: usize| if now.pressure[cell].is_finite() { 0.0 } else { f64::NAN };
+    let pressure = |cell: usize| {
+        if now.pressure[cell].is_finite() {
+            0.0
+        } else {
+            f64::NAN
+        }
+    };
     if let Some(cell) = worst(&temperature) {
         return say("temperature", format!("{} K", now.temperature[cell]), cell);
     }
