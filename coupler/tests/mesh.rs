@@ -232,43 +232,64 @@ fn files_that_contradict_each_other_and_missing_ones_are_named() {
     assert!(matches!(&error, PolyMeshError::Io { file, .. } if file.ends_with("points")));
 }
 
-/// Debian's checkMesh, where it is installed, as an independent judge of the numbering.
-#[test]
-fn openfoam_accepts_a_written_box() {
-    let case = tempfile::tempdir().unwrap();
-    write(&mesh([4, 3, 5]), &case.path().join("constant/polyMesh")).unwrap();
-    fs::create_dir(case.path().join("system")).unwrap();
+/// Runs one of Debian's OpenFOAM tools on a case with this mesh, written in `format`; its output, or
+/// `None` where it is not installed.
+fn openfoam(case: &Path, mesh: &Mesh, format: &str, command: &[&str]) -> Option<String> {
+    write(mesh, &case.join("constant/polyMesh")).unwrap();
+    fs::create_dir(case.join("system")).unwrap();
+    let control = format!(
+        "startFrom startTime; startTime 0; stopAt endTime; endTime 1; deltaT 1;\n\
+         writeControl timeStep; writeInterval 1; writeFormat {format};\n"
+    );
+    let schemes = "ddtSchemes {} gradSchemes {} divSchemes {} laplacianSchemes {}\n";
     let dictionaries = [
-        (
-            "controlDict",
-            "startFrom startTime; startTime 0; stopAt endTime; endTime 1; deltaT 1;\n\
-             writeControl timeStep; writeInterval 1;\n",
-        ),
-        (
-            "fvSchemes",
-            "ddtSchemes {} gradSchemes {} divSchemes {} laplacianSchemes {}\n",
-        ),
+        ("controlDict", control.as_str()),
+        ("fvSchemes", schemes),
         ("fvSolution", "solvers {}\n"),
     ];
     for (name, body) in dictionaries {
         let head = "FoamFile\n{\n version 2.0;\n format ascii;\n class dictionary;\n object ";
         let text = format!("{head}{name};\n}}\n{body}");
-        fs::write(case.path().join("system").join(name), text).unwrap();
+        fs::write(case.join("system").join(name), text).unwrap();
     }
-    let output = Command::new("checkMesh")
-        .args(["-allGeometry", "-allTopology", "-case"])
-        .arg(case.path())
+    let output = Command::new(command[0])
+        .args(&command[1..])
+        .arg("-case")
+        .arg(case)
         .env("WM_PROJECT_DIR", "/usr/share/openfoam")
         .output();
     let Ok(output) = output else {
-        eprintln!("SKIPPED: checkMesh is not installed");
-        return;
+        eprintln!("SKIPPED: {} is not installed", command[0]);
+        return None;
     };
-    let mut text = String::from_utf8_lossy(&output.stdout).into_owned();
-    text += &String::from_utf8_lossy(&output.stderr);
-    assert!(text.contains("Mesh OK."), "{text}");
-    assert!(text.contains("hexahedra:     60"), "{text}");
-    assert!(!text.contains("***"), "{text}");
+    let said = [output.stdout, output.stderr].concat();
+    Some(String::from_utf8_lossy(&said).into_owned())
+}
+
+/// Debian's checkMesh, where it is installed, as an independent judge of the numbering.
+#[test]
+fn openfoam_accepts_a_written_box() {
+    let case = tempfile::tempdir().unwrap();
+    let command = ["checkMesh", "-allGeometry", "-allTopology"];
+    if let Some(text) = openfoam(case.path(), &mesh([4, 3, 5]), "ascii", &command) {
+        assert!(text.contains("Mesh OK."), "{text}");
+        assert!(text.contains("hexahedra:     60"), "{text}");
+        assert!(!text.contains("***"), "{text}");
+    }
+}
+
+#[test]
+fn a_mesh_that_openfoam_converted_to_binary_reads_back_to_the_bit() {
+    let case = tempfile::tempdir().unwrap();
+    let written = mesh([4, 3, 5]);
+    let command = ["foamFormatConvert", "-constant"];
+    if let Some(text) = openfoam(case.path(), &written, "binary", &command) {
+        let folder = case.path().join("constant/polyMesh");
+        let points = fs::read(folder.join("points")).unwrap();
+        let binary = points.windows(6).any(|bytes| bytes == b"binary");
+        assert!(binary, "{text}");
+        assert_eq!(read(&folder).unwrap(), written);
+    }
 }
 
 proptest! {

@@ -6,7 +6,7 @@ use calcine_coupler::mapping::{Mapper, Method, Weights};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::smoother::{Operator, Settings, Smoother, SmootherError};
+use calcine_coupler::smoother::{Operator, Settings, Smoother};
 use proptest::prelude::*;
 
 /// A box of cubes of 1 mm.
@@ -354,50 +354,6 @@ fn the_operator_is_the_same_bits_on_one_thread_and_on_four() {
     assert_eq!(on(1), on(4));
 }
 
-#[test]
-fn a_bed_that_does_not_fit_is_refused_with_the_volume_left_over() {
-    let mesh = cubes([3, 3, 3]);
-    let smoother = Smoother::new(&mesh, settings()).unwrap();
-    let weights = Weights::new(27, vec![vec![(0, 1.0)]]).unwrap();
-    let error = smoother.operator(weights, &[20.0 * CUBE]).unwrap_err();
-    // 27 cells hold 17.28 cell volumes.
-    let SmootherError::DoesNotFit {
-        left_over,
-        cells,
-        lower,
-        upper,
-        mean,
-        sweeps,
-        ..
-    } = error
-    else {
-        panic!("{error}");
-    };
-    assert!((left_over / (2.72 * CUBE) - 1.0).abs() < 1e-12);
-    assert_eq!((cells, sweeps), (27, None));
-    assert!((lower - Vec3::repeat(0.5e-3)).norm() < 1e-15);
-    assert!((upper - Vec3::repeat(2.5e-3)).norm() < 1e-15);
-    assert!((mean - 20.0 / 27.0).abs() < 1e-12);
-}
-
-#[test]
-fn nothing_is_moved_into_excluded_cells() {
-    let mesh = cubes([7, 7, 7]);
-    let middle = 3 + 7 * (3 + 7 * 3);
-    // The upper neighbours of the middle are a duct.
-    let excluded: Vec<bool> = (0..343).map(|cell| cell / 49 == 4).collect();
-    let smoother = Smoother::with_excluded(&mesh, settings(), &excluded).unwrap();
-    let weights = Weights::new(343, vec![vec![(middle, 1.0)]]).unwrap();
-    let operator = smoother.operator(weights, &[5.0 * CUBE]).unwrap();
-    let alpha = operator.solid_fraction();
-    assert!((196..343).all(|cell| alpha[cell] == 0.0));
-    assert!((alpha.iter().sum::<f64>() - 5.0).abs() < 5e-14);
-    // Solid in an excluded cell has nowhere to go.
-    let weights = Weights::new(343, vec![vec![(200, 1.0)]]).unwrap();
-    let error = smoother.operator(weights, &[0.8 * CUBE]).unwrap_err();
-    assert!(matches!(error, SmootherError::DoesNotFit { cells: 1, .. }));
-}
-
 /// Diffusion over ℓ widens by the variance 2ℓ² along each axis, exactly on a uniform mesh.
 #[test]
 fn diffusion_widens_by_twice_its_length_squared_and_makes_no_new_maximum() {
@@ -420,53 +376,6 @@ fn diffusion_widens_by_twice_its_length_squared_and_makes_no_new_maximum() {
     // The tails beyond 15 cells (7.6 standard deviations) are reflected.
     assert!((variance / (2.0 * length * length) - 1.0).abs() < 1e-9);
     assert!(alpha.iter().all(|&a| (0.0..0.5).contains(&a)));
-}
-
-#[test]
-fn the_defaults_are_random_close_packing_and_an_excess_of_one_in_ten_thousand() {
-    let expected = Settings {
-        max_solid_fraction: 0.64,
-        tolerance: 1e-4,
-        diffusion_length: None,
-    };
-    assert_eq!(Settings::default(), expected);
-}
-
-#[test]
-fn settings_outside_their_range_are_refused() {
-    let mesh = cubes([2, 2, 2]);
-    let refused = |change: fn(&mut Settings)| {
-        let mut settings = settings();
-        change(&mut settings);
-        Smoother::new(&mesh, settings).unwrap_err()
-    };
-    let error = refused(|s| s.max_solid_fraction = 1.0);
-    assert_eq!(error, SmootherError::MaxSolidFraction(1.0));
-    assert!(matches!(
-        refused(|s| s.tolerance = 0.4),
-        SmootherError::Tolerance { .. }
-    ));
-    assert!(matches!(
-        refused(|s| s.tolerance = f64::NAN),
-        SmootherError::Tolerance { .. }
-    ));
-    for length in [-1.0, f64::INFINITY, f64::NAN, 1.0] {
-        let mut settings = settings();
-        settings.diffusion_length = Some(length);
-        let error = Smoother::new(&mesh, settings).unwrap_err();
-        assert!(matches!(error, SmootherError::DiffusionLength { .. }));
-    }
-    let smoother = Smoother::new(&mesh, settings()).unwrap();
-    let weights = || Weights::new(8, vec![vec![(0, 1.0)]]).unwrap();
-    let error = smoother.operator(weights(), &[-1.0]).unwrap_err();
-    assert_eq!(
-        error,
-        SmootherError::SolidVolume {
-            particle: 0,
-            volume: -1.0
-        }
-    );
-    assert!(smoother.operator(weights(), &[]).is_err());
 }
 
 proptest! {

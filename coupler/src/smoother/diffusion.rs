@@ -23,7 +23,7 @@ impl Diffusion {
     /// Most steps that a diffusion may take; beyond, cells are too small for the length.
     pub const MOST_STEPS: u32 = 10_000;
 
-    /// The diffusion over a length in m; the number of steps it would need where that is too many.
+    /// The diffusion over a length in m; the number of steps it would need where they are too many.
     pub fn new(graph: Arc<Graph>, length: f64) -> Result<Self, f64> {
         let fastest = graph
             .total
@@ -32,7 +32,7 @@ impl Diffusion {
             .map(|(total, volume)| total / volume)
             .fold(0.0, f64::max);
         let needed = (2.0 * length * length * fastest).ceil().max(1.0);
-        if needed.is_nan() || needed > f64::from(Self::MOST_STEPS) {
+        if needed > f64::from(Self::MOST_STEPS) {
             return Err(needed);
         }
         Ok(Self {

@@ -60,7 +60,10 @@ pub enum SmootherError {
         /// 1 − α_max.
         below: f64,
     },
-    /// A diffusion length that is negative, not a number, or far longer than cells.
+    /// A diffusion length that is no length.
+    #[error("the diffusion length is {0} m; it must be finite and not negative")]
+    NoLength(f64),
+    /// A diffusion length that is far longer than cells.
     #[error("a diffusion length of {length} m needs {steps} steps on this mesh; at most {most}")]
     DiffusionLength {
         /// The length in m.
@@ -155,15 +158,16 @@ impl Smoother {
             let below = 1.0 - most;
             return Err(SmootherError::Tolerance { tolerance, below });
         }
+        if let Some(length) = diffusion_length
+            && !(length >= 0.0 && length.is_finite())
+        {
+            return Err(SmootherError::NoLength(length));
+        }
         same_length("marks of excluded cells", excluded.len(), mesh.cells())?;
         let graph = Arc::new(Graph::new(mesh, excluded));
         let diffusion = diffusion_length
             .map(|length| {
-                let steps = if length >= 0.0 { None } else { Some(f64::NAN) };
-                let made = match steps {
-                    None => Diffusion::new(graph.clone(), length),
-                    Some(steps) => Err(steps),
-                };
+                let made = Diffusion::new(graph.clone(), length);
                 made.map_err(|steps| SmootherError::DiffusionLength {
                     length,
                     steps,

@@ -1,0 +1,156 @@
+//! What the smoother refuses: beds that do not fit, settings out of range (requirements VFS-4, VFS-5).
+
+#![allow(clippy::unwrap_used)]
+
+use calcine_coupler::mapping::Weights;
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::smoother::{Settings, Smoother, SmootherError};
+
+/// A box of cubes of 1 mm.
+fn cubes(cells: [usize; 3]) -> Mesh {
+    box_mesh(&BoxSpec {
+        origin: Vec3::zeros(),
+        size: Vec3::new(cells[0] as f64, cells[1] as f64, cells[2] as f64) * 1e-3,
+        cells,
+        patches: ["all"; 6].map(String::from),
+    })
+    .unwrap()
+}
+
+const CUBE: f64 = 1e-9;
+
+fn settings() -> Settings {
+    Settings::default()
+}
+
+#[test]
+fn a_bed_that_does_not_fit_is_refused_with_the_volume_left_over() {
+    let mesh = cubes([3, 3, 3]);
+    let smoother = Smoother::new(&mesh, settings()).unwrap();
+    let weights = Weights::new(27, vec![vec![(0, 1.0)]]).unwrap();
+    let error = smoother.operator(weights, &[20.0 * CUBE]).unwrap_err();
+    // 27 cells hold 17.28 cell volumes.
+    let SmootherError::DoesNotFit {
+        left_over,
+        cells,
+        lower,
+        upper,
+        mean,
+        sweeps,
+        ..
+    } = error
+    else {
+        panic!("{error}");
+    };
+    assert!((left_over / (2.72 * CUBE) - 1.0).abs() < 1e-12);
+    assert_eq!((cells, sweeps), (27, None));
+    assert!((lower - Vec3::repeat(0.5e-3)).norm() < 1e-15);
+    assert!((upper - Vec3::repeat(2.5e-3)).norm() < 1e-15);
+    assert!((mean - 20.0 / 27.0).abs() < 1e-12);
+}
+
+/// A line of cells fills like a diffusing front: far too long for sweeps from neighbour to neighbour.
+#[test]
+fn a_bed_that_sweeps_cannot_settle_is_refused_with_the_volume_left_over() {
+    let mesh = cubes([400, 1, 1]);
+    let smoother = Smoother::new(&mesh, settings()).unwrap();
+    let weights = Weights::new(400, vec![vec![(0, 1.0)]]).unwrap();
+    let error = smoother
+        .operator(weights, &[0.6 * 400.0 * CUBE])
+        .unwrap_err();
+    let SmootherError::DoesNotFit {
+        left_over,
+        mean,
+        sweeps,
+        ..
+    } = error
+    else {
+        panic!("{error}");
+    };
+    assert_eq!(sweeps, Some(Smoother::MOST_SWEEPS));
+    assert!((mean - 0.6).abs() < 1e-12);
+    // Something, but not all, has left the first cell.
+    assert!(left_over > CUBE && left_over < 200.0 * CUBE, "{left_over}");
+    let text = error.to_string();
+    assert!(text.contains("20000 sweeps did not settle it"), "{text}");
+}
+
+#[test]
+fn nothing_is_moved_into_excluded_cells() {
+    let mesh = cubes([7, 7, 7]);
+    let middle = 3 + 7 * (3 + 7 * 3);
+    // The upper neighbours of the middle are a duct.
+    let excluded: Vec<bool> = (0..343).map(|cell| cell / 49 == 4).collect();
+    let smoother = Smoother::with_excluded(&mesh, settings(), &excluded).unwrap();
+    let weights = Weights::new(343, vec![vec![(middle, 1.0)]]).unwrap();
+    let operator = smoother.operator(weights, &[5.0 * CUBE]).unwrap();
+    let alpha = operator.solid_fraction();
+    assert!((196..343).all(|cell| alpha[cell] == 0.0));
+    assert!((alpha.iter().sum::<f64>() - 5.0).abs() < 5e-14);
+    // Solid in an excluded cell has nowhere to go.
+    let weights = Weights::new(343, vec![vec![(200, 1.0)]]).unwrap();
+    let error = smoother.operator(weights, &[0.8 * CUBE]).unwrap_err();
+    assert!(matches!(error, SmootherError::DoesNotFit { cells: 1, .. }));
+}
+
+#[test]
+fn the_defaults_are_random_close_packing_and_an_excess_of_one_in_ten_thousand() {
+    let expected = Settings {
+        max_solid_fraction: 0.64,
+        tolerance: 1e-4,
+        diffusion_length: None,
+    };
+    assert_eq!(Settings::default(), expected);
+}
+
+#[test]
+fn settings_outside_their_range_are_refused() {
+    let mesh = cubes([2, 2, 2]);
+    let refused = |change: fn(&mut Settings)| {
+        let mut settings = settings();
+        change(&mut settings);
+        Smoother::new(&mesh, settings).unwrap_err()
+    };
+    let error = refused(|s| s.max_solid_fraction = 1.0);
+    assert_eq!(error, SmootherError::MaxSolidFraction(1.0));
+    assert!(matches!(
+        refused(|s| s.tolerance = 0.4),
+        SmootherError::Tolerance { .. }
+    ));
+    assert!(matches!(
+        refused(|s| s.tolerance = f64::NAN),
+        SmootherError::Tolerance { .. }
+    ));
+    let with_length = |length: f64| {
+        let diffusion_length = Some(length);
+        Smoother::new(
+            &mesh,
+            Settings {
+                diffusion_length,
+                ..settings()
+            },
+        )
+        .unwrap_err()
+    };
+    for length in [-1.0, f64::INFINITY, f64::NAN] {
+        assert!(matches!(with_length(length), SmootherError::NoLength(_)));
+    }
+    // A kilometre over cells of 1 mm: 2 l^2 times the conductances of 3 faces over the volume.
+    let SmootherError::DiffusionLength { steps, .. } = with_length(1e3) else {
+        panic!("{}", with_length(1e3));
+    };
+    assert!((steps / 6e12 - 1.0).abs() < 1e-9, "{steps}");
+    let smoother = Smoother::new(&mesh, settings()).unwrap();
+    let weights = || Weights::new(8, vec![vec![(0, 1.0)]]).unwrap();
+    let error = smoother.operator(weights(), &[-1.0]).unwrap_err();
+    assert_eq!(
+        error,
+        SmootherError::SolidVolume {
+            particle: 0,
+            volume: -1.0
+        }
+    );
+    assert!(smoother.operator(weights(), &[]).is_err());
+}
