@@ -1,0 +1,287 @@
+//! The host's loop: hello, state, then windows, commits and checkpoints until the coordinator says
+//! goodbye.
+
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use calcine_wire::shared_memory::End;
+use calcine_wire::{Catalogue, Header, Hello, Kind, Link, LinkAddress, SharedMemory, WireError};
+use thiserror::Error;
+
+use crate::library::{self, Liggghts};
+use crate::state::State;
+
+/// Ticks of the wire's clocks in one second.
+const TICKS: f64 = 1e12;
+/// How long the coordinator may take to answer the introduction.
+const GREETING: Duration = Duration::from_secs(30);
+/// Name of the restart file in a checkpoint's folder.
+const RESTART: &str = "liggghts.restart";
+/// LIGGGHTS' own log, in the script's folder; it ends where the windows begin.
+const LOG: &str = "log.liggghts";
+
+/// What the host was started with.
+#[derive(Debug)]
+pub struct Start {
+    /// The script; it ends with the setup, without a `run`.
+    pub script: PathBuf,
+    /// Hash of the case that the script was written for.
+    pub case_hash: String,
+    /// Restart file instead of the script's `read_data`.
+    pub restart: Option<PathBuf>,
+}
+
+/// Why the host ends.
+#[derive(Debug, Error)]
+pub enum HostError {
+    /// Not started by Calcine.
+    #[error("usage: calcine-liggghts SCRIPT CASE-HASH [RESTART-FILE], started by `calcine run`")]
+    Usage,
+    /// The link.
+    #[error("{0}")]
+    Wire(#[from] WireError),
+    /// A file.
+    #[error("{}: {cause}", path.display())]
+    File {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        cause: io::Error,
+    },
+    /// LIGGGHTS does not have what every granular run has.
+    #[error("LIGGGHTS has no `{name}`; the script needs `atom_style granular` and particles")]
+    Missing {
+        /// The name asked for.
+        name: &'static str,
+    },
+    /// Particles that went away.
+    #[error("{found} of {expected} particles are left; they left the box or their speed exploded")]
+    Lost {
+        /// Particles now.
+        found: u64,
+        /// Particles at the start.
+        expected: u64,
+    },
+    /// The push is for other particles.
+    #[error("the push has no force for particle {id}")]
+    Push {
+        /// The particle's id.
+        id: u64,
+    },
+}
+
+/// A running LIGGGHTS and what it must keep.
+pub struct Host {
+    liggghts: Liggghts,
+    start: Start,
+    state: State,
+    particles: u64,
+    rank: u32,
+    told: Instant,
+}
+
+impl Host {
+    /// Starts MPI, opens the link, runs the script, shakes hands and sends the first state.
+    pub fn begin(start: Start) -> Result<Self, HostError> {
+        let (rank, ranks) = library::start_mpi();
+        let address = LinkAddress::from_environment()?;
+        let transport = SharedMemory::open(&address, rank, End::Solver)?;
+        library::keep_link(Link::new(Box::new(transport), address.number(), rank));
+        let mut host = Self {
+            liggghts: Liggghts::open(LOG),
+            start,
+            state: State::default(),
+            particles: 0,
+            rank,
+            told: Instant::now(),
+        };
+        let restart = host.start.restart.clone();
+        host.set_up(restart.as_deref())?;
+        host.particles = host.liggghts.particles().unwrap_or_default();
+        let hello = Hello {
+            role: "particles".into(),
+            name: "LIGGGHTS".into(),
+            version: version(),
+            case_hash: host.start.case_hash.clone(),
+            mesh_hash: host.state.hash(),
+            count: host.particles,
+            ranks,
+            catalogue: Catalogue::standard("particles")?,
+        };
+        host.tell(&format!("{} with {} particles", hello.version, hello.count));
+        on_link(|link| link.greet(&hello, GREETING).map(|_| ()))?;
+        host.answer(Header::of(Kind::State), &[])?;
+        Ok(host)
+    }
+
+    /// Answers requests until the coordinator says goodbye.
+    pub fn serve(mut self) -> Result<(), HostError> {
+        loop {
+            let Some(header) = on_link(|link| link.receive(Duration::from_secs(1)))? else {
+                continue;
+            };
+            match header.kind() {
+                Some(Kind::Start) => self.window(header)?,
+                // Particles have one attempt a window: what is finished is already the start.
+                Some(Kind::Commit) => {}
+                Some(Kind::Checkpoint) => {
+                    let directory = on_link(|link| link.text().map(PathBuf::from))?;
+                    self.checkpoint(&directory)?;
+                    self.answer(header.answer(Kind::Checkpointed), &[])?;
+                }
+                Some(Kind::Bye) => {
+                    self.tell("goodbye");
+                    on_link(|link| link.send_plain(header.answer(Kind::Bye)))?;
+                    return Ok(());
+                }
+                _ => {
+                    let unexpected = WireError::Unexpected {
+                        found: header.kind,
+                        expected: "a request",
+                    };
+                    return Err(unexpected.into());
+                }
+            }
+        }
+    }
+
+    /// Advances one window and answers with state and impulses.
+    fn window(&mut self, header: Header) -> Result<(), HostError> {
+        let force = on_link(|link| {
+            let ids = link.column_words("id")?;
+            let all = link.column("force")?;
+            let find = |&id: &u64| ids.binary_search(&id).map_err(|_| HostError::Push { id });
+            let rows = self.state.id.iter().map(find);
+            let rows =
+                rows.map(|row| row.map(|row| [all[3 * row], all[3 * row + 1], all[3 * row + 2]]));
+            Ok::<_, WireError>(rows.collect::<Result<Vec<_>, _>>())
+        })??;
+        let steps = self.steps(&header)?;
+        if self.told.elapsed() > Duration::from_secs(1) {
+            self.tell(&format!("window {}: {steps} steps", header.window));
+        }
+        if steps > 0 {
+            self.liggghts
+                .command(&format!("run {steps} pre no post no"));
+        }
+        self.look()?;
+        // The support of a held particle takes up the force; its impulse is the force's own.
+        let span = header.span_motion as f64 / TICKS;
+        let impulse: Vec<f64> = force.iter().flatten().map(|force| force * span).collect();
+        self.answer(header.answer(Kind::Finished), &impulse)
+    }
+
+    /// Steps of a window: those between the steps nearest to its start and to its end, so that
+    /// rounding never adds up.
+    fn steps(&self, header: &Header) -> Result<i64, HostError> {
+        let step = self
+            .liggghts
+            .step()
+            .ok_or(HostError::Missing { name: "dt" })?
+            * TICKS;
+        let nearest = |ticks: i64| (ticks as f64 / step).round() as i64;
+        let end = header.start_motion.saturating_add(header.span_motion);
+        Ok(nearest(end) - nearest(header.start_motion))
+    }
+
+    /// Writes a checkpoint and goes on from what it wrote.
+    fn checkpoint(&mut self, directory: &Path) -> Result<(), HostError> {
+        // LIGGGHTS splits its commands at blanks: it writes here, then the file is copied.
+        self.liggghts.command(&format!("write_restart {RESTART}"));
+        let copy = directory.join(RESTART);
+        if self.rank == 0 {
+            let failed = |cause| HostError::File {
+                path: copy.clone(),
+                cause,
+            };
+            fs::copy(RESTART, &copy).map_err(failed)?;
+            File::open(&copy)
+                .and_then(|file| file.sync_all())
+                .map_err(failed)?;
+        }
+        self.liggghts.command("clear");
+        self.set_up(Some(Path::new(RESTART)))?;
+        self.tell(&format!("checkpoint in {}", directory.display()));
+        Ok(())
+    }
+
+    /// Runs the script, with a restart file in place of its data file, and LIGGGHTS' own setup.
+    fn set_up(&mut self, restart: Option<&Path>) -> Result<(), HostError> {
+        if let Some(file) = restart
+            && file != Path::new(RESTART)
+            && self.rank == 0
+        {
+            fs::copy(file, RESTART).map_err(|cause| HostError::File {
+                path: file.into(),
+                cause,
+            })?;
+        }
+        let script = &self.start.script;
+        let text = fs::read_to_string(script).map_err(|cause| HostError::File {
+            path: script.clone(),
+            cause,
+        })?;
+        for line in text.lines() {
+            let reads = line.split_ascii_whitespace().next() == Some("read_data");
+            if reads && restart.is_some() {
+                self.liggghts.command(&format!("read_restart {RESTART}"));
+            } else {
+                self.liggghts.command(line);
+            }
+        }
+        self.liggghts.command("run 0");
+        // Each window would add its lines to the log.
+        self.liggghts.command("log none");
+        self.look()
+    }
+
+    /// Reads the particles; none may be lost.
+    fn look(&mut self) -> Result<(), HostError> {
+        let found = self.liggghts.particles().unwrap_or_default();
+        if self.particles != 0 && found != self.particles {
+            return Err(HostError::Lost {
+                found,
+                expected: self.particles,
+            });
+        }
+        self.state = State::read(&self.liggghts)?;
+        Ok(())
+    }
+
+    /// Sends the state; without impulses they are zero.
+    fn answer(&self, header: Header, impulse: &[f64]) -> Result<(), HostError> {
+        let none;
+        let impulse = if impulse.is_empty() {
+            none = vec![0.0; 3 * self.state.id.len()];
+            &none
+        } else {
+            impulse
+        };
+        on_link(|link| self.state.send(link, header, impulse))
+    }
+
+    /// A line for the log that the coordinator shows when something goes wrong.
+    fn tell(&mut self, line: &str) {
+        self.told = Instant::now();
+        eprintln!("calcine-liggghts, rank {}: {line}", self.rank);
+    }
+}
+
+fn on_link<T>(work: impl FnOnce(&mut Link) -> Result<T, WireError>) -> Result<T, HostError> {
+    let outcome = library::with_link(work).ok_or(HostError::Usage)?;
+    Ok(outcome?)
+}
+
+/// LIGGGHTS' version as its log begins: "LIGGGHTS (Version LIGGGHTS-PUBLIC 3.8.0, compiled …".
+fn version() -> String {
+    let text = fs::read_to_string(LOG).unwrap_or_default();
+    let after = text.split_once("(Version ").map_or("", |(_, after)| after);
+    let name = after.split([',', ')']).next().unwrap_or_default();
+    if name.is_empty() {
+        "LIGGGHTS".into()
+    } else {
+        name.to_owned()
+    }
+}

@@ -1,0 +1,245 @@
+//! LIGGGHTS' C interface (library.h of 3.8.0) and the little of MPI that it needs. Everything unsafe
+//! is here.
+//!
+//! LIGGGHTS meets an error inside a command by printing and ending the process. Its error functions
+//! are replaced here by ones that tell the coordinator first: the dynamic linker prefers the
+//! executable's symbols over the library's. There is no way back from an error, so the process ends.
+
+use std::ffi::{CStr, CString, c_char, c_int, c_void};
+use std::ptr;
+use std::sync::{Mutex, PoisonError};
+
+use calcine_wire::Link;
+use calcine_wire::record::{Header, Kind};
+
+#[allow(non_camel_case_types)]
+type MPI_Comm = *mut c_void;
+
+unsafe extern "C" {
+    // Open MPI's MPI_COMM_WORLD is the address of this object.
+    static mut ompi_mpi_comm_world: c_void_object;
+
+    fn MPI_Init(argc: *mut c_int, argv: *mut *mut *mut c_char) -> c_int;
+    fn MPI_Finalize() -> c_int;
+    fn MPI_Comm_rank(world: MPI_Comm, rank: *mut c_int) -> c_int;
+    fn MPI_Comm_size(world: MPI_Comm, size: *mut c_int) -> c_int;
+    fn lammps_open(argc: c_int, argv: *mut *mut c_char, world: MPI_Comm, out: *mut *mut c_void);
+    fn lammps_command(lammps: *mut c_void, line: *const c_char) -> *mut c_char;
+    fn lammps_extract_global(lammps: *mut c_void, name: *const c_char) -> *mut c_void;
+    fn lammps_extract_atom(lammps: *mut c_void, name: *const c_char) -> *mut c_void;
+    fn _exit(status: c_int) -> !;
+}
+
+/// An object of which only the address is used.
+#[allow(non_camel_case_types)]
+#[repr(C)]
+struct c_void_object {
+    _opaque: [u8; 0],
+}
+
+/// The link, where an error hook can reach it. Locked for messages only, never during a command.
+static LINK: Mutex<Option<Link>> = Mutex::new(None);
+
+/// Puts the link where errors are reported through.
+pub fn keep_link(link: Link) {
+    *LINK.lock().unwrap_or_else(PoisonError::into_inner) = Some(link);
+}
+
+/// Works with the link; LIGGGHTS must not be called meanwhile. `None` before there is one.
+pub fn with_link<T>(work: impl FnOnce(&mut Link) -> T) -> Option<T> {
+    let mut link = LINK.lock().unwrap_or_else(PoisonError::into_inner);
+    link.as_mut().map(work)
+}
+
+/// Tells the coordinator of a failure, if there is a link that can.
+pub fn report(text: &str) {
+    if let Ok(mut link) = LINK.try_lock()
+        && let Some(link) = link.as_mut()
+    {
+        // Whoever started this process sees its end, even if the link is what failed.
+        let _ = link.send_text(Header::of(Kind::Failed), text);
+    }
+}
+
+/// Ends the process; where all is well, MPI first.
+pub fn end(status: c_int) -> ! {
+    if status == 0 {
+        // SAFETY: MPI_Finalize is called once, after MPI_Init, with no communication under way.
+        unsafe { MPI_Finalize() };
+    }
+    // SAFETY: takes any status. LIGGGHTS' own destructors are known to crash, so they do not run.
+    unsafe { _exit(status) }
+}
+
+/// A text of C, or nothing where there is none.
+fn words(text: *const c_char) -> String {
+    if text.is_null() {
+        return String::new();
+    }
+    // SAFETY: LIGGGHTS passes texts that end with a zero and live during the call.
+    unsafe { CStr::from_ptr(text) }
+        .to_string_lossy()
+        .into_owned()
+}
+
+fn fail(file: *const c_char, line: c_int, parts: [*const c_char; 2]) -> ! {
+    let message = parts.map(words).join(" ");
+    let text = format!("LIGGGHTS: {} ({}:{line})", message.trim(), words(file));
+    eprintln!("ERROR: {text}");
+    report(&text);
+    end(1)
+}
+
+type Text = *const c_char;
+
+/// `Error::all(file, line, message)`.
+#[unsafe(no_mangle)]
+extern "C" fn _ZN9LAMMPS_NS5Error3allEPKciS2_(_: *mut c_void, file: Text, line: c_int, text: Text) {
+    fail(file, line, [ptr::null(), text])
+}
+
+/// `Error::one(file, line, message)`.
+#[unsafe(no_mangle)]
+extern "C" fn _ZN9LAMMPS_NS5Error3oneEPKciS2_(_: *mut c_void, file: Text, line: c_int, text: Text) {
+    fail(file, line, [ptr::null(), text])
+}
+
+/// `Error::fix_error(file, line, fix, message)`.
+#[unsafe(no_mangle)]
+extern "C" fn _ZN9LAMMPS_NS5Error9fix_errorEPKciPNS_3FixES2_(
+    _: *mut c_void,
+    file: Text,
+    line: c_int,
+    _fix: *mut c_void,
+    text: Text,
+) {
+    fail(file, line, [ptr::null(), text])
+}
+
+/// `Error::fix_error(file, line, fix, style, message)`.
+#[unsafe(no_mangle)]
+extern "C" fn _ZN9LAMMPS_NS5Error9fix_errorEPKciPNS_3FixES2_S2_(
+    _: *mut c_void,
+    file: Text,
+    line: c_int,
+    _fix: *mut c_void,
+    style: Text,
+    text: Text,
+) {
+    fail(file, line, [style, text])
+}
+
+/// Starts MPI; rank and number of ranks.
+pub fn start_mpi() -> (u32, u32) {
+    let (mut rank, mut size) = (0, 1);
+    // SAFETY: MPI allows NULL for both arguments; the results are places of the right type.
+    unsafe {
+        MPI_Init(ptr::null_mut(), ptr::null_mut());
+        MPI_Comm_rank(world(), &mut rank);
+        MPI_Comm_size(world(), &mut size);
+    }
+    (rank.unsigned_abs(), size.unsigned_abs())
+}
+
+fn world() -> MPI_Comm {
+    (&raw mut ompi_mpi_comm_world).cast()
+}
+
+/// One LIGGGHTS; there must be no second in a process.
+pub struct Liggghts {
+    handle: *mut c_void,
+}
+
+impl Liggghts {
+    /// Opens LIGGGHTS with its output in a file. MPI must have been started.
+    pub fn open(log: &str) -> Self {
+        let arguments = ["liggghts", "-screen", "none", "-log", log].map(c_text);
+        let mut pointers = arguments.each_ref().map(|text| text.as_ptr().cast_mut());
+        let mut handle = ptr::null_mut();
+        // SAFETY: the texts live during the call and LIGGGHTS copies what it keeps; it does not
+        // write into them.
+        unsafe {
+            let count = pointers.len() as c_int;
+            lammps_open(count, pointers.as_mut_ptr(), world(), &mut handle);
+        }
+        Self { handle }
+    }
+
+    /// Runs one line of script; an error ends the process.
+    pub fn command(&mut self, line: &str) {
+        let line = c_text(line);
+        // SAFETY: the handle is open and the text lives during the call.
+        unsafe { lammps_command(self.handle, line.as_ptr()) };
+    }
+
+    fn global<T: Copy>(&self, name: &str) -> Option<T> {
+        let name = c_text(name);
+        // SAFETY: the handle is open; a known name gives a pointer to a value of T, which the
+        // callers below choose as library.cpp has it; an unknown one NULL.
+        unsafe {
+            let value: *const T = lammps_extract_global(self.handle, name.as_ptr()).cast();
+            value.as_ref().copied()
+        }
+    }
+
+    /// The time step in s.
+    pub fn step(&self) -> Option<f64> {
+        self.global("dt")
+    }
+
+    /// Particles on all ranks.
+    pub fn particles(&self) -> Option<u64> {
+        self.global::<i64>("natoms").map(i64::unsigned_abs)
+    }
+
+    fn local(&self) -> usize {
+        self.global::<c_int>("nlocal")
+            .map_or(0, |count| count.unsigned_abs() as usize)
+    }
+
+    /// Integers of this rank's particles, for example "id" and "type".
+    pub fn integers(&self, name: &str) -> Option<&[c_int]> {
+        self.column(name, 1)
+    }
+
+    /// Scalars of this rank's particles, for example "radius" and "rmass".
+    pub fn scalars(&self, name: &str) -> Option<&[f64]> {
+        self.column(name, 1)
+    }
+
+    /// Vectors of this rank's particles, interleaved, for example "x", "v", "omega".
+    pub fn vectors(&self, name: &str) -> Option<&[f64]> {
+        let count = self.local();
+        if count == 0 {
+            return Some(&[]);
+        }
+        let name = c_text(name);
+        // SAFETY: the handle is open; a per-atom array is a table of row pointers whose rows are
+        // contiguous, at least `nlocal` of them; it lives until the next command, which needs
+        // `&mut self`.
+        unsafe {
+            let rows: *const *const f64 = lammps_extract_atom(self.handle, name.as_ptr()).cast();
+            let first = *rows.as_ref()?;
+            (!first.is_null()).then(|| std::slice::from_raw_parts(first, 3 * count))
+        }
+    }
+
+    fn column<T>(&self, name: &str, components: usize) -> Option<&[T]> {
+        let count = self.local();
+        if count == 0 {
+            return Some(&[]);
+        }
+        let name = c_text(name);
+        // SAFETY: as for vectors, but the array itself; the two callers fix T.
+        unsafe {
+            let values: *const T = lammps_extract_atom(self.handle, name.as_ptr()).cast();
+            (!values.is_null()).then(|| std::slice::from_raw_parts(values, components * count))
+        }
+    }
+}
+
+/// A text for C; a zero inside it ends it.
+fn c_text(text: &str) -> CString {
+    let end = text.find('\0').unwrap_or(text.len());
+    CString::new(&text[..end]).unwrap_or_default()
+}

@@ -1,0 +1,88 @@
+//! This rank's particles as columns, in ascending id.
+
+use calcine_wire::{Header, Link, WireError};
+
+use crate::host::HostError;
+use crate::library::Liggghts;
+
+/// One value or vector per particle, in ascending id.
+#[derive(Debug, Default)]
+pub struct State {
+    /// LIGGGHTS' tags.
+    pub id: Vec<u64>,
+    population: Vec<u64>,
+    position: Vec<f64>,
+    velocity: Vec<f64>,
+    angular_velocity: Vec<f64>,
+    radius: Vec<f64>,
+    mass: Vec<f64>,
+}
+
+impl State {
+    /// Reads what LIGGGHTS holds now.
+    pub fn read(liggghts: &Liggghts) -> Result<Self, HostError> {
+        let missing = |name: &'static str| move || HostError::Missing { name };
+        let tags = liggghts.integers("id").ok_or_else(missing("id"))?;
+        let mut order: Vec<usize> = (0..tags.len()).collect();
+        order.sort_unstable_by_key(|&index| tags[index]);
+
+        let integers = |name: &'static str| {
+            let values = liggghts.integers(name).ok_or_else(missing(name))?;
+            Ok::<Vec<i32>, HostError>(order.iter().map(|&index| values[index]).collect())
+        };
+        let scalars = |name: &'static str| {
+            let values = liggghts.scalars(name).ok_or_else(missing(name))?;
+            Ok::<Vec<f64>, HostError>(order.iter().map(|&index| values[index]).collect())
+        };
+        let vectors = |name: &'static str| {
+            let values = liggghts.vectors(name).ok_or_else(missing(name))?;
+            let rows = order
+                .iter()
+                .flat_map(|&index| &values[3 * index..3 * index + 3]);
+            Ok::<Vec<f64>, HostError>(rows.copied().collect())
+        };
+        let whole = |value: &i32| u64::from(value.unsigned_abs());
+        Ok(Self {
+            id: integers("id")?.iter().map(whole).collect(),
+            // LIGGGHTS counts types from 1.
+            population: integers("type")?
+                .iter()
+                .map(|kind| whole(kind) - 1)
+                .collect(),
+            position: vectors("x")?,
+            velocity: vectors("v")?,
+            angular_velocity: vectors("omega")?,
+            radius: scalars("radius")?,
+            mass: scalars("rmass")?,
+        })
+    }
+
+    /// Hash of what the particles are, whatever they do: ids and radii (FNV-1a over 8-byte words).
+    /// The coordinator computes the same from its own.
+    pub fn hash(&self) -> String {
+        let mix = |hash: u64, word: u64| (hash ^ word).wrapping_mul(0x0100_0000_01b3);
+        let pairs = self.id.iter().zip(&self.radius);
+        let words = pairs.flat_map(|(&id, radius)| [id, radius.to_bits()]);
+        format!("{:016x}", words.fold(0xcbf2_9ce4_8422_2325, mix))
+    }
+
+    /// Sends the state with the impulses in N s.
+    pub fn send(&self, link: &mut Link, header: Header, impulse: &[f64]) -> Result<(), WireError> {
+        link.loan(header, self.id.len())?;
+        link.column_words_mut("id")?.copy_from_slice(&self.id);
+        link.column_words_mut("population")?
+            .copy_from_slice(&self.population);
+        let columns = [
+            ("position", self.position.as_slice()),
+            ("velocity", &self.velocity),
+            ("angular_velocity", &self.angular_velocity),
+            ("radius", &self.radius),
+            ("mass", &self.mass),
+            ("impulse", impulse),
+        ];
+        for (name, values) in columns {
+            link.column_mut(name)?.copy_from_slice(values);
+        }
+        link.send()
+    }
+}
