@@ -8,7 +8,7 @@ use calcine_coupler::mesh::Mesh;
 use calcine_coupler::observer::Moment;
 use calcine_coupler::physics::Vec3;
 use hdf5::types::VarLenUnicode;
-use hdf5::{Dataset, File, Group, H5Type, Location};
+use hdf5::{Dataset, File, FileBuilder, Group, H5Type, Location};
 use ndarray::{Array2, ArrayView1, ArrayView2};
 
 use super::ResultsError;
@@ -42,7 +42,7 @@ impl Store {
         lines: &[Line],
     ) -> Result<Self, ResultsError> {
         let begin = || -> hdf5::Result<Self> {
-            let file = File::create(path)?;
+            let file = unlocked().create(path)?;
             file.new_attr::<i64>().create("format")?.write_scalar(&1)?;
             note(&file, "case", &case.name)?;
             note(&file, "case_hash", &case.hash)?;
@@ -70,7 +70,7 @@ impl Store {
     /// Opens a file that holds so many rows.
     pub fn resume(path: &Path, columns: &[Column], rows: usize) -> Result<Self, ResultsError> {
         let begin = || -> hdf5::Result<Self> {
-            let file = File::open_rw(path)?;
+            let file = unlocked().open_rw(path)?;
             let series = file.group("series")?;
             let columns = columns
                 .iter()
@@ -180,6 +180,15 @@ impl Store {
     pub fn flush(&self) -> Result<(), ResultsError> {
         self.file.flush().map_err(failure("flush", &self.path))
     }
+}
+
+/// Opens without HDF5's lock on the file: solvers that the run starts would inherit it and could
+/// keep it past the run's end, network file systems may not have it, and it would keep users from
+/// reading while the run goes on. The summary guards the directory instead.
+fn unlocked() -> FileBuilder {
+    let mut builder = File::with_options();
+    builder.with_fapl(|access| access.file_locking(false));
+    builder
 }
 
 fn failure(action: &'static str, path: &Path) -> impl FnOnce(hdf5::Error) -> ResultsError {
