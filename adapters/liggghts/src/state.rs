@@ -1,5 +1,6 @@
 //! This rank's particles as columns, in ascending id.
 
+use calcine_wire::hello::fingerprint;
 use calcine_wire::{Header, Link, WireError};
 
 use crate::host::HostError;
@@ -57,13 +58,11 @@ impl State {
         })
     }
 
-    /// Hash of what the particles are, whatever they do: ids and radii (FNV-1a over 8-byte words).
-    /// The coordinator computes the same from its own.
+    /// Hash of what the particles are, whatever they do: ids and radii. The coordinator computes
+    /// the same from its own.
     pub fn hash(&self) -> String {
-        let mix = |hash: u64, word: u64| (hash ^ word).wrapping_mul(0x0100_0000_01b3);
         let pairs = self.id.iter().zip(&self.radius);
-        let words = pairs.flat_map(|(&id, radius)| [id, radius.to_bits()]);
-        format!("{:016x}", words.fold(0xcbf2_9ce4_8422_2325, mix))
+        fingerprint(pairs.flat_map(|(&id, radius)| [id, radius.to_bits()]))
     }
 
     /// Sends the state with the impulses in N s.

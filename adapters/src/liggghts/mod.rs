@@ -1,1 +1,290 @@
 //! Particles in Debian's LIGGGHTS, run as a library by the host `calcine-liggghts`.
+
+pub mod inputs;
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use calcine_coupler::error::{FailureKind, PartError};
+use calcine_coupler::part::{
+    About, Part, ParticleEvent, ParticleFields, ParticlePush, ParticleReceived, Particles,
+};
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::supervisor::Supervisor;
+use calcine_coupler::time::Window;
+use calcine_wire::hello::fingerprint;
+use calcine_wire::{Catalogue, Hello, Kind, Link, WireError};
+
+use crate::launch::{Program, find_program};
+use crate::liggghts::inputs::{Inputs, SCRIPT};
+use crate::solver::{ExternalSolver, Launch, header};
+
+/// Name in messages.
+const NAME: &str = "LIGGGHTS (particles)";
+/// Name of the host's program.
+pub const HOST: &str = "calcine-liggghts";
+/// The variable that names another host program.
+pub const HOST_VARIABLE: &str = "CALCINE_LIGGGHTS_HOST";
+/// Name of the restart file in a checkpoint's folder, as the host writes it.
+const RESTART: &str = "liggghts.restart";
+/// Time step in s for a bed that is held: nothing happens within it.
+pub const FROZEN_STEP: f64 = 1e-4;
+
+/// What LIGGGHTS is started with.
+#[derive(Clone, Debug)]
+pub struct LiggghtsLaunch<'a> {
+    /// Particles, box, step, ranks.
+    pub inputs: Inputs<'a>,
+    /// Hash of the case.
+    pub case_hash: String,
+    /// Where the inputs are written and the host runs.
+    pub folder: PathBuf,
+    /// Where the host's output goes.
+    pub log: PathBuf,
+    /// The particles' folder of the checkpoint to start from.
+    pub resume: Option<PathBuf>,
+    /// Longest silence while starting, writing a checkpoint or ending.
+    pub deadline: Duration,
+}
+
+/// Particles as columns, in ascending id.
+#[derive(Clone, Debug, Default)]
+struct State {
+    id: Vec<u64>,
+    population: Vec<u32>,
+    position: Vec<Vec3>,
+    velocity: Vec<Vec3>,
+    angular_velocity: Vec<Vec3>,
+    radius: Vec<f64>,
+    mass: Vec<f64>,
+    impulse: Vec<Vec3>,
+}
+
+/// The particles of a running LIGGGHTS.
+pub struct LiggghtsParticles {
+    solver: ExternalSolver,
+    about: About,
+    committed: State,
+    attempt: State,
+    window: Window,
+}
+
+impl LiggghtsParticles {
+    /// Writes the inputs, starts the host and takes over its particles.
+    pub fn launch(
+        launch: LiggghtsLaunch<'_>,
+        supervisor: &mut Supervisor,
+    ) -> Result<Self, PartError> {
+        let remedy = "`cargo xtask setup liggghts` builds it (`cargo build -p calcine-liggghts`)";
+        let host = find_program(HOST_VARIABLE, HOST, remedy)?;
+        launch.inputs.write(&launch.folder)?;
+        let mut arguments = vec![SCRIPT.into(), launch.case_hash.clone().into()];
+        if let Some(folder) = &launch.resume {
+            let file = std::path::absolute(folder.join(RESTART)).map_err(|error| {
+                let message = format!("the checkpoint {} cannot be used", folder.display());
+                PartError::new(NAME, FailureKind::Io, message).caused_by(error)
+            })?;
+            arguments.push(file.into());
+        }
+        let setup = launch.inputs.setup;
+        let pairs = setup.id.iter().zip(&setup.radius);
+        let hello = Hello {
+            role: "particles".into(),
+            name: "Calcine".into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            case_hash: launch.case_hash,
+            mesh_hash: fingerprint(pairs.flat_map(|(&id, radius)| [id, radius.to_bits()])),
+            count: setup.id.len() as u64,
+            ranks: launch.inputs.ranks,
+            catalogue: Catalogue::standard("particles").map_err(|error| {
+                PartError::new(NAME, FailureKind::NotStarted, "its columns").caused_by(error)
+            })?,
+        };
+        let ranks = launch.inputs.ranks;
+        let solver = ExternalSolver::launch(
+            Launch {
+                name: NAME.into(),
+                program: Program {
+                    path: host,
+                    arguments,
+                    directory: launch.folder,
+                    environment: Vec::new(),
+                },
+                log: launch.log,
+                hello,
+                handshake: launch.deadline,
+                deadline: launch.deadline,
+            },
+            supervisor,
+        )?;
+        let about = About {
+            name: solver.hello().name.clone(),
+            version: solver.hello().version.clone(),
+            ranks: ranks as usize,
+        };
+        let mut particles = Self {
+            solver,
+            about,
+            committed: State::default(),
+            attempt: State::default(),
+            window: Window::default(),
+        };
+        particles.committed = particles.read(None)?;
+        particles.attempt = particles.committed.clone();
+        Ok(particles)
+    }
+
+    /// Process id of the host (or of the `mpirun` above it).
+    pub fn pid(&self) -> u32 {
+        self.solver.pid()
+    }
+
+    /// The particles in the messages that the links hold.
+    fn read(&self, window: Option<&Window>) -> Result<State, PartError> {
+        let state = State::read(self.solver.links());
+        let state = state.map_err(|error| self.solver.failure(window, error))?;
+        let unordered = state.id.windows(2).find(|pair| pair[0] >= pair[1]);
+        if let Some(pair) = unordered {
+            let message = format!("particle {} follows particle {}", pair[1], pair[0]);
+            return Err(self.solver.refuse(window, message));
+        }
+        let vectors = state
+            .position
+            .iter()
+            .chain(&state.velocity)
+            .chain(&state.angular_velocity);
+        if vectors
+            .flat_map(|vector| vector.iter())
+            .any(|x| !x.is_finite())
+        {
+            let message = "a particle's position or velocity is not a finite number";
+            let mut error = self.solver.refuse(window, message.into());
+            error.kind = FailureKind::Diverged;
+            return Err(error);
+        }
+        Ok(state)
+    }
+}
+
+/// Interleaved numbers as vectors.
+fn vectors(numbers: &[f64]) -> impl Iterator<Item = Vec3> {
+    numbers.chunks_exact(3).map(|x| Vec3::new(x[0], x[1], x[2]))
+}
+
+impl State {
+    /// Joins the columns of all ranks by id.
+    fn read(links: &[Link]) -> Result<Self, WireError> {
+        let mut order = Vec::new();
+        for (rank, link) in links.iter().enumerate() {
+            let ids = link.column_words("id")?.iter().enumerate();
+            order.extend(ids.map(|(row, &id)| (id, rank, row)));
+        }
+        order.sort_unstable();
+        let words = |name: &str| {
+            let columns = links.iter().map(|link| link.column_words(name));
+            let columns = columns.collect::<Result<Vec<_>, _>>()?;
+            let joined = order.iter().map(|&(_, rank, row)| columns[rank][row]);
+            Ok::<Vec<u64>, WireError>(joined.collect())
+        };
+        let scalars = |name: &str| {
+            let bits = words(name)?.into_iter().map(f64::from_bits);
+            Ok::<Vec<f64>, WireError>(bits.collect())
+        };
+        let vectors = |name: &str| {
+            let columns = links.iter().map(|link| link.column(name));
+            let columns = columns.collect::<Result<Vec<_>, _>>()?;
+            let joined = order
+                .iter()
+                .flat_map(|&(_, rank, row)| vectors(&columns[rank][3 * row..3 * row + 3]));
+            Ok::<Vec<Vec3>, WireError>(joined.collect())
+        };
+        let small = |value: u64| u32::try_from(value).unwrap_or(u32::MAX);
+        Ok(Self {
+            id: words("id")?,
+            population: words("population")?.into_iter().map(small).collect(),
+            position: vectors("position")?,
+            velocity: vectors("velocity")?,
+            angular_velocity: vectors("angular_velocity")?,
+            radius: scalars("radius")?,
+            mass: scalars("mass")?,
+            impulse: vectors("impulse")?,
+        })
+    }
+}
+
+impl Part for LiggghtsParticles {
+    fn about(&self) -> &About {
+        &self.about
+    }
+
+    fn commit(&mut self) -> Result<(), PartError> {
+        self.solver.commit()?;
+        self.committed.clone_from(&self.attempt);
+        Ok(())
+    }
+
+    fn checkpoint(&mut self, directory: &Path) -> Result<(), PartError> {
+        self.solver.checkpoint(directory)?;
+        self.committed = self.read(None)?;
+        Ok(())
+    }
+
+    fn finish_run(&mut self, _supervisor: &Supervisor) -> Result<(), PartError> {
+        self.solver.goodbye()
+    }
+}
+
+impl Particles for LiggghtsParticles {
+    fn fields(&self) -> ParticleFields<'_> {
+        let state = &self.committed;
+        ParticleFields {
+            id: &state.id,
+            population: &state.population,
+            position: &state.position,
+            velocity: &state.velocity,
+            angular_velocity: &state.angular_velocity,
+            radius: &state.radius,
+            mass: &state.mass,
+        }
+    }
+
+    fn events(&self) -> &[ParticleEvent] {
+        &[]
+    }
+
+    fn start(&mut self, window: &Window, push: &ParticlePush) -> Result<(), PartError> {
+        self.window = *window;
+        let count = self.committed.id.len();
+        if push.force.len() != count {
+            let message = format!("{} forces for {count} particles", push.force.len());
+            return Err(self.solver.refuse(Some(window), message));
+        }
+        let ids = &self.committed.id;
+        self.solver
+            .send_columns(window, header(Kind::Start, window), count, |link| {
+                link.column_words_mut("id")?.copy_from_slice(ids);
+                let places = link.column_mut("force")?.chunks_exact_mut(3);
+                for (place, force) in places.zip(&push.force) {
+                    place.copy_from_slice(force.as_slice());
+                }
+                Ok(())
+            })
+    }
+
+    fn finish(
+        &mut self,
+        supervisor: &Supervisor,
+        received: &mut ParticleReceived,
+    ) -> Result<(), PartError> {
+        let window = self.window;
+        self.solver.wait(supervisor, &window, Kind::Finished)?;
+        self.attempt = self.read(Some(&window))?;
+        if self.attempt.id != self.committed.id {
+            let (now, before) = (self.attempt.id.len(), self.committed.id.len());
+            let message = format!("it came back with {now} particles of {before}, or other ids");
+            return Err(self.solver.refuse(Some(&window), message));
+        }
+        received.impulse.clone_from(&self.attempt.impulse);
+        Ok(())
+    }
+}

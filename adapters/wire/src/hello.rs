@@ -110,6 +110,12 @@ impl Hello {
     }
 }
 
+/// A hash that both ends derive from what they hold: FNV-1a, word by word, as hexadecimal.
+pub fn fingerprint(words: impl IntoIterator<Item = u64>) -> String {
+    let mix = |hash: u64, word: u64| (hash ^ word).wrapping_mul(0x0100_0000_01b3);
+    format!("{:016x}", words.into_iter().fold(0xcbf2_9ce4_8422_2325, mix))
+}
+
 fn compare(what: &'static str, ours: &str, theirs: &str) -> Result<(), WireError> {
     if ours == theirs {
         return Ok(());
@@ -163,6 +169,13 @@ mod tests {
             let text = hello().agree(&other).unwrap_err().to_string();
             assert!(text.contains(expected), "{text}");
         }
+    }
+
+    #[test]
+    fn a_fingerprint_is_fnv_1a() {
+        // Published: FNV-1a of no bytes, and of the byte "a" (0x61), 64 bits.
+        assert_eq!(fingerprint([]), "cbf29ce484222325");
+        assert_eq!(fingerprint([0x61]), "af63dc4c8601ec8c");
     }
 
     #[test]

@@ -1,0 +1,214 @@
+//! The script and the data file of a bed, as LIGGGHTS reads them.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use calcine_coupler::error::{FailureKind, PartError};
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::ParticleSetup;
+
+/// Name of the script.
+pub const SCRIPT: &str = "in.liggghts";
+/// Name of the data file.
+pub const DATA: &str = "particles.data";
+const WHO: &str = "LIGGGHTS (particles)";
+
+/// What the inputs are made from.
+#[derive(Clone, Copy, Debug)]
+pub struct Inputs<'a> {
+    /// The particles.
+    pub setup: &'a ParticleSetup,
+    /// Lower and upper corner of the domain in m; the box is widened where particles reach out.
+    pub bounds: (Vec3, Vec3),
+    /// Time step of LIGGGHTS in s of motion time.
+    pub step: f64,
+    /// Number of ranks, side by side along the longer horizontal side.
+    pub ranks: u32,
+}
+
+impl Inputs<'_> {
+    /// Writes `in.liggghts` and `particles.data` into a folder; gives their paths.
+    pub fn write(&self, folder: &Path) -> Result<[PathBuf; 2], PartError> {
+        self.check()?;
+        let files = [
+            (folder.join(SCRIPT), self.script()),
+            (folder.join(DATA), self.data()),
+        ];
+        fs::create_dir_all(folder).map_err(|error| unwritable(folder, error))?;
+        for (path, text) in &files {
+            fs::write(path, text).map_err(|error| unwritable(path, error))?;
+        }
+        Ok(files.map(|(path, _)| path))
+    }
+
+    fn check(&self) -> Result<(), PartError> {
+        let refuse = |message: String| Err(PartError::new(WHO, FailureKind::NotStarted, message));
+        let setup = self.setup;
+        if !setup.frozen {
+            return refuse("it holds frozen beds only; set `motion = \"frozen\"`".into());
+        }
+        if setup.id.is_empty() {
+            return refuse("there are no particles".into());
+        }
+        // LIGGGHTS' tags are 32-bit integers.
+        if let Some(id) = setup.id.iter().find(|&&id| id == 0 || id > i32::MAX as u64) {
+            return refuse(format!(
+                "particle id {id} is not between 1 and {}",
+                i32::MAX
+            ));
+        }
+        if !(self.step.is_finite() && self.step > 0.0) {
+            return refuse(format!("a time step of {} s is not positive", self.step));
+        }
+        Ok(())
+    }
+
+    fn script(&self) -> String {
+        let (lower, upper) = self.corners();
+        let along_x = upper.x - lower.x >= upper.y - lower.y;
+        let grid = if along_x {
+            format!("{} 1 1", self.ranks)
+        } else {
+            format!("1 {} 1", self.ranks)
+        };
+        let skin = 0.1 * self.setup.radius.iter().copied().fold(0.0, f64::max);
+        format!(
+            "\
+# Written by Calcine: a bed whose particles are held. Nothing moves them, so there is neither an
+# integrator nor a contact law; time advances on the motion clock.
+units si
+atom_style granular
+atom_modify map array sort 0 0
+communicate single vel yes
+boundary f f f
+newton off
+processors {grid}
+read_data {DATA}
+pair_style none
+neighbor {skin:e} bin
+neigh_modify delay 0
+timestep {step:e}
+thermo 1000000
+thermo_modify lost error norm no
+",
+            step = self.step
+        )
+    }
+
+    fn data(&self) -> String {
+        let setup = self.setup;
+        let (lower, upper) = self.corners();
+        let types = setup.population.iter().max().map_or(1, |last| last + 1);
+        let mut text = format!(
+            "Written by Calcine: id, type (population + 1), diameter, density, centre; SI\n\n\
+             {} atoms\n{types} atom types\n",
+            setup.id.len()
+        );
+        // Writing to a string cannot fail; `e` prints the shortest digits that read back exactly.
+        for (axis, name) in ["x", "y", "z"].iter().enumerate() {
+            let (low, high) = (lower[axis], upper[axis]);
+            let _ = writeln!(text, "{low:e} {high:e} {name}lo {name}hi");
+        }
+        text.push_str("\nAtoms\n\n");
+        for (p, id) in setup.id.iter().enumerate() {
+            let centre = setup.position[p];
+            let _ = writeln!(
+                text,
+                "{id} {} {:e} {:e} {:e} {:e} {:e}",
+                setup.population[p] + 1,
+                2.0 * setup.radius[p],
+                setup.density[p],
+                centre.x,
+                centre.y,
+                centre.z
+            );
+        }
+        text
+    }
+
+    /// Corners of a box around domain and spheres, with a margin that keeps particles off its faces.
+    fn corners(&self) -> (Vec3, Vec3) {
+        let (mut lower, mut upper) = self.bounds;
+        for (centre, &radius) in self.setup.position.iter().zip(&self.setup.radius) {
+            lower = lower.inf(&centre.add_scalar(-radius));
+            upper = upper.sup(&centre.add_scalar(radius));
+        }
+        let margin = 0.01 * (upper - lower);
+        (lower - margin, upper + margin)
+    }
+}
+
+fn unwritable(path: &Path, error: std::io::Error) -> PartError {
+    let message = format!("{} cannot be written", path.display());
+    PartError::new(WHO, FailureKind::Io, message).caused_by(error)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn setup() -> ParticleSetup {
+        ParticleSetup {
+            id: vec![1, 7],
+            population: vec![0, 1],
+            position: vec![
+                Vec3::new(0.005, 0.005, 0.1),
+                Vec3::new(0.005, 0.005, 1.0 / 3.0),
+            ],
+            radius: vec![0.005, 0.005],
+            density: vec![2500.0, 2600.0],
+            frozen: true,
+        }
+    }
+
+    fn inputs(setup: &ParticleSetup) -> Inputs<'_> {
+        Inputs {
+            setup,
+            bounds: (Vec3::zeros(), Vec3::new(0.01, 0.01, 0.3)),
+            step: 1e-4,
+            ranks: 1,
+        }
+    }
+
+    #[test]
+    fn the_data_file_reads_back_to_the_same_bits() {
+        let setup = setup();
+        let text = inputs(&setup).data();
+        let last: Vec<&str> = text.lines().last().unwrap().split(' ').collect();
+        assert_eq!(last[..2], ["7", "2"]);
+        assert_eq!(last[2].parse::<f64>().unwrap(), 0.01);
+        assert_eq!(last[6].parse::<f64>().unwrap(), 1.0 / 3.0);
+    }
+
+    #[test]
+    fn the_box_holds_domain_and_spheres() {
+        let setup = setup();
+        let (lower, upper) = inputs(&setup).corners();
+        assert!(lower.x < 0.0 && lower.z < 0.0 && upper.y > 0.01);
+        assert!(upper.z > 1.0 / 3.0 + 0.005);
+    }
+
+    #[test]
+    fn what_liggghts_cannot_hold_is_refused_with_the_number() {
+        let mut moving = setup();
+        moving.frozen = false;
+        assert!(
+            inputs(&moving)
+                .check()
+                .unwrap_err()
+                .to_string()
+                .contains("frozen")
+        );
+        let mut far = setup();
+        far.id[1] = 1 << 40;
+        let error = inputs(&far).check().unwrap_err().to_string();
+        assert!(error.contains("1099511627776"), "{error}");
+        let fine = setup();
+        let still = Inputs {
+            step: 0.0,
+            ..inputs(&fine)
+        };
+        assert!(still.check().unwrap_err().to_string().contains("0 s"));
+    }
+}
