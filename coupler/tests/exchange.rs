@@ -2,6 +2,8 @@
 //! system: conservation whatever the iterate, convergence of the iteration, stability where the
 //! particle's own time is short.
 
+#![allow(clippy::unwrap_used)]
+
 use calcine_coupler::closures::Coefficients;
 use calcine_coupler::exchange::{Exchange, Setting};
 use calcine_coupler::interior::{ParticleModel, Thin};
@@ -210,9 +212,9 @@ fn the_iteration_converges_to_the_coupled_system_of_cells_and_particles() {
     // Q_p = h A (T̄_p − T_p) with both temperatures new is the coupled system's definition.
     let mut seen = vec![0.0; 2];
     Bench::new().operator.sample(&gas.temperature, &mut seen);
-    for p in 0..2 {
-        let expected = 0.02 * (seen[p] - thin.temperature()[p]);
-        assert!((exchange.heat[p] - expected).abs() < 1e-10 * expected.abs());
+    for ((seen, own), heat) in seen.iter().zip(thin.temperature()).zip(&exchange.heat) {
+        let expected = 0.02 * (seen - own);
+        assert!((heat - expected).abs() < 1e-10 * expected.abs());
     }
 }
 

@@ -72,10 +72,25 @@ impl Run<'_> {
         window: &Window,
     ) -> Result<(), RunError> {
         self.map_if_moved()?;
-        self.evaluate_laws(window)?;
-        self.exchange_with_gas(supervisor, *window)?;
+        let mut attempt = *window;
+        for _ in 0..self.evaluations() {
+            self.evaluate_laws(window)?;
+            self.exchange_with_gas(supervisor, &mut attempt)?;
+        }
         self.move_particles(supervisor, window)?;
         self.commit(window)
+    }
+
+    /// How often the laws are evaluated in the coming window: once, on the gas of the window
+    /// before. The first window of a run has none before it (its gas may be at rest, and does not
+    /// know the bed yet), so it is repeated with the laws evaluated on what came out.
+    fn evaluations(&self) -> u32 {
+        const IN_FIRST_WINDOW: u32 = 4;
+        if self.windows == 0 {
+            IN_FIRST_WINDOW
+        } else {
+            1
+        }
     }
 
     fn map_if_moved(&mut self) -> Result<(), RunError> {
@@ -122,8 +137,9 @@ impl Run<'_> {
     fn exchange_with_gas(
         &mut self,
         supervisor: &Supervisor,
-        mut window: Window,
+        window: &mut Window,
     ) -> Result<(), RunError> {
+        let first_attempt = window.attempt;
         let acceleration = window.acceleration();
         let span = window.span.process.seconds();
         let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
@@ -153,7 +169,7 @@ impl Run<'_> {
             });
             window.attempt += 1;
             if misplaced <= self.plan.exchange_tolerance
-                || window.attempt >= self.plan.exchange_attempts
+                || window.attempt - first_attempt >= self.plan.exchange_attempts
             {
                 return Ok(());
             }
