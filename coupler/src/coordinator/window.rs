@@ -157,7 +157,7 @@ impl Run<'_> {
             self.convergence = timed(&mut timing.gas, || {
                 self.parts
                     .gas
-                    .start(&window, &mapped.bed, &work.exchange.cells)?;
+                    .start(window, &mapped.bed, &work.exchange.cells)?;
                 self.parts.gas.finish(supervisor, &mut work.received)
             })?;
             let misplaced = timed(&mut timing.exchange, || {
