@@ -1,0 +1,48 @@
+#!/bin/bash
+# Builds libcalcineFoam.so and calcineGasFoam against Debian's OpenFOAM 1912. `cargo xtask setup`
+# calls it with these variables:
+#   HEADERS_DIR   OpenFOAM's src/ with an lnInclude folder in each library
+#   WIRE_INCLUDE  folder of calcine_wire.h
+#   WIRE_LIB      libcalcine_wire.a
+#   OUT_DIR       where library and solver go; objects stay in OUT_DIR/objects
+set -euo pipefail
+cd "$(dirname "$0")"
+: "${HEADERS_DIR:?} ${WIRE_INCLUDE:?} ${WIRE_LIB:?} ${OUT_DIR:?}"
+
+src=$HEADERS_DIR/src
+# Those of OpenFOAM's wmake/rules/linux64Gcc, and OMPI_SKIP_MPICXX for Debian's Open MPI.
+flags=(-std=c++14 -m64 -DOPENFOAM=1912 -DWM_DP -DWM_LABEL_SIZE=32 -Dlinux64 -DWM_ARCH_OPTION=64
+    -O2 -DNoRepository -DOMPI_SKIP_MPICXX -ftemplate-depth-100 -fPIC
+    -Wall -Wextra -Wno-unused-parameter -Wno-old-style-cast -Wnon-virtual-dtor
+    -I library -I calcineGasFoam -I "$WIRE_INCLUDE")
+for part in OpenFOAM OSspecific/POSIX finiteVolume meshTools thermophysicalModels/basic \
+    thermophysicalModels/specie transportModels/compressible; do
+    flags+=(-isystem "$src/$part/lnInclude")
+done
+
+objects=$OUT_DIR/objects
+mkdir -p "$objects"
+rebuild_after=$(ls -t build.sh library/*.H calcineGasFoam/*.H "$WIRE_INCLUDE/calcine_wire.h" | head -n 1)
+jobs=()
+for file in library/*.C calcineGasFoam/*.C; do
+    object=$objects/$(basename "$file" .C).o
+    if [ ! "$object" -nt "$file" ] || [ ! "$object" -nt "$rebuild_after" ]; then
+        jobs+=("$file" "$object.part" "$object")
+    fi
+done
+# Two compilers at a time: each takes about half a GB.
+((${#jobs[@]})) && printf '%s\0' "${jobs[@]}" | xargs -0 -n 3 -P 2 bash -c '
+    g++ "${@:1:$#-3}" -c "${@: -3:1}" -o "${@: -2:1}" && mv "${@: -2:1}" "${@: -1}"' build "${flags[@]}" || ((${#jobs[@]} == 0))
+
+own() { for file in "$1"/*.C; do echo "$objects/$(basename "$file" .C).o"; done; }
+# A new file takes the old one's place at once: a running solver keeps what it has opened.
+mapfile -t library < <(own library)
+g++ -shared -Wl,-soname,libcalcineFoam.so -o "$OUT_DIR/.libcalcineFoam.so" "${library[@]}" "$WIRE_LIB" \
+    -Wl,--exclude-libs,ALL,--strip-debug -lfiniteVolume -lmeshTools -lOpenFOAM \
+    -lgcc_s -lutil -lrt -lpthread -lm -ldl
+mv "$OUT_DIR/.libcalcineFoam.so" "$OUT_DIR/libcalcineFoam.so"
+mapfile -t solver < <(own calcineGasFoam)
+g++ -o "$OUT_DIR/.calcineGasFoam" "${solver[@]}" -L "$OUT_DIR" '-Wl,-rpath,$ORIGIN' \
+    -Xlinker --add-needed -Xlinker --no-as-needed -lcalcineFoam -lfiniteVolume -lmeshTools \
+    -lfluidThermophysicalModels -lspecie -lOpenFOAM -lPstream -ldl -lm
+mv "$OUT_DIR/.calcineGasFoam" "$OUT_DIR/calcineGasFoam"

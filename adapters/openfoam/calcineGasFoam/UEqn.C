@@ -1,0 +1,46 @@
+// Momentum, for the interstitial velocity u, in the form that subtracts u times the continuity
+// residual, per cell:
+//
+//   m_old (u - u_old)/dt + sum phi_f u_f - u sum phi_f - sum (eps mu)_f grad(u).S
+//       = -eps grad(p) V + eps rho V g + S_d - K_d u
+//
+// u_f as fvSchemes says (upwind as generated); the viscous stress without its transposed part, which
+// vanishes for uniform properties.
+#include "gas.H"
+#include "fvm.H"
+#include "fvc.H"
+
+Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, report& result)
+{
+    const scalarField& volume = mesh_.cellVolumes();
+    const scalarField pores(given_.voidFraction*volume);
+    const scalarField inertia(committed_.mass/window_.motionSpan);
+    const surfaceScalarField viscosity
+    (
+        "viscosity", fvc::interpolate(voidFraction_*thermo_->mu())
+    );
+
+    // The matrix of the last outer iteration goes first, with the memory it holds.
+    momentum_.reset();
+    momentum_.reset
+    (
+        new fvVectorMatrix(fvm::div(phi_, U_) - fvm::laplacian(viscosity, U_))
+    );
+    fvVectorMatrix& matrix = *momentum_;
+    outflow_ = outflow();
+    matrix.diag() += inertia + given_.dragCoefficient - outflow_;
+    matrix.source() +=
+        inertia*committed_.velocity + given_.dragSource + density*pores*gravity_;
+
+    momentumDiagonal_ = matrix.A()().primitiveField();
+    const vectorField push(-pores*pressureGradient_);
+    const vectorField pull(matrix.H()().primitiveField()*volume);
+    const vectorField own(momentumDiagonal_*volume*U_.primitiveField());
+    const scalar error = gSumMag(pull + push - own);
+    const scalar terms = gSumMag(own) + gSumMag(push) + gSumMag(pull);
+
+    const vectorField source(matrix.source() + push);
+    result.linearIterations +=
+        momentumSolver_.solve(matrix, source, linearTolerance_*terms, U_).iterations;
+    return error > 0 ? error/terms : 0;
+}

@@ -1,0 +1,87 @@
+// What the gas took from the particles, and its balances, as the equations took them: boundary flows
+// come from the coefficients of the solved matrices, whatever the boundary conditions are.
+#include "gas.H"
+
+void Foam::calcine::gas::finishReport(report& result) const
+{
+    // The temperature as the enthalpy equation took it, before the thermophysical model's.
+    const scalarField T(temperatureBase_ + thermo_->he().primitiveField()/heatCapacity_);
+    result.heat = given_.heatSource - given_.heatCoefficient*T;
+    result.drag = given_.dragSource - given_.dragCoefficient*U_.primitiveField();
+
+    const scalarField held(given_.voidFraction*density()*mesh_.cellVolumes());
+    result.volumeResidual = gMax(mag(mass_ - held)/mass_);
+
+    const scalarField stored(mass_ - committed_.mass);
+    result.mass.stored = gSum(stored);
+    result.mass.storedMagnitude = gSumMag(stored);
+    for (label facei = mesh_.nInternalFaces(); facei < mesh_.nFaces(); ++facei)
+    {
+        result.mass.boundary -= window_.storageSpan*flux_[facei];
+        result.mass.boundaryMagnitude += window_.storageSpan*mag(flux_[facei]);
+    }
+    balanceEnergy(result);
+    balanceMomentum(result);
+}
+
+
+void Foam::calcine::gas::balanceEnergy(report& result) const
+{
+    const scalarField& h = thermo_->he().primitiveField();
+    const scalarField stored
+    (
+        mass_*(h - referenceEnthalpy_)
+      - committed_.mass*(committed_.enthalpy - referenceEnthalpy_)
+    );
+    balance& energy = result.energy;
+    energy.stored = gSum(stored);
+    energy.storedMagnitude = gSumMag(stored);
+    energy.exchange = window_.storageSpan*gSum(result.heat);
+    forAll(mesh_.boundary(), patchi)
+    {
+        const labelUList& cells = mesh_.boundary()[patchi].faceCells();
+        const fvsPatchScalarField& flux = phi_.boundaryField()[patchi];
+        forAll(cells, i)
+        {
+            const scalar out = enthalpyInternal_[patchi][i]*h[cells[i]]
+              - enthalpyBoundary_[patchi][i] - flux[i]*referenceEnthalpy_;
+            energy.boundary -= window_.storageSpan*out;
+            energy.boundaryMagnitude += window_.storageSpan*mag(out);
+        }
+    }
+}
+
+
+void Foam::calcine::gas::balanceMomentum(report& result) const
+{
+    const scalar span = window_.motionSpan;
+    const vectorField& u = U_.primitiveField();
+    const scalarField pores(given_.voidFraction*mesh_.cellVolumes());
+    const vectorField stored(committed_.mass*(u - committed_.velocity));
+    // Pressure, gravity, and u times the continuity residual, which the equation's form subtracts.
+    const vectorField source
+    (
+        pores*(density()*gravity_ - pressureGradient_) + u*outflow_
+    );
+    for (direction axis = 0; axis < 3; ++axis)
+    {
+        balance& momentum = result.momentum[axis];
+        momentum.stored = gSum(stored.component(axis)());
+        momentum.storedMagnitude = gSumMag(stored.component(axis)());
+        momentum.exchange = span*gSum(result.drag.component(axis)());
+        momentum.source = span*gSum(source.component(axis)());
+        momentum.sourceMagnitude = span*gSumMag(source.component(axis)());
+        forAll(mesh_.boundary(), patchi)
+        {
+            const labelUList& cells = mesh_.boundary()[patchi].faceCells();
+            const vectorField& internal = momentum_->internalCoeffs()[patchi];
+            const vectorField& given = momentum_->boundaryCoeffs()[patchi];
+            forAll(cells, i)
+            {
+                const scalar out = internal[i][axis]*u[cells[i]][axis] - given[i][axis];
+                momentum.boundary -= span*out;
+                momentum.boundaryMagnitude += span*mag(out);
+            }
+        }
+    }
+}

@@ -1,0 +1,279 @@
+// calcineGasFoam: the gas of a coupled run, as Calcine's coordinator asks for it.
+//
+// Started by Calcine in a case folder; -resume DIR takes up the state that a checkpoint left in DIR.
+// Ends with 0 when asked to, with 1 after telling the coordinator what failed, and with 2 where there
+// is no coordinator any more.
+#include "gas.H"
+#include "link.H"
+#include "meshIdentity.H"
+#include "windowLog.H"
+
+#include "argList.H"
+#include "fvMesh.H"
+#include "IOdictionary.H"
+#include "sigFpe.H"
+#include "SolverPerformance.H"
+#include "Time.H"
+
+#include <sstream>
+
+namespace
+{
+
+using namespace Foam;
+
+// Ticks of the coordinator's clocks in a second.
+const scalar ticksPerSecond = 1e12;
+
+scalar seconds(int64_t ticks)
+{
+    return scalar(ticks)/ticksPerSecond;
+}
+
+calcine::window windowOf(const calcine_header& header)
+{
+    calcine::window when;
+    when.index = header.window;
+    when.number = header.attempt;
+    when.motionSpan = seconds(header.span_motion);
+    when.storageSpan = seconds(header.storage_span);
+    when.processEnd = seconds(header.start_process) + seconds(header.span_process);
+    if (!(when.motionSpan > 0 && when.storageSpan > 0))
+    {
+        FatalErrorInFunction
+            << "a window with a motion span of " << when.motionSpan << " s and a storage span of "
+            << when.storageSpan << " s; both must be positive" << exit(FatalError);
+    }
+    return when;
+}
+
+void receive(const calcine::link& link, calcine::exchange& given)
+{
+    link.get("void_fraction", given.voidFraction);
+    link.get("drag_coefficient", given.dragCoefficient);
+    link.get("drag_source", given.dragSource);
+    link.get("heat_coefficient", given.heatCoefficient);
+    link.get("heat_source", given.heatSource);
+    forAll(given.voidFraction, celli)
+    {
+        const scalar pores = given.voidFraction[celli];
+        const bool allowed = pores > 0 && pores <= 1
+         && given.dragCoefficient[celli] >= 0 && given.dragCoefficient[celli] < GREAT
+         && given.heatCoefficient[celli] >= 0 && given.heatCoefficient[celli] < GREAT
+         && mag(given.heatSource[celli]) < GREAT && mag(given.dragSource[celli]) < GREAT;
+        if (!allowed)
+        {
+            FatalErrorInFunction
+                << "in cell " << celli << ": void fraction " << pores << " (must be in (0, 1]), "
+                << given.dragCoefficient[celli] << " kg/s, " << given.dragSource[celli] << " N, "
+                << given.heatCoefficient[celli] << " W/K, " << given.heatSource[celli]
+                << " W (coefficients must be finite and not negative)" << exit(FatalError);
+        }
+    }
+}
+
+// Seven numbers of each balance, in the order of the catalogue.
+void append(DynamicList<scalar>& list, const calcine::balance& b)
+{
+    for
+    (
+        const scalar value :
+        {
+            b.stored, b.storedMagnitude, b.boundary, b.boundaryMagnitude, b.exchange,
+            b.source, b.sourceMagnitude
+        }
+    )
+    {
+        list.append(value);
+    }
+}
+
+void send
+(
+    calcine::link& link,
+    calcine_kind kind,
+    const calcine::gas& gas,
+    const calcine::report& result
+)
+{
+    link.loan(kind, gas.temperature().size());
+    link.put("heat", result.heat);
+    link.put("drag", result.drag);
+    link.put("temperature", gas.temperature());
+    link.put("pressure", gas.absolutePressure());
+    link.put("density", gas.gasDensity());
+    link.put("velocity", gas.velocity());
+    link.put("pressure_gradient", gas.pressureGradient());
+    DynamicList<scalar> balances(35);
+    append(balances, result.mass);
+    append(balances, result.energy);
+    for (const calcine::balance& component : result.momentum)
+    {
+        append(balances, component);
+    }
+    link.put("balances", balances);
+    const scalarList convergence
+    {
+        scalar(result.outerIterations), scalar(result.linearIterations), result.residual,
+        result.volumeResidual, scalar(result.converged)
+    };
+    link.put("convergence", convergence);
+    link.send();
+}
+
+// Nothing received, nothing solved: what goes with a state.
+calcine::report emptyReport(label cells)
+{
+    calcine::report empty;
+    empty.heat.setSize(cells, 0);
+    empty.drag.setSize(cells, Zero);
+    return empty;
+}
+
+void serve(calcine::link& link, calcine::gas& gas, label cells, calcine::windowLog& log)
+{
+    calcine::exchange given;
+    given.voidFraction.setSize(cells);
+    given.dragCoefficient.setSize(cells);
+    given.dragSource.setSize(cells);
+    given.heatCoefficient.setSize(cells);
+    given.heatSource.setSize(cells);
+    calcine::report result;
+
+    for (;;)
+    {
+        const calcine_header header = link.receive();
+        switch (header.kind)
+        {
+            case CALCINE_START:
+            {
+                const calcine::window when = windowOf(header);
+                receive(link, given);
+                gas.attempt(when, given, result);
+                log.tell(when, result);
+                send(link, CALCINE_FINISHED, gas, result);
+                break;
+            }
+            case CALCINE_COMMIT:
+                gas.commit();
+                break;
+            case CALCINE_CHECKPOINT:
+                gas.checkpoint(link.text());
+                send(link, CALCINE_CHECKPOINTED, gas, emptyReport(cells));
+                break;
+            case CALCINE_BYE:
+                link.loan(CALCINE_BYE, 0);
+                link.send();
+                return;
+            default:
+                FatalErrorInFunction
+                    << "a request of kind " << label(header.kind) << " arrived, which a gas "
+                    << "does not serve" << exit(FatalError);
+        }
+    }
+}
+
+void run(const argList& args, calcine::link& link)
+{
+    Time runTime(Time::controlDictName, args);
+    // Numbers that overflow are found after each outer iteration and told with their cell; a signal
+    // would tell neither.
+    sigFpe::unset(false);
+    SolverPerformance<scalar>::debug = 0;
+    SolverPerformance<vector>::debug = 0;
+
+    fvMesh mesh
+    (
+        IOobject(fvMesh::defaultRegion, runTime.timeName(), runTime, IOobject::MUST_READ)
+    );
+    calcine::compareCells(mesh);
+    const IOdictionary properties
+    (
+        IOobject("calcineGas", runTime.constant(), mesh, IOobject::MUST_READ)
+    );
+    calcine::gas gas(mesh, properties);
+    if (args.found("resume"))
+    {
+        gas.resume(args.opt<fileName>("resume"));
+    }
+
+    calcine::introduction own;
+    own.version = std::to_string(OPENFOAM);
+    own.caseHash = properties.get<string>("caseHash");
+    own.meshHash = calcine::meshHash(mesh);
+    own.cells = mesh.nCells();
+    link.greet(own);
+    send(link, CALCINE_STATE, gas, emptyReport(mesh.nCells()));
+    calcine::windowLog log(properties.lookupOrDefault<scalar>("logInterval", 1));
+    serve(link, gas, mesh.nCells(), log);
+    Info<< "End" << endl;
+}
+
+int fail(calcine::link& link, const std::string& text)
+{
+    Serr<< "calcineGasFoam failed: " << text.c_str() << endl;
+    link.failed(text);
+    return 1;
+}
+
+// OpenFOAM's message on one line, with the file of an input error.
+std::string words(const error& what, const std::string& place)
+{
+    std::istringstream stream(what.message());
+    std::string text, word;
+    while (stream >> word)
+    {
+        text += (text.empty() ? "" : " ") + word;
+    }
+    return text + place;
+}
+
+} // End anonymous namespace
+
+
+int main(int argc, char* argv[])
+{
+    argList::noParallel();
+    argList::noFunctionObjects();
+    argList::addOption("resume", "dir", "take up the state of a checkpoint in this folder");
+    argList args(argc, argv);
+    FatalError.throwExceptions();
+    FatalIOError.throwExceptions();
+
+    try
+    {
+        calcine::link link(0);
+        try
+        {
+            run(args, link);
+            return 0;
+        }
+        catch (const IOerror& what)
+        {
+            std::ostringstream place;
+            place << " (" << what.ioFileName() << ", line " << what.ioStartLineNumber() << ")";
+            return fail(link, words(what, place.str()));
+        }
+        catch (const error& what)
+        {
+            return fail(link, words(what, ""));
+        }
+        catch (const calcine::coordinatorGone&)
+        {
+            throw;
+        }
+        catch (const std::exception& what)
+        {
+            return fail(link, what.what());
+        }
+    }
+    catch (const calcine::coordinatorGone& what)
+    {
+        Serr<< "calcineGasFoam ends: " << what.what() << endl;
+    }
+    catch (const std::exception& what)
+    {
+        Serr<< "calcineGasFoam cannot reach Calcine: " << what.what() << endl;
+    }
+    return 2;
+}

@@ -1,0 +1,347 @@
+#include "gas.H"
+
+namespace
+{
+
+using namespace Foam;
+
+// 0/p as it stands: absolute.
+tmp<volScalarField> readPressure(const fvMesh& mesh)
+{
+    const IOobject file
+    (
+        "p", mesh.time().timeName(), mesh, IOobject::MUST_READ, IOobject::NO_WRITE, false
+    );
+    return tmp<volScalarField>::New(file, mesh);
+}
+
+// The pressure above pRef: fixed where 0/p is, otherwise extrapolated by pEqn.C.
+volScalarField relativePressure(const fvMesh& mesh, scalar pRef)
+{
+    const volScalarField absolute(readPressure(mesh));
+    wordList types(mesh.boundary().size(), "zeroGradient");
+    forAll(types, patchi)
+    {
+        const fvPatchScalarField& patch = absolute.boundaryField()[patchi];
+        if (fvPatch::constraintType(patch.patch().type()))
+        {
+            types[patchi] = patch.patch().type();
+        }
+        else if (patch.fixesValue())
+        {
+            types[patchi] = "fixedValue";
+        }
+    }
+    volScalarField relative
+    (
+        IOobject("pAboveRef", mesh.time().timeName(), mesh),
+        mesh,
+        dimensionedScalar(dimPressure, Zero),
+        types
+    );
+    forAll(types, patchi)
+    {
+        if (types[patchi] == "fixedValue")
+        {
+            relative.boundaryFieldRef()[patchi] == absolute.boundaryField()[patchi] - pRef;
+        }
+    }
+    return relative;
+}
+
+// Enthalpy is what the equation of hEqn.C balances; an internal energy would need pressure work.
+autoPtr<fluidThermo> readThermo(const fvMesh& mesh)
+{
+    autoPtr<fluidThermo> thermo(fluidThermo::New(mesh));
+    thermo->validate("calcineGasFoam", "h");
+    return thermo;
+}
+
+} // End anonymous namespace
+
+
+Foam::calcine::gas::gas(fvMesh& mesh, const dictionary& properties)
+:
+    mesh_(mesh),
+    pRef_(properties.get<scalar>("pRef")),
+    gravity_(properties.get<vector>("gravity")),
+    modelPressure_
+    (
+        IOobject("p", mesh.time().timeName(), mesh),
+        mesh,
+        dimensionedScalar("p", dimPressure, pRef_)
+    ),
+    thermo_(readThermo(mesh)),
+    voidFraction_
+    (
+        IOobject("voidFraction", mesh.time().timeName(), mesh),
+        mesh,
+        dimensionedScalar("voidFraction", dimless, 1),
+        "zeroGradient"
+    ),
+    U_
+    (
+        IOobject("U", mesh.time().timeName(), mesh, IOobject::MUST_READ, IOobject::NO_WRITE),
+        mesh
+    ),
+    p_(relativePressure(mesh, pRef_)),
+    phi_
+    (
+        IOobject("phi", mesh.time().timeName(), mesh),
+        mesh,
+        dimensionedScalar(dimMass/dimTime, Zero)
+    ),
+    pressureGradient_(mesh.nCells(), Zero),
+    mass_(mesh.nCells(), Zero),
+    flux_(mesh.nFaces(), Zero),
+    boundary_(properties.subDict("patches"), U_, p_),
+    momentumSolver_(mesh, "U"),
+    pressureSolver_(mesh, "p"),
+    enthalpySolver_(mesh, "h"),
+    startVelocity_(U_.primitiveField())
+{
+    const dictionary& controls = mesh.solutionDict().subDict("PIMPLE");
+    outerIterations_ = controls.get<label>("nOuterCorrectors");
+    corrections_ = controls.get<label>("nCorrectors");
+    outerTolerance_ = controls.get<scalar>("outerTolerance");
+    linearTolerance_ = controls.get<scalar>("linearTolerance");
+    measureFaces();
+
+    const scalarField reference(1, 298.15);
+    referenceEnthalpy_ = thermo_->he(scalarField(1, pRef_), reference, labelList(1, 0))()[0];
+
+    committed_.mass = mass_;
+    committed_.enthalpy = thermo_->he().primitiveField();
+    committed_.temperature = thermo_->T().primitiveField();
+    committed_.velocity = startVelocity_;
+    committed_.pressure = p_.primitiveField();
+    committed_.pressureGradient = pressureGradient_;
+    committed_.flux = flux_;
+    committed_.voidFraction = voidFraction_.primitiveField();
+}
+
+
+void Foam::calcine::gas::measureFaces()
+{
+    const label faces = mesh_.nFaces(), internal = mesh_.nInternalFaces();
+    ownerDistance_.setSize(faces);
+    neighbourDistance_.setSize(internal);
+    normal_.setSize(faces);
+    ownerSkew_.setSize(faces);
+    neighbourSkew_.setSize(internal);
+    conductance_.setSize(faces, 0);
+    drive_.setSize(faces, 0);
+    facePressure_.setSize(faces, 0);
+    for (label facei = 0; facei < faces; ++facei)
+    {
+        const vector& centre = mesh_.faceCentres()[facei];
+        const vector& n = normal_[facei] = normalised(mesh_.faceAreas()[facei]);
+        const vector fromOwner = centre - mesh_.cellCentres()[mesh_.faceOwner()[facei]];
+        ownerDistance_[facei] = n & fromOwner;
+        ownerSkew_[facei] = fromOwner - ownerDistance_[facei]*n;
+        if (facei < internal)
+        {
+            const vector toNeighbour =
+                mesh_.cellCentres()[mesh_.faceNeighbour()[facei]] - centre;
+            neighbourDistance_[facei] = n & toNeighbour;
+            neighbourSkew_[facei] = toNeighbour - neighbourDistance_[facei]*n;
+        }
+    }
+}
+
+
+void Foam::calcine::gas::place()
+{
+    committed_.placed = true;
+    committed_.voidFraction = given_.voidFraction;
+    committed_.velocity = startVelocity_/given_.voidFraction;
+    const scalarField rho(density());
+    committed_.mass = rho*given_.voidFraction*mesh_.cellVolumes();
+    for (label facei = 0; facei < mesh_.nFaces(); ++facei)
+    {
+        const label patchi =
+            facei < mesh_.nInternalFaces() ? -1 : mesh_.boundaryMesh().whichPatch(facei);
+        const bool closed = patchi >= 0 && boundary_.of(patchi) == passage::closed;
+        const label owner = mesh_.faceOwner()[facei];
+        committed_.flux[facei] =
+            closed ? 0 : rho[owner]*(startVelocity_[owner] & mesh_.faceAreas()[facei]);
+    }
+}
+
+
+void Foam::calcine::gas::restore()
+{
+    thermo_->he().primitiveFieldRef() = committed_.enthalpy;
+    thermo_->T().primitiveFieldRef() = committed_.temperature;
+    U_.primitiveFieldRef() = committed_.velocity;
+    p_.primitiveFieldRef() = committed_.pressure;
+    pressureGradient_ = committed_.pressureGradient;
+    mass_ = committed_.mass;
+    flux_ = committed_.flux;
+}
+
+
+void Foam::calcine::gas::setFlux()
+{
+    const label internal = mesh_.nInternalFaces();
+    phi_.primitiveFieldRef() = SubList<scalar>(flux_, internal);
+    forAll(phi_.boundaryField(), patchi)
+    {
+        fvsPatchScalarField& patch = phi_.boundaryFieldRef()[patchi];
+        patch == scalarField(SubList<scalar>(flux_, patch.size(), patch.patch().start()));
+    }
+}
+
+
+Foam::scalarField Foam::calcine::gas::outflow() const
+{
+    scalarField sum(mesh_.nCells(), Zero);
+    forAll(flux_, facei)
+    {
+        sum[mesh_.faceOwner()[facei]] += flux_[facei];
+        if (facei < mesh_.nInternalFaces())
+        {
+            sum[mesh_.faceNeighbour()[facei]] -= flux_[facei];
+        }
+    }
+    return sum;
+}
+
+
+Foam::scalarField Foam::calcine::gas::density() const
+{
+    return thermo_->rho()().primitiveField();
+}
+
+
+Foam::scalarField Foam::calcine::gas::wantedOutflow(const scalarField& density) const
+{
+    return
+        (committed_.mass - given_.voidFraction*density*mesh_.cellVolumes())/window_.storageSpan;
+}
+
+
+void Foam::calcine::gas::resume(const fileName& directory)
+{
+    committed_.read(directory, mesh_.nCells(), mesh_.nFaces());
+    restore();
+    thermo_->he().correctBoundaryConditions();
+    thermo_->correct();
+}
+
+
+void Foam::calcine::gas::attempt(const window& when, const exchange& given, report& result)
+{
+    window_ = when;
+    given_ = given;
+    voidFraction_.primitiveFieldRef() = given_.voidFraction;
+    voidFraction_.correctBoundaryConditions();
+    restore();
+    boundary_.update(when.processEnd, given_.voidFraction, U_, thermo_->T());
+    thermo_->he().correctBoundaryConditions();
+    thermo_->correct();
+    // Without a commit the bed of this attempt says how much gas there is.
+    if (when.index == 0 || !committed_.placed)
+    {
+        place();
+        restore();
+    }
+    U_.correctBoundaryConditions();
+
+    result = report();
+    for (label outer = 1; outer <= max(outerIterations_, 1); ++outer)
+    {
+        const scalarField rho(density());
+        setFlux();
+        result.residual = predictVelocity(rho, result);
+        result.residual = max(result.residual, assemblePressure(rho));
+        for (label correction = 0; correction < max(corrections_, 1); ++correction)
+        {
+            correctPressure(rho, result);
+        }
+        mass_ = committed_.mass - window_.storageSpan*outflow();
+        setFlux();
+        result.residual = max(result.residual, solveEnthalpy(result));
+        guard();
+        result.outerIterations = outer;
+        thermo_->correct();
+        if (result.residual <= outerTolerance_)
+        {
+            result.converged = true;
+            break;
+        }
+    }
+    finishReport(result);
+}
+
+
+void Foam::calcine::gas::commit()
+{
+    committed_.placed = true;
+    committed_.mass = mass_;
+    committed_.enthalpy = thermo_->he().primitiveField();
+    committed_.temperature = thermo_->T().primitiveField();
+    committed_.velocity = U_.primitiveField();
+    committed_.pressure = p_.primitiveField();
+    committed_.pressureGradient = pressureGradient_;
+    committed_.flux = flux_;
+    committed_.voidFraction = given_.voidFraction;
+}
+
+
+void Foam::calcine::gas::checkpoint(const fileName& directory)
+{
+    committed_.write(directory);
+    resume(directory);
+}
+
+
+void Foam::calcine::gas::guard() const
+{
+    const scalarField& h = thermo_->he().primitiveField();
+    forAll(mass_, celli)
+    {
+        const scalar T = temperatureBase_[celli] + h[celli]/heatCapacity_[celli];
+        const scalar speed = mag(U_[celli]);
+        // Each comparison is false for what is not a number.
+        if (T > 0 && T < 1e4 && speed < 1e4 && mag(p_[celli]) < GREAT && mass_[celli] > 0)
+        {
+            continue;
+        }
+        FatalErrorInFunction
+            << "diverged: temperature " << T << " K, speed " << speed
+            << " m/s, pressure above the reference " << p_[celli] << " Pa, gas mass "
+            << mass_[celli] << " kg in cell " << celli << " at "
+            << mesh_.cellCentres()[celli] << " m" << exit(FatalError);
+    }
+}
+
+
+const Foam::scalarField& Foam::calcine::gas::temperature() const
+{
+    return thermo_->T().primitiveField();
+}
+
+
+Foam::scalarField Foam::calcine::gas::absolutePressure() const
+{
+    return pRef_ + p_.primitiveField();
+}
+
+
+Foam::scalarField Foam::calcine::gas::gasDensity() const
+{
+    return density();
+}
+
+
+const Foam::vectorField& Foam::calcine::gas::velocity() const
+{
+    return U_.primitiveField();
+}
+
+
+const Foam::vectorField& Foam::calcine::gas::pressureGradient() const
+{
+    return pressureGradient_;
+}

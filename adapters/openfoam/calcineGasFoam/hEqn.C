@@ -1,0 +1,53 @@
+// Enthalpy, with exactly the fluxes and masses of continuity, per cell:
+//
+//   (m h - m_old h_old)/dtau + sum phi_f h_f - sum (eps kappa/c_p)_f grad(h).S = S - K T(h)
+//
+// T linear in h: T = T* + (h - h*)/c_p. Because m = m_old - dtau sum phi_f, a uniform temperature
+// stays uniform whatever the flow does, and energy closes to the linear tolerance whatever the outer
+// loop does. In the pores the gas conducts with eps kappa: its share of the cross-section.
+#include "gas.H"
+#include "fvm.H"
+#include "fvc.H"
+
+Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
+{
+    volScalarField& h = thermo_->he();
+    const volScalarField& T = thermo_->T();
+    const scalar span = window_.storageSpan;
+    heatCapacity_ = thermo_->Cp()().primitiveField();
+    temperatureBase_ = T.primitiveField() - h.primitiveField()/heatCapacity_;
+
+    const surfaceScalarField conduction
+    (
+        "conduction", fvc::interpolate(voidFraction_*thermo_->alphahe())
+    );
+    fvScalarMatrix matrix(fvm::div(phi_, h) - fvm::laplacian(conduction, h));
+    matrix.diag() +=
+        committed_.mass/span + given_.heatCoefficient/heatCapacity_ - outflow();
+    matrix.source() += committed_.mass*committed_.enthalpy/span
+      + given_.heatSource - given_.heatCoefficient*temperatureBase_;
+    enthalpyInternal_ = matrix.internalCoeffs();
+    enthalpyBoundary_ = matrix.boundaryCoeffs();
+
+    // The tolerance is a share of the energy that moves; no closer than round-off of the terms.
+    const scalar content = gSumMag(matrix.diag()*heatCapacity_*T.primitiveField());
+    const scalarField heat
+    (
+        given_.heatSource - given_.heatCoefficient*T.primitiveField()
+    );
+    scalar moving = gSumMag(heat) + gSumMag
+    (
+        mass_*(h.primitiveField() - referenceEnthalpy_)
+      - committed_.mass*(committed_.enthalpy - referenceEnthalpy_)
+    )/span;
+    for (const fvPatch& patch : mesh_.boundary())
+    {
+        const fvsPatchScalarField& flux = phi_.boundaryField()[patch.index()];
+        moving += gSumMag(flux*(h.boundaryField()[patch.index()] - referenceEnthalpy_));
+    }
+    const scalar target = max(linearTolerance_*moving, 1e-15*content);
+    const solved solution =
+        enthalpySolver_.solve(matrix, scalarField(matrix.source()), target, h);
+    result.linearIterations += solution.iterations;
+    return solution.initial/content;
+}

@@ -1,0 +1,212 @@
+// Pressure and mass flux. A half cell between a centre and a face is a resistance in series with the
+// next: with the force F on the gas per volume of pores (everything but pressure), the mobility
+// b = rho eps^2/A and the distance d to the face, the superficial mass flux per area G obeys
+//
+//   p_f = p_P + d_P (F_P.n - G/b_P)   and   p_N = p_f + d_N (F_N.n - G/b_N),
+//
+// so G = (d_P F_P.n + d_N F_N.n + p_P - p_N)/(d_P/b_P + d_N/b_N): Rhie-Chow with a distance-weighted
+// harmonic mean. p_f makes the cell's gradient (Gauss), which the momentum equation takes and which is
+// reported: gas at rest stays at rest whatever the void fraction does, and a bed's resistance is exact
+// to its last half cell. The inertia at a face is that of the face's own old flux, so that a steady
+// flow does not depend on the time step. Rhie and Chow 1983, doi 10.2514/3.8284.
+//
+// Continuity, per cell: sum phi_f = -(eps rho V - m_old)/dtau, rho of the model at pRef.
+#include "gas.H"
+
+Foam::scalar Foam::calcine::gas::halfCellForce(label facei, label celli) const
+{
+    const vector& n = normal_[facei];
+    const scalar faceFlux = committed_.flux[facei]/mag(mesh_.faceAreas()[facei]);
+    const scalar cellFlux =
+        committed_.mass[celli]/mesh_.cellVolumes()[celli]*(committed_.velocity[celli] & n);
+    return
+        (force_[celli] & n)
+      + (faceFlux - cellFlux)/(window_.motionSpan*given_.voidFraction[celli]);
+}
+
+
+Foam::scalar Foam::calcine::gas::displacement(label facei) const
+{
+    // Added to p_P - p_N it leaves the fall of pressure along the normal alone.
+    scalar sum = ownerSkew_[facei] & pressureGradient_[mesh_.faceOwner()[facei]];
+    if (facei < mesh_.nInternalFaces())
+    {
+        sum += neighbourSkew_[facei] & pressureGradient_[mesh_.faceNeighbour()[facei]];
+    }
+    return sum;
+}
+
+
+void Foam::calcine::gas::updateForce()
+{
+    force_ = momentum_->H()().primitiveField()/given_.voidFraction;
+}
+
+
+Foam::scalar Foam::calcine::gas::assemblePressure(const scalarField& density)
+{
+    mobility_ = density*sqr(given_.voidFraction)/momentumDiagonal_;
+    const labelUList& owner = mesh_.faceOwner();
+    const labelUList& neighbour = mesh_.faceNeighbour();
+    for (label facei = 0; facei < mesh_.nInternalFaces(); ++facei)
+    {
+        conductance_[facei] = mag(mesh_.faceAreas()[facei])
+           /(
+                ownerDistance_[facei]/mobility_[owner[facei]]
+              + neighbourDistance_[facei]/mobility_[neighbour[facei]]
+            );
+    }
+    for (const fvPatch& patch : mesh_.boundary())
+    {
+        const bool open = boundary_.of(patch.index()) == passage::open;
+        for (label facei = patch.start(); facei < patch.start() + patch.size(); ++facei)
+        {
+            conductance_[facei] = !open ? 0
+              : mag(mesh_.faceAreas()[facei])*mobility_[owner[facei]]/ownerDistance_[facei];
+        }
+    }
+
+    // How far the flux at hand is from continuity, relative to what is held and what flows.
+    const scalar error = gSumMag(wantedOutflow(density) - outflow());
+    scalar terms = gSum(committed_.mass)/window_.storageSpan;
+    forAll(flux_, facei)
+    {
+        terms += (facei < mesh_.nInternalFaces() ? 1 : 0.5)*mag(flux_[facei]);
+    }
+    return error/terms;
+}
+
+
+void Foam::calcine::gas::correctPressure(const scalarField& density, report& result)
+{
+    const label internal = mesh_.nInternalFaces();
+    const labelUList& owner = mesh_.faceOwner();
+    const labelUList& neighbour = mesh_.faceNeighbour();
+    updateForce();
+
+    // What the forces alone would drive through each face; all of it where the flux is given.
+    for (label facei = 0; facei < internal; ++facei)
+    {
+        drive_[facei] = conductance_[facei]
+           *(
+                ownerDistance_[facei]*halfCellForce(facei, owner[facei])
+              + neighbourDistance_[facei]*halfCellForce(facei, neighbour[facei])
+              + displacement(facei)
+            );
+    }
+    const volScalarField& psi = thermo_->psi();
+    for (const fvPatch& patch : mesh_.boundary())
+    {
+        const label patchi = patch.index();
+        forAll(patch, i)
+        {
+            const label facei = patch.start() + i;
+            switch (boundary_.of(patchi))
+            {
+                case passage::closed:
+                    drive_[facei] = 0;
+                    break;
+                case passage::given:
+                    // psi is rho/p of the model, here at the patch's temperature.
+                    drive_[facei] = psi.boundaryField()[patchi][i]*pRef_
+                       *voidFraction_.boundaryField()[patchi][i]
+                       *(U_.boundaryField()[patchi][i] & patch.Sf()[i]);
+                    break;
+                case passage::open:
+                    drive_[facei] = conductance_[facei]
+                       *(
+                            ownerDistance_[facei]*halfCellForce(facei, owner[facei])
+                          + displacement(facei)
+                        );
+                    break;
+            }
+        }
+    }
+
+    fvScalarMatrix matrix(p_, dimMass/dimTime);
+    scalarField& diagonal = matrix.diag();
+    scalarField& upper = matrix.upper();
+    diagonal = 0;
+    flux_ = drive_;
+    scalarField source(wantedOutflow(density) - outflow());
+    for (label facei = 0; facei < internal; ++facei)
+    {
+        upper[facei] = -conductance_[facei];
+        diagonal[owner[facei]] += conductance_[facei];
+        diagonal[neighbour[facei]] += conductance_[facei];
+    }
+    scalar terms = gSumMag(source);
+    forAll(mesh_.boundary(), patchi)
+    {
+        const fvPatch& patch = mesh_.boundary()[patchi];
+        const fvPatchScalarField& value = p_.boundaryField()[patchi];
+        if (!patch.size())
+        {
+            continue;
+        }
+        matrix.internalCoeffs()[patchi] =
+            SubList<scalar>(conductance_, patch.size(), patch.start());
+        matrix.boundaryCoeffs()[patchi] = matrix.internalCoeffs()[patchi]*value;
+        terms += gSumMag(matrix.boundaryCoeffs()[patchi]);
+    }
+    terms += gSumMag(diagonal*p_.primitiveField());
+    result.linearIterations +=
+        pressureSolver_.solve(matrix, source, linearTolerance_*terms, p_).iterations;
+
+    for (label facei = 0; facei < internal; ++facei)
+    {
+        flux_[facei] += conductance_[facei]*(p_[owner[facei]] - p_[neighbour[facei]]);
+    }
+    forAll(mesh_.boundary(), patchi)
+    {
+        const fvPatch& patch = mesh_.boundary()[patchi];
+        forAll(patch, i)
+        {
+            const label facei = patch.start() + i;
+            flux_[facei] +=
+                conductance_[facei]*(p_[owner[facei]] - p_.boundaryField()[patchi][i]);
+        }
+    }
+    updateFacePressure();
+
+    U_.primitiveFieldRef() =
+        given_.voidFraction/momentumDiagonal_*(force_ - pressureGradient_);
+    U_.correctBoundaryConditions();
+}
+
+
+void Foam::calcine::gas::updateFacePressure()
+{
+    const labelUList& owner = mesh_.faceOwner();
+    const labelUList& neighbour = mesh_.faceNeighbour();
+    forAll(facePressure_, facei)
+    {
+        const label celli = owner[facei];
+        const scalar loss =
+            flux_[facei]/(mag(mesh_.faceAreas()[facei])*mobility_[celli]);
+        facePressure_[facei] =
+            p_[celli] + ownerDistance_[facei]*(halfCellForce(facei, celli) - loss)
+          + (ownerSkew_[facei] & pressureGradient_[celli]);
+    }
+    for (const fvPatch& patch : mesh_.boundary())
+    {
+        if (boundary_.of(patch.index()) == passage::open)
+        {
+            forAll(patch, i)
+            {
+                facePressure_[patch.start() + i] = p_.boundaryField()[patch.index()][i];
+            }
+        }
+    }
+    pressureGradient_ = Zero;
+    forAll(facePressure_, facei)
+    {
+        const vector push = facePressure_[facei]*mesh_.faceAreas()[facei];
+        pressureGradient_[owner[facei]] += push;
+        if (facei < mesh_.nInternalFaces())
+        {
+            pressureGradient_[neighbour[facei]] -= push;
+        }
+    }
+    pressureGradient_ /= mesh_.cellVolumes();
+}
