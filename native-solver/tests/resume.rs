@@ -1,4 +1,5 @@
 //! Checkpoints and failures of the native parts.
+#![allow(clippy::unwrap_used, clippy::needless_range_loop)]
 
 mod common;
 

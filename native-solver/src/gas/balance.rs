@@ -8,7 +8,7 @@ use super::enthalpy::{Enthalpy, heat};
 use super::momentum::Momentum;
 use super::state::State;
 use crate::numerics::operators::outflow;
-use crate::numerics::parallel::{fill, sum};
+use crate::numerics::parallel::{fill, sums};
 
 /// What the gas took from the particles, and its balances.
 pub fn receive(
@@ -28,88 +28,84 @@ pub fn receive(
             - frame.exchange.drag_coefficient[cell] * now.velocity[cell]
     });
     received.mass = mass(frame, now);
-    received.energy = energy(frame, material, enthalpy, now, &received.heat);
-    received.momentum =
-        [0, 1, 2].map(|axis| momentum_of(frame, material, momentum, now, &received.drag, axis));
+    received.energy = energy(frame, enthalpy, now, &received.heat);
+    received.momentum = momenta(frame, material, momentum, now, &received.drag);
 }
 
 /// Sums of a boundary term and of its magnitude over all boundary faces.
-fn boundary(frame: &Frame<'_>, inflow: impl Fn(usize) -> f64 + Sync) -> (f64, f64) {
+fn boundary(frame: &Frame<'_>, inflow: impl Fn(usize) -> f64 + Sync) -> [f64; 2] {
     let internal = frame.grid.internal;
-    let faces = frame.grid.faces.len() - internal;
-    (
-        sum(faces, |face| inflow(internal + face)),
-        sum(faces, |face| inflow(internal + face).abs()),
-    )
+    sums(frame.grid.faces.len() - internal, |face| {
+        let inflow = inflow(internal + face);
+        [inflow, inflow.abs()]
+    })
 }
 
 fn mass(frame: &Frame<'_>, now: &State) -> Balance {
-    let cells = frame.grid.cells();
-    let stored = |cell: usize| now.mass[cell] - frame.old.mass[cell];
-    let (inflow, magnitude) = boundary(frame, |face| -now.flux[face]);
+    let [stored, stored_magnitude] = sums(frame.grid.cells(), |cell| {
+        let stored = now.mass[cell] - frame.old.mass[cell];
+        [stored, stored.abs()]
+    });
+    let [inflow, magnitude] = boundary(frame, |face| -now.flux[face]);
     Balance {
-        stored: sum(cells, stored),
-        stored_magnitude: sum(cells, |cell| stored(cell).abs()),
+        stored,
+        stored_magnitude,
         boundary: inflow * frame.storage_span,
         boundary_magnitude: magnitude * frame.storage_span,
         ..Balance::default()
     }
 }
 
-fn energy(
-    frame: &Frame<'_>,
-    material: &Material,
-    enthalpy: &Enthalpy,
-    now: &State,
-    heat: &[f64],
-) -> Balance {
-    let cells = frame.grid.cells();
+fn energy(frame: &Frame<'_>, enthalpy: &Enthalpy, now: &State, heat: &[f64]) -> Balance {
     let old = frame.old;
-    let stored =
-        |cell: usize| now.mass[cell] * now.enthalpy[cell] - old.mass[cell] * old.enthalpy[cell];
-    let (inflow, magnitude) = boundary(frame, |face| enthalpy.inflow(frame, material, now, face));
+    let [stored, stored_magnitude, exchange] = sums(frame.grid.cells(), |cell| {
+        let stored = now.mass[cell] * now.enthalpy[cell] - old.mass[cell] * old.enthalpy[cell];
+        [stored, stored.abs(), heat[cell]]
+    });
+    let [inflow, magnitude] = boundary(frame, |face| enthalpy.inflow(frame, now, face));
     Balance {
-        stored: sum(cells, stored),
-        stored_magnitude: sum(cells, |cell| stored(cell).abs()),
+        stored,
+        stored_magnitude,
         boundary: inflow * frame.storage_span,
         boundary_magnitude: magnitude * frame.storage_span,
-        exchange: sum(cells, |cell| heat[cell]) * frame.storage_span,
+        exchange: exchange * frame.storage_span,
         ..Balance::default()
     }
 }
 
-/// One component. The source is pressure, gravity, and u times the continuity residual, which the
-/// form of the equation subtracts.
-fn momentum_of(
+/// All three components. The source is pressure, gravity, and u times the continuity residual,
+/// which the form of the equation subtracts.
+fn momenta(
     frame: &Frame<'_>,
     material: &Material,
     momentum: &Momentum,
     now: &State,
     drag: &[Vec3],
-    axis: usize,
-) -> Balance {
-    let cells = frame.grid.cells();
-    let span = frame.motion_span;
-    let stored = |cell: usize| {
-        frame.old.mass[cell] * (now.velocity[cell][axis] - frame.old.velocity[cell][axis])
-    };
-    let source = |cell: usize| {
-        let pores = frame.void_fraction[cell] * frame.grid.volume[cell];
-        let pressure = -pores * now.pressure_gradient[cell][axis];
-        let weight = pores * material.density[cell] * frame.gravity[axis];
-        let continuity = now.velocity[cell][axis] * outflow(frame.grid, &now.flux, cell);
-        pressure + weight + continuity
-    };
-    let (inflow, magnitude) = boundary(frame, |face| {
-        momentum.inflow(frame, material, now, face)[axis]
+) -> [Balance; 3] {
+    let (grid, old, span) = (frame.grid, frame.old, frame.motion_span);
+    let cells: [f64; 15] = sums(grid.cells(), |cell| {
+        let stored = old.mass[cell] * (now.velocity[cell] - old.velocity[cell]);
+        let pores = frame.void_fraction[cell] * grid.volume[cell];
+        let source = pores * (material.density[cell] * frame.gravity - now.pressure_gradient[cell])
+            + outflow(grid, &now.flux, cell) * now.velocity[cell];
+        side_by_side([stored, stored.abs(), drag[cell], source, source.abs()])
     });
-    Balance {
-        stored: sum(cells, stored),
-        stored_magnitude: sum(cells, |cell| stored(cell).abs()),
-        boundary: inflow * span,
-        boundary_magnitude: magnitude * span,
-        exchange: sum(cells, |cell| drag[cell][axis]) * span,
-        source: sum(cells, source) * span,
-        source_magnitude: sum(cells, |cell| source(cell).abs()) * span,
-    }
+    let faces: [f64; 6] = sums(grid.faces.len() - grid.internal, |face| {
+        let inflow = momentum.inflow(frame, now, grid.internal + face);
+        side_by_side([inflow, inflow.abs()])
+    });
+    [0, 1, 2].map(|axis| Balance {
+        stored: cells[axis],
+        stored_magnitude: cells[3 + axis],
+        exchange: cells[6 + axis] * span,
+        source: cells[9 + axis] * span,
+        source_magnitude: cells[12 + axis] * span,
+        boundary: faces[axis] * span,
+        boundary_magnitude: faces[3 + axis] * span,
+    })
+}
+
+/// The components of vectors, one vector after the other.
+fn side_by_side<const V: usize, const N: usize>(vectors: [Vec3; V]) -> [f64; N] {
+    std::array::from_fn(|i| vectors[i / 3][i % 3])
 }

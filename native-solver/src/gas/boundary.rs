@@ -146,6 +146,7 @@ impl Boundaries {
     }
 
     /// The condition of a boundary face.
+    #[inline]
     pub fn at(&self, face: usize) -> Value {
         self.values[self.patch_of[face - self.internal] as usize]
     }

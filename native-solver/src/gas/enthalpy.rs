@@ -11,10 +11,10 @@ use calcine_coupler::physics::Vec3;
 use super::attempt::{Frame, Material};
 use super::boundary::{BoundaryGas, Value};
 use super::state::State;
-use crate::numerics::krylov::{Krylov, Solved, Target};
+use crate::numerics::krylov::{Krylov, Target};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{conductance, displacement, face_values, gradient, interpolate};
-use crate::numerics::parallel::{fill, sum};
+use crate::numerics::parallel::{fill, sum, sums};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
 /// Iterations of a solve at most.
@@ -25,6 +25,8 @@ const ITERATIONS: u32 = 1000;
 pub struct Enthalpy {
     matrix: Matrix,
     source: Vec<f64>,
+    /// Conductance of each face for enthalpy differences in kg/s.
+    conduction: Vec<f64>,
     preconditioner: Incomplete,
     /// Gradient of h for the correction of skewed faces, from the last iterate.
     gradients: Vec<Vec3>,
@@ -32,6 +34,7 @@ pub struct Enthalpy {
 }
 
 /// The gas at a boundary face where its temperature is given.
+#[inline]
 fn given(frame: &Frame<'_>, index: usize) -> Option<BoundaryGas> {
     match frame.boundary.at(index) {
         Value::Inlet { gas, .. } => Some(gas),
@@ -43,9 +46,10 @@ fn given(frame: &Frame<'_>, index: usize) -> Option<BoundaryGas> {
 impl Enthalpy {
     /// An empty equation on a matrix's graph.
     pub fn new(matrix: Matrix) -> Self {
-        let cells = matrix.grid().cells();
+        let (cells, faces) = (matrix.grid().cells(), matrix.grid().faces.len());
         Self {
             matrix,
+            conduction: vec![0.0; faces],
             source: vec![0.0; cells],
             preconditioner: Incomplete::default(),
             gradients: Vec::new(),
@@ -53,28 +57,13 @@ impl Enthalpy {
         }
     }
 
-    /// Conductance of a face for enthalpy differences in kg/s; zero where no heat is conducted.
-    fn conduction(frame: &Frame<'_>, material: &Material, index: usize) -> f64 {
-        let face = &frame.grid.faces[index];
-        let conductivity = if index < frame.grid.internal {
-            interpolate(face, &material.conductivity)
-        } else {
-            match given(frame, index) {
-                Some(gas) => frame.void_fraction[face.owner] * gas.conductivity,
-                None => return 0.0,
-            }
-        };
-        conductance(face, conductivity) / frame.properties.heat_capacity
-    }
-
     /// What conducts through a face because its centres are displaced along it, in W, out of the
     /// owner.
-    fn skewed(&self, frame: &Frame<'_>, material: &Material, index: usize) -> f64 {
+    fn skewed(&self, frame: &Frame<'_>, index: usize) -> f64 {
         if frame.grid.orthogonal {
             return 0.0;
         }
-        let conduction = Self::conduction(frame, material, index);
-        conduction * displacement(frame.grid, &frame.grid.faces[index], &self.gradients)
+        self.conduction[index] * displacement(frame.grid, &frame.grid.faces[index], &self.gradients)
     }
 
     /// Assembles the equation.
@@ -83,6 +72,10 @@ impl Enthalpy {
         if !grid.orthogonal {
             self.update_gradients(frame, &now.enthalpy);
         }
+        fill(&mut self.conduction, |index| {
+            conduction(frame, material, index)
+        });
+        let conduction = &self.conduction;
         let heat_capacity = frame.properties.heat_capacity;
         self.matrix.assemble(|cell, diagonal, neighbours| {
             *diagonal = frame.old.mass[cell] / frame.storage_span
@@ -90,7 +83,10 @@ impl Enthalpy {
             for link in grid.links(cell) {
                 let index = link.face as usize;
                 let inflow = (-link.sign * now.flux[index]).max(0.0);
-                let weight = inflow + Self::conduction(frame, material, index);
+                let weight = inflow + conduction[index];
+                if weight == 0.0 {
+                    continue;
+                }
                 if !link.is_boundary() {
                     neighbours[link.slot as usize] -= weight;
                     *diagonal += weight;
@@ -111,35 +107,42 @@ impl Enthalpy {
                     && let Some(gas) = given(frame, index)
                 {
                     let inflow = (-link.sign * now.flux[index]).max(0.0);
-                    let weight = inflow + Self::conduction(frame, material, index);
+                    let weight = inflow + self.conduction[index];
                     source += weight * gas.enthalpy;
                 }
-                source -= link.sign * self.skewed(frame, material, index);
+                source -= link.sign * self.skewed(frame, index);
             }
             source
         });
         self.source = source;
     }
 
-    /// Solves for the enthalpy, to a tolerance relative to the energy that moves; the initial
-    /// residual is returned relative to the cells' heat contents.
+    /// Σ over cells of the equation's residual, relative to the cells' heat contents (from 0 K).
+    pub fn residual(&self, frame: &Frame<'_>, now: &State) -> f64 {
+        let heat_capacity = frame.properties.heat_capacity;
+        let [error, content] = sums(now.enthalpy.len(), |cell| {
+            let error = self.source[cell] - self.matrix.row_times(cell, &now.enthalpy);
+            let content = self.matrix.diagonal()[cell] * heat_capacity * now.temperature[cell];
+            [error.abs(), content]
+        });
+        error / content
+    }
+
+    /// Solves for the enthalpy, to a tolerance relative to the energy that moves; returns the
+    /// iterations.
     pub fn solve(
         &mut self,
         frame: &Frame<'_>,
         krylov: &mut Krylov,
         tolerance: f64,
         now: &mut State,
-    ) -> (Solved, f64) {
-        let throughput = self.throughput(frame, now);
+    ) -> u32 {
         let target = Target {
-            absolute: tolerance * throughput,
+            absolute: tolerance * self.throughput(frame, now),
+            of_terms: 0.0,
             relative: 0.0,
             iterations: ITERATIONS,
         };
-        let heat_capacity = frame.properties.heat_capacity;
-        let content = sum(now.mass.len(), |cell| {
-            self.matrix.diagonal()[cell] * heat_capacity * now.temperature[cell]
-        });
         self.preconditioner.update(&self.matrix);
         let solved = krylov.general(
             &self.matrix,
@@ -152,7 +155,7 @@ impl Enthalpy {
         fill(&mut now.temperature, |cell| {
             frame.properties.temperature(enthalpy[cell])
         });
-        (solved, solved.initial / content)
+        solved.iterations
     }
 
     /// Energy that moves, in W: through the boundary, from the particles, into storage.
@@ -176,15 +179,15 @@ impl Enthalpy {
     }
 
     /// Flow of enthalpy into the domain through a boundary face in W, conduction included.
-    pub fn inflow(&self, frame: &Frame<'_>, material: &Material, now: &State, index: usize) -> f64 {
+    pub fn inflow(&self, frame: &Frame<'_>, now: &State, index: usize) -> f64 {
         let inner = now.enthalpy[frame.grid.faces[index].owner];
         let flux = now.flux[index];
         let Some(gas) = given(frame, index) else {
             return -flux * inner;
         };
         let carried = if flux < 0.0 { gas.enthalpy } else { inner };
-        let conducted = Self::conduction(frame, material, index) * (gas.enthalpy - inner);
-        -flux * carried + conducted - self.skewed(frame, material, index)
+        let conducted = self.conduction[index] * (gas.enthalpy - inner);
+        -flux * carried + conducted - self.skewed(frame, index)
     }
 
     fn update_gradients(&mut self, frame: &Frame<'_>, enthalpy: &[f64]) {
@@ -205,7 +208,23 @@ impl Enthalpy {
     }
 }
 
+/// Conductance of a face for enthalpy differences in kg/s; zero where no heat is conducted.
+#[inline]
+fn conduction(frame: &Frame<'_>, material: &Material, index: usize) -> f64 {
+    let face = &frame.grid.faces[index];
+    let conductivity = if index < frame.grid.internal {
+        interpolate(face, &material.conductivity)
+    } else {
+        match given(frame, index) {
+            Some(gas) => frame.void_fraction[face.owner] * gas.conductivity,
+            None => return 0.0,
+        }
+    };
+    conductance(face, conductivity) / frame.properties.heat_capacity
+}
+
 /// Heat from the particles to a cell in W, as the equation takes it.
+#[inline]
 pub fn heat(frame: &Frame<'_>, now: &State, cell: usize) -> f64 {
     frame.exchange.heat_source[cell] - frame.exchange.heat_coefficient[cell] * now.temperature[cell]
 }

@@ -16,7 +16,7 @@ use crate::numerics::grid::{Face, Grid};
 use crate::numerics::krylov::{Krylov, Target};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{conductance, displacement, face_values, gradient, interpolate};
-use crate::numerics::parallel::{fill, sum, update};
+use crate::numerics::parallel::{fill, sums, update};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
 /// The predictor need not be solved closer than this share of its initial residual, because the
@@ -33,6 +33,8 @@ pub struct Momentum {
     pub matrix: Matrix,
     /// b in N.
     pub source: Vec<Vec3>,
+    /// Viscous conductance of each face in kg/s.
+    viscous: Vec<f64>,
     preconditioner: Incomplete,
     component: Vec<f64>,
     right: Vec<f64>,
@@ -41,6 +43,7 @@ pub struct Momentum {
 }
 
 /// Velocity of the gas at a boundary face, interstitial, where it is given.
+#[inline]
 pub fn given_velocity(frame: &Frame<'_>, index: usize) -> Option<Vec3> {
     let face = &frame.grid.faces[index];
     match frame.boundary.at(index) {
@@ -54,7 +57,8 @@ pub fn given_velocity(frame: &Frame<'_>, index: usize) -> Option<Vec3> {
 }
 
 /// Viscous conductance of a face in kg/s, and on the boundary only where the velocity is given.
-pub fn viscous(frame: &Frame<'_>, material: &Material, index: usize) -> f64 {
+#[inline]
+fn viscous(frame: &Frame<'_>, material: &Material, index: usize) -> f64 {
     let face = &frame.grid.faces[index];
     if index < frame.grid.internal {
         return conductance(face, interpolate(face, &material.viscosity));
@@ -74,9 +78,10 @@ pub fn viscous(frame: &Frame<'_>, material: &Material, index: usize) -> f64 {
 impl Momentum {
     /// An empty system on a matrix's graph.
     pub fn new(matrix: Matrix) -> Self {
-        let cells = matrix.diagonal().len();
+        let (cells, faces) = (matrix.grid().cells(), matrix.grid().faces.len());
         Self {
             matrix,
+            viscous: vec![0.0; faces],
             source: vec![Vec3::zeros(); cells],
             preconditioner: Incomplete::default(),
             component: vec![0.0; cells],
@@ -92,13 +97,18 @@ impl Momentum {
         if !grid.orthogonal {
             self.update_gradients(frame, &now.velocity);
         }
+        fill(&mut self.viscous, |index| viscous(frame, material, index));
+        let viscous = &self.viscous;
         let inertia = |cell: usize| frame.old.mass[cell] / frame.motion_span;
         self.matrix.assemble(|cell, diagonal, neighbours| {
             *diagonal = inertia(cell) + frame.exchange.drag_coefficient[cell];
             for link in grid.links(cell) {
                 let index = link.face as usize;
                 let inflow = (-link.sign * now.flux[index]).max(0.0);
-                let weight = viscous(frame, material, index) + inflow;
+                let weight = viscous[index] + inflow;
+                if weight == 0.0 {
+                    continue;
+                }
                 if !link.is_boundary() {
                     neighbours[link.slot as usize] -= weight;
                     *diagonal += weight;
@@ -115,15 +125,18 @@ impl Momentum {
                 + weight * frame.gravity;
             for link in grid.links(cell) {
                 let index = link.face as usize;
-                if link.is_boundary()
-                    && let Some(velocity) = given_velocity(frame, index)
-                {
+                if link.is_boundary() {
                     let inflow = (-link.sign * now.flux[index]).max(0.0);
-                    source += (viscous(frame, material, index) + inflow) * velocity;
+                    let weight = viscous[index] + inflow;
+                    if weight > 0.0
+                        && let Some(velocity) = given_velocity(frame, index)
+                    {
+                        source += weight * velocity;
+                    }
                 }
                 if !grid.orthogonal {
                     let skewed = viscous_skew(grid, &grid.faces[index], gradients);
-                    source -= link.sign * viscous(frame, material, index) * skewed;
+                    source -= link.sign * viscous[index] * skewed;
                 }
             }
             source
@@ -132,29 +145,25 @@ impl Momentum {
 
     /// Σ over cells of |b − ε V ∇p − A u|, relative to the magnitudes of its terms.
     pub fn residual(&self, frame: &Frame<'_>, now: &State) -> f64 {
-        let cells = self.source.len();
+        let (grid, cells) = (frame.grid, self.source.len());
         let parts = |cell: usize| {
             let own = self.matrix.diagonal()[cell] * now.velocity[cell];
-            let push = frame.void_fraction[cell] * frame.grid.volume[cell];
+            let push = frame.void_fraction[cell] * grid.volume[cell];
             let pressure = push * now.pressure_gradient[cell];
             let force = self.without_pressure(cell, &now.velocity);
             (own, pressure, force)
         };
-        let error = sum(cells, |cell| {
+        let terms = |cell: usize| {
             let (own, pressure, force) = parts(cell);
-            (force - pressure - own).norm()
-        });
-        if error == 0.0 {
-            return 0.0;
-        }
-        let terms = sum(cells, |cell| {
-            let (own, pressure, force) = parts(cell);
-            own.norm() + pressure.norm() + force.norm()
-        });
-        error / terms
+            let error = (force - pressure - own).norm();
+            [error, own.norm() + pressure.norm() + force.norm()]
+        };
+        let [error, magnitude] = sums(cells, terms);
+        if error == 0.0 { 0.0 } else { error / magnitude }
     }
 
     /// Right-hand side and neighbours' pull of a cell, without the pressure, in N.
+    #[inline]
     pub fn without_pressure(&self, cell: usize, velocity: &[Vec3]) -> Vec3 {
         let (columns, values) = self.matrix.row(cell);
         let mut force = self.source[cell];
@@ -183,7 +192,8 @@ impl Momentum {
             });
             fill(&mut self.component, |cell| velocity[cell][axis]);
             let target = Target {
-                absolute: tolerance * self.matrix.terms(&self.component, &self.right),
+                absolute: 0.0,
+                of_terms: tolerance,
                 relative: PREDICTOR,
                 iterations: ITERATIONS,
             };
@@ -205,15 +215,12 @@ impl Momentum {
     }
 
     /// Flow of momentum into the domain through a boundary face in N, pressure excluded.
-    pub fn inflow(
-        &self,
-        frame: &Frame<'_>,
-        material: &Material,
-        now: &State,
-        index: usize,
-    ) -> Vec3 {
+    pub fn inflow(&self, frame: &Frame<'_>, now: &State, index: usize) -> Vec3 {
         let face = &frame.grid.faces[index];
         let (inner, flux) = (now.velocity[face.owner], now.flux[index]);
+        if flux == 0.0 && self.viscous[index] == 0.0 {
+            return Vec3::zeros();
+        }
         let Some(velocity) = given_velocity(frame, index) else {
             return -flux * inner;
         };
@@ -222,7 +229,7 @@ impl Momentum {
         if !frame.grid.orthogonal {
             difference -= viscous_skew(frame.grid, face, &self.gradients);
         }
-        -flux * carried + viscous(frame, material, index) * difference
+        -flux * carried + self.viscous[index] * difference
     }
 
     fn update_gradients(&mut self, frame: &Frame<'_>, velocity: &[Vec3]) {

@@ -21,10 +21,10 @@ use super::boundary::Value;
 use super::momentum::Momentum;
 use super::state::State;
 use crate::numerics::grid::Face;
-use crate::numerics::krylov::{Krylov, Solved, Target};
+use crate::numerics::krylov::{Krylov, Target};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{displacement, gradient, outflow};
-use crate::numerics::parallel::{fill, sum};
+use crate::numerics::parallel::{fill, sums};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
 /// A correction need not be solved closer than this share of its initial residual: the next one
@@ -42,6 +42,9 @@ pub struct Pressure {
     mobility: Vec<f64>,
     /// F of each cell in N/m³.
     force: Vec<Vec3>,
+    /// What inertia adds to the force on the half cells of each face's owner and neighbour, along
+    /// the face's normal, in N/m³: the face's own old flux in place of the cell's.
+    inertia: Vec<[f64; 2]>,
     /// Area/(d_P/b_P + d_N/b_N) of each face in m s; zero where the flux is given.
     conductance: Vec<f64>,
     /// The flux that the forces alone would drive through each face in kg/s; the flux itself
@@ -60,11 +63,32 @@ impl Pressure {
             preconditioner: Incomplete::default(),
             mobility: vec![0.0; cells],
             force: vec![Vec3::zeros(); cells],
+            inertia: vec![[0.0; 2]; faces],
             conductance: vec![0.0; faces],
             drive: vec![0.0; faces],
             source: vec![0.0; cells],
             face_pressure: vec![0.0; faces],
         }
+    }
+
+    /// Takes up the old state of an attempt.
+    pub fn begin(&mut self, frame: &Frame<'_>) {
+        let (grid, old) = (frame.grid, frame.old);
+        fill(&mut self.inertia, |index| {
+            let face = &grid.faces[index];
+            let half = |cell: usize| {
+                let held = old.mass[cell] / grid.volume[cell];
+                let difference =
+                    old.flux[index] / face.area - held * old.velocity[cell].dot(&face.normal);
+                difference / (frame.motion_span * frame.void_fraction[cell])
+            };
+            let neighbour = if index < grid.internal {
+                half(face.neighbour)
+            } else {
+                0.0
+            };
+            [half(face.owner), neighbour]
+        });
     }
 
     /// Assembles the matrix for the momentum equation and properties at hand.
@@ -100,7 +124,8 @@ impl Pressure {
         self.preconditioner.update(&self.matrix);
     }
 
-    /// One correction: new pressure, fluxes, pressure gradient and velocity.
+    /// One correction: new pressure, fluxes, pressure gradient and velocity; returns the linear
+    /// iterations.
     pub fn correct(
         &mut self,
         frame: &Frame<'_>,
@@ -109,7 +134,7 @@ impl Pressure {
         krylov: &mut Krylov,
         tolerance: f64,
         now: &mut State,
-    ) -> Solved {
+    ) -> u32 {
         let grid = frame.grid;
         let velocity = &now.velocity;
         fill(&mut self.force, |cell| {
@@ -130,7 +155,8 @@ impl Pressure {
             source
         });
         let target = Target {
-            absolute: tolerance * self.matrix.terms(&now.pressure, &self.source),
+            absolute: 0.0,
+            of_terms: tolerance,
             relative: CORRECTION,
             iterations: ITERATIONS,
         };
@@ -143,19 +169,13 @@ impl Pressure {
         );
         self.update_flux(frame, now);
         self.update_velocity(frame, momentum, now);
-        solved
+        solved.iterations
     }
 
-    /// The force on the half cell of a face's owner (or neighbour), along the face's normal, with
-    /// the inertia of the face's own old flux in place of the cell's, in N/m³.
-    fn half_cell_force(&self, frame: &Frame<'_>, index: usize, cell: usize) -> f64 {
-        let face = &frame.grid.faces[index];
-        let old = frame.old;
-        let face_flux = old.flux[index] / face.area;
-        let cell_flux =
-            old.mass[cell] / frame.grid.volume[cell] * old.velocity[cell].dot(&face.normal);
-        self.force[cell].dot(&face.normal)
-            + (face_flux - cell_flux) / (frame.motion_span * frame.void_fraction[cell])
+    /// Force on the half cell of a face's owner along the face's normal, in N/m³.
+    #[inline]
+    fn owner_force(&self, face: &Face, index: usize) -> f64 {
+        self.force[face.owner].dot(&face.normal) + self.inertia[index][0]
     }
 
     fn update_drive(&mut self, frame: &Frame<'_>, gradients: &[Vec3]) {
@@ -169,10 +189,10 @@ impl Pressure {
                     Value::Outlet { .. } => {}
                 }
             }
-            let mut push = face.owner_distance * self.half_cell_force(frame, index, face.owner);
+            let mut push = face.owner_distance * self.owner_force(face, index);
             if index < frame.grid.internal {
-                push +=
-                    face.neighbour_distance * self.half_cell_force(frame, index, face.neighbour);
+                let force = self.force[face.neighbour].dot(&face.normal) + self.inertia[index][1];
+                push += face.neighbour_distance * force;
             }
             self.conductance[index] * (push + displacement(frame.grid, face, gradients))
         });
@@ -207,7 +227,7 @@ impl Pressure {
                 return pressure;
             }
             let loss = flux[index] / (face.area * self.mobility[face.owner]);
-            let along = self.half_cell_force(frame, index, face.owner) - loss;
+            let along = self.owner_force(face, index) - loss;
             let inner = pressure[face.owner] + face.owner_distance * along;
             if grid.orthogonal {
                 inner
@@ -232,6 +252,7 @@ impl Pressure {
 }
 
 /// The outflow that continuity asks of a cell in kg/s.
+#[inline]
 fn target(frame: &Frame<'_>, material: &Material, cell: usize) -> f64 {
     let mass = frame.void_fraction[cell] * material.density[cell] * frame.grid.volume[cell];
     (frame.old.mass[cell] - mass) / frame.storage_span
@@ -241,13 +262,15 @@ fn target(frame: &Frame<'_>, material: &Material, cell: usize) -> f64 {
 /// through them.
 pub fn residual(frame: &Frame<'_>, material: &Material, now: &State) -> f64 {
     let grid = frame.grid;
-    let error = sum(grid.cells(), |cell| {
-        (target(frame, material, cell) - outflow(grid, &now.flux, cell)).abs()
-    });
-    let terms = sum(grid.cells(), |cell| {
-        let links = grid.links(cell).iter();
-        let through = links.fold(0.0, |sum, link| sum + now.flux[link.face as usize].abs());
-        frame.old.mass[cell] / frame.storage_span + 0.5 * through
+    let [error, terms] = sums(grid.cells(), |cell| {
+        let (mut net, mut through) = (0.0, 0.0);
+        for link in grid.links(cell) {
+            let flux = now.flux[link.face as usize];
+            net += link.sign * flux;
+            through += 0.5 * flux.abs();
+        }
+        let error = (target(frame, material, cell) - net).abs();
+        [error, frame.old.mass[cell] / frame.storage_span + through]
     });
     error / terms
 }

@@ -30,11 +30,13 @@ pub struct Face {
 
 impl Face {
     /// n·(x_N − x_P) in m; on the boundary n·(x_f − x_P).
+    #[inline]
     pub fn distance(&self) -> f64 {
         self.owner_distance + self.neighbour_distance
     }
 
     /// Weight of the owner in linear interpolation.
+    #[inline]
     pub fn owner_weight(&self) -> f64 {
         self.neighbour_distance / self.distance()
     }
@@ -55,6 +57,7 @@ pub struct Link {
 
 impl Link {
     /// True on the boundary.
+    #[inline]
     pub fn is_boundary(&self) -> bool {
         self.other == u32::MAX
     }
@@ -125,21 +128,25 @@ impl Grid {
     }
 
     /// Number of cells.
+    #[inline]
     pub fn cells(&self) -> usize {
         self.volume.len()
     }
 
     /// Links of a cell.
+    #[inline]
     pub fn links(&self, cell: usize) -> &[Link] {
         &self.links[self.link_offsets[cell] as usize..self.link_offsets[cell + 1] as usize]
     }
 
     /// Where the neighbours of each cell begin in `columns`; one more entry than cells.
+    #[inline]
     pub fn row_offsets(&self) -> &[u32] {
         &self.row_offsets
     }
 
     /// Neighbours of all cells, ascending within each cell.
+    #[inline]
     pub fn columns(&self) -> &[u32] {
         &self.columns
     }

@@ -13,11 +13,13 @@ const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 /// residual have drifted apart.
 const RESTARTS: u32 = 4;
 
-/// When a solve ends: where Σ|b − A x| is below `absolute` or below `relative` times its start.
+/// When a solve ends: where Σ|b − A x| is below any of these.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
     /// In the units of b.
     pub absolute: f64,
+    /// As a share of the magnitudes of the equation's terms, Σ(|A| |x| + |b|).
+    pub of_terms: f64,
     /// As a share of the initial residual.
     pub relative: f64,
     /// Iterations at most.
@@ -98,7 +100,7 @@ impl Krylov {
         for _ in 0..RESTARTS {
             // Round-off is looked up only where the solve would go on, and anew as x changes.
             if solved.residual > goal {
-                goal = goal.max(ROUND_OFF * matrix.terms(x, b));
+                goal = goal.max((target.of_terms + ROUND_OFF) * matrix.terms(x, b));
             }
             solved.converged = solved.residual <= goal;
             let left = target.iterations.saturating_sub(solved.iterations);

@@ -32,11 +32,13 @@ impl Matrix {
     }
 
     /// Entries on the diagonal.
+    #[inline]
     pub fn diagonal(&self) -> &[f64] {
         &self.diagonal
     }
 
     /// Columns and values of a row's neighbours, columns ascending.
+    #[inline]
     pub fn row(&self, cell: usize) -> (&[u32], &[f64]) {
         let offsets = self.grid.row_offsets();
         let range = offsets[cell] as usize..offsets[cell + 1] as usize;
@@ -77,6 +79,7 @@ impl Matrix {
     }
 
     /// One row of A x.
+    #[inline]
     pub fn row_times(&self, cell: usize, x: &[f64]) -> f64 {
         let (columns, values) = self.row(cell);
         let mut sum = self.diagonal[cell] * x[cell];

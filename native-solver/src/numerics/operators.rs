@@ -7,6 +7,7 @@ use super::grid::{Face, Grid};
 use super::parallel::fill;
 
 /// Linear interpolation of cell values onto a face; on the boundary the cell's own value.
+#[inline]
 pub fn interpolate(face: &Face, values: &[f64]) -> f64 {
     if face.neighbour == usize::MAX {
         return values[face.owner];
@@ -16,12 +17,14 @@ pub fn interpolate(face: &Face, values: &[f64]) -> f64 {
 }
 
 /// Net outflow of a cell: Σ of the fluxes through its faces, out of the cell.
+#[inline]
 pub fn outflow(grid: &Grid, flux: &[f64], cell: usize) -> f64 {
     let links = grid.links(cell).iter();
     links.fold(0.0, |sum, link| sum + link.sign * flux[link.face as usize])
 }
 
 /// The gradient of a cell from values on its faces (Gauss): Σ value S / V.
+#[inline]
 pub fn gradient(grid: &Grid, face_values: &[f64], cell: usize) -> Vec3 {
     let mut sum = Vec3::zeros();
     for link in grid.links(cell) {
@@ -58,6 +61,7 @@ pub fn face_values(
 
 /// Explicit part of n·∇ at a face, times the face's distance: what the plain difference across
 /// the face has too much because the centres are displaced along the face.
+#[inline]
 pub fn displacement(grid: &Grid, face: &Face, gradients: &[Vec3]) -> f64 {
     if grid.orthogonal {
         return 0.0;
@@ -70,6 +74,7 @@ pub fn displacement(grid: &Grid, face: &Face, gradients: &[Vec3]) -> f64 {
 }
 
 /// Conductance of a face, coefficient · area / distance.
+#[inline]
 pub fn conductance(face: &Face, coefficient: f64) -> f64 {
     coefficient * face.area / face.distance()
 }

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 pub const CHUNK: usize = 4096;
 
 /// Sets every element to a function of its index.
+#[inline]
 pub fn fill<T: Send>(values: &mut [T], value: impl Fn(usize) -> T + Sync) {
     let chunk = |start: usize, values: &mut [T]| {
         for (i, slot) in values.iter_mut().enumerate() {
@@ -24,6 +25,7 @@ pub fn fill<T: Send>(values: &mut [T], value: impl Fn(usize) -> T + Sync) {
 }
 
 /// Changes every element, given its index.
+#[inline]
 pub fn update<T: Send>(values: &mut [T], change: impl Fn(usize, &mut T) + Sync) {
     let chunk = |start: usize, values: &mut [T]| {
         for (i, slot) in values.iter_mut().enumerate() {
@@ -40,26 +42,40 @@ pub fn update<T: Send>(values: &mut [T], change: impl Fn(usize, &mut T) + Sync) 
     }
 }
 
-/// The sum of a function over `0..count`: chunk by chunk, then pairwise over the chunks.
-pub fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
+/// The sums of several functions over `0..count`: chunk by chunk, then pairwise over the chunks.
+#[inline]
+pub fn sums<const N: usize>(count: usize, terms: impl Fn(usize) -> [f64; N] + Sync) -> [f64; N] {
+    let add = |mut sum: [f64; N], terms: [f64; N]| {
+        for (sum, term) in sum.iter_mut().zip(terms) {
+            *sum += term;
+        }
+        sum
+    };
     let chunk = |from: usize| {
         let to = count.min(from + CHUNK);
-        (from..to).fold(0.0, |sum, i| sum + term(i))
+        (from..to).fold([0.0; N], |sum, i| add(sum, terms(i)))
     };
     if count <= CHUNK {
         return chunk(0);
     }
-    let mut partial: Vec<f64> = (0..count.div_ceil(CHUNK))
+    let mut partial: Vec<[f64; N]> = (0..count.div_ceil(CHUNK))
         .into_par_iter()
         .map(|k| chunk(k * CHUNK))
         .collect();
     while partial.len() > 1 {
         for i in 0..partial.len().div_ceil(2) {
-            partial[i] = partial[2 * i] + partial.get(2 * i + 1).unwrap_or(&0.0);
+            let right = partial.get(2 * i + 1).copied();
+            partial[i] = add(partial[2 * i], right.unwrap_or([0.0; N]));
         }
         partial.truncate(partial.len().div_ceil(2));
     }
     partial[0]
+}
+
+/// The sum of a function over `0..count`, in the same order.
+#[inline]
+pub fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
+    sums(count, |i| [term(i)])[0]
 }
 
 /// The largest value of a function over `0..count`, with the first index that has it; a value
@@ -89,11 +105,13 @@ pub fn largest(count: usize, value: impl Fn(usize) -> f64 + Sync) -> (usize, f64
 }
 
 /// The scalar product of two vectors of equal length.
+#[inline]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     sum(a.len(), |i| a[i] * b[i])
 }
 
 /// The sum of magnitudes.
+#[inline]
 pub fn magnitude(a: &[f64]) -> f64 {
     sum(a.len(), |i| a[i].abs())
 }

@@ -46,16 +46,19 @@ impl Incomplete {
         self.upper.resize(self.upper_column.len(), 0.0);
     }
 
+    #[inline]
     fn lower_range(&self, cell: usize) -> std::ops::Range<usize> {
         self.lower_start[cell] as usize..self.lower_start[cell + 1] as usize
     }
 
+    #[inline]
     fn upper_range(&self, cell: usize) -> std::ops::Range<usize> {
         self.upper_start[cell] as usize..self.upper_start[cell + 1] as usize
     }
 
     /// Subtracts `factor` times the upper part of row `pivot` from row `cell`, where it has
     /// entries; what this does to the diagonal is returned.
+    #[inline]
     fn eliminate(&mut self, cell: usize, pivot: usize, factor: f64) -> f64 {
         let mut on_diagonal = 0.0;
         for k in self.upper_range(pivot) {
