@@ -8,6 +8,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use calcine::results::read::Series;
 use calcine::results::{Recorder, ResultsError, Summary, Verdict};
 use calcine_coupler::observer::Observer;
 
@@ -40,6 +41,10 @@ fn rows_and_snapshots_fall_on_the_first_window_at_or_after_each_multiple() {
     // Windows end at multiples of 0.5 s, rows are wanted each 0.7 s: 0, 0.7, 1.4, 2.1, 2.8 …
     assert_eq!(times[..5], ["0.0", "1.0", "1.5", "2.5", "3.0"]);
     assert_eq!(times.last(), Some(&"20.0"));
+    // No pressure is solved before the first window.
+    let drop = Series::read(&out).unwrap();
+    let drop = drop.column("quantities.pressure_drop");
+    assert!(drop[0].is_nan() && drop[1..].iter().all(|value| value.is_finite()));
     let collection = fs::read_to_string(out.join("gas.pvd")).unwrap();
     let steps: Vec<&str> = collection
         .split("timestep=\"")

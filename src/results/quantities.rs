@@ -48,9 +48,11 @@ pub(super) fn check(quantity: &Quantity, mesh: &Mesh) -> Result<(), ResultsError
     }
 }
 
-/// The quantity at a moment, in its unit; NaN where it does not exist (a particle that is gone).
+/// The quantity at a moment, in its unit; NaN where it does not exist: a particle that is gone, a
+/// pressure before the first window, when none is solved yet.
 pub(super) fn evaluate(quantity: &Quantity, moment: &Moment<'_>) -> f64 {
     match &quantity.measure {
+        Measure::Difference { field, .. } if field == "pressure" && moment.windows == 0 => f64::NAN,
         Measure::Difference { field, patches } => {
             area_mean(moment, field, &patches[0]) - area_mean(moment, field, &patches[1])
         }
@@ -93,8 +95,9 @@ fn area_mean(moment: &Moment<'_>, field: &str, patch: &str) -> f64 {
 /// The value of each quantity that its expectation speaks of, once it is known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Captured {
-    /// One (value, process time in s) per quantity, in the order of the case.
-    values: Vec<Option<(f64, f64)>>,
+    /// One (value, process time in s) per quantity, in the order of the case; a value that is not
+    /// a number is `None`, as JSON has no other word for it.
+    values: Vec<Option<(Option<f64>, f64)>>,
 }
 
 impl Captured {
@@ -115,7 +118,8 @@ impl Captured {
                 None => latest,
             };
             if wanted {
-                *slot = Some((evaluate(quantity, moment), time));
+                let value = evaluate(quantity, moment);
+                *slot = Some((Some(value).filter(|value| value.is_finite()), time));
             }
         }
     }
@@ -145,7 +149,7 @@ fn expected_at(quantity: &Quantity) -> Option<f64> {
     quantity.expect.and_then(|expect| expect.at)
 }
 
-fn result(quantity: &Quantity, slot: Option<(f64, f64)>, over: bool) -> QuantityResult {
+fn result(quantity: &Quantity, slot: Option<(Option<f64>, f64)>, over: bool) -> QuantityResult {
     let band = quantity.expect.map(|Expect { value, within, .. }| {
         let distance = allowance(within, value);
         (value - distance, value + distance)
@@ -154,11 +158,13 @@ fn result(quantity: &Quantity, slot: Option<(f64, f64)>, over: bool) -> Quantity
     let verdict = match (band, slot) {
         (None, _) => Verdict::None,
         (Some(_), _) if !known => Verdict::Running,
-        (Some((low, high)), Some((value, _))) if low <= value && value <= high => Verdict::Pass,
+        (Some((low, high)), Some((Some(value), _))) if low <= value && value <= high => {
+            Verdict::Pass
+        }
         (Some(_), _) => Verdict::Fail,
     };
     QuantityResult {
-        value: slot.map(|(value, _)| value),
+        value: slot.and_then(|(value, _)| value),
         unit: quantity.unit.into(),
         at_s: slot.map(|(_, at)| at),
         band,
