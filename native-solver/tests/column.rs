@@ -53,6 +53,8 @@ fn flow_through_a_jump_of_void_fraction_keeps_the_superficial_velocity() {
         let superficial = column.bed.void_fraction[cell] * fields.velocity[cell].z;
         assert!((superficial / 0.5 - 1.0).abs() < 1e-9, "{superficial} m/s");
         assert!(fields.velocity[cell].xy().norm() < 1e-15);
+        let drag = -column.exchange.drag_coefficient[cell] * fields.velocity[cell];
+        assert_eq!(column.received.drag[cell], drag);
     }
     // −ε V dp/dz = K u + φ (u − u_upstream): drag, and the jet that enters the pores.
     let flux = AIR.density(ATMOSPHERE, 300.0) * 0.5 * 1e-4;
@@ -144,6 +146,23 @@ fn mass_energy_and_momentum_close_in_every_window_of_a_hot_front() {
             assert!(closure(&column.received.momentum[2]) < 1e-7);
         }
     }
+}
+
+#[test]
+fn a_steady_flow_does_not_depend_on_the_time_step() {
+    let pressure = |span| {
+        let mut column = with_bed(column(0.5, 400.0), 1e-5, 0.01);
+        // Ten residence times at least.
+        for _ in 0..1000 {
+            column.window(span, 5.0);
+        }
+        column.gas.fields().pressure[0] - ATMOSPHERE
+    };
+    let (short, long) = (pressure(1e-3), pressure(1e-1));
+    assert!(
+        (short / long - 1.0).abs() < 1e-7,
+        "{short} against {long} Pa"
+    );
 }
 
 #[test]

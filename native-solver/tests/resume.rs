@@ -59,6 +59,7 @@ fn a_resumed_gas_takes_the_same_path_as_an_uninterrupted_one() {
 fn a_checkpoint_before_the_first_window_is_taken_up_too() {
     let folder = tempfile::tempdir().unwrap();
     let mut gas = column();
+    gas.attempt(1e-3, 1.0);
     gas.gas.checkpoint(folder.path()).unwrap();
     let mut resumed = column();
     resumed.gas.restore(folder.path()).unwrap();

@@ -21,7 +21,8 @@ pub fn complaint(now: &State, centre: &[Vec3]) -> Option<String> {
     let say = |field: &str, value: String, cell: usize| {
         let place = centre[cell];
         Some(format!(
-            "diverged: {field} of {value} in cell {cell} at ({:.6}, {:.6}, {:.6}) m",
+            "diverged: {field} of {value} in cell {cell} at ({:.6}, {:.6}, {:.6}) m; \
+             a shorter `motion_window` may help",
             place.x, place.y, place.z
         ))
     };

@@ -69,15 +69,7 @@ impl NativeGas {
         let boundaries = Boundaries::new(&mesh, setup)?;
         let grid = Arc::new(Grid::new(&mesh));
         let (cells, faces) = (mesh.cells(), mesh.faces());
-        let committed = State {
-            enthalpy: vec![setup.properties.enthalpy(setup.temperature); cells],
-            temperature: vec![setup.temperature; cells],
-            velocity: vec![setup.velocity; cells],
-            pressure: vec![0.0; cells],
-            pressure_gradient: vec![Vec3::zeros(); cells],
-            flux: vec![0.0; faces],
-            ..State::default()
-        };
+        let committed = start(setup, cells, faces);
         let mut gas = Self {
             about: About {
                 name: "native gas".into(),
@@ -123,7 +115,7 @@ impl NativeGas {
         });
     }
 
-    /// The committed state; before the first commit, gas of the setup in the pores of the bed.
+    /// Fills the pores of the bed with the gas of the setup, to start the first window from.
     fn place(&mut self) {
         let (state, setup, grid) = (&mut self.committed, &self.setup, &self.grid);
         let density = setup.properties.density(setup.pressure, setup.temperature);
@@ -219,6 +211,10 @@ impl Part for NativeGas {
             gas.failure(FailureKind::Io, error.to_string())
                 .caused_by(error)
         };
+        if !self.started {
+            // What an attempt without a commit placed is no state of the run.
+            self.committed = start(&self.setup, self.mesh.cells(), self.mesh.faces());
+        }
         self.committed
             .write(&directory.join(STATE))
             .map_err(|error| failed(self, error.into()))?;
@@ -305,9 +301,32 @@ impl Gas for NativeGas {
             material,
             ..
         } = &self.equations;
+        if !convergence.converged {
+            tracing::warn!(
+                "window {}: the gas ends after {} outer iterations with a residual of {:.1e}, \
+                 above the tolerance of {:.1e}",
+                window.index,
+                convergence.outer_iterations,
+                convergence.residual,
+                self.setup.controls.outer_tolerance
+            );
+        }
         balance::receive(&frame, material, momentum, enthalpy, &self.now, received);
         self.update_fields();
         Ok(convergence)
+    }
+}
+
+/// The state at the start of a run, before anything is known of the bed.
+fn start(setup: &GasSetup, cells: usize, faces: usize) -> State {
+    State {
+        enthalpy: vec![setup.properties.enthalpy(setup.temperature); cells],
+        temperature: vec![setup.temperature; cells],
+        velocity: vec![setup.velocity; cells],
+        pressure: vec![0.0; cells],
+        pressure_gradient: vec![Vec3::zeros(); cells],
+        flux: vec![0.0; faces],
+        ..State::default()
     }
 }
 
