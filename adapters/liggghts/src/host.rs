@@ -2,7 +2,7 @@
 //! goodbye.
 
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -265,7 +265,9 @@ impl Host {
     /// A line for the log that the coordinator shows when something goes wrong.
     fn tell(&mut self, line: &str) {
         self.told = Instant::now();
-        eprintln!("calcine-liggghts, rank {}: {line}", self.rank);
+        let line = format!("calcine-liggghts, rank {}: {line}\n", self.rank);
+        // In one piece, or the ranks' lines would mix; a log that is full ends no run.
+        let _ = io::stderr().write_all(line.as_bytes());
     }
 }
 

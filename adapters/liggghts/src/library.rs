@@ -16,13 +16,23 @@ use calcine_wire::record::{Header, Kind};
 type MPI_Comm = *mut c_void;
 
 unsafe extern "C" {
-    // Open MPI's MPI_COMM_WORLD is the address of this object.
+    // Open MPI's MPI_COMM_WORLD, MPI_UINT64_T and MPI_SUM are the addresses of these objects.
     static mut ompi_mpi_comm_world: c_void_object;
+    static mut ompi_mpi_uint64_t: c_void_object;
+    static mut ompi_mpi_op_sum: c_void_object;
 
     fn MPI_Init(argc: *mut c_int, argv: *mut *mut *mut c_char) -> c_int;
     fn MPI_Finalize() -> c_int;
     fn MPI_Comm_rank(world: MPI_Comm, rank: *mut c_int) -> c_int;
     fn MPI_Comm_size(world: MPI_Comm, size: *mut c_int) -> c_int;
+    fn MPI_Allreduce(
+        send: *const c_void,
+        receive: *mut c_void,
+        count: c_int,
+        kind: *mut c_void,
+        operation: *mut c_void,
+        world: MPI_Comm,
+    ) -> c_int;
     fn lammps_open(argc: c_int, argv: *mut *mut c_char, world: MPI_Comm, out: *mut *mut c_void);
     fn lammps_command(lammps: *mut c_void, line: *const c_char) -> *mut c_char;
     fn lammps_extract_global(lammps: *mut c_void, name: *const c_char) -> *mut c_void;
@@ -143,6 +153,23 @@ pub fn start_mpi() -> (u32, u32) {
 
 fn world() -> MPI_Comm {
     (&raw mut ompi_mpi_comm_world).cast()
+}
+
+/// The sum of every rank's value, wrapping; all ranks must call it.
+pub fn sum_over_ranks(value: u64) -> u64 {
+    let mut sum = 0u64;
+    // SAFETY: one value of the stated type at either place, in the world that all ranks are in.
+    unsafe {
+        MPI_Allreduce(
+            (&raw const value).cast(),
+            (&raw mut sum).cast(),
+            1,
+            (&raw mut ompi_mpi_uint64_t).cast(),
+            (&raw mut ompi_mpi_op_sum).cast(),
+            world(),
+        );
+    }
+    sum
 }
 
 /// One LIGGGHTS; there must be no second in a process.

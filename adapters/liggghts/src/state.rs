@@ -1,10 +1,10 @@
 //! This rank's particles as columns, in ascending id.
 
-use calcine_wire::hello::fingerprint;
+use calcine_wire::hello::{hash_text, particles_hash};
 use calcine_wire::{Header, Link, WireError};
 
 use crate::host::HostError;
-use crate::library::Liggghts;
+use crate::library::{self, Liggghts};
 
 /// One value or vector per particle, in ascending id.
 #[derive(Debug, Default)]
@@ -58,11 +58,12 @@ impl State {
         })
     }
 
-    /// Hash of what the particles are, whatever they do: ids and radii. The coordinator computes
-    /// the same from its own.
+    /// Hash of the particles of all ranks; the coordinator computes the same from its own.
     pub fn hash(&self) -> String {
-        let pairs = self.id.iter().zip(&self.radius);
-        fingerprint(pairs.flat_map(|(&id, radius)| [id, radius.to_bits()]))
+        hash_text(library::sum_over_ranks(particles_hash(
+            &self.id,
+            &self.radius,
+        )))
     }
 
     /// Sends the state with the impulses in N s.

@@ -12,7 +12,7 @@ use calcine_coupler::part::{
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::Window;
-use calcine_wire::hello::fingerprint;
+use calcine_wire::hello::{hash_text, particles_hash};
 use calcine_wire::{Catalogue, Hello, Kind, Link, WireError};
 
 use crate::launch::{Program, find_program};
@@ -87,13 +87,12 @@ impl LiggghtsParticles {
             arguments.push(file.into());
         }
         let setup = launch.inputs.setup;
-        let pairs = setup.id.iter().zip(&setup.radius);
         let hello = Hello {
             role: "particles".into(),
             name: "Calcine".into(),
             version: env!("CARGO_PKG_VERSION").into(),
             case_hash: launch.case_hash,
-            mesh_hash: fingerprint(pairs.flat_map(|(&id, radius)| [id, radius.to_bits()])),
+            mesh_hash: hash_text(particles_hash(&setup.id, &setup.radius)),
             count: setup.id.len() as u64,
             ranks: launch.inputs.ranks,
             catalogue: Catalogue::standard("particles").map_err(|error| {

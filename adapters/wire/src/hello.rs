@@ -110,10 +110,23 @@ impl Hello {
     }
 }
 
-/// A hash that both ends derive from what they hold: FNV-1a, word by word, as hexadecimal.
-pub fn fingerprint(words: impl IntoIterator<Item = u64>) -> String {
+/// FNV-1a, word by word.
+fn hash(words: impl IntoIterator<Item = u64>) -> u64 {
     let mix = |hash: u64, word: u64| (hash ^ word).wrapping_mul(0x0100_0000_01b3);
-    format!("{:016x}", words.into_iter().fold(0xcbf2_9ce4_8422_2325, mix))
+    words.into_iter().fold(0xcbf2_9ce4_8422_2325, mix)
+}
+
+/// Hash of what particles are, whatever they do: ids and radii. A sum over particles, so that ranks
+/// add their shares and the order does not matter.
+pub fn particles_hash(id: &[u64], radius: &[f64]) -> u64 {
+    let pairs = id.iter().zip(radius);
+    let each = pairs.map(|(&id, radius)| hash([id, radius.to_bits()]));
+    each.fold(0, u64::wrapping_add)
+}
+
+/// A hash as a handshake has it.
+pub fn hash_text(hash: u64) -> String {
+    format!("{hash:016x}")
 }
 
 fn compare(what: &'static str, ours: &str, theirs: &str) -> Result<(), WireError> {
@@ -172,10 +185,19 @@ mod tests {
     }
 
     #[test]
-    fn a_fingerprint_is_fnv_1a() {
+    fn the_hash_is_fnv_1a() {
         // Published: FNV-1a of no bytes, and of the byte "a" (0x61), 64 bits.
-        assert_eq!(fingerprint([]), "cbf29ce484222325");
-        assert_eq!(fingerprint([0x61]), "af63dc4c8601ec8c");
+        assert_eq!(hash_text(hash([])), "cbf29ce484222325");
+        assert_eq!(hash_text(hash([0x61])), "af63dc4c8601ec8c");
+    }
+
+    #[test]
+    fn the_hash_of_particles_adds_over_ranks_and_sees_every_radius() {
+        let whole = particles_hash(&[1, 2, 5], &[0.1, 0.2, 0.3]);
+        let shares =
+            particles_hash(&[5, 1], &[0.3, 0.1]).wrapping_add(particles_hash(&[2], &[0.2]));
+        assert_eq!(whole, shares);
+        assert_ne!(whole, particles_hash(&[1, 2, 5], &[0.1, 0.3, 0.2]));
     }
 
     #[test]

@@ -1,12 +1,15 @@
 //! A solver in C++ against header and static library.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use calcine_wire::run::VARIABLE;
 use calcine_wire::shared_memory::End;
-use calcine_wire::{Catalogue, Header, Hello, Kind, Link, Run, SharedMemory, WireError};
+use calcine_wire::{
+    Catalogue, Header, Hello, Kind, Link, LinkAddress, Run, SharedMemory, WireError,
+};
 
 /// The directory of the test's own binaries' parent, where the static library lies.
 fn target() -> PathBuf {
@@ -59,7 +62,16 @@ struct Solver {
 fn start(program: &Path, mesh: &str) -> Solver {
     let run = Run::create().unwrap();
     let address = run.address("gas");
-    let transport = SharedMemory::open(&address, 0, End::Coordinator).unwrap();
+    let (child, link) = join(program, mesh, &address);
+    Solver {
+        child,
+        link,
+        _run: run,
+    }
+}
+
+fn join(program: &Path, mesh: &str, address: &LinkAddress) -> (Child, Link) {
+    let transport = SharedMemory::open(address, 0, End::Coordinator).unwrap();
     let link = Link::new(Box::new(transport), address.number(), 0);
     let child = Command::new(program)
         .arg(mesh)
@@ -67,11 +79,7 @@ fn start(program: &Path, mesh: &str) -> Solver {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    Solver {
-        child,
-        link,
-        _run: run,
-    }
+    (child, link)
 }
 
 fn receive(link: &mut Link) -> Result<Header, WireError> {
@@ -147,4 +155,77 @@ fn a_solver_in_cpp_shakes_hands_answers_fails_and_ends() {
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(13), "{told}");
     assert!(told.contains("another"), "{told}");
+}
+
+/// Names in shared memory and scratch that begin with a run's.
+fn files_of(name: &str) -> Vec<PathBuf> {
+    let folders = [PathBuf::from("/dev/shm"), std::env::temp_dir()];
+    let entries = folders
+        .iter()
+        .flat_map(|folder| fs::read_dir(folder).unwrap().flatten());
+    let paths = entries.map(|entry| entry.path());
+    let own = |path: &PathBuf| {
+        path.file_name()
+            .unwrap()
+            .to_string_lossy()
+            .starts_with(name)
+    };
+    paths.filter(own).collect()
+}
+
+/// When a process started, in clock ticks since boot: the 20th word after its name.
+fn started(pid: u32) -> u64 {
+    let text = fs::read_to_string(format!("/proc/{pid}/stat")).unwrap();
+    let words = text.rsplit_once(')').unwrap().1;
+    words
+        .split_ascii_whitespace()
+        .nth(19)
+        .unwrap()
+        .parse()
+        .unwrap()
+}
+
+/// A solver whose coordinator, here a sleeping process, is killed; its log, and how long it lived on.
+fn orphan(program: &Path, mesh: &str, greeted: bool) -> (String, Option<i32>, Duration) {
+    let mut coordinator = Command::new("sleep").arg("600").spawn().unwrap();
+    let pid = coordinator.id();
+    let name = format!("calcine-{pid}-{:x}-0", started(pid));
+    let root = std::env::temp_dir().join(&name);
+    fs::create_dir(&root).unwrap();
+    let address = LinkAddress {
+        name: name.clone(),
+        role: "gas".into(),
+        root,
+    };
+    let (child, mut link) = join(program, mesh, &address);
+    receive(&mut link).unwrap();
+    if greeted {
+        link.answer_greeting(&hello()).unwrap();
+        receive(&mut link).unwrap();
+    }
+    assert!(!files_of(&name).is_empty());
+    coordinator.kill().unwrap();
+    coordinator.wait().unwrap();
+    let begun = Instant::now();
+    let output = child.wait_with_output().unwrap();
+    let lived = begun.elapsed();
+    assert_eq!(files_of(&name), Vec::<PathBuf>::new());
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        told.contains(&format!("coordinator (pid {pid}) died")),
+        "{told}"
+    );
+    (told, output.status.code(), lived)
+}
+
+#[test]
+fn a_solver_whose_coordinator_is_killed_says_so_removes_all_and_ends_within_a_second() {
+    let program = compile("wire-cpp-orphan");
+    let (_, code, lived) = orphan(&program, "mesh", true);
+    assert_eq!(code, Some(12));
+    assert!(lived < Duration::from_secs(1), "{lived:?}");
+    // One that computes, and so does not look at its link, is ended by the watcher.
+    let (_, code, lived) = orphan(&program, "busy", false);
+    assert_eq!(code, None);
+    assert!(lived < Duration::from_secs(1), "{lived:?}");
 }
