@@ -17,14 +17,27 @@ fn target() -> PathBuf {
     own.parent().unwrap().parent().unwrap().to_owned()
 }
 
+/// The static library as it is now: `cargo test` itself leaves an older one in place.
+fn library() -> PathBuf {
+    let status = Command::new(env!("CARGO"))
+        .args([
+            "build",
+            "--quiet",
+            "--lib",
+            "-p",
+            "calcine-wire",
+            "--manifest-path",
+        ])
+        .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"))
+        .status()
+        .unwrap();
+    assert!(status.success());
+    target().join("libcalcine_wire.a")
+}
+
 fn compile(name: &str) -> PathBuf {
     let source = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let library = target().join("libcalcine_wire.a");
-    assert!(
-        library.is_file(),
-        "{} is missing; `cargo build -p calcine-wire` makes it",
-        library.display()
-    );
+    let library = library();
     let program = target().join(name);
     let status = Command::new("g++")
         .args(["-std=c++14", "-Wall", "-Wextra", "-Werror", "-o"])
@@ -197,7 +210,7 @@ fn orphan(program: &Path, mesh: &str, greeted: bool) -> (String, Option<i32>, Du
         role: "gas".into(),
         root,
     };
-    let (child, mut link) = join(program, mesh, &address);
+    let (mut child, mut link) = join(program, mesh, &address);
     receive(&mut link).unwrap();
     if greeted {
         link.answer_greeting(&hello()).unwrap();
@@ -207,6 +220,12 @@ fn orphan(program: &Path, mesh: &str, greeted: bool) -> (String, Option<i32>, Du
     coordinator.kill().unwrap();
     coordinator.wait().unwrap();
     let begun = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if begun.elapsed() > Duration::from_secs(20) {
+            child.kill().unwrap();
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
     let output = child.wait_with_output().unwrap();
     let lived = begun.elapsed();
     assert_eq!(files_of(&name), Vec::<PathBuf>::new());
