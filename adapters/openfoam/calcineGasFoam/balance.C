@@ -43,8 +43,8 @@ void Foam::calcine::gas::balanceEnergy(report& result) const
         const fvsPatchScalarField& flux = phi_.boundaryField()[patchi];
         forAll(cells, i)
         {
-            const scalar out = enthalpyInternal_[patchi][i]*h[cells[i]]
-              - enthalpyBoundary_[patchi][i] - flux[i]*referenceEnthalpy_;
+            const scalar out = enthalpy_->internalCoeffs()[patchi][i]*h[cells[i]]
+              - enthalpy_->boundaryCoeffs()[patchi][i] - flux[i]*referenceEnthalpy_;
             energy.boundary -= window_.storageSpan*out;
             energy.boundaryMagnitude += window_.storageSpan*mag(out);
         }

@@ -100,9 +100,9 @@ Foam::calcine::gas::gas(fvMesh& mesh, const dictionary& properties)
     enthalpySolver_(mesh, "h"),
     startVelocity_(U_.primitiveField())
 {
-    const dictionary& controls = mesh.solutionDict().subDict("PIMPLE");
-    outerIterations_ = controls.get<label>("nOuterCorrectors");
-    corrections_ = controls.get<label>("nCorrectors");
+    const dictionary& controls = properties.subDict("controls");
+    outerIterations_ = controls.get<label>("outerIterations");
+    corrections_ = controls.get<label>("pressureCorrections");
     outerTolerance_ = controls.get<scalar>("outerTolerance");
     linearTolerance_ = controls.get<scalar>("linearTolerance");
     measureFaces();

@@ -21,13 +21,13 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
     (
         "conduction", fvc::interpolate(voidFraction_*thermo_->alphahe())
     );
-    fvScalarMatrix matrix(fvm::div(phi_, h) - fvm::laplacian(conduction, h));
+    enthalpy_.reset();
+    enthalpy_.reset(new fvScalarMatrix(fvm::div(phi_, h) - fvm::laplacian(conduction, h)));
+    fvScalarMatrix& matrix = *enthalpy_;
     matrix.diag() +=
         committed_.mass/span + given_.heatCoefficient/heatCapacity_ - outflow();
     matrix.source() += committed_.mass*committed_.enthalpy/span
       + given_.heatSource - given_.heatCoefficient*temperatureBase_;
-    enthalpyInternal_ = matrix.internalCoeffs();
-    enthalpyBoundary_ = matrix.boundaryCoeffs();
 
     // The tolerance is a share of the energy that moves; no closer than round-off of the terms.
     const scalar content = gSumMag(matrix.diag()*heatCapacity_*T.primitiveField());

@@ -1,0 +1,260 @@
+//! Gas in Debian's OpenFOAM 1912: the solver calcineGasFoam in a case that is generated here.
+
+pub mod case;
+mod columns;
+mod dictionaries;
+mod identity;
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use calcine_coupler::error::{FailureKind, PartError};
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::part::{
+    About, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part,
+};
+use calcine_coupler::setup::GasSetup;
+use calcine_coupler::supervisor::Supervisor;
+use calcine_coupler::time::{GasStorage, Window};
+use calcine_wire::{Catalogue, Hello, Kind, WireError};
+
+use crate::launch::{Program, find_program};
+use crate::solver::{ExternalSolver, Launch, header};
+use case::OpenfoamCase;
+use columns::State;
+
+/// Name in messages.
+const NAME: &str = "OpenFOAM (gas)";
+/// Name of the solver's program.
+pub const SOLVER: &str = "calcineGasFoam";
+/// The variable that names another solver program.
+pub const SOLVER_VARIABLE: &str = "CALCINE_GASFOAM";
+/// Where Debian's OpenFOAM has its `etc`.
+const PROJECT: &str = "/usr/share/openfoam";
+
+/// What OpenFOAM is started with.
+#[derive(Clone, Debug)]
+pub struct OpenfoamLaunch<'a> {
+    /// The gas.
+    pub setup: &'a GasSetup,
+    /// The mesh.
+    pub mesh: Arc<Mesh>,
+    /// A folder whose files are taken over where the case does not speak.
+    pub template: Option<&'a Path>,
+    /// Hash of the case.
+    pub case_hash: String,
+    /// Where the OpenFOAM case is written and the solver runs.
+    pub folder: PathBuf,
+    /// Where the solver's output goes.
+    pub log: PathBuf,
+    /// The gas' folder of the checkpoint to start from.
+    pub resume: Option<PathBuf>,
+    /// Longest silence while starting, writing a checkpoint or ending.
+    pub deadline: Duration,
+}
+
+/// The gas of a running calcineGasFoam.
+pub struct OpenfoamGas {
+    solver: ExternalSolver,
+    about: About,
+    mesh: Arc<Mesh>,
+    storage: GasStorage,
+    state: State,
+    window: Option<Window>,
+}
+
+impl OpenfoamGas {
+    /// Writes the case, starts the solver and takes over the state it starts from.
+    pub fn launch(
+        launch: OpenfoamLaunch<'_>,
+        supervisor: &mut Supervisor,
+    ) -> Result<Self, PartError> {
+        let path = find_solver()?;
+        let case = OpenfoamCase {
+            setup: launch.setup,
+            mesh: &launch.mesh,
+            template: launch.template,
+            case_hash: &launch.case_hash,
+        };
+        case.write(&launch.folder)?;
+        let mut arguments = Vec::new();
+        if let Some(folder) = &launch.resume {
+            let folder = std::path::absolute(folder).map_err(|error| {
+                let message = format!("the checkpoint {} cannot be used", folder.display());
+                PartError::new(NAME, FailureKind::Io, message).caused_by(error)
+            })?;
+            arguments.extend(["-resume".into(), folder.into()]);
+        }
+        let hello = Hello {
+            role: "gas".into(),
+            name: "Calcine".into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            mesh_hash: identity::mesh_hash(&launch.mesh),
+            case_hash: launch.case_hash,
+            count: launch.mesh.cells() as u64,
+            ranks: 1,
+            catalogue: Catalogue::standard("gas").map_err(|error| {
+                PartError::new(NAME, FailureKind::NotStarted, "its columns").caused_by(error)
+            })?,
+        };
+        let program = Program {
+            path,
+            arguments,
+            environment: environment(&launch.folder),
+            directory: launch.folder,
+        };
+        let solver = ExternalSolver::launch(
+            Launch {
+                name: NAME.into(),
+                program,
+                log: launch.log,
+                hello,
+                handshake: launch.deadline,
+                deadline: launch.deadline,
+            },
+            supervisor,
+        )?;
+        let about = About {
+            name: solver.hello().name.clone(),
+            version: solver.hello().version.clone(),
+            ranks: 1,
+        };
+        let mut gas = Self {
+            solver,
+            about,
+            mesh: launch.mesh,
+            storage: launch.setup.storage,
+            state: State::default(),
+            window: None,
+        };
+        gas.read_state(None)?;
+        Ok(gas)
+    }
+
+    /// Process id of the solver.
+    pub fn pid(&self) -> u32 {
+        self.solver.pid()
+    }
+
+    /// Takes the state out of the message that the link holds.
+    fn read_state(&mut self, window: Option<&Window>) -> Result<(), PartError> {
+        let read = match self.solver.links() {
+            [link] => self.state.read(link),
+            _ => Err(NO_LINK),
+        };
+        read.map_err(|error| self.solver.failure(window, error))
+    }
+}
+
+/// The solver where every program of Calcine is looked for, and where `cargo xtask setup` leaves it
+/// as seen from a test in TARGET/PROFILE/deps.
+fn find_solver() -> Result<PathBuf, PartError> {
+    let remedy = "`cargo xtask setup` installs OpenFOAM and builds it";
+    find_program(SOLVER_VARIABLE, SOLVER, remedy).or_else(|error| {
+        let own = std::env::current_exe().ok();
+        let target = own.as_deref().and_then(|path| path.ancestors().nth(3));
+        let built = target.map(|target| target.join("openfoam/bin").join(SOLVER));
+        built.filter(|path| path.is_file()).ok_or(error)
+    })
+}
+
+const NO_LINK: WireError = WireError::Order {
+    what: "a serial solver has exactly one link",
+};
+
+/// OpenFOAM compares PWD with the folder it runs in, and looks for its `etc` where WM_PROJECT_DIR
+/// says; the user's own setting stays.
+fn environment(folder: &Path) -> Vec<(OsString, OsString)> {
+    let mut variables = vec![("PWD".into(), folder.into())];
+    if std::env::var_os("WM_PROJECT_DIR").is_none() {
+        variables.push(("WM_PROJECT_DIR".into(), PROJECT.into()));
+    }
+    variables
+}
+
+impl Part for OpenfoamGas {
+    fn about(&self) -> &About {
+        &self.about
+    }
+
+    fn commit(&mut self) -> Result<(), PartError> {
+        self.solver.commit()
+    }
+
+    fn checkpoint(&mut self, directory: &Path) -> Result<(), PartError> {
+        self.solver.checkpoint(directory)?;
+        self.read_state(None)
+    }
+
+    fn finish_run(&mut self, supervisor: &Supervisor) -> Result<(), PartError> {
+        let _ = supervisor;
+        self.solver.goodbye()
+    }
+}
+
+impl Gas for OpenfoamGas {
+    fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    fn fields(&self) -> GasFields<'_> {
+        self.state.fields()
+    }
+
+    fn start(
+        &mut self,
+        window: &Window,
+        bed: &Bed,
+        exchange: &CellExchange,
+    ) -> Result<(), PartError> {
+        let cells = self.mesh.cells();
+        for (field, found) in [
+            ("void fraction", bed.void_fraction.len()),
+            ("drag coefficient", exchange.drag_coefficient.len()),
+            ("drag source", exchange.drag_source.len()),
+            ("heat coefficient", exchange.heat_coefficient.len()),
+            ("heat source", exchange.heat_source.len()),
+        ] {
+            if found != cells {
+                let message = format!("the {field} has {found} values for {cells} cells");
+                return Err(self.solver.refuse(Some(window), message));
+            }
+        }
+        let mut request = header(Kind::Start, window);
+        request.storage_span = match self.storage {
+            GasStorage::Process => request.span_process,
+            GasStorage::Accelerated => request.span_motion,
+        };
+        self.window = Some(*window);
+        self.solver.send_columns(window, request, cells, |link| {
+            columns::write(link, bed, exchange)
+        })
+    }
+
+    fn finish(
+        &mut self,
+        supervisor: &Supervisor,
+        received: &mut CellReceived,
+    ) -> Result<Convergence, PartError> {
+        let Some(window) = self.window.take() else {
+            return Err(self.solver.refuse(None, "finished without a start".into()));
+        };
+        self.solver
+            .wait(supervisor, &window, Kind::Finished)
+            .map_err(|mut error| {
+                if error.message.starts_with("diverged") {
+                    error.kind = FailureKind::Diverged;
+                }
+                error
+            })?;
+        let convergence = match self.solver.links() {
+            [link] => columns::read(link, received),
+            _ => Err(NO_LINK),
+        };
+        let convergence = convergence.map_err(|error| self.solver.failure(Some(&window), error))?;
+        self.read_state(Some(&window))?;
+        Ok(convergence)
+    }
+}

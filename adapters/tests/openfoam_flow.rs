@@ -1,0 +1,242 @@
+//! Flow, heat and balances of calcineGasFoam against exact solutions (verification).
+
+mod openfoam_support;
+
+use calcine_coupler::part::{Balance, Bed, Gas, Part};
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::gas::GasProperties;
+use calcine_coupler::setup::{GasPatch, Schedule, WallHeat};
+use openfoam_support::{
+    CELLS, Duct, PRESSURE, SIDE, SPEED, TEMPERATURE, bed, exchange_of_nothing, mesh, no_exchange,
+    setup,
+};
+
+fn closure(balance: &Balance) -> f64 {
+    let error = balance.stored - balance.boundary - balance.exchange - balance.source;
+    let terms = balance.stored_magnitude
+        + balance.boundary_magnitude
+        + balance.exchange.abs()
+        + balance.source_magnitude;
+    error.abs() / terms
+}
+
+#[test]
+fn uniform_flow_through_an_empty_duct_stays_uniform() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut duct = Duct::launch(&setup(), folder.path());
+    assert_eq!(duct.gas.about().name, "OpenFOAM");
+    let convergence = duct.advance(20, &bed(1.0), &no_exchange());
+    assert!(convergence.converged, "{convergence:?}");
+    let fields = duct.gas.fields();
+    for cell in 0..CELLS {
+        assert!((fields.temperature[cell] - TEMPERATURE).abs() < 1e-9);
+        assert!((fields.pressure[cell] - PRESSURE).abs() < 1e-9);
+        let expected = Vec3::new(0.0, 0.0, SPEED);
+        assert!((fields.velocity[cell] - expected).norm() < 1e-11);
+        assert!(fields.pressure_gradient[cell].norm() < 1e-8);
+        // OpenFOAM's gas constant is 8314.47 J/kmol/K, 9e-7 above ours.
+        let density = GasProperties::air().density(PRESSURE, TEMPERATURE);
+        assert!((fields.density[cell] / density - 1.0).abs() < 2e-6);
+    }
+    duct.gas.finish_run(&duct.supervisor).unwrap();
+}
+
+#[test]
+fn gas_at_rest_carries_its_weight_across_a_jump_of_the_void_fraction() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut still = setup();
+    still.velocity = Vec3::zeros();
+    still.gravity = Vec3::new(0.0, 0.0, -9.81);
+    let inlet = still.patches.iter_mut().find(|(name, _)| name == "bottom");
+    if let Some((
+        _,
+        GasPatch::Inlet {
+            superficial_velocity,
+            ..
+        },
+    )) = inlet
+    {
+        *superficial_velocity = Schedule::constant(0.0);
+    }
+    let mut packed = bed(1.0);
+    packed.void_fraction[4..8].fill(0.4);
+    let mut duct = Duct::launch(&still, folder.path());
+    duct.advance(10, &packed, &no_exchange());
+    let fields = duct.gas.fields();
+    let weight = fields.density[0] * 9.81;
+    for cell in 0..CELLS {
+        assert!(
+            fields.velocity[cell].norm() < 1e-12,
+            "{}",
+            fields.velocity[cell]
+        );
+        let above = SIDE * (CELLS as f64 - 0.5 - cell as f64);
+        assert!((fields.pressure[cell] - PRESSURE - weight * above).abs() < 1e-10);
+        assert!((fields.pressure_gradient[cell].z + weight).abs() < 1e-8);
+    }
+}
+
+#[test]
+fn a_slab_at_one_temperature_heats_the_gas_as_the_upwind_scheme_s_exact_power_law() {
+    // Steady, without conduction: m' c_p (T_c − T_{c−1}) = K (T_s − T_c), so each cell of the slab
+    // multiplies T_s − T by 1/(1 + K/(m' c_p)). The conduction of air is made negligible.
+    let folder = tempfile::tempdir().unwrap();
+    let mut thin = setup();
+    thin.properties.sutherland_coefficient = 1e-16;
+    let mut exchange = no_exchange();
+    let (coefficient, slab) = (0.02, 400.0);
+    for cell in 3..9 {
+        exchange.heat_coefficient[cell] = coefficient;
+        exchange.heat_source[cell] = coefficient * slab;
+    }
+    let mut duct = Duct::launch(&thin, folder.path());
+    duct.advance(400, &bed(0.5), &exchange);
+    let fields = duct.gas.fields();
+    let flow = fields.density[0] * SPEED * SIDE * SIDE;
+    let factor = 1.0 / (1.0 + coefficient / (flow * thin.properties.heat_capacity));
+    for cell in 0..CELLS {
+        let cells = (cell as i32 - 2).clamp(0, 6);
+        let expected = slab - (slab - TEMPERATURE) * factor.powi(cells);
+        let found = fields.temperature[cell];
+        // 1e-8 K: Newton's tolerance of OpenFOAM's temperature is 1e-4 of T, but it is exact for
+        // a constant heat capacity; what remains is the approach to steady state.
+        assert!(
+            (found - expected).abs() < 1e-8,
+            "cell {cell}: {found} K, {expected} K"
+        );
+    }
+}
+
+#[test]
+fn mass_and_energy_close_while_hot_gas_displaces_cold() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut hot = setup();
+    for (_, patch) in &mut hot.patches {
+        if let GasPatch::Inlet { temperature, .. } = patch {
+            *temperature = Schedule(vec![(0.0, 300.0), (0.2, 400.0)]);
+        }
+    }
+    let mut exchange = no_exchange();
+    exchange.heat_coefficient.fill(0.005);
+    exchange.heat_source.fill(0.005 * 310.0);
+    exchange.drag_coefficient[2..10].fill(1e-4);
+    let mut duct = Duct::launch(&hot, folder.path());
+    let mut worst = [0.0_f64; 2];
+    for _ in 0..40 {
+        let convergence = duct.attempt(&bed(0.48), &exchange);
+        assert!(convergence.converged, "{convergence:?}");
+        assert!(convergence.volume_residual < 1e-8, "{convergence:?}");
+        worst[0] = worst[0].max(closure(&duct.received.mass));
+        worst[1] = worst[1].max(closure(&duct.received.energy));
+        assert!(
+            closure(&duct.received.momentum[2]) < 1e-6,
+            "{:?}",
+            duct.received
+        );
+        // The reported exchange is what the particles give at the solved temperature.
+        let taken: f64 = duct.received.heat.iter().sum::<f64>() * 0.05;
+        assert!((taken / duct.received.energy.exchange - 1.0).abs() < 1e-12);
+        duct.commit();
+    }
+    eprintln!(
+        "mass closes to {:.1e}, energy to {:.1e}",
+        worst[0], worst[1]
+    );
+    assert!(worst[0] < 1e-11 && worst[1] < 1e-11, "{worst:?}");
+    assert!(duct.gas.fields().temperature[0] > 390.0);
+}
+
+#[test]
+fn mass_and_energy_close_in_a_wide_duct_with_hot_walls_that_gas_sticks_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut hot = setup();
+    for (_, patch) in &mut hot.patches {
+        if let GasPatch::Wall { no_slip, heat } = patch {
+            *no_slip = true;
+            *heat = WallHeat::Temperature(Schedule(vec![(0.0, 300.0), (0.5, 500.0)]));
+        }
+    }
+    hot.gravity = Vec3::new(0.0, 0.0, -9.81);
+    let wide = mesh([5, 4, CELLS]);
+    let cells = wide.cells();
+    let mut duct = Duct::launch_on(wide, &hot, folder.path());
+    let uneven = Bed {
+        void_fraction: (0..cells)
+            .map(|c| 0.4 + 0.6 * ((c * 7 % 11) as f64 / 11.0))
+            .collect(),
+    };
+    let mut exchange = exchange_of_nothing(cells);
+    for cell in cells / 4..cells / 2 {
+        exchange.drag_coefficient[cell] = 1e-5;
+    }
+    for _ in 0..20 {
+        let convergence = duct.attempt(&uneven, &exchange);
+        assert!(convergence.converged, "{convergence:?}");
+        assert!(
+            closure(&duct.received.mass) < 1e-12,
+            "{:?}",
+            duct.received.mass
+        );
+        assert!(
+            closure(&duct.received.energy) < 1e-11,
+            "{:?}",
+            duct.received.energy
+        );
+        for momentum in &duct.received.momentum {
+            assert!(closure(momentum) < 1e-6, "{momentum:?}");
+        }
+        duct.commit();
+    }
+    let hottest = duct
+        .gas
+        .fields()
+        .temperature
+        .iter()
+        .copied()
+        .fold(0.0, f64::max);
+    assert!(hottest > 320.0 && hottest < 500.0, "{hottest} K");
+}
+
+#[test]
+fn a_plug_s_pressure_drop_is_exact_to_its_half_cells() {
+    // dp/dz = −K u/(ε V) in the plug, half a cell on either side of each centre, and none in the
+    // free duct; viscosity is made negligible.
+    let folder = tempfile::tempdir().unwrap();
+    let (void_fraction, coefficient) = (0.4, 1e-3);
+    let mut plug = bed(1.0);
+    let mut exchange = no_exchange();
+    for cell in 4..8 {
+        plug.void_fraction[cell] = void_fraction;
+        exchange.drag_coefficient[cell] = coefficient;
+    }
+    let mut thin = setup();
+    thin.properties.sutherland_coefficient = 1e-16;
+    let mut duct = Duct::launch(&thin, folder.path());
+    let convergence = duct.advance(60, &plug, &exchange);
+    assert!(convergence.converged, "{convergence:?}");
+    let fields = duct.gas.fields();
+    let speed = SPEED / void_fraction;
+    let gradient = coefficient * speed / (void_fraction * SIDE.powi(3));
+    let flow = fields.density[0] * SPEED;
+    // Steady upwind momentum flux G (u_c − u_{c−1}) enters where the gas speeds up (cell 4) and
+    // slows down (cell 8), per volume of pores.
+    let up = flow * (speed - SPEED) / (void_fraction * SIDE);
+    let down = flow * (SPEED - speed) / SIDE;
+    let mut pressure = PRESSURE;
+    for cell in (0..CELLS).rev() {
+        let slope = match cell {
+            4 => gradient + up,
+            5..8 => gradient,
+            8 => down,
+            _ => 0.0,
+        };
+        pressure += 0.5 * SIDE * slope;
+        let found = fields.pressure[cell];
+        assert!(
+            (found - pressure).abs() < 1e-7,
+            "cell {cell}: {found} Pa, {pressure} Pa"
+        );
+        assert!((fields.pressure_gradient[cell].z + slope).abs() < 1e-5);
+        pressure += 0.5 * SIDE * slope;
+    }
+}

@@ -1,0 +1,197 @@
+//! A duct of twelve cells with the real solver.
+
+// Each test file uses its own part of this.
+#![allow(dead_code)]
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+use calcine_adapters::openfoam::{OpenfoamGas, OpenfoamLaunch};
+use calcine_coupler::error::PartError;
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
+use calcine_coupler::part::{Bed, CellExchange, CellReceived, Convergence, Gas, Part};
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::gas::GasProperties;
+use calcine_coupler::setup::{GasControls, GasPatch, GasSetup, Schedule, WallHeat};
+use calcine_coupler::supervisor::{Interrupts, Supervisor};
+use calcine_coupler::time::{Clocks, GasStorage, Ticks, Window};
+
+/// Cells along the duct.
+pub const CELLS: usize = 12;
+/// Side of the duct, and height of a cell, in m.
+pub const SIDE: f64 = 0.01;
+/// Superficial velocity in m/s.
+pub const SPEED: f64 = 0.5;
+/// Reference pressure in Pa.
+pub const PRESSURE: f64 = 101_325.0;
+/// Start temperature, and that of the inlet unless a test changes it, in K.
+pub const TEMPERATURE: f64 = 300.0;
+
+/// The duct of `cases/heated-column.toml`, divided as wanted.
+pub fn mesh(cells: [usize; 3]) -> Mesh {
+    box_mesh(&BoxSpec {
+        origin: Vec3::zeros(),
+        size: Vec3::new(SIDE, SIDE, SIDE * CELLS as f64),
+        cells,
+        patches: ["side", "side", "side", "side", "bottom", "top"].map(str::to_owned),
+    })
+    .unwrap()
+}
+
+/// Air that flows upwards.
+pub fn setup() -> GasSetup {
+    let wall = || GasPatch::Wall {
+        no_slip: false,
+        heat: WallHeat::Adiabatic,
+    };
+    let mesh = mesh([1, 1, CELLS]);
+    let patches = mesh.patches().iter().map(|patch| {
+        let condition = match patch.name.as_str() {
+            "bottom" => GasPatch::Inlet {
+                superficial_velocity: Schedule::constant(SPEED),
+                temperature: Schedule::constant(TEMPERATURE),
+            },
+            "top" => GasPatch::Outlet { pressure: PRESSURE },
+            _ => wall(),
+        };
+        (patch.name.clone(), condition)
+    });
+    GasSetup {
+        mixture: "air".into(),
+        properties: GasProperties::air(),
+        storage: GasStorage::Process,
+        temperature: TEMPERATURE,
+        pressure: PRESSURE,
+        velocity: Vec3::new(0.0, 0.0, SPEED),
+        gravity: Vec3::zeros(),
+        patches: patches.collect(),
+        controls: GasControls {
+            outer_iterations: 50,
+            pressure_corrections: 2,
+            outer_tolerance: 1e-11,
+            linear_tolerance: 1e-13,
+        },
+    }
+}
+
+/// No exchange in any number of cells.
+pub fn exchange_of_nothing(cells: usize) -> CellExchange {
+    CellExchange {
+        drag_coefficient: vec![0.0; cells],
+        drag_source: vec![Vec3::zeros(); cells],
+        heat_coefficient: vec![0.0; cells],
+        heat_source: vec![0.0; cells],
+    }
+}
+
+/// No exchange in the twelve cells.
+pub fn no_exchange() -> CellExchange {
+    exchange_of_nothing(CELLS)
+}
+
+/// A bed that leaves this share of each cell.
+pub fn bed(void_fraction: f64) -> Bed {
+    Bed {
+        void_fraction: vec![void_fraction; CELLS],
+    }
+}
+
+/// A running gas with its supervisor, and the window to come.
+pub struct Duct {
+    pub gas: OpenfoamGas,
+    pub supervisor: Supervisor,
+    pub window: Window,
+    pub received: CellReceived,
+}
+
+impl Duct {
+    /// Starts the solver in a folder; windows of 1 ms, 50 times as long on the process clock.
+    pub fn try_launch(
+        mesh: Mesh,
+        setup: &GasSetup,
+        folder: &Path,
+        resume: Option<&Path>,
+    ) -> Result<Self, PartError> {
+        let mut supervisor = Supervisor::new(Duration::from_secs(30), Interrupts::default());
+        let launch = OpenfoamLaunch {
+            setup,
+            mesh: Arc::new(mesh),
+            template: None,
+            case_hash: "test".into(),
+            folder: folder.join("case"),
+            log: folder.join("log"),
+            resume: resume.map(Path::to_owned),
+            deadline: Duration::from_secs(30),
+        };
+        let gas = OpenfoamGas::launch(launch, &mut supervisor)?;
+        let span = Clocks {
+            motion: Ticks::from_seconds(1e-3).unwrap(),
+            process: Ticks::from_seconds(0.05).unwrap(),
+        };
+        Ok(Self {
+            gas,
+            supervisor,
+            window: Window {
+                span,
+                ..Window::default()
+            },
+            received: CellReceived::default(),
+        })
+    }
+
+    /// The same; the message of a failure says what is missing.
+    pub fn launch(setup: &GasSetup, folder: &Path) -> Self {
+        Self::launch_on(mesh([1, 1, CELLS]), setup, folder)
+    }
+
+    /// The same, on another mesh.
+    pub fn launch_on(mesh: Mesh, setup: &GasSetup, folder: &Path) -> Self {
+        Self::try_launch(mesh, setup, folder, None).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    /// One attempt.
+    pub fn attempt(&mut self, bed: &Bed, exchange: &CellExchange) -> Convergence {
+        self.gas.start(&self.window, bed, exchange).unwrap();
+        self.gas
+            .finish(&self.supervisor, &mut self.received)
+            .unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    /// Takes the last attempt.
+    pub fn commit(&mut self) {
+        self.gas.commit().unwrap();
+        self.window.index += 1;
+        self.window.start = self.window.end().unwrap();
+    }
+
+    /// Attempts and commits windows.
+    pub fn advance(&mut self, windows: usize, bed: &Bed, exchange: &CellExchange) -> Convergence {
+        let mut last = Convergence::default();
+        for _ in 0..windows {
+            last = self.attempt(bed, exchange);
+            self.commit();
+        }
+        last
+    }
+
+    /// All bits of what the gas shows and received.
+    pub fn bits(&self) -> Vec<u64> {
+        let fields = self.gas.fields();
+        let scalars = [
+            fields.temperature,
+            fields.pressure,
+            fields.density,
+            &self.received.heat,
+        ];
+        let vectors = [
+            fields.velocity,
+            fields.pressure_gradient,
+            &self.received.drag,
+        ];
+        let scalars = scalars.into_iter().flatten().copied();
+        let vectors = vectors.into_iter().flatten().flat_map(|v| [v.x, v.y, v.z]);
+        scalars.chain(vectors).map(f64::to_bits).collect()
+    }
+}
