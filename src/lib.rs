@@ -1,6 +1,10 @@
 //! Calcine: reactive granular beds, gas and grains coupled.
 
+pub mod assembly;
 pub mod case;
+pub mod commands;
 pub mod compare;
+pub mod exit;
+mod progress;
 pub mod report;
 pub mod results;

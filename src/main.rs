@@ -1,2 +1,7 @@
-//! Placeholder.
-fn main() {}
+//! The command line of Calcine.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    calcine::commands::main()
+}

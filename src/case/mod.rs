@@ -1,3 +1,186 @@
 //! Case files: TOML to a checked [`model::Case`].
 
+mod check;
 pub mod model;
+mod place;
+mod problem;
+mod sections;
+mod table;
+pub mod units;
+
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+use toml_edit::{Document, DocumentMut, Item, Value};
+
+pub use check::check_report;
+pub use place::{PlaceError, particles};
+pub use problem::{CaseErrors, Problem};
+
+use model::Case;
+use table::{Problems, Reader};
+
+/// Reads and checks a case file with `--set key=value` applied; all its errors at once.
+pub fn read(path: &Path, set: &[String]) -> Result<Case, CaseErrors> {
+    let text = std::fs::read_to_string(path).map_err(|cause| {
+        one(
+            path,
+            "",
+            0..0,
+            format!("the case file cannot be read: {cause}"),
+            "name a file that exists, such as cases/heated-column.toml",
+        )
+    })?;
+    parse(path, &text, set)
+}
+
+/// Checks the text of a case file; `path` places relative paths and messages.
+pub fn parse(path: &Path, text: &str, set: &[String]) -> Result<Case, CaseErrors> {
+    let effective = apply(path, text, set)?;
+    let document = syntax(path, &effective)?;
+    let problems = Problems::default();
+    let root = Reader::root(&problems, document.as_table());
+    let case = sections::case(&root, path, &effective, hash(document.as_table()));
+    root.finish();
+    let problems = problems.take();
+    match case {
+        Some(case) if problems.is_empty() => Ok(case),
+        _ => Err(CaseErrors::new(path, &effective, problems)),
+    }
+}
+
+fn one(
+    path: &Path,
+    text: &str,
+    span: std::ops::Range<usize>,
+    message: String,
+    help: &str,
+) -> CaseErrors {
+    let problem = Problem {
+        message,
+        help: help.into(),
+        span,
+        line: 0,
+    };
+    CaseErrors::new(path, text, vec![problem])
+}
+
+fn syntax<'t>(path: &Path, text: &'t str) -> Result<Document<&'t str>, CaseErrors> {
+    Document::parse(text).map_err(|error| {
+        let message = format!("not TOML: {}", error.message().replace('\n', ", "));
+        one(
+            path,
+            text,
+            error.span().unwrap_or(0..0),
+            message,
+            "see toml.io for the syntax",
+        )
+    })
+}
+
+/// The text with `--set` applied; lines stay where they are unless a key is new.
+fn apply(path: &Path, text: &str, set: &[String]) -> Result<String, CaseErrors> {
+    if set.is_empty() {
+        return Ok(text.to_owned());
+    }
+    syntax(path, text)?;
+    let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| {
+        one(path, text, 0..0, error.to_string(), "see toml.io")
+    })?;
+    for setting in set {
+        let wrong = |why: &str| {
+            let message = format!("`--set {setting}`: {why}");
+            one(
+                path,
+                text,
+                0..0,
+                message,
+                "write it as --set time.acceleration=200",
+            )
+        };
+        let (key, value) = setting
+            .split_once('=')
+            .ok_or_else(|| wrong("there is no `=`"))?;
+        let value = value.trim();
+        // A bare text such as 10 s or native needs no quotes on the command line.
+        let value: Value = value.parse().unwrap_or_else(|_| value.into());
+        let mut item: &mut Item = document.as_item_mut();
+        for part in key.trim().split('.') {
+            item = step(item, part)
+                .ok_or_else(|| wrong(&format!("there is no `{part}` to change")))?;
+        }
+        *item = Item::Value(value);
+    }
+    Ok(document.to_string())
+}
+
+/// One step down a dotted key; `name[2]` or a number steps into a list.
+fn step<'i>(item: &'i mut Item, part: &str) -> Option<&'i mut Item> {
+    let (name, index) = match part.strip_suffix(']').and_then(|part| part.split_once('[')) {
+        Some((name, index)) => (name, Some(index.parse::<usize>().ok()?)),
+        None => (part, None),
+    };
+    if name.is_empty() {
+        return None;
+    }
+    let table = item.as_table_like_mut()?;
+    if index.is_some() && !table.contains_key(name) {
+        return None;
+    }
+    let below = table.entry(name).or_insert(Item::None);
+    match index {
+        None if below.is_none() => {
+            *below = Item::Value(Value::InlineTable(toml_edit::InlineTable::new()));
+            Some(below)
+        }
+        None => Some(below),
+        Some(index) => below.get_mut(index),
+    }
+}
+
+/// SHA-256 (hex) of the values, whatever their order, spacing and comments.
+fn hash(table: &dyn toml_edit::TableLike) -> String {
+    let mut text = String::new();
+    canonical(&mut text, "", table);
+    Sha256::digest(text.as_bytes())
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
+}
+
+fn canonical(text: &mut String, place: &str, table: &dyn toml_edit::TableLike) {
+    let mut entries: Vec<(&str, &Item)> = table.iter().collect();
+    entries.sort_by_key(|(key, _)| *key);
+    for (key, item) in entries {
+        let place = format!("{place}.{key}");
+        if let Some(list) = item.as_array_of_tables() {
+            for (i, table) in list.iter().enumerate() {
+                canonical(text, &format!("{place}[{i}]"), table);
+            }
+        } else if let Some(table) = item.as_table_like() {
+            canonical(text, &place, table);
+        } else if let Some(value) = item.as_value() {
+            text.push_str(&format!("{place}={}\n", plain(value)));
+        }
+    }
+}
+
+/// A value without the file's spacing.
+fn plain(value: &Value) -> String {
+    match value {
+        Value::Array(array) => {
+            let parts: Vec<String> = array.iter().map(plain).collect();
+            format!("[{}]", parts.join(","))
+        }
+        Value::InlineTable(table) => {
+            let mut text = String::new();
+            canonical(&mut text, "", table);
+            format!("{{{text}}}")
+        }
+        other => {
+            let mut bare = other.clone();
+            bare.decor_mut().clear();
+            bare.to_string()
+        }
+    }
+}

@@ -26,6 +26,8 @@ pub struct Case {
     pub mesh: MeshSpec,
     /// Materials, in the order of the file.
     pub materials: Vec<Material>,
+    /// Contact properties of pairs of materials.
+    pub contacts: Vec<Contact>,
     /// The gas.
     pub gas: GasSetup,
     /// Populations, in the order of the file.
@@ -96,6 +98,17 @@ pub struct Material {
     pub young: Option<f64>,
     /// Poisson's ratio.
     pub poisson: Option<f64>,
+}
+
+/// Contact properties of a pair of materials.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contact {
+    /// Indices into `Case::materials`.
+    pub between: [usize; 2],
+    /// Coefficient of restitution.
+    pub restitution: Option<f64>,
+    /// Coefficient of friction.
+    pub friction: Option<f64>,
 }
 
 /// Particles of one kind.

@@ -52,6 +52,7 @@ pub fn case() -> Case {
             patches: ["side", "side", "side", "side", "bottom", "top"].map(String::from),
         },
         materials: vec![],
+        contacts: vec![],
         gas: gas_setup(),
         particles: vec![],
         laws: Laws {

@@ -1,0 +1,384 @@
+//! The only place that knows every backend: from a checked case to a run that is ready to go.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use calcine_adapters::liggghts::inputs::Inputs;
+use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch, LiggghtsParticles};
+use calcine_adapters::openfoam::{OpenfoamGas, OpenfoamLaunch};
+use calcine_coupler::closures::Closures;
+use calcine_coupler::coordinator::{CheckpointPaths, Parts, Plan, Run, RunError};
+use calcine_coupler::error::{FailureKind, PartError};
+use calcine_coupler::interior::Thin;
+use calcine_coupler::mapping::{Mapper, Method};
+use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
+use calcine_coupler::mesh::polymesh;
+use calcine_coupler::mesh::{Mesh, MeshError};
+use calcine_coupler::part::{Gas, Particles};
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::drag::{Drag, ErgunWenYu, NoDrag};
+use calcine_coupler::physics::heat_transfer::{Gunn, HeatTransfer, NoHeatTransfer, RanzMarshall};
+use calcine_coupler::setup::ParticleSetup;
+use calcine_coupler::smoother::{self, Smoother};
+use calcine_coupler::supervisor::Supervisor;
+use calcine_native::gas::{NativeError, NativeGas};
+use calcine_native::particles::NativeParticles;
+use clap::ValueEnum;
+use thiserror::Error;
+
+use crate::case::model::{Case, DragLaw, HeatLaw, Mapping, MeshSpec};
+use crate::case::{PlaceError, particles};
+
+/// Who computes the gas.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum GasBackend {
+    /// Calcine's own finite-volume solver.
+    #[default]
+    Native,
+    /// calcineGasFoam on Debian's OpenFOAM.
+    Openfoam,
+}
+
+/// Who computes the particles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum ParticleBackend {
+    /// Calcine's own.
+    #[default]
+    Native,
+    /// Debian's LIGGGHTS as a library.
+    Liggghts,
+}
+
+/// A gas and a particle backend.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Pairing {
+    /// The gas.
+    pub gas: GasBackend,
+    /// The particles.
+    pub particles: ParticleBackend,
+}
+
+impl Pairing {
+    /// All four pairings.
+    pub const ALL: [Pairing; 4] = [
+        Pairing {
+            gas: GasBackend::Native,
+            particles: ParticleBackend::Native,
+        },
+        Pairing {
+            gas: GasBackend::Native,
+            particles: ParticleBackend::Liggghts,
+        },
+        Pairing {
+            gas: GasBackend::Openfoam,
+            particles: ParticleBackend::Native,
+        },
+        Pairing {
+            gas: GasBackend::Openfoam,
+            particles: ParticleBackend::Liggghts,
+        },
+    ];
+
+    /// The name as `compare --pairings` takes it, for example `openfoam+native`.
+    pub fn name(self) -> String {
+        format!("{}+{}", self.gas.name(), self.particles.name())
+    }
+
+    /// The pairing of a name.
+    pub fn parse(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|pairing| pairing.name() == name)
+    }
+
+    /// True where no external solver takes part.
+    pub fn is_native(self) -> bool {
+        self == Self::default()
+    }
+}
+
+impl GasBackend {
+    /// The name as users write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            GasBackend::Native => "native",
+            GasBackend::Openfoam => "openfoam",
+        }
+    }
+}
+
+impl ParticleBackend {
+    /// The name as users write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            ParticleBackend::Native => "native",
+            ParticleBackend::Liggghts => "liggghts",
+        }
+    }
+}
+
+/// A case that cannot be assembled, although its file was in order.
+#[derive(Debug, Error)]
+pub enum AssemblyError {
+    /// The mesh cannot be used.
+    #[error("mesh: {0}")]
+    Mesh(#[from] MeshError),
+    /// The polyMesh cannot be read.
+    #[error("mesh: {0}")]
+    PolyMesh(#[from] polymesh::PolyMeshError),
+    /// The particles cannot be placed.
+    #[error("particles: {0}")]
+    Particles(#[from] PlaceError),
+    /// A native solver refuses the case or a checkpoint.
+    #[error(transparent)]
+    Native(#[from] NativeError),
+    /// A part could not start.
+    #[error(transparent)]
+    Part(#[from] PartError),
+    /// The bed does not fit, or a checkpoint cannot be taken up.
+    #[error(transparent)]
+    Run(#[from] RunError),
+}
+
+/// What does not change during a run, made from a case: mesh and particles at the start.
+#[derive(Debug)]
+pub struct Prepared {
+    /// The gas mesh.
+    pub mesh: Arc<Mesh>,
+    /// The particles at the start.
+    pub particles: ParticleSetup,
+}
+
+impl Prepared {
+    /// Generates or reads the mesh and places the particles.
+    pub fn new(case: &Case) -> Result<Self, AssemblyError> {
+        let mesh = match &case.mesh {
+            MeshSpec::Box {
+                origin,
+                size,
+                cells,
+                patches,
+            } => box_mesh(&BoxSpec {
+                origin: *origin,
+                size: *size,
+                cells: *cells,
+                patches: patches.clone(),
+            })?,
+            MeshSpec::PolyMesh(directory) => polymesh::read(directory)?,
+        };
+        Ok(Self {
+            mesh: Arc::new(mesh),
+            particles: particles(case)?,
+        })
+    }
+
+    /// Mean void fraction that the particles see, mapped and smoothed as in a run.
+    pub fn void_fraction(&self, case: &Case) -> Result<f64, AssemblyError> {
+        let particles = &self.particles;
+        let volume = |r: &f64| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3);
+        let volumes: Vec<f64> = particles.radius.iter().map(volume).collect();
+        let mapper = Mapper::new(&self.mesh);
+        let weights = mapper
+            .fill(method(case), &particles.position, &particles.radius)
+            .map_err(RunError::from)?;
+        let smoother = Smoother::new(&self.mesh, smoothing(case)).map_err(RunError::from)?;
+        let operator = smoother
+            .operator(weights, &volumes)
+            .map_err(RunError::from)?;
+        let mut seen = vec![0.0; volumes.len()];
+        operator.sample(operator.solid_fraction(), &mut seen);
+        Ok(1.0 - seen.iter().sum::<f64>() / seen.len() as f64)
+    }
+}
+
+/// How a run is put together, beside its case.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings<'a> {
+    /// Who computes what.
+    pub pairing: Pairing,
+    /// The results folder; inputs of external solvers go to `solvers/`, logs to `log/` in it.
+    pub results: &'a Path,
+    /// True where every part starts from the committed checkpoint.
+    pub resume: bool,
+}
+
+/// Builds the run.
+pub fn assemble<'m>(
+    case: &Case,
+    prepared: &'m Prepared,
+    settings: &Settings<'_>,
+    supervisor: &mut Supervisor,
+) -> Result<Run<'m>, AssemblyError> {
+    let checkpoint = CheckpointPaths::new(settings.results);
+    let from = settings.resume.then(|| checkpoint.committed());
+    let assembly = Assembly {
+        case,
+        prepared,
+        settings,
+        from: from.as_deref(),
+    };
+    let parts = Parts {
+        gas: assembly.gas(supervisor)?,
+        particles: assembly.particles(supervisor)?,
+        interior: Box::new(interior(case, prepared)),
+    };
+    let smoother = Smoother::new(&prepared.mesh, smoothing(case)).map_err(RunError::from)?;
+    let plan = plan(case, checkpoint);
+    let mut run = Run::new(plan, &prepared.mesh, smoother, closures(case), parts)?;
+    if settings.resume {
+        run.resume()?;
+    }
+    Ok(run)
+}
+
+/// What the builders of the parts share.
+struct Assembly<'a> {
+    case: &'a Case,
+    prepared: &'a Prepared,
+    settings: &'a Settings<'a>,
+    from: Option<&'a Path>,
+}
+
+impl Assembly<'_> {
+    fn gas(&self, supervisor: &mut Supervisor) -> Result<Box<dyn Gas>, AssemblyError> {
+        let from = self.from.map(|folder| folder.join("gas"));
+        match self.settings.pairing.gas {
+            GasBackend::Native => {
+                let mut gas = NativeGas::new(Arc::clone(&self.prepared.mesh), &self.case.gas)?;
+                if let Some(folder) = from {
+                    gas.restore(&folder)?;
+                }
+                Ok(Box::new(gas))
+            }
+            GasBackend::Openfoam => {
+                let launch = OpenfoamLaunch {
+                    setup: &self.case.gas,
+                    mesh: Arc::clone(&self.prepared.mesh),
+                    template: self.case.openfoam.template.as_deref(),
+                    case_hash: self.case.hash.clone(),
+                    folder: self.absolute("solvers/openfoam")?,
+                    log: self.absolute("log/openfoam.log")?,
+                    resume: from,
+                    deadline: self.case.coupling.deadline,
+                };
+                Ok(Box::new(OpenfoamGas::launch(launch, supervisor)?))
+            }
+        }
+    }
+
+    fn particles(&self, supervisor: &mut Supervisor) -> Result<Box<dyn Particles>, AssemblyError> {
+        let from = self.from.map(|folder| folder.join("particles"));
+        let setup = &self.prepared.particles;
+        match self.settings.pairing.particles {
+            ParticleBackend::Native => {
+                let mut particles = NativeParticles::new(setup)?;
+                if let Some(folder) = from {
+                    particles.restore(&folder)?;
+                }
+                Ok(Box::new(particles))
+            }
+            ParticleBackend::Liggghts => {
+                let inputs = Inputs {
+                    setup,
+                    bounds: self.bounds(),
+                    step: FROZEN_STEP,
+                    ranks: 1,
+                };
+                let launch = LiggghtsLaunch {
+                    inputs,
+                    case_hash: self.case.hash.clone(),
+                    folder: self.absolute("solvers/liggghts")?,
+                    log: self.absolute("log/liggghts.log")?,
+                    resume: from,
+                    deadline: self.case.coupling.deadline,
+                };
+                Ok(Box::new(LiggghtsParticles::launch(launch, supervisor)?))
+            }
+        }
+    }
+
+    /// A path in the results folder that holds whatever the working directory of a solver is.
+    fn absolute(&self, below: &str) -> Result<std::path::PathBuf, AssemblyError> {
+        let path = self.settings.results.join(below);
+        std::path::absolute(&path).map_err(|cause| {
+            let message = format!("{} has no absolute path", path.display());
+            PartError::new("calcine", FailureKind::Io, message)
+                .caused_by(cause)
+                .into()
+        })
+    }
+
+    /// The box of the mesh's points.
+    fn bounds(&self) -> (Vec3, Vec3) {
+        let points = &self.prepared.mesh.topology().points;
+        points.iter().fold(
+            (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)),
+            |(low, high), point| (low.inf(point), high.sup(point)),
+        )
+    }
+}
+
+fn smoothing(case: &Case) -> smoother::Settings {
+    smoother::Settings {
+        max_solid_fraction: case.coupling.max_solid_fraction,
+        tolerance: case.coupling.smoother_tolerance,
+        diffusion_length: None,
+    }
+}
+
+fn method(case: &Case) -> Method {
+    match case.coupling.mapping {
+        Mapping::Centroid => Method::Centroid,
+        Mapping::Divided => Method::Divided,
+        Mapping::Overlap => Method::Overlap,
+    }
+}
+
+fn plan(case: &Case, checkpoint: CheckpointPaths) -> Plan {
+    Plan {
+        end: case.time.end,
+        motion_window: case.time.motion_window,
+        acceleration: case.time.acceleration.clone(),
+        storage: case.time.storage,
+        checkpoint_every: case.time.checkpoint_every,
+        checkpoint_wall: case.time.checkpoint_wall,
+        mapping: method(case),
+        exchange_tolerance: case.coupling.exchange_tolerance,
+        exchange_attempts: case.coupling.exchange_attempts,
+        case_hash: case.hash.clone(),
+        checkpoint,
+    }
+}
+
+fn closures(case: &Case) -> Closures {
+    let drag: Box<dyn Drag> = match case.laws.drag {
+        DragLaw::None => Box::new(NoDrag),
+        DragLaw::ErgunWenYu => Box::new(ErgunWenYu),
+    };
+    let heat_transfer: Box<dyn HeatTransfer> = match case.laws.heat_transfer {
+        HeatLaw::None => Box::new(NoHeatTransfer),
+        HeatLaw::Gunn => Box::new(Gunn),
+        HeatLaw::RanzMarshall => Box::new(RanzMarshall),
+    };
+    Closures {
+        gas: case.gas.properties,
+        drag,
+        heat_transfer,
+    }
+}
+
+fn interior(case: &Case, prepared: &Prepared) -> Thin {
+    let particles = &prepared.particles;
+    let population = |p: usize| &case.particles[particles.population[p] as usize];
+    let volume = |p: usize| 4.0 / 3.0 * std::f64::consts::PI * particles.radius[p].powi(3);
+    let all = 0..particles.id.len();
+    let heat_capacity = all
+        .clone()
+        .map(|p| {
+            let material = &case.materials[population(p).material];
+            particles.density[p] * volume(p) * material.heat_capacity
+        })
+        .collect();
+    Thin::new(
+        heat_capacity,
+        all.map(|p| population(p).temperature).collect(),
+    )
+}

@@ -1,0 +1,147 @@
+//! What `calcine check` says of a case that is in order.
+
+use std::f64::consts::PI;
+use std::fmt::Write as _;
+
+use calcine_coupler::physics::drag::Drag as _;
+use calcine_coupler::physics::drag::ErgunWenYu;
+use calcine_coupler::physics::heat_transfer::{Gunn, HeatTransfer, RanzMarshall};
+use calcine_coupler::physics::local::LocalGas;
+use calcine_coupler::physics::numbers::VoidFraction;
+use calcine_coupler::setup::GasPatch;
+
+use super::model::{Case, DragLaw, HeatLaw, Population};
+
+/// Above this, a number of the time splitting gets a warning (requirements TSM-6, TSM-8).
+const WARNING: f64 = 0.1;
+/// Bytes that coordinator and native gas hold per cell, and per particle, about; measured as the
+/// growth of resident memory, rounded up.
+const BYTES: [usize; 2] = [2000, 500];
+
+/// Clocks, sizes, and how far the time splitting may be from the unsplit run.
+/// `void_fraction`: mean over the cells that hold particles.
+pub fn check_report(case: &Case, cells: usize, particles: usize, void_fraction: f64) -> String {
+    let mut text = format!("{} ({})\n", case.title, case.path.display());
+    let time = &case.time;
+    let (mut motion, mut windows, mut from) = (0.0, 0.0, 0.0);
+    for (index, &(start, factor)) in time.acceleration.steps().iter().enumerate() {
+        let next = time
+            .acceleration
+            .steps()
+            .get(index + 1)
+            .map_or(time.end, |step| step.0.min(time.end));
+        from = start.seconds().max(from);
+        let length = (next.seconds() - start.seconds()).max(0.0) / factor;
+        motion += length;
+        windows += (length / time.motion_window.seconds()).ceil();
+        let _ = writeln!(text, "  from {} of process time   AF {factor}", start);
+    }
+    let _ = writeln!(
+        text,
+        "  process time   {} in {windows:.0} windows",
+        time.end
+    );
+    let _ = writeln!(
+        text,
+        "  motion time    {motion} s, windows of {}",
+        time.motion_window
+    );
+    let _ = writeln!(text, "  gas storage    {}", time.storage.name());
+    let _ = writeln!(text, "  mesh           {cells} cells");
+    let _ = writeln!(
+        text,
+        "  bed            {particles} particles, void fraction {void_fraction:.3}"
+    );
+    let memory = (cells * BYTES[0] + particles * BYTES[1]) as f64 / 1e6;
+    let _ = writeln!(text, "  memory         about {memory:.1} MB (native)");
+    for population in &case.particles {
+        splitting(&mut text, case, population, void_fraction);
+    }
+    text
+}
+
+/// R, the error of process storage, and the window against the drag's own time.
+fn splitting(text: &mut String, case: &Case, population: &Population, eps: f64) {
+    let material = &case.materials[population.material];
+    let gas = &case.gas.properties;
+    let factor = case.time.acceleration.largest();
+    let density = gas.density(case.gas.pressure, case.gas.temperature);
+    let solid = (1.0 - eps) * material.density * material.heat_capacity;
+    let ratio = factor * eps * density * gas.heat_capacity / solid;
+    let Some(local) = local(case, eps, density) else {
+        return;
+    };
+    let d = population.diameter;
+    let nusselt = match case.laws.heat_transfer {
+        HeatLaw::None => 0.0,
+        HeatLaw::Gunn => Gunn.nusselt(&local, d),
+        HeatLaw::RanzMarshall => RanzMarshall.nusselt(&local, d),
+    };
+    let volume = PI / 6.0 * d.powi(3);
+    let rate = nusselt * local.conductivity * PI * d
+        / (material.density * volume * material.heat_capacity);
+    // Requirements TSM-8: the error of process storage in shares of the span.
+    let error = 0.11 * rate * factor * case.time.motion_window.seconds();
+    let warn = |value: f64| {
+        if value > WARNING {
+            "   warning: above 0.1"
+        } else {
+            ""
+        }
+    };
+    let _ = writeln!(text, "  {}:", population.name);
+    let _ = writeln!(
+        text,
+        "    R, gas heat stored over solid heat stored times AF   {ratio:.4}{}",
+        if case.time.storage == calcine_coupler::time::GasStorage::Accelerated {
+            warn(ratio)
+        } else {
+            " (matters with `accelerated` storage)"
+        }
+    );
+    let _ = writeln!(
+        text,
+        "    0.11 hA AF dt/(m c), error of process storage       {error:.2e}{}",
+        warn(error)
+    );
+    if case.laws.drag == DragLaw::ErgunWenYu {
+        let response = material.density * volume / ErgunWenYu.coefficient(&local, d);
+        let window = case.time.motion_window.seconds();
+        let _ = writeln!(
+            text,
+            "    window over the drag's time m/K                      {:.2e}",
+            window / response
+        );
+    }
+}
+
+/// The gas at the start, at the fastest inlet's superficial velocity.
+fn local(case: &Case, eps: f64, density: f64) -> Option<LocalGas> {
+    let fastest = case
+        .gas
+        .patches
+        .iter()
+        .filter_map(|(_, patch)| match patch {
+            GasPatch::Inlet {
+                superficial_velocity,
+                ..
+            } => Some(
+                superficial_velocity
+                    .0
+                    .iter()
+                    .map(|entry| entry.1)
+                    .fold(0.0, f64::max),
+            ),
+            _ => None,
+        })
+        .fold(0.0, f64::max);
+    let gas = &case.gas.properties;
+    Some(LocalGas {
+        void_fraction: VoidFraction::new(eps).ok()?,
+        density,
+        viscosity: gas.viscosity(case.gas.temperature),
+        conductivity: gas.conductivity(case.gas.temperature),
+        heat_capacity: gas.heat_capacity,
+        slip: fastest / eps,
+    })
+}

@@ -1,0 +1,132 @@
+//! From populations to particles.
+
+use std::path::PathBuf;
+
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::ParticleSetup;
+use thiserror::Error;
+
+use super::model::{Case, Motion, Place};
+
+/// Particles that cannot be placed.
+#[derive(Debug, Error)]
+pub enum PlaceError {
+    /// The file cannot be read.
+    #[error("{path}: {cause}")]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        cause: std::io::Error,
+    },
+    /// A line that does not hold what the header says.
+    #[error("{path}, line {line}: {what}")]
+    Line {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+        /// What is wrong.
+        what: String,
+    },
+    /// No particle at all.
+    #[error("the case has no particles")]
+    Empty,
+}
+
+/// The particles of all populations, ids from 1 in the order of the file; on a grid x runs fastest.
+pub fn particles(case: &Case) -> Result<ParticleSetup, PlaceError> {
+    let mut setup = ParticleSetup {
+        frozen: case
+            .particles
+            .iter()
+            .all(|population| population.motion == Motion::Frozen),
+        ..ParticleSetup::default()
+    };
+    for (index, population) in (0u32..).zip(&case.particles) {
+        let density = case.materials[population.material].density;
+        let mut add = |position: Vec3, diameter: f64| {
+            setup.id.push(setup.id.len() as u64 + 1);
+            setup.population.push(index);
+            setup.position.push(position);
+            setup.radius.push(0.5 * diameter);
+            setup.density.push(density);
+        };
+        match &population.place {
+            Place::Grid {
+                first,
+                spacing,
+                counts,
+            } => {
+                for k in 0..counts[2] {
+                    for j in 0..counts[1] {
+                        for i in 0..counts[0] {
+                            let steps = Vec3::new(i as f64, j as f64, k as f64);
+                            add(first + spacing.component_mul(&steps), population.diameter);
+                        }
+                    }
+                }
+            }
+            Place::File(path) => {
+                for (position, diameter) in file(path)? {
+                    add(position, diameter.unwrap_or(population.diameter));
+                }
+            }
+        }
+    }
+    if setup.id.is_empty() {
+        Err(PlaceError::Empty)
+    } else {
+        Ok(setup)
+    }
+}
+
+/// CSV with the columns x, y, z in m, and optionally diameter in m, named in its first line.
+fn file(path: &PathBuf) -> Result<Vec<(Vec3, Option<f64>)>, PlaceError> {
+    let text = std::fs::read_to_string(path).map_err(|cause| PlaceError::Io {
+        path: path.clone(),
+        cause,
+    })?;
+    let wrong = |line: usize, what: String| PlaceError::Line {
+        path: path.clone(),
+        line,
+        what,
+    };
+    let mut lines = text.lines().enumerate();
+    let header: Vec<&str> = lines.next().map_or(Vec::new(), |(_, line)| {
+        line.split(',').map(str::trim).collect()
+    });
+    let column = |name: &str| header.iter().position(|head| *head == name);
+    let (Some(x), Some(y), Some(z)) = (column("x"), column("y"), column("z")) else {
+        return Err(wrong(
+            1,
+            format!(
+                "the header is \"{}\", it needs x,y,z (in m)",
+                header.join(",")
+            ),
+        ));
+    };
+    let diameter = column("diameter");
+    let mut found = Vec::new();
+    for (number, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
+        let words: Vec<&str> = line.split(',').map(str::trim).collect();
+        let value = |column: usize| {
+            let word = words.get(column).copied().unwrap_or("");
+            word.parse::<f64>()
+                .ok()
+                .filter(|value| value.is_finite())
+                .ok_or_else(|| {
+                    wrong(
+                        number + 1,
+                        format!("\"{word}\" in column {} is not a number", column + 1),
+                    )
+                })
+        };
+        let own = diameter.map(value).transpose()?;
+        if own.is_some_and(|diameter| diameter <= 0.0) {
+            return Err(wrong(number + 1, "the diameter is not above zero".into()));
+        }
+        found.push((Vec3::new(value(x)?, value(y)?, value(z)?), own));
+    }
+    Ok(found)
+}

@@ -1,0 +1,127 @@
+//! Errors of case files: all of a file at once, each with its place, rule, value and remedy.
+
+use std::fmt;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use miette::{
+    Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, SourceCode,
+};
+
+/// One error of a case file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problem {
+    /// What is wrong: rule and value, with the dotted key.
+    pub message: String,
+    /// What to do.
+    pub help: String,
+    /// Bytes of the text that it is about.
+    pub span: Range<usize>,
+    /// Line in the text, from 1.
+    pub line: usize,
+}
+
+/// All errors of a case file.
+#[derive(Clone, Debug)]
+pub struct CaseErrors {
+    path: PathBuf,
+    source: NamedSource<String>,
+    problems: Vec<Problem>,
+}
+
+impl CaseErrors {
+    pub(super) fn new(path: &Path, text: &str, mut problems: Vec<Problem>) -> Self {
+        for problem in &mut problems {
+            problem.span.end = problem.span.end.min(text.len());
+            problem.span.start = problem.span.start.min(problem.span.end);
+            problem.line = 1 + text.as_bytes()[..problem.span.start]
+                .iter()
+                .filter(|&&b| b == b'\n')
+                .count();
+        }
+        problems.sort_by_key(|problem| problem.span.start);
+        let source = NamedSource::new(path.display().to_string(), text.to_owned());
+        Self {
+            path: path.to_owned(),
+            source,
+            problems,
+        }
+    }
+
+    /// The errors in the order of their places.
+    pub fn problems(&self) -> &[Problem] {
+        &self.problems
+    }
+
+    /// All errors with the lines of the file that they are about.
+    pub fn render(&self) -> String {
+        let handler = GraphicalReportHandler::new_themed(GraphicalTheme::unicode_nocolor());
+        let mut text = String::new();
+        for problem in &self.problems {
+            let shown = Shown {
+                problem,
+                source: &self.source,
+            };
+            if handler.render_report(&mut text, &shown).is_err() {
+                text.push_str(&problem.message);
+                text.push('\n');
+            }
+        }
+        let count = self.problems.len();
+        let plural = if count == 1 { "error" } else { "errors" };
+        text.push_str(&format!("{count} {plural} in {}\n", self.path.display()));
+        text
+    }
+}
+
+impl fmt::Display for CaseErrors {
+    /// One line an error.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for problem in &self.problems {
+            let path = self.path.display();
+            writeln!(
+                f,
+                "{path}:{}: {}; {}",
+                problem.line, problem.message, problem.help
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for CaseErrors {}
+
+/// One problem with its source, for miette.
+struct Shown<'a> {
+    problem: &'a Problem,
+    source: &'a NamedSource<String>,
+}
+
+impl fmt::Debug for Shown<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Debug::fmt(self.problem, f)
+    }
+}
+
+impl fmt::Display for Shown<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.problem.message)
+    }
+}
+
+impl std::error::Error for Shown<'_> {}
+
+impl Diagnostic for Shown<'_> {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        Some(Box::new(&self.problem.help))
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        Some(self.source)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let span = self.problem.span.clone();
+        Some(Box::new(std::iter::once(LabeledSpan::at(span, "here"))))
+    }
+}

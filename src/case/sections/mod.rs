@@ -1,0 +1,102 @@
+//! The sections of a case file, one file each.
+
+mod coupling;
+mod gas;
+mod laws;
+mod mesh;
+mod output;
+mod particles;
+mod time;
+
+use std::path::{Path, PathBuf};
+
+use super::model::{Case, MeshSpec};
+use super::table::Reader;
+
+/// Version of the format that this reader knows.
+const FORMAT: u64 = 1;
+
+/// Reads all sections; `None` where one could not be read (its problems are recorded).
+pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String) -> Option<Case> {
+    if !root.has("format") {
+        root.missing("format", "1");
+    } else if root
+        .whole("format", 0..=i64::MAX)
+        .is_some_and(|format| format != FORMAT)
+    {
+        root.fail(
+            "format",
+            "is not 1, the only one there is",
+            "write format = 1",
+        );
+    }
+    let title = root.required_text("title", "\"Hot air heats glass spheres\"");
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let time = time::read(root);
+    let mesh = mesh::read(root, folder);
+    let materials = particles::materials(root);
+    let contacts = particles::contacts(root, &materials);
+    let gas = gas::read(
+        root,
+        mesh.as_ref(),
+        time.as_ref().map(|(_, storage)| *storage),
+    );
+    let particles = particles::populations(root, &materials, mesh.as_ref(), folder);
+    let laws = laws::read(root);
+    let coupling = coupling::read(root);
+    let openfoam = coupling::external(root, "openfoam", folder);
+    let liggghts = coupling::external(root, "liggghts", folder);
+    let output = output::output(root);
+    let probes = output::probes(root);
+    let quantities = output::quantities(root, mesh.as_ref(), particles.as_deref());
+    let (time, _) = time?;
+    Some(Case {
+        name: path
+            .file_stem()
+            .map(|name| name.to_string_lossy().into_owned())?,
+        title: title?.into(),
+        path: path.to_owned(),
+        hash,
+        effective: effective.into(),
+        time,
+        mesh: mesh?,
+        materials,
+        contacts,
+        gas: gas?,
+        particles: particles?,
+        laws: laws?,
+        coupling: coupling?,
+        openfoam,
+        liggghts,
+        output: output?,
+        probes,
+        quantities,
+    })
+}
+
+/// The patch names of a mesh, where the case itself knows them.
+fn patches(mesh: Option<&MeshSpec>) -> Option<Vec<&str>> {
+    match mesh? {
+        MeshSpec::Box { patches, .. } => {
+            let mut names: Vec<&str> = patches.iter().map(String::as_str).collect();
+            names.sort_unstable();
+            names.dedup();
+            Some(names)
+        }
+        MeshSpec::PolyMesh(_) => None,
+    }
+}
+
+/// A path of the case file, absolute; an error where there is nothing.
+fn existing(reader: &Reader<'_>, key: &str, folder: &Path) -> Option<PathBuf> {
+    let text = reader.text(key)?;
+    let path = folder.join(text);
+    match path.canonicalize() {
+        Ok(path) => Some(path),
+        Err(cause) => {
+            let rule = format!("names \"{text}\", which cannot be opened: {cause}");
+            reader.fail(key, rule, "paths are relative to the case file");
+            None
+        }
+    }
+}

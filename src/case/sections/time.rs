@@ -1,0 +1,101 @@
+//! `[time]`.
+
+use std::time::Duration;
+
+use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
+
+use crate::case::model::Time;
+use crate::case::table::Reader;
+use crate::case::units::Dimension;
+
+pub(super) fn read(root: &Reader<'_>) -> Option<(Time, GasStorage)> {
+    let section = root.required_table("time", "[time] with end = \"10 min\"")?;
+    let end = ticks(&section, "end", true);
+    let motion_window = ticks(&section, "motion_window", true);
+    let acceleration = acceleration(&section);
+    let storages = [
+        ("process", GasStorage::Process),
+        ("accelerated", GasStorage::Accelerated),
+    ];
+    let storage = section.choice("gas_storage", &storages).unwrap_or_default();
+    let (mut every, mut wall) = (None, None);
+    if let Some(checkpoint) = section.table("checkpoint") {
+        every = ticks(&checkpoint, "every", false);
+        wall = checkpoint
+            .positive("wall", Dimension::TIME)
+            .map(Duration::from_secs_f64);
+        checkpoint.finish();
+    }
+    section.finish();
+    let (end, motion_window, acceleration) = (end?, motion_window?, acceleration?);
+    if motion_window > end {
+        let rule = format!("is {motion_window}, longer than the run of {end}");
+        section.fail("motion_window", rule, "lower it, or raise `time.end`");
+    }
+    let time = Time {
+        end,
+        motion_window,
+        acceleration,
+        storage,
+        checkpoint_every: every,
+        checkpoint_wall: wall,
+    };
+    Some((time, storage))
+}
+
+fn ticks(section: &Reader<'_>, key: &str, required: bool) -> Option<Ticks> {
+    let seconds = if required {
+        section.required_positive(key, Dimension::TIME)?
+    } else {
+        section.positive(key, Dimension::TIME)?
+    };
+    match Ticks::from_seconds(seconds) {
+        Ok(ticks) if ticks > Ticks::ZERO => Some(ticks),
+        Ok(_) => {
+            section.fail(
+                key,
+                format!("is {seconds} s"),
+                "the clock's tick is 1e-12 s",
+            );
+            None
+        }
+        Err(error) => {
+            section.fail(
+                key,
+                format!("is too long: {error}"),
+                "split the run with `--from`",
+            );
+            None
+        }
+    }
+}
+
+/// A number, or a list of [process time, number].
+fn acceleration(section: &Reader<'_>) -> Option<Acceleration> {
+    let key = "acceleration";
+    let Some(item) = section.raw(key) else {
+        return Acceleration::constant(1.0).ok();
+    };
+    let steps = match item.as_array() {
+        None => vec![(0.0, section.quantity(key, Dimension::NONE)?)],
+        Some(_) => section.schedule(key, Dimension::NONE)?.0,
+    };
+    let steps = steps
+        .into_iter()
+        .map(|(time, factor)| Ok((Ticks::from_seconds(time)?, factor)))
+        .collect::<Result<Vec<_>, calcine_coupler::time::TimeError>>();
+    let made = steps
+        .map_err(|error| error.to_string())
+        .and_then(|steps| Acceleration::schedule(steps).map_err(|error| error.to_string()));
+    match made {
+        Ok(acceleration) => Some(acceleration),
+        Err(why) => {
+            section.fail(
+                key,
+                format!("cannot be used: {why}"),
+                "write a factor of at least 1, or [[\"0 s\", 1], [\"5 s\", 50]]",
+            );
+            None
+        }
+    }
+}

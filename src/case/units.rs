@@ -1,0 +1,262 @@
+//! Quantities with units: "2 mm", "25 cm^3/min", "300 K", "10 10 120 mm".
+
+use std::fmt;
+
+/// Exponents of m, kg, s, K, mol.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dimension([i8; 5]);
+
+macro_rules! dimensions {
+    ($($name:ident = [$($e:expr),*], $words:literal, $example:literal;)*) => {
+        impl Dimension {
+            $(#[doc = $words] pub const $name: Dimension = Dimension([$($e),*]);)*
+
+            /// The dimension in words, for messages.
+            pub fn words(self) -> String {
+                match self {
+                    $(Dimension::$name => $words.into(),)*
+                    other => format!("{other}"),
+                }
+            }
+
+            /// An example of a value, for messages.
+            pub fn example(self) -> &'static str {
+                match self { $(Dimension::$name => $example,)* _ => "1" }
+            }
+        }
+    };
+}
+
+dimensions! {
+    NONE = [0, 0, 0, 0, 0], "a plain number", "0.6";
+    LENGTH = [1, 0, 0, 0, 0], "a length", "2 mm";
+    TIME = [0, 0, 1, 0, 0], "a time", "10 min";
+    MASS = [0, 1, 0, 0, 0], "a mass", "5 mg";
+    TEMPERATURE = [0, 0, 0, 1, 0], "a temperature", "300 K";
+    VELOCITY = [1, 0, -1, 0, 0], "a velocity", "0.5 m/s";
+    ACCELERATION = [1, 0, -2, 0, 0], "an acceleration", "9.81 m/s^2";
+    PRESSURE = [-1, 1, -2, 0, 0], "a pressure", "1 atm";
+    DENSITY = [-3, 1, 0, 0, 0], "a density", "2500 kg/m^3";
+    HEAT_CAPACITY = [2, 0, -2, -1, 0], "a specific heat capacity", "840 J/kg/K";
+    CONDUCTIVITY = [1, 1, -3, -1, 0], "a thermal conductivity", "1.1 W/m/K";
+    VISCOSITY = [-1, 1, -1, 0, 0], "a dynamic viscosity", "18.5e-6 Pa s";
+    MOLAR_MASS = [0, 1, 0, 0, -1], "a molar mass", "28.96 g/mol";
+}
+
+impl fmt::Display for Dimension {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names = ["m", "kg", "s", "K", "mol"];
+        let parts: Vec<String> = names
+            .iter()
+            .zip(self.0)
+            .filter(|(_, exponent)| *exponent != 0)
+            .map(|(name, exponent)| {
+                if exponent == 1 {
+                    (*name).into()
+                } else {
+                    format!("{name}^{exponent}")
+                }
+            })
+            .collect();
+        if parts.is_empty() {
+            f.write_str("no unit")
+        } else {
+            f.write_str(&parts.join(" "))
+        }
+    }
+}
+
+/// A unit: value in SI = factor · value (+ offset for degrees Celsius alone).
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Unit {
+    factor: f64,
+    offset: f64,
+    dimension: Dimension,
+}
+
+/// Base and derived units as users write them.
+const UNITS: &[(&str, f64, [i8; 5])] = &[
+    ("m", 1.0, [1, 0, 0, 0, 0]),
+    ("cm", 1e-2, [1, 0, 0, 0, 0]),
+    ("mm", 1e-3, [1, 0, 0, 0, 0]),
+    ("um", 1e-6, [1, 0, 0, 0, 0]),
+    ("µm", 1e-6, [1, 0, 0, 0, 0]),
+    ("km", 1e3, [1, 0, 0, 0, 0]),
+    ("kg", 1.0, [0, 1, 0, 0, 0]),
+    ("g", 1e-3, [0, 1, 0, 0, 0]),
+    ("mg", 1e-6, [0, 1, 0, 0, 0]),
+    ("t", 1e3, [0, 1, 0, 0, 0]),
+    ("s", 1.0, [0, 0, 1, 0, 0]),
+    ("ms", 1e-3, [0, 0, 1, 0, 0]),
+    ("us", 1e-6, [0, 0, 1, 0, 0]),
+    ("µs", 1e-6, [0, 0, 1, 0, 0]),
+    ("min", 60.0, [0, 0, 1, 0, 0]),
+    ("h", 3600.0, [0, 0, 1, 0, 0]),
+    ("d", 86400.0, [0, 0, 1, 0, 0]),
+    ("K", 1.0, [0, 0, 0, 1, 0]),
+    ("mol", 1.0, [0, 0, 0, 0, 1]),
+    ("kmol", 1e3, [0, 0, 0, 0, 1]),
+    ("l", 1e-3, [3, 0, 0, 0, 0]),
+    ("N", 1.0, [1, 1, -2, 0, 0]),
+    ("Pa", 1.0, [-1, 1, -2, 0, 0]),
+    ("hPa", 1e2, [-1, 1, -2, 0, 0]),
+    ("kPa", 1e3, [-1, 1, -2, 0, 0]),
+    ("MPa", 1e6, [-1, 1, -2, 0, 0]),
+    ("GPa", 1e9, [-1, 1, -2, 0, 0]),
+    ("bar", 1e5, [-1, 1, -2, 0, 0]),
+    ("mbar", 1e2, [-1, 1, -2, 0, 0]),
+    // Standard atmosphere, exact (CGPM 1954).
+    ("atm", 101_325.0, [-1, 1, -2, 0, 0]),
+    ("J", 1.0, [2, 1, -2, 0, 0]),
+    ("kJ", 1e3, [2, 1, -2, 0, 0]),
+    ("MJ", 1e6, [2, 1, -2, 0, 0]),
+    ("W", 1.0, [2, 1, -3, 0, 0]),
+    ("mW", 1e-3, [2, 1, -3, 0, 0]),
+    ("kW", 1e3, [2, 1, -3, 0, 0]),
+    ("%", 1e-2, [0, 0, 0, 0, 0]),
+];
+
+/// Zero of the Celsius scale in K.
+const CELSIUS: f64 = 273.15;
+
+/// Why a text is not a quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub enum UnitError {
+    /// No number where one is needed.
+    Number(String),
+    /// A unit that is not known.
+    Unknown(String),
+}
+
+fn unit(text: &str) -> Result<Unit, UnitError> {
+    if text == "degC" || text == "°C" {
+        return Ok(Unit {
+            factor: 1.0,
+            offset: CELSIUS,
+            dimension: Dimension::TEMPERATURE,
+        });
+    }
+    let (mut factor, mut exponents, mut sign) = (1.0, [0i8; 5], 1i8);
+    let mut rest = text;
+    loop {
+        let end = rest.find(['/', '*', '·', ' ']).unwrap_or(rest.len());
+        let (symbol, power) = match rest[..end].split_once('^') {
+            Some((symbol, power)) => {
+                let power = power.parse::<i8>().ok().filter(|p| (-9..=9).contains(p));
+                (
+                    symbol,
+                    power.ok_or_else(|| UnitError::Unknown(text.into()))?,
+                )
+            }
+            None => (&rest[..end], 1),
+        };
+        if symbol != "1" {
+            let known = UNITS.iter().find(|(name, ..)| *name == symbol);
+            let &(_, scale, dimension) = known.ok_or_else(|| UnitError::Unknown(symbol.into()))?;
+            factor *= f64::powi(scale, i32::from(sign * power));
+            for (sum, exponent) in exponents.iter_mut().zip(dimension) {
+                *sum += sign * power * exponent;
+            }
+        }
+        let Some(separator) = rest[end..].chars().next() else {
+            break;
+        };
+        sign = if separator == '/' { -1 } else { 1 };
+        rest = &rest[end + separator.len_utf8()..];
+    }
+    Ok(Unit {
+        factor,
+        offset: 0.0,
+        dimension: Dimension(exponents),
+    })
+}
+
+/// Numbers followed by one unit, in SI; the unit may be missing only for plain numbers.
+pub fn quantities(text: &str) -> Result<(Vec<f64>, Dimension), UnitError> {
+    let mut numbers = Vec::new();
+    let mut rest = text.trim();
+    while !rest.is_empty() {
+        let end = rest.find(char::is_whitespace).unwrap_or(rest.len());
+        let word = &rest[..end];
+        if let Ok(number) = word.parse::<f64>() {
+            if !number.is_finite() {
+                return Err(UnitError::Number(word.into()));
+            }
+            numbers.push(number);
+            rest = rest[end..].trim_start();
+            continue;
+        }
+        // "2mm": a number with its unit attached
+        let split = word.find(|c: char| !(c.is_ascii_digit() || ".+-".contains(c)));
+        if let Some(split) = split
+            && let Ok(number) = word[..split].parse::<f64>()
+        {
+            numbers.push(number);
+            rest = &rest[split..];
+        }
+        break;
+    }
+    if numbers.is_empty() {
+        return Err(UnitError::Number(text.into()));
+    }
+    if rest.is_empty() {
+        return Ok((numbers, Dimension::NONE));
+    }
+    let Unit {
+        factor,
+        offset,
+        dimension,
+    } = unit(rest)?;
+    Ok((
+        numbers
+            .into_iter()
+            .map(|number| number * factor + offset)
+            .collect(),
+        dimension,
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn one(text: &str) -> (f64, Dimension) {
+        let (numbers, dimension) = quantities(text).unwrap();
+        assert_eq!(numbers.len(), 1);
+        (numbers[0], dimension)
+    }
+
+    #[test]
+    fn quantities_are_converted_to_si() {
+        assert_eq!(one("2 mm"), (0.002, Dimension::LENGTH));
+        assert_eq!(one("2mm"), (0.002, Dimension::LENGTH));
+        assert_eq!(one("10 min"), (600.0, Dimension::TIME));
+        assert_eq!(one("20 degC"), (293.15, Dimension::TEMPERATURE));
+        assert_eq!(one("840 J/kg/K"), (840.0, Dimension::HEAT_CAPACITY));
+        assert_eq!(one("0.9 kJ/kg/K"), (900.0, Dimension::HEAT_CAPACITY));
+        assert_eq!(one("1 atm"), (101_325.0, Dimension::PRESSURE));
+        assert_eq!(one("28.96 g/mol"), (0.02896, Dimension::MOLAR_MASS));
+        assert_eq!(one("9.81 m/s^2").1, Dimension::ACCELERATION);
+        assert_eq!(one("1e-3 m"), (1e-3, Dimension::LENGTH));
+        assert_eq!(one("0.6"), (0.6, Dimension::NONE));
+        let (flow, dimension) = one("25 cm^3/min");
+        assert!((flow - 25e-6 / 60.0).abs() < 1e-20);
+        assert_eq!(dimension.to_string(), "m^3 s^-1");
+        assert_eq!(quantities("10 10 120 mm").unwrap().0, [0.01, 0.01, 0.12]);
+    }
+
+    #[test]
+    fn what_is_no_quantity_says_why() {
+        assert_eq!(
+            quantities("two mm"),
+            Err(UnitError::Number("two mm".into()))
+        );
+        assert_eq!(
+            quantities("2 furlong"),
+            Err(UnitError::Unknown("furlong".into()))
+        );
+        assert!(matches!(quantities("inf m"), Err(UnitError::Number(_))));
+        assert!(quantities("").is_err());
+        assert!(quantities("1 m^99").is_err());
+    }
+}

@@ -1,0 +1,31 @@
+//! `calcine check CASE`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{Failure, read_and_prepare, say};
+use crate::exit;
+
+/// Checks a case: all its errors at once, or both clocks, sizes and what each backend honours.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The case file.
+    case: PathBuf,
+    /// Changes a key of the case, for example `--set time.acceleration=200`.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
+    let (case, prepared) = read_and_prepare(&arguments.case, &arguments.set)?;
+    let particles = prepared.particles.id.len();
+    let void_fraction = prepared.void_fraction(&case)?;
+    say(crate::case::check_report(
+        &case,
+        prepared.mesh.cells(),
+        particles,
+        void_fraction,
+    ));
+    Ok(exit::OK)
+}

@@ -1,0 +1,92 @@
+//! `calcine compare CASE --pairings …`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::execute::{self, Settings};
+use super::{Failure, chain, read_and_prepare, results_folder, say};
+use crate::assembly::Pairing;
+use crate::exit;
+
+/// Runs several pairings of one case and says how far they differ against the case's bands.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The case file.
+    case: PathBuf,
+    /// Pairings such as `native+native,openfoam+liggghts`, or `all`.
+    #[arg(long, default_value = "all", value_parser = pairings)]
+    pairings: Chosen,
+    /// The folder of the comparison [default: results/NAME-compare].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Changes a key of the case, for example `--set time.acceleration=200`.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// No progress bar.
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// The pairings asked for.
+#[derive(Clone, Debug)]
+struct Chosen(Vec<Pairing>);
+
+fn pairings(text: &str) -> Result<Chosen, String> {
+    if text == "all" {
+        return Ok(Chosen(Pairing::ALL.to_vec()));
+    }
+    let known = Pairing::ALL.map(Pairing::name).join(", ");
+    let chosen: Vec<Pairing> = text
+        .split(',')
+        .map(|name| {
+            Pairing::parse(name.trim())
+                .ok_or_else(|| format!("`{name}` is not a pairing; there are {known}, and all"))
+        })
+        .collect::<Result<_, _>>()?;
+    if chosen.len() < 2 {
+        return Err(format!(
+            "a comparison needs two pairings at least, of {known}"
+        ));
+    }
+    Ok(Chosen(chosen))
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
+    let (case, prepared) = read_and_prepare(&arguments.case, &arguments.set)?;
+    let out = arguments.out.clone().unwrap_or_else(|| {
+        let mut folder = results_folder(&case, None).into_os_string();
+        folder.push("-compare");
+        folder.into()
+    });
+    let mut runs = Vec::new();
+    for &pairing in &arguments.pairings.0 {
+        let folder = out.join(pairing.name());
+        say(format_args!("{}:", pairing.name()));
+        let settings = Settings {
+            pairing,
+            out: &folder,
+            resume: false,
+            progress: !arguments.quiet,
+            stop_after: None,
+        };
+        let done = execute::execute(&case, &prepared, &settings)?;
+        say(&done.text);
+        if done.code == exit::CHECKPOINTED {
+            return Ok(done.code);
+        }
+        runs.push((pairing.name(), folder));
+    }
+    let comparison = crate::compare::compare(&case, &runs)
+        .map_err(|error| Failure::new(exit::OTHER, chain(&error)))?;
+    let page = comparison
+        .write(&out)
+        .map_err(|error| Failure::new(exit::OTHER, chain(&error)))?;
+    say(comparison.table());
+    say(format_args!("page: {}", page.display()));
+    Ok(if comparison.agrees {
+        exit::OK
+    } else {
+        exit::OUTSIDE_BANDS
+    })
+}

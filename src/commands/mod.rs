@@ -1,0 +1,138 @@
+//! The command line, one file per subcommand.
+
+mod check;
+mod compare;
+pub mod doctor;
+mod execute;
+mod report;
+mod run;
+mod sweep;
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::assembly::{AssemblyError, Prepared};
+use crate::case::model::Case;
+use crate::exit;
+
+/// Reactive granular beds: gas and grains coupled, natively or with OpenFOAM and LIGGGHTS.
+#[derive(Debug, Parser)]
+#[command(name = "calcine", version, propagate_version = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Run(run::Arguments),
+    Check(check::Arguments),
+    Compare(compare::Arguments),
+    Sweep(sweep::Arguments),
+    Report(report::Arguments),
+    /// Shows which solvers, MPI and HDF5 are here, and what installs what is missing.
+    Doctor,
+}
+
+/// Why a command failed: an exit code and what to tell the user.
+#[derive(Debug)]
+pub struct Failure {
+    /// Exit code, see [`crate::exit`].
+    pub code: u8,
+    /// What to tell the user; ends up on standard error.
+    pub message: String,
+}
+
+impl Failure {
+    fn new(code: u8, message: impl fmt::Display) -> Self {
+        Self {
+            code,
+            message: message.to_string(),
+        }
+    }
+}
+
+impl From<AssemblyError> for Failure {
+    fn from(error: AssemblyError) -> Self {
+        let code = match &error {
+            AssemblyError::Run(error) => exit::of(error),
+            AssemblyError::Part(_) => exit::PEER,
+            _ => exit::CASE,
+        };
+        Failure::new(code, chain(&error))
+    }
+}
+
+/// An error with its causes, one a line.
+fn chain(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        let line = error.to_string();
+        if !text.contains(&line) {
+            text.push_str("\n  because: ");
+            text.push_str(&line);
+        }
+        cause = error.source();
+    }
+    text
+}
+
+/// An error with its causes and its remedy.
+fn with_help<E: std::error::Error + miette::Diagnostic>(error: &E) -> String {
+    let remedy = error
+        .help()
+        .map(|help| format!("\n  help: {help}"))
+        .unwrap_or_default();
+    chain(error) + &remedy
+}
+
+/// Reads a case with `--set` applied; all its errors at once.
+fn read_case(path: &Path, set: &[String]) -> Result<Case, Failure> {
+    crate::case::read(path, set).map_err(|errors| Failure::new(exit::CASE, errors.render()))
+}
+
+/// Reads a case and makes mesh and particles.
+fn read_and_prepare(path: &Path, set: &[String]) -> Result<(Case, Prepared), Failure> {
+    let case = read_case(path, set)?;
+    let prepared = Prepared::new(&case)?;
+    Ok((case, prepared))
+}
+
+/// The results folder: as asked for, or `results/NAME` below the working directory.
+fn results_folder(case: &Case, out: Option<&PathBuf>) -> PathBuf {
+    out.cloned()
+        .unwrap_or_else(|| PathBuf::from("results").join(&case.name))
+}
+
+/// Prints a line for the user.
+#[allow(clippy::print_stdout)]
+fn say(text: impl fmt::Display) {
+    println!("{text}");
+}
+
+/// Runs the command line of this process.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let outcome = match &arguments.command {
+        Command::Run(arguments) => run::run(arguments),
+        Command::Check(arguments) => check::run(arguments),
+        Command::Compare(arguments) => compare::run(arguments),
+        Command::Sweep(arguments) => sweep::run(arguments),
+        Command::Report(arguments) => report::run(arguments),
+        Command::Doctor => {
+            say(doctor::run());
+            Ok(exit::OK)
+        }
+    };
+    match outcome {
+        Ok(code) => ExitCode::from(code),
+        Err(failure) => {
+            eprintln!("{}", failure.message.trim_end());
+            ExitCode::from(failure.code)
+        }
+    }
+}

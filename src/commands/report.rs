@@ -1,0 +1,22 @@
+//! `calcine report DIR`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{Failure, chain, say};
+use crate::exit;
+
+/// Writes one self-contained HTML page about a results folder.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The results folder.
+    dir: PathBuf,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
+    let page = crate::report::write(&arguments.dir)
+        .map_err(|error| Failure::new(exit::OTHER, chain(&error)))?;
+    say(page.display());
+    Ok(exit::OK)
+}

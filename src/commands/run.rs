@@ -1,0 +1,107 @@
+//! `calcine run CASE`.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::Args;
+
+use super::execute::{self, Settings};
+use super::{Failure, read_and_prepare, results_folder, say};
+use crate::assembly::{GasBackend, Pairing, ParticleBackend};
+use crate::exit;
+
+/// Runs a case, natively or with production solvers.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The case file.
+    case: PathBuf,
+    /// Who computes the gas.
+    #[arg(long, value_enum, default_value_t)]
+    gas: GasBackend,
+    /// Who computes the particles.
+    #[arg(long, value_enum, default_value_t)]
+    particles: ParticleBackend,
+    /// The results folder [default: results/NAME].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Changes a key of the case, for example `--set time.acceleration=200`.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Goes on from the last checkpoint in the results folder.
+    #[arg(long)]
+    resume: bool,
+    /// No progress bar.
+    #[arg(long)]
+    quiet: bool,
+    /// Writes a checkpoint and stops after this wall time, for example `23h30m`.
+    #[arg(long, value_name = "TIME", value_parser = wall_time)]
+    stop_after: Option<Duration>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
+    let (case, prepared) = read_and_prepare(&arguments.case, &arguments.set)?;
+    let out = results_folder(&case, arguments.out.as_ref());
+    let settings = Settings {
+        pairing: Pairing {
+            gas: arguments.gas,
+            particles: arguments.particles,
+        },
+        out: &out,
+        resume: arguments.resume,
+        progress: !arguments.quiet,
+        stop_after: arguments.stop_after,
+    };
+    let done = execute::execute(&case, &prepared, &settings)?;
+    say(&done.text);
+    if done.code == exit::OK || done.code == exit::OUTSIDE_BANDS {
+        match crate::report::write(&out) {
+            Ok(page) => say(format_args!("report: {}", page.display())),
+            Err(error) => return Err(Failure::new(exit::OTHER, super::chain(&error))),
+        }
+    }
+    Ok(done.code)
+}
+
+/// A wall time such as `90`, `45m`, `23h30m`, `1d`; a bare number is seconds.
+fn wall_time(text: &str) -> Result<Duration, String> {
+    let wrong = || format!("`{text}` is not a wall time such as 23h30m, 45m or 90s");
+    let (mut seconds, mut number) = (0.0, String::new());
+    for letter in text.chars() {
+        let factor = match letter {
+            '0'..='9' | '.' => {
+                number.push(letter);
+                continue;
+            }
+            's' => 1.0,
+            'm' => 60.0,
+            'h' => 3600.0,
+            'd' => 86400.0,
+            _ => return Err(wrong()),
+        };
+        seconds += factor * number.parse::<f64>().map_err(|_| wrong())?;
+        number.clear();
+    }
+    if !number.is_empty() {
+        seconds += number.parse::<f64>().map_err(|_| wrong())?;
+    }
+    if seconds > 0.0 {
+        Duration::try_from_secs_f64(seconds).map_err(|_| wrong())
+    } else {
+        Err(wrong())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wall_time_is_read_in_days_hours_minutes_and_seconds() {
+        assert_eq!(wall_time("23h30m"), Ok(Duration::from_secs(84_600)));
+        assert_eq!(wall_time("90"), Ok(Duration::from_secs(90)));
+        assert_eq!(wall_time("1d"), Ok(Duration::from_secs(86_400)));
+        assert!(wall_time("soon").is_err());
+        assert!(wall_time("0s").is_err());
+        assert!(wall_time("h").is_err());
+    }
+}

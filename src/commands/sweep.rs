@@ -1,0 +1,286 @@
+//! `calcine sweep CASE --set key=a,b,c`.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::execute::{self, Settings};
+use super::{Failure, chain, read_and_prepare, read_case, results_folder, say};
+use crate::assembly::{GasBackend, Pairing, ParticleBackend};
+use crate::compare::deviation::{Deviation, deviation};
+use crate::exit;
+use crate::results::Summary;
+use crate::results::read::Series;
+
+/// Runs a case once for each combination of values and prints one table.
+///
+/// `--reference KEY=VALUE` names the runs that the others are compared with: each run against the
+/// one that differs from it in that key alone, particle by particle.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The case file.
+    case: PathBuf,
+    /// Who computes the gas.
+    #[arg(long, value_enum, default_value_t)]
+    gas: GasBackend,
+    /// Who computes the particles.
+    #[arg(long, value_enum, default_value_t)]
+    particles: ParticleBackend,
+    /// Values of a key, separated by commas: `--set time.acceleration=1,50,200`.
+    #[arg(long, value_name = "KEY=A,B,C", required = true)]
+    set: Vec<String>,
+    /// The value of one swept key that the others are compared with.
+    #[arg(long, value_name = "KEY=VALUE")]
+    reference: Option<String>,
+    /// What deviations are divided by, in K [default: the reference's own span of temperatures].
+    #[arg(long, value_name = "KELVIN", requires = "reference")]
+    span: Option<f64>,
+    /// The folder of the sweep [default: results/NAME-sweep].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Also writes the table, as Markdown, to this file.
+    #[arg(long, value_name = "FILE")]
+    table: Option<PathBuf>,
+    /// No progress bar.
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// One run of the sweep.
+struct Point {
+    /// `key=value`, in the order of `--set`.
+    settings: Vec<String>,
+    folder: PathBuf,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
+    let axes = arguments
+        .set
+        .iter()
+        .map(|text| axis(text))
+        .collect::<Result<Vec<_>, _>>()?;
+    let reference = arguments.reference.as_deref();
+    if let Some(value) = reference
+        && !axes.iter().flatten().any(|setting| setting == value)
+    {
+        let message = format!("`--reference {value}` is not among the values of `--set`");
+        return Err(Failure::new(exit::CASE, message));
+    }
+    let base = read_case(&arguments.case, &[])?;
+    let out = arguments.out.clone().unwrap_or_else(|| {
+        let mut folder = results_folder(&base, None).into_os_string();
+        folder.push("-sweep");
+        folder.into()
+    });
+    let combinations = combine(&axes);
+    // Every case is checked before the first one runs.
+    for settings in &combinations {
+        read_case(&arguments.case, settings)?;
+    }
+    let mut points = Vec::new();
+    for settings in combinations {
+        let folder = out.join(folder_name(&settings));
+        say(settings.join("  "));
+        one(arguments, &settings, &folder)?;
+        points.push(Point { settings, folder });
+    }
+    let table = table(&points, &axes, reference, arguments.span)?;
+    say(&table);
+    if let Some(path) = &arguments.table {
+        std::fs::write(path, &table).map_err(|cause| {
+            Failure::new(exit::OTHER, format_args!("{}: {cause}", path.display()))
+        })?;
+    }
+    Ok(exit::OK)
+}
+
+fn one(arguments: &Arguments, settings: &[String], folder: &Path) -> Result<(), Failure> {
+    let (case, prepared) = read_and_prepare(&arguments.case, settings)?;
+    let settings = Settings {
+        pairing: Pairing {
+            gas: arguments.gas,
+            particles: arguments.particles,
+        },
+        out: folder,
+        resume: false,
+        progress: !arguments.quiet,
+        stop_after: None,
+    };
+    let done = execute::execute(&case, &prepared, &settings)?;
+    if done.code == exit::CHECKPOINTED {
+        return Err(Failure::new(done.code, done.text));
+    }
+    Ok(())
+}
+
+/// `key=a,b,c` as `key=a`, `key=b`, `key=c`; commas inside brackets or quotes do not separate.
+fn axis(text: &str) -> Result<Vec<String>, Failure> {
+    let Some((key, values)) = text.split_once('=') else {
+        let message = format!("`--set {text}`: expected KEY=A,B,C");
+        return Err(Failure::new(exit::CASE, message));
+    };
+    let (mut depth, mut quoted, mut parts) = (0u32, false, vec![String::new()]);
+    for letter in values.chars() {
+        match letter {
+            '"' => quoted = !quoted,
+            '[' | '{' if !quoted => depth += 1,
+            ']' | '}' if !quoted => depth = depth.saturating_sub(1),
+            ',' if !quoted && depth == 0 => {
+                parts.push(String::new());
+                continue;
+            }
+            _ => {}
+        }
+        if let Some(part) = parts.last_mut() {
+            part.push(letter);
+        }
+    }
+    Ok(parts
+        .into_iter()
+        .map(|value| format!("{}={}", key.trim(), value.trim()))
+        .collect())
+}
+
+/// Every combination of one value from each axis, the last axis changing fastest.
+fn combine(axes: &[Vec<String>]) -> Vec<Vec<String>> {
+    axes.iter().fold(vec![Vec::new()], |rows, axis| {
+        rows.iter()
+            .flat_map(|row| {
+                axis.iter().map(move |setting| {
+                    let mut next = row.clone();
+                    next.push(setting.clone());
+                    next
+                })
+            })
+            .collect()
+    })
+}
+
+/// A folder name made of the values.
+fn folder_name(settings: &[String]) -> String {
+    let values = settings.iter().map(|setting| {
+        let value = setting
+            .split_once('=')
+            .map_or(setting.as_str(), |(_, value)| value);
+        value
+            .chars()
+            .map(|c| {
+                if c.is_alphanumeric() || c == '.' {
+                    c
+                } else {
+                    '-'
+                }
+            })
+            .collect()
+    });
+    values.collect::<Vec<String>>().join("_")
+}
+
+/// The table as Markdown: the settings, the wall time, the quantities' last values, and with a
+/// reference the largest deviation of each particle's temperature in % of the reference's span.
+fn table(
+    points: &[Point],
+    axes: &[Vec<String>],
+    reference: Option<&str>,
+    span: Option<f64>,
+) -> Result<String, Failure> {
+    let failed = |error: &dyn std::error::Error| Failure::new(exit::OTHER, chain(error));
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    let mut header: Vec<String> = axes
+        .iter()
+        .filter_map(|axis| axis.first()?.split_once('=').map(|(key, _)| key.to_owned()))
+        .collect();
+    header.push("loop s".into());
+    for point in points {
+        let series = Series::read(&point.folder).map_err(|error| failed(&error))?;
+        let summary = Summary::read(&point.folder).map_err(|error| failed(&error))?;
+        let mut row: Vec<String> = point
+            .settings
+            .iter()
+            .filter_map(|setting| setting.split_once('=').map(|(_, value)| value.to_owned()))
+            .collect();
+        let wall = &summary.wall_time_s;
+        row.push(format!("{:.3}", wall.total - wall.output));
+        let against = reference.map(|value| partner(points, point, value));
+        match against {
+            Some(Some(partner)) => {
+                let base = Series::read(&partner.folder).map_err(|error| failed(&error))?;
+                let Deviation { percent, .. } = deviation(&base, &series, span);
+                let largest = percent.iter().copied().fold(0.0, f64::max);
+                if header.len() < row.len() + percent.len() + 1 {
+                    header.truncate(row.len());
+                    header.extend((1..=percent.len()).map(|p| format!("p{p} %")));
+                    header.push("largest %".into());
+                }
+                row.extend(percent.iter().map(|value| format!("{value:.3}")));
+                row.push(format!("{largest:.3}"));
+            }
+            _ => {
+                for (name, quantity) in &summary.quantities {
+                    let column = format!("{name} {}", quantity.unit);
+                    if !header.contains(&column) {
+                        header.push(column);
+                    }
+                    let value = quantity.value.unwrap_or(f64::NAN);
+                    row.push(format!("{value:.6}"));
+                }
+            }
+        }
+        rows.push(row);
+    }
+    let mut text = format!(
+        "| {} |\n|{}\n",
+        header.join(" | "),
+        "---|".repeat(header.len())
+    );
+    for row in rows {
+        let _ = writeln!(text, "| {} |", row.join(" | "));
+    }
+    Ok(text)
+}
+
+/// The point that differs from `point` only in having the reference's value.
+fn partner<'a>(points: &'a [Point], point: &Point, reference: &str) -> Option<&'a Point> {
+    let key = reference.split_once('=').map(|(key, _)| key)?;
+    let wanted: Vec<&str> = point
+        .settings
+        .iter()
+        .map(|setting| {
+            let same = setting.split_once('=').is_some_and(|(name, _)| name == key);
+            if same { reference } else { setting.as_str() }
+        })
+        .collect();
+    points.iter().find(|other| {
+        other
+            .settings
+            .iter()
+            .map(String::as_str)
+            .eq(wanted.iter().copied())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commas_separate_values_except_inside_brackets_and_quotes() {
+        let split = |text| axis(text).unwrap();
+        assert_eq!(split("a.b=1,2"), ["a.b=1", "a.b=2"]);
+        assert_eq!(split("a=[1,2],[3]"), ["a=[1,2]", "a=[3]"]);
+        assert_eq!(split("a=\"x,y\""), ["a=\"x,y\""]);
+        assert!(axis("nothing").is_err());
+    }
+
+    #[test]
+    fn combinations_run_the_last_axis_fastest() {
+        let axes = [
+            vec!["a=1".to_owned(), "a=2".to_owned()],
+            vec!["b=x".to_owned(), "b=y".to_owned()],
+        ];
+        let rows = combine(&axes);
+        assert_eq!(rows.len(), 4);
+        assert_eq!(rows[1], ["a=1", "b=y"]);
+    }
+}

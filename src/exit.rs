@@ -1,0 +1,38 @@
+//! Exit codes, stable for scripts.
+
+use calcine_coupler::coordinator::RunError;
+use calcine_coupler::error::FailureKind;
+
+/// All went well.
+pub const OK: u8 = 0;
+/// Anything without a code of its own.
+pub const OTHER: u8 = 1;
+/// The case, or the command line, is wrong.
+pub const CASE: u8 = 2;
+/// A solver diverged.
+pub const DIVERGED: u8 = 3;
+/// A peer died, was silent, or could not be started.
+pub const PEER: u8 = 4;
+/// A quantity lies outside its band.
+pub const OUTSIDE_BANDS: u8 = 5;
+/// Interrupted, with a checkpoint to go on from.
+pub const CHECKPOINTED: u8 = 75;
+
+/// The exit code of a run's error.
+pub fn of(error: &RunError) -> u8 {
+    match error {
+        RunError::Part(part) => match part.kind {
+            FailureKind::Diverged => DIVERGED,
+            FailureKind::Io => OTHER,
+            FailureKind::Interrupted => CHECKPOINTED,
+            FailureKind::Died
+            | FailureKind::Silent
+            | FailureKind::NotStarted
+            | FailureKind::Protocol
+            | FailureKind::Reported => PEER,
+        },
+        RunError::Smoother(_) | RunError::Mapping(_) => CASE,
+        RunError::Closure { .. } => DIVERGED,
+        _ => OTHER,
+    }
+}
