@@ -5,4 +5,5 @@
 
 pub mod launch;
 pub mod liggghts;
+pub mod openfoam;
 pub mod solver;

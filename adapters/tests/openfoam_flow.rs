@@ -1,5 +1,6 @@
 //! Flow, heat and balances of calcineGasFoam against exact solutions (verification).
 
+#[cfg(test)]
 mod openfoam_support;
 
 use calcine_coupler::part::{Balance, Bed, Gas, Part};

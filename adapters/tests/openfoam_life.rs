@@ -1,5 +1,6 @@
 //! A solver's life: repeats, checkpoints, refusals and death.
 
+#[cfg(test)]
 mod openfoam_support;
 
 use std::path::PathBuf;

@@ -141,3 +141,114 @@ fn copy(from: &Path, to: &Path) -> Result<(), PartError> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
+    use calcine_coupler::physics::Vec3;
+    use calcine_coupler::physics::gas::GasProperties;
+    use calcine_coupler::setup::{GasControls, GasPatch, Schedule, WallHeat};
+    use calcine_coupler::time::GasStorage;
+
+    fn mesh() -> Mesh {
+        box_mesh(&BoxSpec {
+            origin: Vec3::zeros(),
+            size: Vec3::new(0.1, 0.1, 0.3),
+            cells: [1, 1, 3],
+            patches: ["side", "side", "side", "side", "bottom", "top"].map(str::to_owned),
+        })
+        .unwrap()
+    }
+
+    fn setup() -> GasSetup {
+        let inlet = GasPatch::Inlet {
+            superficial_velocity: Schedule::constant(0.1),
+            temperature: Schedule(vec![(0.0, 300.0), (10.0, 1.0 / 3e-3)]),
+        };
+        let wall = GasPatch::Wall {
+            no_slip: false,
+            heat: WallHeat::Adiabatic,
+        };
+        let outlet = GasPatch::Outlet {
+            pressure: 101_325.0,
+        };
+        let patches = [("side", wall), ("bottom", inlet), ("top", outlet)];
+        GasSetup {
+            mixture: "air".into(),
+            properties: GasProperties::air(),
+            storage: GasStorage::Process,
+            temperature: 300.0,
+            pressure: 101_325.0,
+            velocity: Vec3::zeros(),
+            gravity: Vec3::zeros(),
+            patches: patches.map(|(name, patch)| (name.to_owned(), patch)).into(),
+            controls: GasControls {
+                outer_iterations: 3,
+                pressure_corrections: 2,
+                outer_tolerance: 1e-6,
+                linear_tolerance: 1e-10,
+            },
+        }
+    }
+
+    #[test]
+    fn a_template_s_own_files_stay_where_the_case_does_not_speak() {
+        let folder = tempfile::tempdir().unwrap();
+        let template = folder.path().join("template");
+        for (name, text) in [
+            ("system/fvSchemes", "mine"),
+            ("0/p", "mine"),
+            ("extra", "mine"),
+        ] {
+            put(&template.join(name), text).unwrap();
+        }
+        let (setup, mesh) = (setup(), mesh());
+        let case = OpenfoamCase {
+            setup: &setup,
+            mesh: &mesh,
+            template: Some(&template),
+            case_hash: "0a",
+        };
+        let written = folder.path().join("case");
+        case.write(&written).unwrap();
+        let read = |name: &str| fs::read_to_string(written.join(name)).unwrap();
+        assert_eq!(read("system/fvSchemes"), "mine");
+        assert_eq!(read("extra"), "mine");
+        assert!(read("0/p").contains("fixedValue"));
+        assert!(read("system/fvSolution").contains("PBiCGStab"));
+        assert!(read("constant/polyMesh/boundary").contains("bottom"));
+    }
+
+    #[test]
+    fn numbers_are_written_with_all_their_bits() {
+        let text = dictionaries::calcine(&setup(), "0a");
+        let third = text
+            .split_whitespace()
+            .find(|word| word.starts_with("3.33"))
+            .unwrap();
+        let third = third.trim_end_matches([')', ';']);
+        assert_eq!(third.parse::<f64>().unwrap(), 1.0 / 3e-3);
+    }
+
+    #[test]
+    fn a_patch_without_a_condition_and_a_condition_without_a_patch_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let mesh = mesh();
+        let refusal = |setup: &GasSetup| {
+            let case = OpenfoamCase {
+                setup,
+                mesh: &mesh,
+                template: None,
+                case_hash: "0a",
+            };
+            case.write(folder.path()).unwrap_err().to_string()
+        };
+        let mut lacking = setup();
+        lacking.patches.pop();
+        assert!(refusal(&lacking).contains("patch `top` has no boundary condition"));
+        let mut foreign = setup();
+        foreign.patches[0].0 = "lid".into();
+        assert!(refusal(&foreign).contains("the mesh has no patch `lid`"));
+    }
+}
