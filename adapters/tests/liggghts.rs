@@ -1,5 +1,7 @@
 //! The LIGGGHTS host, as it is built, with ten spheres that are held.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -235,7 +237,7 @@ fn a_host_killed_in_a_window_is_named_within_a_second_and_leaves_nothing() {
 #[test]
 fn a_script_that_liggghts_refuses_is_reported_with_its_words() {
     let mut bench = Bench::new();
-    // An overlong box of zero width: LIGGGHTS refuses it.
+    // LIGGGHTS refuses a negative diameter.
     bench.setup.radius[3] = -1.0;
     let error = bench.launch(1, None).map(|_| ()).unwrap_err();
     assert_eq!(error.kind, FailureKind::Reported, "{error}");

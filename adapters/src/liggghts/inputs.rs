@@ -12,6 +12,8 @@ use calcine_coupler::setup::ParticleSetup;
 pub const SCRIPT: &str = "in.liggghts";
 /// Name of the data file.
 pub const DATA: &str = "particles.data";
+/// The script of a bed that is held; it reads [`DATA`].
+const FROZEN_BED: &str = include_str!("../../../liggghts-inputs/frozen-bed.in");
 const WHO: &str = "LIGGGHTS (particles)";
 
 /// What the inputs are made from.
@@ -73,27 +75,10 @@ impl Inputs<'_> {
             format!("1 {} 1", self.ranks)
         };
         let skin = 0.1 * self.setup.radius.iter().copied().fold(0.0, f64::max);
-        format!(
-            "\
-# Written by Calcine: a bed whose particles are held. Nothing moves them, so there is neither an
-# integrator nor a contact law; time advances on the motion clock.
-units si
-atom_style granular
-atom_modify map array sort 0 0
-communicate single vel yes
-boundary f f f
-newton off
-processors {grid}
-read_data {DATA}
-pair_style none
-neighbor {skin:e} bin
-neigh_modify delay 0
-timestep {step:e}
-thermo 1000000
-thermo_modify lost error norm no
-",
-            step = self.step
-        )
+        FROZEN_BED
+            .replace("{processors}", &grid)
+            .replace("{skin}", &format!("{skin:e}"))
+            .replace("{step}", &format!("{:e}", self.step))
     }
 
     fn data(&self) -> String {
@@ -179,6 +164,21 @@ mod tests {
         assert_eq!(last[..2], ["7", "2"]);
         assert_eq!(last[2].parse::<f64>().unwrap(), 0.01);
         assert_eq!(last[6].parse::<f64>().unwrap(), 1.0 / 3.0);
+    }
+
+    #[test]
+    fn the_script_has_no_gap_left_and_reads_the_data_file() {
+        let setup = setup();
+        let script = inputs(&setup).script();
+        let commands: Vec<&str> = script
+            .lines()
+            .filter(|line| !line.starts_with('#'))
+            .collect();
+        assert!(commands.iter().all(|line| !line.contains('{')), "{script}");
+        assert!(commands.contains(&"timestep 1e-4"));
+        // The duct is 10 mm wide both ways and taller, but ranks never lie above each other.
+        assert!(commands.contains(&"processors 1 1 1"));
+        assert!(commands.contains(&format!("read_data {DATA}").as_str()));
     }
 
     #[test]

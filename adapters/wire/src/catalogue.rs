@@ -164,7 +164,6 @@ impl Catalogue {
     /// Words of a record's payload for `count` items, every column 64-byte aligned; `None` where
     /// that many do not fit a number.
     pub fn words(&self, record: Record, count: usize) -> Option<usize> {
-        // 2^40 items of any catalogue stay below 2^63 bytes only if the sum does; check each step.
         self.of(record).try_fold(0usize, |sum, field| {
             let items = if field.per_item { count } else { 1 };
             let words = field.components.checked_mul(items)?;

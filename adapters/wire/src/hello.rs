@@ -164,7 +164,8 @@ mod tests {
 
     #[test]
     fn a_difference_is_told_with_both_values() {
-        let cases: [(&str, fn(&mut Hello)); 4] = [
+        type Change = fn(&mut Hello);
+        let cases: [(&str, Change); 4] = [
             ("case hash is 0a here, but 0c", |h| {
                 h.case_hash = "0c".into()
             }),

@@ -247,8 +247,8 @@ impl Ports {
         if words <= self.words {
             return Ok(());
         }
-        let segment = words.next_power_of_two();
-        let needed = SLOTS * 8 * segment as u64;
+        let segment = words.checked_next_power_of_two().unwrap_or(usize::MAX);
+        let needed = (segment as u64).saturating_mul(8 * SLOTS);
         let memory = rustix::fs::statvfs("/dev/shm").map_err(failed("measuring /dev/shm"))?;
         let free = memory.f_bavail * memory.f_frsize;
         if free < needed {
@@ -326,5 +326,37 @@ impl Transport for SharedMemory {
     fn received(&self) -> Option<(&Header, &[u64])> {
         let message = self.ports.as_ref()?.received.as_ref()?;
         Some((message.user_header(), message.payload()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Kind;
+    use crate::run::Run;
+
+    #[test]
+    fn a_message_larger_than_the_memory_is_refused_with_both_numbers() {
+        let run = Run::create().unwrap();
+        let mut end = SharedMemory::open(&run.address("gas"), 0, End::Coordinator).unwrap();
+        let header = Header::of(Kind::Start);
+        // 2^44 words in 5 slots.
+        let error = end
+            .loan(header, 1 << 44)
+            .map(|_| ())
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("703687441776640 bytes"), "{error}");
+        assert!(end.loan(header, usize::MAX).is_err());
+        assert!(end.loan(header, 1000).is_ok());
+    }
+
+    #[test]
+    fn a_message_that_nobody_waits_for_is_an_error() {
+        let run = Run::create().unwrap();
+        let mut end = SharedMemory::open(&run.address("gas"), 0, End::Coordinator).unwrap();
+        end.loan(Header::of(Kind::Commit), 0).unwrap();
+        let error = end.send().unwrap_err().to_string();
+        assert!(error.contains("0 of 1 receivers"), "{error}");
     }
 }

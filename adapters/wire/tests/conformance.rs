@@ -1,5 +1,7 @@
 //! What every transport must do, written once. A transport joins by giving two connected ends.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use std::time::{Duration, Instant};
 
 use calcine_wire::shared_memory::End;
