@@ -3,6 +3,7 @@
 #[cfg(test)]
 mod openfoam_support;
 
+use calcine_coupler::mesh::Mesh;
 use calcine_coupler::part::{Balance, Bed, Gas, Part};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
@@ -74,6 +75,46 @@ fn gas_at_rest_carries_its_weight_across_a_jump_of_the_void_fraction() {
         let above = SIDE * (CELLS as f64 - 0.5 - cell as f64);
         assert!((fields.pressure[cell] - PRESSURE - weight * above).abs() < 1e-10);
         assert!((fields.pressure_gradient[cell].z + weight).abs() < 1e-8);
+    }
+}
+
+#[test]
+fn gas_at_rest_stays_at_rest_on_a_sheared_mesh() {
+    // Each layer of cells is displaced, so that lines between centres are oblique to their faces.
+    let folder = tempfile::tempdir().unwrap();
+    let mut sheared = mesh([3, 2, CELLS]).topology().clone();
+    for point in &mut sheared.points {
+        point.x += 0.3 * point.z;
+    }
+    let sheared = Mesh::new(sheared).unwrap();
+    let cells = sheared.cells();
+    let mut still = setup();
+    still.velocity = Vec3::zeros();
+    still.gravity = Vec3::new(0.0, 0.0, -9.81);
+    for (_, patch) in &mut still.patches {
+        if let GasPatch::Inlet {
+            superficial_velocity,
+            ..
+        } = patch
+        {
+            *superficial_velocity = Schedule::constant(0.0);
+        }
+    }
+    let mut packed = Bed {
+        void_fraction: vec![1.0; cells],
+    };
+    packed.void_fraction[cells / 3..2 * cells / 3].fill(0.4);
+    let mut duct = Duct::launch_on(sheared, &still, folder.path());
+    duct.advance(20, &packed, &exchange_of_nothing(cells));
+    let fields = duct.gas.fields();
+    let weight = fields.density[0] * 9.81;
+    for cell in 0..cells {
+        assert!(
+            fields.velocity[cell].norm() < 1e-7,
+            "{}",
+            fields.velocity[cell]
+        );
+        assert!((fields.pressure_gradient[cell].z + weight).abs() < 1e-4 * weight);
     }
 }
 

@@ -165,10 +165,11 @@ const NO_LINK: WireError = WireError::Order {
 };
 
 /// OpenFOAM compares PWD with the folder it runs in, and looks for its `etc` where WM_PROJECT_DIR
-/// says; the user's own setting stays.
+/// says: Debian's, unless the user has set both another solver and its OpenFOAM.
 fn environment(folder: &Path) -> Vec<(OsString, OsString)> {
     let mut variables = vec![("PWD".into(), folder.into())];
-    if std::env::var_os("WM_PROJECT_DIR").is_none() {
+    let own = [SOLVER_VARIABLE, "WM_PROJECT_DIR"];
+    if own.iter().any(|name| std::env::var_os(name).is_none()) {
         variables.push(("WM_PROJECT_DIR".into(), PROJECT.into()));
     }
     variables
