@@ -1,6 +1,8 @@
 //! Faults: each process of a coupled run is killed in the middle of a window; the message names
 //! it, everything ends, nothing stays behind, and the next run is clean.
 
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
+
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
