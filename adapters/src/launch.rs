@@ -51,7 +51,7 @@ impl Program {
 }
 
 /// Finds a program of Calcine: the variable's path, or beside the running executable (also one folder
-/// up, for tests, and in `libexec/calcine` of an installation).
+/// up, for tests; in `openfoam/bin` of the target folder; in `libexec/calcine` of an installation).
 pub fn find_program(variable: &str, name: &str, remedy: &str) -> Result<PathBuf, PartError> {
     if let Some(path) = std::env::var_os(variable).map(PathBuf::from) {
         return Ok(path);
@@ -60,7 +60,13 @@ pub fn find_program(variable: &str, name: &str, remedy: &str) -> Result<PathBuf,
         .and_then(|path| path.canonicalize())
         .unwrap_or_default();
     let folder = own.parent().unwrap_or(Path::new("."));
-    let places = [".", "..", "../libexec/calcine", "../openfoam/bin"];
+    let places = [
+        ".",
+        "..",
+        "../libexec/calcine",
+        "../openfoam/bin",
+        "../../openfoam/bin",
+    ];
     let found = places
         .map(|place| folder.join(place).join(name))
         .into_iter()

@@ -71,7 +71,8 @@ impl OpenfoamGas {
         launch: OpenfoamLaunch<'_>,
         supervisor: &mut Supervisor,
     ) -> Result<Self, PartError> {
-        let path = find_solver()?;
+        let remedy = "`cargo xtask setup` installs OpenFOAM and builds it";
+        let path = find_program(SOLVER_VARIABLE, SOLVER, remedy)?;
         let case = OpenfoamCase {
             setup: launch.setup,
             mesh: &launch.mesh,
@@ -146,18 +147,6 @@ impl OpenfoamGas {
         };
         read.map_err(|error| self.solver.failure(window, error))
     }
-}
-
-/// The solver where every program of Calcine is looked for, and where `cargo xtask setup` leaves it
-/// as seen from a test in TARGET/PROFILE/deps.
-fn find_solver() -> Result<PathBuf, PartError> {
-    let remedy = "`cargo xtask setup` installs OpenFOAM and builds it";
-    find_program(SOLVER_VARIABLE, SOLVER, remedy).or_else(|error| {
-        let own = std::env::current_exe().ok();
-        let target = own.as_deref().and_then(|path| path.ancestors().nth(3));
-        let built = target.map(|target| target.join("openfoam/bin").join(SOLVER));
-        built.filter(|path| path.is_file()).ok_or(error)
-    })
 }
 
 const NO_LINK: WireError = WireError::Order {
