@@ -1,6 +1,8 @@
 //! The architecture is a test: the arrows between crates, the length of files, and nothing in
 //! them that belongs to one machine only.
 
+#![allow(clippy::unwrap_used)]
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -122,9 +122,7 @@ fn rates(state: &State, solid: f64) -> State {
         rate.gas[c] = -state.gas[c] / mass * (flow[c] - flow[c + 1]);
     }
     let volume = PI / 6.0 * DIAMETER.powi(3);
-    for p in 0..PARTICLES {
-        rate.particles[p] = heat[p] / (solid * volume);
-    }
+    rate.particles = heat.map(|heat| heat / (solid * volume));
     rate
 }
 
