@@ -17,9 +17,19 @@ fn command(pairing: [&str; 2], out: &Path, end: &str) -> Command {
         .arg("run")
         .arg(case)
         .args(["--gas", pairing[0], "--particles", pairing[1], "--quiet"])
-        .args(["--set", "time.acceleration=5", "--set", &format!("time.end={end}")])
+        .args([
+            "--set",
+            "time.acceleration=5",
+            "--set",
+            &format!("time.end={end}"),
+        ])
         .args(["--set", "time.checkpoint.every=2 s"])
-        .args(["--set", "output.every=7 s", "--set", "output.series_every=0.1 s"])
+        .args([
+            "--set",
+            "output.every=7 s",
+            "--set",
+            "output.series_every=0.1 s",
+        ])
         .arg("--out")
         .arg(out)
         .stdin(Stdio::null())
@@ -33,7 +43,10 @@ fn datasets(path: &Path) -> BTreeMap<String, Vec<u64>> {
     fn walk(group: &hdf5::Group, found: &mut BTreeMap<String, Vec<u64>>) {
         for dataset in group.datasets().unwrap() {
             if let Ok(values) = dataset.read_raw::<f64>() {
-                found.insert(dataset.name(), values.iter().map(|value| value.to_bits()).collect());
+                found.insert(
+                    dataset.name(),
+                    values.iter().map(|value| value.to_bits()).collect(),
+                );
             }
         }
         for inner in group.groups().unwrap() {
@@ -58,12 +71,16 @@ fn killed_and_resumed(pairing: [&str; 2], end: &str, rows: &[usize]) {
         let mut run = command(pairing, &out, end).spawn().unwrap();
         let begun = Instant::now();
         loop {
-            let written = fs::read_to_string(out.join("series.csv")).map_or(0, |text| text.lines().count());
+            let written =
+                fs::read_to_string(out.join("series.csv")).map_or(0, |text| text.lines().count());
             let ready = out.join("checkpoint/coordinator.state").is_file();
             if (written >= limit && ready) || run.try_wait().unwrap().is_some() {
                 break;
             }
-            assert!(begun.elapsed() < Duration::from_secs(120), "no checkpoint in time");
+            assert!(
+                begun.elapsed() < Duration::from_secs(120),
+                "no checkpoint in time"
+            );
             std::thread::sleep(Duration::from_micros(200));
         }
         let killed = run.kill().is_ok();
@@ -71,9 +88,16 @@ fn killed_and_resumed(pairing: [&str; 2], end: &str, rows: &[usize]) {
         println!("{pairing:?}: killed after {limit} rows: {killed}, {status}");
         let mut resumed = command(pairing, &out, end);
         let output = resumed.arg("--resume").output().unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
         let found = datasets(&out.join("results.h5"));
-        assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>());
+        assert_eq!(
+            found.keys().collect::<Vec<_>>(),
+            expected.keys().collect::<Vec<_>>()
+        );
         for (name, values) in &expected {
             assert_eq!(&found[name], values, "{name} differs after {limit} rows");
         }

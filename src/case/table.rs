@@ -266,6 +266,20 @@ impl<'a> Reader<'a> {
         None
     }
 
+    /// A wall time above zero.
+    pub fn wall_time(&self, key: &str) -> Option<std::time::Duration> {
+        let seconds = self.positive(key, Dimension::TIME)?;
+        let time = std::time::Duration::try_from_secs_f64(seconds).ok();
+        if time.is_none() {
+            self.fail(
+                key,
+                format!("is {seconds} s, beyond any clock"),
+                "write a shorter time",
+            );
+        }
+        time
+    }
+
     /// Three components with one unit: "x y z unit".
     pub fn vector(&self, key: &str, dimension: Dimension) -> Option<[f64; 3]> {
         let item = self.item(key)?;
@@ -348,6 +362,20 @@ impl<'a> Reader<'a> {
             return None;
         }
         Some(Schedule(entries))
+    }
+
+    /// A schedule of absolute temperatures.
+    pub fn temperatures(&self, key: &str) -> Option<Schedule> {
+        let schedule = self.schedule(key, Dimension::TEMPERATURE)?;
+        if let Some((_, value)) = schedule.0.iter().find(|entry| entry.1 <= 0.0) {
+            self.fail(
+                key,
+                format!("is {value} K"),
+                "temperatures are absolute: above 0 K",
+            );
+            return None;
+        }
+        Some(schedule)
     }
 
     /// One value of a key (or of an entry of its list) as a quantity.

@@ -155,7 +155,9 @@ fn unit(text: &str) -> Result<Unit, UnitError> {
             let &(_, scale, dimension) = known.ok_or_else(|| UnitError::Unknown(symbol.into()))?;
             factor *= f64::powi(scale, i32::from(sign * power));
             for (sum, exponent) in exponents.iter_mut().zip(dimension) {
-                *sum += sign * power * exponent;
+                let change = (sign * power).checked_mul(exponent);
+                let next = change.and_then(|change| sum.checked_add(change));
+                *sum = next.ok_or_else(|| UnitError::Unknown(text.into()))?;
             }
         }
         let Some(separator) = rest[end..].chars().next() else {
@@ -207,13 +209,23 @@ pub fn quantities(text: &str) -> Result<(Vec<f64>, Dimension), UnitError> {
         offset,
         dimension,
     } = unit(rest)?;
-    Ok((
-        numbers
-            .into_iter()
-            .map(|number| number * factor + offset)
-            .collect(),
-        dimension,
-    ))
+    let converted: Vec<f64> = numbers
+        .iter()
+        .map(|number| number * factor + offset)
+        .collect();
+    if converted.iter().any(|number| !number.is_finite()) {
+        return Err(UnitError::Number(text.into()));
+    }
+    Ok((converted, dimension))
+}
+
+/// A difference, for bands: "0.5 K", "5 %"; degrees Celsius count as kelvins.
+pub fn difference(text: &str) -> Result<(f64, Dimension), UnitError> {
+    let text = text.replace("degC", "K").replace("°C", "K");
+    match quantities(&text)? {
+        (numbers, dimension) if numbers.len() == 1 => Ok((numbers[0], dimension)),
+        _ => Err(UnitError::Number(text)),
+    }
 }
 
 #[cfg(test)]
@@ -235,7 +247,9 @@ mod tests {
         assert_eq!(one("840 J/kg/K"), (840.0, Dimension::HEAT_CAPACITY));
         assert_eq!(one("0.9 kJ/kg/K"), (900.0, Dimension::HEAT_CAPACITY));
         assert_eq!(one("1 atm"), (101_325.0, Dimension::PRESSURE));
-        assert_eq!(one("28.96 g/mol"), (0.02896, Dimension::MOLAR_MASS));
+        let (mass, dimension) = one("28.96 g/mol");
+        assert!((mass - 0.02896).abs() < 1e-16);
+        assert_eq!(dimension, Dimension::MOLAR_MASS);
         assert_eq!(one("9.81 m/s^2").1, Dimension::ACCELERATION);
         assert_eq!(one("1e-3 m"), (1e-3, Dimension::LENGTH));
         assert_eq!(one("0.6"), (0.6, Dimension::NONE));
@@ -258,5 +272,14 @@ mod tests {
         assert!(matches!(quantities("inf m"), Err(UnitError::Number(_))));
         assert!(quantities("").is_err());
         assert!(quantities("1 m^99").is_err());
+        assert!(quantities(&format!("1 {}", ["m^9"; 20].join("*"))).is_err());
+        assert!(quantities("1e308 t/l").is_err());
+    }
+
+    #[test]
+    fn a_difference_in_degrees_celsius_is_one_in_kelvins() {
+        assert_eq!(difference("0.5 degC"), Ok((0.5, Dimension::TEMPERATURE)));
+        assert_eq!(difference("5 %"), Ok((0.05, Dimension::NONE)));
+        assert!(difference("1 2 K").is_err());
     }
 }

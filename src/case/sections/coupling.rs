@@ -41,8 +41,8 @@ pub(super) fn read(root: &Reader<'_>) -> Option<Coupling> {
         coupling.exchange_attempts = attempts.unwrap_or(coupling.exchange_attempts);
         table.finish();
     }
-    if let Some(seconds) = section.positive("deadline", Dimension::TIME) {
-        coupling.deadline = Duration::from_secs_f64(seconds);
+    if let Some(deadline) = section.wall_time("deadline") {
+        coupling.deadline = deadline;
     }
     section.finish();
     mapping.map(|_| coupling)

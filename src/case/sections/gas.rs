@@ -156,16 +156,8 @@ fn patch(reader: &Reader<'_>) -> Option<GasPatch> {
 
 fn inlet(table: &Reader<'_>) -> Option<GasPatch> {
     let velocity = table.schedule("superficial_velocity", Dimension::VELOCITY);
-    let temperature = table.schedule("temperature", Dimension::TEMPERATURE);
+    let temperature = table.temperatures("temperature");
     let (superficial_velocity, temperature) = (velocity?, temperature?);
-    if temperature.0.iter().any(|entry| entry.1 <= 0.0) {
-        table.fail(
-            "temperature",
-            "is not above 0 K",
-            "temperatures are absolute",
-        );
-        return None;
-    }
     if superficial_velocity.0.iter().any(|entry| entry.1 < 0.0) {
         table.fail(
             "superficial_velocity",
@@ -189,7 +181,7 @@ fn wall(table: &Reader<'_>) -> Option<GasPatch> {
         }
         Some(item) if item.as_table_like().is_some() => {
             let inner = table.table("heat")?;
-            let temperature = inner.schedule("temperature", Dimension::TEMPERATURE);
+            let temperature = inner.temperatures("temperature");
             inner.finish();
             temperature.map(WallHeat::Temperature)
         }

@@ -20,14 +20,29 @@ pub(super) fn read(root: &Reader<'_>) -> Option<Laws> {
     ];
     let heat_transfer = law(&section, "heat_transfer", &heats);
     // Stated in every case file; only "none" is computed so far.
-    let conduction = law(&section, "conduction", &[("none", ())]);
-    let radiation = law(&section, "radiation", &[("none", ())]);
+    let conduction = only_none(&section, "conduction");
+    let radiation = only_none(&section, "radiation");
     section.finish();
     conduction.and(radiation)?;
     Some(Laws {
         drag: drag?,
         heat_transfer: heat_transfer?,
     })
+}
+
+fn only_none(section: &Reader<'_>, key: &str) -> Option<()> {
+    let table = section.required_table(key, &format!("{key} = {{ law = \"none\" }}"))?;
+    let law = table.required_text("law", "\"none\"");
+    if let Some(law) = law.filter(|law| *law != "none") {
+        let help = "write \"none\": the run leaves it out";
+        table.fail(
+            "law",
+            format!("is \"{law}\"; {key} is not supported yet"),
+            help,
+        );
+    }
+    table.finish();
+    law.map(|_| ())
 }
 
 fn law<T: Copy>(section: &Reader<'_>, key: &str, choices: &[(&str, T)]) -> Option<T> {

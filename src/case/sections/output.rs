@@ -8,7 +8,7 @@ use crate::case::model::{
     Band, Expect, Measure, MeshSpec, Output, Place, Population, Probe, Quantity, Statistic,
 };
 use crate::case::table::Reader;
-use crate::case::units::{Dimension, quantities as parse};
+use crate::case::units::{Dimension, difference};
 
 /// Gas fields of the snapshots.
 const GAS: [&str; 5] = [
@@ -164,16 +164,11 @@ fn quantity(
 /// A band such as "5 %" or "0.5 K".
 fn band(table: &Reader<'_>, key: &str, dimension: Dimension) -> Option<Band> {
     let text = table.text(key)?;
-    let made = match parse(text) {
-        Ok((numbers, found)) if numbers.len() == 1 && numbers[0] >= 0.0 => {
-            if text.trim_end().ends_with('%') {
-                Some(Band::Relative(numbers[0]))
-            } else if found == dimension {
-                Some(Band::Absolute(numbers[0]))
-            } else {
-                None
-            }
+    let made = match difference(text) {
+        Ok((number, _)) if number >= 0.0 && text.trim_end().ends_with('%') => {
+            Some(Band::Relative(number))
         }
+        Ok((number, found)) if number >= 0.0 && found == dimension => Some(Band::Absolute(number)),
         _ => None,
     };
     if made.is_none() {
@@ -285,9 +280,8 @@ fn measure(
 fn count(populations: &[Population]) -> Option<usize> {
     populations
         .iter()
-        .map(|population| match &population.place {
-            Place::Grid { counts, .. } => Some(counts.iter().product::<usize>()),
+        .try_fold(0usize, |sum, population| match &population.place {
+            Place::Grid { counts, .. } => sum.checked_add(counts.iter().product()),
             Place::File(_) => None,
         })
-        .sum()
 }

@@ -9,6 +9,9 @@ use crate::case::model::{Contact, Material, MeshSpec, Motion, Place, Population}
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
 
+/// Most particles of a grid.
+const MOST_PARTICLES: f64 = 1e9;
+
 pub(super) fn materials(root: &Reader<'_>) -> Vec<Material> {
     let example = "[materials.glass] with density = \"2500 kg/m^3\"";
     let Some(section) = root.required_table("materials", example) else {
@@ -100,6 +103,19 @@ pub(super) fn populations(
         .iter()
         .map(|table| population(table, materials, mesh, folder))
         .collect();
+    for (index, population) in all.iter().enumerate() {
+        let Some(population) = population else {
+            continue;
+        };
+        if all[..index]
+            .iter()
+            .flatten()
+            .any(|other| other.name == population.name)
+        {
+            let rule = format!("is \"{}\" a second time", population.name);
+            tables[index].fail("name", rule, "names of populations must differ");
+        }
+    }
     all.into_iter().collect()
 }
 
@@ -175,6 +191,14 @@ fn grid(grid: &Reader<'_>, diameter: Option<f64>, mesh: Option<&MeshSpec>) -> Op
     grid.finish();
     let (first, spacing, counts) = (Vec3::from(first?), Vec3::from(spacing?), counts?);
     let diameter = diameter?;
+    if counts.iter().map(|&n| n as f64).product::<f64>() > MOST_PARTICLES {
+        let rule = format!(
+            "makes {} x {} x {} particles",
+            counts[0], counts[1], counts[2]
+        );
+        grid.fail("counts", rule, "1e9 particles are the most");
+        return None;
+    }
     for axis in 0..3 {
         // Touching spheres are fine; 1e-9 is round-off of the units.
         if counts[axis] > 1 && spacing[axis] < diameter * (1.0 - 1e-9) {

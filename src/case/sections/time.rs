@@ -1,7 +1,5 @@
 //! `[time]`.
 
-use std::time::Duration;
-
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
 
 use crate::case::model::Time;
@@ -21,9 +19,7 @@ pub(super) fn read(root: &Reader<'_>) -> Option<(Time, GasStorage)> {
     let (mut every, mut wall) = (None, None);
     if let Some(checkpoint) = section.table("checkpoint") {
         every = ticks(&checkpoint, "every", false);
-        wall = checkpoint
-            .positive("wall", Dimension::TIME)
-            .map(Duration::from_secs_f64);
+        wall = checkpoint.wall_time("wall");
         checkpoint.finish();
     }
     section.finish();
