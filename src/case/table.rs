@@ -273,7 +273,7 @@ impl<'a> Reader<'a> {
         if time.is_none() {
             self.fail(
                 key,
-                format!("is {seconds} s, beyond any clock"),
+                format!("is {seconds:e} s, beyond any clock"),
                 "write a shorter time",
             );
         }

@@ -89,6 +89,7 @@ const UNITS: &[(&str, f64, [i8; 5])] = &[
     ("s", 1.0, [0, 0, 1, 0, 0]),
     ("ms", 1e-3, [0, 0, 1, 0, 0]),
     ("us", 1e-6, [0, 0, 1, 0, 0]),
+    ("uPa", 1e-6, [-1, 1, -2, 0, 0]),
     ("µs", 1e-6, [0, 0, 1, 0, 0]),
     ("min", 60.0, [0, 0, 1, 0, 0]),
     ("h", 3600.0, [0, 0, 1, 0, 0]),
@@ -217,6 +218,14 @@ pub fn quantities(text: &str) -> Result<(Vec<f64>, Dimension), UnitError> {
         return Err(UnitError::Number(text.into()));
     }
     Ok((converted, dimension))
+}
+
+/// A number as messages show it: without the last digits' round-off.
+pub fn shown(number: f64) -> String {
+    format!("{number:.9e}")
+        .parse::<f64>()
+        .unwrap_or(number)
+        .to_string()
 }
 
 /// A difference, for bands: "0.5 K", "5 %"; degrees Celsius count as kelvins.

@@ -7,7 +7,7 @@ use calcine_coupler::physics::Vec3;
 use super::existing;
 use crate::case::model::{Contact, Material, MeshSpec, Motion, Place, Population};
 use crate::case::table::Reader;
-use crate::case::units::Dimension;
+use crate::case::units::{Dimension, shown};
 
 /// Most particles of a grid.
 const MOST_PARTICLES: f64 = 1e9;
@@ -203,9 +203,10 @@ fn grid(grid: &Reader<'_>, diameter: Option<f64>, mesh: Option<&MeshSpec>) -> Op
         // Touching spheres are fine; 1e-9 is round-off of the units.
         if counts[axis] > 1 && spacing[axis] < diameter * (1.0 - 1e-9) {
             let rule = format!(
-                "is {} m along {}, less than the diameter of {diameter} m",
-                spacing[axis],
-                ["x", "y", "z"][axis]
+                "is {} m along {}, less than the diameter of {} m",
+                shown(spacing[axis]),
+                ["x", "y", "z"][axis],
+                shown(diameter)
             );
             grid.fail("spacing", rule, "particles must not overlap");
         }
@@ -216,9 +217,12 @@ fn grid(grid: &Reader<'_>, diameter: Option<f64>, mesh: Option<&MeshSpec>) -> Op
             let (low, high) = (origin[axis], origin[axis] + size[axis]);
             if first[axis] < low || last > high {
                 let rule = format!(
-                    "puts centres from {} m to {last} m along {}, but the mesh reaches from {low} m to {high} m",
-                    first[axis],
-                    ["x", "y", "z"][axis]
+                    "puts centres from {} m to {} m along {}, but the mesh reaches from {} m to {} m",
+                    shown(first[axis]),
+                    shown(last),
+                    ["x", "y", "z"][axis],
+                    shown(low),
+                    shown(high)
                 );
                 grid.fail_whole(&rule, "move the particles, or enlarge the mesh");
             }

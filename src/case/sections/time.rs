@@ -56,11 +56,7 @@ fn ticks(section: &Reader<'_>, key: &str, required: bool) -> Option<Ticks> {
             None
         }
         Err(error) => {
-            section.fail(
-                key,
-                format!("is too long: {error}"),
-                "split the run with `--from`",
-            );
+            section.fail(key, format!("is too long: {error}"), "end the run earlier");
             None
         }
     }

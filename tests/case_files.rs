@@ -1,0 +1,156 @@
+//! Case files: the good ones read; the bad ones give exactly the messages that they hold, each
+//! under its line as `#^ message`, all at once and each with a remedy.
+
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use calcine::case::{parse, read};
+use proptest::prelude::*;
+
+fn files(folder: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let mut found: Vec<PathBuf> = fs::read_dir(&folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|extension| extension == "toml")
+        })
+        .collect();
+    found.sort();
+    found
+}
+
+/// (line, message) of each `#^`, which stands under its line or under another `#^`.
+fn expected(text: &str) -> Vec<(usize, String)> {
+    let (mut line, mut found) = (0, Vec::new());
+    for (number, content) in (1..).zip(text.lines()) {
+        match content.trim_start().strip_prefix("#^ ") {
+            Some(message) => found.push((line, message.to_owned())),
+            None => line = number,
+        }
+    }
+    found
+}
+
+#[test]
+fn every_good_case_is_read() {
+    let all = [files("cases"), files("tests/inputs/good")].concat();
+    assert!(all.len() >= 2, "{all:?}");
+    for path in all {
+        if let Err(errors) = read(&path, &[]) {
+            panic!("{errors}");
+        }
+    }
+}
+
+#[test]
+fn every_bad_case_gives_its_messages_all_at_once_each_with_a_remedy() {
+    let all = files("tests/inputs/bad");
+    assert!(all.len() >= 25, "{} bad cases", all.len());
+    for path in all {
+        let text = fs::read_to_string(&path).unwrap();
+        let wanted = expected(&text);
+        assert!(!wanted.is_empty(), "{} holds no message", path.display());
+        let errors = match read(&path, &[]) {
+            Ok(_) => panic!("{} was read without an error", path.display()),
+            Err(errors) => errors,
+        };
+        let mut found: Vec<(usize, String)> = errors
+            .problems()
+            .iter()
+            .map(|problem| (problem.line, problem.message.clone()))
+            .collect();
+        let mut wanted = wanted;
+        found.sort();
+        wanted.sort();
+        assert_eq!(found, wanted, "{}", path.display());
+        for problem in errors.problems() {
+            assert!(
+                !problem.help.is_empty(),
+                "{}: {}",
+                path.display(),
+                problem.message
+            );
+        }
+        let shown = errors.render();
+        assert_eq!(
+            shown.matches("help:").count(),
+            errors.problems().len(),
+            "{shown}"
+        );
+    }
+}
+
+#[test]
+fn set_changes_values_and_refuses_what_it_does_not_know() {
+    let path = &files("cases")[0];
+    let set = |text: &str| read(path, &[text.to_owned()]);
+    let case = set("time.end=3 s").unwrap();
+    assert_eq!(case.time.end.seconds(), 3.0);
+    assert_eq!(
+        set("time.acceleration=7")
+            .unwrap()
+            .time
+            .acceleration
+            .largest(),
+        7.0
+    );
+    assert_eq!(
+        set("particles[0].diameter=9 mm").unwrap().particles[0].diameter,
+        9e-3
+    );
+    assert_ne!(case.hash, read(path, &[]).unwrap().hash);
+    for wrong in [
+        "time.ent=3 s",
+        "time.end",
+        "particles[7].diameter=1 mm",
+        "time.end.x=1",
+        "=",
+        ".",
+    ] {
+        let errors = set(wrong).unwrap_err();
+        assert!(!errors.problems().is_empty(), "{wrong}");
+    }
+}
+
+#[test]
+fn spacing_order_and_comments_do_not_change_the_hash() {
+    let path = &files("cases")[0];
+    let text = fs::read_to_string(path).unwrap();
+    let other = text
+        .replace(" = ", "   =  ")
+        .replace("[time] ", "[time] # again ");
+    let hash = |text: &str| parse(path, text, &[]).unwrap().hash;
+    assert_eq!(hash(&text), hash(&other));
+    assert_ne!(hash(&text), hash(&text.replace("0.5 m/s\"", "0.6 m/s\"")));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+
+    #[test]
+    fn no_text_makes_the_reader_panic(
+        at in 0.0..1.0f64,
+        length in 0usize..40,
+        insert in prop_oneof![
+            "[ -~]{0,12}",
+            Just("1e999 m^9*m^9*m^9*m^9*m^9*m^9*m^9*m^9*m^9*m^9*m^9*m^9*m^9*m^9*m^9*m^9".to_owned()),
+            Just("[[\"0 s\", 1], [\"0 s\"]]".to_owned()),
+            Just("9223372036854775807".to_owned()),
+            Just("{ }".to_owned()),
+            Just("\u{b5}m\u{0}".to_owned()),
+        ],
+        key in "[a-z\\[\\].0-9]{0,20}",
+    ) {
+        let path = &files("cases")[0];
+        let text = fs::read_to_string(path).unwrap();
+        let start = text.floor_char_boundary((at * text.len() as f64) as usize);
+        let end = text.floor_char_boundary((start + length).min(text.len()));
+        let changed = format!("{}{insert}{}", &text[..start], &text[end..]);
+        let _ = parse(path, &changed, &[]).map_err(|errors| errors.render());
+        let _ = parse(path, &text, &[format!("{key}={insert}")]).map_err(|errors| errors.render());
+    }
+}
