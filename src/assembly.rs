@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use calcine_adapters::liggghts::inputs::Inputs;
 use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch, LiggghtsParticles};
+use calcine_adapters::openfoam::case::OpenfoamCase;
 use calcine_adapters::openfoam::{OpenfoamGas, OpenfoamLaunch};
 use calcine_coupler::closures::Closures;
 use calcine_coupler::coordinator::{CheckpointPaths, Parts, Plan, Run, RunError};
@@ -229,6 +230,49 @@ pub fn assemble<'m>(
     Ok(run)
 }
 
+/// Writes the inputs of the external solvers of a pairing, as a run would, into `openfoam/` and
+/// `liggghts/` below a folder; returns what was written.
+pub fn write_inputs(
+    case: &Case,
+    prepared: &Prepared,
+    pairing: Pairing,
+    folder: &Path,
+) -> Result<Vec<std::path::PathBuf>, AssemblyError> {
+    let mut written = Vec::new();
+    if pairing.gas == GasBackend::Openfoam {
+        let target = folder.join("openfoam");
+        OpenfoamCase {
+            setup: &case.gas,
+            mesh: &prepared.mesh,
+            template: case.openfoam.template.as_deref(),
+            case_hash: &case.hash,
+        }
+        .write(&target)?;
+        written.push(target);
+    }
+    if pairing.particles == ParticleBackend::Liggghts {
+        let target = folder.join("liggghts");
+        liggghts_inputs(prepared).write(&target)?;
+        written.push(target);
+    }
+    Ok(written)
+}
+
+/// What LIGGGHTS is told of the particles, in the box of the mesh's points.
+fn liggghts_inputs(prepared: &Prepared) -> Inputs<'_> {
+    let points = &prepared.mesh.topology().points;
+    let bounds = points.iter().fold(
+        (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)),
+        |(low, high), point| (low.inf(point), high.sup(point)),
+    );
+    Inputs {
+        setup: &prepared.particles,
+        bounds,
+        step: FROZEN_STEP,
+        ranks: 1,
+    }
+}
+
 /// What the builders of the parts share.
 struct Assembly<'a> {
     case: &'a Case,
@@ -276,12 +320,7 @@ impl Assembly<'_> {
                 Ok(Box::new(particles))
             }
             ParticleBackend::Liggghts => {
-                let inputs = Inputs {
-                    setup,
-                    bounds: self.bounds(),
-                    step: FROZEN_STEP,
-                    ranks: 1,
-                };
+                let inputs = liggghts_inputs(self.prepared);
                 let launch = LiggghtsLaunch {
                     inputs,
                     case_hash: self.case.hash.clone(),
@@ -304,15 +343,6 @@ impl Assembly<'_> {
                 .caused_by(cause)
                 .into()
         })
-    }
-
-    /// The box of the mesh's points.
-    fn bounds(&self) -> (Vec3, Vec3) {
-        let points = &self.prepared.mesh.topology().points;
-        points.iter().fold(
-            (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)),
-            |(low, high), point| (low.inf(point), high.sup(point)),
-        )
     }
 }
 

@@ -4,6 +4,7 @@ mod check;
 mod compare;
 pub mod doctor;
 mod execute;
+mod prepare;
 mod report;
 mod run;
 mod sweep;
@@ -33,6 +34,7 @@ enum Command {
     Compare(compare::Arguments),
     Sweep(sweep::Arguments),
     Report(report::Arguments),
+    Prepare(prepare::Arguments),
     /// Shows which solvers, MPI and HDF5 are here, and what installs what is missing.
     Doctor,
 }
@@ -123,6 +125,7 @@ pub fn main() -> ExitCode {
         Command::Compare(arguments) => compare::run(arguments),
         Command::Sweep(arguments) => sweep::run(arguments),
         Command::Report(arguments) => report::run(arguments),
+        Command::Prepare(arguments) => prepare::run(arguments),
         Command::Doctor => {
             say(doctor::run());
             Ok(exit::OK)

@@ -1,0 +1,56 @@
+//! `calcine prepare CASE`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{Failure, read_and_prepare, results_folder, say};
+use crate::assembly::{self, GasBackend, Pairing, ParticleBackend};
+use crate::exit;
+
+/// Writes the exact OpenFOAM and LIGGGHTS inputs of a run, without running.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The case file.
+    case: PathBuf,
+    /// Whose gas inputs are written.
+    #[arg(long, value_enum, default_value_t = GasBackend::Openfoam)]
+    gas: GasBackend,
+    /// Whose particle inputs are written.
+    #[arg(long, value_enum, default_value_t = ParticleBackend::Liggghts)]
+    particles: ParticleBackend,
+    /// Where to [default: results/NAME-inputs].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Changes a key of the case, for example `--set time.acceleration=200`.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
+    let (case, prepared) = read_and_prepare(&arguments.case, &arguments.set)?;
+    let out = arguments.out.clone().unwrap_or_else(|| {
+        let mut folder = results_folder(&case, None).into_os_string();
+        folder.push("-inputs");
+        folder.into()
+    });
+    if out.is_dir() && std::fs::read_dir(&out).is_ok_and(|mut entries| entries.next().is_some()) {
+        let message = format!(
+            "{} is not empty: name another folder with `--out`",
+            out.display()
+        );
+        return Err(Failure::new(exit::CASE, message));
+    }
+    let pairing = Pairing {
+        gas: arguments.gas,
+        particles: arguments.particles,
+    };
+    let written = assembly::write_inputs(&case, &prepared, pairing, &out)?;
+    if written.is_empty() {
+        say("native parts have no input files; name --gas openfoam or --particles liggghts");
+    }
+    for folder in written {
+        say(folder.display());
+    }
+    Ok(exit::OK)
+}
