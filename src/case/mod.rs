@@ -44,7 +44,10 @@ pub fn parse(path: &Path, text: &str, set: &[String]) -> Result<Case, CaseErrors
     root.finish();
     let problems = problems.take();
     match case {
-        Some(case) if problems.is_empty() => Ok(case),
+        Some(mut case) if problems.is_empty() => {
+            case.hash = with_files(&case);
+            Ok(case)
+        }
         _ => Err(CaseErrors::new(path, &effective, problems)),
     }
 }
@@ -143,6 +146,39 @@ fn hash(table: &dyn toml_edit::TableLike) -> String {
     let mut text = String::new();
     canonical(&mut text, "", table);
     Sha256::digest(text.as_bytes())
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
+}
+
+/// The hash extended by the contents of the files that the case names, so that a changed bed or
+/// mesh is not taken for the same case.
+fn with_files(case: &Case) -> String {
+    let places = case
+        .particles
+        .iter()
+        .filter_map(|population| match &population.place {
+            model::Place::File(path) => Some(path.clone()),
+            model::Place::Grid { .. } => None,
+        });
+    let mesh = match &case.mesh {
+        model::MeshSpec::PolyMesh(folder) => ["points", "faces", "owner", "neighbour", "boundary"]
+            .map(|name| folder.join(name))
+            .to_vec(),
+        model::MeshSpec::Box { .. } => Vec::new(),
+    };
+    let files: Vec<_> = places.chain(mesh).collect();
+    if files.is_empty() {
+        return case.hash.clone();
+    }
+    let mut digest = Sha256::new();
+    digest.update(case.hash.as_bytes());
+    for file in files {
+        // A file that cannot be read is an error of the mesh or of the bed, told there.
+        digest.update(std::fs::read(file).unwrap_or_default());
+    }
+    digest
+        .finalize()
         .iter()
         .map(|byte| format!("{byte:02x}"))
         .collect()

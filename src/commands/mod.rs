@@ -4,6 +4,7 @@ mod check;
 mod compare;
 pub mod doctor;
 mod execute;
+mod new;
 mod prepare;
 mod report;
 mod run;
@@ -35,6 +36,7 @@ enum Command {
     Sweep(sweep::Arguments),
     Report(report::Arguments),
     Prepare(prepare::Arguments),
+    New(new::Arguments),
     /// Shows which solvers, MPI and HDF5 are here, and what installs what is missing.
     Doctor,
 }
@@ -126,6 +128,7 @@ pub fn main() -> ExitCode {
         Command::Sweep(arguments) => sweep::run(arguments),
         Command::Report(arguments) => report::run(arguments),
         Command::Prepare(arguments) => prepare::run(arguments),
+        Command::New(arguments) => new::run(arguments),
         Command::Doctor => {
             say(doctor::run());
             Ok(exit::OK)
