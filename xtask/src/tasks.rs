@@ -52,6 +52,7 @@ pub fn test(workspace: &Workspace, native: bool, words: &[OsString]) -> Outcome<
         build_parts(workspace, needs, Profile::Dev)?;
     }
     let mut command = workspace.cargo("test");
+    command.arg("--no-fail-fast");
     if !native && !chooses_packages(words) {
         command.arg("--workspace");
     }

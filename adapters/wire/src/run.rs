@@ -297,7 +297,7 @@ mod tests {
         for text in [
             "",
             "2 calcine-1-1-0 gas /tmp/calcine-1-1-0",
-            "1 calcine-1-1-0 gas /home/user",
+            "1 calcine-1-1-0 gas /var/elsewhere",
             "1 other gas /tmp/other",
             "1 calcine-1-1-0/.. gas /tmp/calcine-1-1-0/..",
         ] {
