@@ -152,3 +152,45 @@ proptest! {
         let _ = parse(path, &text, &[format!("{key}={insert}")]).map_err(|errors| errors.render());
     }
 }
+
+/// Dotted keys of a table, without the names that users choose and the places in lists.
+fn keys(table: &toml::Table, place: &str, found: &mut Vec<String>) {
+    for (key, value) in table {
+        let chosen = ["materials", "gas.patch"].contains(&place);
+        let below = match (place.is_empty(), chosen) {
+            (_, true) => place.to_owned(),
+            (true, _) => key.clone(),
+            (false, _) => format!("{place}.{key}"),
+        };
+        let inner = match value {
+            toml::Value::Array(list) => list.first().and_then(toml::Value::as_table),
+            value => value.as_table(),
+        };
+        match inner {
+            Some(inner) => keys(inner, &below, found),
+            None => found.push(below),
+        }
+    }
+}
+
+#[test]
+fn every_key_of_the_shipped_and_good_cases_is_documented() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let docs = fs::read_to_string(folder.join("docs/case-file.md")).unwrap();
+    let mut found = Vec::new();
+    for path in [files("cases"), files("tests/inputs/good")].concat() {
+        keys(
+            &fs::read_to_string(path).unwrap().parse().unwrap(),
+            "",
+            &mut found,
+        );
+    }
+    assert!(found.len() > 40, "{found:?}");
+    for key in found {
+        let last = key.rsplit('.').next().unwrap();
+        assert!(
+            docs.contains(last),
+            "docs/case-file.md says nothing of `{key}`"
+        );
+    }
+}
