@@ -31,7 +31,12 @@ impl Program {
     /// The command line for a number of ranks: one rank directly, more under `mpirun`.
     fn command(&self, ranks: u32) -> Command {
         let mut command = if ranks <= 1 {
-            Command::new(&self.path)
+            let mut command = Command::new(&self.path);
+            // OpenFOAM refuses a name of its own program that has a space anywhere in its path.
+            if let Some(name) = self.path.file_name() {
+                std::os::unix::process::CommandExt::arg0(&mut command, name);
+            }
+            command
         } else {
             let mut mpirun = Command::new("mpirun");
             mpirun.args(["--allow-run-as-root", "--bind-to", "none"]);

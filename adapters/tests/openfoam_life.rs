@@ -171,21 +171,14 @@ fn a_diverging_attempt_is_told_with_cell_and_numbers() {
 }
 
 #[test]
-fn a_window_of_twelve_cells_costs_milliseconds_at_most() {
+fn the_log_of_five_hundred_windows_stays_short() {
     let folder = tempfile::tempdir().unwrap();
     let mut practical = setup();
     practical.controls.outer_iterations = 3;
     practical.controls.outer_tolerance = 1e-6;
     practical.controls.linear_tolerance = 1e-10;
     let mut duct = Duct::launch(&practical, folder.path());
-    let begun = Instant::now();
-    let windows = 500;
-    let last = duct.advance(windows, &bed(0.5), &heating());
-    // A figure to be read, not a limit: the machine may be busy.
-    eprintln!(
-        "{:?} per window; {last:?}",
-        begun.elapsed() / windows as u32
-    );
+    duct.advance(500, &bed(0.5), &heating());
     let log = std::fs::read_to_string(folder.path().join("log")).unwrap();
     assert!(log.lines().count() < 100, "{} lines", log.lines().count());
 }

@@ -79,6 +79,12 @@ impl OpenfoamGas {
             template: launch.template,
             case_hash: &launch.case_hash,
         };
+        for folder in [Some(&launch.folder), launch.resume.as_ref()]
+            .into_iter()
+            .flatten()
+        {
+            without_spaces(folder)?;
+        }
         case.write(&launch.folder)?;
         let mut arguments = Vec::new();
         if let Some(folder) = &launch.resume {
@@ -147,6 +153,20 @@ impl OpenfoamGas {
         };
         read.map_err(|error| self.solver.failure(window, error))
     }
+}
+
+/// OpenFOAM takes no path with a space or a quote in it.
+fn without_spaces(folder: &Path) -> Result<(), PartError> {
+    let text = folder.to_string_lossy();
+    if !text.contains([' ', '\t', '"', '\'']) {
+        return Ok(());
+    }
+    let message = format!(
+        "OpenFOAM cannot work in {}, whose path has a space or a quote: choose a results folder \
+         without, with `--out`",
+        folder.display()
+    );
+    Err(PartError::new(NAME, FailureKind::NotStarted, message))
 }
 
 const NO_LINK: WireError = WireError::Order {
