@@ -257,6 +257,9 @@ fn openfoam(case: &Path, mesh: &Mesh, format: &str, command: &[&str]) -> Option<
         .arg("-case")
         .arg(case)
         .env("WM_PROJECT_DIR", "/usr/share/openfoam")
+        // OpenFOAM takes no working directory with a space in its path.
+        .current_dir(case)
+        .env("PWD", case)
         .output();
     let Ok(output) = output else {
         eprintln!("SKIPPED: {} is not installed", command[0]);
