@@ -270,3 +270,24 @@ fn upwind_convection_with_diffusion_converges_with_first_order() {
         );
     }
 }
+
+#[test]
+fn the_incomplete_factorisation_of_many_cells_is_symmetric_and_has_the_same_bits_on_any_threads() {
+    let grid = Arc::new(Grid::new(&unit_box([30, 30, 40])));
+    let matrix = transport(&grid, 1.0, 0.0);
+    let [x, y] = [3, 4].map(|seed| scatter(grid.cells(), seed));
+    let on = |threads, r: &[f64]| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.unwrap().install(|| {
+            let (mut preconditioner, mut z) = (Incomplete::default(), vec![0.0; r.len()]);
+            preconditioner.update(&matrix);
+            preconditioner.apply(r, &mut z);
+            z
+        })
+    };
+    let (mx, my) = (on(1, &x), on(1, &y));
+    assert_eq!(mx, on(3, &x));
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let (left, right) = (product(&x, &my), product(&mx, &y));
+    assert!((left / right - 1.0).abs() < 1e-11, "{left} against {right}");
+}

@@ -20,11 +20,12 @@ use super::attempt::{Frame, Material};
 use super::boundary::Value;
 use super::momentum::Momentum;
 use super::state::State;
+use crate::numerics::amg::Multigrid;
 use crate::numerics::grid::Face;
 use crate::numerics::krylov::{Krylov, Target};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{displacement, gradient, outflow};
-use crate::numerics::parallel::{fill, sums};
+use crate::numerics::parallel::{CHUNK, fill, sums};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
 /// A correction need not be solved closer than this share of its initial residual: the next one
@@ -32,12 +33,38 @@ use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 const CORRECTION: f64 = 1e-2;
 /// Iterations of a solve at most.
 const ITERATIONS: u32 = 2000;
+/// Up to this many cells the incomplete factorisation is the faster one; it is exact on chains.
+const SMALL: usize = CHUNK;
+
+/// Incomplete factorisation for few cells, multigrid for many.
+#[derive(Debug)]
+enum Approximation {
+    Small(Incomplete),
+    Large(Multigrid),
+}
+
+impl Approximation {
+    fn new(cells: usize) -> Self {
+        if cells <= SMALL {
+            Self::Small(Incomplete::default())
+        } else {
+            Self::Large(Multigrid::default())
+        }
+    }
+
+    fn get(&mut self) -> &mut dyn Preconditioner {
+        match self {
+            Self::Small(incomplete) => incomplete,
+            Self::Large(multigrid) => multigrid,
+        }
+    }
+}
 
 /// The pressure equation of an outer iteration.
 #[derive(Debug)]
 pub struct Pressure {
     matrix: Matrix,
-    preconditioner: Incomplete,
+    preconditioner: Approximation,
     /// ρ ε² V/a of each cell in s.
     mobility: Vec<f64>,
     /// F of each cell in N/m³.
@@ -60,7 +87,7 @@ impl Pressure {
         let (cells, faces) = (matrix.grid().cells(), matrix.grid().faces.len());
         Self {
             matrix,
-            preconditioner: Incomplete::default(),
+            preconditioner: Approximation::new(cells),
             mobility: vec![0.0; cells],
             force: vec![Vec3::zeros(); cells],
             inertia: vec![[0.0; 2]; faces],
@@ -71,8 +98,12 @@ impl Pressure {
         }
     }
 
-    /// Takes up the old state of an attempt.
+    /// Takes up the old state of an attempt. What earlier attempts left in the preconditioner is
+    /// dropped, so that a repeated or resumed window takes the same path.
     pub fn begin(&mut self, frame: &Frame<'_>) {
+        if let Approximation::Large(multigrid) = &mut self.preconditioner {
+            multigrid.forget();
+        }
         let (grid, old) = (frame.grid, frame.old);
         fill(&mut self.inertia, |index| {
             let face = &grid.faces[index];
@@ -121,7 +152,7 @@ impl Pressure {
                 }
             }
         });
-        self.preconditioner.update(&self.matrix);
+        self.preconditioner.get().update(&self.matrix);
     }
 
     /// One correction: new pressure, fluxes, pressure gradient and velocity; returns the linear
@@ -162,7 +193,7 @@ impl Pressure {
         };
         let solved = krylov.symmetric(
             &self.matrix,
-            &mut self.preconditioner,
+            self.preconditioner.get(),
             &self.source,
             &mut now.pressure,
             target,

@@ -3,9 +3,12 @@
 //! Every sum runs in fixed chunks and a fixed tree, so that results are the same bits on any
 //! number of threads.
 
+pub mod aggregate;
+pub mod amg;
 pub mod grid;
 pub mod krylov;
 pub mod matrix;
 pub mod operators;
 pub mod parallel;
 pub mod preconditioner;
+pub mod sparse;

@@ -1,6 +1,12 @@
 //! Preconditioners: approximate inverses of a matrix.
 
+use rayon::prelude::*;
+
 use super::matrix::Matrix;
+
+/// Cells per block of an incomplete factorisation. Fixed, so that it does not depend on the
+/// number of threads; couplings between blocks are left out.
+const BLOCK: usize = 16 * 1024;
 
 /// z ≈ A⁻¹ r, the same linear map at each call until the next `update`; symmetric where A is.
 pub trait Preconditioner {
@@ -11,11 +17,18 @@ pub trait Preconditioner {
     fn apply(&mut self, r: &[f64], z: &mut [f64]);
 }
 
-/// Incomplete factorisation without fill, A ≈ (L + D) D⁻¹ (D + U); for a symmetric matrix the
-/// incomplete Cholesky factorisation. Exact where no two neighbours of a cell come after it (a
-/// chain of cells in order).
+/// Incomplete factorisation without fill, A ≈ (L + D) D⁻¹ (D + U), in blocks of cells; for a
+/// symmetric matrix the incomplete Cholesky factorisation. Exact where no two neighbours of a
+/// cell come after it (a chain of cells in order), within one block.
 #[derive(Clone, Debug, Default)]
 pub struct Incomplete {
+    blocks: Vec<Block>,
+}
+
+/// The factorisation of a block of cells; indices count from its first one.
+#[derive(Clone, Debug, Default)]
+struct Block {
+    first: usize,
     inverse: Vec<f64>,
     lower_start: Vec<u32>,
     lower: Vec<f64>,
@@ -25,25 +38,31 @@ pub struct Incomplete {
     upper_column: Vec<u32>,
 }
 
-impl Incomplete {
-    fn take_graph(&mut self, matrix: &Matrix) {
-        let cells = matrix.diagonal().len();
-        self.inverse.resize(cells, 0.0);
-        self.lower_start.push(0);
-        self.upper_start.push(0);
-        for cell in 0..cells {
-            for &column in matrix.row(cell).0 {
-                if (column as usize) < cell {
-                    self.lower_column.push(column);
-                } else {
-                    self.upper_column.push(column);
+impl Block {
+    fn new(matrix: &Matrix, first: usize) -> Self {
+        let count = BLOCK.min(matrix.diagonal().len() - first);
+        let mut block = Self {
+            first,
+            inverse: vec![0.0; count],
+            lower_start: vec![0],
+            upper_start: vec![0],
+            ..Self::default()
+        };
+        for cell in 0..count {
+            for &column in matrix.row(first + cell).0 {
+                let other = (column as usize).wrapping_sub(first);
+                if other < cell {
+                    block.lower_column.push(other as u32);
+                } else if other < count {
+                    block.upper_column.push(other as u32);
                 }
             }
-            self.lower_start.push(self.lower_column.len() as u32);
-            self.upper_start.push(self.upper_column.len() as u32);
+            block.lower_start.push(block.lower_column.len() as u32);
+            block.upper_start.push(block.upper_column.len() as u32);
         }
-        self.lower.resize(self.lower_column.len(), 0.0);
-        self.upper.resize(self.upper_column.len(), 0.0);
+        block.lower.resize(block.lower_column.len(), 0.0);
+        block.upper.resize(block.upper_column.len(), 0.0);
+        block
     }
 
     #[inline]
@@ -79,19 +98,17 @@ impl Incomplete {
         }
         on_diagonal
     }
-}
 
-impl Preconditioner for Incomplete {
-    fn update(&mut self, matrix: &Matrix) {
-        if self.inverse.is_empty() {
-            self.take_graph(matrix);
-        }
+    fn factorise(&mut self, matrix: &Matrix) {
         for cell in 0..self.inverse.len() {
-            let (_, values) = matrix.row(cell);
+            let (columns, values) = matrix.row(self.first + cell);
             let (lower, upper) = (self.lower_range(cell), self.upper_range(cell));
-            self.lower[lower.clone()].copy_from_slice(&values[..lower.len()]);
-            self.upper[upper].copy_from_slice(&values[lower.len()..]);
-            let mut diagonal = matrix.diagonal()[cell];
+            // Columns ascend: what comes before the block, then lower, upper, and what follows.
+            let before = columns.partition_point(|&column| (column as usize) < self.first);
+            let middle = before + lower.len();
+            self.lower[lower.clone()].copy_from_slice(&values[before..middle]);
+            self.upper[upper.clone()].copy_from_slice(&values[middle..middle + upper.len()]);
+            let mut diagonal = matrix.diagonal()[self.first + cell];
             for k in lower {
                 let pivot = self.lower_column[k] as usize;
                 let factor = self.lower[k] * self.inverse[pivot];
@@ -102,7 +119,7 @@ impl Preconditioner for Incomplete {
         }
     }
 
-    fn apply(&mut self, r: &[f64], z: &mut [f64]) {
+    fn solve(&self, r: &[f64], z: &mut [f64]) {
         for cell in 0..r.len() {
             let mut sum = r[cell];
             for k in self.lower_range(cell) {
@@ -117,5 +134,30 @@ impl Preconditioner for Incomplete {
             }
             z[cell] = sum * self.inverse[cell];
         }
+    }
+}
+
+impl Preconditioner for Incomplete {
+    fn update(&mut self, matrix: &Matrix) {
+        if self.blocks.is_empty() {
+            let starts = (0..matrix.diagonal().len()).step_by(BLOCK);
+            self.blocks = starts.map(|first| Block::new(matrix, first)).collect();
+        }
+        if let [block] = &mut self.blocks[..] {
+            block.factorise(matrix);
+        } else {
+            let blocks = self.blocks.par_iter_mut();
+            blocks.for_each(|block| block.factorise(matrix));
+        }
+    }
+
+    fn apply(&mut self, r: &[f64], z: &mut [f64]) {
+        if let [block] = &self.blocks[..] {
+            block.solve(r, z);
+            return;
+        }
+        let parts = r.par_chunks(BLOCK).zip(z.par_chunks_mut(BLOCK));
+        let blocks = self.blocks.par_iter().zip(parts);
+        blocks.for_each(|(block, (r, z))| block.solve(r, z));
     }
 }
