@@ -106,11 +106,20 @@ fn set_changes_values_and_refuses_what_it_does_not_know() {
         "time.end",
         "particles[7].diameter=1 mm",
         "time.end.x=1",
+        "tme.end=1 s",
+        "time.end=-1 s",
         "=",
         ".",
     ] {
         let errors = set(wrong).unwrap_err();
         assert!(!errors.problems().is_empty(), "{wrong}");
+        for problem in errors.problems() {
+            assert!(
+                problem.message.starts_with(&format!("`--set {wrong}`: ")),
+                "{}",
+                problem.message
+            );
+        }
     }
 }
 
@@ -124,6 +133,27 @@ fn spacing_order_and_comments_do_not_change_the_hash() {
     let hash = |text: &str| parse(path, text, &[]).unwrap().hash;
     assert_eq!(hash(&text), hash(&other));
     assert_ne!(hash(&text), hash(&text.replace("0.5 m/s\"", "0.6 m/s\"")));
+}
+
+#[test]
+fn particles_of_a_file_stay_in_the_box_and_apart_from_other_populations() {
+    use calcine::case::particles;
+    let good = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/two-populations.toml");
+    let case = |set: &str| read(&good, &[set.to_owned()]).unwrap();
+    assert_eq!(particles(&case("time.end=1 s")).unwrap().id.len(), 4);
+    // The upper sphere (radius 5 mm) at 19 mm, the lower grain (2 mm) at 25 mm.
+    let error = particles(&case("particles[0].place.grid.first=\"5 5 9 mm\"")).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "particle 2 of \"spheres\" and particle 3 of \"grains\" overlap: their centres are 0.006 m \
+         apart, their radii add up to 0.007 m; move one of the populations"
+    );
+    let error = particles(&case("mesh.box.size=10 10 30 mm")).unwrap_err();
+    let message = error.to_string();
+    assert!(
+        message.contains("bed.csv, line 3: the centre lies at z = 0.031 m, but the mesh reaches from 0 m to 0.03 m"),
+        "{message}"
+    );
 }
 
 proptest! {

@@ -57,7 +57,31 @@ pub fn check_report(case: &Case, cells: usize, particles: usize, void_fraction: 
     for population in &case.particles {
         splitting(&mut text, case, population, void_fraction);
     }
+    honoured(&mut text, case);
     text
+}
+
+/// What each backend makes of the case.
+fn honoured(text: &mut String, case: &Case) {
+    let _ = writeln!(text, "  backends:");
+    for name in ["native gas", "OpenFOAM", "native particles", "LIGGGHTS"] {
+        let note = match name {
+            "OpenFOAM" if case.openfoam.template.is_some() => {
+                "every key, and `openfoam.template`, which restricts the case to this gas"
+            }
+            "native gas" if case.openfoam.template.is_some() => {
+                "every key but `openfoam.template`: what only the template states is left out"
+            }
+            "LIGGGHTS" if case.liggghts.template.is_some() => {
+                "every key but `liggghts.template`: it is not used yet"
+            }
+            "native particles" if case.liggghts.template.is_some() => {
+                "every key but `liggghts.template`"
+            }
+            _ => "every key",
+        };
+        let _ = writeln!(text, "    {name:<17} {note}");
+    }
 }
 
 /// R, the error of process storage, and the window against the drag's own time.

@@ -1,7 +1,9 @@
 //! Case files: TOML to a checked [`model::Case`].
 
 mod check;
+pub mod keys;
 pub mod model;
+mod overlap;
 mod place;
 mod problem;
 mod sections;
@@ -42,7 +44,12 @@ pub fn parse(path: &Path, text: &str, set: &[String]) -> Result<Case, CaseErrors
     let root = Reader::root(&problems, document.as_table());
     let case = sections::case(&root, path, &effective, hash(document.as_table()));
     root.finish();
-    let problems = problems.take();
+    let mut problems = problems.take();
+    for problem in &mut problems {
+        if let Some(setting) = set.iter().rev().find(|setting| blamed(problem, setting)) {
+            problem.message = format!("`--set {setting}`: {}", problem.message);
+        }
+    }
     match case {
         Some(mut case) if problems.is_empty() => {
             case.hash = with_files(&case);
@@ -79,6 +86,24 @@ fn syntax<'t>(path: &Path, text: &'t str) -> Result<Document<&'t str>, CaseError
             "see toml.io for the syntax",
         )
     })
+}
+
+/// True where a problem is about the key of a `--set`, or about a table that it made.
+fn blamed(problem: &Problem, setting: &str) -> bool {
+    let key = setting.split_once('=').map_or(setting, |(key, _)| key).trim();
+    let Some((place, rule)) = problem
+        .message
+        .strip_prefix('`')
+        .and_then(|message| message.split_once('`'))
+    else {
+        return false;
+    };
+    let inside = |inner: &str, outer: &str| {
+        inner
+            .strip_prefix(outer)
+            .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+    };
+    inside(place, key) || (rule == table::UNKNOWN && inside(key, place))
 }
 
 /// The text with `--set` applied; lines stay where they are unless a key is new.

@@ -1,12 +1,14 @@
 //! From populations to particles.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use thiserror::Error;
 
-use super::model::{Case, Motion, Place};
+use super::model::{Case, MeshSpec, Motion, Place};
+use super::overlap;
+use super::units::shown;
 
 /// Particles that cannot be placed.
 #[derive(Debug, Error)]
@@ -28,6 +30,22 @@ pub enum PlaceError {
         line: usize,
         /// What is wrong.
         what: String,
+    },
+    /// Two particles of different populations in the same space.
+    #[error(
+        "particle {} of \"{}\" and particle {} of \"{}\" overlap: their centres are {} m apart, their \
+         radii add up to {} m; move one of the populations",
+        .ids[0], .names[0], .ids[1], .names[1], shown(*.distance), shown(*.radii)
+    )]
+    Overlap {
+        /// Their ids.
+        ids: [u64; 2],
+        /// Their populations.
+        names: [String; 2],
+        /// Distance of their centres in m.
+        distance: f64,
+        /// Sum of their radii in m.
+        radii: f64,
     },
     /// No particle at all.
     #[error("the case has no particles")]
@@ -68,27 +86,62 @@ pub fn particles(case: &Case) -> Result<ParticleSetup, PlaceError> {
                 }
             }
             Place::File(path) => {
-                for (position, diameter) in file(path)? {
+                for (line, position, diameter) in file(path)? {
+                    inside(&case.mesh, path, line, &position)?;
                     add(position, diameter.unwrap_or(population.diameter));
                 }
             }
         }
     }
     if setup.id.is_empty() {
-        Err(PlaceError::Empty)
-    } else {
-        Ok(setup)
+        return Err(PlaceError::Empty);
+    }
+    match overlap::between_populations(&setup) {
+        None => Ok(setup),
+        Some(found) => Err(PlaceError::Overlap {
+            ids: found.pair.map(|index| setup.id[index]),
+            names: found.pair.map(|index| {
+                let population = setup.population[index] as usize;
+                case.particles[population].name.clone()
+            }),
+            distance: found.distance,
+            radii: found.radii,
+        }),
     }
 }
 
+/// Refuses a centre outside a generated box.
+fn inside(mesh: &MeshSpec, path: &Path, line: usize, centre: &Vec3) -> Result<(), PlaceError> {
+    let MeshSpec::Box { origin, size, .. } = mesh else {
+        return Ok(());
+    };
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let (low, high) = (origin[axis], origin[axis] + size[axis]);
+        if !(low..=high).contains(&centre[axis]) {
+            return Err(PlaceError::Line {
+                path: path.to_owned(),
+                line,
+                what: format!(
+                    "the centre lies at {name} = {} m, but the mesh reaches from {} m to {} m; \
+                     move the particle, or enlarge the mesh",
+                    shown(centre[axis]),
+                    shown(low),
+                    shown(high)
+                ),
+            });
+        }
+    }
+    Ok(())
+}
+
 /// CSV with the columns x, y, z in m, and optionally diameter in m, named in its first line.
-fn file(path: &PathBuf) -> Result<Vec<(Vec3, Option<f64>)>, PlaceError> {
+fn file(path: &Path) -> Result<Vec<(usize, Vec3, Option<f64>)>, PlaceError> {
     let text = std::fs::read_to_string(path).map_err(|cause| PlaceError::Io {
-        path: path.clone(),
+        path: path.to_owned(),
         cause,
     })?;
     let wrong = |line: usize, what: String| PlaceError::Line {
-        path: path.clone(),
+        path: path.to_owned(),
         line,
         what,
     };
@@ -126,7 +179,8 @@ fn file(path: &PathBuf) -> Result<Vec<(Vec3, Option<f64>)>, PlaceError> {
         if own.is_some_and(|diameter| diameter <= 0.0) {
             return Err(wrong(number + 1, "the diameter is not above zero".into()));
         }
-        found.push((Vec3::new(value(x)?, value(y)?, value(z)?), own));
+        let centre = Vec3::new(value(x)?, value(y)?, value(z)?);
+        found.push((number + 1, centre, own));
     }
     Ok(found)
 }

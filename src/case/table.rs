@@ -1,6 +1,7 @@
 //! Walking a case file: reads keys, records every error, notices keys that nobody asked for.
 
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use calcine_coupler::setup::Schedule;
@@ -9,14 +10,20 @@ use toml_edit::{Item, TableLike, Value};
 use super::problem::Problem;
 use super::units::{Dimension, UnitError, quantities};
 
+/// What is said of a key that nobody asked for.
+pub(super) const UNKNOWN: &str = " is not a key of a case";
+
 /// Collects the problems of one file.
 #[derive(Debug, Default)]
-pub struct Problems(RefCell<Vec<Problem>>);
+pub struct Problems {
+    found: RefCell<Vec<Problem>>,
+    asked: RefCell<BTreeSet<String>>,
+}
 
 impl Problems {
     /// Records one.
     pub fn add(&self, span: Range<usize>, message: String, help: String) {
-        self.0.borrow_mut().push(Problem {
+        self.found.borrow_mut().push(Problem {
             message,
             help,
             span,
@@ -26,7 +33,13 @@ impl Problems {
 
     /// All of them.
     pub fn take(&self) -> Vec<Problem> {
-        self.0.take()
+        self.found.take()
+    }
+
+    /// Every key that the reader asked for; names chosen by the user as `NAME`.
+    #[cfg(test)]
+    pub fn asked(&self) -> BTreeSet<String> {
+        self.asked.take()
     }
 }
 
@@ -35,6 +48,8 @@ pub struct Reader<'a> {
     problems: &'a Problems,
     table: &'a dyn TableLike,
     place: String,
+    /// The place as the table of keys writes it: `materials.NAME`, `particles`.
+    pattern: String,
     span: Range<usize>,
     known: RefCell<Vec<String>>,
 }
@@ -46,6 +61,7 @@ impl<'a> Reader<'a> {
             problems,
             table,
             place: String::new(),
+            pattern: String::new(),
             span: 0..0,
             known: RefCell::default(),
         }
@@ -53,11 +69,7 @@ impl<'a> Reader<'a> {
 
     /// Dotted name of a key in this table.
     pub fn place_of(&self, key: &str) -> String {
-        if self.place.is_empty() {
-            key.into()
-        } else {
-            format!("{}.{key}", self.place)
-        }
+        dotted(&self.place, key)
     }
 
     /// Where a key (with its value) stands, or this table where it is missing.
@@ -82,6 +94,8 @@ impl<'a> Reader<'a> {
 
     fn item(&self, key: &str) -> Option<&'a Item> {
         self.known.borrow_mut().push(key.into());
+        let asked = dotted(&self.pattern, key);
+        self.problems.asked.borrow_mut().insert(asked);
         self.table.get(key)
     }
 
@@ -459,7 +473,7 @@ impl<'a> Reader<'a> {
             self.wrong_type(key, "a table", item);
             return None;
         };
-        Some(self.below(self.place_of(key), table, item.span()))
+        Some(self.below(self.place_of(key), key, table, item.span()))
     }
 
     /// A table that must be there.
@@ -484,7 +498,12 @@ impl<'a> Reader<'a> {
             let tables = list.iter().enumerate();
             return tables
                 .map(|(i, table)| {
-                    self.below(format!("{}[{i}]", self.place_of(key)), table, table.span())
+                    self.below(
+                        format!("{}[{i}]", self.place_of(key)),
+                        key,
+                        table,
+                        table.span(),
+                    )
                 })
                 .collect();
         }
@@ -498,7 +517,12 @@ impl<'a> Reader<'a> {
             let tables = list.into_iter().enumerate();
             return tables
                 .map(|(i, table)| {
-                    self.below(format!("{}[{i}]", self.place_of(key)), table, table.span())
+                    self.below(
+                        format!("{}[{i}]", self.place_of(key)),
+                        key,
+                        table,
+                        table.span(),
+                    )
                 })
                 .collect();
         }
@@ -518,7 +542,7 @@ impl<'a> Reader<'a> {
             match item.as_table_like() {
                 Some(table) => found.push((
                     name.to_owned(),
-                    self.below(self.place_of(name), table, item.span()),
+                    self.below(self.place_of(name), "NAME", table, item.span()),
                 )),
                 None => self.wrong_type(name, "a table", item),
             }
@@ -529,6 +553,7 @@ impl<'a> Reader<'a> {
     fn below(
         &self,
         place: String,
+        key: &str,
         table: &'a dyn TableLike,
         span: Option<Range<usize>>,
     ) -> Reader<'a> {
@@ -537,6 +562,7 @@ impl<'a> Reader<'a> {
             problems: self.problems,
             table,
             place,
+            pattern: dotted(&self.pattern, key),
             span,
             known: RefCell::default(),
         }
@@ -567,12 +593,17 @@ impl<'a> Reader<'a> {
             let span = span
                 .or_else(|| item.span())
                 .unwrap_or_else(|| self.span.clone());
-            self.problems.add(
-                span,
-                format!("`{}` is not a key of a case", self.place_of(key)),
-                help,
-            );
+            self.problems
+                .add(span, format!("`{}`{UNKNOWN}", self.place_of(key)), help);
         }
+    }
+}
+
+fn dotted(place: &str, key: &str) -> String {
+    if place.is_empty() {
+        key.into()
+    } else {
+        format!("{place}.{key}")
     }
 }
 

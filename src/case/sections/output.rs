@@ -1,9 +1,9 @@
 //! `[output]`, `[[probes]]`, `[[quantities]]`.
 
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::time::Ticks;
 
 use super::patches;
+use super::time::ticks;
 use crate::case::model::{
     Band, Expect, Measure, MeshSpec, Output, Place, Population, Probe, Quantity, Statistic,
 };
@@ -23,17 +23,8 @@ const PARTICLES: [&str; 3] = ["temperature", "velocity", "heat"];
 
 pub(super) fn output(root: &Reader<'_>) -> Option<Output> {
     let section = root.required_table("output", "[output] with every = \"30 s\"")?;
-    let ticks = |seconds| {
-        Ticks::from_seconds(seconds)
-            .ok()
-            .filter(|ticks| *ticks > Ticks::ZERO)
-    };
-    let every = section
-        .required_positive("every", Dimension::TIME)
-        .and_then(ticks);
-    let series_every = section
-        .positive("series_every", Dimension::TIME)
-        .and_then(ticks);
+    let every = ticks(&section, "every", true);
+    let series_every = ticks(&section, "series_every", false);
     let fields = |key: &str, known: &[&str]| {
         let names = section
             .texts(key)
@@ -60,10 +51,18 @@ pub(super) fn output(root: &Reader<'_>) -> Option<Output> {
 }
 
 pub(super) fn probes(root: &Reader<'_>) -> Vec<Probe> {
+    let mut names = Vec::new();
     root.tables("probes")
         .iter()
         .filter_map(|table| {
             let name = table.required_text("name", "\"axis\"");
+            if let Some(name) = name {
+                if names.contains(&name) {
+                    let rule = format!("is \"{name}\" a second time");
+                    table.fail("name", rule, "names of probes must differ");
+                }
+                names.push(name);
+            }
             let line = table.required_table(
                 "line",
                 "line = { from = \"0 0 0 mm\", to = \"0 0 300 mm\", points = 100 }",

@@ -170,13 +170,13 @@ fn placed(
     mesh: Option<&MeshSpec>,
     folder: &Path,
 ) -> Option<Place> {
-    if place.has("packing") {
-        place.fail("packing", "is not supported yet", "use `grid` or `file`");
-        return None;
-    }
     match (place.has("grid"), place.has("file")) {
         (true, false) => grid(&place.table("grid")?, diameter, mesh),
         (false, true) => existing(place, "file", folder).map(Place::File),
+        (false, false) if place.has("packing") => {
+            place.fail("packing", "is not supported yet", "use `grid` or `file`");
+            None
+        }
         _ => {
             place.fail_whole("needs exactly one of grid and file", "for example grid = { first = \"5 5 5 mm\", spacing = \"10 10 10 mm\", counts = [1, 1, 10] }");
             None

@@ -39,7 +39,8 @@ pub(super) fn read(root: &Reader<'_>) -> Option<(Time, GasStorage)> {
     Some((time, storage))
 }
 
-fn ticks(section: &Reader<'_>, key: &str, required: bool) -> Option<Ticks> {
+/// A time of the case's clock; errors where it is below the tick or too long.
+pub(super) fn ticks(section: &Reader<'_>, key: &str, required: bool) -> Option<Ticks> {
     let seconds = if required {
         section.required_positive(key, Dimension::TIME)?
     } else {
@@ -56,7 +57,7 @@ fn ticks(section: &Reader<'_>, key: &str, required: bool) -> Option<Ticks> {
             None
         }
         Err(error) => {
-            section.fail(key, format!("is too long: {error}"), "end the run earlier");
+            section.fail(key, format!("is too long: {error}"), "write a shorter time");
             None
         }
     }

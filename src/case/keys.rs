@@ -1,0 +1,277 @@
+//! Every key of a case file in one table; the last part of `docs/case-file.md` is made from it.
+
+/// Whether a key must be there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Need {
+    /// It must.
+    Required,
+    /// One of several that exclude each other; the meaning names them.
+    OneOf,
+    /// It need not; what holds without it.
+    Default(&'static str),
+}
+
+/// One key.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    /// Dotted place; `NAME` stands for a name that the user chooses.
+    pub key: &'static str,
+    /// What the value is: `text`, `table`, a quantity with its SI unit.
+    pub value: &'static str,
+    /// Whether it must be there.
+    pub need: Need,
+    /// What it means.
+    pub meaning: &'static str,
+    /// An example of the value, in TOML.
+    pub example: &'static str,
+}
+
+const fn key(
+    key: &'static str,
+    value: &'static str,
+    need: Need,
+    meaning: &'static str,
+    example: &'static str,
+) -> Key {
+    Key {
+        key,
+        value,
+        need,
+        meaning,
+        example,
+    }
+}
+
+use Need::{Default, OneOf, Required};
+
+/// All keys, in the order of a case file.
+pub fn keys() -> &'static [Key] {
+    KEYS
+}
+
+#[rustfmt::skip]
+const KEYS: &[Key] = &[
+    key("format", "whole number", Required, "Version of the format; 1 is the only one.", "1"),
+    key("title", "text", Required, "Title for people.", "\"Hot air heats a column\""),
+    key("time", "table", Required, "Clocks. All times are process time, save `motion_window` (motion time).", "[time]"),
+    key("time.end", "time, s", Required, "End of the run.", "\"10 min\""),
+    key("time.motion_window", "time, s", Required, "Length of a coupling window in motion time.", "\"1 ms\""),
+    key("time.acceleration", "number or schedule", Default("1"), "Acceleration factor AF, at least 1: process time passes AF times as fast as motion time.", "[[\"0 s\", 1], [\"5 s\", 50]]"),
+    key("time.gas_storage", "`process` or `accelerated`", Default("`process`"), "Clock over which the gas stores mass and heat.", "\"process\""),
+    key("time.checkpoint", "table", Default("only on interrupt"), "When a checkpoint is written.", "{ every = \"60 s\" }"),
+    key("time.checkpoint.every", "time, s", Default("never"), "A checkpoint each so much process time.", "\"60 s\""),
+    key("time.checkpoint.wall", "time, s", Default("never"), "A checkpoint each so much wall time.", "\"15 min\""),
+    key("mesh", "table", Required, "The gas mesh: exactly one of `box` and `polymesh`.", "[mesh]"),
+    key("mesh.box", "table", OneOf, "A box, generated. Either this or `mesh.polymesh`.", "{ size = \"10 10 110 mm\", cells = [1, 1, 11] }"),
+    key("mesh.box.origin", "three lengths, m", Default("0 0 0 m"), "Corner with the smallest coordinates.", "\"-10 -10 0 mm\""),
+    key("mesh.box.size", "three lengths, m", Required, "Edge lengths along x, y, z.", "\"10 10 110 mm\""),
+    key("mesh.box.cells", "three whole numbers", Required, "Cells along x, y, z; 2e9 in all at most.", "[1, 1, 11]"),
+    key("mesh.box.patches", "six texts", Default("four times `side`, `bottom`, `top`"), "Patches of x-, x+, y-, y+, z-, z+; equal names make one patch.", "[\"side\", \"side\", \"side\", \"side\", \"low\", \"high\"]"),
+    key("mesh.polymesh", "path", OneOf, "An OpenFOAM polyMesh folder. Either this or `mesh.box`.", "\"constant/polyMesh\""),
+    key("materials", "table", Required, "Solid materials by name.", "[materials.glass]"),
+    key("materials.NAME.density", "density, kg/m^3", Required, "Density.", "\"2500 kg/m^3\""),
+    key("materials.NAME.heat_capacity", "specific heat capacity, J/kg/K", Required, "Specific heat capacity.", "\"840 J/kg/K\""),
+    key("materials.NAME.conductivity", "thermal conductivity, W/m/K", Default("not known"), "Thermal conductivity.", "\"1.1 W/m/K\""),
+    key("materials.NAME.young", "pressure, Pa", Default("not known"), "Young's modulus.", "\"50 MPa\""),
+    key("materials.NAME.poisson", "number", Default("not known"), "Poisson's ratio, -1 to 0.5.", "0.22"),
+    key("contacts", "list of tables", Default("none"), "Contacts of pairs of materials.", "[[contacts]]"),
+    key("contacts.between", "two texts", Required, "The two materials.", "[\"glass\", \"glass\"]"),
+    key("contacts.restitution", "number", Default("not known"), "Coefficient of restitution, above 0 and up to 1.", "0.6"),
+    key("contacts.friction", "number", Default("not known"), "Coefficient of friction, zero or above.", "0.3"),
+    key("gas", "table", Required, "The gas.", "[gas]"),
+    key("gas.mixture", "text", Required, "`air`, or any name together with `gas.properties`.", "\"air\""),
+    key("gas.initial", "table", Required, "The gas at the start, everywhere.", "{ temperature = \"300 K\", pressure = \"1 atm\" }"),
+    key("gas.initial.temperature", "temperature, K", Required, "Temperature.", "\"300 K\""),
+    key("gas.initial.pressure", "pressure, Pa", Required, "Absolute pressure.", "\"1 atm\""),
+    key("gas.initial.velocity", "three velocities, m/s", Default("0 0 0 m/s"), "Velocity.", "\"0 0 0.5 m/s\""),
+    key("gas.gravity", "three accelerations, m/s^2", Default("0 0 0 m/s^2"), "Gravity on the gas.", "\"0 0 -9.81 m/s^2\""),
+    key("gas.properties", "table", Default("those of `gas.mixture`"), "A mixture by its properties.", "[gas.properties]"),
+    key("gas.properties.molar_mass", "molar mass, kg/mol", Required, "Molar mass.", "\"28.96 g/mol\""),
+    key("gas.properties.heat_capacity", "specific heat capacity, J/kg/K", Required, "Specific heat capacity c_p; above R/M.", "\"1005 J/kg/K\""),
+    key("gas.properties.viscosity", "dynamic viscosity, Pa s", Required, "Viscosity at `viscosity_at`.", "\"18.5e-6 Pa s\""),
+    key("gas.properties.viscosity_at", "temperature, K", Required, "Temperature of `viscosity`.", "\"300 K\""),
+    key("gas.properties.sutherland_temperature", "temperature, K", Required, "Temperature of Sutherland's law.", "\"120 K\""),
+    key("gas.patch", "table", Required, "Boundary condition of every patch by its name; at least one outlet.", "[gas.patch.bottom]"),
+    key("gas.patch.NAME.inlet", "table", OneOf, "Gas flows in. One of `inlet`, `outlet`, `wall`.", "{ superficial_velocity = \"0.5 m/s\", temperature = \"400 K\" }"),
+    key("gas.patch.NAME.inlet.superficial_velocity", "velocity, m/s, or schedule", Required, "Superficial velocity into the domain, zero or above.", "\"0.5 m/s\""),
+    key("gas.patch.NAME.inlet.temperature", "temperature, K, or schedule", Required, "Temperature of the gas that enters.", "[[\"0 s\", \"300 K\"], [\"10 s\", \"400 K\"]]"),
+    key("gas.patch.NAME.outlet", "table", OneOf, "Gas flows out. One of `inlet`, `outlet`, `wall`.", "{ pressure = \"1 atm\" }"),
+    key("gas.patch.NAME.outlet.pressure", "pressure, Pa", Required, "Absolute pressure.", "\"1 atm\""),
+    key("gas.patch.NAME.wall", "table", OneOf, "A wall. One of `inlet`, `outlet`, `wall`.", "{ velocity = \"slip\", heat = \"adiabatic\" }"),
+    key("gas.patch.NAME.wall.velocity", "`no-slip` or `slip`", Required, "Gas velocity at the wall.", "\"no-slip\""),
+    key("gas.patch.NAME.wall.heat", "`adiabatic` or table", Required, "Heat through the wall.", "\"adiabatic\""),
+    key("gas.patch.NAME.wall.heat.temperature", "temperature, K, or schedule", Required, "Temperature of the wall.", "\"350 K\""),
+    key("gas.controls", "table", Default("see its keys"), "Accuracy of the gas solver.", "{ outer_tolerance = 1e-8 }"),
+    key("gas.controls.outer_iterations", "whole number", Default("20"), "Outer iterations per window at most, 1 to 10000.", "20"),
+    key("gas.controls.pressure_corrections", "whole number", Default("2"), "Pressure corrections per outer iteration, 1 to 10000.", "2"),
+    key("gas.controls.outer_tolerance", "number", Default("1e-8"), "The outer iterations end below this scaled residual.", "1e-8"),
+    key("gas.controls.linear_tolerance", "number", Default("1e-13"), "Tolerance of the linear solvers.", "1e-13"),
+    key("particles", "list of tables", Required, "Populations.", "[[particles]]"),
+    key("particles.name", "text", Required, "Name; no two alike.", "\"beads\""),
+    key("particles.material", "text", Required, "One of `materials`.", "\"glass\""),
+    key("particles.diameter", "length, m", Required, "Diameter.", "\"10 mm\""),
+    key("particles.motion", "`frozen`", Required, "How the particles move.", "\"frozen\""),
+    key("particles.temperature", "temperature, K", Required, "Temperature at the start.", "\"300 K\""),
+    key("particles.place", "table", Required, "Where the particles are: exactly one of `grid` and `file`. Populations must not overlap.", "{ file = \"bed.csv\" }"),
+    key("particles.place.grid", "table", OneOf, "A regular stacking. Either this or `file`.", "{ first = \"5 5 5 mm\", spacing = \"10 10 10 mm\", counts = [1, 1, 10] }"),
+    key("particles.place.grid.first", "three lengths, m", Required, "Centre of the first particle.", "\"5 5 5 mm\""),
+    key("particles.place.grid.spacing", "three lengths, m", Required, "Distances of centres along x, y, z; at least the diameter.", "\"10 10 10 mm\""),
+    key("particles.place.grid.counts", "three whole numbers", Required, "Particles along x, y, z; 1e9 in all at most.", "[1, 1, 10]"),
+    key("particles.place.file", "path", OneOf, "CSV with the columns x, y, z and optionally diameter, all in m, named in its first line. Either this or `grid`.", "\"bed.csv\""),
+    key("laws", "table", Required, "Laws; each is stated, none has a default.", "[laws]"),
+    key("laws.drag", "table", Required, "Drag on a particle.", "{ law = \"ergun-wen-yu\" }"),
+    key("laws.drag.law", "`ergun-wen-yu` or `none`", Required, "Its law.", "\"ergun-wen-yu\""),
+    key("laws.heat_transfer", "table", Required, "Heat transfer between gas and particle.", "{ law = \"gunn\" }"),
+    key("laws.heat_transfer.law", "`gunn`, `ranz-marshall` or `none`", Required, "Its law.", "\"gunn\""),
+    key("laws.conduction", "table", Required, "Heat conduction between particles.", "{ law = \"none\" }"),
+    key("laws.conduction.law", "`none`", Required, "Only `none` is supported yet.", "\"none\""),
+    key("laws.radiation", "table", Required, "Radiation between particles.", "{ law = \"none\" }"),
+    key("laws.radiation.law", "`none`", Required, "Only `none` is supported yet.", "\"none\""),
+    key("coupling", "table", Required, "How gas and particles are coupled.", "[coupling]"),
+    key("coupling.mapping", "`overlap`, `divided` or `centroid`", Required, "Mapping of a particle onto cells: exact volumes, satellite points, or its centre.", "\"overlap\""),
+    key("coupling.smoother", "table", Default("see its keys"), "Smoother of the solid fraction.", "{ max_solid_fraction = 0.64 }"),
+    key("coupling.smoother.max_solid_fraction", "number", Default("0.64"), "Largest solid fraction of a cell, between 0 and 1.", "0.64"),
+    key("coupling.smoother.tolerance", "number", Default("1e-4"), "Excess left at the end, as a share of the solid volume.", "1e-4"),
+    key("coupling.smoother.diffusion_length", "length, m", Default("half the mean diameter where that is above a third of the cell size, else 0 m"), "Length of the diffusion of the solid fraction, zero or above.", "\"0 mm\""),
+    key("coupling.exchange", "table", Default("see its keys"), "Repetition of windows.", "{ tolerance = 1e-3, attempts = 4 }"),
+    key("coupling.exchange.tolerance", "number", Default("1e-3"), "A window is repeated while the relative mismatch of the exchange is above this.", "1e-3"),
+    key("coupling.exchange.attempts", "whole number", Default("4"), "Attempts per window at most, 1 to 1000.", "4"),
+    key("coupling.deadline", "time, s", Default("60 s"), "The longest wall time that a solver may stay silent.", "\"60 s\""),
+    key("openfoam", "table", Default("all inputs are generated"), "What only an OpenFOAM gas needs; a native gas ignores it.", "[openfoam]"),
+    key("openfoam.template", "path", Default("none"), "Folder of OpenFOAM files to start from.", "\"foam\""),
+    key("openfoam.ranks", "whole number", Default("1"), "Ranks; only 1 is supported yet.", "1"),
+    key("liggghts", "table", Default("all inputs are generated"), "What only LIGGGHTS particles need; native particles ignore it.", "[liggghts]"),
+    key("liggghts.template", "path", Default("none"), "Template of the input.", "\"in.bed\""),
+    key("liggghts.ranks", "whole number", Default("1"), "Ranks; only 1 is supported yet.", "1"),
+    key("output", "table", Required, "What is written.", "[output]"),
+    key("output.every", "time, s", Required, "A snapshot each so much process time, and one at the start and the end.", "\"60 s\""),
+    key("output.series_every", "time, s", Default("with every snapshot"), "A row of the time series each so much process time.", "\"1 s\""),
+    key("output.gas", "list of texts", Default("`temperature`"), "Gas fields: temperature, velocity, pressure, density, void_fraction.", "[\"temperature\", \"velocity\"]"),
+    key("output.particles", "list of texts", Default("`temperature`"), "Particle fields: temperature, velocity, heat.", "[\"temperature\"]"),
+    key("probes", "list of tables", Default("none"), "Lines along which the gas fields are sampled.", "[[probes]]"),
+    key("probes.name", "text", Required, "Name; no two alike.", "\"axis\""),
+    key("probes.line", "table", Required, "The line.", "{ from = \"0 0 0 mm\", to = \"0 0 300 mm\", points = 100 }"),
+    key("probes.line.from", "three lengths, m", Required, "First point.", "\"0 0 0 mm\""),
+    key("probes.line.to", "three lengths, m", Required, "Last point.", "\"0 0 300 mm\""),
+    key("probes.line.points", "whole number", Required, "Number of points, 2 to 1000000.", "100"),
+    key("quantities", "list of tables", Default("none"), "Quantities of interest.", "[[quantities]]"),
+    key("quantities.name", "text", Required, "Name; no two alike.", "\"pressure_drop\""),
+    key("quantities.measure", "table", Required, "Exactly one of `difference`, `particles` and `particle`.", "{ particles = \"temperature\", statistic = \"mean\" }"),
+    key("quantities.measure.difference", "`pressure` or `temperature`", OneOf, "Area mean on the first of `patches` minus that on the second.", "\"pressure\""),
+    key("quantities.measure.patches", "two texts", Default("none"), "The two patches; required with `difference`.", "[\"bottom\", \"top\"]"),
+    key("quantities.measure.particles", "`temperature`", OneOf, "A statistic over all particles.", "\"temperature\""),
+    key("quantities.measure.statistic", "`mean`, `min` or `max`", Default("none"), "The statistic; required with `particles`.", "\"mean\""),
+    key("quantities.measure.particle", "`temperature`", OneOf, "The value of one particle.", "\"temperature\""),
+    key("quantities.measure.number", "whole number", Default("none"), "Which particle, counted from 1; required with `particle`.", "10"),
+    key("quantities.agree", "band", Default("not compared"), "Largest difference between pairings: a share, or in the unit of the quantity.", "\"1 %\""),
+    key("quantities.expect", "table", Default("none"), "Expected value.", "{ at = \"10 min\", value = \"180 Pa\", within = \"5 %\" }"),
+    key("quantities.expect.at", "time, s", Default("the end"), "Process time at which it holds.", "\"10 min\""),
+    key("quantities.expect.value", "pressure, Pa, or temperature, K", Required, "The value.", "\"180 Pa\""),
+    key("quantities.expect.within", "band", Required, "How far off it may be.", "\"5 %\""),
+];
+
+/// Where the part of `docs/case-file.md` that is made from the table begins.
+pub const BEGIN: &str = "## All keys\n";
+
+const HEAD: &str = "
+Made from the table of the reader. A required key is so where its table is there; `NAME` is a name
+that you choose; entries of lists count from 0: `--set \"particles[0].diameter=9 mm\"`.
+";
+
+/// The last part of `docs/case-file.md`, from [`BEGIN`] on.
+pub fn markdown() -> String {
+    let mut text = format!("{BEGIN}{HEAD}");
+    let mut section = "";
+    text.push_str("\n### The file\n\n");
+    text.push_str(TABLE);
+    for key in KEYS {
+        let head = key.key.split('.').next().unwrap_or(key.key);
+        if key.key == head && (key.value == "table" || key.value == "list of tables") {
+            section = head;
+            text.push_str(&format!("\n### `{section}`\n\n"));
+            text.push_str(TABLE);
+        }
+        debug_assert!(section.is_empty() || section == head, "{}", key.key);
+        let need = match key.need {
+            Required => "required".to_owned(),
+            OneOf => "one of".to_owned(),
+            Default(without) => without.to_owned(),
+        };
+        text.push_str(&format!(
+            "| `{}` | {} | {need} | {} | `{}` |\n",
+            key.key, key.value, key.meaning, key.example
+        ));
+    }
+    text
+}
+
+const TABLE: &str =
+    "| Key | Value | Required, or default | Meaning | Example |\n|---|---|---|---|---|\n";
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::path::Path;
+
+    use super::*;
+    use crate::case::table::{Problems, Reader};
+
+    #[test]
+    fn the_table_holds_exactly_the_keys_that_the_reader_asks_for() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let mut asked = BTreeSet::new();
+        for folder in ["cases", "tests/inputs/good"] {
+            for entry in std::fs::read_dir(root.join(folder)).unwrap() {
+                let path = entry.unwrap().path();
+                if path.extension().is_none_or(|extension| extension != "toml") {
+                    continue;
+                }
+                let text = std::fs::read_to_string(&path).unwrap();
+                let document = toml_edit::Document::parse(text.as_str()).unwrap();
+                let problems = Problems::default();
+                let reader = Reader::root(&problems, document.as_table());
+                crate::case::sections::case(&reader, &path, &text, String::new());
+                asked.append(&mut problems.asked());
+            }
+        }
+        let known: BTreeSet<String> = KEYS.iter().map(|key| key.key.to_owned()).collect();
+        assert_eq!(known.len(), KEYS.len(), "a key stands twice");
+        let missing: Vec<_> = asked.difference(&known).collect();
+        let never: Vec<_> = known.difference(&asked).collect();
+        assert!(missing.is_empty(), "not in the table: {missing:?}");
+        assert!(never.is_empty(), "the reader never asks for: {never:?}");
+    }
+
+    #[test]
+    fn every_example_is_toml() {
+        for key in KEYS
+            .iter()
+            .filter(|key| !key.example.starts_with("[[") || key.example.contains('"'))
+        {
+            let text = if key.value == "table" && key.example.starts_with('[') {
+                key.example.to_owned()
+            } else {
+                format!("x = {}", key.example)
+            };
+            assert!(toml_edit::Document::parse(text.as_str()).is_ok(), "{text}");
+        }
+    }
+
+    #[test]
+    fn the_page_of_the_docs_is_made_from_the_table() {
+        let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/case-file.md");
+        let mut written = std::fs::read_to_string(&page).unwrap();
+        let begin = written.find(BEGIN).unwrap_or(written.len());
+        if std::env::var_os("CALCINE_WRITE_DOCS").is_some() {
+            let prose = written[..begin].trim_end();
+            std::fs::write(&page, format!("{prose}\n\n{}", markdown())).unwrap();
+            written = std::fs::read_to_string(&page).unwrap();
+        }
+        let begin = written.find(BEGIN).unwrap_or(written.len());
+        assert_eq!(
+            &written[begin..],
+            markdown(),
+            "set CALCINE_WRITE_DOCS=1 and run this test again to write docs/case-file.md"
+        );
+    }
+}
