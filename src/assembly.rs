@@ -180,7 +180,7 @@ impl Prepared {
         let weights = mapper
             .fill(method(case), &particles.position, &particles.radius)
             .map_err(RunError::from)?;
-        let smoother = Smoother::new(&self.mesh, smoothing(case)).map_err(RunError::from)?;
+        let smoother = Smoother::new(&self.mesh, smoothing(case, self)).map_err(RunError::from)?;
         let operator = smoother
             .operator(weights, &volumes)
             .map_err(RunError::from)?;
@@ -221,7 +221,7 @@ pub fn assemble<'m>(
         particles: assembly.particles(supervisor)?,
         interior: Box::new(interior(case, prepared)),
     };
-    let smoother = Smoother::new(&prepared.mesh, smoothing(case)).map_err(RunError::from)?;
+    let smoother = Smoother::new(&prepared.mesh, smoothing(case, prepared)).map_err(RunError::from)?;
     let plan = plan(case, checkpoint);
     let mut run = Run::new(plan, &prepared.mesh, smoother, closures(case), parts)?;
     if settings.resume {
@@ -346,11 +346,19 @@ impl Assembly<'_> {
     }
 }
 
-fn smoothing(case: &Case) -> smoother::Settings {
+/// Settings of the smoother. Where the case does not state the diffusion's length, it is half the
+/// mean diameter where particles are larger than a third of the cells (requirements VFS-6): without
+/// it a particle that spans several cells would give heat to cells that have nothing to give.
+fn smoothing(case: &Case, prepared: &Prepared) -> smoother::Settings {
+    let (mesh, radii) = (&prepared.mesh, &prepared.particles.radius);
+    let diameter = 2.0 * radii.iter().sum::<f64>() / radii.len() as f64;
+    let volume = mesh.cell_volume().iter().sum::<f64>() / mesh.cells() as f64;
+    let large = diameter > volume.cbrt() / 3.0;
+    let length = case.coupling.diffusion_length.unwrap_or(if large { 0.5 * diameter } else { 0.0 });
     smoother::Settings {
         max_solid_fraction: case.coupling.max_solid_fraction,
         tolerance: case.coupling.smoother_tolerance,
-        diffusion_length: None,
+        diffusion_length: (length > 0.0).then_some(length),
     }
 }
 

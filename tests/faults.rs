@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
+use rustix::process::{Pid, Signal, kill_process};
+
 /// How long a run may take to get under way on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(90);
 
@@ -114,11 +116,8 @@ fn wait_for_windows(run: &mut Child, out: &Path) {
 }
 
 fn kill(pid: u32) {
-    let status = Command::new("kill")
-        .args(["-9", &pid.to_string()])
-        .status()
-        .unwrap();
-    assert!(status.success());
+    let pid = Pid::from_raw(i32::try_from(pid).unwrap()).unwrap();
+    kill_process(pid, Signal::KILL).unwrap();
 }
 
 fn wait_until(limit: Duration, mut done: impl FnMut() -> bool) -> Duration {

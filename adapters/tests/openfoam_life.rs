@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use calcine_coupler::error::FailureKind;
 use calcine_coupler::part::{CellExchange, Gas, Part};
 use openfoam_support::{CELLS, Duct, bed, mesh, no_exchange, setup};
+use rustix::process::{Pid, Signal, kill_process};
 
 fn heating() -> CellExchange {
     let mut exchange = no_exchange();
@@ -87,10 +88,8 @@ fn a_killed_solver_is_noticed_within_a_second() {
     let folder = tempfile::tempdir().unwrap();
     let mut duct = Duct::launch(&setup(), folder.path());
     duct.advance(2, &bed(0.5), &heating());
-    let kill = Command::new("kill")
-        .args(["-9", &duct.gas.pid().to_string()])
-        .status();
-    assert!(kill.unwrap().success());
+    let pid = i32::try_from(duct.gas.pid()).ok().and_then(Pid::from_raw);
+    kill_process(pid.unwrap(), Signal::KILL).unwrap();
     let begun = Instant::now();
     let started = duct.gas.start(&duct.window, &bed(0.5), &heating());
     let finished = started.and_then(|()| {

@@ -189,6 +189,9 @@ pub struct Coupling {
     pub max_solid_fraction: f64,
     /// The smoother stops when the excess left is below this share of the solid volume.
     pub smoother_tolerance: f64,
+    /// Length ℓ of the diffusion F in m (requirements VFS-6); `None`: half the particles' mean
+    /// diameter where that is above a third of the cell size, else zero.
+    pub diffusion_length: Option<f64>,
     /// A window is repeated while the mismatch of the exchange, relative to its magnitude, is
     /// above this.
     pub exchange_tolerance: f64,

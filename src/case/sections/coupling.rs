@@ -20,6 +20,7 @@ pub(super) fn read(root: &Reader<'_>) -> Option<Coupling> {
         mapping: mapping.unwrap_or(Mapping::Overlap),
         max_solid_fraction: 0.64,
         smoother_tolerance: 1e-4,
+        diffusion_length: None,
         exchange_tolerance: 1e-3,
         exchange_attempts: 4,
         deadline: Duration::from_secs(60),
@@ -30,6 +31,12 @@ pub(super) fn read(root: &Reader<'_>) -> Option<Coupling> {
         }
         coupling.smoother_tolerance =
             fraction(&table, "tolerance").unwrap_or(coupling.smoother_tolerance);
+        if let Some(length) = table.quantity("diffusion_length", Dimension::LENGTH) {
+            if length < 0.0 {
+                table.fail("diffusion_length", format!("is {length} m"), "it is zero or above");
+            }
+            coupling.diffusion_length = Some(length);
+        }
         table.finish();
     }
     if let Some(table) = section.table("exchange") {
