@@ -221,7 +221,8 @@ pub fn assemble<'m>(
         particles: assembly.particles(supervisor)?,
         interior: Box::new(interior(case, prepared)),
     };
-    let smoother = Smoother::new(&prepared.mesh, smoothing(case, prepared)).map_err(RunError::from)?;
+    let smoother =
+        Smoother::new(&prepared.mesh, smoothing(case, prepared)).map_err(RunError::from)?;
     let plan = plan(case, checkpoint);
     let mut run = Run::new(plan, &prepared.mesh, smoother, closures(case), parts)?;
     if settings.resume {
@@ -354,7 +355,10 @@ fn smoothing(case: &Case, prepared: &Prepared) -> smoother::Settings {
     let diameter = 2.0 * radii.iter().sum::<f64>() / radii.len() as f64;
     let volume = mesh.cell_volume().iter().sum::<f64>() / mesh.cells() as f64;
     let large = diameter > volume.cbrt() / 3.0;
-    let length = case.coupling.diffusion_length.unwrap_or(if large { 0.5 * diameter } else { 0.0 });
+    let length = case
+        .coupling
+        .diffusion_length
+        .unwrap_or(if large { 0.5 * diameter } else { 0.0 });
     smoother::Settings {
         max_solid_fraction: case.coupling.max_solid_fraction,
         tolerance: case.coupling.smoother_tolerance,

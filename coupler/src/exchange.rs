@@ -20,6 +20,18 @@ use crate::closures::Coefficients;
 use crate::part::{CellExchange, CellReceived, GasFields, ParticleFields, ParticlePush};
 use crate::smoother::Operator;
 
+/// How well the attempts of a window placed what they exchanged.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Placement {
+    /// Attempts of the window.
+    pub attempts: u32,
+    /// Share of heat or drag, the larger one, that the last attempt left in the wrong cells of a
+    /// particle.
+    pub misplaced: f64,
+    /// False where the attempts ended at their limit with more misplaced than tolerated.
+    pub settled: bool,
+}
+
 /// What does not change between the attempts of a window.
 #[derive(Clone, Copy, Debug)]
 pub struct Setting<'a> {

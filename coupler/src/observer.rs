@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use thiserror::Error;
 
+use crate::exchange::Placement;
 use crate::ledger::Ledger;
 use crate::mesh::Mesh;
 use crate::part::{About, Bed, Convergence, GasFields, ParticleFields};
@@ -54,6 +55,8 @@ pub struct Moment<'a> {
     pub ledger: &'a Ledger,
     /// Convergence of the gas in the window.
     pub convergence: &'a Convergence,
+    /// Attempts of the window, and what they left misplaced.
+    pub placement: &'a Placement,
     /// Wall times by stage.
     pub timing: &'a Timing,
     /// The two solvers.

@@ -90,7 +90,10 @@ fn syntax<'t>(path: &Path, text: &'t str) -> Result<Document<&'t str>, CaseError
 
 /// True where a problem is about the key of a `--set`, or about a table that it made.
 fn blamed(problem: &Problem, setting: &str) -> bool {
-    let key = setting.split_once('=').map_or(setting, |(key, _)| key).trim();
+    let key = setting
+        .split_once('=')
+        .map_or(setting, |(key, _)| key)
+        .trim();
     let Some((place, rule)) = problem
         .message
         .strip_prefix('`')

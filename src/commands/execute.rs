@@ -163,6 +163,16 @@ fn closing(summary: &Summary) -> String {
             line.relative_error
         );
     }
+    if summary.convergence.unsettled_windows > 0 {
+        let _ = writeln!(
+            text,
+            "  warning: in {} of {} windows the exchange was not settled after all attempts \
+             (coupling.exchange.attempts); at most a share of {:.1e} was in the wrong cells",
+            summary.convergence.unsettled_windows,
+            summary.windows,
+            summary.convergence.largest_misplaced
+        );
+    }
     if summary.convergence.unconverged_windows > 0 {
         let _ = writeln!(
             text,

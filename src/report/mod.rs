@@ -258,13 +258,17 @@ fn converged(summary: &Summary) -> String {
     let per_window = |count: u64| figure(count as f64 / summary.windows.max(1) as f64, 3);
     format!(
         "{} of {} windows ended at the limit of outer iterations; {} outer and {} linear \
-         iterations a window; largest residual {}, largest volume residual {}.",
+         iterations a window; largest residual {}, largest volume residual {}. The exchange took {} \
+         attempts a window; {} windows ended at their limit, the largest misplaced share is {}.",
         sums.unconverged_windows,
         summary.windows,
         per_window(sums.outer_iterations),
         per_window(sums.linear_iterations),
         figure(sums.largest_residual, 2),
         figure(sums.largest_volume_residual, 2),
+        per_window(sums.attempts),
+        sums.unsettled_windows,
+        figure(sums.largest_misplaced, 2),
     )
 }
 

@@ -203,6 +203,9 @@ impl Recorder {
     fn count(&mut self, moment: &Moment<'_>) {
         let (sums, window) = (&mut self.counters.convergence, moment.convergence);
         sums.unconverged_windows += u64::from(!window.converged);
+        sums.unsettled_windows += u64::from(!moment.placement.settled);
+        sums.attempts += u64::from(moment.placement.attempts);
+        sums.largest_misplaced = sums.largest_misplaced.max(moment.placement.misplaced);
         sums.outer_iterations += u64::from(window.outer_iterations);
         sums.linear_iterations += u64::from(window.linear_iterations);
         sums.largest_residual = sums.largest_residual.max(window.residual);

@@ -208,6 +208,15 @@ pub struct ConvergenceSummary {
     pub outer_iterations: u64,
     /// Iterations of the linear solvers in all windows.
     pub linear_iterations: u64,
+    /// Windows whose attempts ended with more of the exchange misplaced than tolerated.
+    #[serde(default)]
+    pub unsettled_windows: u64,
+    /// Largest share of the exchange that a window left in the wrong cells of a particle.
+    #[serde(default)]
+    pub largest_misplaced: f64,
+    /// Attempts of all windows.
+    #[serde(default)]
+    pub attempts: u64,
     /// Largest scaled residual at the end of a window.
     #[serde(deserialize_with = "number")]
     pub largest_residual: f64,

@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use calcine::case::model::*;
 use calcine::results::{Recorder, RunInfo};
+use calcine_coupler::exchange::Placement;
 use calcine_coupler::ledger::Ledger;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::observer::{Moment, Observer, Timing};
@@ -21,6 +22,13 @@ use self::meshes::{CELLS, SIZE, duct};
 fn seconds(time: f64) -> Ticks {
     Ticks::from_seconds(time).unwrap()
 }
+
+/// An exchange that the first attempt settled.
+const SETTLED: Placement = Placement {
+    attempts: 1,
+    misplaced: 1e-7,
+    settled: true,
+};
 
 /// A case of 20 s at AF 50 in windows of 10 ms, with rows each 0.7 s and snapshots each 5 s.
 pub fn case() -> Case {
@@ -317,6 +325,7 @@ impl World {
             },
             particle_temperature: &self.temperature,
             particle_heat: &self.heat,
+            placement: &SETTLED,
             ledger: &self.ledger,
             convergence: &self.convergence,
             timing: &self.timing,

@@ -15,7 +15,7 @@ pub use checkpoint::{CheckpointError, CheckpointPaths};
 use crate::checkpoint::StateFileError;
 use crate::closures::{ClosureError, Closures, Coefficients, Seen};
 use crate::error::PartError;
-use crate::exchange::Exchange;
+use crate::exchange::{Exchange, Placement};
 use crate::ledger::Ledger;
 use crate::mapping::{Mapper, MappingError, Method};
 use crate::mesh::Mesh;
@@ -140,6 +140,7 @@ pub struct Run<'m> {
     ledger: Ledger,
     timing: Timing,
     convergence: Convergence,
+    placement: Placement,
     work: Workspace,
 }
 
@@ -171,6 +172,10 @@ impl<'m> Run<'m> {
             ledger: Ledger::default(),
             timing: Timing::default(),
             convergence: Convergence::default(),
+            placement: Placement {
+                settled: true,
+                ..Placement::default()
+            },
             work,
         })
     }
@@ -247,6 +252,7 @@ impl<'m> Run<'m> {
             particle_heat: &self.work.exchange.heat,
             ledger: &self.ledger,
             convergence: &self.convergence,
+            placement: &self.placement,
             timing: &self.timing,
             about: [self.parts.gas.about(), self.parts.particles.about()],
         }

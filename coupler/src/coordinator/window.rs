@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use calcine_physics::Vec3;
 
 use super::{Mapped, Run, RunError};
-use crate::exchange::Setting;
+use crate::exchange::{Placement, Setting};
 use crate::ledger::Ledger;
 use crate::mapping::{Mapper, Method};
 use crate::part::{Balance, Bed, Particles};
@@ -171,9 +171,23 @@ impl Run<'_> {
                 self.parts.interior.advance(&work.exchange.heat, span)
             });
             window.attempt += 1;
-            if misplaced <= self.plan.exchange_tolerance
-                || window.attempt - first_attempt >= self.plan.exchange_attempts
-            {
+            let attempts = window.attempt - first_attempt;
+            let settled = misplaced <= self.plan.exchange_tolerance;
+            if settled || attempts >= self.plan.exchange_attempts {
+                if !settled {
+                    tracing::warn!(
+                        window = window.index,
+                        attempts,
+                        misplaced,
+                        "the attempts ended with a larger share of the exchange in the wrong cells \
+                         of a particle than coupling.exchange.tolerance allows"
+                    );
+                }
+                self.placement = Placement {
+                    attempts: window.attempt,
+                    misplaced,
+                    settled,
+                };
                 return Ok(());
             }
         }

@@ -33,7 +33,11 @@ pub(super) fn read(root: &Reader<'_>) -> Option<Coupling> {
             fraction(&table, "tolerance").unwrap_or(coupling.smoother_tolerance);
         if let Some(length) = table.quantity("diffusion_length", Dimension::LENGTH) {
             if length < 0.0 {
-                table.fail("diffusion_length", format!("is {length} m"), "it is zero or above");
+                table.fail(
+                    "diffusion_length",
+                    format!("is {length} m"),
+                    "it is zero or above",
+                );
             }
             coupling.diffusion_length = Some(length);
         }
