@@ -75,7 +75,7 @@ impl LiggghtsParticles {
         launch: LiggghtsLaunch<'_>,
         supervisor: &mut Supervisor,
     ) -> Result<Self, PartError> {
-        let remedy = "`cargo xtask setup liggghts` builds it (`cargo build -p calcine-liggghts`)";
+        let remedy = "`cargo xtask setup` installs LIGGGHTS and builds it";
         let host = find_program(HOST_VARIABLE, HOST, remedy)?;
         launch.inputs.write(&launch.folder)?;
         let mut arguments = vec![SCRIPT.into(), launch.case_hash.clone().into()];
