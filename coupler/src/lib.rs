@@ -9,6 +9,7 @@ pub mod ledger;
 pub mod mapping;
 pub mod mesh;
 pub mod observer;
+pub mod packing;
 pub mod part;
 pub mod setup;
 pub mod smoother;

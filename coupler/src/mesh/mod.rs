@@ -2,6 +2,9 @@
 //! first, then each patch's; a face's normal points from owner to neighbour, or out of the domain.
 
 pub mod block;
+pub mod cylinder;
+mod extrude;
+pub mod grading;
 pub mod locate;
 pub mod polymesh;
 

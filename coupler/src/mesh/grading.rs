@@ -1,0 +1,74 @@
+//! Where the layers of a generated mesh lie along an axis: regions of their own cell sizes.
+
+use super::MeshError;
+
+/// A stretch of an axis with its own cells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Region {
+    /// Its share of the whole length; shares of all regions are scaled to sum to 1.
+    pub share: f64,
+    /// Number of its cells.
+    pub cells: usize,
+    /// Size of its last cell over that of its first, as in `blockMesh`; sizes grow geometrically.
+    pub expansion: f64,
+}
+
+/// One region of equal cells.
+pub fn uniform(cells: usize) -> Vec<Region> {
+    vec![Region {
+        share: 1.0,
+        cells,
+        expansion: 1.0,
+    }]
+}
+
+/// The `cells + 1` levels from `start` to `start + length`, in m.
+pub fn levels(start: f64, length: f64, regions: &[Region]) -> Result<Vec<f64>, MeshError> {
+    let wrong = |text: String| Err(MeshError::Inconsistent(text));
+    if !(start.is_finite() && length.is_finite() && length > 0.0) {
+        return wrong(format!("an axis of {length} m from {start} m"));
+    }
+    if regions.is_empty() {
+        return wrong("an axis of 0 regions; it needs at least 1".into());
+    }
+    for (index, region) in regions.iter().enumerate() {
+        let number = |x: f64| x.is_finite() && x > 0.0;
+        if !(number(region.share) && number(region.expansion)) {
+            return wrong(format!(
+                "region {index} has a share of {} and an expansion of {}; both must be above 0",
+                region.share, region.expansion
+            ));
+        }
+        if region.cells == 0 || region.cells > u32::MAX as usize {
+            return wrong(format!(
+                "region {index} has {} cells; it needs 1 to {}",
+                region.cells,
+                u32::MAX
+            ));
+        }
+    }
+    let total: f64 = regions.iter().map(|region| region.share).sum();
+    let mut levels = vec![start];
+    let mut below = 0.0;
+    for region in regions {
+        for cell in 1..=region.cells {
+            levels.push(start + length * (below + region.share * within(region, cell)) / total);
+        }
+        below += region.share;
+    }
+    if let Some(last) = levels.last_mut() {
+        *last = start + length;
+    }
+    Ok(levels)
+}
+
+/// Part of a region below the upper end of its `cell`-th cell, counted from 1.
+fn within(region: &Region, cell: usize) -> f64 {
+    let uniform = cell as f64 / region.cells as f64;
+    if region.expansion == 1.0 || region.cells == 1 {
+        return uniform;
+    }
+    // Sizes 1, r, r², …; r^n − 1 by exp_m1 keeps its digits where r is near 1.
+    let log_ratio = region.expansion.ln() / (region.cells - 1) as f64;
+    (cell as f64 * log_ratio).exp_m1() / (region.cells as f64 * log_ratio).exp_m1()
+}

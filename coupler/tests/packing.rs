@@ -1,0 +1,210 @@
+//! Packed beds by geometry.
+
+#![allow(clippy::unwrap_used)]
+
+use std::f64::consts::{FRAC_PI_4, PI, SQRT_2};
+
+use calcine_coupler::packing::regular::{hexagonal_close, simple_cubic};
+use calcine_coupler::packing::{
+    Fill, Packing, PackingError, RandomSpec, Sizes, random_in_box, random_in_cylinder,
+};
+use calcine_coupler::physics::Vec3;
+
+const TUBE: f64 = 0.05;
+const GRAIN: f64 = 0.08 * TUBE;
+
+fn spec(seed: u64) -> RandomSpec {
+    RandomSpec {
+        sizes: Sizes::Equal(GRAIN),
+        fill: Fill::Number(3000),
+        solid_fraction: 0.58,
+        seed,
+    }
+}
+
+fn bed(seed: u64) -> Packing {
+    random_in_cylinder(Vec3::zeros(), TUBE, &spec(seed)).unwrap()
+}
+
+/// Smallest gap between two surfaces over the sum of radii; every pair, independent of the cells.
+fn smallest_gap(packing: &Packing) -> f64 {
+    let mut gap = f64::INFINITY;
+    for (a, first) in packing.centres.iter().enumerate() {
+        for (b, second) in packing.centres.iter().enumerate().skip(a + 1) {
+            let contact = 0.5 * (packing.diameters[a] + packing.diameters[b]);
+            gap = gap.min((first - second).norm() / contact - 1.0);
+        }
+    }
+    gap
+}
+
+/// Share of solid on a cylinder surface at `radius`, between two heights, by sampling.
+fn solid_at(packing: &Packing, radius: f64, low: f64, high: f64) -> f64 {
+    let (turns, steps) = (90, 120);
+    let mut hits = 0;
+    for k in 0..steps {
+        let z = low + (high - low) * (k as f64 + 0.5) / steps as f64;
+        let near: Vec<_> = packing
+            .centres
+            .iter()
+            .filter(|c| (c.z - z).abs() < 0.5 * GRAIN)
+            .collect();
+        for t in 0..turns {
+            let angle = 2.0 * PI * t as f64 / turns as f64;
+            let point = Vec3::new(radius * angle.cos(), radius * angle.sin(), z);
+            let solid = |c: &&Vec3| (*c - point).norm_squared() < 0.25 * GRAIN * GRAIN;
+            hits += usize::from(near.iter().any(solid));
+        }
+    }
+    hits as f64 / (turns * steps) as f64
+}
+
+#[test]
+fn a_random_bed_has_its_solid_fraction_no_overlap_and_lies_inside() {
+    let bed = bed(1);
+    assert_eq!(bed.centres.len(), 3000);
+    assert!(smallest_gap(&bed) > -1e-12, "{}", smallest_gap(&bed));
+    for c in &bed.centres {
+        assert!(c.x.hypot(c.y) <= 0.5 * (TUBE - GRAIN) + 1e-15);
+        assert!(c.z >= 0.5 * GRAIN - 1e-15 && c.z <= bed.height - 0.5 * GRAIN + 1e-15);
+    }
+    let fraction = bed.volume() / (FRAC_PI_4 * TUBE * TUBE * bed.height);
+    assert!((fraction - 0.58).abs() < 1e-12);
+}
+
+#[test]
+fn the_bulk_is_denser_than_the_mean_and_looser_than_random_close() {
+    let bed = bed(1);
+    let (mut sum, mut weight) = (0.0, 0.0);
+    for i in 0..40 {
+        let radius = (0.5 * TUBE - 2.0 * GRAIN) * (i as f64 + 0.5) / 40.0;
+        sum += radius * solid_at(&bed, radius, 3.0 * GRAIN, bed.height - 3.0 * GRAIN);
+        weight += radius;
+    }
+    let bulk = sum / weight;
+    assert!(bulk > 0.58 && bulk < 0.65, "{bulk}");
+}
+
+#[test]
+fn a_seed_fixes_every_bit_and_another_gives_another_bed() {
+    assert_eq!(bed(7), bed(7));
+    assert_ne!(bed(7), bed(8));
+}
+
+/// As measured by Benenati and Brosilow (AIChE J. 8, 1962, 359): void 1 at the wall, its first
+/// minimum near half a diameter, a maximum near one.
+#[test]
+fn the_void_fraction_oscillates_at_the_wall() {
+    let bed = bed(1);
+    let void = |i: usize| {
+        let radius = 0.5 * TUBE - 0.05 * GRAIN * i as f64;
+        1.0 - solid_at(&bed, radius, 3.0 * GRAIN, bed.height - 3.0 * GRAIN)
+    };
+    let profile: Vec<f64> = (0..=24).map(void).collect();
+    let lowest = (0..=20).min_by(|&a, &b| profile[a].total_cmp(&profile[b]));
+    let at = 0.05 * lowest.unwrap() as f64;
+    assert!(profile[0] > 0.95, "{profile:?}");
+    assert!((at - 0.5).abs() <= 0.15, "{at}: {profile:?}");
+    let highest = profile[16..].iter().copied().fold(0.0, f64::max);
+    assert!(highest > profile[lowest.unwrap()] + 0.15, "{profile:?}");
+}
+
+#[test]
+fn contacts_point_in_all_directions_alike() {
+    let mut spec = spec(3);
+    spec.sizes = Sizes::Equal(1.0);
+    let bed = random_in_box(Vec3::zeros(), [14.0, 14.0], &spec).unwrap();
+    let bulk = |c: &Vec3| {
+        (0..2).all(|axis| c[axis] > 2.5 && c[axis] < 11.5) && c.z > 2.5 && c.z < bed.height - 2.5
+    };
+    let (mut squares, mut count) = (Vec3::zeros(), 0.0);
+    for (a, first) in bed.centres.iter().enumerate().filter(|(_, c)| bulk(c)) {
+        for (b, second) in bed.centres.iter().enumerate() {
+            let line = second - first;
+            if a != b && line.norm() < 1.05 {
+                squares += line.normalize().map(|x| x * x);
+                count += 1.0;
+            }
+        }
+    }
+    // Each mean square is 1/3, with a deviation of √(4/45/count): 0.005 for 4000 contacts.
+    assert!(count > 3000.0, "{count}");
+    for axis in 0..3 {
+        assert!(
+            (squares[axis] / count - 1.0 / 3.0).abs() < 0.025,
+            "{squares} {count}"
+        );
+    }
+}
+
+#[test]
+fn mixed_sizes_fill_a_box_to_a_height() {
+    let mut spec = spec(5);
+    spec.sizes = Sizes::Mixture(vec![(1.0, 1.0), (2.0, 1.0)]);
+    spec.fill = Fill::Height(16.0);
+    let origin = Vec3::new(5.0, -3.0, 2.0);
+    let bed = random_in_box(origin, [12.0, 14.0], &spec).unwrap();
+    assert!(smallest_gap(&bed) > -1e-12);
+    let space = 12.0 * 14.0 * 16.0;
+    // The number is whole: half the largest sphere at most is missing or over.
+    assert!((bed.volume() - 0.58 * space).abs() <= 0.5 * PI / 6.0 * 8.0 + 1e-9);
+    for (c, d) in bed.centres.iter().zip(&bed.diameters) {
+        let from = c - origin;
+        for (axis, size) in [12.0, 14.0, 16.0].into_iter().enumerate() {
+            assert!(from[axis] >= 0.5 * d - 1e-12 && from[axis] <= size - 0.5 * d + 1e-12);
+        }
+    }
+    let large = bed.diameters.iter().filter(|d| **d == 2.0).count() as f64;
+    assert!((large / bed.diameters.len() as f64 - 0.5).abs() < 0.08);
+}
+
+#[test]
+fn a_fraction_out_of_reach_is_refused_with_the_one_reached() {
+    let mut spec = spec(1);
+    spec.fill = Fill::Number(500);
+    spec.solid_fraction = 0.70;
+    let error = random_in_cylinder(Vec3::zeros(), TUBE, &spec).unwrap_err();
+    let PackingError::Fraction { reached, .. } = error else {
+        unreachable!("{error}");
+    };
+    assert!(reached > 0.2 && reached < 0.70, "{error}");
+    assert!(error.to_string().contains("lower the solid fraction"));
+}
+
+#[test]
+fn numbers_without_meaning_are_refused() {
+    let said = |change: fn(&mut RandomSpec)| {
+        let mut spec = spec(1);
+        change(&mut spec);
+        let error = random_in_cylinder(Vec3::zeros(), TUBE, &spec);
+        error.unwrap_err().to_string()
+    };
+    assert!(said(|s| s.solid_fraction = f64::NAN).contains("solid fraction is NaN"));
+    assert!(said(|s| s.sizes = Sizes::Equal(0.0)).contains("diameter is 0"));
+    assert!(said(|s| s.sizes = Sizes::Equal(0.06)).contains("narrowest width"));
+    assert!(said(|s| s.fill = Fill::Number(0)).contains("number of spheres is 0"));
+    assert!(said(|s| s.sizes = Sizes::Mixture(vec![])).contains("number of diameters is 0"));
+    assert!(said(|s| s.sizes = Sizes::Between(0.002, 0.001)).contains("range of diameters"));
+}
+
+#[test]
+fn a_simple_cubic_stack_fills_its_box_to_pi_over_6() {
+    let stack = simple_cubic(Vec3::zeros(), 2.0, [3, 4, 5]);
+    assert!((stack.volume() / (6.0 * 8.0 * 10.0) - PI / 6.0).abs() < 1e-14);
+    assert!(smallest_gap(&stack).abs() < 1e-14);
+}
+
+#[test]
+fn a_hexagonal_close_stack_has_12_contacts_and_pi_over_3_root_2() {
+    let count = 8;
+    let stack = hexagonal_close(Vec3::zeros(), 1.0, [count; 3]);
+    assert!(smallest_gap(&stack).abs() < 1e-12);
+    let middle = stack.centres[4 + count * (4 + count * 4)];
+    let touching = |c: &&Vec3| (*c - middle).norm() < 1.0 + 1e-9;
+    assert_eq!(stack.centres.iter().filter(touching).count() - 1, 12);
+    // One sphere a cell of the lattice: along a row, to the row after next, to the layer after next.
+    let at = |i: usize, j: usize, k: usize| stack.centres[i + count * (j + count * k)];
+    let [row, rows, layers] = [at(1, 0, 0), at(0, 2, 0), at(0, 0, 2)].map(|p| p - at(0, 0, 0));
+    let cell = row.cross(&rows).dot(&layers) / 4.0;
+    assert!((PI / 6.0 / cell - PI / (3.0 * SQRT_2)).abs() < 1e-12);
+}
