@@ -13,6 +13,8 @@ use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::interior::Thin;
 use calcine_coupler::mapping::{Mapper, Method};
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
+use calcine_coupler::mesh::cylinder::{CylinderSpec, cylinder_mesh};
+use calcine_coupler::mesh::grading::uniform;
 use calcine_coupler::mesh::polymesh;
 use calcine_coupler::mesh::{Mesh, MeshError};
 use calcine_coupler::part::{Gas, Particles};
@@ -162,6 +164,19 @@ impl Prepared {
                 size: *size,
                 cells: *cells,
                 patches: patches.clone(),
+            })?,
+            MeshSpec::Cylinder {
+                origin,
+                diameter,
+                length,
+                cells,
+            } => cylinder_mesh(&CylinderSpec {
+                origin: *origin,
+                diameter: *diameter,
+                length: *length,
+                cells_across: cells[0],
+                along: uniform(cells[1]),
+                patches: ["side", "bottom", "top"].map(String::from),
             })?,
             MeshSpec::PolyMesh(directory) => polymesh::read(directory)?,
         };

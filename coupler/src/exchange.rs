@@ -1,18 +1,26 @@
 //! The exchange between gas and particles: stored once, the other side derived (requirements
 //! CON-4, TSM-9, DRG-1).
 //!
-//! For a particle p that spans cells with the weights W_cp, its heat is
-//! Q_p = K_p (Σ_c W_cp T_c − T_p), K_p = h A/(1 + h A Δτ/(m c)) with the particle's own new
-//! temperature eliminated. This ties all its cells together (rank one per particle). The gas gets
-//! the majorised form: the diagonal H_c = Σ_p W_cp K_p implicitly, the rest at the last iterate
-//! (superscript k):
+//! A particle p that spans cells with the weights W_cp exchanges with each by that cell's own
+//! temperature, W_cp h A (T_p' − T_c), so that no cell is driven beyond its neighbours and the particle
+//! (a share W_cp of the particle's total would take heat from cells that have none to give). T_p' is
+//! the particle's own new temperature; it is eliminated (TSM-9), with K_p = h A/(1 + h A Δτ/(m c)) and
+//! T̄_p = Σ_c W_cp T_c:
 //!
-//! R_c = Σ_p W_cp K_p (T_p − T̄_p^k) + H_c (T_c^k − T_c).
+//! T_p' = (K_p T_p + (h A − K_p) T̄_p)/(h A),   Q_p = Σ_c W_cp h A (T_c − T_p') = K_p (T̄_p − T_p).
 //!
-//! Its sum over cells is −Σ_p K_p (T̄_p − T_p) whatever the iterate, because W is a partition of
-//! unity; iterating only moves heat between the cells of one particle. What the gas reports beyond
-//! R_c (a solver's tolerance, an enthalpy that is not linear in T) is credited to the particles of
-//! the cell by their share W_cp K_p/H_c. Drag is treated alike, with K_A in the place of K_p.
+//! T̄_p ties the particle's cells together. The gas gets the majorised form: a diagonal implicitly,
+//! the rest at the last iterate (superscript k), with g_p = h A − K_p, at most K_p/2:
+//!
+//! R_c = Σ_p W_cp [K_p (T_p − T_c) + g_p (T̄_p^k − T_c^k)].
+//!
+//! Its sum over cells is −Σ_p Q_p whatever the iterate, because W is a partition of unity; iterating
+//! only moves heat between the cells of one particle, and contracts at least twofold. (g_p reaches its
+//! bound where h A Δτ/(m c) > ½: the particle's total stays exact, its cells are drawn together a
+//! little less than they would be.) What the gas reports beyond R_c (a solver's tolerance, an enthalpy that
+//! is not linear in T) is credited to the particles of the cell by their share W_cp K_p/H_c,
+//! H_c = Σ_p W_cp K_p. Drag acts cell by cell too, W_cp K_A (v/AF − u_c); the velocity of particles
+//! is given over a window, so that nothing ties its cells.
 
 use calcine_physics::Vec3;
 
@@ -25,8 +33,7 @@ use crate::smoother::Operator;
 pub struct Placement {
     /// Attempts of the window.
     pub attempts: u32,
-    /// Share of heat or drag, the larger one, that the last attempt left in the wrong cells of a
-    /// particle.
+    /// Share of the heat that the last attempt left in the wrong cells of a particle.
     pub misplaced: f64,
     /// False where the attempts ended at their limit with more misplaced than tolerated.
     pub settled: bool,
@@ -69,9 +76,9 @@ pub struct Exchange {
 #[derive(Debug, Default)]
 struct Iterate {
     temperature: Vec<f64>,
-    velocity: Vec<Vec3>,
     seen_temperature: Vec<f64>,
-    seen_velocity: Vec<Vec3>,
+    /// Σ_p W_cp g_p of each cell in W/K.
+    tie: Vec<f64>,
 }
 
 impl Exchange {
@@ -87,7 +94,7 @@ impl Exchange {
         self.scalar.resize(particles, 0.0);
         self.vector.resize(particles, Vec3::zeros());
         self.iterate.seen_temperature.resize(particles, 0.0);
-        self.iterate.seen_velocity.resize(particles, Vec3::zeros());
+        self.iterate.tie.resize(cells, 0.0);
     }
 
     /// Fills what the gas is told, linearised about its present fields.
@@ -103,44 +110,40 @@ impl Exchange {
         self.resize(cells, count);
         self.iterate.temperature.clear();
         self.iterate.temperature.extend_from_slice(gas.temperature);
-        self.iterate.velocity.clear();
-        self.iterate.velocity.extend_from_slice(gas.velocity);
         operator.sample(gas.temperature, &mut self.iterate.seen_temperature);
-        operator.sample_vectors(gas.velocity, &mut self.iterate.seen_velocity);
 
         operator.spread(&self.conductance, &mut self.cells.heat_coefficient);
         for p in 0..count {
-            self.scalar[p] =
-                self.conductance[p] * (temperature[p] - self.iterate.seen_temperature[p]);
+            self.scalar[p] = tie(coefficients.conductance[p], self.conductance[p]);
+        }
+        operator.spread(&self.scalar, &mut self.iterate.tie);
+        for p in 0..count {
+            self.scalar[p] = self.conductance[p] * temperature[p]
+                + self.scalar[p] * self.iterate.seen_temperature[p];
         }
         operator.spread(&self.scalar, &mut self.cells.heat_source);
         for c in 0..cells {
-            self.cells.heat_source[c] += self.cells.heat_coefficient[c] * gas.temperature[c];
+            self.cells.heat_source[c] -= self.iterate.tie[c] * gas.temperature[c];
         }
 
         operator.spread(&coefficients.drag, &mut self.cells.drag_coefficient);
         for p in 0..count {
-            self.vector[p] = coefficients.drag[p]
-                * (particles.velocity[p] / *acceleration - self.iterate.seen_velocity[p]);
+            self.vector[p] = coefficients.drag[p] * particles.velocity[p] / *acceleration;
         }
         operator.spread_vectors(&self.vector, &mut self.cells.drag_source);
-        for c in 0..cells {
-            self.cells.drag_source[c] += self.cells.drag_coefficient[c] * gas.velocity[c];
-        }
     }
 
     /// Gives each particle what the gas reports, and returns how far the attempt is from the
-    /// exact coupling of the cells that a particle spans: the misplaced heat and drag, as shares
-    /// of all that was exchanged.
+    /// exact coupling of the cells that a particle spans: the misplaced heat, as a share of all
+    /// heat that was exchanged.
     pub fn credit(
         &mut self,
         setting: &Setting<'_>,
         gas: &GasFields<'_>,
         received: &CellReceived,
     ) -> f64 {
-        let heat = self.credit_heat(setting, gas, received);
-        let drag = self.credit_drag(setting, gas, received);
-        heat.max(drag)
+        self.credit_drag(setting, gas, received);
+        self.credit_heat(setting, gas, received)
     }
 
     fn credit_heat(
@@ -152,6 +155,7 @@ impl Exchange {
         let Setting {
             operator,
             temperature,
+            coefficients,
             ..
         } = setting;
         let exchange = &self.cells;
@@ -171,24 +175,20 @@ impl Exchange {
         for p in 0..operator.particles() {
             let (seen, beyond) = (self.scalar[p], self.heat[p]);
             self.heat[p] = self.conductance[p] * (seen - temperature[p] - beyond);
-            self.scalar[p] = self.conductance[p] * (seen - self.iterate.seen_temperature[p]);
+            self.scalar[p] = tie(coefficients.conductance[p], self.conductance[p])
+                * (seen - self.iterate.seen_temperature[p]);
         }
         operator.spread(&self.scalar, &mut self.cell_scalar);
         let (mut misplaced, mut exchanged) = (0.0, 0.0);
         for c in 0..operator.cells() {
             let change = gas.temperature[c] - self.iterate.temperature[c];
-            misplaced += (exchange.heat_coefficient[c] * change - self.cell_scalar[c]).abs();
+            misplaced += (self.iterate.tie[c] * change - self.cell_scalar[c]).abs();
             exchanged += received.heat[c].abs();
         }
         share(misplaced, exchanged)
     }
 
-    fn credit_drag(
-        &mut self,
-        setting: &Setting<'_>,
-        gas: &GasFields<'_>,
-        received: &CellReceived,
-    ) -> f64 {
+    fn credit_drag(&mut self, setting: &Setting<'_>, gas: &GasFields<'_>, received: &CellReceived) {
         let Setting {
             operator,
             particles,
@@ -210,19 +210,9 @@ impl Exchange {
         operator.sample_vectors(&self.cell_vector, &mut self.drag);
         operator.sample_vectors(gas.velocity, &mut self.vector);
         for p in 0..operator.particles() {
-            let (seen, beyond) = (self.vector[p], self.drag[p]);
-            let slip = seen - particles.velocity[p] / *acceleration;
-            self.drag[p] = coefficients.drag[p] * (slip - beyond);
-            self.vector[p] = coefficients.drag[p] * (seen - self.iterate.seen_velocity[p]);
+            let slip = self.vector[p] - particles.velocity[p] / *acceleration;
+            self.drag[p] = coefficients.drag[p] * (slip - self.drag[p]);
         }
-        operator.spread_vectors(&self.vector, &mut self.cell_vector);
-        let (mut misplaced, mut exchanged) = (0.0, 0.0);
-        for c in 0..operator.cells() {
-            let change = gas.velocity[c] - self.iterate.velocity[c];
-            misplaced += (exchange.drag_coefficient[c] * change - self.cell_vector[c]).norm();
-            exchanged += received.drag[c].norm();
-        }
-        share(misplaced, exchanged)
     }
 
     /// The force pushed to the particles: drag and the pressure force −V_p Σ_c W_cp ∇p
@@ -248,6 +238,11 @@ impl Exchange {
                 .map(|(d, p)| d + p),
         );
     }
+}
+
+/// g_p: how strongly a particle draws its cells together, from h A and K_p, in W/K.
+fn tie(conductance: f64, eliminated: f64) -> f64 {
+    (conductance - eliminated).min(0.5 * eliminated)
 }
 
 fn share(part: f64, whole: f64) -> f64 {

@@ -219,6 +219,22 @@ fn the_iteration_converges_to_the_coupled_system_of_cells_and_particles() {
 }
 
 #[test]
+fn no_cell_is_driven_beyond_its_particle_and_its_neighbours() {
+    // Gas from 300 to 349 K, particles of 400 and 350 K: nothing may leave 300 to 400 K. A share of
+    // each particle's total in each of its cells would cool the coldest ones below 300 K, or heat
+    // hot ones by particles that are colder.
+    for (conductance, span) in [(1e-3, 0.1), (0.02, 0.5), (0.5, 0.01), (100.0, 0.5)] {
+        let (.., thin, gas) = attempts(conductance, span, 3, 0.0);
+        for &temperature in thin.temperature().iter().chain(&gas.temperature) {
+            assert!(
+                (300.0 - 1e-9..=400.0 + 1e-9).contains(&temperature),
+                "{temperature}"
+            );
+        }
+    }
+}
+
+#[test]
 fn a_stiff_particle_relaxes_without_overshoot() {
     // h A Δτ/(m c) = 1e4: a lagged particle temperature would diverge (requirements TSM-9).
     let (.., thin, gas) = attempts(100.0, 0.5, 200, 0.0);

@@ -187,13 +187,13 @@ fn with_files(case: &Case) -> String {
         .iter()
         .filter_map(|population| match &population.place {
             model::Place::File(path) => Some(path.clone()),
-            model::Place::Grid { .. } => None,
+            model::Place::Grid { .. } | model::Place::Random { .. } => None,
         });
     let mesh = match &case.mesh {
         model::MeshSpec::PolyMesh(folder) => ["points", "faces", "owner", "neighbour", "boundary"]
             .map(|name| folder.join(name))
             .to_vec(),
-        model::MeshSpec::Box { .. } => Vec::new(),
+        model::MeshSpec::Box { .. } | model::MeshSpec::Cylinder { .. } => Vec::new(),
     };
     let files: Vec<_> = places.chain(mesh).collect();
     if files.is_empty() {

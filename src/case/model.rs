@@ -79,6 +79,17 @@ pub enum MeshSpec {
         /// Patch names of x−, x+, y−, y+, z−, z+; equal names make one patch.
         patches: [String; 6],
     },
+    /// An upright cylinder, generated as an O-grid. Patches `side`, `bottom`, `top`.
+    Cylinder {
+        /// Centre of the bottom in m.
+        origin: Vec3,
+        /// Diameter in m.
+        diameter: f64,
+        /// Length along z in m.
+        length: f64,
+        /// Cells across the diameter, and along z.
+        cells: [usize; 2],
+    },
     /// An OpenFOAM polyMesh folder (absolute path).
     PolyMesh(PathBuf),
 }
@@ -146,6 +157,15 @@ pub enum Place {
         spacing: Vec3,
         /// Number along x, y, z.
         counts: [usize; 3],
+    },
+    /// A random packing on the bottom of a box or cylinder mesh, from wall to wall.
+    Random {
+        /// Height of the packing in m.
+        height: f64,
+        /// Volume of spheres over the filled space, layers at the walls included.
+        solid_fraction: f64,
+        /// Equal seeds give equal packings.
+        seed: u64,
     },
     /// Read from a file (absolute path): CSV with the columns x, y, z in m.
     File(PathBuf),

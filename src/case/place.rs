@@ -2,6 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use calcine_coupler::packing::{
+    Fill, Packing, PackingError, RandomSpec, Sizes, random_in_box, random_in_cylinder,
+};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use thiserror::Error;
@@ -47,9 +50,41 @@ pub enum PlaceError {
         /// Sum of their radii in m.
         radii: f64,
     },
+    /// A random packing that cannot be made.
+    #[error("population \"{name}\": {cause}")]
+    Packing {
+        /// Name of the population.
+        name: String,
+        /// Why.
+        cause: PackingError,
+    },
     /// No particle at all.
     #[error("the case has no particles")]
     Empty,
+}
+
+/// A random packing between the walls of the mesh. A cylinder's outline is a polygon: the spheres keep
+/// inside the circle that touches its sides.
+fn random(mesh: &MeshSpec, spec: &RandomSpec) -> Result<Packing, PackingError> {
+    match mesh {
+        MeshSpec::Box { origin, size, .. } => random_in_box(*origin, [size.x, size.y], spec),
+        MeshSpec::Cylinder {
+            origin,
+            diameter,
+            cells,
+            ..
+        } => {
+            let across = cells[0];
+            let sides = 4 * (across - 2 * (across / 4).max(1));
+            let inner = diameter * (std::f64::consts::PI / sides as f64).cos();
+            random_in_cylinder(*origin, inner, spec)
+        }
+        MeshSpec::PolyMesh(_) => Err(PackingError::Value {
+            what: "container",
+            value: f64::NAN,
+            need: "a box or a cylinder as mesh",
+        }),
+    }
 }
 
 /// The particles of all populations, ids from 1 in the order of the file; on a grid x runs fastest.
@@ -83,6 +118,25 @@ pub fn particles(case: &Case) -> Result<ParticleSetup, PlaceError> {
                             add(first + spacing.component_mul(&steps), population.diameter);
                         }
                     }
+                }
+            }
+            Place::Random {
+                height,
+                solid_fraction,
+                seed,
+            } => {
+                let spec = RandomSpec {
+                    sizes: Sizes::Equal(population.diameter),
+                    fill: Fill::Height(*height),
+                    solid_fraction: *solid_fraction,
+                    seed: *seed,
+                };
+                let packing = random(&case.mesh, &spec).map_err(|cause| PlaceError::Packing {
+                    name: population.name.clone(),
+                    cause,
+                })?;
+                for (position, diameter) in packing.centres.iter().zip(&packing.diameters) {
+                    add(*position, *diameter);
                 }
             }
             Place::File(path) => {

@@ -19,28 +19,48 @@ pub(super) fn read(root: &Reader<'_>, folder: &Path) -> Option<MeshSpec> {
         "mesh",
         "[mesh] with box = { size = \"10 10 110 mm\", cells = [1, 1, 11] }",
     )?;
-    let made = match (section.has("box"), section.has("polymesh")) {
-        (true, false) => cuboid(&section),
-        (false, true) => polymesh(&section, folder),
+    let kinds = ["box", "cylinder", "polymesh"];
+    let given: Vec<&str> = kinds.into_iter().filter(|kind| section.has(kind)).collect();
+    let made = match given[..] {
+        ["box"] => cuboid(&section),
+        ["cylinder"] => cylinder(&section),
+        ["polymesh"] => polymesh(&section, folder),
         _ => {
-            if section.has("cylinder") {
-                section.fail(
-                    "cylinder",
-                    "is not supported yet",
-                    "use `mesh.box` or `mesh.polymesh`",
-                );
-            } else {
-                root.fail(
-                    "mesh",
-                    "needs exactly one of `box` and `polymesh`",
-                    "for example box = { size = \"10 10 110 mm\", cells = [1, 1, 11] }",
-                );
-            }
+            root.fail(
+                "mesh",
+                "needs exactly one of `box`, `cylinder` and `polymesh`",
+                "for example box = { size = \"10 10 110 mm\", cells = [1, 1, 11] }",
+            );
             None
         }
     };
     section.finish();
     made
+}
+
+fn cylinder(section: &Reader<'_>) -> Option<MeshSpec> {
+    let cylinder = section.table("cylinder")?;
+    let origin = cylinder
+        .vector("origin", Dimension::LENGTH)
+        .unwrap_or([0.0; 3]);
+    let diameter = cylinder.required_positive("diameter", Dimension::LENGTH);
+    let length = cylinder.required_positive("length", Dimension::LENGTH);
+    let cells = cylinder.wholes::<2>("cells");
+    cylinder.finish();
+    let (diameter, length, cells) = (diameter?, length?, cells?);
+    if !(3..=20_000).contains(&cells[0])
+        || cells[0] as f64 * cells[0] as f64 * cells[1] as f64 > MOST_CELLS
+    {
+        let rule = format!("makes {} cells across and {} along", cells[0], cells[1]);
+        cylinder.fail("cells", rule, "3 to 20000 across, and 2e9 in all at most");
+        return None;
+    }
+    Some(MeshSpec::Cylinder {
+        origin: Vec3::from(origin),
+        diameter,
+        length,
+        cells,
+    })
 }
 
 fn polymesh(section: &Reader<'_>, folder: &Path) -> Option<MeshSpec> {

@@ -83,6 +83,7 @@ fn patches(mesh: Option<&MeshSpec>) -> Option<Vec<&str>> {
             names.dedup();
             Some(names)
         }
+        MeshSpec::Cylinder { .. } => Some(vec!["bottom", "side", "top"]),
         MeshSpec::PolyMesh(_) => None,
     }
 }

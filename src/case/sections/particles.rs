@@ -170,18 +170,66 @@ fn placed(
     mesh: Option<&MeshSpec>,
     folder: &Path,
 ) -> Option<Place> {
-    match (place.has("grid"), place.has("file")) {
-        (true, false) => grid(&place.table("grid")?, diameter, mesh),
-        (false, true) => existing(place, "file", folder).map(Place::File),
-        (false, false) if place.has("packing") => {
-            place.fail("packing", "is not supported yet", "use `grid` or `file`");
-            None
-        }
+    let kinds = ["grid", "file", "packing"];
+    let given: Vec<&str> = kinds.into_iter().filter(|kind| place.has(kind)).collect();
+    match given[..] {
+        ["grid"] => grid(&place.table("grid")?, diameter, mesh),
+        ["file"] => existing(place, "file", folder).map(Place::File),
+        ["packing"] => random(place, diameter, mesh),
         _ => {
-            place.fail_whole("needs exactly one of grid and file", "for example grid = { first = \"5 5 5 mm\", spacing = \"10 10 10 mm\", counts = [1, 1, 10] }");
+            place.fail_whole("needs exactly one of grid, file and packing", "for example grid = { first = \"5 5 5 mm\", spacing = \"10 10 10 mm\", counts = [1, 1, 10] }");
             None
         }
     }
+}
+
+fn random(place: &Reader<'_>, diameter: Option<f64>, mesh: Option<&MeshSpec>) -> Option<Place> {
+    let kind = place.required_choice("packing", &[("random", ())]);
+    let height = place.required_positive("height", Dimension::LENGTH);
+    if !place.has("solid_fraction") {
+        place.missing("solid_fraction", "0.58");
+    }
+    let solid_fraction = place.quantity("solid_fraction", Dimension::NONE);
+    if !place.has("seed") {
+        place.missing("seed", "1");
+    }
+    let seed = place.whole("seed", 0..=i64::MAX);
+    kind?;
+    let (height, solid_fraction, seed) = (height?, solid_fraction?, seed?);
+    if !(solid_fraction > 0.0 && solid_fraction < 0.74) {
+        place.fail(
+            "solid_fraction",
+            format!("is {solid_fraction}"),
+            "it lies between 0 and 0.74, the densest stacking",
+        );
+        return None;
+    }
+    let length = match mesh? {
+        MeshSpec::Box { size, .. } => size.z,
+        MeshSpec::Cylinder { length, .. } => *length,
+        MeshSpec::PolyMesh(_) => {
+            place.fail(
+                "packing",
+                "needs a box or a cylinder as mesh",
+                "use `file`, or another mesh",
+            );
+            return None;
+        }
+    };
+    if height > length || diameter.is_some_and(|diameter| height < diameter) {
+        let rule = format!("is {} m", shown(height));
+        let help = format!(
+            "it lies between the diameter and the mesh's {} m",
+            shown(length)
+        );
+        place.fail("height", rule, help);
+        return None;
+    }
+    Some(Place::Random {
+        height,
+        solid_fraction,
+        seed,
+    })
 }
 
 fn grid(grid: &Reader<'_>, diameter: Option<f64>, mesh: Option<&MeshSpec>) -> Option<Place> {

@@ -1,0 +1,72 @@
+//! Every shipped case runs, natively and with both production solvers, its ledger closed and its
+//! temperatures between those of its sources.
+
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use calcine::results::Summary;
+use calcine::results::read::Series;
+
+fn shipped() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+    let mut found: Vec<PathBuf> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|extension| extension == "toml")
+        })
+        .collect();
+    found.sort();
+    assert!(found.len() >= 2, "{found:?}");
+    found
+}
+
+#[test]
+fn every_shipped_case_runs_natively_and_with_both_solvers_between_its_sources() {
+    let directory = tempfile::tempdir().unwrap();
+    for case in shipped() {
+        for (gas, particles) in [("native", "native"), ("openfoam", "liggghts")] {
+            let name = format!("{}-{gas}", case.file_stem().unwrap().to_string_lossy());
+            let out = directory.path().join(name);
+            let output = Command::new(env!("CARGO_BIN_EXE_calcine"))
+                .arg("run")
+                .arg(&case)
+                .args(["--gas", gas, "--particles", particles, "--quiet"])
+                .args(["--set", "time.end=8 s"])
+                .arg("--out")
+                .arg(&out)
+                .output()
+                .unwrap();
+            let text = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{}: {text}", case.display());
+            let summary = Summary::read(&out).unwrap();
+            let error = |name: &str| summary.ledger.lines[name].relative_error;
+            assert!(
+                error("mass") < 1e-10 && error("energy") < 1e-10,
+                "{}",
+                case.display()
+            );
+            assert!(error("momentum") < 1e-12, "{}", case.display());
+            assert_eq!(
+                summary.convergence.unsettled_windows,
+                0,
+                "{}",
+                case.display()
+            );
+            // All shipped cases start at 300 K and are heated to 400 K at most.
+            let series = Series::read(&out).unwrap();
+            for name in ["gas.temperature_min", "particles.temperature_min"] {
+                let least = series.column(name).iter().copied().fold(f64::MAX, f64::min);
+                assert!(least > 300.0 - 1e-6, "{}: {name} {least} K", case.display());
+            }
+            for name in ["gas.temperature_max", "particles.temperature_max"] {
+                let most = series.column(name).iter().copied().fold(f64::MIN, f64::max);
+                assert!(most < 400.0 + 1e-6, "{}: {name} {most} K", case.display());
+            }
+        }
+    }
+}
