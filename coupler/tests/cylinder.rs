@@ -182,6 +182,9 @@ fn openfoam_accepts_a_locally_refined_cylinder() {
         .args(["-allGeometry", "-allTopology", "-case"])
         .arg(case.path())
         .env("WM_PROJECT_DIR", "/usr/share/openfoam")
+        // OpenFOAM takes no working directory with a space in its path.
+        .current_dir(case.path())
+        .env("PWD", case.path())
         .output();
     let Ok(output) = output else {
         eprintln!("SKIPPED: checkMesh is not installed");
