@@ -106,4 +106,31 @@ mod tests {
         let k = ErgunWenYu.coefficient(&gas(0.9, 5.0), 1e-2);
         assert!((k / 1.233_569_639e-4 - 1.0).abs() < 1e-9, "{k:e}");
     }
+
+    /// K_A at a void fraction over K_A just below it.
+    fn ratio_across(eps: f64, slip: f64) -> f64 {
+        let below = ErgunWenYu.coefficient(&gas(eps * (1.0 - 1e-12), slip), 1e-3);
+        ErgunWenYu.coefficient(&gas(eps, slip), 1e-3) / below
+    }
+
+    #[test]
+    fn wen_and_yu_take_over_at_a_void_fraction_of_0_8_with_a_jump() {
+        // In creeping flow Ergun gives 150·0.2/0.8 = 37.5, Wen and Yu 18·0.8^−2.65 = 32.515021.
+        assert!((ratio_across(0.8, 0.0) / (32.515_021 / 37.5) - 1.0).abs() < 1e-6);
+        for eps in [0.793, 0.807] {
+            assert!((ratio_across(eps, 0.0) - 1.0).abs() < 1e-9, "{eps}");
+        }
+    }
+
+    #[test]
+    fn the_drag_of_fast_flow_starts_above_a_reynolds_number_of_1000() {
+        // 24 (1 + 0.15·1000^0.687) = 438.288140 against 440; 0.5 % to either side still 1.
+        let jump = drag_times_reynolds(1000.0 * (1.0 + 1e-12)) / drag_times_reynolds(1000.0);
+        assert!((jump / (440.0 / 438.288_140) - 1.0).abs() < 1e-6, "{jump}");
+        for re in [995.0, 1005.0] {
+            let ratio = drag_times_reynolds(re * (1.0 + 1e-12)) / drag_times_reynolds(re);
+            assert!((ratio - 1.0).abs() < 1e-9, "{re}");
+        }
+        assert_eq!(drag_times_reynolds(1005.0), 0.44 * 1005.0);
+    }
 }
