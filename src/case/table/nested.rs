@@ -1,0 +1,117 @@
+//! Tables below a table: one by its key, lists of them, those named by the user.
+
+use std::cell::RefCell;
+use std::ops::Range;
+
+use toml_edit::{Item, TableLike, Value};
+
+use super::{Reader, dotted};
+
+impl<'a> Reader<'a> {
+    /// A list or single value as it stands, for forms of its own.
+    pub fn raw(&self, key: &str) -> Option<&'a Item> {
+        self.item(key)
+    }
+
+    /// A table below a key.
+    pub fn table(&self, key: &str) -> Option<Reader<'a>> {
+        let item = self.item(key)?;
+        let Some(table) = item.as_table_like() else {
+            self.wrong_type(key, "a table", item);
+            return None;
+        };
+        Some(self.below(self.place_of(key), key, table, item.span()))
+    }
+
+    /// A table that must be there.
+    pub fn required_table(&self, key: &str, example: &str) -> Option<Reader<'a>> {
+        if !self.has(key) {
+            let message = format!("`{}` is missing", self.place_of(key));
+            self.problems.add(
+                self.span.clone(),
+                message,
+                format!("add it, for example {example}"),
+            );
+        }
+        self.table(key)
+    }
+
+    /// All tables of a list such as `[[particles]]`.
+    pub fn tables(&self, key: &str) -> Vec<Reader<'a>> {
+        let Some(item) = self.item(key) else {
+            return Vec::new();
+        };
+        if let Some(list) = item.as_array_of_tables() {
+            let tables = list.iter().enumerate();
+            return tables
+                .map(|(i, table)| {
+                    self.below(
+                        format!("{}[{i}]", self.place_of(key)),
+                        key,
+                        table,
+                        table.span(),
+                    )
+                })
+                .collect();
+        }
+        let inline = item.as_array().map(|array| {
+            array
+                .iter()
+                .map(Value::as_inline_table)
+                .collect::<Option<Vec<_>>>()
+        });
+        if let Some(Some(list)) = inline {
+            let tables = list.into_iter().enumerate();
+            return tables
+                .map(|(i, table)| {
+                    self.below(
+                        format!("{}[{i}]", self.place_of(key)),
+                        key,
+                        table,
+                        table.span(),
+                    )
+                })
+                .collect();
+        }
+        self.wrong_type(
+            key,
+            &format!("a list of tables: [[{}]]", self.place_of(key)),
+            item,
+        );
+        Vec::new()
+    }
+
+    /// Tables below this one by name, in the order of the file, such as `[materials.glass]`.
+    pub fn named(&self) -> Vec<(String, Reader<'a>)> {
+        let mut found = Vec::new();
+        for (name, item) in self.table.iter() {
+            self.known.borrow_mut().push(name.into());
+            match item.as_table_like() {
+                Some(table) => found.push((
+                    name.to_owned(),
+                    self.below(self.place_of(name), "NAME", table, item.span()),
+                )),
+                None => self.wrong_type(name, "a table", item),
+            }
+        }
+        found
+    }
+
+    fn below(
+        &self,
+        place: String,
+        key: &str,
+        table: &'a dyn TableLike,
+        span: Option<Range<usize>>,
+    ) -> Reader<'a> {
+        let span = span.unwrap_or_else(|| self.span.clone());
+        Reader {
+            problems: self.problems,
+            table,
+            place,
+            pattern: dotted(&self.pattern, key),
+            span,
+            known: RefCell::default(),
+        }
+    }
+}

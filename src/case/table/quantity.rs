@@ -1,0 +1,238 @@
+//! Quantities with units: single ones, vectors, schedules.
+
+use calcine_coupler::setup::Schedule;
+use toml_edit::Value;
+
+use super::Reader;
+use crate::case::units::{Dimension, UnitError, quantities};
+
+impl Reader<'_> {
+    /// A quantity with its unit, in SI.
+    pub fn quantity(&self, key: &str, dimension: Dimension) -> Option<f64> {
+        let item = self.item(key)?;
+        match item.as_value() {
+            Some(value) => self.value(key, value, dimension),
+            None => {
+                self.wrong_type(
+                    key,
+                    &format!("{} such as \"{}\"", dimension.words(), dimension.example()),
+                    item,
+                );
+                None
+            }
+        }
+    }
+
+    /// A quantity that must be there.
+    pub fn required_quantity(&self, key: &str, dimension: Dimension) -> Option<f64> {
+        if !self.has(key) {
+            self.missing(key, &format!("\"{}\"", dimension.example()));
+        }
+        self.quantity(key, dimension)
+    }
+
+    /// A quantity above zero.
+    pub fn positive(&self, key: &str, dimension: Dimension) -> Option<f64> {
+        self.quantity(key, dimension)
+            .and_then(|value| self.above_zero(key, value))
+    }
+
+    /// A quantity above zero that must be there.
+    pub fn required_positive(&self, key: &str, dimension: Dimension) -> Option<f64> {
+        self.required_quantity(key, dimension)
+            .and_then(|value| self.above_zero(key, value))
+    }
+
+    fn above_zero(&self, key: &str, value: f64) -> Option<f64> {
+        if value > 0.0 {
+            return Some(value);
+        }
+        self.fail(
+            key,
+            format!("is {value} (in SI units)"),
+            "it must be above zero",
+        );
+        None
+    }
+
+    /// A wall time above zero.
+    pub fn wall_time(&self, key: &str) -> Option<std::time::Duration> {
+        let seconds = self.positive(key, Dimension::TIME)?;
+        let time = std::time::Duration::try_from_secs_f64(seconds).ok();
+        if time.is_none() {
+            self.fail(
+                key,
+                format!("is {seconds:e} s, beyond any clock"),
+                "write a shorter time",
+            );
+        }
+        time
+    }
+
+    /// Three components with one unit: "x y z unit".
+    pub fn vector(&self, key: &str, dimension: Dimension) -> Option<[f64; 3]> {
+        let item = self.item(key)?;
+        let example = dimension
+            .example()
+            .split_once(' ')
+            .map_or("", |(_, unit)| unit);
+        let needs = format!("three numbers and a unit such as \"0 0 1 {example}\"");
+        let Some(text) = item.as_str() else {
+            self.wrong_type(key, &needs, item);
+            return None;
+        };
+        let numbers = self.parsed(key, text, dimension)?;
+        let vector = <[f64; 3]>::try_from(numbers.as_slice()).ok();
+        if vector.is_none() {
+            self.fail(
+                key,
+                format!("has {} numbers in \"{text}\"", numbers.len()),
+                format!("write {needs}"),
+            );
+        }
+        vector
+    }
+
+    /// A vector that must be there.
+    pub fn required_vector(&self, key: &str, dimension: Dimension) -> Option<[f64; 3]> {
+        if !self.has(key) {
+            let unit = dimension
+                .example()
+                .split_once(' ')
+                .map_or("", |(_, unit)| unit);
+            self.missing(key, &format!("\"0 0 1 {unit}\""));
+        }
+        self.vector(key, dimension)
+    }
+
+    /// A value, or a list of [time, value] with increasing times.
+    pub fn schedule(&self, key: &str, dimension: Dimension) -> Option<Schedule> {
+        let Some(item) = self.item(key) else {
+            self.missing(key, &format!("\"{}\"", dimension.example()));
+            return None;
+        };
+        let Some(array) = item.as_array() else {
+            return self.quantity(key, dimension).map(Schedule::constant);
+        };
+        let mut entries: Vec<(f64, f64)> = Vec::new();
+        for entry in array {
+            let pair = entry.as_array().filter(|pair| pair.len() == 2);
+            let Some((time, value)) = pair.and_then(|pair| Some((pair.get(0)?, pair.get(1)?)))
+            else {
+                let example = format!(
+                    "[[\"0 s\", \"{0}\"], [\"10 s\", \"{0}\"]]",
+                    dimension.example()
+                );
+                self.fail(
+                    key,
+                    "needs pairs of time and value",
+                    format!("for example {example}"),
+                );
+                return None;
+            };
+            let time = self.value(key, time, Dimension::TIME)?;
+            let value = self.value(key, value, dimension)?;
+            if entries.last().is_some_and(|last| last.0 >= time) {
+                self.fail(
+                    key,
+                    format!("has the time {time} s after a later or equal one"),
+                    "the times must increase",
+                );
+                return None;
+            }
+            entries.push((time, value));
+        }
+        if entries.is_empty() {
+            self.fail(
+                key,
+                "is an empty schedule",
+                "write at least one pair of time and value",
+            );
+            return None;
+        }
+        Some(Schedule(entries))
+    }
+
+    /// A schedule of absolute temperatures.
+    pub fn temperatures(&self, key: &str) -> Option<Schedule> {
+        let schedule = self.schedule(key, Dimension::TEMPERATURE)?;
+        if let Some((_, value)) = schedule.0.iter().find(|entry| entry.1 <= 0.0) {
+            self.fail(
+                key,
+                format!("is {value} K"),
+                "temperatures are absolute: above 0 K",
+            );
+            return None;
+        }
+        Some(schedule)
+    }
+
+    /// One value of a key (or of an entry of its list) as a quantity.
+    pub fn value(&self, key: &str, value: &Value, dimension: Dimension) -> Option<f64> {
+        let example = dimension.example();
+        let plain = value
+            .as_float()
+            .or_else(|| value.as_integer().map(|number| number as f64));
+        if let Some(number) = plain {
+            if dimension == Dimension::NONE && number.is_finite() {
+                return Some(number);
+            }
+            self.fail(
+                key,
+                format!("needs a unit, for example \"{example}\""),
+                format!("{number} has none: write it in quotes with a unit"),
+            );
+            return None;
+        }
+        let Some(text) = value.as_str() else {
+            let rule = format!(
+                "needs {} such as \"{example}\", but is {}",
+                dimension.words(),
+                value.type_name()
+            );
+            self.fail(key, rule, format!("write \"{example}\""));
+            return None;
+        };
+        let numbers = self.parsed(key, text, dimension)?;
+        if let [number] = numbers[..] {
+            return Some(number);
+        }
+        self.fail(
+            key,
+            format!("has {} numbers in \"{text}\"", numbers.len()),
+            format!("write one, for example \"{example}\""),
+        );
+        None
+    }
+
+    fn parsed(&self, key: &str, text: &str, dimension: Dimension) -> Option<Vec<f64>> {
+        let (words, example) = (dimension.words(), dimension.example());
+        match quantities(text) {
+            Ok((numbers, found)) if found == dimension => return Some(numbers),
+            Ok((_, Dimension::NONE)) => self.fail(
+                key,
+                format!("needs a unit, for example \"{example}\""),
+                format!("\"{text}\" has none"),
+            ),
+            Ok((_, found)) => self.fail(
+                key,
+                format!(
+                    "needs {words} such as \"{example}\", but \"{text}\" is {}",
+                    found.words()
+                ),
+                format!("write {words}"),
+            ),
+            Err(UnitError::Unknown(unit)) => self.fail(
+                key,
+                format!("has the unit \"{unit}\", which is not known"),
+                format!("it needs {words} such as \"{example}\""),
+            ),
+            Err(UnitError::Number(text)) => self.fail(
+                key,
+                format!("needs {words} such as \"{example}\", but \"{text}\" has no finite number"),
+                "write a number and a unit",
+            ),
+        }
+        None
+    }
+}
