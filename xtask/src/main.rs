@@ -2,10 +2,13 @@
 //! `cargo xtask …`. The standard library alone, so that it builds in seconds.
 
 mod adapters;
+mod bench;
 mod headers;
+mod json;
 mod packages;
 mod sources;
 mod steps;
+mod table;
 mod tasks;
 mod workspace;
 
@@ -28,7 +31,8 @@ usage: cargo xtask TASK
         [--no-build]      without building
   install --prefix DIR    build, then copy to DIR/bin and DIR/libexec/calcine
         [--native]        without the adapters for OpenFOAM and LIGGGHTS
-  bench …                 run the benchmarks; words go to `cargo bench`";
+  bench …                 run the benchmarks and print one table; words go to `cargo bench`
+        [--table]         the table of what was measured last";
 
 /// Exit code of a wrong command line, as `calcine` has it.
 const USAGE_CODE: u8 = 2;
@@ -61,7 +65,7 @@ enum Task {
     SetUp { needs: Needs, build: bool },
     Calcine(Vec<OsString>),
     Test { native: bool, words: Vec<OsString> },
-    Bench(Vec<OsString>),
+    Bench(bench::Choice),
     Install { prefix: PathBuf, needs: Needs },
 }
 
@@ -78,7 +82,13 @@ fn read(words: &[OsString]) -> Option<Task> {
                 words: rest[usize::from(native)..].to_vec(),
             })
         }
-        "bench" => Some(Task::Bench(rest.to_vec())),
+        "bench" => {
+            let table_only = rest.first().is_some_and(|word| word == "--table");
+            Some(Task::Bench(bench::Choice {
+                table_only,
+                words: rest[usize::from(table_only)..].to_vec(),
+            }))
+        }
         "install" => install(rest),
         _ => None,
     }
@@ -124,7 +134,7 @@ fn perform(task: Task) -> Outcome<()> {
         Task::SetUp { needs, build } => tasks::set_up(&workspace, needs, build),
         Task::Calcine(words) => tasks::run(&workspace, &words),
         Task::Test { native, words } => tasks::test(&workspace, native, &words),
-        Task::Bench(words) => tasks::bench(&workspace, &words),
+        Task::Bench(choice) => bench::run(&workspace, &choice),
         Task::Install { prefix, needs } => tasks::install(&workspace, &prefix, needs),
     }
 }

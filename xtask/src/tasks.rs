@@ -1,4 +1,4 @@
-//! The tasks: set-up, run, test, bench, install.
+//! The tasks: set-up, run, test, install.
 
 use std::ffi::{OsStr, OsString};
 use std::fs;
@@ -57,35 +57,6 @@ pub fn test(workspace: &Workspace, native: bool, words: &[OsString]) -> Outcome<
         command.arg("--workspace");
     }
     loud_step("all tests", || visibly(command.args(words)))
-}
-
-/// Runs the benchmarks of every package that has some.
-pub fn bench(workspace: &Workspace, words: &[OsString]) -> Outcome<()> {
-    let folders = [
-        ".",
-        "coupler",
-        "coupler/physics",
-        "coupler/interior",
-        "native-solver",
-    ];
-    let more = ["adapters", "adapters/wire"];
-    let holds = |folder: &&&str| workspace.root.join(folder).join("benches").is_dir();
-    let found: Vec<_> = folders.iter().chain(&more).filter(holds).collect();
-    if found.is_empty() {
-        say("no package holds a folder `benches` yet: nothing to measure");
-        return Ok(());
-    }
-    packages::install(Needs::NATIVE, &workspace.logs)?;
-    for folder in found {
-        let manifest = workspace.root.join(folder).join("Cargo.toml");
-        let mut command = workspace.cargo("bench");
-        command
-            .args(["--bench", "*", "--manifest-path"])
-            .arg(manifest)
-            .args(words);
-        loud_step(&format!("benchmarks in {folder}"), || visibly(&mut command))?;
-    }
-    Ok(())
 }
 
 /// Copies the command to PREFIX/bin and its adapters to PREFIX/libexec/calcine.
