@@ -13,6 +13,64 @@ pub struct Region {
     pub expansion: f64,
 }
 
+/// A region by its shares, as the multi-grading of `blockMesh` has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// Its share of the length; shares of all regions are scaled to sum to 1.
+    pub length_share: f64,
+    /// Its share of the cells, likewise.
+    pub cell_share: f64,
+    /// Size of its last cell over that of its first.
+    pub expansion: f64,
+}
+
+/// Regions of `cells` cells in all, at least one each: whole parts of the shares first, then the
+/// largest remainders. Without a stretch, one region of equal cells.
+pub fn shared(cells: usize, stretches: &[Stretch]) -> Result<Vec<Region>, MeshError> {
+    if stretches.is_empty() {
+        return Ok(uniform(cells));
+    }
+    let wrong = |text: String| Err(MeshError::Inconsistent(text));
+    if stretches.len() > cells {
+        return wrong(format!("{} regions of {cells} cells", stretches.len()));
+    }
+    let total: f64 = stretches.iter().map(|stretch| stretch.cell_share).sum();
+    if let Some(bad) = stretches.iter().find(|s| !(s.cell_share / total > 0.0)) {
+        return wrong(format!(
+            "a region has a share of the cells of {}; it must be above 0",
+            bad.cell_share
+        ));
+    }
+    let exact = |stretch: &Stretch| cells as f64 * stretch.cell_share / total;
+    let mut counts: Vec<usize> = stretches
+        .iter()
+        .map(|s| (exact(s) as usize).max(1))
+        .collect();
+    // How far a region is below its share; the first of equals comes first.
+    let missing = |counts: &[usize], i: usize| exact(&stretches[i]) - counts[i] as f64;
+    let all = 0..stretches.len();
+    while counts.iter().sum::<usize>() < cells {
+        let most = all
+            .clone()
+            .rev()
+            .max_by(|&a, &b| missing(&counts, a).total_cmp(&missing(&counts, b)));
+        counts[most.unwrap_or(0)] += 1;
+    }
+    while counts.iter().sum::<usize>() > cells {
+        let spare = all.clone().filter(|&i| counts[i] > 1);
+        let least = spare.min_by(|&a, &b| missing(&counts, a).total_cmp(&missing(&counts, b)));
+        counts[least.unwrap_or(0)] -= 1;
+    }
+    let regions = stretches.iter().zip(counts);
+    Ok(regions
+        .map(|(stretch, cells)| Region {
+            share: stretch.length_share,
+            cells,
+            expansion: stretch.expansion,
+        })
+        .collect())
+}
+
 /// One region of equal cells.
 pub fn uniform(cells: usize) -> Vec<Region> {
     vec![Region {

@@ -7,6 +7,8 @@ mod extrude;
 pub mod grading;
 pub mod locate;
 pub mod polymesh;
+pub mod refine;
+pub mod zone;
 
 use calcine_physics::Vec3;
 use thiserror::Error;
