@@ -12,11 +12,7 @@ use calcine_coupler::coordinator::{CheckpointPaths, Parts, Plan, Run, RunError};
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::interior::Thin;
 use calcine_coupler::mapping::{Mapper, Method};
-use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
-use calcine_coupler::mesh::cylinder::{CylinderSpec, cylinder_mesh};
-use calcine_coupler::mesh::grading::uniform;
-use calcine_coupler::mesh::polymesh;
-use calcine_coupler::mesh::{Mesh, MeshError};
+use calcine_coupler::mesh::Mesh;
 use calcine_coupler::part::{Gas, Particles};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::drag::{Drag, ErgunWenYu, NoDrag};
@@ -29,8 +25,8 @@ use calcine_native::particles::NativeParticles;
 use clap::ValueEnum;
 use thiserror::Error;
 
-use crate::case::model::{Case, DragLaw, HeatLaw, Mapping, MeshSpec};
-use crate::case::{PlaceError, particles};
+use crate::case::model::{Case, DragLaw, HeatLaw, Mapping};
+use crate::case::{MeshingError, PlaceError, Placed, mesh, particles};
 
 /// Who computes the gas.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -121,12 +117,9 @@ impl ParticleBackend {
 /// A case that cannot be assembled, although its file was in order.
 #[derive(Debug, Error)]
 pub enum AssemblyError {
-    /// The mesh cannot be used.
+    /// The mesh cannot be made or read.
     #[error("mesh: {0}")]
-    Mesh(#[from] MeshError),
-    /// The polyMesh cannot be read.
-    #[error("mesh: {0}")]
-    PolyMesh(#[from] polymesh::PolyMeshError),
+    Mesh(#[from] MeshingError),
     /// The particles cannot be placed.
     #[error("particles: {0}")]
     Particles(#[from] PlaceError),
@@ -148,41 +141,18 @@ pub struct Prepared {
     pub mesh: Arc<Mesh>,
     /// The particles at the start.
     pub particles: ParticleSetup,
+    /// Their temperatures in K.
+    pub temperature: Vec<f64>,
 }
 
 impl Prepared {
     /// Generates or reads the mesh and places the particles.
     pub fn new(case: &Case) -> Result<Self, AssemblyError> {
-        let mesh = match &case.mesh {
-            MeshSpec::Box {
-                origin,
-                size,
-                cells,
-                patches,
-            } => box_mesh(&BoxSpec {
-                origin: *origin,
-                size: *size,
-                cells: *cells,
-                patches: patches.clone(),
-            })?,
-            MeshSpec::Cylinder {
-                origin,
-                diameter,
-                length,
-                cells,
-            } => cylinder_mesh(&CylinderSpec {
-                origin: *origin,
-                diameter: *diameter,
-                length: *length,
-                cells_across: cells[0],
-                along: uniform(cells[1]),
-                patches: ["side", "bottom", "top"].map(String::from),
-            })?,
-            MeshSpec::PolyMesh(directory) => polymesh::read(directory)?,
-        };
+        let Placed { setup, temperature } = particles(case)?;
         Ok(Self {
-            mesh: Arc::new(mesh),
-            particles: particles(case)?,
+            mesh: Arc::new(mesh(&case.mesh)?),
+            particles: setup,
+            temperature,
         })
     }
 
@@ -428,14 +398,10 @@ fn interior(case: &Case, prepared: &Prepared) -> Thin {
     let volume = |p: usize| 4.0 / 3.0 * std::f64::consts::PI * particles.radius[p].powi(3);
     let all = 0..particles.id.len();
     let heat_capacity = all
-        .clone()
         .map(|p| {
             let material = &case.materials[population(p).material];
             particles.density[p] * volume(p) * material.heat_capacity
         })
         .collect();
-    Thin::new(
-        heat_capacity,
-        all.map(|p| population(p).temperature).collect(),
-    )
+    Thin::new(heat_capacity, prepared.temperature.clone())
 }

@@ -98,8 +98,8 @@ fn set_changes_values_and_refuses_what_it_does_not_know() {
             .largest(),
         7.0
     );
-    let diameter = set("particles[0].diameter=9 mm").unwrap().particles[0].diameter;
-    assert!((diameter - 9e-3).abs() < 1e-17);
+    let changed = set("particles[0].diameter=9 mm").unwrap();
+    assert!((changed.particles[0].sizes.largest() - 9e-3).abs() < 1e-17);
     assert_ne!(case.hash, read(path, &[]).unwrap().hash);
     for wrong in [
         "time.ent=3 s",
@@ -140,7 +140,7 @@ fn particles_of_a_file_stay_in_the_box_and_apart_from_other_populations() {
     use calcine::case::particles;
     let good = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/two-populations.toml");
     let case = |set: &str| read(&good, &[set.to_owned()]).unwrap();
-    assert_eq!(particles(&case("time.end=1 s")).unwrap().id.len(), 4);
+    assert_eq!(particles(&case("time.end=1 s")).unwrap().setup.id.len(), 4);
     // The upper sphere (radius 5 mm) at 19 mm, the lower grain (2 mm) at 25 mm.
     let error = particles(&case("particles[0].place.grid.first=\"5 5 9 mm\"")).unwrap_err();
     assert_eq!(

@@ -4,9 +4,11 @@
 
 use std::f64::consts::{FRAC_PI_4, PI, SQRT_2};
 
-use calcine_coupler::packing::regular::{hexagonal_close, simple_cubic};
+use calcine_coupler::packing::regular::{
+    Lattice, hexagonal_close, regular_in_box, regular_in_cylinder, simple_cubic,
+};
 use calcine_coupler::packing::{
-    Fill, Packing, PackingError, RandomSpec, Sizes, random_in_box, random_in_cylinder,
+    Fill, Packing, PackingError, RandomSpec, Shape, Share, Sizes, random_in_box, random_in_cylinder,
 };
 use calcine_coupler::physics::Vec3;
 
@@ -19,6 +21,21 @@ fn spec(seed: u64) -> RandomSpec {
         fill: Fill::Number(3000),
         solid_fraction: 0.58,
         seed,
+        size_seed: seed,
+    }
+}
+
+fn mixture(parts: Vec<(f64, f64)>, share: Share) -> Sizes {
+    Sizes::Mixture { parts, share }
+}
+
+fn range(shape: Shape, min: f64, max: f64) -> Sizes {
+    let share = Share::Number;
+    Sizes::Range {
+        shape,
+        min,
+        max,
+        share,
     }
 }
 
@@ -140,7 +157,7 @@ fn contacts_point_in_all_directions_alike() {
 #[test]
 fn mixed_sizes_fill_a_box_to_a_height() {
     let mut spec = spec(5);
-    spec.sizes = Sizes::Mixture(vec![(1.0, 1.0), (2.0, 1.0)]);
+    spec.sizes = mixture(vec![(1.0, 1.0), (2.0, 1.0)], Share::Number);
     spec.fill = Fill::Height(16.0);
     let origin = Vec3::new(5.0, -3.0, 2.0);
     let bed = random_in_box(origin, [12.0, 14.0], &spec).unwrap();
@@ -183,8 +200,10 @@ fn numbers_without_meaning_are_refused() {
     assert!(said(|s| s.sizes = Sizes::Equal(0.0)).contains("diameter is 0"));
     assert!(said(|s| s.sizes = Sizes::Equal(0.06)).contains("narrowest width"));
     assert!(said(|s| s.fill = Fill::Number(0)).contains("number of spheres is 0"));
-    assert!(said(|s| s.sizes = Sizes::Mixture(vec![])).contains("number of diameters is 0"));
-    assert!(said(|s| s.sizes = Sizes::Between(0.002, 0.001)).contains("range of diameters"));
+    assert!(
+        said(|s| s.sizes = mixture(vec![], Share::Number)).contains("number of diameters is 0")
+    );
+    assert!(said(|s| s.sizes = range(Shape::Uniform, 0.002, 0.001)).contains("range of diameters"));
 }
 
 #[test]
@@ -207,4 +226,147 @@ fn a_hexagonal_close_stack_has_12_contacts_and_pi_over_3_root_2() {
     let [row, rows, layers] = [at(1, 0, 0), at(0, 2, 0), at(0, 0, 2)].map(|p| p - at(0, 0, 0));
     let cell = row.cross(&rows).dot(&layers) / 4.0;
     assert!((PI / 6.0 / cell - PI / (3.0 * SQRT_2)).abs() < 1e-12);
+}
+
+/// Mean and standard deviation of so many draws.
+fn moments(sizes: &Sizes) -> (f64, f64) {
+    let all = sizes.sample(40_000, 11).unwrap();
+    let mean = all.iter().sum::<f64>() / all.len() as f64;
+    let square = all.iter().map(|d| (d - mean) * (d - mean)).sum::<f64>();
+    (mean, (square / all.len() as f64).sqrt())
+}
+
+/// 40,000 draws know a mean to its deviation over 200; three times that is allowed.
+#[test]
+fn drawn_diameters_have_the_moments_of_their_distribution() {
+    let (mean, deviation) = moments(&range(Shape::Uniform, 1.0, 3.0));
+    assert!((mean - 2.0).abs() < 0.009 && (deviation - 1.0 / 3f64.sqrt()).abs() < 0.009);
+    let normal = |mean, deviation| Shape::Normal { mean, deviation };
+    let (mean, deviation) = moments(&range(normal(5.0, 0.5), 1.0, 9.0));
+    assert!((mean - 5.0).abs() < 0.008 && (deviation - 0.5).abs() < 0.008);
+    // Cut at the mean: the mean of a half normal distribution is √(2/π) deviations above.
+    let (mean, _) = moments(&range(normal(5.0, 0.5), 5.0, 9.0));
+    assert!(
+        (mean - 5.0 - 0.5 * (2.0 / PI).sqrt()).abs() < 0.005,
+        "{mean}"
+    );
+    // Mean of a log-normal distribution: median exp(σ²/2).
+    let (median, deviation) = (2.0, 1.3);
+    let shape = Shape::LogNormal { median, deviation };
+    let expected = 2.0 * (0.5 * 1.3f64.ln().powi(2)).exp();
+    let sizes = range(shape, 0.2, 20.0);
+    assert!((moments(&sizes).0 - expected).abs() < 0.009);
+    assert!((sizes.mean().unwrap() - expected).abs() < 1e-6);
+}
+
+#[test]
+fn shares_by_mass_are_of_mass() {
+    // Uniform by mass from 1 to 2 is d⁻³ by number: ∫d⁻² = 1/2 over ∫d⁻³ = 3/8.
+    let sizes = Sizes::Range {
+        shape: Shape::Uniform,
+        min: 1.0,
+        max: 2.0,
+        share: Share::Mass,
+    };
+    assert!((sizes.mean().unwrap() - 4.0 / 3.0).abs() < 1e-6);
+    let half = mixture(vec![(1e-3, 0.5), (2e-3, 0.5)], Share::Mass);
+    let all = half.sample(90_000, 4).unwrap();
+    let mass = |d: f64| {
+        all.iter()
+            .filter(|x| **x == d)
+            .map(|x| x.powi(3))
+            .sum::<f64>()
+    };
+    // 10,000 large ones: known to 1 %.
+    assert!((mass(2e-3) / mass(1e-3) - 1.0).abs() < 0.03);
+    assert_eq!(half.largest(), 2e-3);
+    assert_eq!(half.sample(5, 4).unwrap(), all[..5]);
+}
+
+#[test]
+fn spheres_of_very_different_sizes_pack_without_overlap() {
+    let mut spec = spec(2);
+    spec.sizes = mixture(vec![(1.0, 0.5), (5.0, 0.5)], Share::Mass);
+    spec.fill = Fill::Height(20.0);
+    spec.solid_fraction = 0.62;
+    let bed = random_in_cylinder(Vec3::zeros(), 20.0, &spec).unwrap();
+    assert!(smallest_gap(&bed) > -1e-12);
+    let fraction = bed.volume() / (FRAC_PI_4 * 20.0 * 20.0 * 20.0);
+    assert!((fraction - 0.62).abs() < 0.01, "{fraction}");
+    for (c, d) in bed.centres.iter().zip(&bed.diameters) {
+        assert!(c.x.hypot(c.y) + 0.5 * d <= 10.0 + 1e-12);
+        assert!(c.z >= 0.5 * d - 1e-12 && c.z + 0.5 * d <= 20.0 + 1e-12);
+    }
+}
+
+#[test]
+fn stackings_fill_containers_from_wall_to_wall() {
+    let origin = Vec3::new(1.0, 2.0, 3.0);
+    let fit = |lattice| regular_in_box(origin, [6.0, 8.0, 10.0], 2.0, lattice).unwrap();
+    let cubic = fit(Lattice::SimpleCubic);
+    assert_eq!(cubic.centres.len(), 3 * 4 * 5);
+    assert!((cubic.height - 10.0).abs() < 1e-12);
+    assert!((cubic.centres[0] - origin - Vec3::repeat(1.0)).norm() < 1e-12);
+    // Square layers of 3 x 4 and 2 x 3 in turns, 2/√2 apart: 1 + 8/√2 = 6.6, 6 layers.
+    let face = fit(Lattice::FaceCentred);
+    assert_eq!(face.centres.len(), 3 * 12 + 3 * 6);
+    for lattice in [
+        Lattice::SimpleCubic,
+        Lattice::HexagonalClose,
+        Lattice::FaceCentred,
+    ] {
+        let wide = regular_in_box(origin, [20.3, 21.7, 19.1], 1.0, lattice).unwrap();
+        let tube = regular_in_cylinder(origin, [20.0, 12.0], 1.0, lattice).unwrap();
+        for packing in [&wide, &tube] {
+            assert!(smallest_gap(packing).abs() < 1e-9);
+        }
+        for c in &tube.centres {
+            assert!((c - origin).xy().norm() <= 9.5 + 1e-9 && c.z <= 3.0 + 11.5 + 1e-9);
+        }
+        // The middle of the box is as dense as the lattice, the walls cost a part.
+        let bulk = if lattice == Lattice::SimpleCubic {
+            PI / 6.0
+        } else {
+            PI / (3.0 * SQRT_2)
+        };
+        let fraction = wide.volume() / (20.3 * 21.7 * 19.1);
+        assert!(
+            fraction < bulk && fraction > 0.88 * bulk,
+            "{lattice:?}: {fraction}"
+        );
+        // What is left over is shared between the walls.
+        let gap = |axis: usize| {
+            let low = wide
+                .centres
+                .iter()
+                .map(|c| c[axis])
+                .fold(f64::INFINITY, f64::min);
+            let high = wide.centres.iter().map(|c| c[axis]).fold(0.0, f64::max);
+            (low - origin[axis]) - (origin[axis] + [20.3, 21.7][axis] - high)
+        };
+        assert!(gap(0).abs() < 1e-9 && gap(1).abs() < 1e-9);
+    }
+    let ten = regular_in_cylinder(Vec3::zeros(), [10.0, 1.0], 1.0, Lattice::SimpleCubic).unwrap();
+    let on_axis = ten.centres.iter().filter(|c| c.y.abs() < 1e-12).count();
+    // Nine whole spheres with one on the axis.
+    assert_eq!(on_axis, 9);
+    let narrow = regular_in_box(origin, [0.5, 1.0, 1.0], 1.0, Lattice::SimpleCubic).unwrap_err();
+    assert!(narrow.to_string().contains("narrowest width in m is 0.5"));
+}
+
+#[test]
+fn a_face_centred_stack_has_12_contacts() {
+    let stack = regular_in_box(Vec3::zeros(), [6.0; 3], 1.0, Lattice::FaceCentred).unwrap();
+    let near = |c: &&Vec3| (*c - Vec3::repeat(3.0)).norm();
+    let middle = stack
+        .centres
+        .iter()
+        .min_by(|a, b| near(a).total_cmp(&near(b)))
+        .unwrap();
+    let touching = stack
+        .centres
+        .iter()
+        .filter(|c| (*c - middle).norm() < 1.0 + 1e-9)
+        .count();
+    assert_eq!(touching - 1, 12);
 }

@@ -95,7 +95,9 @@ fn splitting(text: &mut String, case: &Case, population: &Population, eps: f64) 
     let Some(local) = local(case, eps, density) else {
         return;
     };
-    let d = population.diameter;
+    let Ok(d) = population.sizes.mean() else {
+        return;
+    };
     let nusselt = match case.laws.heat_transfer {
         HeatLaw::None => 0.0,
         HeatLaw::Gunn => Gunn.nusselt(&local, d),

@@ -1,7 +1,9 @@
 //! Case files: TOML to a checked [`model::Case`].
 
+mod bed;
 mod check;
 pub mod keys;
+mod meshing;
 pub mod model;
 mod overlap;
 mod place;
@@ -16,7 +18,8 @@ use sha2::{Digest, Sha256};
 use toml_edit::{Document, DocumentMut, Item, Value};
 
 pub use check::check_report;
-pub use place::{PlaceError, particles};
+pub use meshing::{MeshingError, mesh};
+pub use place::{PlaceError, Placed, particles};
 pub use problem::{CaseErrors, Problem};
 
 use model::Case;
@@ -186,8 +189,8 @@ fn with_files(case: &Case) -> String {
         .particles
         .iter()
         .filter_map(|population| match &population.place {
-            model::Place::File(path) => Some(path.clone()),
-            model::Place::Grid { .. } | model::Place::Random { .. } => None,
+            model::Place::File { path, .. } => Some(path.clone()),
+            _ => None,
         });
     let mesh = match &case.mesh {
         model::MeshSpec::PolyMesh(folder) => ["points", "faces", "owner", "neighbour", "boundary"]

@@ -3,6 +3,10 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use calcine_coupler::mesh::grading::Stretch;
+use calcine_coupler::mesh::refine::Refinement;
+use calcine_coupler::packing::Sizes;
+use calcine_coupler::packing::regular::Lattice;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::GasSetup;
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
@@ -76,6 +80,10 @@ pub enum MeshSpec {
         size: Vec3,
         /// Cells along x, y, z.
         cells: [usize; 3],
+        /// How cell sizes change along x, y, z; empty for equal ones.
+        grading: [Vec<Stretch>; 3],
+        /// Zones in which cells are split.
+        refine: Vec<Refinement>,
         /// Patch names of x−, x+, y−, y+, z−, z+; equal names make one patch.
         patches: [String; 6],
     },
@@ -89,6 +97,10 @@ pub enum MeshSpec {
         length: f64,
         /// Cells across the diameter, and along z.
         cells: [usize; 2],
+        /// How cell sizes change along z; empty for equal ones.
+        grading: Vec<Stretch>,
+        /// Zones in which cells are split.
+        refine: Vec<Refinement>,
     },
     /// An OpenFOAM polyMesh folder (absolute path).
     PolyMesh(PathBuf),
@@ -129,13 +141,15 @@ pub struct Population {
     pub name: String,
     /// Index into `Case::materials`.
     pub material: usize,
-    /// Diameter in m.
-    pub diameter: f64,
+    /// Diameters; a file of particles may state its own.
+    pub sizes: Sizes,
+    /// Seed by which diameters that differ are drawn.
+    pub size_seed: u64,
     /// How the particles move.
     pub motion: Motion,
     /// Where they are at the start.
     pub place: Place,
-    /// Start temperature in K.
+    /// Start temperature in K; a file of particles may state its own.
     pub temperature: f64,
 }
 
@@ -158,17 +172,31 @@ pub enum Place {
         /// Number along x, y, z.
         counts: [usize; 3],
     },
-    /// A random packing on the bottom of a box or cylinder mesh, from wall to wall.
+    /// A random packing in a layer of a box or cylinder mesh, from wall to wall.
     Random {
-        /// Height of the packing in m.
-        height: f64,
+        /// Lowest and highest z of the layer in m.
+        layer: [f64; 2],
         /// Volume of spheres over the filled space, layers at the walls included.
         solid_fraction: f64,
         /// Equal seeds give equal packings.
         seed: u64,
     },
-    /// Read from a file (absolute path): CSV with the columns x, y, z in m.
-    File(PathBuf),
+    /// A regular stacking in a layer of a box or cylinder mesh, from wall to wall.
+    Regular {
+        /// The stacking.
+        lattice: Lattice,
+        /// Lowest and highest z of the layer in m.
+        layer: [f64; 2],
+    },
+    /// Read from a file: CSV, a LIGGGHTS dump, or VTK.
+    File {
+        /// Absolute path.
+        path: PathBuf,
+        /// The snapshot of a dump; `None`: its last one.
+        timestep: Option<u64>,
+        /// Those of one type; `None`: all.
+        kind: Option<u64>,
+    },
 }
 
 /// Laws; each is stated in the case file, none has a default.

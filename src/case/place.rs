@@ -1,15 +1,17 @@
 //! From populations to particles.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
+use calcine_coupler::packing::regular::{Lattice, regular_in_box, regular_in_cylinder};
 use calcine_coupler::packing::{
-    Fill, Packing, PackingError, RandomSpec, Sizes, random_in_box, random_in_cylinder,
+    Fill, Packing, PackingError, RandomSpec, random_in_box, random_in_cylinder,
 };
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use thiserror::Error;
 
-use super::model::{Case, MeshSpec, Motion, Place};
+use super::bed::{self, Choice};
+use super::model::{Case, MeshSpec, Motion, Place, Population};
 use super::overlap;
 use super::units::shown;
 
@@ -24,13 +26,11 @@ pub enum PlaceError {
         /// Why.
         cause: std::io::Error,
     },
-    /// A line that does not hold what the header says.
-    #[error("{path}, line {line}: {what}")]
-    Line {
-        /// The file.
-        path: PathBuf,
-        /// The line, from 1.
-        line: usize,
+    /// A file that does not hold what it should.
+    #[error("{place}: {what}")]
+    File {
+        /// The file, and the line or particle.
+        place: String,
         /// What is wrong.
         what: String,
     },
@@ -50,7 +50,7 @@ pub enum PlaceError {
         /// Sum of their radii in m.
         radii: f64,
     },
-    /// A random packing that cannot be made.
+    /// A packing or a distribution of sizes that cannot be made.
     #[error("population \"{name}\": {cause}")]
     Packing {
         /// Name of the population.
@@ -63,95 +63,40 @@ pub enum PlaceError {
     Empty,
 }
 
-/// A random packing between the walls of the mesh. A cylinder's outline is a polygon: the spheres keep
-/// inside the circle that touches its sides.
-fn random(mesh: &MeshSpec, spec: &RandomSpec) -> Result<Packing, PackingError> {
-    match mesh {
-        MeshSpec::Box { origin, size, .. } => random_in_box(*origin, [size.x, size.y], spec),
-        MeshSpec::Cylinder {
-            origin,
-            diameter,
-            cells,
-            ..
-        } => {
-            let across = cells[0];
-            let sides = 4 * (across - 2 * (across / 4).max(1));
-            let inner = diameter * (std::f64::consts::PI / sides as f64).cos();
-            random_in_cylinder(*origin, inner, spec)
-        }
-        MeshSpec::PolyMesh(_) => Err(PackingError::Value {
-            what: "container",
-            value: f64::NAN,
-            need: "a box or a cylinder as mesh",
-        }),
-    }
+/// Particles at the start of a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Placed {
+    /// What every backend starts from.
+    pub setup: ParticleSetup,
+    /// Temperatures in K.
+    pub temperature: Vec<f64>,
 }
 
-/// The particles of all populations, ids from 1 in the order of the file; on a grid x runs fastest.
-pub fn particles(case: &Case) -> Result<ParticleSetup, PlaceError> {
-    let mut setup = ParticleSetup {
-        frozen: case
-            .particles
-            .iter()
-            .all(|population| population.motion == Motion::Frozen),
-        ..ParticleSetup::default()
-    };
+/// The particles of all populations, ids from 1 in the order of the file; on a grid x runs fastest,
+/// in files of particles their own ids give the order.
+pub fn particles(case: &Case) -> Result<Placed, PlaceError> {
+    let mut placed = Placed::default();
+    let setup = &mut placed.setup;
+    setup.frozen = case
+        .particles
+        .iter()
+        .all(|population| population.motion == Motion::Frozen);
     for (index, population) in (0u32..).zip(&case.particles) {
         let density = case.materials[population.material].density;
-        let mut add = |position: Vec3, diameter: f64| {
+        for sphere in spheres(case, population)? {
             setup.id.push(setup.id.len() as u64 + 1);
             setup.population.push(index);
-            setup.position.push(position);
-            setup.radius.push(0.5 * diameter);
+            setup.position.push(sphere.centre);
+            setup.radius.push(0.5 * sphere.diameter);
             setup.density.push(density);
-        };
-        match &population.place {
-            Place::Grid {
-                first,
-                spacing,
-                counts,
-            } => {
-                for k in 0..counts[2] {
-                    for j in 0..counts[1] {
-                        for i in 0..counts[0] {
-                            let steps = Vec3::new(i as f64, j as f64, k as f64);
-                            add(first + spacing.component_mul(&steps), population.diameter);
-                        }
-                    }
-                }
-            }
-            Place::Random {
-                height,
-                solid_fraction,
-                seed,
-            } => {
-                let spec = RandomSpec {
-                    sizes: Sizes::Equal(population.diameter),
-                    fill: Fill::Height(*height),
-                    solid_fraction: *solid_fraction,
-                    seed: *seed,
-                };
-                let packing = random(&case.mesh, &spec).map_err(|cause| PlaceError::Packing {
-                    name: population.name.clone(),
-                    cause,
-                })?;
-                for (position, diameter) in packing.centres.iter().zip(&packing.diameters) {
-                    add(*position, *diameter);
-                }
-            }
-            Place::File(path) => {
-                for (line, position, diameter) in file(path)? {
-                    inside(&case.mesh, path, line, &position)?;
-                    add(position, diameter.unwrap_or(population.diameter));
-                }
-            }
+            placed.temperature.push(sphere.temperature);
         }
     }
     if setup.id.is_empty() {
         return Err(PlaceError::Empty);
     }
-    match overlap::between_populations(&setup) {
-        None => Ok(setup),
+    match overlap::between_populations(setup) {
+        None => Ok(placed),
         Some(found) => Err(PlaceError::Overlap {
             ids: found.pair.map(|index| setup.id[index]),
             names: found.pair.map(|index| {
@@ -164,77 +109,190 @@ pub fn particles(case: &Case) -> Result<ParticleSetup, PlaceError> {
     }
 }
 
-/// Refuses a centre outside a generated box.
-fn inside(mesh: &MeshSpec, path: &Path, line: usize, centre: &Vec3) -> Result<(), PlaceError> {
-    let MeshSpec::Box { origin, size, .. } = mesh else {
-        return Ok(());
-    };
-    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-        let (low, high) = (origin[axis], origin[axis] + size[axis]);
-        if !(low..=high).contains(&centre[axis]) {
-            return Err(PlaceError::Line {
-                path: path.to_owned(),
-                line,
-                what: format!(
-                    "the centre lies at {name} = {} m, but the mesh reaches from {} m to {} m; \
-                     move the particle, or enlarge the mesh",
-                    shown(centre[axis]),
-                    shown(low),
-                    shown(high)
-                ),
-            });
-        }
-    }
-    Ok(())
+/// One particle.
+struct Sphere {
+    centre: Vec3,
+    diameter: f64,
+    temperature: f64,
 }
 
-/// CSV with the columns x, y, z in m, and optionally diameter in m, named in its first line.
-fn file(path: &Path) -> Result<Vec<(usize, Vec3, Option<f64>)>, PlaceError> {
-    let text = std::fs::read_to_string(path).map_err(|cause| PlaceError::Io {
-        path: path.to_owned(),
+fn spheres(case: &Case, population: &Population) -> Result<Vec<Sphere>, PlaceError> {
+    let failed = |cause| PlaceError::Packing {
+        name: population.name.clone(),
         cause,
-    })?;
-    let wrong = |line: usize, what: String| PlaceError::Line {
-        path: path.to_owned(),
-        line,
-        what,
     };
-    let mut lines = text.lines().enumerate();
-    let header: Vec<&str> = lines.next().map_or(Vec::new(), |(_, line)| {
-        line.split(',').map(str::trim).collect()
-    });
-    let column = |name: &str| header.iter().position(|head| *head == name);
-    let (Some(x), Some(y), Some(z)) = (column("x"), column("y"), column("z")) else {
-        return Err(wrong(
-            1,
-            format!(
-                "the header is \"{}\", it needs x,y,z (in m)",
-                header.join(",")
-            ),
-        ));
+    let draw = |count| {
+        let sizes = &population.sizes;
+        sizes.sample(count, population.size_seed).map_err(failed)
     };
-    let diameter = column("diameter");
-    let mut found = Vec::new();
-    for (number, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
-        let words: Vec<&str> = line.split(',').map(str::trim).collect();
-        let value = |column: usize| {
-            let word = words.get(column).copied().unwrap_or("");
-            word.parse::<f64>()
-                .ok()
-                .filter(|value| value.is_finite())
-                .ok_or_else(|| {
-                    wrong(
-                        number + 1,
-                        format!("\"{word}\" in column {} is not a number", column + 1),
-                    )
-                })
-        };
-        let own = diameter.map(value).transpose()?;
-        if own.is_some_and(|diameter| diameter <= 0.0) {
-            return Err(wrong(number + 1, "the diameter is not above zero".into()));
+    let all = |centres: Vec<Vec3>, diameters: Vec<f64>| -> Vec<Sphere> {
+        let pairs = centres.into_iter().zip(diameters);
+        pairs
+            .map(|(centre, diameter)| Sphere {
+                centre,
+                diameter,
+                temperature: population.temperature,
+            })
+            .collect()
+    };
+    match &population.place {
+        Place::Grid {
+            first,
+            spacing,
+            counts,
+        } => {
+            let centres = grid(first, spacing, *counts);
+            let diameters = draw(centres.len())?;
+            Ok(all(centres, diameters))
         }
-        let centre = Vec3::new(value(x)?, value(y)?, value(z)?);
-        found.push((number + 1, centre, own));
+        Place::Random {
+            layer,
+            solid_fraction,
+            seed,
+        } => {
+            let spec = RandomSpec {
+                sizes: population.sizes.clone(),
+                fill: Fill::Height(layer[1] - layer[0]),
+                solid_fraction: *solid_fraction,
+                seed: *seed,
+                size_seed: population.size_seed,
+            };
+            let packing = random(&case.mesh, layer[0], &spec).map_err(failed)?;
+            Ok(all(packing.centres, packing.diameters))
+        }
+        Place::Regular { lattice, layer } => {
+            let diameter = population.sizes.largest();
+            let packing = regular(&case.mesh, *layer, diameter, *lattice).map_err(failed)?;
+            Ok(all(packing.centres, packing.diameters))
+        }
+        Place::File {
+            path,
+            timestep,
+            kind,
+        } => {
+            let choice = Choice {
+                timestep: *timestep,
+                kind: *kind,
+            };
+            let entries = bed::read(path, choice)?;
+            let diameters = draw(entries.len())?;
+            let mut made = Vec::with_capacity(entries.len());
+            for (entry, drawn) in entries.into_iter().zip(diameters) {
+                if let Some(what) = outside(&case.mesh, &entry.centre) {
+                    let place = format!("{}, {}", path.display(), entry.row);
+                    return Err(PlaceError::File { place, what });
+                }
+                made.push(Sphere {
+                    centre: entry.centre,
+                    diameter: entry.diameter.unwrap_or(drawn),
+                    temperature: entry.temperature.unwrap_or(population.temperature),
+                });
+            }
+            Ok(made)
+        }
     }
-    Ok(found)
+}
+
+fn grid(first: &Vec3, spacing: &Vec3, counts: [usize; 3]) -> Vec<Vec3> {
+    let mut centres = Vec::with_capacity(counts.iter().product());
+    for k in 0..counts[2] {
+        for j in 0..counts[1] {
+            for i in 0..counts[0] {
+                let steps = Vec3::new(i as f64, j as f64, k as f64);
+                centres.push(first + spacing.component_mul(&steps));
+            }
+        }
+    }
+    centres
+}
+
+/// The diameter of the circle that touches the sides of a cylinder's polygon from inside, in m.
+fn inner_diameter(diameter: f64, across: usize) -> f64 {
+    let sides = 4 * (across - 2 * (across / 4).max(1));
+    diameter * (std::f64::consts::PI / sides as f64).cos()
+}
+
+/// What a packing needs beside a mesh that has no walls known to the case.
+fn no_walls() -> PackingError {
+    PackingError::Value {
+        what: "container",
+        value: f64::NAN,
+        need: "a box or a cylinder as mesh",
+    }
+}
+
+/// A random packing between the walls of the mesh, above `low` (z in m).
+fn random(mesh: &MeshSpec, low: f64, spec: &RandomSpec) -> Result<Packing, PackingError> {
+    let at = |origin: &Vec3| Vec3::new(origin.x, origin.y, low);
+    match mesh {
+        MeshSpec::Box { origin, size, .. } => random_in_box(at(origin), [size.x, size.y], spec),
+        MeshSpec::Cylinder {
+            origin,
+            diameter,
+            cells,
+            ..
+        } => random_in_cylinder(at(origin), inner_diameter(*diameter, cells[0]), spec),
+        MeshSpec::PolyMesh(_) => Err(no_walls()),
+    }
+}
+
+/// A regular stacking between the walls of the mesh and two heights (z in m).
+fn regular(
+    mesh: &MeshSpec,
+    [low, high]: [f64; 2],
+    grain: f64,
+    lattice: Lattice,
+) -> Result<Packing, PackingError> {
+    let at = |origin: &Vec3| Vec3::new(origin.x, origin.y, low);
+    match mesh {
+        MeshSpec::Box { origin, size, .. } => {
+            regular_in_box(at(origin), [size.x, size.y, high - low], grain, lattice)
+        }
+        MeshSpec::Cylinder {
+            origin,
+            diameter,
+            cells,
+            ..
+        } => {
+            let inner = inner_diameter(*diameter, cells[0]);
+            regular_in_cylinder(at(origin), [inner, high - low], grain, lattice)
+        }
+        MeshSpec::PolyMesh(_) => Err(no_walls()),
+    }
+}
+
+/// What is wrong with a centre outside a generated mesh.
+fn outside(mesh: &MeshSpec, centre: &Vec3) -> Option<String> {
+    let beyond = |name: &str, value: f64, low: f64, high: f64| {
+        (!(low..=high).contains(&value)).then(|| {
+            format!(
+                "the centre lies at {name} = {} m, but the mesh reaches from {} m to {} m; move the \
+                 particle, or enlarge the mesh",
+                shown(value),
+                shown(low),
+                shown(high)
+            )
+        })
+    };
+    match mesh {
+        MeshSpec::Box { origin, size, .. } => {
+            ["x", "y", "z"]
+                .into_iter()
+                .enumerate()
+                .find_map(|(axis, name)| {
+                    beyond(name, centre[axis], origin[axis], origin[axis] + size[axis])
+                })
+        }
+        MeshSpec::Cylinder {
+            origin,
+            diameter,
+            length,
+            ..
+        } => {
+            let off = (centre - origin).xy().norm();
+            beyond("z", centre.z, origin.z, origin.z + length)
+                .or_else(|| beyond("distance from the axis", off, 0.0, 0.5 * diameter))
+        }
+        MeshSpec::PolyMesh(_) => None,
+    }
 }

@@ -57,6 +57,8 @@ pub fn case() -> Case {
             origin: Vec3::zeros(),
             size: Vec3::from(SIZE),
             cells: CELLS,
+            grading: Default::default(),
+            refine: vec![],
             patches: ["side", "side", "side", "side", "bottom", "top"].map(String::from),
         },
         materials: vec![],

@@ -1,14 +1,19 @@
 //! Packed beds to start from: random packings by geometry alone, and regular stackings.
 
+mod container;
 mod random;
 pub mod regular;
 mod relax;
+mod sizes;
 
-use std::f64::consts::{FRAC_PI_4, PI};
+use std::f64::consts::PI;
 
 use calcine_physics::Vec3;
 use thiserror::Error;
 
+pub use sizes::{Shape, Share, Sizes};
+
+use container::{Container, Section};
 use random::SplitMix64;
 
 /// Most spheres of one packing.
@@ -32,17 +37,6 @@ impl Packing {
     }
 }
 
-/// Diameters of the spheres.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Sizes {
-    /// One diameter in m.
-    Equal(f64),
-    /// Diameters in m, each with its share of the number of spheres.
-    Mixture(Vec<(f64, f64)>),
-    /// Uniform distribution by number between two diameters in m.
-    Between(f64, f64),
-}
-
 /// How far a container is filled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fill {
@@ -61,8 +55,10 @@ pub struct RandomSpec {
     pub fill: Fill,
     /// Volume of spheres over the filled space, layers at the walls included.
     pub solid_fraction: f64,
-    /// Equal seeds give equal packings, bit for bit.
+    /// Of the places; equal seeds give equal packings, bit for bit.
     pub seed: u64,
+    /// Of the diameters, where they differ.
+    pub size_seed: u64,
 }
 
 /// A packing that cannot be made.
@@ -91,90 +87,6 @@ pub enum PackingError {
         /// Solid fraction with the spheres shrunk until none overlap.
         reached: f64,
     },
-}
-
-/// Horizontal section of the filled space.
-#[derive(Clone, Copy, Debug)]
-enum Section {
-    Disc { diameter: f64 },
-    Rectangle { size: [f64; 2] },
-}
-
-/// The filled space: `origin` is the centre of a disc's bottom, or a box's lowest corner, in m.
-#[derive(Clone, Copy, Debug)]
-struct Container {
-    origin: Vec3,
-    section: Section,
-    height: f64,
-}
-
-impl Container {
-    fn area(&self) -> f64 {
-        match self.section {
-            Section::Disc { diameter } => FRAC_PI_4 * diameter * diameter,
-            Section::Rectangle { size } => size[0] * size[1],
-        }
-    }
-
-    /// Width of the narrowest extent in m.
-    fn width(&self) -> f64 {
-        let across = match self.section {
-            Section::Disc { diameter } => diameter,
-            Section::Rectangle { size } => size[0].min(size[1]),
-        };
-        across.min(self.height)
-    }
-
-    /// Lowest corner and edges of the box around it, in m.
-    fn bounds(&self) -> (Vec3, Vec3) {
-        match self.section {
-            Section::Disc { diameter } => (
-                self.origin - Vec3::new(0.5 * diameter, 0.5 * diameter, 0.0),
-                Vec3::new(diameter, diameter, self.height),
-            ),
-            Section::Rectangle { size } => (self.origin, Vec3::new(size[0], size[1], self.height)),
-        }
-    }
-
-    /// The nearest place at which a sphere of this radius is inside.
-    fn inside(&self, mut centre: Vec3, radius: f64) -> Vec3 {
-        let low = self.origin.z + radius;
-        centre.z = centre.z.min(self.origin.z + self.height - radius).max(low);
-        match self.section {
-            Section::Disc { diameter } => {
-                let (x, y) = (centre.x - self.origin.x, centre.y - self.origin.y);
-                let (reach, free) = (x.hypot(y), 0.5 * diameter - radius);
-                if reach > free {
-                    centre.x = self.origin.x + x * (free / reach);
-                    centre.y = self.origin.y + y * (free / reach);
-                }
-            }
-            Section::Rectangle { size } => {
-                for (axis, size) in size.into_iter().enumerate() {
-                    let low = self.origin[axis] + radius;
-                    let high = self.origin[axis] + size - radius;
-                    centre[axis] = centre[axis].min(high).max(low);
-                }
-            }
-        }
-        centre
-    }
-
-    /// A place in it, uniformly distributed.
-    fn place(&self, random: &mut SplitMix64, radius: f64) -> Vec3 {
-        let (corner, size) = self.bounds();
-        loop {
-            let unit = Vec3::new(random.unit(), random.unit(), random.unit());
-            let place = corner + unit.component_mul(&size);
-            if let Section::Disc { diameter } = self.section {
-                let off = (place.x - self.origin.x).hypot(place.y - self.origin.y);
-                if off > 0.5 * diameter {
-                    continue;
-                }
-            }
-            return self.inside(place, radius);
-        }
-    }
 }
 
 /// A random packing in an upright cylinder; `origin` is the centre of its bottom, in m.
@@ -210,7 +122,7 @@ fn fill(origin: Vec3, section: Section, spec: &RandomSpec) -> Result<Packing, Pa
         section,
         height,
     };
-    let diameters = draw(spec, container.area() * height, &mut random)?;
+    let diameters = draw(spec, container.area() * height)?;
     let volume: f64 = diameters.iter().copied().map(sphere).sum();
     if let Fill::Number(_) = spec.fill {
         container.height = volume / (spec.solid_fraction * container.area());
@@ -250,20 +162,6 @@ fn check(spec: &RandomSpec) -> Result<(), PackingError> {
             need: "a number between 0 and 0.75",
         });
     }
-    match &spec.sizes {
-        Sizes::Equal(diameter) => positive("diameter", *diameter)?,
-        Sizes::Between(low, high) => {
-            positive("smallest diameter", *low)?;
-            positive("range of diameters", high - low)?;
-        }
-        Sizes::Mixture(parts) => {
-            positive("number of diameters", parts.len() as f64)?;
-            for &(diameter, share) in parts {
-                positive("diameter", diameter)?;
-                positive("share of a diameter", share)?;
-            }
-        }
-    }
     match spec.fill {
         Fill::Height(height) => positive("height", height),
         Fill::Number(count) => positive("number of spheres", count as f64),
@@ -279,11 +177,14 @@ fn positive(what: &'static str, value: f64) -> Result<(), PackingError> {
 }
 
 /// Diameters in m of all spheres: as many as asked for, or as come nearest to the solid volume.
-fn draw(spec: &RandomSpec, space: f64, random: &mut SplitMix64) -> Result<Vec<f64>, PackingError> {
-    let wanted = spec.solid_fraction * space;
+fn draw(spec: &RandomSpec, space: f64) -> Result<Vec<f64>, PackingError> {
+    let (mut sampler, wanted) = (
+        spec.sizes.sampler(spec.size_seed)?,
+        spec.solid_fraction * space,
+    );
     let (mut diameters, mut volume) = (Vec::new(), 0.0);
     loop {
-        let diameter = spec.sizes.draw(random);
+        let diameter = sampler.draw();
         let done = match spec.fill {
             Fill::Number(count) => diameters.len() == count,
             Fill::Height(_) => volume + 0.5 * sphere(diameter) > wanted,
@@ -292,11 +193,7 @@ fn draw(spec: &RandomSpec, space: f64, random: &mut SplitMix64) -> Result<Vec<f6
             break;
         }
         if diameters.len() == MOST {
-            return Err(PackingError::Value {
-                what: "number of spheres",
-                value: MOST as f64 + 1.0,
-                need: "at most 1e7",
-            });
+            return Err(too_many(MOST as f64 + 1.0));
         }
         volume += sphere(diameter);
         diameters.push(diameter);
@@ -304,25 +201,11 @@ fn draw(spec: &RandomSpec, space: f64, random: &mut SplitMix64) -> Result<Vec<f6
     Ok(diameters)
 }
 
-impl Sizes {
-    fn draw(&self, random: &mut SplitMix64) -> f64 {
-        match self {
-            Self::Equal(diameter) => *diameter,
-            Self::Between(low, high) => low + (high - low) * random.unit(),
-            Self::Mixture(parts) => {
-                let total: f64 = parts.iter().map(|part| part.1).sum();
-                let mut left = total * random.unit();
-                let mut drawn = 0.0;
-                for &(diameter, share) in parts {
-                    drawn = diameter;
-                    if left < share {
-                        break;
-                    }
-                    left -= share;
-                }
-                drawn
-            }
-        }
+fn too_many(value: f64) -> PackingError {
+    PackingError::Value {
+        what: "number of spheres",
+        value,
+        need: "at most 1e7",
     }
 }
 

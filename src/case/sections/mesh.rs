@@ -2,9 +2,12 @@
 
 use std::path::Path;
 
+use calcine_coupler::mesh::grading::Stretch;
 use calcine_coupler::physics::Vec3;
+use toml_edit::Value;
 
 use super::existing;
+use super::zone::refinements;
 use crate::case::model::MeshSpec;
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
@@ -46,8 +49,10 @@ fn cylinder(section: &Reader<'_>) -> Option<MeshSpec> {
     let diameter = cylinder.required_positive("diameter", Dimension::LENGTH);
     let length = cylinder.required_positive("length", Dimension::LENGTH);
     let cells = cylinder.wholes::<2>("cells");
+    let grading = gradings(&cylinder, ["z"], cells.map(|cells| [cells[1]]));
+    let refine = refinements(&cylinder);
     cylinder.finish();
-    let (diameter, length, cells) = (diameter?, length?, cells?);
+    let (diameter, length, cells, [grading]) = (diameter?, length?, cells?, grading?);
     if !(3..=20_000).contains(&cells[0])
         || cells[0] as f64 * cells[0] as f64 * cells[1] as f64 > MOST_CELLS
     {
@@ -60,6 +65,8 @@ fn cylinder(section: &Reader<'_>) -> Option<MeshSpec> {
         diameter,
         length,
         cells,
+        grading,
+        refine,
     })
 }
 
@@ -83,6 +90,8 @@ fn cuboid(section: &Reader<'_>) -> Option<MeshSpec> {
         .unwrap_or([0.0; 3]);
     let size = cuboid.required_vector("size", Dimension::LENGTH);
     let cells = cuboid.wholes::<3>("cells");
+    let grading = gradings(&cuboid, ["x", "y", "z"], cells);
+    let refine = refinements(&cuboid);
     let patches = match cuboid.texts("patches") {
         None => Some(PATCHES.map(String::from)),
         Some(names) => {
@@ -99,7 +108,7 @@ fn cuboid(section: &Reader<'_>) -> Option<MeshSpec> {
         }
     };
     cuboid.finish();
-    let (size, cells, patches) = (size?, cells?, patches?);
+    let (size, cells, grading, patches) = (size?, cells?, grading?, patches?);
     if size.iter().any(|&length| length <= 0.0) {
         cuboid.fail(
             "size",
@@ -120,6 +129,85 @@ fn cuboid(section: &Reader<'_>) -> Option<MeshSpec> {
         origin: Vec3::from(origin),
         size: Vec3::from(size),
         cells,
+        grading,
+        refine,
         patches,
     })
+}
+
+/// How cell sizes change along axes; nothing for equal ones. `None` where something is wrong.
+fn gradings<const N: usize>(
+    mesh: &Reader<'_>,
+    axes: [&str; N],
+    cells: Option<[usize; N]>,
+) -> Option<[Vec<Stretch>; N]> {
+    let mut all = [const { Vec::new() }; N];
+    if !mesh.has("grading") {
+        return Some(all);
+    }
+    let table = mesh.table("grading")?;
+    let mut right = true;
+    for (place, axis) in axes.into_iter().enumerate() {
+        if table.has(axis) {
+            match grading(&table, axis) {
+                Some(stretches) => all[place] = stretches,
+                None => right = false,
+            }
+            if let Some(cells) = cells
+                && all[place].len() > cells[place]
+            {
+                let rule = format!(
+                    "has {} regions, but {} cells",
+                    all[place].len(),
+                    cells[place]
+                );
+                table.fail(axis, rule, "each region needs a cell at least");
+                right = false;
+            }
+        }
+    }
+    table.finish();
+    right.then_some(all)
+}
+
+/// A ratio of cell sizes, or regions of [share of the length, share of the cells, ratio].
+fn grading(table: &Reader<'_>, axis: &str) -> Option<Vec<Stretch>> {
+    let help = "write the ratio of the last cell to the first, such as 4, or regions of \
+                [share of the length, share of the cells, ratio], such as \
+                [[0.4, 0.2, 0.25], [0.6, 0.8, 1]]";
+    let plain = |value: &Value| {
+        let whole = value.as_integer().map(|number| number as f64);
+        let number = value.as_float().or(whole);
+        number.filter(|number| number.is_finite() && *number > 0.0)
+    };
+    let value = table.raw(axis)?.as_value();
+    let regions = match value {
+        Some(Value::Array(list)) => list
+            .iter()
+            .map(|region| {
+                let numbers: Option<Vec<f64>> = region.as_array()?.iter().map(plain).collect();
+                let [length_share, cell_share, expansion] = numbers?[..] else {
+                    return None;
+                };
+                Some(Stretch {
+                    length_share,
+                    cell_share,
+                    expansion,
+                })
+            })
+            .collect(),
+        Some(value) => plain(value).map(|expansion| {
+            vec![Stretch {
+                length_share: 1.0,
+                cell_share: 1.0,
+                expansion,
+            }]
+        }),
+        None => None,
+    };
+    let regions = regions.filter(|regions: &Vec<Stretch>| !regions.is_empty());
+    if regions.is_none() {
+        table.fail(axis, "holds no ratios and shares above zero", help);
+    }
+    regions
 }

@@ -6,7 +6,10 @@ mod laws;
 mod mesh;
 mod output;
 mod particles;
+mod place;
+mod sizes;
 mod time;
+mod zone;
 
 use std::path::{Path, PathBuf};
 

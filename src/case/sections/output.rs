@@ -281,6 +281,6 @@ fn count(populations: &[Population]) -> Option<usize> {
         .iter()
         .try_fold(0usize, |sum, population| match &population.place {
             Place::Grid { counts, .. } => sum.checked_add(counts.iter().product()),
-            Place::File(_) | Place::Random { .. } => None,
+            _ => None,
         })
 }

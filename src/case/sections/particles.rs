@@ -2,15 +2,11 @@
 
 use std::path::Path;
 
-use calcine_coupler::physics::Vec3;
-
-use super::existing;
-use crate::case::model::{Contact, Material, MeshSpec, Motion, Place, Population};
+use super::place::place;
+use super::sizes::sizes;
+use crate::case::model::{Contact, Material, MeshSpec, Motion, Population};
 use crate::case::table::Reader;
-use crate::case::units::{Dimension, shown};
-
-/// Most particles of a grid.
-const MOST_PARTICLES: f64 = 1e9;
+use crate::case::units::Dimension;
 
 pub(super) fn materials(root: &Reader<'_>) -> Vec<Material> {
     let example = "[materials.glass] with density = \"2500 kg/m^3\"";
@@ -143,142 +139,26 @@ fn population(
             }
             found
         });
-    let diameter = table.required_positive("diameter", Dimension::LENGTH);
+    let sizes = sizes(table);
     let motion = table.required_choice("motion", &[("frozen", Motion::Frozen)]);
     let temperature = table.required_positive("temperature", Dimension::TEMPERATURE);
-    let place = table
+    let placed = table
         .required_table("place", "place = { grid = { first = \"5 5 5 mm\", spacing = \"10 10 10 mm\", counts = [1, 1, 10] } }")
-        .and_then(|place| {
-            let made = placed(&place, diameter, mesh, folder);
-            place.finish();
+        .and_then(|reader| {
+            let sizes = sizes.as_ref().map(|(sizes, _)| sizes);
+            let made = place(&reader, sizes, mesh, folder);
+            reader.finish();
             made
         });
     table.finish();
+    let (sizes, size_seed) = sizes?;
     Some(Population {
         name: name?.into(),
         material: material?,
-        diameter: diameter?,
+        sizes,
+        size_seed,
         motion: motion?,
-        place: place?,
+        place: placed?,
         temperature: temperature?,
-    })
-}
-
-fn placed(
-    place: &Reader<'_>,
-    diameter: Option<f64>,
-    mesh: Option<&MeshSpec>,
-    folder: &Path,
-) -> Option<Place> {
-    let kinds = ["grid", "file", "packing"];
-    let given: Vec<&str> = kinds.into_iter().filter(|kind| place.has(kind)).collect();
-    match given[..] {
-        ["grid"] => grid(&place.table("grid")?, diameter, mesh),
-        ["file"] => existing(place, "file", folder).map(Place::File),
-        ["packing"] => random(place, diameter, mesh),
-        _ => {
-            place.fail_whole("needs exactly one of grid, file and packing", "for example grid = { first = \"5 5 5 mm\", spacing = \"10 10 10 mm\", counts = [1, 1, 10] }");
-            None
-        }
-    }
-}
-
-fn random(place: &Reader<'_>, diameter: Option<f64>, mesh: Option<&MeshSpec>) -> Option<Place> {
-    let kind = place.required_choice("packing", &[("random", ())]);
-    let height = place.required_positive("height", Dimension::LENGTH);
-    if !place.has("solid_fraction") {
-        place.missing("solid_fraction", "0.58");
-    }
-    let solid_fraction = place.quantity("solid_fraction", Dimension::NONE);
-    if !place.has("seed") {
-        place.missing("seed", "1");
-    }
-    let seed = place.whole("seed", 0..=i64::MAX);
-    kind?;
-    let (height, solid_fraction, seed) = (height?, solid_fraction?, seed?);
-    if !(solid_fraction > 0.0 && solid_fraction < 0.74) {
-        place.fail(
-            "solid_fraction",
-            format!("is {solid_fraction}"),
-            "it lies between 0 and 0.74, the densest stacking",
-        );
-        return None;
-    }
-    let length = match mesh? {
-        MeshSpec::Box { size, .. } => size.z,
-        MeshSpec::Cylinder { length, .. } => *length,
-        MeshSpec::PolyMesh(_) => {
-            place.fail(
-                "packing",
-                "needs a box or a cylinder as mesh",
-                "use `file`, or another mesh",
-            );
-            return None;
-        }
-    };
-    if height > length || diameter.is_some_and(|diameter| height < diameter) {
-        let rule = format!("is {} m", shown(height));
-        let help = format!(
-            "it lies between the diameter and the mesh's {} m",
-            shown(length)
-        );
-        place.fail("height", rule, help);
-        return None;
-    }
-    Some(Place::Random {
-        height,
-        solid_fraction,
-        seed,
-    })
-}
-
-fn grid(grid: &Reader<'_>, diameter: Option<f64>, mesh: Option<&MeshSpec>) -> Option<Place> {
-    let first = grid.required_vector("first", Dimension::LENGTH);
-    let spacing = grid.required_vector("spacing", Dimension::LENGTH);
-    let counts = grid.wholes::<3>("counts");
-    grid.finish();
-    let (first, spacing, counts) = (Vec3::from(first?), Vec3::from(spacing?), counts?);
-    let diameter = diameter?;
-    if counts.iter().map(|&n| n as f64).product::<f64>() > MOST_PARTICLES {
-        let rule = format!(
-            "makes {} x {} x {} particles",
-            counts[0], counts[1], counts[2]
-        );
-        grid.fail("counts", rule, "1e9 particles are the most");
-        return None;
-    }
-    for axis in 0..3 {
-        // Touching spheres are fine; 1e-9 is round-off of the units.
-        if counts[axis] > 1 && spacing[axis] < diameter * (1.0 - 1e-9) {
-            let rule = format!(
-                "is {} m along {}, less than the diameter of {} m",
-                shown(spacing[axis]),
-                ["x", "y", "z"][axis],
-                shown(diameter)
-            );
-            grid.fail("spacing", rule, "particles must not overlap");
-        }
-    }
-    if let Some(MeshSpec::Box { origin, size, .. }) = mesh {
-        for axis in 0..3 {
-            let last = first[axis] + spacing[axis] * (counts[axis] - 1) as f64;
-            let (low, high) = (origin[axis], origin[axis] + size[axis]);
-            if first[axis] < low || last > high {
-                let rule = format!(
-                    "puts centres from {} m to {} m along {}, but the mesh reaches from {} m to {} m",
-                    shown(first[axis]),
-                    shown(last),
-                    ["x", "y", "z"][axis],
-                    shown(low),
-                    shown(high)
-                );
-                grid.fail_whole(&rule, "move the particles, or enlarge the mesh");
-            }
-        }
-    }
-    Some(Place::Grid {
-        first,
-        spacing,
-        counts,
     })
 }

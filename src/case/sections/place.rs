@@ -1,0 +1,219 @@
+//! `particles.place`: where particles are at the start.
+
+use std::path::Path;
+
+use calcine_coupler::packing::Sizes;
+use calcine_coupler::packing::regular::Lattice;
+use calcine_coupler::physics::Vec3;
+
+use super::existing;
+use crate::case::model::{MeshSpec, Place};
+use crate::case::table::Reader;
+use crate::case::units::{Dimension, shown};
+
+/// Most particles of a grid.
+const MOST_PARTICLES: f64 = 1e9;
+/// Touching spheres are fine; this share of a diameter is round-off of the units.
+const ROUND_OFF: f64 = 1e-9;
+
+pub(super) fn place(
+    place: &Reader<'_>,
+    sizes: Option<&Sizes>,
+    mesh: Option<&MeshSpec>,
+    folder: &Path,
+) -> Option<Place> {
+    let kinds = ["grid", "file", "packing"];
+    let given: Vec<&str> = kinds.into_iter().filter(|kind| place.has(kind)).collect();
+    match given[..] {
+        ["grid"] => grid(&place.table("grid")?, sizes, mesh),
+        ["file"] => file(place, folder),
+        ["packing"] => packing(place, sizes, mesh),
+        _ => {
+            place.fail_whole("needs exactly one of grid, file and packing", "for example grid = { first = \"5 5 5 mm\", spacing = \"10 10 10 mm\", counts = [1, 1, 10] }");
+            None
+        }
+    }
+}
+
+fn file(place: &Reader<'_>, folder: &Path) -> Option<Place> {
+    let path = existing(place, "file", folder);
+    let timestep = place.whole("timestep", 0..=i64::MAX);
+    let kind = place.whole("type", 0..=i64::MAX);
+    Some(Place::File {
+        path: path?,
+        timestep,
+        kind,
+    })
+}
+
+/// A packing from wall to wall of a generated mesh.
+fn packing(place: &Reader<'_>, sizes: Option<&Sizes>, mesh: Option<&MeshSpec>) -> Option<Place> {
+    let kinds = [
+        ("random", None),
+        ("simple-cubic", Some(Lattice::SimpleCubic)),
+        ("hexagonal", Some(Lattice::HexagonalClose)),
+        ("face-centred", Some(Lattice::FaceCentred)),
+    ];
+    let lattice = place.required_choice("packing", &kinds);
+    let layer = layer(place, sizes, mesh);
+    let lattice = lattice?;
+    let Some(lattice) = lattice else {
+        return random(place, layer);
+    };
+    if sizes.is_some_and(|sizes| !matches!(sizes, Sizes::Equal(_))) {
+        let rule = "is a regular stacking, but the diameters differ";
+        place.fail(
+            "packing",
+            rule,
+            "write one diameter, or packing = \"random\"",
+        );
+        return None;
+    }
+    Some(Place::Regular {
+        lattice,
+        layer: layer?,
+    })
+}
+
+fn random(place: &Reader<'_>, layer: Option<[f64; 2]>) -> Option<Place> {
+    if !place.has("solid_fraction") {
+        place.missing("solid_fraction", "0.58");
+    }
+    let solid_fraction = place.quantity("solid_fraction", Dimension::NONE);
+    if !place.has("seed") {
+        place.missing("seed", "1");
+    }
+    let seed = place.whole("seed", 0..=i64::MAX);
+    let (layer, solid_fraction, seed) = (layer?, solid_fraction?, seed?);
+    if !(solid_fraction > 0.0 && solid_fraction < 0.74) {
+        place.fail(
+            "solid_fraction",
+            format!("is {solid_fraction}"),
+            "it lies between 0 and 0.74, the densest stacking",
+        );
+        return None;
+    }
+    Some(Place::Random {
+        layer,
+        solid_fraction,
+        seed,
+    })
+}
+
+/// Lowest and highest z of a packing in m: `height` above the bottom of the mesh, or `region`.
+fn layer(place: &Reader<'_>, sizes: Option<&Sizes>, mesh: Option<&MeshSpec>) -> Option<[f64; 2]> {
+    let given = [place.has("height"), place.has("region")];
+    let height = place.positive("height", Dimension::LENGTH);
+    let region = if given[1] {
+        place.table("region")
+    } else {
+        None
+    };
+    let ends = region.map(|region| {
+        let from = region.required_quantity("from", Dimension::LENGTH);
+        let to = region.required_quantity("to", Dimension::LENGTH);
+        region.finish();
+        from.zip(to)
+    });
+    let (low, high) = match mesh? {
+        MeshSpec::Box { origin, size, .. } => (origin.z, origin.z + size.z),
+        MeshSpec::Cylinder { origin, length, .. } => (origin.z, origin.z + length),
+        MeshSpec::PolyMesh(_) => {
+            place.fail(
+                "packing",
+                "needs a box or a cylinder as mesh",
+                "use `file`, or another mesh",
+            );
+            return None;
+        }
+    };
+    let largest = sizes.map_or(0.0, Sizes::largest);
+    match given {
+        [true, false] => {
+            let height = height?;
+            if height > high - low || height < largest * (1.0 - ROUND_OFF) {
+                let rule = format!("is {} m", shown(height));
+                let help = format!(
+                    "it lies between the diameter and the mesh's {} m",
+                    shown(high - low)
+                );
+                place.fail("height", rule, help);
+                return None;
+            }
+            Some([low, low + height])
+        }
+        [false, true] => {
+            let (from, to) = ends??;
+            // Round-off of units, relative to the mesh.
+            let margin = ROUND_OFF * (high - low);
+            if from < low - margin || to > high + margin || to - from < largest * (1.0 - ROUND_OFF)
+            {
+                let rule = format!("reaches from {} m to {} m", shown(from), shown(to));
+                let help = format!(
+                    "it lies inside the mesh, which reaches from {} m to {} m, and is as high as \
+                     the largest particle at least",
+                    shown(low),
+                    shown(high)
+                );
+                place.fail("region", rule, help);
+                return None;
+            }
+            Some([from.max(low), to.min(high)])
+        }
+        _ => {
+            let rule = "needs exactly one of height and region with a packing";
+            place.fail_whole(rule, "for example height = \"145 mm\"");
+            None
+        }
+    }
+}
+
+fn grid(grid: &Reader<'_>, sizes: Option<&Sizes>, mesh: Option<&MeshSpec>) -> Option<Place> {
+    let first = grid.required_vector("first", Dimension::LENGTH);
+    let spacing = grid.required_vector("spacing", Dimension::LENGTH);
+    let counts = grid.wholes::<3>("counts");
+    grid.finish();
+    let (first, spacing, counts) = (Vec3::from(first?), Vec3::from(spacing?), counts?);
+    let diameter = sizes?.largest();
+    if counts.iter().map(|&n| n as f64).product::<f64>() > MOST_PARTICLES {
+        let rule = format!(
+            "makes {} x {} x {} particles",
+            counts[0], counts[1], counts[2]
+        );
+        grid.fail("counts", rule, "1e9 particles are the most");
+        return None;
+    }
+    for axis in 0..3 {
+        if counts[axis] > 1 && spacing[axis] < diameter * (1.0 - ROUND_OFF) {
+            let rule = format!(
+                "is {} m along {}, less than the diameter of {} m",
+                shown(spacing[axis]),
+                ["x", "y", "z"][axis],
+                shown(diameter)
+            );
+            grid.fail("spacing", rule, "particles must not overlap");
+        }
+    }
+    if let Some(MeshSpec::Box { origin, size, .. }) = mesh {
+        for axis in 0..3 {
+            let last = first[axis] + spacing[axis] * (counts[axis] - 1) as f64;
+            let (low, high) = (origin[axis], origin[axis] + size[axis]);
+            if first[axis] < low || last > high {
+                let rule = format!(
+                    "puts centres from {} m to {} m along {}, but the mesh reaches from {} m to {} m",
+                    shown(first[axis]),
+                    shown(last),
+                    ["x", "y", "z"][axis],
+                    shown(low),
+                    shown(high)
+                );
+                grid.fail_whole(&rule, "move the particles, or enlarge the mesh");
+            }
+        }
+    }
+    Some(Place::Grid {
+        first,
+        spacing,
+        counts,
+    })
+}

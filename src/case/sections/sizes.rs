@@ -1,0 +1,108 @@
+//! `particles.diameter`: one diameter, or a distribution.
+
+use calcine_coupler::packing::{Shape, Share, Sizes};
+use toml_edit::Value;
+
+use crate::case::table::Reader;
+use crate::case::units::Dimension;
+
+const EXAMPLE: &str = "for example { normal = { mean = \"4 mm\", deviation = \"0.4 mm\", \
+                       min = \"3 mm\", max = \"5 mm\" }, share = \"number\", seed = 1 }";
+
+/// Diameters, and the seed by which they are drawn.
+pub(super) fn sizes(population: &Reader<'_>) -> Option<(Sizes, u64)> {
+    let table = population
+        .raw("diameter")
+        .is_some_and(|item| item.as_table_like().is_some());
+    if !table {
+        let one = population.required_positive("diameter", Dimension::LENGTH)?;
+        return Some((Sizes::Equal(one), 0));
+    }
+    let table = population.table("diameter")?;
+    let kinds = ["normal", "log_normal", "uniform", "table"];
+    let given: Vec<&str> = kinds.into_iter().filter(|kind| table.has(kind)).collect();
+    let shares = [("number", Share::Number), ("mass", Share::Mass)];
+    let share = table.required_choice("share", &shares);
+    if !table.has("seed") {
+        table.missing("seed", "1");
+    }
+    let seed = table.whole("seed", 0..=i64::MAX);
+    let made = match given[..] {
+        ["table"] => parts(&table)
+            .map(|parts| (parts, share))
+            .and_then(|(parts, share)| {
+                Some(Sizes::Mixture {
+                    parts,
+                    share: share?,
+                })
+            }),
+        [kind] => range(&table, kind, share),
+        _ => {
+            let rule = "needs exactly one of normal, log_normal, uniform and table";
+            table.fail_whole(rule, EXAMPLE);
+            None
+        }
+    };
+    table.finish();
+    let sizes = made?;
+    if let Err(error) = sizes.mean() {
+        table.fail_whole(&format!("is no distribution: {error}"), EXAMPLE);
+        return None;
+    }
+    Some((sizes, seed?))
+}
+
+fn range(table: &Reader<'_>, kind: &str, share: Option<Share>) -> Option<Sizes> {
+    let range = table.table(kind)?;
+    let shape = match kind {
+        "normal" => {
+            let mean = range.required_positive("mean", Dimension::LENGTH);
+            let deviation = range.required_positive("deviation", Dimension::LENGTH);
+            mean.zip(deviation)
+                .map(|(mean, deviation)| Shape::Normal { mean, deviation })
+        }
+        "log_normal" => {
+            let median = range.required_positive("median", Dimension::LENGTH);
+            if !range.has("deviation") {
+                range.missing("deviation", "1.3");
+            }
+            let deviation = range.quantity("deviation", Dimension::NONE);
+            median
+                .zip(deviation)
+                .map(|(median, deviation)| Shape::LogNormal { median, deviation })
+        }
+        _ => Some(Shape::Uniform),
+    };
+    let min = range.required_positive("min", Dimension::LENGTH);
+    let max = range.required_positive("max", Dimension::LENGTH);
+    range.finish();
+    Some(Sizes::Range {
+        shape: shape?,
+        min: min?,
+        max: max?,
+        share: share?,
+    })
+}
+
+/// Pairs of a diameter and its share.
+fn parts(table: &Reader<'_>) -> Option<Vec<(f64, f64)>> {
+    let pairs = table.raw("table")?.as_array();
+    let Some(pairs) = pairs.filter(|pairs| !pairs.is_empty()) else {
+        let help = "for example [[\"4 mm\", 0.3], [\"6 mm\", 0.7]]";
+        table.fail("table", "needs pairs of diameter and share", help);
+        return None;
+    };
+    let pair = |pair: &Value| {
+        let pair = pair.as_array().filter(|pair| pair.len() == 2);
+        let Some((diameter, share)) = pair.and_then(|pair| Some((pair.get(0)?, pair.get(1)?)))
+        else {
+            let help = "for example [[\"4 mm\", 0.3], [\"6 mm\", 0.7]]";
+            table.fail("table", "needs pairs of diameter and share", help);
+            return None;
+        };
+        let diameter = table.value("table", diameter, Dimension::LENGTH);
+        let share = table.value("table", share, Dimension::NONE);
+        Some((diameter?, share?))
+    };
+    pairs.iter().map(pair).collect()
+}

@@ -1,0 +1,71 @@
+//! Parts of space: zones of a mesh that are refined, or excluded from the smoother.
+
+use calcine_coupler::mesh::refine::{MOST_LEVELS, Refinement};
+use calcine_coupler::mesh::zone::Zone;
+use calcine_coupler::physics::Vec3;
+
+use crate::case::table::Reader;
+use crate::case::units::Dimension;
+
+const EXAMPLE: &str = "for example box = { from = \"0 0 0 mm\", to = \"10 10 50 mm\" }";
+
+/// A zone from the keys of its own table: `box` or `cylinder`.
+pub(super) fn zone(table: &Reader<'_>) -> Option<Zone> {
+    let kinds = ["box", "cylinder"];
+    let given: Vec<&str> = kinds.into_iter().filter(|kind| table.has(kind)).collect();
+    let [kind] = given[..] else {
+        table.fail_whole("needs exactly one of box and cylinder", EXAMPLE);
+        return None;
+    };
+    let shape = table.table(kind)?;
+    let from = shape.required_vector("from", Dimension::LENGTH);
+    let to = shape.required_vector("to", Dimension::LENGTH);
+    let round = kind == "cylinder";
+    let radius = if round {
+        shape.required_positive("radius", Dimension::LENGTH)
+    } else {
+        None
+    };
+    shape.finish();
+    let (from, to) = (Vec3::from(from?), Vec3::from(to?));
+    if round {
+        if from == to {
+            shape.fail("to", "is equal to `from`", "the ends of a cylinder differ");
+            return None;
+        }
+        return Some(Zone::Cylinder {
+            from,
+            to,
+            radius: radius?,
+        });
+    }
+    if (0..3).any(|axis| to[axis] <= from[axis]) {
+        let rule = format!("is {} {} {} m", to.x, to.y, to.z);
+        shape.fail("to", rule, "each coordinate must be above that of `from`");
+        return None;
+    }
+    Some(Zone::Box {
+        low: from,
+        high: to,
+    })
+}
+
+/// The regions of a generated mesh that are refined.
+pub(super) fn refinements(mesh: &Reader<'_>) -> Vec<Refinement> {
+    let tables = mesh.tables("refine");
+    let one = |table: &Reader<'_>| {
+        let levels = if table.has("levels") {
+            table.whole("levels", 1..=i64::from(MOST_LEVELS))
+        } else {
+            Some(1)
+        };
+        let zone = zone(table);
+        table.finish();
+        let levels = u32::try_from(levels?).ok()?;
+        Some(Refinement {
+            zone: zone?,
+            levels,
+        })
+    };
+    tables.iter().filter_map(one).collect()
+}
