@@ -3,7 +3,9 @@
 #![cfg(feature = "hdf5")]
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use std::collections::BTreeMap;
+#[path = "support/results_equal.rs"]
+mod results_equal;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -38,34 +40,11 @@ fn command(pairing: [&str; 2], out: &Path, end: &str) -> Command {
     command
 }
 
-/// All values of `results.h5`, by dataset, as bits; wall times aside.
-fn datasets(path: &Path) -> BTreeMap<String, Vec<u64>> {
-    fn walk(group: &hdf5::Group, found: &mut BTreeMap<String, Vec<u64>>) {
-        for dataset in group.datasets().unwrap() {
-            if let Ok(values) = dataset.read_raw::<f64>() {
-                found.insert(
-                    dataset.name(),
-                    values.iter().map(|value| value.to_bits()).collect(),
-                );
-            }
-        }
-        for inner in group.groups().unwrap() {
-            walk(&inner, found);
-        }
-    }
-    let file = hdf5::File::open(path).unwrap();
-    let mut found = BTreeMap::new();
-    walk(&file.as_group().unwrap(), &mut found);
-    assert!(found.len() > 10, "{} datasets", found.len());
-    found
-}
-
 /// Kills a run when its series is so many rows long, resumes it, and compares.
 fn killed_and_resumed(pairing: [&str; 2], end: &str, rows: &[usize]) {
     let directory = tempfile::tempdir().unwrap();
     let whole = directory.path().join("whole");
     assert!(command(pairing, &whole, end).status().unwrap().success());
-    let expected = datasets(&whole.join("results.h5"));
     for &limit in rows {
         let out: PathBuf = directory.path().join(format!("killed-{limit}"));
         let mut run = command(pairing, &out, end).spawn().unwrap();
@@ -93,16 +72,8 @@ fn killed_and_resumed(pairing: [&str; 2], end: &str, rows: &[usize]) {
             "{}",
             String::from_utf8_lossy(&output.stderr)
         );
-        let found = datasets(&out.join("results.h5"));
-        assert_eq!(
-            found.keys().collect::<Vec<_>>(),
-            expected.keys().collect::<Vec<_>>()
-        );
-        for (name, values) in &expected {
-            assert_eq!(&found[name], values, "{name} differs after {limit} rows");
-        }
-        let series = |folder: &Path| fs::read(folder.join("series.csv")).unwrap();
-        assert_eq!(series(&whole), series(&out));
+        let differing = results_equal::differences(&whole, &out);
+        assert!(differing.is_empty(), "after {limit} rows: {differing:?}");
     }
 }
 
@@ -124,4 +95,39 @@ fn a_run_with_openfoam_resumes_to_the_same_bits() {
 #[test]
 fn a_run_with_both_external_solvers_resumes_to_the_same_bits() {
     killed_and_resumed(["openfoam", "liggghts"], "20 s", &[90]);
+}
+
+#[test]
+fn a_run_killed_before_its_first_checkpoint_starts_again_and_a_finished_one_does_not() {
+    let directory = tempfile::tempdir().unwrap();
+    let (whole, out) = (directory.path().join("whole"), directory.path().join("out"));
+    let native = |out: &Path, end: &str| command(["native", "native"], out, end);
+    assert!(native(&whole, "1.9 s").status().unwrap().success());
+    // As a kill leaves it: begun, rows and snapshots written, no checkpoint (each 2 s).
+    assert!(native(&out, "1.9 s").status().unwrap().success());
+    let summary = fs::read_to_string(out.join("summary.json")).unwrap();
+    let resumed = native(&out, "1.9 s").arg("--resume").output().unwrap();
+    let text = String::from_utf8_lossy(&resumed.stderr).into_owned();
+    assert!(text.contains("there is no checkpoint in"), "{text}");
+    assert_eq!(
+        fs::read_to_string(out.join("summary.json")).unwrap(),
+        summary
+    );
+
+    let verdict = summary.replacen("\"verdict\": \"none\"", "\"verdict\": \"running\"", 1);
+    assert_ne!(verdict, summary);
+    fs::write(out.join("summary.json"), &verdict).unwrap();
+    let other = native(&out, "1.8 s").arg("--resume").output().unwrap();
+    let text = String::from_utf8_lossy(&other.stderr).into_owned();
+    assert_eq!(other.status.code(), Some(2), "{text}");
+    assert!(text.contains("this case has"), "{text}");
+    let resumed = native(&out, "1.9 s").arg("--resume").output().unwrap();
+    let text = String::from_utf8_lossy(&resumed.stderr).into_owned();
+    assert!(resumed.status.success(), "{text}");
+    assert_eq!(results_equal::differences(&whole, &out), [""; 0]);
+
+    // Where no run ever began there is nothing to go on from.
+    let nowhere = directory.path().join("nowhere");
+    let refused = native(&nowhere, "1.9 s").arg("--resume").output().unwrap();
+    assert_eq!(refused.status.code(), Some(2));
 }

@@ -53,11 +53,14 @@ impl CaseErrors {
         &self.problems
     }
 
-    /// All errors with the lines of the file that they are about.
+    /// So many errors are shown with their lines: each shows its whole line, which may hold them all.
+    const SHOWN: usize = 100;
+
+    /// The errors with the lines of the file that they are about; of very many the first ones.
     pub fn render(&self) -> String {
         let handler = GraphicalReportHandler::new_themed(GraphicalTheme::unicode_nocolor());
         let mut text = String::new();
-        for problem in &self.problems {
+        for problem in self.problems.iter().take(Self::SHOWN) {
             let shown = Shown {
                 problem,
                 source: &self.source,
@@ -69,7 +72,11 @@ impl CaseErrors {
         }
         let count = self.problems.len();
         let plural = if count == 1 { "error" } else { "errors" };
-        text.push_str(&format!("{count} {plural} in {}\n", self.path.display()));
+        text.push_str(&format!("{count} {plural} in {}", self.path.display()));
+        text.push_str(match count > Self::SHOWN {
+            true => ", of which the first 100 are shown\n",
+            false => "\n",
+        });
         text
     }
 }
@@ -123,5 +130,29 @@ impl Diagnostic for Shown<'_> {
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         let span = self.problem.span.clone();
         Some(Box::new(std::iter::once(LabeledSpan::at(span, "here"))))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_very_many_errors_the_first_are_shown_and_all_counted() {
+        let text = "x".repeat(5000);
+        let problem = |start: usize| Problem {
+            message: "`x` is wrong".into(),
+            help: "write y".into(),
+            span: start..start + 1,
+            line: 0,
+        };
+        let errors = CaseErrors::new(
+            Path::new("case.toml"),
+            &text,
+            (0..5000).map(problem).collect(),
+        );
+        let shown = errors.render();
+        assert_eq!(shown.matches("help:").count(), 100);
+        assert!(shown.ends_with("5000 errors in case.toml, of which the first 100 are shown\n"));
     }
 }

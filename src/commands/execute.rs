@@ -20,7 +20,10 @@ use crate::assembly::{self, Pairing, Prepared, assemble};
 use crate::case::model::Case;
 use crate::exit;
 use crate::progress::Progress;
-use crate::results::{Recorder, RunInfo, Summary, Verdict};
+use crate::results::{self, Recorder, ResultsError, RunInfo, Summary, Verdict};
+
+/// A file that every run makes and holds locked while it lives.
+const LOCK: &str = "lock";
 
 /// How a case is run.
 pub(super) struct Settings<'a> {
@@ -28,7 +31,7 @@ pub(super) struct Settings<'a> {
     pub(super) pairing: Pairing,
     /// The results folder.
     pub(super) out: &'a Path,
-    /// Goes on from the checkpoint in it.
+    /// Goes on from the checkpoint in it, or starts again if there was none yet.
     pub(super) resume: bool,
     /// Shows a progress bar.
     pub(super) progress: bool,
@@ -51,17 +54,24 @@ pub(super) fn execute(
     settings: &Settings<'_>,
 ) -> Result<Done, Failure> {
     let out = settings.out;
+    let started_before = out.join(LOCK).is_file();
     fs::create_dir_all(out.join("log")).map_err(|cause| io_failure(out, &cause))?;
     let _lock = lock(out)?;
     let checkpoint = out.join("checkpoint");
-    if settings.resume && !checkpoint.join("coordinator.state").is_file() {
-        let message = format!(
-            "there is no checkpoint in {}: run without `--resume`, or name the folder with `--out`",
-            out.display()
-        );
-        return Err(Failure::new(exit::CASE, message));
+    let resume = settings.resume && checkpoint.join("coordinator.state").is_file();
+    if settings.resume && !resume {
+        // A run that ended before its first checkpoint is resumed by starting it again.
+        let again = started_before && results::clear_start(out, &case.hash).map_err(refused)?;
+        if !again {
+            let message = format!(
+                "there is no checkpoint in {}: run without `--resume`, or name the folder with \
+                 `--out`",
+                out.display()
+            );
+            return Err(Failure::new(exit::CASE, message));
+        }
     }
-    let from = settings.resume.then_some(checkpoint.as_path());
+    let from = resume.then_some(checkpoint.as_path());
     let info = RunInfo {
         gas: settings.pairing.gas.name().into(),
         particles: settings.pairing.particles.name().into(),
@@ -72,18 +82,17 @@ pub(super) fn execute(
         }
         .into(),
     };
-    let mut recorder = Recorder::create(case, info, out, from)
-        .map_err(|cause| Failure::new(exit::CASE, with_help(&cause)))?;
+    let mut recorder = Recorder::create(case, info, out, from).map_err(refused)?;
     let _log = log_to(out)?;
 
     let interrupts = Interrupts::default();
     let _signals = SignalThread::start(&interrupts, settings.stop_after)?;
     let mut supervisor = Supervisor::new(case.coupling.deadline, interrupts);
-    info!(case = %case.name, pairing = %settings.pairing.name(), resume = settings.resume, "start");
+    info!(case = %case.name, pairing = %settings.pairing.name(), resume, "start");
     let assembly = assembly::Settings {
         pairing: settings.pairing,
         results: out,
-        resume: settings.resume,
+        resume,
     };
     let mut run = assemble(case, prepared, &assembly, &mut supervisor)?;
     let mut progress = Progress::new(case, settings.progress);
@@ -214,9 +223,13 @@ fn io_failure(path: &Path, cause: &io::Error) -> Failure {
     Failure::new(exit::OTHER, format_args!("{}: {cause}", path.display()))
 }
 
+fn refused(cause: ResultsError) -> Failure {
+    Failure::new(exit::CASE, with_help(&cause))
+}
+
 /// Keeps a second run out of the results folder while this one lives.
 fn lock(out: &Path) -> Result<File, Failure> {
-    let path = out.join("lock");
+    let path = out.join(LOCK);
     let file = File::create(&path).map_err(|cause| io_failure(&path, &cause))?;
     flock(&file, FlockOperation::NonBlockingLockExclusive).map_err(|_| {
         let message = format!(

@@ -27,7 +27,7 @@ pub(super) struct Arguments {
     /// Changes a key of the case, for example `--set time.acceleration=200`.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Goes on from the last checkpoint in the results folder.
+    /// Goes on from the last checkpoint in the results folder, or starts again if there is none yet.
     #[arg(long)]
     resume: bool,
     /// No progress bar.

@@ -28,14 +28,14 @@ pub enum ResultsError {
         /// How far that run came, in s of process time.
         time: f64,
     },
-    /// A checkpoint of another case.
+    /// A checkpoint or the start of a run of another case.
     #[error(
-        "{} is a checkpoint of a case with the hash {stored}, this case has {hash}",
+        "{} is of a case with the hash {stored}, this case has {hash}",
         path.display()
     )]
     #[diagnostic(help("resume with the case file and the `--set` values that the run began with"))]
     OtherCase {
-        /// The checkpoint's file.
+        /// The file that says so.
         path: PathBuf,
         /// The hash it stores.
         stored: String,

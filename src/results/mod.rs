@@ -25,6 +25,7 @@ mod vtk;
 
 pub use error::ResultsError;
 pub use recorder::{Recorder, RunInfo};
+pub use resume::clear_start;
 pub use summary::{Summary, Verdict};
 
 /// Name of the summary in a result directory.

@@ -6,8 +6,8 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::quantities::Captured;
-use super::summary::{ConvergenceSummary, WallTimes};
-use super::{ResultsError, SERIES, STORE, files};
+use super::summary::{ConvergenceSummary, Summary, Verdict, WallTimes};
+use super::{ResultsError, SERIES, STORE, SUMMARY, files};
 
 /// Name of the counters in a checkpoint directory.
 const COUNTERS: &str = "recorder.json";
@@ -98,6 +98,29 @@ pub(super) fn restore(
         remove_later(&results.join(folder), count)?;
     }
     Ok(counters)
+}
+
+/// Makes room for a run that begins again because it ended before its first checkpoint. True if
+/// that is so; false, and nothing changed, if the run in this directory came to its end. The start
+/// of another case is an error.
+pub fn clear_start(results: &Path, case_hash: &str) -> Result<bool, ResultsError> {
+    let path = results.join(SUMMARY);
+    if !path.exists() {
+        return Ok(true);
+    }
+    let summary = Summary::read(results)?;
+    if summary.case.hash != case_hash {
+        return Err(ResultsError::OtherCase {
+            path,
+            stored: summary.case.hash,
+            hash: case_hash.into(),
+        });
+    }
+    let ended_early = matches!(summary.verdict, Verdict::Running | Verdict::Stopped);
+    if ended_early {
+        fs::remove_file(&path).map_err(ResultsError::file("remove", &path))?;
+    }
+    Ok(ended_early)
 }
 
 /// Removes the snapshots of a folder from a number on, and drafts.

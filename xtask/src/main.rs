@@ -32,7 +32,11 @@ usage: cargo xtask TASK
   install --prefix DIR    build, then copy to DIR/bin and DIR/libexec/calcine
         [--native]        without the adapters for OpenFOAM and LIGGGHTS
   bench …                 run the benchmarks and print one table; words go to `cargo bench`
-        [--table]         the table of what was measured last";
+        [--table]         the table of what was measured last
+  fuzz [--minutes N]      fuzz what reads users' files, ten minutes each unless told
+        [--seed S] [case|polymesh]
+  torture [--kills N]     kill -9 at random moments, resume, compare every bit (50 unless told)
+        [--seed S]";
 
 /// Exit code of a wrong command line, as `calcine` has it.
 const USAGE_CODE: u8 = 2;
@@ -62,11 +66,25 @@ fn main() -> ExitCode {
 /// What the user asks for.
 #[derive(Debug, PartialEq)]
 enum Task {
-    SetUp { needs: Needs, build: bool },
+    SetUp {
+        needs: Needs,
+        build: bool,
+    },
     Calcine(Vec<OsString>),
-    Test { native: bool, words: Vec<OsString> },
+    Test {
+        native: bool,
+        words: Vec<OsString>,
+    },
     Bench(bench::Choice),
-    Install { prefix: PathBuf, needs: Needs },
+    /// A test program of its own, with its words.
+    Program {
+        name: &'static str,
+        words: Vec<OsString>,
+    },
+    Install {
+        prefix: PathBuf,
+        needs: Needs,
+    },
 }
 
 fn read(words: &[OsString]) -> Option<Task> {
@@ -89,9 +107,20 @@ fn read(words: &[OsString]) -> Option<Task> {
                 words: rest[usize::from(table_only)..].to_vec(),
             }))
         }
+        "fuzz" => program("fuzz", ["--minutes", "10"], rest),
+        "torture" => program("torture", ["--kills", "50"], rest),
         "install" => install(rest),
         _ => None,
     }
+}
+
+/// A test program; unless the words hold its option, with the option's usual value.
+fn program(name: &'static str, usual: [&str; 2], words: &[OsString]) -> Option<Task> {
+    let mut words = words.to_vec();
+    if !words.iter().any(|word| word == usual[0]) {
+        words.extend(usual.map(OsString::from));
+    }
+    Some(Task::Program { name, words })
 }
 
 fn set_up(words: &[OsString]) -> Option<Task> {
@@ -135,6 +164,7 @@ fn perform(task: Task) -> Outcome<()> {
         Task::Calcine(words) => tasks::run(&workspace, &words),
         Task::Test { native, words } => tasks::test(&workspace, native, &words),
         Task::Bench(choice) => bench::run(&workspace, &choice),
+        Task::Program { name, words } => tasks::program(&workspace, name, &words),
         Task::Install { prefix, needs } => tasks::install(&workspace, &prefix, needs),
     }
 }
@@ -169,6 +199,18 @@ mod tests {
             task(Needs::NATIVE, false)
         );
         assert_eq!(read(&words("setup --everything")), None);
+    }
+
+    #[test]
+    fn fuzzing_and_torture_have_their_usual_length_unless_told() {
+        let task = |name, line: &str| {
+            let words = words(line);
+            Some(Task::Program { name, words })
+        };
+        assert_eq!(read(&words("fuzz case")), task("fuzz", "case --minutes 10"));
+        let given = task("fuzz", "--minutes 1 polymesh");
+        assert_eq!(read(&words("fuzz --minutes 1 polymesh")), given);
+        assert_eq!(read(&words("torture")), task("torture", "--kills 50"));
     }
 
     #[test]

@@ -59,6 +59,14 @@ pub fn test(workspace: &Workspace, native: bool, words: &[OsString]) -> Outcome<
     loud_step("all tests", || visibly(command.args(words)))
 }
 
+/// Runs one of the test programs of the package `calcine` that have words of their own.
+pub fn program(workspace: &Workspace, name: &str, words: &[OsString]) -> Outcome<()> {
+    packages::install(Needs::NATIVE, &workspace.logs)?;
+    let mut command = workspace.cargo("test");
+    command.args(["-p", "calcine", "--test", name, "--"]);
+    loud_step(name, || visibly(command.args(words)))
+}
+
 /// Copies the command to PREFIX/bin and its adapters to PREFIX/libexec/calcine.
 pub fn install(workspace: &Workspace, prefix: &Path, needs: Needs) -> Outcome<()> {
     set_up(workspace, needs, true)?;

@@ -1,0 +1,90 @@
+//! Fuzzing of what reads users' files: `cargo xtask fuzz --minutes 10 case`, and five seconds of
+//! each target in `cargo test`.
+//!
+//! A worker mutates files of a corpus, an input for each number from a fixed seed on, and executes
+//! them with 2 GiB of address space. The parent sees whether it dies (an abort, an overflow of the
+//! stack, memory) or stands still. A finding is saved with its files, named by seed and number.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
+
+mod case;
+mod mutate;
+mod parent;
+mod polymesh;
+mod random;
+mod worker;
+
+use std::process::ExitCode;
+use std::time::Duration;
+
+use random::Random;
+
+/// An input: files by name.
+type Files = Vec<(String, Vec<u8>)>;
+
+/// What is fuzzed.
+trait Target {
+    /// Makes an input.
+    fn input(&self, random: &mut Random) -> Files;
+    /// Executes it; whether it was accepted. Panics are findings.
+    fn execute(&mut self, files: &Files) -> bool;
+}
+
+/// Names of the targets.
+const TARGETS: [&str; 2] = ["case", "polymesh"];
+
+fn target(name: &str) -> Box<dyn Target> {
+    match name {
+        "case" => Box::new(case::CaseFiles::new()),
+        _ => Box::new(polymesh::PolyMeshes::new()),
+    }
+}
+
+/// The seed, unless another is given: the day of the first run.
+const SEED: u64 = 20_261_121;
+
+fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let value = |option: &str| {
+        let at = words.iter().position(|word| word == option)?;
+        words.get(at + 1).map(String::as_str)
+    };
+    if words.first().is_some_and(|word| word == "--worker") {
+        return worker::run(&words[1..]);
+    }
+    // What `cargo test` hands to every test program: a list, filters.
+    if words.iter().any(|word| word == "--list") {
+        return ExitCode::SUCCESS;
+    }
+    let minutes = value("--minutes").and_then(|text| text.parse::<f64>().ok());
+    let seed = value("--seed").and_then(|text| text.parse().ok());
+    let named: Vec<&str> = TARGETS
+        .into_iter()
+        .filter(|name| words.iter().any(|word| word == name))
+        .collect();
+    let mut filters = words
+        .iter()
+        .filter(|word| !word.starts_with('-'))
+        .peekable();
+    let meant = filters.peek().is_none() || filters.any(|word| "fuzz".contains(&**word));
+    if minutes.is_none() && named.is_empty() && !meant {
+        return ExitCode::SUCCESS;
+    }
+    let time = minutes.map_or(Duration::from_secs(5), |minutes| {
+        Duration::from_secs_f64(60.0 * minutes)
+    });
+    let chosen = if named.is_empty() {
+        &TARGETS[..]
+    } else {
+        &named
+    };
+    let findings: usize = chosen
+        .iter()
+        .map(|name| parent::run(name, seed.unwrap_or(SEED), time))
+        .sum();
+    if findings == 0 {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
+}

@@ -1,0 +1,78 @@
+//! Results of two runs compared: every dataset to the bit, the series and the ParaView files byte
+//! for byte, the summary but for wall times.
+
+#![allow(clippy::unwrap_used)]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use calcine::results::Summary;
+
+/// All values of `results.h5` by dataset, and the attributes of the snapshots, as bits.
+pub fn datasets(path: &Path) -> BTreeMap<String, Vec<u64>> {
+    fn walk(group: &hdf5::Group, found: &mut BTreeMap<String, Vec<u64>>) {
+        for dataset in group.datasets().unwrap() {
+            let values = dataset.read_raw::<f64>().unwrap();
+            let bits = values.iter().map(|value| value.to_bits()).collect();
+            found.insert(dataset.name(), bits);
+        }
+        for inner in group.groups().unwrap() {
+            for name in ["process_time", "motion_time", "windows"] {
+                if let Ok(value) = inner.attr(name).and_then(|it| it.read_scalar::<f64>()) {
+                    found.insert(format!("{}:{name}", inner.name()), vec![value.to_bits()]);
+                }
+            }
+            walk(&inner, found);
+        }
+    }
+    let file = hdf5::File::open(path).unwrap();
+    let mut found = BTreeMap::new();
+    walk(&file.as_group().unwrap(), &mut found);
+    assert!(found.len() > 10, "{} datasets", found.len());
+    found
+}
+
+/// What differs between two result folders, by name; empty where nothing does.
+pub fn differences(expected: &Path, found: &Path) -> Vec<String> {
+    let mut list = Vec::new();
+    let (one, other) = (
+        datasets(&expected.join("results.h5")),
+        datasets(&found.join("results.h5")),
+    );
+    let names: std::collections::BTreeSet<_> = one.keys().chain(other.keys()).collect();
+    list.extend(
+        names
+            .into_iter()
+            .filter(|&name| one.get(name) != other.get(name))
+            .cloned(),
+    );
+    let files = |folder: &Path| -> BTreeMap<String, Vec<u8>> {
+        let read = |name: &str| fs::read(folder.join(name)).unwrap();
+        let mut files: BTreeMap<_, _> = ["series.csv", "gas.pvd", "particles.pvd", "case.toml"]
+            .map(|name| (name.to_owned(), read(name)))
+            .into();
+        for sub in ["gas", "particles"] {
+            for entry in fs::read_dir(folder.join(sub)).unwrap() {
+                let name = format!("{sub}/{}", entry.unwrap().file_name().display());
+                files.insert(name.clone(), read(&name));
+            }
+        }
+        files
+    };
+    let (one, other) = (files(expected), files(found));
+    let names: std::collections::BTreeSet<_> = one.keys().chain(other.keys()).collect();
+    list.extend(
+        names
+            .into_iter()
+            .filter(|&name| one.get(name) != other.get(name))
+            .cloned(),
+    );
+    let [mut one, mut other] = [expected, found].map(|folder| Summary::read(folder).unwrap());
+    one.wall_time_s = Default::default();
+    other.wall_time_s = Default::default();
+    if one != other {
+        list.push("summary.json".to_owned());
+    }
+    list
+}
