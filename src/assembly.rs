@@ -386,7 +386,7 @@ fn closures(case: &Case) -> Closures {
         HeatLaw::RanzMarshall => Box::new(RanzMarshall),
     };
     Closures {
-        gas: case.gas.properties,
+        gas: case.gas.properties.clone(),
         drag,
         heat_transfer,
     }

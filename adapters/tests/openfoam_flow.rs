@@ -7,10 +7,10 @@ use calcine_coupler::mesh::Mesh;
 use calcine_coupler::part::{Balance, Bed, Gas, Part};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
-use calcine_coupler::setup::{GasPatch, Schedule, WallHeat};
+use calcine_coupler::setup::{GasPatch, Schedule, WallHeat, WallVelocity};
 use openfoam_support::{
-    CELLS, Duct, PRESSURE, SIDE, SPEED, TEMPERATURE, bed, exchange_of_nothing, mesh, no_exchange,
-    setup,
+    CELLS, Duct, PRESSURE, SIDE, SPEED, TEMPERATURE, bed, exchange_of_nothing, inviscid, mesh,
+    no_exchange, setup, stop,
 };
 
 fn closure(balance: &Balance) -> f64 {
@@ -49,17 +49,7 @@ fn gas_at_rest_carries_its_weight_across_a_jump_of_the_void_fraction() {
     let mut still = setup();
     still.velocity = Vec3::zeros();
     still.gravity = Vec3::new(0.0, 0.0, -9.81);
-    let inlet = still.patches.iter_mut().find(|(name, _)| name == "bottom");
-    if let Some((
-        _,
-        GasPatch::Inlet {
-            superficial_velocity,
-            ..
-        },
-    )) = inlet
-    {
-        *superficial_velocity = Schedule::constant(0.0);
-    }
+    stop(&mut still);
     let mut packed = bed(1.0);
     packed.void_fraction[4..8].fill(0.4);
     let mut duct = Duct::launch(&still, folder.path());
@@ -91,15 +81,7 @@ fn gas_at_rest_stays_at_rest_on_a_sheared_mesh() {
     let mut still = setup();
     still.velocity = Vec3::zeros();
     still.gravity = Vec3::new(0.0, 0.0, -9.81);
-    for (_, patch) in &mut still.patches {
-        if let GasPatch::Inlet {
-            superficial_velocity,
-            ..
-        } = patch
-        {
-            *superficial_velocity = Schedule::constant(0.0);
-        }
-    }
+    stop(&mut still);
     let mut packed = Bed {
         void_fraction: vec![1.0; cells],
     };
@@ -124,7 +106,7 @@ fn a_slab_at_one_temperature_heats_the_gas_as_the_upwind_scheme_s_exact_power_la
     // multiplies T_s − T by 1/(1 + K/(m' c_p)). The conduction of air is made negligible.
     let folder = tempfile::tempdir().unwrap();
     let mut thin = setup();
-    thin.properties.sutherland_coefficient = 1e-16;
+    thin.properties = inviscid();
     let mut exchange = no_exchange();
     let (coefficient, slab) = (0.02, 400.0);
     for cell in 3..9 {
@@ -135,7 +117,7 @@ fn a_slab_at_one_temperature_heats_the_gas_as_the_upwind_scheme_s_exact_power_la
     duct.advance(400, &bed(0.5), &exchange);
     let fields = duct.gas.fields();
     let flow = fields.density[0] * SPEED * SIDE * SIDE;
-    let factor = 1.0 / (1.0 + coefficient / (flow * thin.properties.heat_capacity));
+    let factor = 1.0 / (1.0 + coefficient / (flow * GasProperties::air().heat_capacity));
     for cell in 0..CELLS {
         let cells = (cell as i32 - 2).clamp(0, 6);
         let expected = slab - (slab - TEMPERATURE) * factor.powi(cells);
@@ -193,8 +175,8 @@ fn mass_and_energy_close_in_a_wide_duct_with_hot_walls_that_gas_sticks_to() {
     let folder = tempfile::tempdir().unwrap();
     let mut hot = setup();
     for (_, patch) in &mut hot.patches {
-        if let GasPatch::Wall { no_slip, heat } = patch {
-            *no_slip = true;
+        if let GasPatch::Wall { velocity, heat } = patch {
+            *velocity = WallVelocity::NoSlip;
             *heat = WallHeat::Temperature(Schedule(vec![(0.0, 300.0), (0.5, 500.0)]));
         }
     }
@@ -252,7 +234,7 @@ fn a_plug_s_pressure_drop_is_exact_to_its_half_cells() {
         exchange.drag_coefficient[cell] = coefficient;
     }
     let mut thin = setup();
-    thin.properties.sutherland_coefficient = 1e-16;
+    thin.properties = inviscid();
     let mut duct = Duct::launch(&thin, folder.path());
     let convergence = duct.advance(60, &plug, &exchange);
     assert!(convergence.converged, "{convergence:?}");

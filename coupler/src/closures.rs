@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use calcine_physics::Vec3;
 use calcine_physics::drag::Drag;
-use calcine_physics::gas::GasProperties;
+use calcine_physics::gas_model::GasModel;
 use calcine_physics::heat_transfer::HeatTransfer;
 use calcine_physics::local::LocalGas;
 use calcine_physics::numbers::VoidFraction;
@@ -17,7 +17,7 @@ use crate::smoother::Operator;
 #[derive(Debug)]
 pub struct Closures {
     /// Properties of the gas.
-    pub gas: GasProperties,
+    pub gas: GasModel,
     /// Drag on a particle.
     pub drag: Box<dyn Drag>,
     /// Heat transfer between gas and particle.
@@ -116,9 +116,9 @@ impl Closures {
             let local = LocalGas {
                 void_fraction,
                 density: seen.density[p],
-                viscosity: self.gas.viscosity(temperature),
-                conductivity: self.gas.conductivity(temperature),
-                heat_capacity: self.gas.heat_capacity,
+                viscosity: self.gas.viscosity(temperature, &[]),
+                conductivity: self.gas.conductivity(temperature, &[]),
+                heat_capacity: self.gas.heat_capacity(temperature, &[]),
                 slip: (seen.velocity[p] - particles.velocity[p] / acceleration).norm(),
             };
             let diameter = 2.0 * particles.radius[p];

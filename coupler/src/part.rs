@@ -48,6 +48,8 @@ pub struct GasFields<'a> {
     pub pressure: &'a [f64],
     /// Density of the gas itself (not times the void fraction) in kg/m³.
     pub density: &'a [f64],
+    /// Mass fractions, species by species within each cell; empty for a single gas.
+    pub composition: &'a [f64],
     /// Interstitial velocity in m/s.
     pub velocity: &'a [Vec3],
     /// The cell gradient of the total pressure that the momentum equation used, in Pa/m.
@@ -109,6 +111,8 @@ pub struct CellReceived {
     pub drag: Vec<Vec3>,
     /// Gas mass in kg.
     pub mass: Balance,
+    /// Mass of each species in kg, in the order of the mixture; empty for a single gas.
+    pub species: Vec<Balance>,
     /// Gas enthalpy in J.
     pub energy: Balance,
     /// Gas momentum along x, y, z in N s.

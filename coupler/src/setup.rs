@@ -1,7 +1,7 @@
 //! What a run starts from, in plain SI values: the same for every backend.
 
 use calcine_physics::Vec3;
-use calcine_physics::gas::GasProperties;
+use calcine_physics::gas_model::GasModel;
 
 use crate::time::GasStorage;
 
@@ -36,11 +36,15 @@ pub struct GasSetup {
     /// Name of the mixture, for example `air`.
     pub mixture: String,
     /// Properties of the mixture.
-    pub properties: GasProperties,
+    pub properties: GasModel,
+    /// Schmidt number of all species of a mixture (requirements SPC-1); 1 where there are none.
+    pub schmidt: f64,
     /// Over which clock the gas stores.
     pub storage: GasStorage,
     /// Start temperature in K.
     pub temperature: f64,
+    /// Mass fractions at the start, in the order of the mixture's species; empty for a single gas.
+    pub composition: Vec<f64>,
     /// Start pressure, and the reference of the low-Mach gas, in Pa.
     pub pressure: f64,
     /// Start velocity (superficial) in m/s.
@@ -58,6 +62,8 @@ pub struct GasSetup {
 pub struct GasControls {
     /// Outer (PIMPLE) iterations per window at most.
     pub outer_iterations: u32,
+    /// How cell values are carried to faces.
+    pub convection: Convection,
     /// Pressure corrections per outer iteration.
     pub pressure_corrections: u32,
     /// The outer loop ends where scaled initial residuals fall below this.
@@ -66,28 +72,88 @@ pub struct GasControls {
     pub linear_tolerance: f64,
 }
 
+/// How cell values of velocity, enthalpy and composition are carried to faces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Convection {
+    /// First-order upwind.
+    Upwind,
+    /// Second order where the field is smooth, upwind at extrema: the limiter of van Leer 1974,
+    /// doi 10.1016/0021-9991(74)90019-9.
+    #[default]
+    VanLeer,
+}
+
+/// A composition over process time: (time in s, mass fractions in the order of the mixture's
+/// species) entries with increasing times, at least one; linear in between, constant outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CompositionSchedule(pub Vec<(f64, Vec<f64>)>);
+
+impl CompositionSchedule {
+    /// Mass fractions at a process time in s.
+    pub fn at(&self, time: f64) -> Vec<f64> {
+        let species = self.0.first().map_or(0, |entry| entry.1.len());
+        let one = |k: usize| Schedule(self.0.iter().map(|(t, y)| (*t, y[k])).collect()).at(time);
+        (0..species).map(one).collect()
+    }
+}
+
 /// Boundary condition of the gas on a patch.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GasPatch {
-    /// Gas flows in with a superficial velocity normal to the patch.
+    /// Gas flows in, normal to the patch.
     Inlet {
-        /// Superficial velocity into the domain in m/s, over process time in s.
-        superficial_velocity: Schedule,
+        /// How much.
+        flow: InletFlow,
         /// Temperature in K, over process time in s.
         temperature: Schedule,
+        /// Composition; `None` for a single gas.
+        composition: Option<CompositionSchedule>,
     },
-    /// Gas leaves (or enters at the inner temperature) at a pressure.
+    /// Gas leaves (or enters in the state of the cell behind) at a pressure.
     Outlet {
-        /// Absolute pressure in Pa.
-        pressure: f64,
+        /// Absolute pressure in Pa, over process time in s.
+        pressure: Schedule,
     },
     /// A wall.
     Wall {
-        /// True: no slip; false: free slip.
-        no_slip: bool,
+        /// How the gas moves along it.
+        velocity: WallVelocity,
         /// Heat through the wall.
         heat: WallHeat,
     },
+    /// A plane of symmetry.
+    Symmetry,
+}
+
+impl GasPatch {
+    /// An inlet of a single gas with a superficial velocity in m/s and a temperature in K.
+    pub fn inlet(velocity: Schedule, temperature: Schedule) -> Self {
+        Self::Inlet {
+            flow: InletFlow::SuperficialVelocity(velocity),
+            temperature,
+            composition: None,
+        }
+    }
+}
+
+/// How much gas flows through an inlet; zero or positive, into the domain.
+#[derive(Clone, Debug, PartialEq)]
+pub enum InletFlow {
+    /// Superficial velocity in m/s, over process time in s.
+    SuperficialVelocity(Schedule),
+    /// Mass flow through the whole patch in kg/s, over process time in s, evenly spread.
+    MassFlow(Schedule),
+}
+
+/// How the gas moves along a wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum WallVelocity {
+    /// It sticks.
+    NoSlip,
+    /// It slides freely.
+    Slip,
+    /// It sticks to a wall that slides in its own plane with this velocity in m/s.
+    Moving(Vec3),
 }
 
 /// Heat through a wall.
@@ -97,6 +163,16 @@ pub enum WallHeat {
     Adiabatic,
     /// Fixed wall temperature in K, over process time in s.
     Temperature(Schedule),
+    /// Heat flux into the gas in W/m² of wall, over process time in s.
+    Flux(Schedule),
+    /// Heat exchange with surroundings beyond the wall.
+    Convective {
+        /// Overall coefficient between the inner face of the wall and the surroundings in W/m²/K,
+        /// over process time in s.
+        coefficient: Schedule,
+        /// Temperature of the surroundings in K, over process time in s.
+        ambient: Schedule,
+    },
 }
 
 /// The particles at the start of a run.

@@ -46,6 +46,7 @@ impl StillGas {
 
     fn fields(&self) -> GasFields<'_> {
         GasFields {
+            composition: &[],
             temperature: &self.temperature,
             pressure: &self.zero,
             density: &self.zero,

@@ -144,7 +144,9 @@ fn setups_that_fit_no_mesh_are_refused_by_the_name_of_the_patch() {
     assert!(matches!(error, NativeError::NoCondition { patch } if patch == "side"));
     let error = refused(&[bottom.clone(), top.clone(), side.clone(), ("lid", slip())]);
     assert!(error.to_string().contains("`gas.patch.lid`"), "{error}");
-    let error = refused(&[bottom, ("top", slip()), side.clone()]);
+    let mut filled = setup(&[bottom, ("top", slip()), side.clone()]);
+    filled.properties = water();
+    let error = NativeGas::new(mesh.clone(), &filled).unwrap_err();
     assert!(matches!(error, NativeError::NoOutlet));
     let error = refused(&[("bottom", inlet(0.5, -3.0)), top, side]);
     let text = "the temperature of patch `bottom` is -3 K; it must be positive";

@@ -8,7 +8,7 @@ use calcine_coupler::physics::drag::ErgunWenYu;
 use calcine_coupler::physics::heat_transfer::{Gunn, HeatTransfer, RanzMarshall};
 use calcine_coupler::physics::local::LocalGas;
 use calcine_coupler::physics::numbers::VoidFraction;
-use calcine_coupler::setup::GasPatch;
+use calcine_coupler::setup::{GasPatch, InletFlow};
 
 use super::model::{Case, DragLaw, HeatLaw, Population};
 
@@ -89,9 +89,14 @@ fn splitting(text: &mut String, case: &Case, population: &Population, eps: f64) 
     let material = &case.materials[population.material];
     let gas = &case.gas.properties;
     let factor = case.time.acceleration.largest();
-    let density = gas.density(case.gas.pressure, case.gas.temperature);
+    let density = gas.density(
+        case.gas.pressure,
+        case.gas.temperature,
+        &case.gas.composition,
+    );
+    let capacity = gas.heat_capacity(case.gas.temperature, &case.gas.composition);
     let solid = (1.0 - eps) * material.density * material.heat_capacity;
-    let ratio = factor * eps * density * gas.heat_capacity / solid;
+    let ratio = factor * eps * density * capacity / solid;
     let Some(local) = local(case, eps, density) else {
         return;
     };
@@ -149,25 +154,19 @@ fn local(case: &Case, eps: f64, density: f64) -> Option<LocalGas> {
         .iter()
         .filter_map(|(_, patch)| match patch {
             GasPatch::Inlet {
-                superficial_velocity,
+                flow: InletFlow::SuperficialVelocity(velocity),
                 ..
-            } => Some(
-                superficial_velocity
-                    .0
-                    .iter()
-                    .map(|entry| entry.1)
-                    .fold(0.0, f64::max),
-            ),
+            } => Some(velocity.0.iter().map(|entry| entry.1).fold(0.0, f64::max)),
             _ => None,
         })
-        .fold(0.0, f64::max);
+        .fold(case.gas.velocity.norm(), f64::max);
     let gas = &case.gas.properties;
     Some(LocalGas {
         void_fraction: VoidFraction::new(eps).ok()?,
         density,
-        viscosity: gas.viscosity(case.gas.temperature),
-        conductivity: gas.conductivity(case.gas.temperature),
-        heat_capacity: gas.heat_capacity,
+        viscosity: gas.viscosity(case.gas.temperature, &case.gas.composition),
+        conductivity: gas.conductivity(case.gas.temperature, &case.gas.composition),
+        heat_capacity: gas.heat_capacity(case.gas.temperature, &case.gas.composition),
         slip: fastest / eps,
     })
 }

@@ -40,6 +40,9 @@ dimensions! {
     HEAT_CAPACITY = [2, 0, -2, -1, 0], "a specific heat capacity", "840 J/kg/K";
     CONDUCTIVITY = [1, 1, -3, -1, 0], "a thermal conductivity", "1.1 W/m/K";
     VISCOSITY = [-1, 1, -1, 0, 0], "a dynamic viscosity", "18.5e-6 Pa s";
+    MASS_FLOW = [0, 1, -1, 0, 0], "a mass flow", "1 kg/h";
+    HEAT_FLUX = [0, 1, -3, 0, 0], "a heat flux", "1 kW/m^2";
+    HEAT_TRANSFER = [0, 1, -3, -1, 0], "a heat transfer coefficient", "10 W/m^2/K";
     MOLAR_MASS = [0, 1, 0, 0, -1], "a molar mass", "28.96 g/mol";
 }
 

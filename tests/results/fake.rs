@@ -14,7 +14,7 @@ use calcine_coupler::observer::{Moment, Observer, Timing};
 use calcine_coupler::part::{About, Bed, Convergence, GasFields, ParticleFields};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
-use calcine_coupler::setup::{GasControls, GasSetup};
+use calcine_coupler::setup::{Convection, GasControls, GasSetup};
 use calcine_coupler::time::{Acceleration, Clocks, GasStorage, Ticks, Window};
 
 use self::meshes::{CELLS, SIZE, duct};
@@ -142,7 +142,10 @@ fn gas_setup() -> GasSetup {
             heat_capacity: 1007.0,
             sutherland_coefficient: 1.4792e-6,
             sutherland_temperature: 116.0,
-        },
+        }
+        .into(),
+        schmidt: 1.0,
+        composition: Vec::new(),
         storage: GasStorage::Process,
         temperature: 300.0,
         pressure: 101_325.0,
@@ -150,6 +153,7 @@ fn gas_setup() -> GasSetup {
         gravity: Vec3::new(0.0, 0.0, -9.81),
         patches: vec![],
         controls: GasControls {
+            convection: Convection::Upwind,
             outer_iterations: 50,
             pressure_corrections: 2,
             outer_tolerance: 1e-10,
@@ -309,6 +313,7 @@ impl World {
             window: self.window.as_ref(),
             mesh: &self.mesh,
             gas: GasFields {
+                composition: &[],
                 temperature: &self.gas.temperature,
                 pressure: &self.gas.pressure,
                 density: &self.gas.density,

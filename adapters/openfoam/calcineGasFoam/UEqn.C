@@ -1,11 +1,11 @@
 // Momentum, for the interstitial velocity u, in the form that subtracts u times the continuity
 // residual, per cell:
 //
-//   m_old (u - u_old)/dt + sum phi_f u_f - u sum phi_f - sum (eps mu)_f grad(u).S
-//       = -eps grad(p) V + eps rho V g + S_d - K_d u
+//   m_old (u - u_old)/dt + sum phi_f u_f - u sum phi_f
+//       - sum (eps mu)_f (grad(u) + grad(u)^T - 2/3 div(u)).S = -eps grad(p) V + eps rho V g + S_d - K_d u
 //
-// u_f as fvSchemes says (upwind as generated); the viscous stress without its transposed part, which
-// vanishes for uniform properties.
+// u_f as fvSchemes says; of the viscous stress the part grad(u).S is implicit. No viscous stress acts on
+// slip walls; gas leaves an outlet as if the flow were developed there.
 #include "gas.H"
 #include "fvm.H"
 #include "fvc.H"
@@ -20,6 +20,21 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
         "viscosity", fvc::interpolate(voidFraction_*thermo_->mu())
     );
 
+    // Force of the explicit part of the stress on the owner of each face, in N.
+    volTensorField stress
+    (
+        "explicitStress", voidFraction_*thermo_->mu()*dev2(T(fvc::grad(U_)))
+    );
+    forAll(mesh_.boundary(), patchi)
+    {
+        if (boundary_.of(patchi) != passage::open && !U_.boundaryField()[patchi].fixesValue())
+        {
+            stress.boundaryFieldRef()[patchi] = Zero;
+        }
+    }
+    stressForce_.reset((mesh_.Sf() & fvc::interpolate(stress)).ptr());
+    const vectorField pulled(fvc::surfaceIntegrate(*stressForce_)().primitiveField()*volume);
+
     // The matrix of the last outer iteration goes first, with the memory it holds.
     momentum_.reset();
     momentum_.reset
@@ -30,7 +45,7 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     outflow_ = outflow();
     matrix.diag() += inertia + given_.dragCoefficient - outflow_;
     matrix.source() +=
-        inertia*committed_.velocity + given_.dragSource + density*pores*gravity_;
+        inertia*committed_.velocity + given_.dragSource + density*pores*gravity_ + pulled;
 
     momentumDiagonal_ = matrix.A()().primitiveField();
     const vectorField push(-pores*pressureGradient_);

@@ -37,6 +37,9 @@ void Foam::calcine::gas::balanceEnergy(report& result) const
     energy.stored = gSum(stored);
     energy.storedMagnitude = gSumMag(stored);
     energy.exchange = window_.storageSpan*gSum(result.heat);
+    energy.source = (basePressure() - committed_.basePressure)
+       *gSum(given_.voidFraction*mesh_.cellVolumes());
+    energy.sourceMagnitude = mag(energy.source);
     forAll(mesh_.boundary(), patchi)
     {
         const labelUList& cells = mesh_.boundary()[patchi].faceCells();
@@ -78,7 +81,8 @@ void Foam::calcine::gas::balanceMomentum(report& result) const
             const vectorField& given = momentum_->boundaryCoeffs()[patchi];
             forAll(cells, i)
             {
-                const scalar out = internal[i][axis]*u[cells[i]][axis] - given[i][axis];
+                const scalar out = internal[i][axis]*u[cells[i]][axis] - given[i][axis]
+                  - stressForce_->boundaryField()[patchi][i][axis];
                 momentum.boundary -= span*out;
                 momentum.boundaryMagnitude += span*mag(out);
             }

@@ -1,5 +1,24 @@
 #include "boundary.H"
 
+namespace
+{
+
+void readTable
+(
+    const Foam::dictionary& dict,
+    const Foam::word& key,
+    Foam::autoPtr<Foam::calcine::schedule>& table
+)
+{
+    if (dict.found(key))
+    {
+        table.reset(new Foam::calcine::schedule(dict, key));
+    }
+}
+
+} // End anonymous namespace
+
+
 Foam::calcine::boundary::boundary
 (
     const dictionary& patches,
@@ -9,8 +28,12 @@ Foam::calcine::boundary::boundary
 :
     mesh_(velocity.mesh()),
     driven_(patches.size()),
-    passages_(mesh_.boundary().size(), passage::closed)
+    passages_(mesh_.boundary().size(), passage::closed),
+    closed_(true),
+    massFlux_(mesh_.boundary().size(), Zero),
+    drivesFlux_(mesh_.boundary().size(), false)
 {
+    boolList walls(mesh_.boundary().size(), false);
     label count = 0;
     for (const entry& item : patches)
     {
@@ -24,17 +47,21 @@ Foam::calcine::boundary::boundary
                 << mesh_.boundaryMesh().names() << exit(FatalIOError);
         }
         const dictionary& dict = item.dict();
-        if (dict.found("superficialVelocity"))
+        readTable(dict, "superficialVelocity", d.superficialVelocity);
+        readTable(dict, "massFlow", d.massFlow);
+        readTable(dict, "temperature", d.temperature);
+        readTable(dict, "pressure", d.pressure);
+        readTable(dict, "heatFlux", d.heatFlux);
+        readTable(dict, "coefficient", d.coefficient);
+        readTable(dict, "ambient", d.ambient);
+        walls[d.patch] = dict.lookupOrDefault<bool>("closed", false);
+        if (d.coefficient.valid() != d.ambient.valid())
         {
-            d.superficialVelocity.reset(new schedule(dict, "superficialVelocity"));
-        }
-        if (dict.found("temperature"))
-        {
-            d.temperature.reset(new schedule(dict, "temperature"));
+            FatalIOErrorInFunction(dict)
+                << "coefficient and ambient go together" << exit(FatalIOError);
         }
     }
 
-    bool open = false;
     forAll(passages_, patchi)
     {
         if (mesh_.boundary()[patchi].coupled())
@@ -44,44 +71,121 @@ Foam::calcine::boundary::boundary
                 << " is coupled (" << mesh_.boundary()[patchi].type()
                 << "), which this solver does not support" << exit(FatalError);
         }
+        if (walls[patchi])
+        {
+            continue;
+        }
         if (pressure.boundaryField()[patchi].fixesValue())
         {
             passages_[patchi] = passage::open;
-            open = true;
+            closed_ = false;
         }
         else if (velocity.boundaryField()[patchi].fixesValue())
         {
             passages_[patchi] = passage::given;
         }
     }
-    if (!open)
+}
+
+
+void Foam::calcine::boundary::updateState
+(
+    scalar time,
+    scalar pRef,
+    volScalarField& temperature,
+    volScalarField& pressure
+) const
+{
+    for (const driven& d : driven_)
     {
-        FatalErrorInFunction
-            << "no patch has a fixed pressure in 0/p: the gas has no outlet" << exit(FatalError);
+        if (d.temperature.valid())
+        {
+            temperature.boundaryFieldRef()[d.patch] == d.temperature->at(time);
+        }
+        if (d.pressure.valid())
+        {
+            pressure.boundaryFieldRef()[d.patch] == d.pressure->at(time) - pRef;
+        }
     }
 }
 
 
-void Foam::calcine::boundary::update
+void Foam::calcine::boundary::updateVelocity
 (
     scalar time,
     const scalarField& voidFraction,
-    volVectorField& velocity,
-    volScalarField& temperature
+    const volScalarField& density,
+    volVectorField& velocity
+)
+{
+    for (const driven& d : driven_)
+    {
+        const fvPatch& patch = mesh_.boundary()[d.patch];
+        if (!patch.size() || !(d.superficialVelocity.valid() || d.massFlow.valid()))
+        {
+            continue;
+        }
+        const scalarField& rho = density.boundaryField()[d.patch];
+        massFlux_[d.patch] = d.massFlow.valid()
+          ? d.massFlow->at(time)/gSum(patch.magSf())
+          : rho[0]*d.superficialVelocity->at(time);
+        drivesFlux_[d.patch] = true;
+        const scalarField pores(voidFraction, patch.faceCells());
+        velocity.boundaryFieldRef()[d.patch] == -massFlux_[d.patch]/(rho*pores)*patch.nf();
+    }
+}
+
+
+Foam::scalar Foam::calcine::boundary::flow
+(
+    const fvPatch& patch,
+    label i,
+    const volScalarField& density,
+    const volScalarField& voidFraction,
+    const volVectorField& velocity
+) const
+{
+    const label patchi = patch.index();
+    if (drivesFlux_[patchi])
+    {
+        return -massFlux_[patchi]*patch.magSf()[i];
+    }
+    return density.boundaryField()[patchi][i]*voidFraction.boundaryField()[patchi][i]
+       *(velocity.boundaryField()[patchi][i] & patch.Sf()[i]);
+}
+
+
+void Foam::calcine::boundary::addHeat
+(
+    scalar time,
+    const scalarField& conductivity,
+    const scalarField& temperatureBase,
+    const scalarField& heatCapacity,
+    const scalarField& ownerDistance,
+    fvScalarMatrix& enthalpy
 ) const
 {
     for (const driven& d : driven_)
     {
         const fvPatch& patch = mesh_.boundary()[d.patch];
-        if (d.superficialVelocity.valid())
+        scalarField& implicit = enthalpy.internalCoeffs()[d.patch];
+        scalarField& given = enthalpy.boundaryCoeffs()[d.patch];
+        forAll(patch, i)
         {
-            const scalar speed = d.superficialVelocity->at(time);
-            const scalarField pores(voidFraction, patch.faceCells());
-            velocity.boundaryFieldRef()[d.patch] == -speed/pores*patch.nf();
-        }
-        if (d.temperature.valid())
-        {
-            temperature.boundaryFieldRef()[d.patch] == d.temperature->at(time);
+            const scalar area = patch.magSf()[i];
+            if (d.heatFlux.valid())
+            {
+                given[i] += d.heatFlux->at(time)*area;
+            }
+            if (d.coefficient.valid() && d.coefficient->at(time) > 0)
+            {
+                // The half cell and the wall in series.
+                const label celli = patch.faceCells()[i];
+                const scalar half = ownerDistance[patch.start() + i]/conductivity[celli];
+                const scalar k = area/(1/d.coefficient->at(time) + half);
+                implicit[i] += k/heatCapacity[celli];
+                given[i] += k*(d.ambient->at(time) - temperatureBase[celli]);
+            }
         }
     }
 }

@@ -115,6 +115,7 @@ Foam::calcine::gas::gas(fvMesh& mesh, const dictionary& properties)
     committed_.temperature = thermo_->T().primitiveField();
     committed_.velocity = startVelocity_;
     committed_.pressure = p_.primitiveField();
+    committed_.basePressure = pRef_;
     committed_.pressureGradient = pressureGradient_;
     committed_.flux = flux_;
     committed_.voidFraction = voidFraction_.primitiveField();
@@ -175,6 +176,7 @@ void Foam::calcine::gas::restore()
     thermo_->T().primitiveFieldRef() = committed_.temperature;
     U_.primitiveFieldRef() = committed_.velocity;
     p_.primitiveFieldRef() = committed_.pressure;
+    modelPressure_ == dimensionedScalar("p", dimPressure, committed_.basePressure);
     pressureGradient_ = committed_.pressureGradient;
     mass_ = committed_.mass;
     flux_ = committed_.flux;
@@ -214,6 +216,31 @@ Foam::scalarField Foam::calcine::gas::density() const
 }
 
 
+Foam::scalar Foam::calcine::gas::basePressure() const
+{
+    return mesh_.nCells() ? modelPressure_[0] : pRef_;
+}
+
+
+void Foam::calcine::gas::updateBasePressure()
+{
+    // psi is the derivative of the density by the pressure: zero where it is constant.
+    const scalarField& psi = thermo_->psi().primitiveField();
+    const scalar atOnePascal = gSum(psi*given_.voidFraction*mesh_.cellVolumes());
+    if (!boundary_.closed() || !(atOnePascal > 0))
+    {
+        return;
+    }
+    scalar held = gSum(committed_.mass);
+    for (label facei = mesh_.nInternalFaces(); facei < mesh_.nFaces(); ++facei)
+    {
+        held -= window_.storageSpan*flux_[facei];
+    }
+    modelPressure_ == dimensionedScalar("p", dimPressure, held/atOnePascal);
+    thermo_->correct();
+}
+
+
 Foam::scalarField Foam::calcine::gas::wantedOutflow(const scalarField& density) const
 {
     return
@@ -237,8 +264,13 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
     voidFraction_.primitiveFieldRef() = given_.voidFraction;
     voidFraction_.correctBoundaryConditions();
     restore();
-    boundary_.update(when.processEnd, given_.voidFraction, U_, thermo_->T());
+    // Inlets of a given velocity carry gas of pRef, whatever the pressure of a closed domain is.
+    modelPressure_ == dimensionedScalar("p", dimPressure, pRef_);
+    boundary_.updateState(when.processEnd, pRef_, thermo_->T(), p_);
     thermo_->he().correctBoundaryConditions();
+    thermo_->correct();
+    boundary_.updateVelocity(when.processEnd, given_.voidFraction, thermo_->rho()(), U_);
+    modelPressure_ == dimensionedScalar("p", dimPressure, committed_.basePressure);
     thermo_->correct();
     // Without a commit the bed of this attempt says how much gas there is.
     if (when.index == 0 || !committed_.placed)
@@ -251,6 +283,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
     result = report();
     for (label outer = 1; outer <= max(outerIterations_, 1); ++outer)
     {
+        updateBasePressure();
         const scalarField rho(density());
         setFlux();
         result.residual = predictVelocity(rho, result);
@@ -283,6 +316,7 @@ void Foam::calcine::gas::commit()
     committed_.temperature = thermo_->T().primitiveField();
     committed_.velocity = U_.primitiveField();
     committed_.pressure = p_.primitiveField();
+    committed_.basePressure = basePressure();
     committed_.pressureGradient = pressureGradient_;
     committed_.flux = flux_;
     committed_.voidFraction = given_.voidFraction;
@@ -325,7 +359,7 @@ const Foam::scalarField& Foam::calcine::gas::temperature() const
 
 Foam::scalarField Foam::calcine::gas::absolutePressure() const
 {
-    return pRef_ + p_.primitiveField();
+    return basePressure() + p_.primitiveField();
 }
 
 

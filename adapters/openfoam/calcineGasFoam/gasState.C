@@ -7,7 +7,7 @@ namespace
 {
 
 // First and last word of a file of state: a file cut short lacks the last.
-const char* const firstWord = "calcineGasState1";
+const char* const firstWord = "calcineGasState2";
 const char* const lastWord = "complete";
 
 Foam::fileName stateFile(const Foam::fileName& directory)
@@ -24,7 +24,7 @@ void Foam::calcine::gasState::write(const fileName& directory) const
     OFstream file(stateFile(directory), IOstream::BINARY);
     file<< word(firstWord) << nl << label(placed) << nl
         << mass << nl << enthalpy << nl << temperature << nl << velocity << nl
-        << pressure << nl << pressureGradient << nl << flux << nl << voidFraction << nl
+        << pressure << nl << basePressure << nl << pressureGradient << nl << flux << nl << voidFraction << nl
         << word(lastWord) << endl;
     if (!file.good())
     {
@@ -43,8 +43,8 @@ void Foam::calcine::gasState::read(const fileName& directory, label cells, label
             << file.name() << " is missing or no state of this version" << exit(FatalError);
     }
     placed = readLabel(file) != 0;
-    file>> mass >> enthalpy >> temperature >> velocity >> pressure >> pressureGradient
-        >> flux >> voidFraction;
+    file>> mass >> enthalpy >> temperature >> velocity >> pressure >> basePressure
+        >> pressureGradient >> flux >> voidFraction;
     if (word(file) != lastWord || mass.size() != cells || flux.size() != faces)
     {
         FatalErrorInFunction

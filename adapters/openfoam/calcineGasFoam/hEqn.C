@@ -1,9 +1,9 @@
 // Enthalpy, with exactly the fluxes and masses of continuity, per cell:
 //
-//   (m h - m_old h_old)/dtau + sum phi_f h_f - sum (eps kappa/c_p)_f grad(h).S = S - K T(h)
+//   (m h - m_old h_old)/dtau + sum phi_f h_f - sum (eps kappa/c_p)_f grad(h).S = S - K T(h) + eps V (p0 - p0_old)/dtau
 //
 // T linear in h: T = T* + (h - h*)/c_p. Because m = m_old - dtau sum phi_f, a uniform temperature
-// stays uniform whatever the flow does, and energy closes to the linear tolerance whatever the outer
+// stays uniform whatever the flow does (p0, the model's pressure, changes in a closed domain alone), and energy closes to the linear tolerance whatever the outer
 // loop does. In the pores the gas conducts with eps kappa: its share of the cross-section.
 #include "gas.H"
 #include "fvm.H"
@@ -17,6 +17,7 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
     heatCapacity_ = thermo_->Cp()().primitiveField();
     temperatureBase_ = T.primitiveField() - h.primitiveField()/heatCapacity_;
 
+    const scalar compression = (basePressure() - committed_.basePressure)/span;
     const surfaceScalarField conduction
     (
         "conduction", fvc::interpolate(voidFraction_*thermo_->alphahe())
@@ -27,7 +28,17 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
     matrix.diag() +=
         committed_.mass/span + given_.heatCoefficient/heatCapacity_ - outflow();
     matrix.source() += committed_.mass*committed_.enthalpy/span
-      + given_.heatSource - given_.heatCoefficient*temperatureBase_;
+      + given_.heatSource - given_.heatCoefficient*temperatureBase_
+      + compression*given_.voidFraction*mesh_.cellVolumes();
+    boundary_.addHeat
+    (
+        window_.processEnd,
+        given_.voidFraction*thermo_->kappa()().primitiveField(),
+        temperatureBase_,
+        heatCapacity_,
+        ownerDistance_,
+        matrix
+    );
 
     // The tolerance is a share of the energy that moves; no closer than round-off of the terms.
     const scalar content = gSumMag(matrix.diag()*heatCapacity_*T.primitiveField());

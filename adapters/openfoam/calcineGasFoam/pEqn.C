@@ -94,7 +94,7 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
               + displacement(facei)
             );
     }
-    const volScalarField& psi = thermo_->psi();
+    const tmp<volScalarField> model(thermo_->rho());
     for (const fvPatch& patch : mesh_.boundary())
     {
         const label patchi = patch.index();
@@ -107,10 +107,7 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
                     drive_[facei] = 0;
                     break;
                 case passage::given:
-                    // psi is rho/p of the model, here at the patch's temperature.
-                    drive_[facei] = psi.boundaryField()[patchi][i]*pRef_
-                       *voidFraction_.boundaryField()[patchi][i]
-                       *(U_.boundaryField()[patchi][i] & patch.Sf()[i]);
+                    drive_[facei] = boundary_.flow(patch, i, model(), voidFraction_, U_);
                     break;
                 case passage::open:
                     drive_[facei] = conductance_[facei]
@@ -134,6 +131,12 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
         upper[facei] = -conductance_[facei];
         diagonal[owner[facei]] += conductance_[facei];
         diagonal[neighbour[facei]] += conductance_[facei];
+    }
+    if (boundary_.closed())
+    {
+        // The pressure of the first cell is the model's; no gas flows for it, because the wanted
+        // outflows of all cells sum to what flows in.
+        diagonal[0] *= 2;
     }
     scalar terms = gSumMag(source);
     forAll(mesh_.boundary(), patchi)

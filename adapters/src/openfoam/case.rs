@@ -45,7 +45,8 @@ impl OpenfoamCase<'_> {
         }
         for (name, text) in DEFAULTS {
             if self.template.is_none_or(|own| !own.join(name).is_file()) {
-                put(&folder.join(name), &suited(text, self.mesh))?;
+                let text = dictionaries::schemes(text, self.setup.controls.convection);
+                put(&folder.join(name), &suited(&text, self.mesh))?;
             }
         }
         let setup = self.setup;
@@ -164,7 +165,9 @@ mod tests {
     use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
     use calcine_coupler::physics::Vec3;
     use calcine_coupler::physics::gas::GasProperties;
-    use calcine_coupler::setup::{GasControls, GasPatch, Schedule, WallHeat};
+    use calcine_coupler::setup::{
+        Convection, GasControls, GasPatch, Schedule, WallHeat, WallVelocity,
+    };
     use calcine_coupler::time::GasStorage;
 
     fn mesh() -> Mesh {
@@ -178,21 +181,21 @@ mod tests {
     }
 
     fn setup() -> GasSetup {
-        let inlet = GasPatch::Inlet {
-            superficial_velocity: Schedule::constant(0.1),
-            temperature: Schedule(vec![(0.0, 300.0), (10.0, 1.0 / 3e-3)]),
-        };
+        let temperature = Schedule(vec![(0.0, 300.0), (10.0, 1.0 / 3e-3)]);
+        let inlet = GasPatch::inlet(Schedule::constant(0.1), temperature);
         let wall = GasPatch::Wall {
-            no_slip: false,
+            velocity: WallVelocity::Slip,
             heat: WallHeat::Adiabatic,
         };
         let outlet = GasPatch::Outlet {
-            pressure: 101_325.0,
+            pressure: Schedule::constant(101_325.0),
         };
         let patches = [("side", wall), ("bottom", inlet), ("top", outlet)];
         GasSetup {
             mixture: "air".into(),
-            properties: GasProperties::air(),
+            properties: GasProperties::air().into(),
+            schmidt: 1.0,
+            composition: Vec::new(),
             storage: GasStorage::Process,
             temperature: 300.0,
             pressure: 101_325.0,
@@ -201,6 +204,7 @@ mod tests {
             patches: patches.map(|(name, patch)| (name.to_owned(), patch)).into(),
             controls: GasControls {
                 outer_iterations: 3,
+                convection: Convection::Upwind,
                 pressure_corrections: 2,
                 outer_tolerance: 1e-6,
                 linear_tolerance: 1e-10,

@@ -44,6 +44,7 @@ impl State {
             temperature: &self.temperature,
             pressure: &self.pressure,
             density: &self.density,
+            composition: &[],
             velocity: &self.velocity,
             pressure_gradient: &self.pressure_gradient,
         }
@@ -79,6 +80,7 @@ pub fn read(link: &Link, received: &mut CellReceived) -> Result<Convergence, Wir
         .map(|&numbers| balance(numbers));
     let mut next = || balances.next().unwrap_or_default();
     received.mass = next();
+    received.species.clear();
     received.energy = next();
     received.momentum = [next(), next(), next()];
     let numbers = link.column("convergence")?;

@@ -4,7 +4,10 @@ use std::fmt::Write;
 
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::setup::{GasPatch, GasSetup, Schedule, WallHeat};
+use calcine_coupler::physics::gas_model::GasModel;
+use calcine_coupler::setup::{
+    Convection, GasPatch, GasSetup, InletFlow, Schedule, WallHeat, WallVelocity,
+};
 
 /// The header of an OpenFOAM file.
 fn header(class: &str, object: &str) -> String {
@@ -37,23 +40,47 @@ pub fn control() -> String {
            timePrecision   6;\nrunTimeModifiable no;\n"
 }
 
-/// `constant/thermophysicalProperties`: ideal gas, constant heat capacity, Sutherland transport.
+/// `constant/thermophysicalProperties`: an ideal gas with constant heat capacity and Sutherland
+/// transport, or a fluid of constant properties.
 pub fn thermophysical(setup: &GasSetup) -> String {
-    let gas = &setup.properties;
+    let (kinds, numbers) = match &setup.properties {
+        GasModel::Perfect(gas) => (
+            ["hePsiThermo", "sutherland", "perfectGas"],
+            [
+                ("molWeight", gas.molar_mass * 1e3),
+                ("Cp", gas.heat_capacity),
+                ("As", gas.sutherland_coefficient),
+                ("Ts", gas.sutherland_temperature),
+            ]
+            .map(|(key, value)| (key, format!("{value:e}"))),
+        ),
+        GasModel::Constant(gas) => (
+            ["heRhoThermo", "const", "rhoConst"],
+            [
+                // The equation of state does not look at it.
+                ("molWeight", 28.96),
+                ("Cp", gas.heat_capacity),
+                ("mu", gas.viscosity),
+                ("Pr", gas.viscosity * gas.heat_capacity / gas.conductivity),
+            ]
+            .map(|(key, value)| (key, format!("{value:e}"))),
+        ),
+    };
+    let [kind, transport, state] = kinds;
+    let [weight, capacity, first, second] = numbers.map(|(key, value)| format!("{key} {value};"));
+    let density = match &setup.properties {
+        GasModel::Constant(gas) => format!("    equationOfState {{ rho {:e}; }}\n", gas.density),
+        GasModel::Perfect(_) => String::new(),
+    };
     header("dictionary", "thermophysicalProperties")
         + &format!(
-            "// {}\nthermoType\n{{\n    type            hePsiThermo;\n    \
-             mixture         pureMixture;\n    transport       sutherland;\n    \
-             thermo          hConst;\n    equationOfState perfectGas;\n    \
-             specie          specie;\n    energy          sensibleEnthalpy;\n}}\n\nmixture\n{{\n    \
-             specie\n    {{\n        molWeight   {:e};\n    }}\n    thermodynamics\n    {{\n        \
-             Cp          {:e};\n        Hf          0;\n    }}\n    transport\n    {{\n        \
-             As          {:e};\n        Ts          {:e};\n    }}\n}}\n",
-            setup.mixture,
-            gas.molar_mass * 1e3,
-            gas.heat_capacity,
-            gas.sutherland_coefficient,
-            gas.sutherland_temperature
+            "// {}\nthermoType\n{{\n    type            {kind};\n    \
+                 mixture         pureMixture;\n    transport       {transport};\n    \
+                 thermo          hConst;\n    equationOfState {state};\n    \
+                 specie          specie;\n    energy          sensibleEnthalpy;\n}}\n\nmixture\n\
+                 {{\n    specie {{ {weight} }}\n    thermodynamics {{ {capacity} Hf 0; }}\n    \
+                 transport {{ {first} {second} }}\n{density}}}\n",
+            setup.mixture
         )
 }
 
@@ -78,7 +105,7 @@ pub fn calcine(setup: &GasSetup, case_hash: &str) -> String {
          // Seconds of wall time between lines of the log; 0: a line for each attempt.\n\
          logInterval     1;\n\ncontrols\n{{\n    outerIterations     {};\n    \
          pressureCorrections {};\n    outerTolerance      {:e};\n    linearTolerance     {:e};\n}}\n\n\
-         // Tables over process time: (s m/s) and (s K).\npatches\n{{\n",
+         // Tables over process time in s: m/s, kg/s, K, Pa, W/m^2, W/m^2/K.\npatches\n{{\n",
         setup.pressure,
         vector(setup.gravity),
         controls.outer_iterations,
@@ -87,33 +114,67 @@ pub fn calcine(setup: &GasSetup, case_hash: &str) -> String {
         controls.linear_tolerance
     );
     for (name, condition) in &setup.patches {
-        match condition {
-            GasPatch::Inlet {
-                superficial_velocity,
-                temperature,
-            } => {
-                let _ = writeln!(
-                    text,
-                    "    {name}\n    {{\n        superficialVelocity {};\n        \
-                     temperature         {};\n    }}",
-                    table(superficial_velocity),
-                    table(temperature)
-                );
+        let entries = entries(condition);
+        if !entries.is_empty() {
+            let _ = writeln!(text, "    {name}\n    {{");
+            for (key, value) in entries {
+                let _ = writeln!(text, "        {key:<19} {value};");
             }
-            GasPatch::Wall {
-                heat: WallHeat::Temperature(temperature),
-                ..
-            } => {
-                let _ = writeln!(
-                    text,
-                    "    {name}\n    {{\n        temperature         {};\n    }}",
-                    table(temperature)
-                );
-            }
-            GasPatch::Outlet { .. } | GasPatch::Wall { .. } => {}
+            let _ = writeln!(text, "    }}");
         }
     }
     text + "}\n"
+}
+
+/// What calcineGasFoam drives at a patch: keys and tables over process time.
+fn entries(condition: &GasPatch) -> Vec<(&'static str, String)> {
+    match condition {
+        GasPatch::Inlet {
+            flow, temperature, ..
+        } => {
+            let flow = match flow {
+                InletFlow::SuperficialVelocity(flow) => ("superficialVelocity", table(flow)),
+                InletFlow::MassFlow(flow) => ("massFlow", table(flow)),
+            };
+            vec![flow, ("temperature", table(temperature))]
+        }
+        GasPatch::Outlet { pressure } => vec![("pressure", table(pressure))],
+        GasPatch::Symmetry => vec![("closed", "true".into())],
+        GasPatch::Wall { heat, .. } => {
+            let mut entries = vec![("closed", "true".into())];
+            match heat {
+                WallHeat::Adiabatic => {}
+                WallHeat::Temperature(temperature) => {
+                    entries.push(("temperature", table(temperature)));
+                }
+                WallHeat::Flux(flux) => entries.push(("heatFlux", table(flux))),
+                WallHeat::Convective {
+                    coefficient,
+                    ambient,
+                } => {
+                    entries.push(("coefficient", table(coefficient)));
+                    entries.push(("ambient", table(ambient)));
+                }
+            }
+            entries
+        }
+    }
+}
+
+/// The convection schemes of the case in a text of `system/fvSchemes` that has upwind ones.
+pub fn schemes(text: &str, convection: Convection) -> String {
+    match convection {
+        Convection::Upwind => text.to_owned(),
+        Convection::VanLeer => text
+            .replace(
+                "div(phi,U)      Gauss upwind;",
+                "div(phi,U)      Gauss vanLeerV;",
+            )
+            .replace(
+                "div(phi,h)      Gauss upwind;",
+                "div(phi,h)      Gauss vanLeer;",
+            ),
+    }
 }
 
 /// `constant/calcineCells`: volumes and centres, which the solver compares with OpenFOAM's.
@@ -166,8 +227,12 @@ pub fn velocity(setup: &GasSetup) -> String {
     field(about, setup, |patch| match patch {
         GasPatch::Inlet { .. } => fixed("(0 0 0)"),
         GasPatch::Outlet { .. } => zero_gradient(),
-        GasPatch::Wall { no_slip: true, .. } => "type            noSlip;".into(),
-        GasPatch::Wall { no_slip: false, .. } => "type            slip;".into(),
+        GasPatch::Symmetry => "type            slip;".into(),
+        GasPatch::Wall { velocity, .. } => match velocity {
+            WallVelocity::NoSlip => "type            noSlip;".into(),
+            WallVelocity::Slip => "type            slip;".into(),
+            WallVelocity::Moving(velocity) => fixed(&vector(*velocity)),
+        },
     })
 }
 
@@ -178,10 +243,13 @@ pub fn temperature(setup: &GasSetup) -> String {
     let first = |schedule: &Schedule| fixed(&format!("{:e}", schedule.at(0.0)));
     field(about, setup, |patch| match patch {
         GasPatch::Inlet { temperature, .. } => first(temperature),
-        GasPatch::Outlet { .. } => zero_gradient(),
+        GasPatch::Outlet { .. } | GasPatch::Symmetry => zero_gradient(),
+        // The solver adds heat fluxes and losses to its equation.
         GasPatch::Wall { heat, .. } => match heat {
-            WallHeat::Adiabatic => zero_gradient(),
             WallHeat::Temperature(temperature) => first(temperature),
+            WallHeat::Adiabatic | WallHeat::Flux(_) | WallHeat::Convective { .. } => {
+                zero_gradient()
+            }
         },
     })
 }
@@ -191,7 +259,7 @@ pub fn pressure(setup: &GasSetup) -> String {
     let start = format!("{:e}", setup.pressure);
     let about = ("volScalarField", "p", "[1 -1 -2 0 0 0 0]", &*start);
     field(about, setup, |patch| match patch {
-        GasPatch::Outlet { pressure } => fixed(&format!("{pressure:e}")),
-        GasPatch::Inlet { .. } | GasPatch::Wall { .. } => zero_gradient(),
+        GasPatch::Outlet { pressure } => fixed(&format!("{:e}", pressure.at(0.0))),
+        GasPatch::Inlet { .. } | GasPatch::Wall { .. } | GasPatch::Symmetry => zero_gradient(),
     })
 }

@@ -14,7 +14,10 @@ use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
 use calcine_coupler::part::{Bed, CellExchange, CellReceived, Convergence, Gas, Part};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
-use calcine_coupler::setup::{GasControls, GasPatch, GasSetup, Schedule, WallHeat};
+use calcine_coupler::physics::gas_model::GasModel;
+use calcine_coupler::setup::{
+    Convection, GasControls, GasPatch, GasSetup, InletFlow, Schedule, WallHeat, WallVelocity,
+};
 use calcine_coupler::supervisor::{Interrupts, Supervisor};
 use calcine_coupler::time::{Clocks, GasStorage, Ticks, Window};
 
@@ -43,24 +46,25 @@ pub fn mesh(cells: [usize; 3]) -> Mesh {
 /// Air that flows upwards.
 pub fn setup() -> GasSetup {
     let wall = || GasPatch::Wall {
-        no_slip: false,
+        velocity: WallVelocity::Slip,
         heat: WallHeat::Adiabatic,
     };
     let mesh = mesh([1, 1, CELLS]);
     let patches = mesh.patches().iter().map(|patch| {
         let condition = match patch.name.as_str() {
-            "bottom" => GasPatch::Inlet {
-                superficial_velocity: Schedule::constant(SPEED),
-                temperature: Schedule::constant(TEMPERATURE),
+            "bottom" => GasPatch::inlet(Schedule::constant(SPEED), Schedule::constant(TEMPERATURE)),
+            "top" => GasPatch::Outlet {
+                pressure: Schedule::constant(PRESSURE),
             },
-            "top" => GasPatch::Outlet { pressure: PRESSURE },
             _ => wall(),
         };
         (patch.name.clone(), condition)
     });
     GasSetup {
         mixture: "air".into(),
-        properties: GasProperties::air(),
+        properties: GasProperties::air().into(),
+        schmidt: 1.0,
+        composition: Vec::new(),
         storage: GasStorage::Process,
         temperature: TEMPERATURE,
         pressure: PRESSURE,
@@ -69,10 +73,29 @@ pub fn setup() -> GasSetup {
         patches: patches.collect(),
         controls: GasControls {
             outer_iterations: 50,
+            convection: Convection::Upwind,
             pressure_corrections: 2,
             outer_tolerance: 1e-11,
             linear_tolerance: 1e-13,
         },
+    }
+}
+
+/// Air with hardly any viscosity, and so hardly any conduction.
+pub fn inviscid() -> GasModel {
+    GasProperties {
+        sutherland_coefficient: 1e-16,
+        ..GasProperties::air()
+    }
+    .into()
+}
+
+/// Nothing flows in.
+pub fn stop(setup: &mut GasSetup) {
+    for (_, patch) in &mut setup.patches {
+        if let GasPatch::Inlet { flow, .. } = patch {
+            *flow = InletFlow::SuperficialVelocity(Schedule::constant(0.0));
+        }
     }
 }
 

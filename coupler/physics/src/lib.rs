@@ -3,6 +3,7 @@
 
 pub mod drag;
 pub mod gas;
+pub mod gas_model;
 pub mod heat_transfer;
 pub mod local;
 pub mod numbers;

@@ -2,12 +2,13 @@
 
 use calcine_coupler::part::CellExchange;
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::physics::gas::GasProperties;
+use calcine_coupler::physics::gas_model::GasModel;
+use calcine_coupler::setup::Convection;
 
 use super::boundary::Boundaries;
 use super::state::State;
 use crate::numerics::grid::Grid;
-use crate::numerics::parallel::fill;
+use crate::numerics::parallel::{fill, sums};
 
 /// The frame of an attempt; constant while it lasts.
 #[derive(Clone, Copy, Debug)]
@@ -16,10 +17,12 @@ pub struct Frame<'a> {
     pub grid: &'a Grid,
     /// Boundary values at the end of the window.
     pub boundary: &'a Boundaries,
-    /// Properties of the mixture.
-    pub properties: &'a GasProperties,
-    /// Reference pressure of the low-Mach gas in Pa.
-    pub reference_pressure: f64,
+    /// Properties of the gas.
+    pub properties: &'a GasModel,
+    /// Schmidt number of all species.
+    pub schmidt: f64,
+    /// How cell values are carried to faces.
+    pub convection: Convection,
     /// Gravity in m/s².
     pub gravity: Vec3,
     /// Void fraction at the end of the window.
@@ -34,11 +37,26 @@ pub struct Frame<'a> {
     pub storage_span: f64,
 }
 
-/// Material properties of each cell at its temperature.
+impl Frame<'_> {
+    /// Number of species; zero for a single gas.
+    pub fn species(&self) -> usize {
+        self.properties.species().len()
+    }
+
+    /// Mass fractions of a cell at the start of the window.
+    #[inline]
+    pub fn composition(&self, cell: usize) -> &[f64] {
+        self.old.composition_of(cell, self.species())
+    }
+}
+
+/// Material properties of each cell at its temperature and composition.
 #[derive(Clone, Debug, Default)]
 pub struct Material {
     /// Density ρ of the equation of state in kg/m³.
     pub density: Vec<f64>,
+    /// Specific heat capacity c_p in J/kg/K.
+    pub heat_capacity: Vec<f64>,
     /// Void fraction × viscosity, εμ, in Pa s.
     pub viscosity: Vec<f64>,
     /// Void fraction × conductivity, εκ, in W/m/K: the gas in the pores conducts by its share of
@@ -47,20 +65,65 @@ pub struct Material {
 }
 
 impl Material {
-    /// Evaluates the properties at temperatures in K.
-    pub fn update(&mut self, frame: &Frame<'_>, temperature: &[f64]) {
+    /// Evaluates the properties of a state. In a closed domain the base pressure of the low-Mach gas
+    /// first follows: the one at which the gas that is there fills the pores.
+    pub fn update(&mut self, frame: &Frame<'_>, now: &mut State) {
         let gas = frame.properties;
-        let cells = temperature.len();
-        self.density.resize(cells, 0.0);
-        self.viscosity.resize(cells, 0.0);
-        self.conductivity.resize(cells, 0.0);
-        let pressure = frame.reference_pressure;
-        fill(&mut self.density, |c| gas.density(pressure, temperature[c]));
-        fill(&mut self.viscosity, |c| {
-            frame.void_fraction[c] * gas.viscosity(temperature[c])
+        let (cells, species) = (now.temperature.len(), frame.species());
+        for list in [
+            &mut self.density,
+            &mut self.heat_capacity,
+            &mut self.viscosity,
+            &mut self.conductivity,
+        ] {
+            list.resize(cells, 0.0);
+        }
+        if frame.boundary.closed() && gas.compressible() {
+            now.base_pressure = closed_pressure(frame, now);
+        }
+        let (pressure, pores) = (now.base_pressure, frame.void_fraction);
+        let state = |cell: usize| (now.temperature[cell], now.composition_of(cell, species));
+        fill(&mut self.density, |cell| {
+            let (temperature, composition) = state(cell);
+            gas.density(pressure, temperature, composition)
         });
-        fill(&mut self.conductivity, |c| {
-            frame.void_fraction[c] * gas.conductivity(temperature[c])
+        fill(&mut self.heat_capacity, |cell| {
+            let (temperature, composition) = state(cell);
+            gas.heat_capacity(temperature, composition)
+        });
+        fill(&mut self.viscosity, |cell| {
+            let (temperature, composition) = state(cell);
+            pores[cell] * gas.viscosity(temperature, composition)
+        });
+        fill(&mut self.conductivity, |cell| {
+            let (temperature, composition) = state(cell);
+            pores[cell] * gas.conductivity(temperature, composition)
         });
     }
+}
+
+/// The pressure at which Σ ε ρ V is the gas that continuity leaves in a closed domain, in Pa. Densities
+/// of ideal gases are proportional to the pressure.
+fn closed_pressure(frame: &Frame<'_>, now: &State) -> f64 {
+    let grid = frame.grid;
+    let species = frame.species();
+    let [held, at_one_pascal] = sums(grid.cells(), |cell| {
+        let composition = now.composition_of(cell, species);
+        let density = frame
+            .properties
+            .density(1.0, now.temperature[cell], composition);
+        let pores = frame.void_fraction[cell] * grid.volume[cell];
+        [frame.old.mass[cell], pores * density]
+    });
+    let boundary = grid.faces.len() - grid.internal;
+    let [outflow] = sums(boundary, |face| {
+        let index = grid.internal + face;
+        match frame.boundary.at(index) {
+            super::boundary::Value::Inlet { mass_flux, .. } => {
+                [-mass_flux * grid.faces[index].area]
+            }
+            _ => [0.0],
+        }
+    });
+    (held - frame.storage_span * outflow) / at_one_pascal
 }

@@ -4,8 +4,9 @@ use calcine_coupler::part::{Balance, CellReceived};
 use calcine_coupler::physics::Vec3;
 
 use super::attempt::{Frame, Material};
-use super::enthalpy::{Enthalpy, heat};
+use super::enthalpy::Taken;
 use super::momentum::Momentum;
+use super::species::Species;
 use super::state::State;
 use crate::numerics::operators::outflow;
 use crate::numerics::parallel::{fill, sums};
@@ -15,20 +16,21 @@ pub fn receive(
     frame: &Frame<'_>,
     material: &Material,
     momentum: &Momentum,
-    enthalpy: &Enthalpy,
+    taken: &Taken,
+    species: &Species,
     now: &State,
     received: &mut CellReceived,
 ) {
     let cells = frame.grid.cells();
-    received.heat.resize(cells, 0.0);
+    received.heat.clone_from(&taken.heat);
     received.drag.resize(cells, Vec3::zeros());
-    fill(&mut received.heat, |cell| heat(frame, now, cell));
     fill(&mut received.drag, |cell| {
         frame.exchange.drag_source[cell]
             - frame.exchange.drag_coefficient[cell] * now.velocity[cell]
     });
     received.mass = mass(frame, now);
-    received.energy = energy(frame, enthalpy, now, &received.heat);
+    species.balances(frame, now, &mut received.species);
+    received.energy = energy(frame, taken, now);
     received.momentum = momenta(frame, material, momentum, now, &received.drag);
 }
 
@@ -56,20 +58,22 @@ fn mass(frame: &Frame<'_>, now: &State) -> Balance {
     }
 }
 
-fn energy(frame: &Frame<'_>, enthalpy: &Enthalpy, now: &State, heat: &[f64]) -> Balance {
+fn energy(frame: &Frame<'_>, taken: &Taken, now: &State) -> Balance {
     let old = frame.old;
     let [stored, stored_magnitude, exchange] = sums(frame.grid.cells(), |cell| {
         let stored = now.mass[cell] * now.enthalpy[cell] - old.mass[cell] * old.enthalpy[cell];
-        [stored, stored.abs(), heat[cell]]
+        [stored, stored.abs(), taken.heat[cell]]
     });
-    let [inflow, magnitude] = boundary(frame, |face| enthalpy.inflow(frame, now, face));
+    let [inflow, magnitude] = taken.boundary;
+    let source = taken.compression * frame.storage_span;
     Balance {
         stored,
         stored_magnitude,
         boundary: inflow * frame.storage_span,
         boundary_magnitude: magnitude * frame.storage_span,
         exchange: exchange * frame.storage_span,
-        ..Balance::default()
+        source,
+        source_magnitude: source.abs(),
     }
 }
 

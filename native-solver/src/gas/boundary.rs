@@ -3,16 +3,24 @@
 use std::ops::Range;
 
 use calcine_coupler::mesh::Mesh;
-use calcine_coupler::physics::gas::GasProperties;
-use calcine_coupler::setup::{GasPatch, GasSetup, Schedule, WallHeat};
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::gas_model::GasModel;
+use calcine_coupler::setup::{GasPatch, GasSetup, InletFlow, Schedule, WallHeat, WallVelocity};
 
 use super::error::NativeError;
+
+/// Slope of a wall's velocity against the wall that counts as round-off.
+const TANGENTIAL: f64 = 1e-9;
 
 /// A patch and its condition.
 #[derive(Clone, Debug)]
 struct Boundary {
-    faces: Range<usize>,
+    /// Area in m².
+    area: f64,
     condition: GasPatch,
+    value: Value,
+    /// Mass fractions of the gas that flows in; empty where none does, or for a single gas.
+    composition: Vec<f64>,
 }
 
 /// The conditions of all patches.
@@ -22,7 +30,6 @@ pub struct Boundaries {
     patches: Vec<Boundary>,
     /// Index into `patches` of each boundary face.
     patch_of: Vec<u32>,
-    values: Vec<Value>,
 }
 
 /// The condition of a face at one time.
@@ -39,21 +46,41 @@ pub enum Value {
     },
     /// Gas leaves at a pressure.
     Outlet {
-        /// Pressure above the reference pressure in Pa.
+        /// Pressure above the setup's pressure in Pa.
         pressure: f64,
     },
-    /// A wall.
+    /// A wall or a plane of symmetry.
     Wall {
-        /// True: the gas sticks to it.
-        no_slip: bool,
-        /// State of the gas at a wall of fixed temperature; `None` where it is adiabatic.
-        gas: Option<BoundaryGas>,
+        /// Velocity of the wall that the gas sticks to in m/s; `None` where it slips.
+        sticks: Option<Vec3>,
+        /// Heat through it.
+        heat: Heat,
     },
 }
 
-/// The gas at a boundary of fixed temperature.
+/// Heat through a wall at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Heat {
+    /// None.
+    Adiabatic,
+    /// The wall has this temperature in K.
+    Temperature(f64),
+    /// Heat flux into the gas in W/m².
+    Flux(f64),
+    /// Exchange with surroundings.
+    Convective {
+        /// Overall coefficient in W/m²/K.
+        coefficient: f64,
+        /// Temperature of the surroundings in K.
+        ambient: f64,
+    },
+}
+
+/// The gas that flows in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundaryGas {
+    /// Temperature in K.
+    pub temperature: f64,
     /// Sensible enthalpy in J/kg.
     pub enthalpy: f64,
     /// Dynamic viscosity in Pa s.
@@ -63,11 +90,12 @@ pub struct BoundaryGas {
 }
 
 impl BoundaryGas {
-    fn at(properties: &GasProperties, temperature: f64) -> Self {
+    fn at(gas: &GasModel, temperature: f64, composition: &[f64]) -> Self {
         Self {
-            enthalpy: properties.enthalpy(temperature),
-            viscosity: properties.viscosity(temperature),
-            conductivity: properties.conductivity(temperature),
+            temperature,
+            enthalpy: gas.enthalpy(temperature, composition),
+            viscosity: gas.viscosity(temperature, composition),
+            conductivity: gas.conductivity(temperature, composition),
         }
     }
 }
@@ -89,7 +117,6 @@ impl Boundaries {
             internal: mesh.internal_faces(),
             patches: Vec::new(),
             patch_of: Vec::with_capacity(mesh.faces() - mesh.internal_faces()),
-            values: Vec::new(),
         };
         for patch in mesh.patches().iter().filter(|patch| patch.count > 0) {
             let named = setup.patches.iter().find(|(name, _)| *name == patch.name);
@@ -98,74 +125,153 @@ impl Boundaries {
                     patch: patch.name.clone(),
                 });
             };
+            if let GasPatch::Wall {
+                velocity: WallVelocity::Moving(velocity),
+                ..
+            } = condition
+            {
+                check_tangential(mesh, &patch.name, patch.faces(), *velocity)?;
+            }
             let index = boundaries.patches.len() as u32;
             boundaries.patch_of.extend(patch.faces().map(|_| index));
             boundaries.patches.push(Boundary {
-                faces: patch.faces(),
+                area: patch
+                    .faces()
+                    .map(|face| mesh.face_area()[face].norm())
+                    .sum(),
                 condition: condition.clone(),
+                value: Value::Wall {
+                    sticks: None,
+                    heat: Heat::Adiabatic,
+                },
+                composition: Vec::new(),
             });
         }
-        let outlet = |boundary: &Boundary| matches!(boundary.condition, GasPatch::Outlet { .. });
-        if !boundaries.patches.iter().any(outlet) {
+        let inlet = |boundary: &Boundary| matches!(boundary.condition, GasPatch::Inlet { .. });
+        let filled = boundaries.closed() && boundaries.patches.iter().any(inlet);
+        if filled && !setup.properties.compressible() {
             return Err(NativeError::NoOutlet);
         }
         boundaries.update(setup, 0.0);
         Ok(boundaries)
     }
 
+    /// True where no patch lets gas out.
+    pub fn closed(&self) -> bool {
+        let outlet = |boundary: &Boundary| matches!(boundary.condition, GasPatch::Outlet { .. });
+        !self.patches.iter().any(outlet)
+    }
+
     /// Evaluates all conditions at a process time in s.
     pub fn update(&mut self, setup: &GasSetup, time: f64) {
-        let properties = &setup.properties;
-        let value = |boundary: &Boundary| match &boundary.condition {
-            GasPatch::Inlet {
-                superficial_velocity,
-                temperature,
-            } => {
-                let (velocity, temperature) = (superficial_velocity.at(time), temperature.at(time));
-                Value::Inlet {
-                    superficial_velocity: velocity,
-                    mass_flux: properties.density(setup.pressure, temperature) * velocity,
-                    gas: BoundaryGas::at(properties, temperature),
-                }
-            }
-            GasPatch::Outlet { pressure } => Value::Outlet {
-                pressure: pressure - setup.pressure,
-            },
-            GasPatch::Wall { no_slip, heat } => Value::Wall {
-                no_slip: *no_slip,
-                gas: match heat {
-                    WallHeat::Adiabatic => None,
-                    WallHeat::Temperature(schedule) => {
-                        Some(BoundaryGas::at(properties, schedule.at(time)))
-                    }
-                },
-            },
-        };
-        self.values.clear();
-        self.values.extend(self.patches.iter().map(value));
+        for boundary in &mut self.patches {
+            boundary.update(setup, time);
+        }
     }
 
     /// The condition of a boundary face.
     #[inline]
     pub fn at(&self, face: usize) -> Value {
-        self.values[self.patch_of[face - self.internal] as usize]
+        self.patches[self.patch_of[face - self.internal] as usize].value
     }
 
-    /// Faces and condition of each patch.
-    pub fn patches(&self) -> impl Iterator<Item = (Range<usize>, Value)> + '_ {
-        let patches = self.patches.iter().zip(&self.values);
-        patches.map(|(boundary, &value)| (boundary.faces.clone(), value))
+    /// Mass fractions of the gas that flows in through a boundary face; `None` where none does.
+    #[inline]
+    pub fn composition(&self, face: usize) -> Option<&[f64]> {
+        let boundary = &self.patches[self.patch_of[face - self.internal] as usize];
+        matches!(boundary.value, Value::Inlet { .. }).then_some(&boundary.composition)
     }
 }
 
+impl Boundary {
+    fn update(&mut self, setup: &GasSetup, time: f64) {
+        let model = &setup.properties;
+        self.value = match &self.condition {
+            GasPatch::Inlet {
+                flow,
+                temperature,
+                composition,
+            } => {
+                self.composition = composition
+                    .as_ref()
+                    .map_or_else(Vec::new, |schedule| schedule.at(time));
+                let temperature = temperature.at(time);
+                let density = model.density(setup.pressure, temperature, &self.composition);
+                let (superficial_velocity, mass_flux) = match flow {
+                    InletFlow::SuperficialVelocity(velocity) => {
+                        let velocity = velocity.at(time);
+                        (velocity, density * velocity)
+                    }
+                    InletFlow::MassFlow(flow) => {
+                        let flux = flow.at(time) / self.area;
+                        (flux / density, flux)
+                    }
+                };
+                Value::Inlet {
+                    superficial_velocity,
+                    mass_flux,
+                    gas: BoundaryGas::at(model, temperature, &self.composition),
+                }
+            }
+            GasPatch::Outlet { pressure } => Value::Outlet {
+                pressure: pressure.at(time) - setup.pressure,
+            },
+            GasPatch::Symmetry => Value::Wall {
+                sticks: None,
+                heat: Heat::Adiabatic,
+            },
+            GasPatch::Wall { velocity, heat } => Value::Wall {
+                sticks: match velocity {
+                    WallVelocity::Slip => None,
+                    WallVelocity::NoSlip => Some(Vec3::zeros()),
+                    WallVelocity::Moving(velocity) => Some(*velocity),
+                },
+                heat: match heat {
+                    WallHeat::Adiabatic => Heat::Adiabatic,
+                    WallHeat::Temperature(schedule) => Heat::Temperature(schedule.at(time)),
+                    WallHeat::Flux(schedule) => Heat::Flux(schedule.at(time)),
+                    WallHeat::Convective {
+                        coefficient,
+                        ambient,
+                    } => Heat::Convective {
+                        coefficient: coefficient.at(time),
+                        ambient: ambient.at(time),
+                    },
+                },
+            },
+        };
+    }
+}
+
+/// A moving wall must slide in its own plane.
+fn check_tangential(
+    mesh: &Mesh,
+    name: &str,
+    faces: Range<usize>,
+    velocity: Vec3,
+) -> Result<(), NativeError> {
+    for face in faces {
+        let through = velocity.dot(&mesh.face_area()[face].normalize());
+        if through.abs() > TANGENTIAL * velocity.norm() {
+            return Err(NativeError::Value {
+                field: "the velocity through the moving wall",
+                place: format!("patch `{name}`, face {face}"),
+                value: through,
+                unit: "m/s",
+                rule: "zero: a wall slides in its own plane",
+            });
+        }
+    }
+    Ok(())
+}
+
 fn check(name: &str, condition: &GasPatch) -> Result<(), NativeError> {
-    let place = || format!("patch `{name}`");
     let all = |schedule: &Schedule, field, unit, rule, allowed: fn(f64) -> bool| {
         let values = schedule.0.iter().map(|&(_, value)| value);
         match values.clone().find(|&value| !allowed(value)) {
             Some(value) => Err(NativeError::Value {
                 field,
-                place: place(),
+                place: format!("patch `{name}`"),
                 value,
                 unit,
                 rule,
@@ -174,30 +280,36 @@ fn check(name: &str, condition: &GasPatch) -> Result<(), NativeError> {
         }
     };
     let positive = |value: f64| value.is_finite() && value > 0.0;
+    let not_negative = |value: f64| value.is_finite() && value >= 0.0;
     let temperature = |schedule| all(schedule, "the temperature", "K", "positive", positive);
     match condition {
         GasPatch::Inlet {
-            superficial_velocity,
+            flow,
             temperature: schedule,
+            ..
         } => {
-            let inward = |value: f64| value.is_finite() && value >= 0.0;
+            let (flow, field, unit) = match flow {
+                InletFlow::SuperficialVelocity(flow) => (flow, "the superficial velocity", "m/s"),
+                InletFlow::MassFlow(flow) => (flow, "the mass flow", "kg/s"),
+            };
             let rule = "zero or positive (into the domain)";
-            all(
-                superficial_velocity,
-                "the superficial velocity",
-                "m/s",
-                rule,
-                inward,
-            )?;
+            all(flow, field, unit, rule, not_negative)?;
             temperature(schedule)
         }
-        GasPatch::Outlet { pressure } => {
-            let pressure = Schedule::constant(*pressure);
-            all(&pressure, "the pressure", "Pa", "positive", positive)
-        }
+        GasPatch::Outlet { pressure } => all(pressure, "the pressure", "Pa", "positive", positive),
+        GasPatch::Symmetry => Ok(()),
         GasPatch::Wall { heat, .. } => match heat {
             WallHeat::Adiabatic => Ok(()),
             WallHeat::Temperature(schedule) => temperature(schedule),
+            WallHeat::Flux(flux) => all(flux, "the heat flux", "W/m^2", "finite", f64::is_finite),
+            WallHeat::Convective {
+                coefficient,
+                ambient,
+            } => {
+                let (field, rule) = ("the heat transfer coefficient", "zero or positive");
+                all(coefficient, field, "W/m^2/K", rule, not_negative)?;
+                temperature(ambient)
+            }
         },
     }
 }

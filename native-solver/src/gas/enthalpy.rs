@@ -1,20 +1,25 @@
 //! Enthalpy of the gas, with exactly the fluxes and masses of continuity, per cell:
 //!
-//! (m h − m_old h_old)/Δτ + Σ φ_f h_f − Σ (εκ)_f ∇T·S = heat_source − heat_coefficient · T(h)
+//! (m h − m_old h_old)/Δτ + Σ φ_f h_f − Σ (εκ)_f ∇T·S + Σ Σ_k h_k J_k·S
+//!     = heat_source − heat_coefficient · T + ε V (p₀ − p₀_old)/Δτ
 //!
-//! Implicit Euler, first-order upwind h_f, T linear in h: T = T* + (h − h*)/c_p. Because
+//! Implicit Euler, h_f upwind, what a second-order value has beyond it and the enthalpy that diffusing
+//! species carry explicitly from the last iterate; T linear in h: T = θ + h/c_p, θ = T* − h*/c_p. Because
 //! m + Δτ Σ φ_f = m_old, the matrix keeps a uniform temperature uniform whatever the flow does,
-//! and energy closes to the linear tolerance whatever the outer loop does.
+//! and energy closes to the linear tolerance whatever the outer loop does. p₀ is the base pressure
+//! (it changes in a closed domain alone).
 
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::Convection;
 
 use super::attempt::{Frame, Material};
-use super::boundary::{BoundaryGas, Value};
+use super::boundary::{Heat, Value};
 use super::state::State;
+use crate::numerics::convection::beyond_upwind;
 use crate::numerics::krylov::{Krylov, Target};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{conductance, displacement, face_values, gradient, interpolate};
-use crate::numerics::parallel::{fill, sum, sums};
+use crate::numerics::parallel::{fill, sum, sums, update};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
 /// Iterations of a solve at most.
@@ -25,21 +30,92 @@ const ITERATIONS: u32 = 1000;
 pub struct Enthalpy {
     matrix: Matrix,
     source: Vec<f64>,
-    /// Conductance of each face for enthalpy differences in kg/s.
+    /// Thermal conductance of each face in W/K; on the boundary to what `outer` says.
     conduction: Vec<f64>,
+    /// θ of each cell in K.
+    base: Vec<f64>,
+    /// c_p of each cell in J/kg/K.
+    heat_capacity: Vec<f64>,
+    /// Enthalpy that leaves the owner of each face in W, of what the equation takes explicitly.
+    explicit: Vec<f64>,
     preconditioner: Incomplete,
-    /// Gradient of h for the correction of skewed faces, from the last iterate.
-    gradients: Vec<Vec3>,
-    face_enthalpy: Vec<f64>,
+    /// Gradients of h and T, from the last iterate.
+    gradients: [Vec<Vec3>; 2],
+    faces: Vec<f64>,
+    /// What the last solve took and gave.
+    pub taken: Taken,
 }
 
-/// The gas at a boundary face where its temperature is given.
+/// What the equation, as it was solved, took and gave.
+#[derive(Clone, Debug, Default)]
+pub struct Taken {
+    /// Heat from the particles to each cell in W.
+    pub heat: Vec<f64>,
+    /// Flow of enthalpy into the domain in W, and the sum of its magnitudes over the faces.
+    pub boundary: [f64; 2],
+    /// Σ ε V (p₀ − p₀_old)/Δτ in W.
+    pub compression: f64,
+}
+
+/// What a boundary face exchanges heat with: its temperature in K, where it has one.
 #[inline]
-fn given(frame: &Frame<'_>, index: usize) -> Option<BoundaryGas> {
+fn outer(frame: &Frame<'_>, index: usize) -> Option<f64> {
     match frame.boundary.at(index) {
-        Value::Inlet { gas, .. } => Some(gas),
-        Value::Wall { gas, .. } => gas,
+        Value::Inlet { gas, .. } => Some(gas.temperature),
+        Value::Wall { heat, .. } => match heat {
+            Heat::Temperature(temperature) => Some(temperature),
+            Heat::Convective { ambient, .. } => Some(ambient),
+            Heat::Adiabatic | Heat::Flux(_) => None,
+        },
         Value::Outlet { .. } => None,
+    }
+}
+
+/// Enthalpy of the gas that flows in through a boundary face in J/kg.
+#[inline]
+fn inlet(frame: &Frame<'_>, index: usize) -> Option<f64> {
+    match frame.boundary.at(index) {
+        Value::Inlet { gas, .. } => Some(gas.enthalpy),
+        Value::Wall { .. } | Value::Outlet { .. } => None,
+    }
+}
+
+/// Heat that flows in through a boundary face whatever the gas does, in W.
+#[inline]
+fn imposed(frame: &Frame<'_>, index: usize) -> f64 {
+    match frame.boundary.at(index) {
+        Value::Wall {
+            heat: Heat::Flux(flux),
+            ..
+        } => flux * frame.grid.faces[index].area,
+        _ => 0.0,
+    }
+}
+
+/// Thermal conductance of a face in W/K; zero where no heat is conducted.
+#[inline]
+fn conduction(frame: &Frame<'_>, material: &Material, index: usize) -> f64 {
+    let face = &frame.grid.faces[index];
+    if index < frame.grid.internal {
+        return conductance(face, interpolate(face, &material.conductivity));
+    }
+    let pores = frame.void_fraction[face.owner];
+    match frame.boundary.at(index) {
+        Value::Inlet { gas, .. } => conductance(face, pores * gas.conductivity),
+        Value::Wall { heat, .. } => match heat {
+            Heat::Temperature(temperature) => {
+                let composition = frame.composition(face.owner);
+                let conductivity = frame.properties.conductivity(temperature, composition);
+                conductance(face, pores * conductivity)
+            }
+            // The half cell and the wall in series.
+            Heat::Convective { coefficient, .. } if coefficient > 0.0 => {
+                let gas = face.distance() / material.conductivity[face.owner];
+                face.area / (1.0 / coefficient + gas)
+            }
+            Heat::Convective { .. } | Heat::Adiabatic | Heat::Flux(_) => 0.0,
+        },
+        Value::Outlet { .. } => 0.0,
     }
 }
 
@@ -49,81 +125,137 @@ impl Enthalpy {
         let (cells, faces) = (matrix.grid().cells(), matrix.grid().faces.len());
         Self {
             matrix,
-            conduction: vec![0.0; faces],
             source: vec![0.0; cells],
+            conduction: vec![0.0; faces],
+            base: vec![0.0; cells],
+            heat_capacity: vec![0.0; cells],
+            explicit: vec![0.0; faces],
             preconditioner: Incomplete::default(),
-            gradients: Vec::new(),
-            face_enthalpy: Vec::new(),
+            gradients: [vec![Vec3::zeros(); cells], vec![Vec3::zeros(); cells]],
+            faces: vec![0.0; faces],
+            taken: Taken::default(),
         }
     }
 
-    /// What conducts through a face because its centres are displaced along it, in W, out of the
-    /// owner.
-    fn skewed(&self, frame: &Frame<'_>, index: usize) -> f64 {
-        if frame.grid.orthogonal {
-            return 0.0;
+    /// Forgets what earlier attempts left, so that a repeated or resumed window takes the same path.
+    pub fn begin(&mut self) {
+        for gradients in &mut self.gradients {
+            fill(gradients, |_| Vec3::zeros());
         }
-        self.conduction[index] * displacement(frame.grid, &frame.grid.faces[index], &self.gradients)
     }
 
-    /// Assembles the equation.
-    pub fn assemble(&mut self, frame: &Frame<'_>, material: &Material, now: &State) {
+    /// Assembles the equation; `diffused` is the enthalpy that diffusing species carry out of the owner
+    /// of each face in W (empty for a single gas).
+    pub fn assemble(
+        &mut self,
+        frame: &Frame<'_>,
+        material: &Material,
+        diffused: &[f64],
+        now: &State,
+    ) {
         let grid = frame.grid;
-        if !grid.orthogonal {
-            self.update_gradients(frame, &now.enthalpy);
-        }
+        self.heat_capacity.clone_from(&material.heat_capacity);
+        let heat_capacity = &self.heat_capacity;
+        fill(&mut self.base, |cell| {
+            now.temperature[cell] - now.enthalpy[cell] / heat_capacity[cell]
+        });
         fill(&mut self.conduction, |index| {
             conduction(frame, material, index)
         });
-        let conduction = &self.conduction;
-        let heat_capacity = frame.properties.heat_capacity;
+        self.update_explicit(frame, diffused, now);
+        let (conduction, heat_capacity) = (&self.conduction, &self.heat_capacity);
         self.matrix.assemble(|cell, diagonal, neighbours| {
+            let own = heat_capacity[cell];
             *diagonal = frame.old.mass[cell] / frame.storage_span
-                + frame.exchange.heat_coefficient[cell] / heat_capacity;
+                + frame.exchange.heat_coefficient[cell] / own;
             for link in grid.links(cell) {
                 let index = link.face as usize;
                 let inflow = (-link.sign * now.flux[index]).max(0.0);
-                let weight = inflow + conduction[index];
-                if weight == 0.0 {
+                let conducted = conduction[index];
+                if inflow == 0.0 && conducted == 0.0 {
                     continue;
                 }
+                *diagonal += conducted / own;
                 if !link.is_boundary() {
-                    neighbours[link.slot as usize] -= weight;
-                    *diagonal += weight;
-                } else if given(frame, index).is_some() {
-                    *diagonal += weight;
+                    *diagonal += inflow;
+                    neighbours[link.slot as usize] -=
+                        inflow + conducted / heat_capacity[link.other as usize];
+                } else if inlet(frame, index).is_some() {
+                    *diagonal += inflow;
                 }
             }
         });
-        let mut source = std::mem::take(&mut self.source);
-        fill(&mut source, |cell| {
-            let fixed = now.temperature[cell] - now.enthalpy[cell] / heat_capacity;
+        let compression = (now.base_pressure - frame.old.base_pressure) / frame.storage_span;
+        let (base, explicit) = (&self.base, &self.explicit);
+        fill(&mut self.source, |cell| {
             let mut source = frame.old.mass[cell] * frame.old.enthalpy[cell] / frame.storage_span
                 + frame.exchange.heat_source[cell]
-                - frame.exchange.heat_coefficient[cell] * fixed;
+                - frame.exchange.heat_coefficient[cell] * base[cell]
+                + compression * frame.void_fraction[cell] * grid.volume[cell];
             for link in grid.links(cell) {
                 let index = link.face as usize;
-                if link.is_boundary()
-                    && let Some(gas) = given(frame, index)
-                {
-                    let inflow = (-link.sign * now.flux[index]).max(0.0);
-                    let weight = inflow + self.conduction[index];
-                    source += weight * gas.enthalpy;
+                if link.is_boundary() {
+                    if let Some(temperature) = outer(frame, index) {
+                        source += conduction[index] * (temperature - base[cell]);
+                    }
+                    if let Some(enthalpy) = inlet(frame, index) {
+                        source += (-link.sign * now.flux[index]).max(0.0) * enthalpy;
+                    }
+                    source += imposed(frame, index);
+                } else {
+                    source -= conduction[index] * (base[cell] - base[link.other as usize]);
                 }
-                source -= link.sign * self.skewed(frame, index);
+                source -= link.sign * explicit[index];
             }
             source
         });
-        self.source = source;
+    }
+
+    fn update_explicit(&mut self, frame: &Frame<'_>, diffused: &[f64], now: &State) {
+        let grid = frame.grid;
+        let second = frame.convection == Convection::VanLeer;
+        if second {
+            let boundary = |index: usize, inner: f64| inlet(frame, index).unwrap_or(inner);
+            let gradients = &mut self.gradients[0];
+            face_values(grid, &now.enthalpy, gradients, boundary, &mut self.faces);
+            let faces = &self.faces;
+            fill(gradients, |cell| gradient(grid, faces, cell));
+        }
+        if !grid.orthogonal {
+            let boundary = |index: usize, inner: f64| match frame.boundary.at(index) {
+                Value::Inlet { gas, .. } => gas.temperature,
+                Value::Wall {
+                    heat: Heat::Temperature(temperature),
+                    ..
+                } => temperature,
+                Value::Wall { .. } | Value::Outlet { .. } => inner,
+            };
+            let gradients = &mut self.gradients[1];
+            face_values(grid, &now.temperature, gradients, boundary, &mut self.faces);
+            let faces = &self.faces;
+            fill(gradients, |cell| gradient(grid, faces, cell));
+        }
+        let [carried, conducted] = &self.gradients;
+        let conduction = &self.conduction;
+        fill(&mut self.explicit, |index| {
+            let mut out = diffused.get(index).copied().unwrap_or(0.0);
+            let flux = now.flux[index];
+            if second && index < grid.internal && flux != 0.0 {
+                out += flux * beyond_upwind(grid, index, flux, &now.enthalpy, carried);
+            }
+            if !grid.orthogonal && conduction[index] != 0.0 {
+                out += conduction[index] * displacement(grid, &grid.faces[index], conducted);
+            }
+            out
+        });
     }
 
     /// Σ over cells of the equation's residual, relative to the cells' heat contents (from 0 K).
-    pub fn residual(&self, frame: &Frame<'_>, now: &State) -> f64 {
-        let heat_capacity = frame.properties.heat_capacity;
+    pub fn residual(&self, now: &State) -> f64 {
         let [error, content] = sums(now.enthalpy.len(), |cell| {
             let error = self.source[cell] - self.matrix.row_times(cell, &now.enthalpy);
-            let content = self.matrix.diagonal()[cell] * heat_capacity * now.temperature[cell];
-            [error.abs(), content]
+            let capacity = self.matrix.diagonal()[cell] * self.heat_capacity[cell];
+            [error.abs(), capacity * now.temperature[cell]]
         });
         error / content
     }
@@ -151,80 +283,78 @@ impl Enthalpy {
             &mut now.enthalpy,
             target,
         );
-        let enthalpy = &now.enthalpy;
-        fill(&mut now.temperature, |cell| {
-            frame.properties.temperature(enthalpy[cell])
+        self.record(frame, now);
+        let species = frame.species();
+        let State {
+            temperature,
+            enthalpy,
+            composition,
+            ..
+        } = now;
+        update(temperature, |cell, temperature| {
+            let composition = &composition[cell * species..(cell + 1) * species];
+            *temperature = frame
+                .properties
+                .temperature(enthalpy[cell], composition, *temperature);
         });
         solved.iterations
     }
 
+    /// Heat from the particles to a cell in W, as the equation takes it.
+    #[inline]
+    fn heat(&self, frame: &Frame<'_>, now: &State, cell: usize) -> f64 {
+        let temperature = self.base[cell] + now.enthalpy[cell] / self.heat_capacity[cell];
+        frame.exchange.heat_source[cell] - frame.exchange.heat_coefficient[cell] * temperature
+    }
+
     /// Energy that moves, in W: through the boundary, from the particles, into storage.
     fn throughput(&self, frame: &Frame<'_>, now: &State) -> f64 {
-        let boundary: f64 = frame
-            .boundary
-            .patches()
-            .flat_map(|(faces, _)| faces)
-            .map(|index| {
-                let inner = now.enthalpy[frame.grid.faces[index].owner];
-                let enthalpy = given(frame, index).map_or(inner, |gas| gas.enthalpy);
-                (now.flux[index] * enthalpy).abs()
-            })
-            .sum();
+        let internal = frame.grid.internal;
+        let boundary = sum(frame.grid.faces.len() - internal, |face| {
+            let index = internal + face;
+            let inner = now.enthalpy[frame.grid.faces[index].owner];
+            let carried = now.flux[index] * inlet(frame, index).unwrap_or(inner);
+            carried.abs() + imposed(frame, index).abs()
+        });
         let cells = sum(now.mass.len(), |cell| {
             let stored = now.mass[cell] * now.enthalpy[cell]
                 - frame.old.mass[cell] * frame.old.enthalpy[cell];
-            stored.abs() / frame.storage_span + heat(frame, now, cell).abs()
+            stored.abs() / frame.storage_span + self.heat(frame, now, cell).abs()
         });
         boundary + cells
     }
 
     /// Flow of enthalpy into the domain through a boundary face in W, conduction included.
-    pub fn inflow(&self, frame: &Frame<'_>, now: &State, index: usize) -> f64 {
-        let inner = now.enthalpy[frame.grid.faces[index].owner];
+    fn inflow(&self, frame: &Frame<'_>, now: &State, index: usize) -> f64 {
+        let cell = frame.grid.faces[index].owner;
+        let inner = now.enthalpy[cell];
         let flux = now.flux[index];
-        let Some(gas) = given(frame, index) else {
-            return -flux * inner;
+        let carried = match inlet(frame, index) {
+            Some(enthalpy) if flux < 0.0 => enthalpy,
+            _ => inner,
         };
-        let carried = if flux < 0.0 { gas.enthalpy } else { inner };
-        let conducted = self.conduction[index] * (gas.enthalpy - inner);
-        -flux * carried + conducted - self.skewed(frame, index)
+        let temperature = self.base[cell] + inner / self.heat_capacity[cell];
+        let conducted =
+            outer(frame, index).map_or(0.0, |outer| self.conduction[index] * (outer - temperature));
+        imposed(frame, index) + conducted - flux * carried - self.explicit[index]
     }
 
-    fn update_gradients(&mut self, frame: &Frame<'_>, enthalpy: &[f64]) {
+    fn record(&mut self, frame: &Frame<'_>, now: &State) {
         let grid = frame.grid;
-        self.gradients.resize(grid.cells(), Vec3::zeros());
-        self.face_enthalpy.resize(grid.faces.len(), 0.0);
-        let boundary =
-            |index: usize, inner: f64| given(frame, index).map_or(inner, |gas| gas.enthalpy);
-        face_values(
-            grid,
-            enthalpy,
-            &self.gradients,
-            boundary,
-            &mut self.face_enthalpy,
-        );
-        let faces = &self.face_enthalpy;
-        fill(&mut self.gradients, |cell| gradient(grid, faces, cell));
+        let mut taken = std::mem::take(&mut self.taken);
+        taken.heat.resize(grid.cells(), 0.0);
+        fill(&mut taken.heat, |cell| self.heat(frame, now, cell));
+        taken.boundary = sums(grid.faces.len() - grid.internal, |face| {
+            let inflow = self.inflow(frame, now, grid.internal + face);
+            [inflow, inflow.abs()]
+        });
+        let rise = (now.base_pressure - frame.old.base_pressure) / frame.storage_span;
+        let pores = |cell: usize| frame.void_fraction[cell] * grid.volume[cell];
+        taken.compression = if rise == 0.0 {
+            0.0
+        } else {
+            rise * sum(grid.cells(), pores)
+        };
+        self.taken = taken;
     }
-}
-
-/// Conductance of a face for enthalpy differences in kg/s; zero where no heat is conducted.
-#[inline]
-fn conduction(frame: &Frame<'_>, material: &Material, index: usize) -> f64 {
-    let face = &frame.grid.faces[index];
-    let conductivity = if index < frame.grid.internal {
-        interpolate(face, &material.conductivity)
-    } else {
-        match given(frame, index) {
-            Some(gas) => frame.void_fraction[face.owner] * gas.conductivity,
-            None => return 0.0,
-        }
-    };
-    conductance(face, conductivity) / frame.properties.heat_capacity
-}
-
-/// Heat from the particles to a cell in W, as the equation takes it.
-#[inline]
-pub fn heat(frame: &Frame<'_>, now: &State, cell: usize) -> f64 {
-    frame.exchange.heat_source[cell] - frame.exchange.heat_coefficient[cell] * now.temperature[cell]
 }

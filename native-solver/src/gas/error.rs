@@ -22,8 +22,8 @@ pub enum NativeError {
         /// Patches of the mesh.
         present: String,
     },
-    /// Nothing fixes the pressure.
-    #[error("no patch is an outlet, so nothing fixes the pressure of the gas; make one an outlet")]
+    /// More and more gas of constant density.
+    #[error("gas of constant density flows in and no patch is an outlet; make one an outlet")]
     NoOutlet,
     /// A number that makes no sense.
     #[error("{field} of {place} is {value} {unit}; it must be {rule}")]

@@ -10,6 +10,7 @@ mod guard;
 mod momentum;
 mod outer;
 mod pressure;
+mod species;
 mod state;
 
 use std::path::Path;
@@ -97,7 +98,12 @@ impl NativeGas {
     /// Takes up the state that a checkpoint left in a folder.
     pub fn restore(&mut self, directory: &Path) -> Result<(), NativeError> {
         let path = directory.join(STATE);
-        self.committed = State::read(&path, self.mesh.cells(), self.mesh.faces())?;
+        self.committed = State::read(
+            &path,
+            self.mesh.cells(),
+            self.mesh.faces(),
+            self.setup.properties.species().len(),
+        )?;
         self.started = !self.committed.mass.is_empty();
         self.now.take(&self.committed);
         self.update_fields();
@@ -106,19 +112,19 @@ impl NativeGas {
 
     fn update_fields(&mut self) {
         let (now, setup) = (&self.now, &self.setup);
-        fill(&mut self.pressure, |cell| {
-            setup.pressure + now.pressure[cell]
-        });
+        let (gas, base) = (&setup.properties, now.base_pressure);
+        fill(&mut self.pressure, |cell| base + now.pressure[cell]);
         fill(&mut self.density, |cell| {
-            let temperature = now.temperature[cell];
-            setup.properties.density(setup.pressure, temperature)
+            let composition = now.composition_of(cell, gas.species().len());
+            gas.density(base, now.temperature[cell], composition)
         });
     }
 
     /// Fills the pores of the bed with the gas of the setup, to start the first window from.
     fn place(&mut self) {
         let (state, setup, grid) = (&mut self.committed, &self.setup, &self.grid);
-        let density = setup.properties.density(setup.pressure, setup.temperature);
+        let gas = &setup.properties;
+        let density = gas.density(setup.pressure, setup.temperature, &setup.composition);
         state.mass.resize(grid.cells(), 0.0);
         fill(&mut state.mass, |cell| {
             density * self.void_fraction[cell] * grid.volume[cell]
@@ -236,6 +242,7 @@ impl Gas for NativeGas {
             temperature: &self.now.temperature,
             pressure: &self.pressure,
             density: &self.density,
+            composition: &self.now.composition,
             velocity: &self.now.velocity,
             pressure_gradient: &self.now.pressure_gradient,
         }
@@ -280,7 +287,8 @@ impl Gas for NativeGas {
             grid: &self.grid,
             boundary: &self.boundaries,
             properties: &self.setup.properties,
-            reference_pressure: self.setup.pressure,
+            schmidt: self.setup.schmidt,
+            convection: self.setup.controls.convection,
             gravity: self.setup.gravity,
             void_fraction: &self.void_fraction,
             exchange: &self.exchange,
@@ -298,6 +306,7 @@ impl Gas for NativeGas {
         let Equations {
             momentum,
             enthalpy,
+            species,
             material,
             ..
         } = &self.equations;
@@ -311,7 +320,10 @@ impl Gas for NativeGas {
                 self.setup.controls.outer_tolerance
             );
         }
-        balance::receive(&frame, material, momentum, enthalpy, &self.now, received);
+        let taken = &enthalpy.taken;
+        balance::receive(
+            &frame, material, momentum, taken, species, &self.now, received,
+        );
         self.update_fields();
         Ok(convergence)
     }
@@ -319,9 +331,12 @@ impl Gas for NativeGas {
 
 /// The state at the start of a run, before anything is known of the bed.
 fn start(setup: &GasSetup, cells: usize, faces: usize) -> State {
+    let gas = &setup.properties;
     State {
-        enthalpy: vec![setup.properties.enthalpy(setup.temperature); cells],
+        enthalpy: vec![gas.enthalpy(setup.temperature, &setup.composition); cells],
         temperature: vec![setup.temperature; cells],
+        composition: setup.composition.repeat(cells),
+        base_pressure: setup.pressure,
         velocity: vec![setup.velocity; cells],
         pressure: vec![0.0; cells],
         pressure_gradient: vec![Vec3::zeros(); cells],

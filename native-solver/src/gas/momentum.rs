@@ -1,21 +1,25 @@
 //! Momentum of the gas, for its interstitial velocity u, in the form that subtracts u times the
 //! continuity residual (requirements TSM-8), per cell:
 //!
-//! m_old (u − u_old)/Δt + Σ φ_f u_f − u Σ φ_f − Σ (εμ)_f ∇u·S
+//! m_old (u − u_old)/Δt + Σ φ_f u_f − u Σ φ_f − Σ (εμ)_f (∇u + ∇uᵀ − ⅔ ∇·u)·S
 //!     = −ε ∇p V + ε ρ V g + S_d − K_d u
 //!
-//! Implicit Euler; first-order upwind u_f; the viscous stress without its transposed part, which
-//! vanishes for uniform properties; no viscous normal stress on free-slip walls.
+//! (requirements FLO-5, Newtonian). Implicit Euler; u_f upwind, what a second-order value has beyond it
+//! explicitly from the last iterate; of the viscous stress the part ∇u·S implicitly, the rest explicitly;
+//! no viscous stress on free-slip walls and planes of symmetry; gas leaves an outlet as if the flow were developed there.
 
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::Convection;
+use nalgebra::Matrix3;
 
 use super::attempt::{Frame, Material};
-use super::boundary::Value;
+use super::boundary::{Heat, Value};
 use super::state::State;
+use crate::numerics::convection::vector_beyond_upwind;
 use crate::numerics::grid::{Face, Grid};
 use crate::numerics::krylov::{Krylov, Target};
 use crate::numerics::matrix::Matrix;
-use crate::numerics::operators::{conductance, displacement, face_values, gradient, interpolate};
+use crate::numerics::operators::{conductance, interpolate};
 use crate::numerics::parallel::{fill, sums, update};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
@@ -38,8 +42,12 @@ pub struct Momentum {
     preconditioner: Incomplete,
     component: Vec<f64>,
     right: Vec<f64>,
-    gradients: [Vec<Vec3>; 3],
-    face_velocity: Vec<f64>,
+    /// ∂u_i/∂x_j of each cell in 1/s.
+    gradients: Vec<Matrix3<f64>>,
+    /// Memory for the next gradients.
+    scratch: Vec<Matrix3<f64>>,
+    /// Momentum that leaves the owner of each face in N, of what the equation takes explicitly.
+    explicit: Vec<Vec3>,
 }
 
 /// Velocity of the gas at a boundary face, interstitial, where it is given.
@@ -51,8 +59,8 @@ pub fn given_velocity(frame: &Frame<'_>, index: usize) -> Option<Vec3> {
             superficial_velocity,
             ..
         } => Some(-superficial_velocity / frame.void_fraction[face.owner] * face.normal),
-        Value::Wall { no_slip: true, .. } => Some(Vec3::zeros()),
-        Value::Wall { no_slip: false, .. } | Value::Outlet { .. } => None,
+        Value::Wall { sticks, .. } => sticks,
+        Value::Outlet { .. } => None,
     }
 }
 
@@ -65,13 +73,19 @@ fn viscous(frame: &Frame<'_>, material: &Material, index: usize) -> f64 {
     }
     let pores = frame.void_fraction[face.owner];
     match frame.boundary.at(index) {
-        Value::Inlet { gas, .. }
-        | Value::Wall {
-            no_slip: true,
-            gas: Some(gas),
-        } => conductance(face, pores * gas.viscosity),
-        Value::Wall { no_slip: true, .. } => conductance(face, material.viscosity[face.owner]),
-        Value::Wall { no_slip: false, .. } | Value::Outlet { .. } => 0.0,
+        Value::Inlet { gas, .. } => conductance(face, pores * gas.viscosity),
+        Value::Wall {
+            sticks: Some(_),
+            heat: Heat::Temperature(temperature),
+        } => {
+            let composition = frame.composition(face.owner);
+            let viscosity = frame.properties.viscosity(temperature, composition);
+            conductance(face, pores * viscosity)
+        }
+        Value::Wall {
+            sticks: Some(_), ..
+        } => conductance(face, material.viscosity[face.owner]),
+        Value::Wall { sticks: None, .. } | Value::Outlet { .. } => 0.0,
     }
 }
 
@@ -86,18 +100,23 @@ impl Momentum {
             preconditioner: Incomplete::default(),
             component: vec![0.0; cells],
             right: vec![0.0; cells],
-            gradients: [Vec::new(), Vec::new(), Vec::new()],
-            face_velocity: Vec::new(),
+            gradients: vec![Matrix3::zeros(); cells],
+            scratch: Vec::new(),
+            explicit: vec![Vec3::zeros(); faces],
         }
+    }
+
+    /// Forgets what earlier attempts left, so that a repeated or resumed window takes the same path.
+    pub fn begin(&mut self) {
+        fill(&mut self.gradients, |_| Matrix3::zeros());
     }
 
     /// Assembles A and b for the fluxes and properties at hand.
     pub fn assemble(&mut self, frame: &Frame<'_>, material: &Material, now: &State) {
         let grid = frame.grid;
-        if !grid.orthogonal {
-            self.update_gradients(frame, &now.velocity);
-        }
         fill(&mut self.viscous, |index| viscous(frame, material, index));
+        self.update_gradients(frame, &now.velocity);
+        self.update_explicit(frame, material, now);
         let viscous = &self.viscous;
         let inertia = |cell: usize| frame.old.mass[cell] / frame.motion_span;
         self.matrix.assemble(|cell, diagonal, neighbours| {
@@ -117,7 +136,7 @@ impl Momentum {
                 }
             }
         });
-        let gradients = &self.gradients;
+        let explicit = &self.explicit;
         fill(&mut self.source, |cell| {
             let weight = frame.void_fraction[cell] * material.density[cell] * grid.volume[cell];
             let mut source = inertia(cell) * frame.old.velocity[cell]
@@ -134,10 +153,7 @@ impl Momentum {
                         source += weight * velocity;
                     }
                 }
-                if !grid.orthogonal {
-                    let skewed = viscous_skew(grid, &grid.faces[index], gradients);
-                    source -= link.sign * viscous[index] * skewed;
-                }
+                source -= link.sign * explicit[index];
             }
             source
         });
@@ -222,33 +238,124 @@ impl Momentum {
             return Vec3::zeros();
         }
         let Some(velocity) = given_velocity(frame, index) else {
-            return -flux * inner;
+            return -flux * inner - self.explicit[index];
         };
         let carried = if flux < 0.0 { velocity } else { inner };
-        let mut difference = velocity - inner;
-        if !frame.grid.orthogonal {
-            difference -= viscous_skew(frame.grid, face, &self.gradients);
-        }
-        -flux * carried + self.viscous[index] * difference
+        -flux * carried + self.viscous[index] * (velocity - inner) - self.explicit[index]
     }
 
     fn update_gradients(&mut self, frame: &Frame<'_>, velocity: &[Vec3]) {
         let grid = frame.grid;
-        self.face_velocity.resize(grid.faces.len(), 0.0);
-        for axis in 0..3 {
-            let gradients = &mut self.gradients[axis];
-            gradients.resize(grid.cells(), Vec3::zeros());
-            fill(&mut self.component, |cell| velocity[cell][axis]);
-            let boundary = |index: usize, inner: f64| {
-                given_velocity(frame, index).map_or(inner, |velocity| velocity[axis])
-            };
-            let (values, faces) = (&self.component, &mut self.face_velocity);
-            face_values(grid, values, gradients, boundary, faces);
-            fill(gradients, |cell| gradient(grid, faces, cell));
+        if grid.orthogonal {
+            let value = |index: usize, face: &Face| face_velocity(frame, index, face, velocity);
+            fill(&mut self.gradients, |cell| tensor(grid, cell, value));
+            return;
         }
+        // Improved by the last gradients where the line between centres misses the face's centre.
+        let last = std::mem::take(&mut self.gradients);
+        let value = |index: usize, face: &Face| {
+            let plain = face_velocity(frame, index, face, velocity);
+            if index >= grid.internal {
+                return plain;
+            }
+            let weight = face.owner_weight();
+            let miss = weight * face.owner_skew - (1.0 - weight) * face.neighbour_skew;
+            let mean = last[face.owner] * weight + last[face.neighbour] * (1.0 - weight);
+            plain + mean * miss
+        };
+        let mut next = std::mem::take(&mut self.scratch);
+        next.resize(grid.cells(), Matrix3::zeros());
+        fill(&mut next, |cell| tensor(grid, cell, value));
+        self.gradients = next;
+        self.scratch = last;
+    }
+
+    fn update_explicit(&mut self, frame: &Frame<'_>, material: &Material, now: &State) {
+        let grid = frame.grid;
+        let (gradients, viscous) = (&self.gradients, &self.viscous);
+        let second = frame.convection == Convection::VanLeer;
+        fill(&mut self.explicit, |index| {
+            let face = &grid.faces[index];
+            if index >= grid.internal {
+                let own = &gradients[face.owner];
+                return if let Value::Outlet { .. } = frame.boundary.at(index) {
+                    let developed = own - (own * face.normal) * face.normal.transpose();
+                    let area = face.area * material.viscosity[face.owner];
+                    -area * transposed(&developed, &face.normal)
+                } else {
+                    explicit_at_boundary(frame, index, own, viscous[index], now)
+                };
+            }
+            let flux = now.flux[index];
+            let mut out = Vec3::zeros();
+            if second && flux != 0.0 {
+                let beyond = vector_beyond_upwind(grid, index, flux, &now.velocity, gradients);
+                out += flux * beyond;
+            }
+            let (own, other) = (&gradients[face.owner], &gradients[face.neighbour]);
+            if !grid.orthogonal {
+                let skewed = own * face.owner_skew + other * face.neighbour_skew;
+                out += viscous[index] * skewed;
+            }
+            let weight = face.owner_weight();
+            let stress = transposed(own, &face.normal) * (weight * material.viscosity[face.owner])
+                + transposed(other, &face.normal)
+                    * ((1.0 - weight) * material.viscosity[face.neighbour]);
+            out - face.area * stress
+        });
     }
 }
 
-fn viscous_skew(grid: &Grid, face: &Face, gradients: &[Vec<Vec3>; 3]) -> Vec3 {
-    Vec3::from_fn(|axis, _| displacement(grid, face, &gradients[axis]))
+/// Velocity on a face by linear interpolation; on the boundary the given or the cell's own.
+#[inline]
+fn face_velocity(frame: &Frame<'_>, index: usize, face: &Face, velocity: &[Vec3]) -> Vec3 {
+    if index < frame.grid.internal {
+        let weight = face.owner_weight();
+        weight * velocity[face.owner] + (1.0 - weight) * velocity[face.neighbour]
+    } else {
+        given_velocity(frame, index).unwrap_or(velocity[face.owner])
+    }
+}
+
+/// Σ u_f S / V (Gauss): ∂u_i/∂x_j.
+#[inline]
+fn tensor(grid: &Grid, cell: usize, value: impl Fn(usize, &Face) -> Vec3) -> Matrix3<f64> {
+    let mut sum = Matrix3::zeros();
+    for link in grid.links(cell) {
+        let index = link.face as usize;
+        let face = &grid.faces[index];
+        let weighted = (link.sign * face.area) * value(index, face);
+        sum += weighted * face.normal.transpose();
+    }
+    sum / grid.volume[cell]
+}
+
+/// (∇uᵀ − ⅔ ∇·u)·n in 1/s.
+#[inline]
+fn transposed(gradient: &Matrix3<f64>, normal: &Vec3) -> Vec3 {
+    gradient.tr_mul(normal) - (2.0 / 3.0 * gradient.trace()) * normal
+}
+
+/// Explicit momentum flow out of the owner through a boundary face in N: skewness and the transposed
+/// stress, where the velocity is given; its normal derivative is then that of the face.
+fn explicit_at_boundary(
+    frame: &Frame<'_>,
+    index: usize,
+    inner: &Matrix3<f64>,
+    viscous: f64,
+    now: &State,
+) -> Vec3 {
+    let face = &frame.grid.faces[index];
+    let Some(velocity) = given_velocity(frame, index) else {
+        return Vec3::zeros();
+    };
+    let skewed = if frame.grid.orthogonal {
+        Vec3::zeros()
+    } else {
+        inner * face.owner_skew
+    };
+    let along = (velocity - now.velocity[face.owner] - skewed) / face.distance();
+    let corrected = inner + (along - inner * face.normal) * face.normal.transpose();
+    // The conductance is viscosity × area / distance.
+    viscous * (skewed - face.distance() * transposed(&corrected, &face.normal))
 }

@@ -10,6 +10,7 @@ use super::enthalpy::Enthalpy;
 use super::guard;
 use super::momentum::Momentum;
 use super::pressure::{self, Pressure};
+use super::species::Species;
 use super::state::State;
 use crate::numerics::grid::Grid;
 use crate::numerics::krylov::Krylov;
@@ -25,6 +26,8 @@ pub struct Equations {
     pub pressure: Pressure,
     /// Enthalpy.
     pub enthalpy: Enthalpy,
+    /// Species.
+    pub species: Species,
     /// Properties at the last temperature.
     pub material: Material,
     krylov: Krylov,
@@ -37,7 +40,8 @@ impl Equations {
         Self {
             momentum: Momentum::new(matrix.clone()),
             pressure: Pressure::new(matrix.clone()),
-            enthalpy: Enthalpy::new(matrix),
+            enthalpy: Enthalpy::new(matrix.clone()),
+            species: Species::new(matrix),
             material: Material::default(),
             krylov: Krylov::default(),
         }
@@ -53,6 +57,9 @@ impl Equations {
     ) -> Result<Convergence, String> {
         let mut convergence = Convergence::default();
         self.pressure.begin(frame);
+        self.momentum.begin();
+        self.enthalpy.begin();
+        self.species.begin(frame);
         self.assess(frame, now);
         for outer in 1..=controls.outer_iterations.max(1) {
             convergence.linear_iterations += self.iterate(frame, controls, now);
@@ -72,14 +79,17 @@ impl Equations {
 
     /// Assembles momentum and enthalpy with the fields at hand; how far these are from solving
     /// all equations at once: the largest scaled residual.
-    fn assess(&mut self, frame: &Frame<'_>, now: &State) -> f64 {
-        self.material.update(frame, &now.temperature);
-        self.momentum.assemble(frame, &self.material, now);
-        self.enthalpy.assemble(frame, &self.material, now);
+    fn assess(&mut self, frame: &Frame<'_>, now: &mut State) -> f64 {
+        let material = &mut self.material;
+        material.update(frame, now);
+        self.momentum.assemble(frame, material, now);
+        let diffused = &self.species.diffused;
+        self.enthalpy.assemble(frame, material, diffused, now);
         let momentum = self.momentum.residual(frame, now);
-        let continuity = pressure::residual(frame, &self.material, now);
-        let enthalpy = self.enthalpy.residual(frame, now);
-        momentum.max(continuity).max(enthalpy)
+        let continuity = pressure::residual(frame, material, now);
+        let enthalpy = self.enthalpy.residual(now);
+        let species = self.species.residual(frame, material, now);
+        momentum.max(continuity).max(enthalpy).max(species)
     }
 
     /// One outer iteration, on the momentum equation as assembled; returns linear iterations.
@@ -96,14 +106,16 @@ impl Equations {
         }
         pressure::advance_mass(frame, now);
 
-        self.enthalpy.assemble(frame, material, now);
+        iterations += self.species.solve(frame, material, krylov, tolerance, now);
+        let diffused = &self.species.diffused;
+        self.enthalpy.assemble(frame, material, diffused, now);
         iterations + self.enthalpy.solve(frame, krylov, tolerance, now)
     }
 
     fn volume_residual(&self, frame: &Frame<'_>, now: &State) -> f64 {
-        let gas = frame.properties;
+        let density = &self.material.density;
         let (_, worst) = largest(now.mass.len(), |cell| {
-            let density = gas.density(frame.reference_pressure, now.temperature[cell]);
+            let density = density[cell];
             let mass = frame.void_fraction[cell] * density * frame.grid.volume[cell];
             (now.mass[cell] - mass).abs() / now.mass[cell]
         });

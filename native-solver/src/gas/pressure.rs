@@ -144,6 +144,7 @@ impl Pressure {
             }
         });
         let conductance = &self.conductance;
+        let closed = frame.boundary.closed();
         self.matrix.assemble(|cell, diagonal, neighbours| {
             for link in grid.links(cell) {
                 let weight = conductance[link.face as usize];
@@ -151,6 +152,11 @@ impl Pressure {
                 if !link.is_boundary() {
                     neighbours[link.slot as usize] -= weight;
                 }
+            }
+            // In a closed domain the pressure of the first cell is the base pressure; no gas flows for
+            // it, because the wanted outflows of all cells sum to what flows in.
+            if closed && cell == 0 {
+                *diagonal *= 2.0;
             }
         });
         self.preconditioner.get().update(&self.matrix);

@@ -15,9 +15,13 @@ pub struct State {
     pub enthalpy: Vec<f64>,
     /// Temperature in K.
     pub temperature: Vec<f64>,
+    /// Mass fractions, species by species within each cell; empty for a single gas.
+    pub composition: Vec<f64>,
+    /// Base pressure of the low-Mach gas in Pa; it changes in a closed domain alone.
+    pub base_pressure: f64,
     /// Interstitial velocity in m/s.
     pub velocity: Vec<Vec3>,
-    /// Pressure above the reference pressure in Pa.
+    /// Pressure above the setup's pressure (in a closed domain: above the base pressure) in Pa.
     pub pressure: Vec<f64>,
     /// Cell gradient of the pressure in Pa/m.
     pub pressure_gradient: Vec<Vec3>,
@@ -28,11 +32,19 @@ pub struct State {
 }
 
 impl State {
+    /// Mass fractions of a cell, of so many species.
+    #[inline]
+    pub fn composition_of(&self, cell: usize, species: usize) -> &[f64] {
+        &self.composition[cell * species..(cell + 1) * species]
+    }
+
     /// Takes the values of another state into the memory that is there.
     pub fn take(&mut self, other: &State) {
         self.mass.clone_from(&other.mass);
         self.enthalpy.clone_from(&other.enthalpy);
         self.temperature.clone_from(&other.temperature);
+        self.composition.clone_from(&other.composition);
+        self.base_pressure = other.base_pressure;
         self.velocity.clone_from(&other.velocity);
         self.pressure.clone_from(&other.pressure);
         self.pressure_gradient.clone_from(&other.pressure_gradient);
@@ -46,6 +58,8 @@ impl State {
         file.set_f64s("mass", &self.mass);
         file.set_f64s("enthalpy", &self.enthalpy);
         file.set_f64s("temperature", &self.temperature);
+        file.set_f64s("composition", &self.composition);
+        file.set_f64s("base_pressure", &[self.base_pressure]);
         file.set_f64s("velocity", &flat(&self.velocity));
         file.set_f64s("pressure", &self.pressure);
         file.set_f64s("pressure_gradient", &flat(&self.pressure_gradient));
@@ -54,8 +68,13 @@ impl State {
         file.write(path)
     }
 
-    /// Reads a state of this many cells and faces.
-    pub fn read(path: &Path, cells: usize, faces: usize) -> Result<Self, StateFileError> {
+    /// Reads a state of this many cells, faces and species.
+    pub fn read(
+        path: &Path,
+        cells: usize,
+        faces: usize,
+        species: usize,
+    ) -> Result<Self, StateFileError> {
         let file = StateFile::read(path)?;
         let started = !file.f64s("mass")?.is_empty();
         let placed = if started { cells } else { 0 };
@@ -63,6 +82,8 @@ impl State {
             mass: file.f64s_of("mass", placed)?.to_vec(),
             enthalpy: file.f64s_of("enthalpy", cells)?.to_vec(),
             temperature: file.f64s_of("temperature", cells)?.to_vec(),
+            composition: file.f64s_of("composition", species * cells)?.to_vec(),
+            base_pressure: file.f64s_of("base_pressure", 1)?.iter().sum(),
             velocity: vectors(file.f64s_of("velocity", 3 * cells)?),
             pressure: file.f64s_of("pressure", cells)?.to_vec(),
             pressure_gradient: vectors(file.f64s_of("pressure_gradient", 3 * cells)?),

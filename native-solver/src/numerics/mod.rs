@@ -5,6 +5,7 @@
 
 pub mod aggregate;
 pub mod amg;
+pub mod convection;
 pub mod grid;
 pub mod krylov;
 pub mod matrix;

@@ -9,8 +9,9 @@ use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
 use calcine_coupler::part::{Bed, CellExchange, CellReceived, Convergence, Gas, Part};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
+use calcine_coupler::physics::gas_model::{ConstantGas, GasModel};
 pub use calcine_coupler::setup::GasSetup;
-use calcine_coupler::setup::{GasControls, GasPatch, Schedule, WallHeat};
+use calcine_coupler::setup::{Convection, GasControls, GasPatch, Schedule, WallHeat, WallVelocity};
 use calcine_coupler::supervisor::{Interrupts, Supervisor};
 use calcine_coupler::time::{Clocks, GasStorage, Ticks, Window};
 use calcine_native::gas::NativeGas;
@@ -24,6 +25,25 @@ pub const AIR: GasProperties = GasProperties {
 };
 /// One atmosphere in Pa.
 pub const ATMOSPHERE: f64 = 101_325.0;
+
+/// Air without viscosity, and so without conduction.
+pub fn inviscid() -> GasModel {
+    GasProperties {
+        sutherland_coefficient: 1e-30,
+        ..AIR
+    }
+    .into()
+}
+
+/// A fluid of constant density, round numbers for water.
+pub fn water() -> GasModel {
+    GasModel::Constant(ConstantGas {
+        density: 1000.0,
+        heat_capacity: 4000.0,
+        viscosity: 1e-3,
+        conductivity: 0.6,
+    })
+}
 
 /// A box with `bottom` and `top` across z and four sides named `side`.
 pub fn duct(size: [f64; 3], cells: [usize; 3]) -> Arc<Mesh> {
@@ -42,35 +62,35 @@ pub fn named_box(size: [f64; 3], cells: [usize; 3], patches: [&str; 6]) -> Arc<M
 }
 
 pub fn inlet(velocity: f64, temperature: f64) -> GasPatch {
-    GasPatch::Inlet {
-        superficial_velocity: Schedule::constant(velocity),
-        temperature: Schedule::constant(temperature),
-    }
+    GasPatch::inlet(
+        Schedule::constant(velocity),
+        Schedule::constant(temperature),
+    )
 }
 
 pub fn outlet() -> GasPatch {
     GasPatch::Outlet {
-        pressure: ATMOSPHERE,
+        pressure: Schedule::constant(ATMOSPHERE),
     }
 }
 
 pub fn slip() -> GasPatch {
     GasPatch::Wall {
-        no_slip: false,
+        velocity: WallVelocity::Slip,
         heat: WallHeat::Adiabatic,
     }
 }
 
 pub fn no_slip() -> GasPatch {
     GasPatch::Wall {
-        no_slip: true,
+        velocity: WallVelocity::NoSlip,
         heat: WallHeat::Adiabatic,
     }
 }
 
 pub fn warm_wall(temperature: f64) -> GasPatch {
     GasPatch::Wall {
-        no_slip: true,
+        velocity: WallVelocity::NoSlip,
         heat: WallHeat::Temperature(Schedule::constant(temperature)),
     }
 }
@@ -79,7 +99,9 @@ pub fn warm_wall(temperature: f64) -> GasPatch {
 pub fn setup(patches: &[(&str, GasPatch)]) -> GasSetup {
     GasSetup {
         mixture: "air".into(),
-        properties: AIR,
+        properties: AIR.into(),
+        schmidt: 1.0,
+        composition: Vec::new(),
         storage: GasStorage::Process,
         temperature: 300.0,
         pressure: ATMOSPHERE,
@@ -91,6 +113,7 @@ pub fn setup(patches: &[(&str, GasPatch)]) -> GasSetup {
             .collect(),
         controls: GasControls {
             outer_iterations: 50,
+            convection: Convection::Upwind,
             pressure_corrections: 2,
             outer_tolerance: 1e-9,
             linear_tolerance: 1e-12,

@@ -2,6 +2,7 @@
 
 mod coupling;
 mod gas;
+mod gas_patch;
 mod laws;
 mod mesh;
 mod output;

@@ -155,13 +155,33 @@ impl Reader<'_> {
 
     /// A schedule of absolute temperatures.
     pub fn temperatures(&self, key: &str) -> Option<Schedule> {
-        let schedule = self.schedule(key, Dimension::TEMPERATURE)?;
+        self.all_above_zero(
+            key,
+            Dimension::TEMPERATURE,
+            "temperatures are absolute: above 0 K",
+        )
+    }
+
+    /// A schedule of absolute pressures.
+    pub fn pressures(&self, key: &str) -> Option<Schedule> {
+        self.all_above_zero(
+            key,
+            Dimension::PRESSURE,
+            "pressures are absolute: above 0 Pa",
+        )
+    }
+
+    fn all_above_zero(&self, key: &str, dimension: Dimension, help: &str) -> Option<Schedule> {
+        let schedule = self.schedule(key, dimension)?;
         if let Some((_, value)) = schedule.0.iter().find(|entry| entry.1 <= 0.0) {
-            self.fail(
-                key,
-                format!("is {value} K"),
-                "temperatures are absolute: above 0 K",
-            );
+            let example = dimension.example();
+            let unit = example.split_once(' ').map_or("", |(_, unit)| unit);
+            let unit = if dimension == Dimension::PRESSURE {
+                "Pa"
+            } else {
+                unit
+            };
+            self.fail(key, format!("is {value} {unit}"), help);
             return None;
         }
         Some(schedule)

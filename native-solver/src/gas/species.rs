@@ -1,0 +1,338 @@
+//! Species of the gas, as mass fractions Y_k, with exactly the fluxes and masses of continuity, per cell:
+//!
+//! (m Y − m_old Y_old)/Δτ + Σ φ_f Y_f − Σ (εμ)_f/Sc ∇Y·S = 0
+//!
+//! (requirements SPC-1; all species diffuse alike, so that Fick's fluxes sum to zero). Implicit Euler,
+//! Y_f upwind, what a second-order value has beyond it explicitly from the last iterate, with one limiter
+//! for all species, so that the fractions go on summing to one. The last species is what the others leave.
+
+use calcine_coupler::part::Balance;
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::Convection;
+
+use super::attempt::{Frame, Material};
+use super::boundary::Value;
+use super::state::State;
+use crate::numerics::convection::{limited, limiter};
+use crate::numerics::krylov::{Krylov, Target};
+use crate::numerics::matrix::Matrix;
+use crate::numerics::operators::{conductance, displacement, face_values, gradient, interpolate};
+use crate::numerics::parallel::{fill, sums, update};
+use crate::numerics::preconditioner::{Incomplete, Preconditioner};
+
+/// Iterations of a solve at most.
+const ITERATIONS: u32 = 1000;
+
+/// The equations of all species, which share one matrix.
+#[derive(Debug)]
+pub struct Species {
+    matrix: Matrix,
+    preconditioner: Incomplete,
+    /// Diffusive conductance of each face in kg/s.
+    diffusion: Vec<f64>,
+    /// Mass fractions of the iterate, species by species: one list of cells each.
+    fractions: Vec<Vec<f64>>,
+    gradients: Vec<Vec<Vec3>>,
+    limiters: Vec<f64>,
+    faces: Vec<f64>,
+    /// Flow of each species out of the owner of each face in kg/s, of what is taken explicitly.
+    explicit: Vec<Vec<f64>>,
+    source: Vec<f64>,
+    /// Enthalpy that diffusing species carry out of the owner of each face in W.
+    pub diffused: Vec<f64>,
+    /// Flow of each species into the domain in kg/s and the sum of its magnitudes over the faces, as the
+    /// last solve took them.
+    pub boundary: Vec<[f64; 2]>,
+}
+
+impl Species {
+    /// Empty equations on a matrix's graph.
+    pub fn new(matrix: Matrix) -> Self {
+        Self {
+            matrix,
+            preconditioner: Incomplete::default(),
+            diffusion: Vec::new(),
+            fractions: Vec::new(),
+            gradients: Vec::new(),
+            limiters: Vec::new(),
+            faces: Vec::new(),
+            explicit: Vec::new(),
+            source: Vec::new(),
+            diffused: Vec::new(),
+            boundary: Vec::new(),
+        }
+    }
+
+    /// Takes up the start of an attempt; what earlier attempts left is forgotten.
+    pub fn begin(&mut self, frame: &Frame<'_>) {
+        let (cells, faces) = (frame.grid.cells(), frame.grid.faces.len());
+        let species = frame.species();
+        if species == 0 {
+            return;
+        }
+        self.fractions.resize(species, vec![0.0; cells]);
+        self.gradients.resize(species, vec![Vec3::zeros(); cells]);
+        self.explicit.resize(species, vec![0.0; faces]);
+        self.boundary.resize(species, [0.0; 2]);
+        self.diffusion.resize(faces, 0.0);
+        self.limiters.resize(faces, 0.0);
+        self.faces.resize(faces, 0.0);
+        self.source.resize(cells, 0.0);
+        self.diffused.resize(faces, 0.0);
+        fill(&mut self.diffused, |_| 0.0);
+        for (k, fractions) in self.fractions.iter_mut().enumerate() {
+            fill(fractions, |cell| frame.old.composition[cell * species + k]);
+        }
+        for gradients in &mut self.gradients {
+            fill(gradients, |_| Vec3::zeros());
+        }
+    }
+
+    /// Assembles and solves the equations; returns the linear iterations.
+    pub fn solve(
+        &mut self,
+        frame: &Frame<'_>,
+        material: &Material,
+        krylov: &mut Krylov,
+        tolerance: f64,
+        now: &mut State,
+    ) -> u32 {
+        let species = frame.species();
+        if species == 0 {
+            return 0;
+        }
+        self.assemble(frame, material, now);
+        self.update_explicit(frame, now);
+        self.preconditioner.update(&self.matrix);
+        let mut iterations = 0;
+        for k in 0..species - 1 {
+            self.fill_source(frame, now, k);
+            let target = Target {
+                absolute: tolerance * self.throughput(frame, now, k),
+                of_terms: 0.0,
+                relative: 0.0,
+                iterations: ITERATIONS,
+            };
+            let solved = krylov.general(
+                &self.matrix,
+                &mut self.preconditioner,
+                &self.source,
+                &mut self.fractions[k],
+                target,
+            );
+            iterations += solved.iterations;
+        }
+        if let Some((last, others)) = self.fractions.split_last_mut() {
+            fill(last, |cell| {
+                1.0 - others.iter().map(|list| list[cell]).sum::<f64>()
+            });
+        }
+        let fractions = &self.fractions;
+        update(&mut now.composition, |i, fraction| {
+            *fraction = fractions[i % species][i / species];
+        });
+        self.record(frame, now);
+        self.update_diffused(frame, now);
+        iterations
+    }
+
+    /// Largest change of a mass fraction that the equations at hand still ask for: their residual
+    /// relative to what the cells hold and what flows through them.
+    pub fn residual(&mut self, frame: &Frame<'_>, material: &Material, now: &State) -> f64 {
+        if frame.species() == 0 {
+            return 0.0;
+        }
+        self.assemble(frame, material, now);
+        self.update_explicit(frame, now);
+        let mut worst: f64 = 0.0;
+        for k in 0..frame.species() - 1 {
+            self.fill_source(frame, now, k);
+            let [error, content] = sums(now.mass.len(), |cell| {
+                let error = self.source[cell] - self.matrix.row_times(cell, &self.fractions[k]);
+                [error.abs(), self.matrix.diagonal()[cell]]
+            });
+            worst = worst.max(error / content);
+        }
+        worst
+    }
+
+    fn assemble(&mut self, frame: &Frame<'_>, material: &Material, now: &State) {
+        let grid = frame.grid;
+        fill(&mut self.diffusion, |index| {
+            let face = &grid.faces[index];
+            if index < grid.internal {
+                return conductance(face, interpolate(face, &material.viscosity) / frame.schmidt);
+            }
+            match frame.boundary.at(index) {
+                Value::Inlet { gas, .. } => {
+                    let pores = frame.void_fraction[face.owner];
+                    conductance(face, pores * gas.viscosity / frame.schmidt)
+                }
+                Value::Wall { .. } | Value::Outlet { .. } => 0.0,
+            }
+        });
+        let diffusion = &self.diffusion;
+        self.matrix.assemble(|cell, diagonal, neighbours| {
+            *diagonal = frame.old.mass[cell] / frame.storage_span;
+            for link in grid.links(cell) {
+                let index = link.face as usize;
+                let inflow = (-link.sign * now.flux[index]).max(0.0);
+                let weight = inflow + diffusion[index];
+                if !link.is_boundary() {
+                    neighbours[link.slot as usize] -= weight;
+                    *diagonal += weight;
+                } else if frame.boundary.composition(index).is_some() {
+                    *diagonal += weight;
+                }
+            }
+        });
+    }
+
+    fn update_explicit(&mut self, frame: &Frame<'_>, now: &State) {
+        let grid = frame.grid;
+        let second = frame.convection == Convection::VanLeer;
+        if second || !grid.orthogonal {
+            for (k, fractions) in self.fractions.iter().enumerate() {
+                let boundary = |index: usize, inner: f64| {
+                    frame.boundary.composition(index).map_or(inner, |y| y[k])
+                };
+                let gradients = &mut self.gradients[k];
+                face_values(grid, fractions, gradients, boundary, &mut self.faces);
+                let faces = &self.faces;
+                fill(gradients, |cell| gradient(grid, faces, cell));
+            }
+        }
+        let (fractions, gradients) = (&self.fractions, &self.gradients);
+        fill(&mut self.limiters, |index| {
+            if !second || index >= grid.internal {
+                return 0.0;
+            }
+            let one =
+                |k: usize| limiter(grid, index, now.flux[index], &fractions[k], &gradients[k]);
+            (0..fractions.len()).map(one).fold(2.0, f64::min)
+        });
+        let (limiters, diffusion) = (&self.limiters, &self.diffusion);
+        for (k, explicit) in self.explicit.iter_mut().enumerate() {
+            fill(explicit, |index| {
+                let flux = now.flux[index];
+                let mut out = 0.0;
+                if limiters[index] > 0.0 && flux != 0.0 {
+                    out += flux * limited(grid, index, flux, &fractions[k], limiters[index]);
+                }
+                if !grid.orthogonal && diffusion[index] != 0.0 {
+                    let face = &grid.faces[index];
+                    out += diffusion[index] * displacement(grid, face, &gradients[k]);
+                }
+                out
+            });
+        }
+    }
+
+    fn fill_source(&mut self, frame: &Frame<'_>, now: &State, k: usize) {
+        let (grid, species) = (frame.grid, frame.species());
+        let (diffusion, explicit) = (&self.diffusion, &self.explicit[k]);
+        fill(&mut self.source, |cell| {
+            let old = frame.old.composition[cell * species + k];
+            let mut source = frame.old.mass[cell] * old / frame.storage_span;
+            for link in grid.links(cell) {
+                let index = link.face as usize;
+                if link.is_boundary()
+                    && let Some(composition) = frame.boundary.composition(index)
+                {
+                    let inflow = (-link.sign * now.flux[index]).max(0.0);
+                    source += (inflow + diffusion[index]) * composition[k];
+                }
+                source -= link.sign * explicit[index];
+            }
+            source
+        });
+    }
+
+    /// Mass of a species that moves, in kg/s: through the boundary and into storage.
+    fn throughput(&self, frame: &Frame<'_>, now: &State, k: usize) -> f64 {
+        let internal = frame.grid.internal;
+        let boundary = sums(frame.grid.faces.len() - internal, |face| {
+            [now.flux[internal + face].abs()]
+        })[0];
+        let species = frame.species();
+        let stored = sums(now.mass.len(), |cell| {
+            let old = frame.old.mass[cell] * frame.old.composition[cell * species + k];
+            [(now.mass[cell] * self.fractions[k][cell] - old).abs()]
+        })[0];
+        boundary + stored / frame.storage_span
+    }
+
+    /// Flow of a species into the domain through a boundary face in kg/s.
+    fn inflow(&self, frame: &Frame<'_>, now: &State, k: usize, index: usize) -> f64 {
+        let inner = self.fractions[k][frame.grid.faces[index].owner];
+        let flux = now.flux[index];
+        match frame.boundary.composition(index) {
+            Some(composition) => {
+                let carried = if flux < 0.0 { composition[k] } else { inner };
+                self.diffusion[index] * (composition[k] - inner)
+                    - flux * carried
+                    - self.explicit[k][index]
+            }
+            None => -flux * inner,
+        }
+    }
+
+    fn record(&mut self, frame: &Frame<'_>, now: &State) {
+        let internal = frame.grid.internal;
+        for k in 0..frame.species() {
+            self.boundary[k] = sums(frame.grid.faces.len() - internal, |face| {
+                let inflow = self.inflow(frame, now, k, internal + face);
+                [inflow, inflow.abs()]
+            });
+        }
+    }
+
+    /// Σ_k h_k J_k of each face, h_k at the face's temperature.
+    fn update_diffused(&mut self, frame: &Frame<'_>, now: &State) {
+        let grid = frame.grid;
+        let (diffusion, fractions) = (&self.diffusion, &self.fractions);
+        fill(&mut self.diffused, |index| {
+            if diffusion[index] == 0.0 {
+                return 0.0;
+            }
+            let face = &grid.faces[index];
+            let temperature = if index < grid.internal {
+                interpolate(face, &now.temperature)
+            } else if let Value::Inlet { gas, .. } = frame.boundary.at(index) {
+                gas.temperature
+            } else {
+                return 0.0;
+            };
+            let given = (index >= grid.internal)
+                .then(|| frame.boundary.composition(index))
+                .flatten();
+            let flow = |k: usize| {
+                let outer = given.map_or_else(|| fractions[k][face.neighbour], |y| y[k]);
+                diffusion[index] * (fractions[k][face.owner] - outer)
+            };
+            let one = |k: usize| flow(k) * frame.properties.species_enthalpy(k, temperature);
+            (0..fractions.len()).map(one).sum()
+        });
+    }
+
+    /// The balance of each species over the window, in kg.
+    pub fn balances(&self, frame: &Frame<'_>, now: &State, balances: &mut Vec<Balance>) {
+        let species = frame.species();
+        balances.clear();
+        for k in 0..species {
+            let [stored, stored_magnitude] = sums(now.mass.len(), |cell| {
+                let old = frame.old.mass[cell] * frame.old.composition[cell * species + k];
+                let stored = now.mass[cell] * now.composition[cell * species + k] - old;
+                [stored, stored.abs()]
+            });
+            let [inflow, magnitude] = self.boundary[k];
+            balances.push(Balance {
+                stored,
+                stored_magnitude,
+                boundary: inflow * frame.storage_span,
+                boundary_magnitude: magnitude * frame.storage_span,
+                ..Balance::default()
+            });
+        }
+    }
+}
