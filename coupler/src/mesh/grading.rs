@@ -41,7 +41,8 @@ pub fn shared(cells: usize, stretches: &[Stretch]) -> Result<Vec<Region>, MeshEr
             bad.cell_share
         ));
     }
-    let exact = |stretch: &Stretch| cells as f64 * stretch.cell_share / total;
+    // The share first: it is at most 1, however large the numbers are.
+    let exact = |stretch: &Stretch| cells as f64 * (stretch.cell_share / total);
     let mut counts: Vec<usize> = stretches
         .iter()
         .map(|s| (exact(s) as usize).max(1))
@@ -129,4 +130,27 @@ fn within(region: &Region, cell: usize) -> f64 {
     // Sizes 1, r, r², …; r^n − 1 by exp_m1 keeps its digits where r is near 1.
     let log_ratio = region.expansion.ln() / (region.cells - 1) as f64;
     (cell as f64 * log_ratio).exp_m1() / (region.cells as f64 * log_ratio).exp_m1()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_are_shared_however_large_the_shares_are() {
+        let counts = |shares: [f64; 2]| {
+            let stretch = |cell_share| Stretch {
+                length_share: 0.5,
+                cell_share,
+                expansion: 1.0,
+            };
+            shared(10, &shares.map(stretch))
+                .map(|regions| [regions[0].cells, regions[1].cells])
+                .map_err(|error| error.to_string())
+        };
+        assert_eq!(counts([3e-300, 7e-300]), Ok([3, 7]));
+        assert_eq!(counts([0.5, 1e308]), Ok([1, 9]));
+        let error = counts([1e308, 1e308]).unwrap_err();
+        assert!(error.contains("share of the cells of 1"), "{error}");
+    }
 }
