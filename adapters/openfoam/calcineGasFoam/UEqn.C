@@ -4,9 +4,10 @@
 //   m_old (u - u_old)/dt + sum phi_f u_f - u sum phi_f
 //       - sum (eps mu)_f (grad(u) + grad(u)^T - 2/3 div(u)).S = -eps grad(p) V + eps rho V g + S_d - K_d u
 //
-// u_f as fvSchemes says; of the viscous stress the part grad(u).S is implicit. No viscous stress acts on
+// u_f as fvSchemes says, beyond upwind explicitly; of the viscous stress the part grad(u).S is implicit. No viscous stress acts on
 // slip walls; gas leaves an outlet as if the flow were developed there.
 #include "gas.H"
+#include "convection.H"
 #include "fvm.H"
 #include "fvc.H"
 
@@ -33,19 +34,23 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
         }
     }
     stressForce_.reset((mesh_.Sf() & fvc::interpolate(stress)).ptr());
-    const vectorField pulled(fvc::surfaceIntegrate(*stressForce_)().primitiveField()*volume);
 
     // The matrix of the last outer iteration goes first, with the memory it holds.
     momentum_.reset();
+    autoPtr<surfaceVectorField> beyond;
     momentum_.reset
     (
-        new fvVectorMatrix(fvm::div(phi_, U_) - fvm::laplacian(viscosity, U_))
+        new fvVectorMatrix
+        (
+            convect(phi_, U_, "div(phi,U)", beyond) - fvm::laplacian(viscosity, U_)
+        )
     );
     fvVectorMatrix& matrix = *momentum_;
     outflow_ = outflow();
     matrix.diag() += inertia + given_.dragCoefficient - outflow_;
     matrix.source() +=
-        inertia*committed_.velocity + given_.dragSource + density*pores*gravity_ + pulled;
+        inertia*committed_.velocity + given_.dragSource + density*pores*gravity_
+      + outOf(*stressForce_) - outOf(*beyond);
 
     momentumDiagonal_ = matrix.A()().primitiveField();
     const vectorField push(-pores*pressureGradient_);

@@ -2,10 +2,11 @@
 //
 //   (m h - m_old h_old)/dtau + sum phi_f h_f - sum (eps kappa/c_p)_f grad(h).S = S - K T(h) + eps V (p0 - p0_old)/dtau
 //
-// T linear in h: T = T* + (h - h*)/c_p. Because m = m_old - dtau sum phi_f, a uniform temperature
+// h_f as fvSchemes says, beyond upwind explicitly; T linear in h: T = T* + (h - h*)/c_p. Because m = m_old - dtau sum phi_f, a uniform temperature
 // stays uniform whatever the flow does (p0, the model's pressure, changes in a closed domain alone), and energy closes to the linear tolerance whatever the outer
 // loop does. In the pores the gas conducts with eps kappa: its share of the cross-section.
 #include "gas.H"
+#include "convection.H"
 #include "fvm.H"
 #include "fvc.H"
 
@@ -23,13 +24,20 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
         "conduction", fvc::interpolate(voidFraction_*thermo_->alphahe())
     );
     enthalpy_.reset();
-    enthalpy_.reset(new fvScalarMatrix(fvm::div(phi_, h) - fvm::laplacian(conduction, h)));
+    autoPtr<surfaceScalarField> beyond;
+    enthalpy_.reset
+    (
+        new fvScalarMatrix
+        (
+            convect(phi_, h, "div(phi,h)", beyond) - fvm::laplacian(conduction, h)
+        )
+    );
     fvScalarMatrix& matrix = *enthalpy_;
     matrix.diag() +=
         committed_.mass/span + given_.heatCoefficient/heatCapacity_ - outflow();
     matrix.source() += committed_.mass*committed_.enthalpy/span
       + given_.heatSource - given_.heatCoefficient*temperatureBase_
-      + compression*given_.voidFraction*mesh_.cellVolumes();
+      - outOf(*beyond) + compression*given_.voidFraction*mesh_.cellVolumes();
     boundary_.addHeat
     (
         window_.processEnd,
