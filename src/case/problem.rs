@@ -56,6 +56,9 @@ impl CaseErrors {
     /// So many errors are shown with their lines: each shows its whole line, which may hold them all.
     const SHOWN: usize = 100;
 
+    /// Length in bytes of the longest line that is shown; nobody reads longer ones.
+    const LONGEST_LINE: usize = 1000;
+
     /// The errors with the lines of the file that they are about; of very many the first ones.
     pub fn render(&self) -> String {
         let handler = GraphicalReportHandler::new_themed(GraphicalTheme::unicode_nocolor());
@@ -65,9 +68,20 @@ impl CaseErrors {
                 problem,
                 source: &self.source,
             };
-            if handler.render_report(&mut text, &shown).is_err() {
-                text.push_str(&problem.message);
-                text.push('\n');
+            let readable = self.longest_line(problem) <= Self::LONGEST_LINE;
+            if !readable || handler.render_report(&mut text, &shown).is_err() {
+                let (
+                    path,
+                    Problem {
+                        line,
+                        message,
+                        help,
+                        ..
+                    },
+                ) = (self.path.display(), problem);
+                text.push_str(&format!(
+                    "  × {message}\n   at {path}:{line}\n  help: {help}\n\n"
+                ));
             }
         }
         let count = self.problems.len();
@@ -78,6 +92,23 @@ impl CaseErrors {
             false => "\n",
         });
         text
+    }
+}
+
+impl CaseErrors {
+    /// Length in bytes of the longest line that a problem is about.
+    fn longest_line(&self, problem: &Problem) -> usize {
+        let text = self.source.inner().as_bytes();
+        let end_of_line = |from: usize| {
+            let rest = text[from..].iter().position(|&byte| byte == b'\n');
+            rest.map_or(text.len(), |length| from + length)
+        };
+        let before = text[..problem.span.start]
+            .iter()
+            .rposition(|&byte| byte == b'\n');
+        let start = before.map_or(0, |newline| newline + 1);
+        let lines = text[start..end_of_line(problem.span.end)].split(|&byte| byte == b'\n');
+        lines.map(<[u8]>::len).max().unwrap_or(0)
     }
 }
 
@@ -139,11 +170,11 @@ mod tests {
 
     #[test]
     fn of_very_many_errors_the_first_are_shown_and_all_counted() {
-        let text = "x".repeat(5000);
+        let text = "x\n".repeat(5000);
         let problem = |start: usize| Problem {
             message: "`x` is wrong".into(),
             help: "write y".into(),
-            span: start..start + 1,
+            span: 2 * start..2 * start + 1,
             line: 0,
         };
         let errors = CaseErrors::new(
@@ -154,5 +185,19 @@ mod tests {
         let shown = errors.render();
         assert_eq!(shown.matches("help:").count(), 100);
         assert!(shown.ends_with("5000 errors in case.toml, of which the first 100 are shown\n"));
+    }
+    #[test]
+    fn an_error_in_a_line_of_a_hundred_thousand_letters_is_told_without_the_line() {
+        let text = format!("ok = 1\nx = \"{}\"\n", "y".repeat(100_000));
+        let problem = Problem {
+            message: "`x` is too long".into(),
+            help: "shorten it".into(),
+            span: 90_000..90_001,
+            line: 0,
+        };
+        let errors = CaseErrors::new(Path::new("case.toml"), &text, vec![problem]);
+        let shown = errors.render();
+        assert!(shown.contains("× `x` is too long\n   at case.toml:2\n  help: shorten it\n"));
+        assert!(shown.len() < 200, "{}", shown.len());
     }
 }

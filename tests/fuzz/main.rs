@@ -3,7 +3,8 @@
 //!
 //! A worker mutates files of a corpus, an input for each number from a fixed seed on, and executes
 //! them with 2 GiB of address space. The parent sees whether it dies (an abort, an overflow of the
-//! stack, memory) or stands still. A finding is saved with its files, named by seed and number.
+//! stack, memory) or stands still. A finding is saved with its files, named by seed and number;
+//! `cargo test --test fuzz -- --replay FOLDER` executes it again.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
@@ -14,6 +15,8 @@ mod polymesh;
 mod random;
 mod worker;
 
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -40,6 +43,21 @@ fn target(name: &str) -> Box<dyn Target> {
     }
 }
 
+/// Executes a finding again, in this process, so that a backtrace can be seen. The folder's
+/// parent names the target.
+fn replay(folder: &Path) -> ExitCode {
+    let name = folder.parent().and_then(Path::file_name).unwrap();
+    let read = |path: PathBuf| {
+        let file = path.file_name().unwrap().to_string_lossy().into_owned();
+        (file, fs::read(&path).unwrap())
+    };
+    let entries = fs::read_dir(folder).unwrap();
+    let files = entries.map(|entry| read(entry.unwrap().path())).collect();
+    let accepted = target(&name.to_string_lossy()).execute(&files);
+    println!("{}", if accepted { "accepted" } else { "refused" });
+    ExitCode::SUCCESS
+}
+
 /// The seed, unless another is given: the day of the first run.
 const SEED: u64 = 20_261_121;
 
@@ -51,6 +69,9 @@ fn main() -> ExitCode {
     };
     if words.first().is_some_and(|word| word == "--worker") {
         return worker::run(&words[1..]);
+    }
+    if let Some(folder) = value("--replay") {
+        return replay(Path::new(folder));
     }
     // What `cargo test` hands to every test program: a list, filters.
     if words.iter().any(|word| word == "--list") {
