@@ -289,6 +289,12 @@ fn the_hdf5_file_holds_the_values_of_the_csv_file_bit_for_bit() {
     }
     let probe = file.dataset("probes/axis/temperature").unwrap();
     assert_eq!(probe.shape(), [5, 25]);
+    let probe = file.dataset("probes/axis/particles/temperature").unwrap();
+    assert_eq!(probe.shape(), [5, 25]);
+    let table = fs::read_to_string(out.join("probes/probes_0004.csv")).unwrap();
+    let head = "probe,distance [m],x [m],y [m],z [m],temperature [K],";
+    assert!(table.starts_with(head), "{table}");
+    assert_eq!(table.lines().count(), 1 + 25);
     let field = file.dataset("snapshots/0004/gas/velocity").unwrap();
     assert_eq!(field.shape(), [48, 3]);
 }
@@ -388,8 +394,9 @@ fn a_probe_outside_the_mesh_and_an_unknown_patch_are_refused_at_the_start() {
         recorder.start(&world.moment()).unwrap_err().to_string()
     };
     let mut case = fake::case();
-    case.probes[0].from.x = 1.0;
-    case.probes[0].to.x = 1.0;
+    for point in &mut case.probes[0].points {
+        point.x = 1.0;
+    }
     let text = refusal(&case, "probe");
     assert!(
         text.contains("no point of the probe `axis` lies inside the gas mesh"),

@@ -46,7 +46,7 @@ pub struct Case {
     pub liggghts: External,
     /// What is written.
     pub output: Output,
-    /// Lines along which fields are sampled.
+    /// Points at which fields are sampled.
     pub probes: Vec<Probe>,
     /// Quantities of interest with their bands.
     pub quantities: Vec<Quantity>,
@@ -282,17 +282,17 @@ pub struct Output {
     pub particles: Vec<String>,
 }
 
-/// A line of sample points.
-#[derive(Clone, Debug)]
+/// Points at which fields are sampled.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
     /// Name.
     pub name: String,
-    /// First point in m.
-    pub from: Vec3,
-    /// Last point in m.
-    pub to: Vec3,
-    /// Number of points.
-    pub points: usize,
+    /// The points in m.
+    pub points: Vec<Vec3>,
+    /// Whether the gas is sampled.
+    pub gas: bool,
+    /// Whether the particles are.
+    pub particles: bool,
 }
 
 /// A quantity of interest.
@@ -320,10 +320,22 @@ pub enum Measure {
         /// The two patches.
         patches: [String; 2],
     },
-    /// Statistic over all particles.
+    /// Statistic of a gas field.
+    Gas {
+        /// Field: `temperature` (K), `pressure` (Pa), `density` (kg/m³), `speed` (m/s),
+        /// `void_fraction`.
+        field: String,
+        /// Where.
+        over: GasPlace,
+        /// `mean`, `min` or `max`.
+        statistic: Statistic,
+    },
+    /// Statistic over particles.
     Particles {
         /// Field: `temperature` (K).
         field: String,
+        /// Which.
+        over: ParticlePlace,
         /// `mean`, `min` or `max`.
         statistic: Statistic,
     },
@@ -334,6 +346,28 @@ pub enum Measure {
         /// Which one.
         number: usize,
     },
+}
+
+/// Where a statistic of the gas is taken.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum GasPlace {
+    /// In all cells; the mean is over the gas' volume.
+    Everywhere,
+    /// On a patch; the mean is over its area.
+    Patch(String),
+    /// At the points of a probe.
+    Probe(String),
+}
+
+/// Of which particles a statistic is taken.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ParticlePlace {
+    /// Of all.
+    Everywhere,
+    /// Of one population, by its index.
+    Population(u32),
+    /// Of those at the points of a probe.
+    Probe(String),
 }
 
 /// Statistics.

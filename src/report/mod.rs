@@ -5,6 +5,7 @@ pub(crate) mod number;
 pub(crate) mod page;
 mod picture;
 pub(crate) mod plot;
+mod probes;
 mod section;
 
 use std::path::{Path, PathBuf};
@@ -41,6 +42,11 @@ pub fn write(directory: &Path) -> Result<PathBuf, ResultsError> {
         &picture::render(directory)?,
     );
     page.section("Over time", "", &plots(&summary, &series));
+    let sampled = probes::render(directory)?;
+    if !sampled.is_empty() {
+        let text = "Fields at the points of the case's probes, snapshot by snapshot.";
+        page.section("Probes", text, &sampled);
+    }
     page.section(
         "Ledger",
         "What did not close, relative to all that moved, over the whole run.",

@@ -64,7 +64,7 @@ pub enum ResultsError {
     },
     /// A probe with no point in the gas mesh.
     #[error("no point of the probe `{probe}` lies inside the gas mesh")]
-    #[diagnostic(help("move `line.from` and `line.to` of the probe into the mesh"))]
+    #[diagnostic(help("move the points of the probe into the mesh"))]
     ProbeOutside {
         /// Name of the probe.
         probe: String,

@@ -1,17 +1,17 @@
 //! Results of a run: what is written while it runs, and how it is read back.
 //!
 //! A result directory holds `summary.json`, `status.json`, `series.csv`, `results.h5`, `case.toml`,
-//! `gas.pvd` with `gas/gas_NNNN.vtu` and `particles.pvd` with `particles/particles_NNNN.vtp`.
+//! `gas.pvd` with `gas/gas_NNNN.vtu`, `particles.pvd` with `particles/particles_NNNN.vtp`, and
+//! `probes/probes_NNNN.csv` where the case has probes.
 //! Every time in them is process time, unless its name begins with `motion_`.
 
 mod error;
 pub(crate) mod files;
-// Only HDF5 holds probes, units and descriptions.
+// Only HDF5 holds descriptions.
 #[cfg_attr(not(feature = "hdf5"), allow(dead_code))]
-mod locate;
+mod probe;
 pub mod quantities;
 pub mod read;
-
 mod recorder;
 mod resume;
 mod series;

@@ -6,7 +6,7 @@ use calcine_coupler::mesh::Mesh;
 use calcine_coupler::observer::Moment;
 
 use super::ResultsError;
-use super::locate::Line;
+use super::probe::{Sample, Site};
 use super::series::{Column, Row};
 use super::snapshot::Field;
 use crate::case::model::Case;
@@ -22,7 +22,7 @@ impl Store {
         _mesh: &Mesh,
         _columns: &[Column],
         _tracked: &[u64],
-        _lines: &[Line],
+        _sites: &[Site],
     ) -> Result<Self, ResultsError> {
         Ok(Self)
     }
@@ -44,7 +44,7 @@ impl Store {
         _moment: &Moment<'_>,
         _gas: &[Field<'_>],
         _particles: &[Field<'_>],
-        _lines: &[Line],
+        _samples: &[Sample<'_>],
     ) -> Result<(), ResultsError> {
         Ok(())
     }

@@ -5,8 +5,11 @@ use calcine_coupler::observer::Moment;
 use serde::{Deserialize, Serialize};
 
 use super::ResultsError;
+use super::probe::Site;
 use super::summary::{QuantityResult, Verdict};
-use crate::case::model::{Band, Case, Expect, Measure, Quantity, Statistic};
+use crate::case::model::{
+    Band, Case, Expect, GasPlace, Measure, ParticlePlace, Quantity, Statistic,
+};
 
 /// The largest distance from a value that a band allows, in the value's unit.
 pub fn allowance(band: Band, value: f64) -> f64 {
@@ -30,8 +33,13 @@ pub(crate) fn statistic(statistic: Statistic, values: &[f64]) -> f64 {
 
 /// Refuses patches that the mesh lacks.
 pub(super) fn check(quantity: &Quantity, mesh: &Mesh) -> Result<(), ResultsError> {
-    let Measure::Difference { patches, .. } = &quantity.measure else {
-        return Ok(());
+    let patches: &[String] = match &quantity.measure {
+        Measure::Difference { patches, .. } => patches,
+        Measure::Gas {
+            over: GasPlace::Patch(patch),
+            ..
+        } => std::slice::from_ref(patch),
+        _ => return Ok(()),
     };
     match patches.iter().find(|name| mesh.patch(name).is_none()) {
         None => Ok(()),
@@ -50,15 +58,57 @@ pub(super) fn check(quantity: &Quantity, mesh: &Mesh) -> Result<(), ResultsError
 
 /// The quantity at a moment, in its unit; NaN where it does not exist: a particle that is gone, a
 /// pressure before the first window, when none is solved yet.
-pub(super) fn evaluate(quantity: &Quantity, moment: &Moment<'_>) -> f64 {
+pub(super) fn evaluate(quantity: &Quantity, moment: &Moment<'_>, sites: &[Site]) -> f64 {
     match &quantity.measure {
-        Measure::Difference { field, .. } if field == "pressure" && moment.windows == 0 => f64::NAN,
+        Measure::Difference { field, .. } | Measure::Gas { field, .. }
+            if field == "pressure" && moment.windows == 0 =>
+        {
+            f64::NAN
+        }
         Measure::Difference { field, patches } => {
-            area_mean(moment, field, &patches[0]) - area_mean(moment, field, &patches[1])
+            let mean = |patch| weighted(Statistic::Mean, &on_patch(moment, field, patch));
+            mean(&patches[0]) - mean(&patches[1])
+        }
+        Measure::Gas {
+            field,
+            over,
+            statistic: which,
+        } => {
+            let values = match over {
+                GasPlace::Everywhere => in_cells(moment, field),
+                GasPlace::Patch(patch) => on_patch(moment, field, patch),
+                GasPlace::Probe(probe) => {
+                    let cells = site(sites, probe).map_or(&[][..], |site| &site.cells);
+                    let inside = cells.iter().flatten();
+                    inside
+                        .map(|&cell| (in_cell(moment, field, cell), 1.0))
+                        .collect()
+                }
+            };
+            weighted(*which, &values)
         }
         Measure::Particles {
-            statistic: which, ..
-        } => statistic(*which, moment.particle_temperature),
+            over,
+            statistic: which,
+            ..
+        } => {
+            let (bed, all) = (moment.particles, moment.particle_temperature);
+            let values: Vec<f64> = match over {
+                ParticlePlace::Everywhere => return statistic(*which, all),
+                ParticlePlace::Population(index) => {
+                    let pairs = bed.population.iter().zip(all);
+                    let own = pairs.filter(|(population, _)| *population == index);
+                    own.map(|(_, &value)| value).collect()
+                }
+                ParticlePlace::Probe(probe) => {
+                    let places = site(sites, probe)
+                        .map_or(Vec::new(), |site| site.particles(bed.position, bed.radius));
+                    let found = places.into_iter().flatten();
+                    found.filter_map(|place| all.get(place).copied()).collect()
+                }
+            };
+            statistic(*which, &values)
+        }
         Measure::Particle { number, .. } => number
             .checked_sub(1)
             .and_then(|place| moment.particle_temperature.get(place))
@@ -67,29 +117,66 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &Moment<'_>) -> f64 {
     }
 }
 
-/// Area mean of a gas field on a patch: the pressure is carried from the cell to the face centre
-/// with the cell's gradient, p_f = p_c + ∇p·(x_f − x_c); a temperature is the cell's.
-fn area_mean(moment: &Moment<'_>, field: &str, patch: &str) -> f64 {
+fn site<'s>(sites: &'s [Site], name: &str) -> Option<&'s Site> {
+    sites.iter().find(|site| site.probe.name == name)
+}
+
+/// A statistic over pairs of value and weight; NaN where there are none.
+fn weighted(which: Statistic, pairs: &[(f64, f64)]) -> f64 {
+    if which == Statistic::Mean {
+        let total: f64 = pairs.iter().map(|pair| pair.1).sum();
+        return pairs
+            .iter()
+            .map(|(value, weight)| value * weight)
+            .sum::<f64>()
+            / total;
+    }
+    let values: Vec<f64> = pairs.iter().map(|pair| pair.0).collect();
+    statistic(which, &values)
+}
+
+/// A gas field in a cell.
+fn in_cell(moment: &Moment<'_>, field: &str, cell: usize) -> f64 {
+    let gas = moment.gas;
+    match field {
+        "pressure" => gas.pressure[cell],
+        "temperature" => gas.temperature[cell],
+        "density" => gas.density[cell],
+        "speed" => gas.velocity[cell].norm(),
+        "void_fraction" => moment.bed.void_fraction[cell],
+        _ => f64::NAN,
+    }
+}
+
+/// A gas field in all cells, each with its volume of gas in m³.
+fn in_cells(moment: &Moment<'_>, field: &str) -> Vec<(f64, f64)> {
+    let volumes = moment.mesh.cell_volume().iter().enumerate();
+    volumes
+        .map(|(cell, volume)| {
+            let gas = volume * moment.bed.void_fraction[cell];
+            (in_cell(moment, field, cell), gas)
+        })
+        .collect()
+}
+
+/// A gas field on the faces of a patch, each with its area in m²: the pressure is carried from the
+/// cell to the face centre with the cell's gradient, p_f = p_c + ∇p·(x_f − x_c); others are the
+/// cell's.
+fn on_patch(moment: &Moment<'_>, field: &str, patch: &str) -> Vec<(f64, f64)> {
     let mesh = moment.mesh;
     let Some(patch) = mesh.patch(patch) else {
-        return f64::NAN;
+        return Vec::new();
     };
-    let (mut sum, mut area) = (0.0, 0.0);
-    for face in patch.faces() {
+    let on_face = |face: usize| {
         let cell = mesh.owner()[face] as usize;
-        let value = match field {
-            "pressure" => {
-                let arm = mesh.face_centre()[face] - mesh.cell_centre()[cell];
-                moment.gas.pressure[cell] + moment.gas.pressure_gradient[cell].dot(&arm)
-            }
-            "temperature" => moment.gas.temperature[cell],
-            _ => f64::NAN,
-        };
-        let weight = mesh.face_area()[face].norm();
-        sum += weight * value;
-        area += weight;
-    }
-    sum / area
+        let mut value = in_cell(moment, field, cell);
+        if field == "pressure" {
+            let arm = mesh.face_centre()[face] - mesh.cell_centre()[cell];
+            value += moment.gas.pressure_gradient[cell].dot(&arm);
+        }
+        (value, mesh.face_area()[face].norm())
+    };
+    patch.faces().map(on_face).collect()
 }
 
 /// The value of each quantity that its expectation speaks of, once it is known.
@@ -110,7 +197,7 @@ impl Captured {
 
     /// Takes the value of each quantity at the first moment at or after its time; a quantity
     /// without a time keeps its latest value where `latest` is set.
-    pub fn take(&mut self, case: &Case, moment: &Moment<'_>, latest: bool) {
+    pub fn take(&mut self, case: &Case, moment: &Moment<'_>, sites: &[Site], latest: bool) {
         let time = moment.clocks.process.seconds();
         for (slot, quantity) in self.values.iter_mut().zip(&case.quantities) {
             let wanted = match expected_at(quantity) {
@@ -118,7 +205,7 @@ impl Captured {
                 None => latest,
             };
             if wanted {
-                let value = evaluate(quantity, moment);
+                let value = evaluate(quantity, moment, sites);
                 *slot = Some((Some(value).filter(|value| value.is_finite()), time));
             }
         }

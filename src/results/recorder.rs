@@ -8,7 +8,7 @@ use calcine_coupler::observer::{Moment, Observer, ObserverError, Timing};
 use calcine_coupler::part::About;
 use calcine_coupler::time::Ticks;
 
-use super::locate::Line;
+use super::probe::{self, Site};
 use super::quantities::{self, Captured};
 use super::resume::{self, Counters};
 use super::series::{self, Row, TRACKED_PARTICLES, Table};
@@ -38,7 +38,7 @@ pub struct RunInfo {
 /// What exists once the first moment is known.
 struct Open {
     table: Table,
-    lines: Vec<Line>,
+    sites: Vec<Site>,
     cells: Cells,
     /// Rows not yet in the HDF5 file.
     pending: Vec<Row>,
@@ -72,7 +72,8 @@ impl Recorder {
         if resume.is_none() && out.join(SUMMARY).exists() {
             return Err(occupied(out));
         }
-        for folder in ["gas", "particles"] {
+        let probes = (!case.probes.is_empty()).then_some("probes");
+        for folder in ["gas", "particles"].into_iter().chain(probes) {
             files::directory(&out.join(folder))?;
         }
         let counters = match resume {
@@ -122,12 +123,7 @@ impl Recorder {
             self.counters.tracked = moment.particles.id.to_vec();
         }
         let columns = series::columns(&self.case, moment);
-        let lines = self
-            .case
-            .probes
-            .iter()
-            .map(|probe| Line::new(probe, moment.mesh))
-            .collect::<Result<Vec<_>, _>>()?;
+        let sites = probe::sites(&self.case.probes, moment.mesh)?;
         let tracked = &self.counters.tracked;
         let table = if self.resumed {
             Table::resume(&self.directory, &columns, tracked)?
@@ -138,11 +134,11 @@ impl Recorder {
         let store = if self.resumed {
             Store::resume(&path, &columns, self.counters.rows)?
         } else {
-            Store::create(&path, &self.case, moment.mesh, &columns, tracked, &lines)?
+            Store::create(&path, &self.case, moment.mesh, &columns, tracked, &sites)?
         };
         self.open = Some(Open {
             table,
-            lines,
+            sites,
             cells: Cells::new(moment.mesh),
             pending: Vec::new(),
             store,
@@ -160,7 +156,10 @@ impl Recorder {
         self.count(moment);
         let now = moment.clocks.process;
         if self.counters.captured.is_due(&self.case, now.seconds()) {
-            self.counters.captured.take(&self.case, moment, false);
+            let sites = self.open.as_ref().map_or(&[][..], |open| &open.sites);
+            self.counters
+                .captured
+                .take(&self.case, moment, sites, false);
         }
         if now.count() >= self.counters.next_row {
             self.row(moment)?;
@@ -194,7 +193,8 @@ impl Recorder {
             self.snapshot(moment)?;
         }
         self.flush()?;
-        self.counters.captured.take(&self.case, moment, true);
+        let sites = self.open.as_ref().map_or(&[][..], |open| &open.sites);
+        self.counters.captured.take(&self.case, moment, sites, true);
         let results = self.counters.captured.results(&self.case, true);
         self.summarise(moment, quantities::overall(results.values()))
     }
@@ -217,7 +217,9 @@ impl Recorder {
             Some(window) => window.acceleration(),
             None => self.case.time.acceleration.at(moment.clocks.process).0,
         };
-        let row = series::row(&self.case, moment, acceleration, &self.counters.tracked);
+        let sites = self.open.as_ref().map_or(&[][..], |open| &open.sites);
+        let tracked = &self.counters.tracked;
+        let row = series::row(&self.case, moment, acceleration, tracked, sites);
         let every = self
             .case
             .output
@@ -246,8 +248,14 @@ impl Recorder {
         vtk::write_gas(&path, moment.mesh, &open.cells, now.seconds(), &gas)?;
         let path = self.directory.join(resume::particle_file(number));
         vtk::write_particles(&path, moment.particles.position, now.seconds(), &particles)?;
+        let bed = moment.particles;
+        let samples = probe::samples(&open.sites, &gas, &particles, bed.position, bed.radius);
+        if !samples.is_empty() {
+            let path = self.directory.join(resume::probe_file(number));
+            probe::write(&path, &samples)?;
+        }
         open.store
-            .snapshot(number, moment, &gas, &particles, &open.lines)?;
+            .snapshot(number, moment, &gas, &particles, &samples)?;
         self.counters.snapshots.push(now.seconds());
         self.counters.last_snapshot = Some(now.count());
         self.counters.next_snapshot = following(now, self.case.output.every);
@@ -307,7 +315,8 @@ impl Recorder {
         let case = &self.case;
         let over = verdict != Verdict::Running;
         let mut captured = self.counters.captured.clone();
-        captured.take(case, moment, true);
+        let sites = self.open.as_ref().map_or(&[][..], |open| &open.sites);
+        captured.take(case, moment, sites, true);
         let steps = case.time.acceleration.steps();
         let summary = Summary {
             format: 1,

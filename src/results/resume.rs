@@ -49,6 +49,11 @@ pub(super) fn particle_file(number: usize) -> String {
     format!("particles/particles_{number:04}.vtp")
 }
 
+/// Name of a snapshot's file of probes.
+pub(super) fn probe_file(number: usize) -> String {
+    format!("probes/probes_{number:04}.csv")
+}
+
 /// Copies a result directory's files and the counters into a checkpoint directory.
 pub(super) fn save(
     results: &Path,
@@ -94,8 +99,11 @@ pub(super) fn restore(
     if cfg!(feature = "hdf5") {
         files::copy(&checkpoint.join(STORE), &results.join(STORE))?;
     }
-    for folder in ["gas", "particles"] {
-        remove_later(&results.join(folder), count)?;
+    for folder in ["gas", "particles", "probes"] {
+        let folder = results.join(folder);
+        if folder.is_dir() {
+            remove_later(&folder, count)?;
+        }
     }
     Ok(counters)
 }

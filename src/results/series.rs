@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use calcine_coupler::observer::Moment;
 
+use super::probe::Site;
 use super::quantities::{evaluate, statistic};
 use super::{ResultsError, SERIES};
 use crate::case::model::{Case, Statistic};
@@ -137,7 +138,13 @@ pub(super) struct Row {
 }
 
 /// The row of a moment, in the order of [`columns`].
-pub(super) fn row(case: &Case, moment: &Moment<'_>, acceleration: f64, tracked: &[u64]) -> Row {
+pub(super) fn row(
+    case: &Case,
+    moment: &Moment<'_>,
+    acceleration: f64,
+    tracked: &[u64],
+    sites: &[Site],
+) -> Row {
     let mut values = vec![
         moment.clocks.process.seconds(),
         moment.clocks.motion.seconds(),
@@ -147,7 +154,7 @@ pub(super) fn row(case: &Case, moment: &Moment<'_>, acceleration: f64, tracked: 
     values.extend(
         case.quantities
             .iter()
-            .map(|quantity| evaluate(quantity, moment)),
+            .map(|quantity| evaluate(quantity, moment, sites)),
     );
     for which in [Statistic::Mean, Statistic::Min, Statistic::Max] {
         values.push(statistic(which, moment.particle_temperature));

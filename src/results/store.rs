@@ -12,7 +12,7 @@ use hdf5::{Dataset, File, FileBuilder, Group, H5Type, Location};
 use ndarray::{Array2, ArrayView1, ArrayView2};
 
 use super::ResultsError;
-use super::locate::Line;
+use super::probe::{Column as Sampled, Sample, Site};
 use super::series::{Column, Row};
 use super::snapshot::{Field, Values};
 use crate::case::model::Case;
@@ -39,7 +39,7 @@ impl Store {
         mesh: &Mesh,
         columns: &[Column],
         tracked: &[u64],
-        lines: &[Line],
+        sites: &[Site],
     ) -> Result<Self, ResultsError> {
         let begin = || -> hdf5::Result<Self> {
             let file = unlocked().create(path)?;
@@ -55,7 +55,7 @@ impl Store {
                 .collect::<hdf5::Result<_>>()?;
             let particles = create_tracks(&series, tracked)?;
             file.create_group("snapshots")?;
-            create_probes(&file.create_group("probes")?, lines)?;
+            create_probes(&file.create_group("probes")?, sites)?;
             Ok(Self {
                 path: path.to_owned(),
                 file,
@@ -139,7 +139,7 @@ impl Store {
         moment: &Moment<'_>,
         gas: &[Field<'_>],
         particles: &[Field<'_>],
-        lines: &[Line],
+        samples: &[Sample<'_>],
     ) -> Result<(), ResultsError> {
         let write = || -> hdf5::Result<()> {
             let group = self.file.create_group(&format!("snapshots/{number:04}"))?;
@@ -165,10 +165,14 @@ impl Store {
             for field in std::iter::once(&position).chain(particles) {
                 write_field(&bed, field)?;
             }
-            for line in lines {
-                let probe = self.file.group("probes")?.group(&line.name)?;
-                for field in gas {
-                    write_probe(&probe, line, field, number)?;
+            for sample in samples {
+                let probe = self.file.group("probes")?.group(&sample.site.probe.name)?;
+                for column in &sample.columns {
+                    if column.of_particles {
+                        write_probe(&probe.group("particles")?, column, number)?;
+                    } else {
+                        write_probe(&probe, column, number)?;
+                    }
                 }
             }
             Ok(())
@@ -321,26 +325,23 @@ fn write_vectors(group: &Group, name: &str, list: &[Vec3]) -> hdf5::Result<Datas
     Ok(dataset)
 }
 
-fn create_probes(group: &Group, lines: &[Line]) -> hdf5::Result<()> {
-    for line in lines {
-        let probe = group.create_group(&line.name)?;
-        let dataset = write_vectors(&probe, "position", &line.points)?;
+fn create_probes(group: &Group, sites: &[Site]) -> hdf5::Result<()> {
+    for site in sites {
+        let probe = group.create_group(&site.probe.name)?;
+        let dataset = write_vectors(&probe, "position", &site.probe.points)?;
         describe(&dataset, "m", "points of the probe")?;
+        if site.probe.particles {
+            probe.create_group("particles")?;
+        }
     }
     Ok(())
 }
 
-/// Appends one snapshot's row to a probe's matrix snapshot × point; vectors by their magnitude.
-fn write_probe(group: &Group, line: &Line, field: &Field<'_>, number: usize) -> hdf5::Result<()> {
-    let points = line.cells.len();
-    let value = |cell: Option<usize>| match (cell, field.values) {
-        (Some(cell), Values::Scalar(list)) => list[cell],
-        (Some(cell), Values::Vector(list)) => list[cell].norm(),
-        _ => f64::NAN,
-    };
-    let row: Vec<f64> = line.cells.iter().map(|&cell| value(cell)).collect();
-    let dataset = if group.link_exists(field.name) {
-        group.dataset(field.name)?
+/// Appends one snapshot's row to a probe's matrix snapshot × point.
+fn write_probe(group: &Group, column: &Sampled, number: usize) -> hdf5::Result<()> {
+    let points = column.values.len();
+    let dataset = if group.link_exists(column.name) {
+        group.dataset(column.name)?
     } else {
         let dataset = group
             .new_dataset::<f64>()
@@ -348,15 +349,11 @@ fn write_probe(group: &Group, line: &Line, field: &Field<'_>, number: usize) -> 
             .chunk((16, points))
             .shuffle()
             .deflate(1)
-            .create(field.name)?;
-        let text = format!(
-            "{} of the cell that holds each point (vectors: magnitude), snapshot by point",
-            field.description
-        );
-        describe(&dataset, field.unit, &text)?;
+            .create(column.name)?;
+        describe(&dataset, column.unit, &column.description)?;
         dataset
     };
-    let view = ArrayView2::from_shape((1, points), &row)
+    let view = ArrayView2::from_shape((1, points), &column.values)
         .map_err(|error| hdf5::Error::Internal(error.to_string()))?;
     dataset.resize((number + 1, points))?;
     dataset.write_slice(view, (number..number + 1, ..))

@@ -90,9 +90,11 @@ pub fn case() -> Case {
         },
         probes: vec![Probe {
             name: "axis".into(),
-            from: Vec3::new(0.005, 0.005, 0.0),
-            to: Vec3::new(0.005, 0.005, 0.12),
-            points: 25,
+            points: (0..25)
+                .map(|i| Vec3::new(0.005, 0.005, 0.005 * f64::from(i)))
+                .collect(),
+            gas: true,
+            particles: true,
         }],
         quantities: vec![
             quantity(
@@ -122,6 +124,7 @@ pub fn case() -> Case {
                 "K",
                 Measure::Particles {
                     field: "temperature".into(),
+                    over: ParticlePlace::Everywhere,
                     statistic: Statistic::Mean,
                 },
                 Some(Expect {

@@ -8,6 +8,8 @@ mod mesh;
 mod output;
 mod particles;
 mod place;
+mod probes;
+mod quantities;
 mod sizes;
 mod time;
 mod zone;
@@ -51,8 +53,8 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     let openfoam = coupling::external(root, "openfoam", folder);
     let liggghts = coupling::external(root, "liggghts", folder);
     let output = output::output(root);
-    let probes = output::probes(root);
-    let quantities = output::quantities(root, mesh.as_ref(), particles.as_deref());
+    let probes = probes::probes(root);
+    let quantities = quantities::quantities(root, mesh.as_ref(), particles.as_deref(), &probes);
     let (time, _) = time?;
     Some(Case {
         name: path

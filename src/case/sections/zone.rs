@@ -5,7 +5,7 @@ use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::physics::Vec3;
 
 use crate::case::table::Reader;
-use crate::case::units::Dimension;
+use crate::case::units::{Dimension, shown};
 
 const EXAMPLE: &str = "for example box = { from = \"0 0 0 mm\", to = \"10 10 50 mm\" }";
 
@@ -40,7 +40,7 @@ pub(super) fn zone(table: &Reader<'_>) -> Option<Zone> {
         });
     }
     if (0..3).any(|axis| to[axis] <= from[axis]) {
-        let rule = format!("is {} {} {} m", to.x, to.y, to.z);
+        let rule = format!("is {} {} {} m", shown(to.x), shown(to.y), shown(to.z));
         shape.fail("to", rule, "each coordinate must be above that of `from`");
         return None;
     }

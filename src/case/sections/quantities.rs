@@ -1,0 +1,306 @@
+//! `[[quantities]]`.
+
+use super::patches;
+use crate::case::model::{
+    Band, Expect, GasPlace, Measure, MeshSpec, ParticlePlace, Place, Population, Probe, Quantity,
+    Statistic,
+};
+use crate::case::table::Reader;
+use crate::case::units::{Dimension, difference};
+
+pub(super) fn quantities(
+    root: &Reader<'_>,
+    mesh: Option<&MeshSpec>,
+    populations: Option<&[Population]>,
+    probes: &[Probe],
+) -> Vec<Quantity> {
+    let known = Known {
+        mesh,
+        populations,
+        probes,
+    };
+    let mut made: Vec<Quantity> = Vec::new();
+    for table in &root.tables("quantities") {
+        let Some(quantity) = quantity(table, &known) else {
+            continue;
+        };
+        if made.iter().any(|other| other.name == quantity.name) {
+            table.fail(
+                "name",
+                format!("is \"{}\" a second time", quantity.name),
+                "names must differ",
+            );
+        }
+        made.push(quantity);
+    }
+    made
+}
+
+fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
+    let name = table.required_text("name", "\"pressure_drop\"");
+    let example = "measure = { difference = \"pressure\", patches = [\"bottom\", \"top\"] }";
+    let measure = table.required_table("measure", example).and_then(|reader| {
+        let measure = measure(&reader, known);
+        reader.finish();
+        measure
+    });
+    // Keys are read even where the measure could not be, so that they are not called unknown.
+    let (agree, expected) = (table.has("agree"), table.table("expect"));
+    let Some((measure, field)) = measure else {
+        table.finish();
+        return None;
+    };
+    let (dimension, unit) = match field {
+        "pressure" => (Dimension::PRESSURE, "Pa"),
+        "density" => (Dimension::DENSITY, "kg/m^3"),
+        "speed" => (Dimension::VELOCITY, "m/s"),
+        "void_fraction" => (Dimension::NONE, "1"),
+        _ => (Dimension::TEMPERATURE, "K"),
+    };
+    let agree = if agree {
+        band(table, "agree", dimension)
+    } else {
+        None
+    };
+    let expect = expected.and_then(|reader| {
+        let at = reader.quantity("at", Dimension::TIME);
+        let value = reader.required_quantity("value", dimension);
+        if !reader.has("within") {
+            reader.missing("within", "\"5 %\"");
+        }
+        let within = band(&reader, "within", dimension);
+        reader.finish();
+        Some(Expect {
+            at,
+            value: value?,
+            within: within?,
+        })
+    });
+    table.finish();
+    Some(Quantity {
+        name: name?.into(),
+        measure,
+        unit,
+        agree,
+        expect,
+    })
+}
+
+/// A band such as "5 %" or "0.5 K".
+fn band(table: &Reader<'_>, key: &str, dimension: Dimension) -> Option<Band> {
+    let text = table.text(key)?;
+    let made = match difference(text) {
+        Ok((number, _)) if number >= 0.0 && text.trim_end().ends_with('%') => {
+            Some(Band::Relative(number))
+        }
+        Ok((number, found)) if number >= 0.0 && found == dimension => Some(Band::Absolute(number)),
+        _ => None,
+    };
+    if made.is_none() {
+        let help = format!(
+            "write a share such as \"5 %\", or {} such as \"{}\"",
+            dimension.words(),
+            dimension.example()
+        );
+        table.fail(key, format!("is \"{text}\", which is no band"), help);
+    }
+    made
+}
+
+/// What a measure may name.
+struct Known<'a> {
+    mesh: Option<&'a MeshSpec>,
+    populations: Option<&'a [Population]>,
+    probes: &'a [Probe],
+}
+
+/// Fields whose difference between patches can be asked for.
+const DIFFERENCES: [(&str, &str); 2] = [("pressure", "pressure"), ("temperature", "temperature")];
+/// Fields of the gas.
+const GAS: [(&str, &str); 5] = [
+    ("temperature", "temperature"),
+    ("pressure", "pressure"),
+    ("density", "density"),
+    ("speed", "speed"),
+    ("void_fraction", "void_fraction"),
+];
+/// Fields of particles.
+const PARTICLES: [(&str, &str); 1] = [("temperature", "temperature")];
+
+/// The measure and the field that it is of.
+fn measure(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
+    let kinds = ["difference", "gas", "particles", "particle"];
+    let given: Vec<&str> = kinds.into_iter().filter(|kind| reader.has(kind)).collect();
+    match given[..] {
+        ["difference"] => difference_of(reader, known),
+        ["gas"] => gas(reader, known),
+        ["particles"] => particles(reader, known),
+        ["particle"] => particle(reader, known),
+        _ => {
+            reader.fail_whole(
+                "needs exactly one of difference, gas, particles and particle",
+                "for example { particles = \"temperature\", statistic = \"mean\" }",
+            );
+            None
+        }
+    }
+}
+
+fn difference_of(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
+    let field = reader.choice("difference", &DIFFERENCES);
+    let names = reader
+        .texts("patches")
+        .and_then(|names| <[String; 2]>::try_from(names).ok());
+    let Some(names) = names else {
+        reader.fail(
+            "patches",
+            "needs two patches",
+            "for example patches = [\"bottom\", \"top\"]",
+        );
+        return None;
+    };
+    for name in &names {
+        check_patch(reader, "patches", name, known.mesh);
+    }
+    let field = field?;
+    Some((
+        Measure::Difference {
+            field: field.into(),
+            patches: names,
+        },
+        field,
+    ))
+}
+
+fn gas(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
+    let field = reader.choice("gas", &GAS);
+    let patch = reader.text("patch");
+    let probe = reader.text("probe");
+    let statistic = statistic(reader, probe.is_some());
+    let over = match (patch, probe) {
+        (Some(_), Some(_)) => {
+            reader.fail("patch", "stands beside `probe`", "name one of them");
+            return None;
+        }
+        (Some(patch), None) => {
+            check_patch(reader, "patch", patch, known.mesh);
+            GasPlace::Patch(patch.into())
+        }
+        (None, Some(probe)) => GasPlace::Probe(checked_probe(reader, probe, known)?),
+        (None, None) => GasPlace::Everywhere,
+    };
+    let field = field?;
+    Some((
+        Measure::Gas {
+            field: field.into(),
+            over,
+            statistic: statistic?,
+        },
+        field,
+    ))
+}
+
+fn particles(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
+    let field = reader.choice("particles", &PARTICLES);
+    let population = reader.text("population");
+    let probe = reader.text("probe");
+    let statistic = statistic(reader, probe.is_some());
+    let over = match (population, probe) {
+        (Some(_), Some(_)) => {
+            reader.fail("population", "stands beside `probe`", "name one of them");
+            return None;
+        }
+        (Some(name), None) => {
+            // Where a population could not be read, its error is told there.
+            let all = known.populations?;
+            let found = all.iter().position(|population| population.name == name);
+            if found.is_none() {
+                let names: Vec<&str> = all.iter().map(|p| p.name.as_str()).collect();
+                let help = format!("the populations are {}", names.join(", "));
+                reader.fail("population", format!("is \"{name}\""), help);
+            }
+            ParticlePlace::Population(u32::try_from(found?).ok()?)
+        }
+        (None, Some(probe)) => ParticlePlace::Probe(checked_probe(reader, probe, known)?),
+        (None, None) => ParticlePlace::Everywhere,
+    };
+    let field = field?;
+    Some((
+        Measure::Particles {
+            field: field.into(),
+            over,
+            statistic: statistic?,
+        },
+        field,
+    ))
+}
+
+fn particle(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
+    let field = reader.choice("particle", &PARTICLES);
+    if !reader.has("number") {
+        reader.missing("number", "1");
+    }
+    let number = usize::try_from(reader.whole("number", 1..=i64::MAX)?).ok()?;
+    if let Some(count) = known.populations.and_then(count)
+        && number > count
+    {
+        reader.fail(
+            "number",
+            format!("is {number}, but the bed has {count} particles"),
+            "particles count from 1",
+        );
+    }
+    let field = field?;
+    Some((
+        Measure::Particle {
+            field: field.into(),
+            number,
+        },
+        field,
+    ))
+}
+
+/// The statistic; on a probe the mean, where none is named: it may be a single point.
+fn statistic(reader: &Reader<'_>, probe: bool) -> Option<Statistic> {
+    let statistics = [
+        ("mean", Statistic::Mean),
+        ("min", Statistic::Min),
+        ("max", Statistic::Max),
+    ];
+    if probe && !reader.has("statistic") {
+        return Some(Statistic::Mean);
+    }
+    reader.required_choice("statistic", &statistics)
+}
+
+fn check_patch(reader: &Reader<'_>, key: &str, name: &str, mesh: Option<&MeshSpec>) {
+    if let Some(known) = patches(mesh)
+        && !known.contains(&name)
+    {
+        let rule = format!("names \"{name}\", which is not a patch of the mesh");
+        reader.fail(key, rule, format!("the patches are {}", known.join(", ")));
+    }
+}
+
+fn checked_probe(reader: &Reader<'_>, name: &str, known: &Known<'_>) -> Option<String> {
+    if known.probes.iter().any(|probe| probe.name == name) {
+        return Some(name.into());
+    }
+    let names: Vec<&str> = known.probes.iter().map(|p| p.name.as_str()).collect();
+    let help = match names[..] {
+        [] => "the case has no [[probes]]".into(),
+        _ => format!("the probes are {}", names.join(", ")),
+    };
+    reader.fail("probe", format!("is \"{name}\""), help);
+    None
+}
+
+/// Number of particles, where the case alone knows it.
+fn count(populations: &[Population]) -> Option<usize> {
+    populations
+        .iter()
+        .try_fold(0usize, |sum, population| match &population.place {
+            Place::Grid { counts, .. } => sum.checked_add(counts.iter().product()),
+            _ => None,
+        })
+}
