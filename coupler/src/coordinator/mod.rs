@@ -154,7 +154,9 @@ impl<'m> Run<'m> {
         parts: Parts,
     ) -> Result<Self, RunError> {
         let mapper = Mapper::new(mesh);
-        let mapped = window::map(&mapper, plan.mapping, &smoother, &*parts.particles)?;
+        let mut timing = Timing::default();
+        let particles = &*parts.particles;
+        let mapped = window::map(&mapper, plan.mapping, &smoother, particles, &mut timing)?;
         let mut work = Workspace::default();
         work.exchange
             .heat
@@ -170,7 +172,7 @@ impl<'m> Run<'m> {
             clocks: Clocks::default(),
             windows: 0,
             ledger: Ledger::default(),
-            timing: Timing::default(),
+            timing,
             convergence: Convergence::default(),
             placement: Placement {
                 settled: true,

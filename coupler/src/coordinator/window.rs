@@ -9,6 +9,7 @@ use super::{Mapped, Run, RunError};
 use crate::exchange::{Placement, Setting};
 use crate::ledger::Ledger;
 use crate::mapping::{Mapper, Method};
+use crate::observer::Timing;
 use crate::part::{Balance, Bed, Particles};
 use crate::smoother::Smoother;
 use crate::supervisor::Supervisor;
@@ -28,6 +29,7 @@ pub(super) fn map(
     method: Method,
     smoother: &Smoother,
     particles: &dyn Particles,
+    timing: &mut Timing,
 ) -> Result<Mapped, RunError> {
     let fields = particles.fields();
     let solid_volume: Vec<f64> = fields
@@ -35,8 +37,12 @@ pub(super) fn map(
         .iter()
         .map(|r| 4.0 / 3.0 * PI * r.powi(3))
         .collect();
-    let weights = mapper.fill(method, fields.position, fields.radius)?;
-    let operator = smoother.operator(weights, &solid_volume)?;
+    let weights = timed(&mut timing.mapping, || {
+        mapper.fill(method, fields.position, fields.radius)
+    })?;
+    let operator = timed(&mut timing.smoother, || {
+        smoother.operator(weights, &solid_volume)
+    })?;
     let void_fraction = operator
         .solid_fraction()
         .iter()
@@ -101,14 +107,13 @@ impl Run<'_> {
         if fields.position == self.mapped.position && fields.radius == self.mapped.radius {
             return Ok(());
         }
-        let begun = Instant::now();
         self.mapped = map(
             &self.mapper,
             self.plan.mapping,
             &self.smoother,
             &*self.parts.particles,
+            &mut self.timing,
         )?;
-        self.timing.mapping += begun.elapsed();
         Ok(())
     }
 

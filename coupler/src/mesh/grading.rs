@@ -35,7 +35,8 @@ pub fn shared(cells: usize, stretches: &[Stretch]) -> Result<Vec<Region>, MeshEr
         return wrong(format!("{} regions of {cells} cells", stretches.len()));
     }
     let total: f64 = stretches.iter().map(|stretch| stretch.cell_share).sum();
-    if let Some(bad) = stretches.iter().find(|s| !(s.cell_share / total > 0.0)) {
+    let is_bad = |share: f64| share.is_nan() || share <= 0.0;
+    if let Some(bad) = stretches.iter().find(|s| is_bad(s.cell_share / total)) {
         return wrong(format!(
             "a region has a share of the cells of {}; it must be above 0",
             bad.cell_share
