@@ -7,6 +7,7 @@ pub mod gas_model;
 pub mod heat_transfer;
 pub mod local;
 pub mod numbers;
+pub mod pressure_drop;
 
 /// A vector in space.
 pub type Vec3 = nalgebra::Vector3<f64>;

@@ -34,4 +34,36 @@ impl LocalGas {
     pub fn prandtl(&self) -> f64 {
         self.heat_capacity * self.viscosity / self.conductivity
     }
+
+    /// Schmidt number μ/(ρ D); diffusivity D of the species in m²/s.
+    pub fn schmidt(&self, diffusivity: f64) -> f64 {
+        self.viscosity / (self.density * diffusivity)
+    }
+}
+
+#[cfg(test)]
+impl LocalGas {
+    /// Air of 1.2 kg/m³ and 1.82e-5 Pa s, as the independent values of the drag laws assume.
+    pub(crate) fn air(void_fraction: f64, slip: f64) -> Self {
+        Self {
+            void_fraction: VoidFraction::new(void_fraction).unwrap(),
+            density: 1.2,
+            viscosity: 1.82e-5,
+            conductivity: 0.026,
+            heat_capacity: 1006.0,
+            slip,
+        }
+    }
+
+    /// Gas that has the slip as its interstitial Reynolds number at a sphere of 1 m.
+    pub(crate) fn of_numbers(void_fraction: f64, reynolds: f64, prandtl: f64) -> Self {
+        Self {
+            void_fraction: VoidFraction::new(void_fraction).unwrap(),
+            density: 1.0,
+            viscosity: 1.0,
+            conductivity: 1.0,
+            heat_capacity: prandtl,
+            slip: reynolds,
+        }
+    }
 }
