@@ -222,6 +222,35 @@ fn errors_name_the_file_and_the_line() {
 }
 
 #[test]
+fn lists_that_announce_a_million_million_entries_are_refused_before_they_are_stored() {
+    for count in ["1000000000000", "18446744073709551615"] {
+        for file in ["points", "faces", "owner", "neighbour", "boundary"] {
+            let error = error_after(file, |text| {
+                let (head, list) = text.split_once("\n(").unwrap();
+                let (head, _) = head.rsplit_once('\n').unwrap();
+                format!("{head}\n{count}\n({list}").into_bytes()
+            });
+            let text = error.to_string();
+            assert!(text.contains(&format!("announces {count}")), "{text}");
+        }
+        let body = format!("{count}\n(\0\0\0\0)").into_bytes();
+        let binary = [header("vectorField", "binary"), body].concat();
+        let text = error_after("points", |_| binary).to_string();
+        assert!(
+            text.contains("the file ends within a binary list"),
+            "{text}"
+        );
+    }
+    // One value for all is stored as often as there are faces at most.
+    let uniform = [header("labelList", "ascii"), b"1000000000000{0}".to_vec()].concat();
+    let text = error_after("owner", |_| uniform).to_string();
+    assert!(
+        text.contains("a list of 1000000000000 equal entries; at most 12"),
+        "{text}"
+    );
+}
+
+#[test]
 fn files_that_contradict_each_other_and_missing_ones_are_named() {
     let error = error_after("owner", |text| {
         text.replacen("\n0\n", "\n7\n", 1).into_bytes()
