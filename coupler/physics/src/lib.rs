@@ -6,6 +6,7 @@ pub mod gas;
 pub mod gas_model;
 pub mod heat_transfer;
 pub mod local;
+pub mod mass_transfer;
 pub mod numbers;
 pub mod pressure_drop;
 

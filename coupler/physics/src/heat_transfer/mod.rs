@@ -1,14 +1,18 @@
 //! Heat transfer between gas and particle, one law a file.
 
+mod gnielinski;
 mod gunn;
 mod none;
 mod ranz_marshall;
+mod wakao;
 
 use std::fmt::Debug;
 
+pub use gnielinski::Gnielinski;
 pub use gunn::Gunn;
 pub use none::NoHeatTransfer;
 pub use ranz_marshall::RanzMarshall;
+pub use wakao::Wakao;
 
 use crate::local::LocalGas;
 
