@@ -13,12 +13,13 @@ use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::interior::Thin;
 use calcine_coupler::mapping::{Mapper, Method};
 use calcine_coupler::mesh::Mesh;
+use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::part::{Gas, Particles};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::drag::{Drag, ErgunWenYu, NoDrag};
 use calcine_coupler::physics::heat_transfer::{Gunn, HeatTransfer, NoHeatTransfer, RanzMarshall};
 use calcine_coupler::setup::ParticleSetup;
-use calcine_coupler::smoother::{self, Smoother};
+use calcine_coupler::smoother::{Settings as Smoothing, Smoother};
 use calcine_coupler::supervisor::Supervisor;
 use calcine_native::gas::{NativeError, NativeGas};
 use calcine_native::particles::NativeParticles;
@@ -120,6 +121,15 @@ pub enum AssemblyError {
     /// The mesh cannot be made or read.
     #[error("mesh: {0}")]
     Mesh(#[from] MeshingError),
+    /// An excluded zone beside the mesh.
+    #[error(
+        "`coupling.smoother.excluded[{index}]` holds no centre of a cell; enlarge it, or move it into \
+         the mesh"
+    )]
+    Excluded {
+        /// Number of the zone, from 0.
+        index: usize,
+    },
     /// The particles cannot be placed.
     #[error("particles: {0}")]
     Particles(#[from] PlaceError),
@@ -165,7 +175,7 @@ impl Prepared {
         let weights = mapper
             .fill(method(case), &particles.position, &particles.radius)
             .map_err(RunError::from)?;
-        let smoother = Smoother::new(&self.mesh, smoothing(case, self)).map_err(RunError::from)?;
+        let smoother = smoother(case, self)?;
         let operator = smoother
             .operator(weights, &volumes)
             .map_err(RunError::from)?;
@@ -206,8 +216,7 @@ pub fn assemble<'m>(
         particles: assembly.particles(supervisor)?,
         interior: Box::new(interior(case, prepared)),
     };
-    let smoother =
-        Smoother::new(&prepared.mesh, smoothing(case, prepared)).map_err(RunError::from)?;
+    let smoother = smoother(case, prepared)?;
     let plan = plan(case, checkpoint);
     let mut run = Run::new(plan, &prepared.mesh, smoother, closures(case), parts)?;
     if settings.resume {
@@ -332,10 +341,23 @@ impl Assembly<'_> {
     }
 }
 
+/// The smoother, which leaves the case's excluded zones alone.
+fn smoother(case: &Case, prepared: &Prepared) -> Result<Smoother, AssemblyError> {
+    let (mesh, zones) = (&prepared.mesh, &case.coupling.excluded);
+    for (index, zone) in zones.iter().enumerate() {
+        if !mesh.cell_centre().iter().any(|&centre| zone.holds(centre)) {
+            return Err(AssemblyError::Excluded { index });
+        }
+    }
+    let settings = smoothing(case, prepared);
+    let made = Smoother::with_excluded(mesh, settings, &Zone::cells(zones, mesh));
+    Ok(made.map_err(RunError::from)?)
+}
+
 /// Settings of the smoother. Where the case does not state the diffusion's length, it is half the
 /// mean diameter where particles are larger than a third of the cells (requirements VFS-6): without
 /// it a particle that spans several cells would give heat to cells that have nothing to give.
-fn smoothing(case: &Case, prepared: &Prepared) -> smoother::Settings {
+fn smoothing(case: &Case, prepared: &Prepared) -> Smoothing {
     let (mesh, radii) = (&prepared.mesh, &prepared.particles.radius);
     let diameter = 2.0 * radii.iter().sum::<f64>() / radii.len() as f64;
     let volume = mesh.cell_volume().iter().sum::<f64>() / mesh.cells() as f64;
@@ -344,7 +366,7 @@ fn smoothing(case: &Case, prepared: &Prepared) -> smoother::Settings {
         .coupling
         .diffusion_length
         .unwrap_or(if large { 0.5 * diameter } else { 0.0 });
-    smoother::Settings {
+    Smoothing {
         max_solid_fraction: case.coupling.max_solid_fraction,
         tolerance: case.coupling.smoother_tolerance,
         diffusion_length: (length > 0.0).then_some(length),

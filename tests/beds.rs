@@ -6,6 +6,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use calcine::assembly::Prepared;
 use calcine::case::model::Case;
 use calcine::case::{Placed, mesh, particles, read};
 use calcine_coupler::mesh::locate::Locator;
@@ -248,7 +249,7 @@ fn graded_and_refined_meshes_have_the_cells_that_the_case_says() {
     assert!((volume / 1.1e-5 - 1.0).abs() < 1e-12);
     // 270 cells; 7 more for each split: some are split twice.
     assert!(
-        mesh.cells() > 270 && (mesh.cells() - 270) % 7 == 0,
+        mesh.cells() > 270 && (mesh.cells() - 270).is_multiple_of(7),
         "{}",
         mesh.cells()
     );
@@ -260,4 +261,16 @@ fn graded_and_refined_meshes_have_the_cells_that_the_case_says() {
     assert!(at(5.0, 5.0, 45.0) < at(5.0, 5.0, 90.0) && at(5.0, 5.0, 90.0) < at(5.0, 5.0, 10.0));
     // The last of three cells along x is twice the first: sizes 1, √2, 2.
     assert!((at(9.9, 5.0, 5.0) / at(0.1, 5.0, 5.0) - 2.0).abs() < 1e-9);
+}
+
+#[test]
+fn an_excluded_zone_beside_the_mesh_is_refused() {
+    let zone = "coupling.smoother.excluded[0].box={ from = \"0 0 200 mm\", to = \"10 10 210 mm\" }";
+    let case = case("refined-box.toml", &[zone]);
+    let prepared = Prepared::new(&case).unwrap();
+    let error = prepared.void_fraction(&case).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "`coupling.smoother.excluded[0]` holds no centre of a cell; enlarge it, or move it into the mesh"
+    );
 }

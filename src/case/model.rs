@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use calcine_coupler::mesh::grading::Stretch;
 use calcine_coupler::mesh::refine::Refinement;
+use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::packing::Sizes;
 use calcine_coupler::packing::regular::Lattice;
 use calcine_coupler::physics::Vec3;
@@ -71,6 +72,7 @@ pub struct Time {
 
 /// Where the gas mesh comes from.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "there is one a case")]
 pub enum MeshSpec {
     /// A box, generated. Patches by default `side` (x−, x+, y−, y+), `bottom` (z−), `top` (z+).
     Box {
@@ -235,6 +237,8 @@ pub struct Coupling {
     pub mapping: Mapping,
     /// Largest solid fraction of a cell after smoothing, below 1.
     pub max_solid_fraction: f64,
+    /// Zones into and out of which the smoother moves nothing.
+    pub excluded: Vec<Zone>,
     /// The smoother stops when the excess left is below this share of the solid volume.
     pub smoother_tolerance: f64,
     /// Length ℓ of the diffusion F in m (requirements VFS-6); `None`: half the particles' mean

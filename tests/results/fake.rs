@@ -73,6 +73,7 @@ pub fn case() -> Case {
             mapping: Mapping::Overlap,
             max_solid_fraction: 0.64,
             diffusion_length: None,
+            excluded: vec![],
             smoother_tolerance: 1e-12,
             exchange_tolerance: 1e-10,
             exchange_attempts: 20,

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use super::existing;
+use super::zone::zones;
 use crate::case::model::{Coupling, External, Mapping};
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
@@ -19,6 +20,7 @@ pub(super) fn read(root: &Reader<'_>) -> Option<Coupling> {
     let mut coupling = Coupling {
         mapping: mapping.unwrap_or(Mapping::Overlap),
         max_solid_fraction: 0.64,
+        excluded: Vec::new(),
         smoother_tolerance: 1e-4,
         diffusion_length: None,
         exchange_tolerance: 1e-3,
@@ -29,6 +31,7 @@ pub(super) fn read(root: &Reader<'_>) -> Option<Coupling> {
         if let Some(fraction) = fraction(&table, "max_solid_fraction") {
             coupling.max_solid_fraction = fraction;
         }
+        coupling.excluded = zones(&table, "excluded");
         coupling.smoother_tolerance =
             fraction(&table, "tolerance").unwrap_or(coupling.smoother_tolerance);
         if let Some(length) = table.quantity("diffusion_length", Dimension::LENGTH) {

@@ -50,6 +50,17 @@ pub(super) fn zone(table: &Reader<'_>) -> Option<Zone> {
     })
 }
 
+/// Zones of a list.
+pub(super) fn zones(above: &Reader<'_>, key: &str) -> Vec<Zone> {
+    let tables = above.tables(key);
+    let one = |table: &Reader<'_>| {
+        let zone = zone(table);
+        table.finish();
+        zone
+    };
+    tables.iter().filter_map(one).collect()
+}
+
 /// The regions of a generated mesh that are refined.
 pub(super) fn refinements(mesh: &Reader<'_>) -> Vec<Refinement> {
     let tables = mesh.tables("refine");
