@@ -251,6 +251,16 @@ fn lists_that_announce_a_million_million_entries_are_refused_before_they_are_sto
 }
 
 #[test]
+fn offsets_of_faces_up_to_the_largest_number_are_refused() {
+    for offset in [u32::MAX, u32::MAX - 1, 1, 2] {
+        let mut topology = mesh([2, 1, 1]).topology().clone();
+        topology.face_offsets[1] = offset;
+        let error = Mesh::new(topology).unwrap_err().to_string();
+        assert!(error.contains("at least three points"), "{error}");
+    }
+}
+
+#[test]
 fn files_that_contradict_each_other_and_missing_ones_are_named() {
     let error = error_after("owner", |text| {
         text.replacen("\n0\n", "\n7\n", 1).into_bytes()

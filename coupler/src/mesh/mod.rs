@@ -300,7 +300,7 @@ fn check(topology: &Topology) -> Result<usize, MeshError> {
         || topology
             .face_offsets
             .windows(2)
-            .any(|pair| pair[1] < pair[0] + 3)
+            .any(|pair| pair[1].checked_sub(pair[0]).is_none_or(|points| points < 3))
     {
         return wrong("each face needs at least three points".into());
     }
