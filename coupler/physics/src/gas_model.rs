@@ -1,7 +1,8 @@
 //! The gas of a case as the solvers ask for it, whatever it is made of. `composition` is the mass
 //! fractions in the order of the mixture's species, and empty for a single gas.
 
-use crate::gas::GasProperties;
+use crate::gas::{GasProperties, REFERENCE_TEMPERATURE};
+use crate::thermo::Mixture;
 
 /// What the gas is.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,6 +11,8 @@ pub enum GasModel {
     Perfect(GasProperties),
     /// A single fluid of constant properties.
     Constant(ConstantGas),
+    /// A mixture of ideal gases.
+    Mixture(Mixture),
 }
 
 /// A fluid of constant properties; its enthalpy is c_p (T − 298.15 K).
@@ -36,6 +39,7 @@ impl GasModel {
     pub fn species(&self) -> &[String] {
         match self {
             Self::Perfect(_) | Self::Constant(_) => &[],
+            Self::Mixture(mixture) => mixture.names(),
         }
     }
 
@@ -45,57 +49,72 @@ impl GasModel {
     }
 
     /// Density in kg/m³ at a pressure in Pa and a temperature in K.
-    pub fn density(&self, pressure: f64, temperature: f64, _composition: &[f64]) -> f64 {
+    pub fn density(&self, pressure: f64, temperature: f64, composition: &[f64]) -> f64 {
         match self {
             Self::Perfect(gas) => gas.density(pressure, temperature),
             Self::Constant(gas) => gas.density,
+            Self::Mixture(mixture) => mixture.density(pressure, temperature, composition),
         }
     }
 
     /// Specific heat capacity c_p in J/kg/K.
-    pub fn heat_capacity(&self, _temperature: f64, _composition: &[f64]) -> f64 {
+    pub fn heat_capacity(&self, temperature: f64, composition: &[f64]) -> f64 {
         match self {
             Self::Perfect(gas) => gas.heat_capacity,
             Self::Constant(gas) => gas.heat_capacity,
+            Self::Mixture(mixture) => mixture.heat_capacity(temperature, composition),
         }
     }
 
     /// Sensible enthalpy in J/kg, zero at 298.15 K.
-    pub fn enthalpy(&self, temperature: f64, _composition: &[f64]) -> f64 {
+    pub fn enthalpy(&self, temperature: f64, composition: &[f64]) -> f64 {
         match self {
             Self::Perfect(gas) => gas.enthalpy(temperature),
-            Self::Constant(gas) => {
-                gas.heat_capacity * (temperature - crate::gas::REFERENCE_TEMPERATURE)
-            }
+            Self::Constant(gas) => gas.heat_capacity * (temperature - REFERENCE_TEMPERATURE),
+            Self::Mixture(mixture) => mixture.enthalpy(temperature, composition),
         }
     }
 
     /// Temperature in K of a sensible enthalpy in J/kg; `guess` in K is near it.
-    pub fn temperature(&self, enthalpy: f64, _composition: &[f64], _guess: f64) -> f64 {
+    pub fn temperature(&self, enthalpy: f64, composition: &[f64], guess: f64) -> f64 {
         match self {
             Self::Perfect(gas) => gas.temperature(enthalpy),
-            Self::Constant(gas) => crate::gas::REFERENCE_TEMPERATURE + enthalpy / gas.heat_capacity,
+            Self::Constant(gas) => REFERENCE_TEMPERATURE + enthalpy / gas.heat_capacity,
+            Self::Mixture(mixture) => mixture.temperature(enthalpy, composition, guess),
         }
     }
 
     /// Sensible enthalpy of a species in J/kg.
-    pub fn species_enthalpy(&self, _species: usize, temperature: f64) -> f64 {
-        self.enthalpy(temperature, &[])
+    pub fn species_enthalpy(&self, species: usize, temperature: f64) -> f64 {
+        match self {
+            Self::Perfect(_) | Self::Constant(_) => self.enthalpy(temperature, &[]),
+            Self::Mixture(mixture) => mixture.species_enthalpy(species, temperature),
+        }
+    }
+
+    /// Each element with its mass in a unit mass of each species; empty for a single gas.
+    pub fn elements(&self) -> Vec<(String, Vec<f64>)> {
+        match self {
+            Self::Perfect(_) | Self::Constant(_) => Vec::new(),
+            Self::Mixture(mixture) => mixture.elements(),
+        }
     }
 
     /// Dynamic viscosity in Pa s.
-    pub fn viscosity(&self, temperature: f64, _composition: &[f64]) -> f64 {
+    pub fn viscosity(&self, temperature: f64, composition: &[f64]) -> f64 {
         match self {
             Self::Perfect(gas) => gas.viscosity(temperature),
             Self::Constant(gas) => gas.viscosity,
+            Self::Mixture(mixture) => mixture.viscosity(temperature, composition),
         }
     }
 
     /// Thermal conductivity in W/m/K.
-    pub fn conductivity(&self, temperature: f64, _composition: &[f64]) -> f64 {
+    pub fn conductivity(&self, temperature: f64, composition: &[f64]) -> f64 {
         match self {
             Self::Perfect(gas) => gas.conductivity(temperature),
             Self::Constant(gas) => gas.conductivity,
+            Self::Mixture(mixture) => mixture.conductivity(temperature, composition),
         }
     }
 }

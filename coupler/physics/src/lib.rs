@@ -9,6 +9,7 @@ pub mod local;
 pub mod mass_transfer;
 pub mod numbers;
 pub mod pressure_drop;
+pub mod thermo;
 
 /// A vector in space.
 pub type Vec3 = nalgebra::Vector3<f64>;
