@@ -26,11 +26,8 @@ const FOLDERS: [&str; 7] = [
     "adapters/wire",
 ];
 
-/// Cells across and along the heated bed of the phases' runs: 10 k, 100 k, 1 M in all.
-const SIZES: [[u32; 2]; 3] = [[18, 42], [38, 92], [84, 190]];
-
-/// Windows of a run whose phases are measured.
-const WINDOWS: u32 = 5;
+/// Cells across and along the heated bed of the phases' runs (10 k, 100 k, 1 M in all), and windows.
+const SIZES: [[u32; 3]; 3] = [[18, 42, 5], [38, 92, 2], [84, 190, 1]];
 
 /// Phases in the order of a window, as `wall_time_s` in summary.json names them. The first two
 /// happen once in a run of a frozen bed, and in each window where particles move.
@@ -218,12 +215,13 @@ fn phases(workspace: &Workspace) -> Outcome<Table> {
         "share",
     ]);
     let large = env::var_os("CALCINE_BENCH_LARGE").is_some();
-    for [across, along] in &SIZES[..SIZES.len() - usize::from(!large)] {
+    for size in &SIZES[..SIZES.len() - usize::from(!large)] {
+        let [across, along, _] = size;
         let out = workspace
             .target
             .join(format!("xtask/heated-bed-{across}-{along}"));
         let _ = fs::remove_dir_all(&out);
-        let mut command = heated_bed(workspace, &out, [*across, *along]);
+        let mut command = heated_bed(workspace, &out, *size);
         step(
             &format!("heated bed, {across} cells across, {along} along"),
             || quietly(&mut command, &log),
@@ -237,7 +235,7 @@ fn phases(workspace: &Workspace) -> Outcome<Table> {
     Ok(table)
 }
 
-fn heated_bed(workspace: &Workspace, out: &Path, [across, along]: [u32; 2]) -> Command {
+fn heated_bed(workspace: &Workspace, out: &Path, [across, along, windows]: [u32; 3]) -> Command {
     let program = workspace
         .target
         .join(Profile::Release.folder())
@@ -254,7 +252,7 @@ fn heated_bed(workspace: &Workspace, out: &Path, [across, along]: [u32; 2]) -> C
         "time.acceleration=200".into(),
         "time.motion_window=2 ms".into(),
         // 0.4 s of process time each.
-        format!("time.end={} ms", 400 * WINDOWS),
+        format!("time.end={} ms", 400 * windows),
     ];
     for setting in settings {
         command.args(["--set", &setting]);
