@@ -95,6 +95,33 @@ fn populations_that_reach_into_each_other_are_refused_with_both_names() {
     );
 }
 
+#[test]
+fn a_grid_that_leaves_a_cylinder_is_refused_with_its_particle() {
+    let grid = "particles[4].place={ grid = { first = \"0 0 90 mm\", spacing = \"9 9 9 mm\", counts = [4, 1, 1] } }";
+    let error = particles(&case("layers.toml", &[grid])).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "population \"cubic\", particle 4: the centre lies at distance from the axis = 0.027 m, but the \
+         mesh reaches from 0 m to 0.025 m; move the particle, or enlarge the mesh"
+    );
+}
+
+#[test]
+fn a_timestep_of_a_file_without_timesteps_is_refused() {
+    let error = particles(&case("layers.toml", &["particles[8].place.timestep=3"])).unwrap_err();
+    let message = error.to_string();
+    assert!(
+        message.ends_with("bed.vtk: it holds no timesteps to choose from; leave out `timestep`"),
+        "{message}"
+    );
+    let error = particles(&case("layers.toml", &["particles[7].place.timestep=3"])).unwrap_err();
+    let message = error.to_string();
+    assert!(
+        message.ends_with("bed.liggghts: it has no timestep 3; it holds 0, 1000, 2000"),
+        "{message}"
+    );
+}
+
 /// Writes a file of particles and places them as the only population of a box.
 fn from_file(name: &str, bytes: &[u8]) -> Result<Placed, String> {
     let folder = TempDir::new().unwrap();

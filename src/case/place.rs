@@ -26,10 +26,10 @@ pub enum PlaceError {
         /// Why.
         cause: std::io::Error,
     },
-    /// A file that does not hold what it should.
+    /// A particle, or a file of particles, that is not as it should be.
     #[error("{place}: {what}")]
     File {
-        /// The file, and the line or particle.
+        /// The file or population, and the line or particle.
         place: String,
         /// What is wrong.
         what: String,
@@ -142,6 +142,12 @@ fn spheres(case: &Case, population: &Population) -> Result<Vec<Sphere>, PlaceErr
             counts,
         } => {
             let centres = grid(first, spacing, *counts);
+            for (number, centre) in (1..).zip(&centres) {
+                if let Some(what) = outside(&case.mesh, centre) {
+                    let place = format!("population \"{}\", particle {number}", population.name);
+                    return Err(PlaceError::File { place, what });
+                }
+            }
             let diameters = draw(centres.len())?;
             Ok(all(centres, diameters))
         }

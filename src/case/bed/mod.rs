@@ -175,6 +175,12 @@ fn sheet(path: &Path, bytes: &[u8], choice: Choice) -> Result<Sheet, Fault> {
             (Some(Row::Line(line)), what.to_owned())
         })
     };
+    let known = ["csv", "txt", "vtk", "vtu", "vtp"];
+    let dump = extension.as_deref().is_none_or(|e| !known.contains(&e));
+    if choice.timestep.is_some() && !dump {
+        let what = "it holds no timesteps to choose from; leave out `timestep`";
+        return Err((None, what.into()));
+    }
     match extension.as_deref() {
         Some("vtu" | "vtp") => xml::sheet(bytes),
         Some("vtk") => legacy::sheet(text()?),
