@@ -16,8 +16,6 @@ use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::part::{Gas, Particles};
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::physics::drag::{Drag, ErgunWenYu, NoDrag};
-use calcine_coupler::physics::heat_transfer::{Gunn, HeatTransfer, NoHeatTransfer, RanzMarshall};
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::smoother::{Settings as Smoothing, Smoother};
 use calcine_coupler::supervisor::Supervisor;
@@ -26,8 +24,9 @@ use calcine_native::particles::NativeParticles;
 use clap::ValueEnum;
 use thiserror::Error;
 
-use crate::case::model::{Case, DragLaw, HeatLaw, Mapping};
+use crate::case::model::{Case, Mapping};
 use crate::case::{MeshingError, PlaceError, Placed, mesh, particles};
+use crate::laws;
 
 /// Who computes the gas.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -398,19 +397,10 @@ fn plan(case: &Case, checkpoint: CheckpointPaths) -> Plan {
 }
 
 fn closures(case: &Case) -> Closures {
-    let drag: Box<dyn Drag> = match case.laws.drag {
-        DragLaw::None => Box::new(NoDrag),
-        DragLaw::ErgunWenYu => Box::new(ErgunWenYu),
-    };
-    let heat_transfer: Box<dyn HeatTransfer> = match case.laws.heat_transfer {
-        HeatLaw::None => Box::new(NoHeatTransfer),
-        HeatLaw::Gunn => Box::new(Gunn),
-        HeatLaw::RanzMarshall => Box::new(RanzMarshall),
-    };
     Closures {
         gas: case.gas.properties.clone(),
-        drag,
-        heat_transfer,
+        drag: laws::drag(case.laws.drag),
+        heat_transfer: laws::heat_transfer(case.laws.heat_transfer),
     }
 }
 

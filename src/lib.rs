@@ -5,6 +5,7 @@ pub mod case;
 pub mod commands;
 pub mod compare;
 pub mod exit;
+mod laws;
 mod progress;
 pub mod report;
 pub mod results;

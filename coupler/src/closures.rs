@@ -62,6 +62,8 @@ pub struct Seen {
     pub temperature: Vec<f64>,
     /// Density in kg/m³.
     pub density: Vec<f64>,
+    /// Mass fractions, species by species within each particle; empty for a single gas.
+    pub composition: Vec<f64>,
     /// Interstitial velocity in m/s.
     pub velocity: Vec<Vec3>,
     /// Void fraction.
@@ -78,8 +80,26 @@ impl Seen {
         self.void_fraction.resize(particles, 0.0);
         operator.sample(gas.temperature, &mut self.temperature);
         operator.sample(gas.density, &mut self.density);
+        self.sample_composition(operator, gas.composition);
         operator.sample_vectors(gas.velocity, &mut self.velocity);
         operator.sample(&bed.void_fraction, &mut self.void_fraction);
+    }
+
+    fn sample_composition(&mut self, operator: &Operator, composition: &[f64]) {
+        let (cells, particles) = (operator.cells(), operator.particles());
+        let species = composition.len() / cells.max(1);
+        self.composition.resize(species * particles, 0.0);
+        let mut one = vec![0.0; if species == 0 { 0 } else { cells }];
+        let mut seen = vec![0.0; if species == 0 { 0 } else { particles }];
+        for k in 0..species {
+            for (cell, value) in one.iter_mut().enumerate() {
+                *value = composition[cell * species + k];
+            }
+            operator.sample(&one, &mut seen);
+            for (p, value) in seen.iter().enumerate() {
+                self.composition[p * species + k] = *value;
+            }
+        }
     }
 }
 
@@ -102,6 +122,7 @@ impl Closures {
         coefficients: &mut Coefficients,
     ) -> Result<(), ClosureError> {
         let count = particles.len();
+        let species = self.gas.species().len();
         coefficients.drag.resize(count, 0.0);
         coefficients.conductance.resize(count, 0.0);
         for p in 0..count {
@@ -113,12 +134,13 @@ impl Closures {
                     value: seen.void_fraction[p],
                 }
             })?;
+            let composition = &seen.composition[p * species..(p + 1) * species];
             let local = LocalGas {
                 void_fraction,
                 density: seen.density[p],
-                viscosity: self.gas.viscosity(temperature, &[]),
-                conductivity: self.gas.conductivity(temperature, &[]),
-                heat_capacity: self.gas.heat_capacity(temperature, &[]),
+                viscosity: self.gas.viscosity(temperature, composition),
+                conductivity: self.gas.conductivity(temperature, composition),
+                heat_capacity: self.gas.heat_capacity(temperature, composition),
                 slip: (seen.velocity[p] - particles.velocity[p] / acceleration).norm(),
             };
             let diameter = 2.0 * particles.radius[p];

@@ -31,7 +31,7 @@ impl Line {
 
 /// The ledger of a run. Gas amounts count in process time: where the gas stores over the motion
 /// span (`accelerated`), what it stored counts AF times (requirements TSM-4).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ledger {
     /// Gas mass in kg.
     pub mass: Line,
@@ -43,10 +43,12 @@ pub struct Ledger {
     pub momentum_exchange: Line,
     /// The gas' own momentum balance (residual of pressure and momentum solves), in N s.
     pub gas_momentum: Line,
+    /// Mass of each element of a gas mixture in kg, by its symbol.
+    pub elements: Vec<(String, Line)>,
 }
 
 impl Ledger {
-    /// Lines by their stable names.
+    /// Lines by their stable names, those of elements apart.
     pub fn lines(&self) -> [(&'static str, &'static str, Line); 5] {
         [
             ("mass", "kg", self.mass),
@@ -57,14 +59,23 @@ impl Ledger {
         ]
     }
 
-    /// The same lines, to be restored from a checkpoint.
-    pub fn lines_mut(&mut self) -> [&mut Line; 5] {
-        [
+    /// All lines in one order, elements last, to be restored from a checkpoint.
+    pub fn lines_mut(&mut self) -> Vec<&mut Line> {
+        let mut lines = vec![
             &mut self.mass,
             &mut self.energy,
             &mut self.energy_exchange,
             &mut self.momentum_exchange,
             &mut self.gas_momentum,
-        ]
+        ];
+        lines.extend(self.elements.iter_mut().map(|(_, line)| line));
+        lines
+    }
+
+    /// All lines, in the order of `lines_mut`.
+    pub fn all(&self) -> Vec<Line> {
+        let mut lines: Vec<Line> = self.lines().iter().map(|&(_, _, line)| line).collect();
+        lines.extend(self.elements.iter().map(|&(_, line)| line));
+        lines
     }
 }

@@ -3,14 +3,12 @@
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 
-use calcine_coupler::physics::drag::Drag as _;
-use calcine_coupler::physics::drag::ErgunWenYu;
-use calcine_coupler::physics::heat_transfer::{Gunn, HeatTransfer, RanzMarshall};
 use calcine_coupler::physics::local::LocalGas;
 use calcine_coupler::physics::numbers::VoidFraction;
 use calcine_coupler::setup::{GasPatch, InletFlow};
 
-use super::model::{Case, DragLaw, HeatLaw, Population};
+use super::model::{Case, DragLaw, Population};
+use crate::laws;
 
 /// Above this, a number of the time splitting gets a warning (requirements TSM-6, TSM-8).
 const WARNING: f64 = 0.1;
@@ -66,6 +64,9 @@ fn honoured(text: &mut String, case: &Case) {
     let _ = writeln!(text, "  backends:");
     for name in ["native gas", "OpenFOAM", "native particles", "LIGGGHTS"] {
         let note = match name {
+            "OpenFOAM" if !case.gas.properties.species().is_empty() => {
+                "not this case: calcineGasFoam carries no species (`gas.species`)"
+            }
             "OpenFOAM" if case.openfoam.template.is_some() => {
                 "every key, and `openfoam.template`, which restricts the case to this gas"
             }
@@ -103,11 +104,7 @@ fn splitting(text: &mut String, case: &Case, population: &Population, eps: f64) 
     let Ok(d) = population.sizes.mean() else {
         return;
     };
-    let nusselt = match case.laws.heat_transfer {
-        HeatLaw::None => 0.0,
-        HeatLaw::Gunn => Gunn.nusselt(&local, d),
-        HeatLaw::RanzMarshall => RanzMarshall.nusselt(&local, d),
-    };
+    let nusselt = laws::heat_transfer(case.laws.heat_transfer).nusselt(&local, d);
     let volume = PI / 6.0 * d.powi(3);
     let rate = nusselt * local.conductivity * PI * d
         / (material.density * volume * material.heat_capacity);
@@ -135,8 +132,9 @@ fn splitting(text: &mut String, case: &Case, population: &Population, eps: f64) 
         "    0.11 hA AF dt/(m c), error of process storage       {error:.2e}{}",
         warn(error)
     );
-    if case.laws.drag == DragLaw::ErgunWenYu {
-        let response = material.density * volume / ErgunWenYu.coefficient(&local, d);
+    if case.laws.drag != DragLaw::None {
+        let coefficient = laws::drag(case.laws.drag).coefficient(&local, d);
+        let response = material.density * volume / coefficient;
         let window = case.time.motion_window.seconds();
         let _ = writeln!(
             text,

@@ -217,6 +217,18 @@ pub enum DragLaw {
     None,
     /// Ergun below a void fraction of 0.8, Wen and Yu above (requirements COR-6).
     ErgunWenYu,
+    /// Ergun 1952.
+    Ergun,
+    /// Wen and Yu 1966.
+    WenYu,
+    /// Ergun and Wen-Yu, blended.
+    Gidaspow,
+    /// Di Felice 1994.
+    DiFelice,
+    /// Koch and Hill 2001.
+    KochHill,
+    /// Beetstra, van der Hoef and Kuipers 2007.
+    Beetstra,
 }
 
 /// Heat transfer laws.
@@ -228,6 +240,10 @@ pub enum HeatLaw {
     Gunn,
     /// Ranz and Marshall (requirements COR-1).
     RanzMarshall,
+    /// Wakao and Kaguei 1982 (requirements COR-2).
+    Wakao,
+    /// Gnielinski 1980 (requirements COR-4).
+    Gnielinski,
 }
 
 /// Mapping, smoother, exchange.

@@ -354,7 +354,12 @@ impl Recorder {
                     .into_iter()
                     .map(|(name, unit, line)| (name.to_owned(), ledger_line(unit, line)))
                     .collect(),
-                ..Ledger::default()
+                elements: moment
+                    .ledger
+                    .elements
+                    .iter()
+                    .map(|(name, line)| (name.clone(), ledger_line("kg", *line)))
+                    .collect(),
             },
             wall_time_s: self.wall(moment.timing),
             quantities: captured.results(case, over),

@@ -107,7 +107,10 @@ pub(super) fn columns(case: &Case, moment: &Moment<'_>) -> Vec<Column> {
         "1",
         "largest mismatch of continuity and equation of state of the window",
     ));
-    for (name, unit, _) in moment.ledger.lines() {
+    let elements = moment.ledger.elements.iter();
+    let elements = elements.map(|(name, _)| (format!("element_{name}"), "kg"));
+    let lines = moment.ledger.lines().into_iter();
+    for (name, unit) in lines.map(|(name, unit, _)| (name.to_owned(), unit)).chain(elements) {
         let text = "error over throughput since the start";
         list.push(Column::new(
             "ledger",
@@ -166,7 +169,7 @@ pub(super) fn row(
     values.push(f64::from(moment.convergence.linear_iterations));
     values.push(moment.convergence.residual);
     values.push(moment.convergence.volume_residual);
-    for (_, _, line) in moment.ledger.lines() {
+    for line in moment.ledger.all() {
         values.extend([line.relative_error(), line.drift, line.throughput]);
     }
     let temperature = |id: &u64| {

@@ -39,6 +39,11 @@ impl OpenfoamCase<'_> {
     /// Writes the case into a folder, which is made if it is not there.
     pub fn write(&self, folder: &Path) -> Result<(), PartError> {
         self.check()?;
+        let Some(thermophysical) = dictionaries::thermophysical(self.setup) else {
+            let message = "calcineGasFoam carries no species, and this gas is a mixture; \
+                           run the case with --gas native";
+            return Err(PartError::new(NAME, FailureKind::NotStarted, message));
+        };
         make(folder)?;
         if let Some(template) = self.template {
             copy(template, folder)?;
@@ -52,10 +57,7 @@ impl OpenfoamCase<'_> {
         let setup = self.setup;
         for (name, text) in [
             ("system/controlDict", dictionaries::control()),
-            (
-                "constant/thermophysicalProperties",
-                dictionaries::thermophysical(setup),
-            ),
+            ("constant/thermophysicalProperties", thermophysical),
             ("constant/g", dictionaries::gravity(setup)),
             (
                 "constant/calcineGas",

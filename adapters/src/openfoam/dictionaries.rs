@@ -41,8 +41,9 @@ pub fn control() -> String {
 }
 
 /// `constant/thermophysicalProperties`: an ideal gas with constant heat capacity and Sutherland
-/// transport, or a fluid of constant properties.
-pub fn thermophysical(setup: &GasSetup) -> String {
+/// transport, or a fluid of constant properties; `None` for a mixture of species, which calcineGasFoam
+/// does not carry.
+pub fn thermophysical(setup: &GasSetup) -> Option<String> {
     let (kinds, numbers) = match &setup.properties {
         GasModel::Perfect(gas) => (
             ["hePsiThermo", "sutherland", "perfectGas"],
@@ -65,14 +66,15 @@ pub fn thermophysical(setup: &GasSetup) -> String {
             ]
             .map(|(key, value)| (key, format!("{value:e}"))),
         ),
+        GasModel::Mixture(_) => return None,
     };
     let [kind, transport, state] = kinds;
     let [weight, capacity, first, second] = numbers.map(|(key, value)| format!("{key} {value};"));
     let density = match &setup.properties {
         GasModel::Constant(gas) => format!("    equationOfState {{ rho {:e}; }}\n", gas.density),
-        GasModel::Perfect(_) => String::new(),
+        GasModel::Perfect(_) | GasModel::Mixture(_) => String::new(),
     };
-    header("dictionary", "thermophysicalProperties")
+    let text = header("dictionary", "thermophysicalProperties")
         + &format!(
             "// {}\nthermoType\n{{\n    type            {kind};\n    \
                  mixture         pureMixture;\n    transport       {transport};\n    \
@@ -81,7 +83,8 @@ pub fn thermophysical(setup: &GasSetup) -> String {
                  {{\n    specie {{ {weight} }}\n    thermodynamics {{ {capacity} Hf 0; }}\n    \
                  transport {{ {first} {second} }}\n{density}}}\n",
             setup.mixture
-        )
+        );
+    Some(text)
 }
 
 /// `constant/g`, for OpenFOAM's own tools; the solver reads it in `calcineGas`.

@@ -135,9 +135,9 @@ impl Run<'_> {
         let mut state = StateFile::new();
         let ledger: Vec<f64> = self
             .ledger
-            .lines()
+            .all()
             .iter()
-            .flat_map(|(_, _, line)| [line.drift, line.error, line.throughput])
+            .flat_map(|line| [line.drift, line.error, line.throughput])
             .collect();
         let clocks = [
             self.windows,

@@ -16,7 +16,7 @@ use crate::checkpoint::StateFileError;
 use crate::closures::{ClosureError, Closures, Coefficients, Seen};
 use crate::error::PartError;
 use crate::exchange::{Exchange, Placement};
-use crate::ledger::Ledger;
+use crate::ledger::{Ledger, Line};
 use crate::mapping::{Mapper, MappingError, Method};
 use crate::mesh::Mesh;
 use crate::observer::{Moment, Observer, ObserverError, Timing};
@@ -154,6 +154,7 @@ impl<'m> Run<'m> {
         parts: Parts,
     ) -> Result<Self, RunError> {
         let mapper = Mapper::new(mesh);
+        let elements = closures.gas.elements().into_iter();
         let mut timing = Timing::default();
         let particles = &*parts.particles;
         let mapped = window::map(&mapper, plan.mapping, &smoother, particles, &mut timing)?;
@@ -171,7 +172,10 @@ impl<'m> Run<'m> {
             mapped,
             clocks: Clocks::default(),
             windows: 0,
-            ledger: Ledger::default(),
+            ledger: Ledger {
+                elements: elements.map(|(name, _)| (name, Line::default())).collect(),
+                ..Ledger::default()
+            },
             timing,
             convergence: Convergence::default(),
             placement: Placement {

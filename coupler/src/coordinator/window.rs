@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 use std::time::{Duration, Instant};
 
 use calcine_physics::Vec3;
+use calcine_physics::gas_model::GasModel;
 
 use super::{Mapped, Run, RunError};
 use crate::exchange::{Placement, Setting};
@@ -235,6 +236,7 @@ impl Run<'_> {
 
         let (sum, magnitude) = open(&received.mass);
         ledger.mass.book(scale * sum, scale * magnitude);
+        book_elements(ledger, &self.closures.gas, &received.species, scale);
         book_energy(
             ledger,
             received,
@@ -275,6 +277,19 @@ fn open(balance: &Balance) -> (f64, f64) {
             + balance.exchange.abs()
             + balance.source_magnitude,
     )
+}
+
+/// The mass of each element, from the balances of the species that hold it.
+fn book_elements(ledger: &mut Ledger, gas: &GasModel, species: &[Balance], scale: f64) {
+    for ((_, line), (_, shares)) in ledger.elements.iter_mut().zip(gas.elements()) {
+        let (mut sum, mut magnitude) = (0.0, 0.0);
+        for (share, balance) in shares.iter().zip(species) {
+            let (open, terms) = open(balance);
+            sum += share * open;
+            magnitude += share * terms;
+        }
+        line.book(scale * sum, scale * magnitude);
+    }
 }
 
 /// Gas and particles together: the exchange drops out of the sum and is booked by itself.

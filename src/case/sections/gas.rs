@@ -3,9 +3,11 @@
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
 use calcine_coupler::physics::gas_model::{ConstantGas, GasModel};
+use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{Convection, GasControls, GasSetup};
 use calcine_coupler::time::GasStorage;
 
+use super::composition::fractions;
 use super::gas_patch::boundary;
 use crate::case::model::MeshSpec;
 use crate::case::table::Reader;
@@ -19,22 +21,22 @@ pub(super) fn read(
     let section = root.required_table("gas", "[gas] with mixture = \"air\"")?;
     let mixture = section.required_text("mixture", "\"air\"");
     let properties = properties(&section, mixture);
-    let compressible = properties.as_ref().is_none_or(GasModel::compressible);
-    let initial = initial(&section);
+    let schmidt = schmidt(&section, properties.as_ref());
+    let initial = initial(&section, properties.as_ref());
     let gravity = section
         .vector("gravity", Dimension::ACCELERATION)
         .unwrap_or([0.0; 3]);
-    let patches = boundary(&section, mesh, compressible);
+    let patches = boundary(&section, mesh, properties.as_ref());
     let controls = controls(&section);
     section.finish();
-    let (temperature, pressure, velocity) = initial?;
+    let (temperature, pressure, velocity, composition) = initial?;
     Some(GasSetup {
         mixture: mixture?.into(),
         properties: properties?,
-        schmidt: 1.0,
+        schmidt: schmidt?,
         storage: storage.unwrap_or_default(),
         temperature,
-        composition: Vec::new(),
+        composition,
         pressure,
         velocity,
         gravity: Vec3::from(gravity),
@@ -45,6 +47,16 @@ pub(super) fn read(
 
 /// A built-in mixture, or the properties of `[gas.properties]` or `[gas.constant]`.
 fn properties(section: &Reader<'_>, mixture: Option<&str>) -> Option<GasModel> {
+    if let Some(species) = section.texts("species") {
+        return match Mixture::new(species.iter().map(String::as_str)) {
+            Ok(mixture) => Some(GasModel::Mixture(mixture)),
+            Err(error) => {
+                let help = "write at least one species, each once";
+                section.fail("species", format!("makes no mixture: {error}"), help);
+                None
+            }
+        };
+    }
     if let Some(table) = section.table("constant") {
         let density = table.required_positive("density", Dimension::DENSITY);
         let heat_capacity = table.required_positive("heat_capacity", Dimension::HEAT_CAPACITY);
@@ -101,7 +113,21 @@ fn properties(section: &Reader<'_>, mixture: Option<&str>) -> Option<GasModel> {
     }
 }
 
-fn initial(section: &Reader<'_>) -> Option<(f64, f64, Vec3)> {
+/// The Schmidt number of a mixture; 1 where there are no species.
+fn schmidt(section: &Reader<'_>, gas: Option<&GasModel>) -> Option<f64> {
+    if !matches!(gas, Some(GasModel::Mixture(_))) {
+        return Some(1.0);
+    }
+    if !section.has("schmidt") {
+        section.missing("schmidt", "0.7");
+    }
+    section.positive("schmidt", Dimension::NONE)
+}
+
+fn initial(
+    section: &Reader<'_>,
+    gas: Option<&GasModel>,
+) -> Option<(f64, f64, Vec3, Vec<f64>)> {
     let initial = section.required_table(
         "initial",
         "initial = { temperature = \"300 K\", pressure = \"1 atm\" }",
@@ -111,8 +137,23 @@ fn initial(section: &Reader<'_>) -> Option<(f64, f64, Vec3)> {
     let velocity = initial
         .vector("velocity", Dimension::VELOCITY)
         .unwrap_or([0.0; 3]);
+    let composition = match gas {
+        Some(GasModel::Mixture(mixture)) => {
+            let table = initial.required_table(
+                "composition",
+                "composition = { mole = { N2 = 0.79, O2 = 0.21 } }",
+            );
+            table.and_then(|table| fractions(&table, mixture))
+        }
+        _ => Some(Vec::new()),
+    };
     initial.finish();
-    Some((temperature?, pressure?, Vec3::from(velocity)))
+    Some((
+        temperature?,
+        pressure?,
+        Vec3::from(velocity),
+        composition?,
+    ))
 }
 
 /// Defaults: 20 outer iterations to 1e-8, 2 pressure corrections, linear solvers to 1e-13, van Leer's

@@ -1,25 +1,30 @@
 //! `[gas.patch.NAME]`: boundary conditions of the gas.
 
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::setup::{GasPatch, InletFlow, Schedule, WallHeat, WallVelocity};
+use calcine_coupler::physics::gas_model::GasModel;
+use calcine_coupler::physics::thermo::Mixture;
+use calcine_coupler::setup::{
+    CompositionSchedule, GasPatch, InletFlow, Schedule, WallHeat, WallVelocity,
+};
 
+use super::composition::{EXAMPLE, fractions};
 use super::patches;
 use crate::case::model::MeshSpec;
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
 
-/// Conditions of all patches; `compressible` gas may be closed in.
+/// Conditions of all patches, for a gas; one of constant density cannot flow into a closed domain.
 pub(super) fn boundary(
     section: &Reader<'_>,
     mesh: Option<&MeshSpec>,
-    compressible: bool,
+    gas: Option<&GasModel>,
 ) -> Option<Vec<(String, GasPatch)>> {
     let table = section.required_table("patch", "[gas.patch.bottom]")?;
     let named = table.named();
     let mut made = Vec::new();
     let mut complete = true;
     for (name, reader) in &named {
-        match patch(reader) {
+        match patch(reader, gas) {
             Some(patch) => made.push((name.clone(), patch)),
             None => complete = false,
         }
@@ -47,7 +52,8 @@ pub(super) fn boundary(
         has(|patch| matches!(patch, GasPatch::Inlet { .. })),
         has(|patch| matches!(patch, GasPatch::Outlet { .. })),
     );
-    if complete && inlet && !outlet && !compressible {
+    let fixed = gas.is_some_and(|gas| !gas.compressible());
+    if complete && inlet && !outlet && fixed {
         section.fail(
             "patch",
             "lets a gas of constant density in and has no outlet",
@@ -57,7 +63,7 @@ pub(super) fn boundary(
     complete.then_some(made)
 }
 
-fn patch(reader: &Reader<'_>) -> Option<GasPatch> {
+fn patch(reader: &Reader<'_>, gas: Option<&GasModel>) -> Option<GasPatch> {
     let kinds = ["inlet", "outlet", "wall", "symmetry"];
     let mut given = kinds.iter().filter(|kind| reader.has(kind));
     let (kind, more) = (given.next(), given.next());
@@ -68,7 +74,7 @@ fn patch(reader: &Reader<'_>) -> Option<GasPatch> {
     };
     let table = reader.table(kind)?;
     let made = match *kind {
-        "inlet" => inlet(&table),
+        "inlet" => inlet(&table, gas),
         "outlet" => table
             .pressures("pressure")
             .map(|pressure| GasPatch::Outlet { pressure }),
@@ -79,14 +85,32 @@ fn patch(reader: &Reader<'_>) -> Option<GasPatch> {
     made
 }
 
-fn inlet(table: &Reader<'_>) -> Option<GasPatch> {
+fn inlet(table: &Reader<'_>, gas: Option<&GasModel>) -> Option<GasPatch> {
     let flow = flow(table);
     let temperature = table.temperatures("temperature");
     Some(GasPatch::Inlet {
         flow: flow?,
         temperature: temperature?,
-        composition: None,
+        composition: match gas {
+            Some(GasModel::Mixture(mixture)) => Some(composition(table, mixture)?),
+            _ => None,
+        },
     })
+}
+
+/// `composition` of the gas that flows in.
+fn composition(table: &Reader<'_>, mixture: &Mixture) -> Option<CompositionSchedule> {
+    let Some(dated) = table.dated_tables("composition", EXAMPLE) else {
+        if !table.has("composition") {
+            table.missing("composition", EXAMPLE);
+        }
+        return None;
+    };
+    let mut entries = Vec::new();
+    for (time, entry) in &dated {
+        entries.push((*time, fractions(entry, mixture)?));
+    }
+    Some(CompositionSchedule(entries))
 }
 
 /// `superficial_velocity` or `mass_flow`.

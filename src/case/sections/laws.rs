@@ -10,12 +10,20 @@ pub(super) fn read(root: &Reader<'_>) -> Option<Laws> {
         "drag",
         &[
             ("ergun-wen-yu", DragLaw::ErgunWenYu),
+            ("ergun", DragLaw::Ergun),
+            ("wen-yu", DragLaw::WenYu),
+            ("gidaspow", DragLaw::Gidaspow),
+            ("di-felice", DragLaw::DiFelice),
+            ("koch-hill", DragLaw::KochHill),
+            ("beetstra", DragLaw::Beetstra),
             ("none", DragLaw::None),
         ],
     );
     let heats = [
         ("gunn", HeatLaw::Gunn),
         ("ranz-marshall", HeatLaw::RanzMarshall),
+        ("wakao", HeatLaw::Wakao),
+        ("gnielinski", HeatLaw::Gnielinski),
         ("none", HeatLaw::None),
     ];
     let heat_transfer = law(&section, "heat_transfer", &heats);

@@ -1,5 +1,6 @@
 //! The sections of a case file, one file each.
 
+mod composition;
 mod coupling;
 mod gas;
 mod gas_patch;

@@ -6,6 +6,7 @@ use std::ops::Range;
 use toml_edit::{Item, TableLike, Value};
 
 use super::{Reader, dotted};
+use crate::case::units::Dimension;
 
 impl<'a> Reader<'a> {
     /// A list or single value as it stands, for forms of its own.
@@ -95,6 +96,59 @@ impl<'a> Reader<'a> {
             }
         }
         found
+    }
+
+    /// A table at a time of 0 s, or a list of [time, table] with increasing times in s.
+    pub fn dated_tables(&self, key: &str, example: &str) -> Option<Vec<(f64, Reader<'a>)>> {
+        let item = self.item(key)?;
+        let Some(array) = item.as_array() else {
+            return Some(vec![(0.0, self.table(key)?)]);
+        };
+        let mut found: Vec<(f64, Reader<'a>)> = Vec::new();
+        for (i, entry) in array.iter().enumerate() {
+            let pair = entry.as_array().filter(|pair| pair.len() == 2);
+            let pair = pair.and_then(|pair| Some((pair.get(0)?, pair.get(1)?.as_inline_table()?)));
+            let Some((time, table)) = pair else {
+                self.fail(
+                    key,
+                    "needs a table, or pairs of time and table",
+                    format!("for example [[\"0 s\", {example}], [\"10 s\", {example}]]"),
+                );
+                return None;
+            };
+            let time = self.value(key, time, Dimension::TIME)?;
+            if found.last().is_some_and(|(last, _)| *last >= time) {
+                self.fail(
+                    key,
+                    format!("has the time {time} s after a later or equal one"),
+                    "the times must increase",
+                );
+                return None;
+            }
+            let place = format!("{}[{i}]", self.place_of(key));
+            found.push((time, self.below(place, key, table, table.span())));
+        }
+        if found.is_empty() {
+            let help = "write at least one pair of time and table";
+            self.fail(key, "is an empty schedule", help);
+            return None;
+        }
+        Some(found)
+    }
+
+    /// All numbers of a table whose keys are names of the user's.
+    pub fn numbers(&self) -> Option<Vec<(String, f64)>> {
+        let mut found = Vec::new();
+        for (name, item) in self.table.iter() {
+            self.known.borrow_mut().push(name.into());
+            let number = item.as_float().or_else(|| item.as_integer().map(|n| n as f64));
+            let Some(number) = number else {
+                self.wrong_type(name, "a number", item);
+                return None;
+            };
+            found.push((name.to_owned(), number));
+        }
+        Some(found)
     }
 
     fn below(

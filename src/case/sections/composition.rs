@@ -1,0 +1,46 @@
+//! Compositions of a gas mixture: `{ mole = { N2 = 0.79, O2 = 0.21 } }`, or by `mass`.
+
+use calcine_coupler::physics::thermo::Mixture;
+
+use crate::case::table::Reader;
+
+/// An example of the form.
+pub(super) const EXAMPLE: &str = "{ mole = { N2 = 0.79, O2 = 0.21 } }";
+/// How far fractions may be from summing to 1: what printed digits leave; they are then scaled.
+const SLACK: f64 = 1e-3;
+
+/// The mass fractions that a table states, in the order of the mixture's species.
+pub(super) fn fractions(table: &Reader<'_>, mixture: &Mixture) -> Option<Vec<f64>> {
+    let mut given = ["mole", "mass"].into_iter().filter(|key| table.has(key));
+    let (kind, more) = (given.next(), given.next());
+    let (Some(kind), None) = (kind, more) else {
+        table.fail_whole("needs exactly one of mole and mass", &format!("for example {EXAMPLE}"));
+        return None;
+    };
+    let inner = table.table(kind)?;
+    let mut fractions = vec![0.0; mixture.names().len()];
+    for (name, value) in inner.numbers()? {
+        let Some(k) = mixture.names().iter().position(|other| *other == name) else {
+            let help = format!("the species of the gas are {}", mixture.names().join(", "));
+            inner.fail(&name, "is no species of the gas", help);
+            return None;
+        };
+        if !(0.0..=1.0 + SLACK).contains(&value) {
+            inner.fail(&name, format!("is {value}"), "fractions are between 0 and 1");
+            return None;
+        }
+        fractions[k] = value;
+    }
+    table.finish();
+    let sum: f64 = fractions.iter().sum();
+    if (sum - 1.0).abs() > SLACK {
+        let rule = format!("sums to {sum}");
+        table.fail(kind, rule, "fractions sum to 1");
+        return None;
+    }
+    Some(if kind == "mole" {
+        mixture.mass_fractions(&fractions)
+    } else {
+        fractions.iter().map(|fraction| fraction / sum).collect()
+    })
+}
