@@ -10,7 +10,7 @@ use calcine_adapters::openfoam::{OpenfoamGas, OpenfoamLaunch};
 use calcine_coupler::closures::Closures;
 use calcine_coupler::coordinator::{CheckpointPaths, Parts, Plan, Run, RunError};
 use calcine_coupler::error::{FailureKind, PartError};
-use calcine_coupler::interior::Thin;
+use calcine_coupler::interior::{Network, Thin};
 use calcine_coupler::mapping::{Mapper, Method};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::zone::Zone;
@@ -406,14 +406,19 @@ fn closures(case: &Case) -> Closures {
 
 fn interior(case: &Case, prepared: &Prepared) -> Thin {
     let particles = &prepared.particles;
-    let population = |p: usize| &case.particles[particles.population[p] as usize];
-    let volume = |p: usize| 4.0 / 3.0 * std::f64::consts::PI * particles.radius[p].powi(3);
     let all = 0..particles.id.len();
-    let heat_capacity = all
-        .map(|p| {
-            let material = &case.materials[population(p).material];
-            particles.density[p] * volume(p) * material.heat_capacity
-        })
-        .collect();
-    Thin::new(heat_capacity, prepared.temperature.clone())
+    let volume = |p: usize| 4.0 / 3.0 * std::f64::consts::PI * particles.radius[p].powi(3);
+    let material = |p: usize| case.particles[particles.population[p] as usize].material;
+    let network = laws::conduction(case.laws.conduction).map(|law| {
+        // The case file states a conductivity where conduction asks for one.
+        let conductivity = |p: usize| case.materials[material(p)].conductivity.unwrap_or(0.0);
+        Network::new(law, all.clone().map(conductivity).collect())
+    });
+    Thin::new(
+        all.clone().map(|p| particles.density[p] * volume(p)).collect(),
+        all.map(material).collect(),
+        case.materials.iter().map(|m| m.heat_capacity.clone()).collect(),
+        prepared.temperature.clone(),
+        network,
+    )
 }

@@ -1,5 +1,6 @@
 //! The laws that a case names.
 
+use calcine_coupler::physics::conduction::{BatchelorObrien, Conduction, Lens};
 use calcine_coupler::physics::drag::{
     Beetstra, DiFelice, Drag, Ergun, ErgunWenYu, Gidaspow, KochHill, NoDrag, WenYu,
 };
@@ -7,7 +8,7 @@ use calcine_coupler::physics::heat_transfer::{
     Gnielinski, Gunn, HeatTransfer, NoHeatTransfer, RanzMarshall, Wakao,
 };
 
-use crate::case::model::{DragLaw, HeatLaw};
+use crate::case::model::{ConductionLaw, DragLaw, HeatLaw};
 
 /// The drag law of a case.
 pub fn drag(law: DragLaw) -> Box<dyn Drag> {
@@ -31,5 +32,14 @@ pub fn heat_transfer(law: HeatLaw) -> Box<dyn HeatTransfer> {
         HeatLaw::RanzMarshall => Box::new(RanzMarshall),
         HeatLaw::Wakao => Box::new(Wakao),
         HeatLaw::Gnielinski => Box::new(Gnielinski),
+    }
+}
+
+/// The conduction law of a case; `None` where particles conduct nothing to each other.
+pub fn conduction(law: ConductionLaw) -> Option<Box<dyn Conduction>> {
+    match law {
+        ConductionLaw::None => None,
+        ConductionLaw::BatchelorObrien => Some(Box::new(BatchelorObrien)),
+        ConductionLaw::Lens => Some(Box::new(Lens)),
     }
 }

@@ -46,7 +46,7 @@ pub struct Setting<'a> {
     pub operator: &'a Operator,
     /// The particles at the start of the window.
     pub particles: ParticleFields<'a>,
-    /// Committed particle temperatures in K.
+    /// Particle temperatures in K from which the exchange starts.
     pub temperature: &'a [f64],
     /// Coefficients of drag and heat.
     pub coefficients: &'a Coefficients,

@@ -1,6 +1,7 @@
 //! The coordinator of Calcine: three parts, two clocks, one loop.
 
 pub mod checkpoint;
+pub mod contacts;
 pub mod closures;
 pub mod coordinator;
 pub mod error;

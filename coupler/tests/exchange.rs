@@ -153,7 +153,7 @@ fn attempts(
 ) -> (Vec<f64>, Exchange, CellReceived, Thin, StillGas) {
     let bench = Bench::new();
     let mut gas = StillGas::new(8);
-    let mut thin = Thin::new(vec![5e-3, 8e-3], vec![400.0, 350.0]);
+    let mut thin = Thin::of_heat_capacity(vec![5e-3, 8e-3], vec![400.0, 350.0]);
     let coefficients = Coefficients {
         drag: vec![1e-3, 2e-3],
         conductance: vec![conductance; 2],

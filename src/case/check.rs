@@ -89,6 +89,7 @@ fn honoured(text: &mut String, case: &Case) {
 fn splitting(text: &mut String, case: &Case, population: &Population, eps: f64) {
     let material = &case.materials[population.material];
     let gas = &case.gas.properties;
+    let solid_capacity = material.heat_capacity.at(case.gas.temperature);
     let factor = case.time.acceleration.largest();
     let density = gas.density(
         case.gas.pressure,
@@ -96,7 +97,7 @@ fn splitting(text: &mut String, case: &Case, population: &Population, eps: f64) 
         &case.gas.composition,
     );
     let capacity = gas.heat_capacity(case.gas.temperature, &case.gas.composition);
-    let solid = (1.0 - eps) * material.density * material.heat_capacity;
+    let solid = (1.0 - eps) * material.density * solid_capacity;
     let ratio = factor * eps * density * capacity / solid;
     let Some(local) = local(case, eps, density) else {
         return;
@@ -107,7 +108,7 @@ fn splitting(text: &mut String, case: &Case, population: &Population, eps: f64) 
     let nusselt = laws::heat_transfer(case.laws.heat_transfer).nusselt(&local, d);
     let volume = PI / 6.0 * d.powi(3);
     let rate = nusselt * local.conductivity * PI * d
-        / (material.density * volume * material.heat_capacity);
+        / (material.density * volume * solid_capacity);
     // Requirements TSM-8: the error of process storage in shares of the span.
     let error = 0.11 * rate * factor * case.time.motion_window.seconds();
     let warn = |value: f64| {

@@ -9,6 +9,7 @@ use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::packing::Sizes;
 use calcine_coupler::packing::regular::Lattice;
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::setup::GasSetup;
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
 
@@ -115,8 +116,8 @@ pub struct Material {
     pub name: String,
     /// Density in kg/m³.
     pub density: f64,
-    /// Specific heat capacity in J/kg/K.
-    pub heat_capacity: f64,
+    /// Specific heat capacity over temperature.
+    pub heat_capacity: HeatCapacity,
     /// Thermal conductivity in W/m/K.
     pub conductivity: Option<f64>,
     /// Young's modulus in Pa.
@@ -208,6 +209,19 @@ pub struct Laws {
     pub drag: DragLaw,
     /// Heat transfer between gas and particle.
     pub heat_transfer: HeatLaw,
+    /// Heat conduction between particles.
+    pub conduction: ConductionLaw,
+}
+
+/// Conduction laws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ConductionLaw {
+    /// No conduction.
+    None,
+    /// Batchelor and O'Brien 1977 (requirements COR-17).
+    BatchelorObrien,
+    /// By the circle of intersection, as LIGGGHTS has it.
+    Lens,
 }
 
 /// Drag laws.

@@ -1,7 +1,7 @@
 //! Particles of different populations must not overlap.
 
-use std::collections::HashMap;
-
+use calcine_coupler::contacts::overlapping;
+use calcine_coupler::interior::Touch;
 use calcine_coupler::setup::ParticleSetup;
 
 /// Two particles that overlap.
@@ -18,8 +18,7 @@ pub(super) struct Overlap {
 /// Touching spheres are fine; this share of the sum of radii is round-off of the units.
 const ROUND_OFF: f64 = 1e-9;
 
-/// The first particle that overlaps one of another population before it. Cells as wide as the
-/// largest particle make the work proportional to the number of particles.
+/// The first particle that overlaps one of another population before it.
 pub(super) fn between_populations(setup: &ParticleSetup) -> Option<Overlap> {
     let first = setup.population.first()?;
     if setup
@@ -29,40 +28,18 @@ pub(super) fn between_populations(setup: &ParticleSetup) -> Option<Overlap> {
     {
         return None;
     }
-    let width = 2.0 * setup.radius.iter().copied().fold(0.0, f64::max);
-    // Each cell's last particle, and before each particle the one that came into its cell earlier.
-    let mut last: HashMap<[i64; 3], usize> = HashMap::with_capacity(setup.position.len());
-    let mut earlier: Vec<Option<usize>> = Vec::with_capacity(setup.position.len());
-    for (index, position) in setup.position.iter().enumerate() {
-        let cell = [0, 1, 2].map(|axis| (position[axis] / width).floor() as i64);
-        for neighbour in neighbours(cell) {
-            let mut other = last.get(&neighbour).copied();
-            while let Some(candidate) = other {
-                let radii = setup.radius[index] + setup.radius[candidate];
-                let distance = (position - setup.position[candidate]).norm();
-                if setup.population[index] != setup.population[candidate]
-                    && distance < radii * (1.0 - ROUND_OFF)
-                {
-                    let pair = [candidate, index];
-                    return Some(Overlap {
-                        pair,
-                        distance,
-                        radii,
-                    });
-                }
-                other = earlier[candidate];
-            }
-        }
-        earlier.push(last.insert(cell, index));
-    }
-    None
-}
-
-/// A cell and the 26 around it.
-fn neighbours(cell: [i64; 3]) -> impl Iterator<Item = [i64; 3]> {
-    (0..27).map(move |n| {
-        let step = [n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1];
-        [0, 1, 2].map(|axis| cell[axis].saturating_add(step[axis]))
+    let foreign = |touch: &Touch| {
+        let [a, b] = touch.particles;
+        let radii = touch.radius[0] + touch.radius[1];
+        setup.population[a] != setup.population[b] && touch.overlap > radii * ROUND_OFF
+    };
+    let touches = overlapping(&setup.radius, &setup.position).into_iter();
+    let found = touches.filter(foreign).min_by_key(|touch| touch.particles[1])?;
+    let radii = found.radius[0] + found.radius[1];
+    Some(Overlap {
+        pair: found.particles,
+        distance: radii - found.overlap,
+        radii,
     })
 }
 
@@ -99,34 +76,5 @@ mod tests {
         assert_eq!(between_populations(&touching), None);
         let one = bed(&[(0, [0.0; 3], 2.0), (0, [1.0, 0.0, 0.0], 2.0)]);
         assert_eq!(between_populations(&one), None);
-    }
-
-    #[test]
-    fn the_cells_find_what_the_search_over_all_pairs_finds() {
-        // Points of a linear congruential generator (Knuth's MMIX constants).
-        let mut state = 1u64;
-        let mut next = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        };
-        for _ in 0..200 {
-            let spheres: Vec<_> = (0..40)
-                .map(|n| {
-                    let point = [next() - 0.5, next() - 0.5, next() - 0.5];
-                    (n % 2, point, 0.01 + 0.03 * next())
-                })
-                .collect();
-            let setup = bed(&spheres);
-            let slow = (0..40usize)
-                .flat_map(|b| (0..b).map(move |a| (a, b)))
-                .any(|(a, b)| {
-                    let distance = (setup.position[a] - setup.position[b]).norm();
-                    setup.population[a] != setup.population[b]
-                        && distance < setup.radius[a] + setup.radius[b]
-                });
-            assert_eq!(between_populations(&setup).is_some(), slow);
-        }
     }
 }

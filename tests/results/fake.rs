@@ -67,6 +67,7 @@ pub fn case() -> Case {
         particles: vec![],
         laws: Laws {
             drag: DragLaw::ErgunWenYu,
+            conduction: ConductionLaw::None,
             heat_transfer: HeatLaw::Gunn,
         },
         coupling: Coupling {

@@ -1,5 +1,7 @@
 //! The trait behind which particles are thermally thin or resolved along the radius.
 
+use crate::network::Touch;
+
 /// Inside of all particles. An attempt always starts from the last commit.
 pub trait ParticleModel: Send {
     /// Surface temperature of each particle in K after the last attempt.
@@ -8,12 +10,28 @@ pub trait ParticleModel: Send {
     /// Surface temperature of each particle in K at the last commit.
     fn committed_temperature(&self) -> &[f64];
 
+    /// True where particles conduct heat to each other, so that `touch` and `conduct` matter.
+    fn conducts(&self) -> bool;
+
+    /// Takes up which particles touch.
+    fn touch(&mut self, touches: &[Touch]);
+
+    /// Fixes the heat that particles conduct to each other in the coming attempt: that of an implicit
+    /// step over a process span in s in which each particle also exchanges heat with gas of a
+    /// temperature `seen` in K through a conductance h A in W/K.
+    fn conduct(&mut self, conductance: &[f64], seen: &[f64], span: f64);
+
+    /// Temperature in K of each particle from which the exchange with the gas starts: the committed
+    /// one, moved by what the particles conduct to each other over the span.
+    fn start_temperature(&self) -> &[f64];
+
     /// Conductances with the particles' own new temperatures eliminated (requirements TSM-9):
-    /// from h A in W/K over a process span in s to K, such that K (T_gas − T_committed) is the
+    /// from h A in W/K over a process span in s to K, such that K (T_gas − T_start) is the
     /// heat flow of the implicit step.
     fn eliminated(&self, conductance: &[f64], span: f64, out: &mut [f64]);
 
-    /// One attempt over a process span in s, with the mean heat flow into each particle in W.
+    /// One attempt over a process span in s, with the mean heat flow from the gas into each particle in
+    /// W; what the particles conduct to each other is added.
     fn advance(&mut self, heat: &[f64], span: f64);
 
     /// Takes the last attempt as the new start.

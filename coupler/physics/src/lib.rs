@@ -1,6 +1,7 @@
 //! Laws of reactive granular beds as pure functions of local state, one law a file.
 #![warn(missing_docs)]
 
+pub mod conduction;
 pub mod drag;
 pub mod gas;
 pub mod gas_model;
@@ -9,6 +10,7 @@ pub mod local;
 pub mod mass_transfer;
 pub mod numbers;
 pub mod pressure_drop;
+pub mod solid;
 pub mod thermo;
 
 /// A vector in space.

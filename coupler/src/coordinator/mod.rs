@@ -162,7 +162,7 @@ impl<'m> Run<'m> {
         work.exchange
             .heat
             .resize(parts.particles.fields().len(), 0.0);
-        Ok(Self {
+        let mut run = Self {
             plan,
             mesh,
             mapper,
@@ -183,7 +183,9 @@ impl<'m> Run<'m> {
                 ..Placement::default()
             },
             work,
-        })
+        };
+        run.find_contacts();
+        Ok(run)
     }
 
     /// Runs to the end, to an interrupt's checkpoint, or to an error.

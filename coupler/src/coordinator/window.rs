@@ -7,6 +7,7 @@ use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
 
 use super::{Mapped, Run, RunError};
+use crate::contacts::touching;
 use crate::exchange::{Placement, Setting};
 use crate::ledger::Ledger;
 use crate::mapping::{Mapper, Method};
@@ -115,7 +116,18 @@ impl Run<'_> {
             &*self.parts.particles,
             &mut self.timing,
         )?;
+        self.find_contacts();
         Ok(())
+    }
+
+    /// Tells the interior which particles touch, where that matters.
+    pub(super) fn find_contacts(&mut self) {
+        if self.parts.interior.conducts() {
+            let begun = Instant::now();
+            let touches = touching(&self.parts.particles.fields());
+            self.parts.interior.touch(&touches);
+            self.timing.interior += begun.elapsed();
+        }
     }
 
     fn evaluate_laws(&mut self, window: &Window) -> Result<(), RunError> {
@@ -153,10 +165,18 @@ impl Run<'_> {
         let span = window.span.process.seconds();
         let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
         loop {
+            if self.parts.interior.conducts() {
+                let seen = &mut work.seen.temperature;
+                mapped.operator.sample(self.parts.gas.fields().temperature, seen);
+                timed(&mut timing.interior, || {
+                    let conductance = &work.coefficients.conductance;
+                    self.parts.interior.conduct(conductance, seen, span);
+                });
+            }
             let setting = Setting {
                 operator: &mapped.operator,
                 particles: self.parts.particles.fields(),
-                temperature: self.parts.interior.committed_temperature(),
+                temperature: self.parts.interior.start_temperature(),
                 coefficients: &work.coefficients,
                 acceleration,
             };

@@ -1,6 +1,6 @@
 //! `[laws]`: each is stated, none has a default.
 
-use crate::case::model::{DragLaw, HeatLaw, Laws};
+use crate::case::model::{ConductionLaw, DragLaw, HeatLaw, Laws};
 use crate::case::table::Reader;
 
 pub(super) fn read(root: &Reader<'_>) -> Option<Laws> {
@@ -27,14 +27,20 @@ pub(super) fn read(root: &Reader<'_>) -> Option<Laws> {
         ("none", HeatLaw::None),
     ];
     let heat_transfer = law(&section, "heat_transfer", &heats);
+    let conductions = [
+        ("batchelor-obrien", ConductionLaw::BatchelorObrien),
+        ("lens", ConductionLaw::Lens),
+        ("none", ConductionLaw::None),
+    ];
+    let conduction = law(&section, "conduction", &conductions);
     // Stated in every case file; only "none" is computed so far.
-    let conduction = only_none(&section, "conduction");
     let radiation = only_none(&section, "radiation");
     section.finish();
-    conduction.and(radiation)?;
+    radiation?;
     Some(Laws {
         drag: drag?,
         heat_transfer: heat_transfer?,
+        conduction: conduction?,
     })
 }
 

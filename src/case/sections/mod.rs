@@ -53,6 +53,9 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     let coupling = coupling::read(root);
     let openfoam = coupling::external(root, "openfoam", folder);
     let liggghts = coupling::external(root, "liggghts", folder);
+    if let (Some(laws), Some(particles)) = (&laws, &particles) {
+        particles::need_conductivities(root, laws, &materials, particles);
+    }
     let output = output::output(root);
     let probes = probes::probes(root);
     let quantities = quantities::quantities(root, mesh.as_ref(), particles.as_deref(), &probes);

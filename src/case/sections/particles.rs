@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
+use calcine_coupler::physics::solid::HeatCapacity;
+
 use super::place::place;
 use super::sizes::sizes;
-use crate::case::model::{Contact, Material, MeshSpec, Motion, Population};
+use crate::case::model::{ConductionLaw, Contact, Laws, Material, MeshSpec, Motion, Population};
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
 
@@ -26,7 +28,7 @@ fn material(name: String, table: &Reader<'_>) -> Material {
     let made = Material {
         name,
         density: positive("density", Dimension::DENSITY),
-        heat_capacity: positive("heat_capacity", Dimension::HEAT_CAPACITY),
+        heat_capacity: heat_capacity(table),
         conductivity: table.positive("conductivity", Dimension::CONDUCTIVITY),
         young: table.positive("young", Dimension::PRESSURE),
         poisson: table.quantity("poisson", Dimension::NONE),
@@ -43,6 +45,44 @@ fn material(name: String, table: &Reader<'_>) -> Material {
     }
     table.finish();
     made
+}
+
+/// A number, or points over temperature.
+fn heat_capacity(table: &Reader<'_>) -> HeatCapacity {
+    let points = table.curve("heat_capacity", Dimension::TEMPERATURE, Dimension::HEAT_CAPACITY);
+    let Some(points) = points else {
+        return HeatCapacity::constant(f64::NAN);
+    };
+    if let Some((_, value)) = points.iter().find(|point| point.1 <= 0.0) {
+        let rule = format!("is {value} J/kg/K");
+        table.fail("heat_capacity", rule, "it is above zero at all temperatures");
+    }
+    HeatCapacity::table(points)
+}
+
+/// Conduction asks for the conductivity of every material in the bed.
+pub(super) fn need_conductivities(
+    root: &Reader<'_>,
+    laws: &Laws,
+    materials: &[Material],
+    particles: &[Population],
+) {
+    if laws.conduction == ConductionLaw::None {
+        return;
+    }
+    let Some(section) = root.table("materials") else {
+        return;
+    };
+    for (k, material) in materials.iter().enumerate() {
+        let used = particles.iter().any(|population| population.material == k);
+        if used && material.conductivity.is_none() {
+            section.fail(
+                &material.name,
+                "has no conductivity, which conduction between particles needs",
+                "add conductivity = \"1.1 W/m/K\", or write conduction = { law = \"none\" }",
+            );
+        }
+    }
 }
 
 pub(super) fn contacts(root: &Reader<'_>, materials: &[Material]) -> Vec<Contact> {

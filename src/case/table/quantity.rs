@@ -107,36 +107,55 @@ impl Reader<'_> {
 
     /// A value, or a list of [time, value] with increasing times.
     pub fn schedule(&self, key: &str, dimension: Dimension) -> Option<Schedule> {
+        self.points(key, (Dimension::TIME, "time"), dimension).map(Schedule)
+    }
+
+    /// A value, or a list of [argument, value] with increasing arguments, such as temperatures in K; the
+    /// argument of a single value is 0.
+    pub fn curve(&self, key: &str, over: Dimension, dimension: Dimension) -> Option<Vec<(f64, f64)>> {
+        self.points(key, (over, "temperature"), dimension)
+    }
+
+    fn points(
+        &self,
+        key: &str,
+        (over, word): (Dimension, &str),
+        dimension: Dimension,
+    ) -> Option<Vec<(f64, f64)>> {
         let Some(item) = self.item(key) else {
             self.missing(key, &format!("\"{}\"", dimension.example()));
             return None;
         };
         let Some(array) = item.as_array() else {
-            return self.quantity(key, dimension).map(Schedule::constant);
+            return self.quantity(key, dimension).map(|value| vec![(0.0, value)]);
         };
+        let unit = if word == "time" { "s" } else { "K" };
         let mut entries: Vec<(f64, f64)> = Vec::new();
         for entry in array {
             let pair = entry.as_array().filter(|pair| pair.len() == 2);
             let Some((time, value)) = pair.and_then(|pair| Some((pair.get(0)?, pair.get(1)?)))
             else {
-                let example = format!(
-                    "[[\"0 s\", \"{0}\"], [\"10 s\", \"{0}\"]]",
-                    dimension.example()
-                );
+                let (low, high) = if word == "time" {
+                    ("0 s", "10 s")
+                } else {
+                    ("300 K", "600 K")
+                };
+                let value = dimension.example();
+                let example = format!("[[\"{low}\", \"{value}\"], [\"{high}\", \"{value}\"]]");
                 self.fail(
                     key,
-                    "needs pairs of time and value",
+                    format!("needs pairs of {word} and value"),
                     format!("for example {example}"),
                 );
                 return None;
             };
-            let time = self.value(key, time, Dimension::TIME)?;
+            let time = self.value(key, time, over)?;
             let value = self.value(key, value, dimension)?;
             if entries.last().is_some_and(|last| last.0 >= time) {
                 self.fail(
                     key,
-                    format!("has the time {time} s after a later or equal one"),
-                    "the times must increase",
+                    format!("has the {word} {time} {unit} after a later or equal one"),
+                    format!("the {word}s must increase"),
                 );
                 return None;
             }
@@ -146,11 +165,11 @@ impl Reader<'_> {
             self.fail(
                 key,
                 "is an empty schedule",
-                "write at least one pair of time and value",
+                format!("write at least one pair of {word} and value"),
             );
             return None;
         }
-        Some(Schedule(entries))
+        Some(entries)
     }
 
     /// A schedule of absolute temperatures.

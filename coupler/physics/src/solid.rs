@@ -1,0 +1,120 @@
+//! Heat capacity of solids.
+
+use crate::gas::REFERENCE_TEMPERATURE;
+
+/// Specific heat capacity of a solid, linear in temperature between given points and constant outside
+/// them; its integral, the enthalpy, and the inverse of that are exact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeatCapacity {
+    /// Temperatures in K, increasing, and c_p in J/kg/K there.
+    points: Vec<(f64, f64)>,
+    /// Enthalpy at the points in J/kg, zero at the first.
+    enthalpy: Vec<f64>,
+}
+
+impl HeatCapacity {
+    /// The same at all temperatures, in J/kg/K.
+    pub fn constant(value: f64) -> Self {
+        Self::table(vec![(REFERENCE_TEMPERATURE, value)])
+    }
+
+    /// Points of temperature in K, increasing, and c_p in J/kg/K, positive; at least one.
+    pub fn table(points: Vec<(f64, f64)>) -> Self {
+        debug_assert!(!points.is_empty());
+        let mut enthalpy = vec![0.0];
+        for pair in points.windows(2) {
+            let area = 0.5 * (pair[0].1 + pair[1].1) * (pair[1].0 - pair[0].0);
+            enthalpy.push(enthalpy[enthalpy.len() - 1] + area);
+        }
+        Self { points, enthalpy }
+    }
+
+    /// True where it is the same at all temperatures.
+    pub fn is_constant(&self) -> bool {
+        self.points.len() == 1
+    }
+
+    /// c_p in J/kg/K at a temperature in K.
+    pub fn at(&self, temperature: f64) -> f64 {
+        let next = self.points.partition_point(|&(from, _)| from <= temperature);
+        match (next.checked_sub(1), self.points.get(next)) {
+            (Some(before), Some(after)) => {
+                let before = self.points[before];
+                let share = (temperature - before.0) / (after.0 - before.0);
+                before.1 + share * (after.1 - before.1)
+            }
+            (Some(last), None) => self.points[last].1,
+            (None, _) => self.points[0].1,
+        }
+    }
+
+    /// Enthalpy in J/kg, counted from the first point.
+    pub fn enthalpy(&self, temperature: f64) -> f64 {
+        let next = self.points.partition_point(|&(from, _)| from <= temperature);
+        let place = next.saturating_sub(1);
+        let (from, capacity) = self.points[place];
+        let mean = 0.5 * (capacity + self.at(temperature));
+        self.enthalpy[place] + mean * (temperature - from)
+    }
+
+    /// Temperature in K of an enthalpy in J/kg.
+    pub fn temperature(&self, enthalpy: f64) -> f64 {
+        let next = self.enthalpy.partition_point(|&from| from <= enthalpy);
+        let place = next.saturating_sub(1);
+        let (from, capacity) = self.points[place];
+        let rest = enthalpy - self.enthalpy[place];
+        let slope = match self.points.get(next) {
+            Some(after) if next > 0 => (after.1 - capacity) / (after.0 - from),
+            _ => 0.0,
+        };
+        // rest = c x + s x²/2; this root has no cancellation and holds for s = 0.
+        let root = (capacity * capacity + 2.0 * slope * rest).max(0.0).sqrt();
+        from + 2.0 * rest / (capacity + root)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn alumina() -> HeatCapacity {
+        HeatCapacity::table(vec![(300.0, 780.0), (600.0, 1080.0), (1200.0, 1260.0)])
+    }
+
+    #[test]
+    fn is_linear_between_points_and_constant_outside() {
+        let law = alumina();
+        for (t, expected) in [
+            (100.0, 780.0),
+            (300.0, 780.0),
+            (450.0, 930.0),
+            (900.0, 1170.0),
+            (2000.0, 1260.0),
+        ] {
+            assert!((law.at(t) - expected).abs() < 1e-12, "{t}");
+        }
+        assert_eq!(HeatCapacity::constant(840.0).at(77.0), 840.0);
+    }
+
+    #[test]
+    fn enthalpy_is_the_integral_by_hand_and_temperature_its_inverse() {
+        let law = alumina();
+        // 300 (780 + 1080)/2 = 279 000; 600 (1080 + 1260)/2 = 702 000
+        assert_eq!(law.enthalpy(600.0), 279_000.0);
+        assert_eq!(law.enthalpy(1200.0), 981_000.0);
+        assert_eq!(law.enthalpy(1300.0), 981_000.0 + 126_000.0);
+        assert_eq!(law.enthalpy(200.0), -78_000.0);
+        for t in [100.0, 300.0, 300.001, 450.0, 600.0, 777.7, 1200.0, 2500.0] {
+            assert!((law.temperature(law.enthalpy(t)) / t - 1.0).abs() < 1e-14, "{t}");
+        }
+    }
+
+    #[test]
+    fn the_derivative_of_enthalpy_is_the_heat_capacity() {
+        let law = alumina();
+        for t in [150.0, 400.0, 599.0, 601.0, 1100.0, 1500.0] {
+            let slope = (law.enthalpy(t + 1e-3) - law.enthalpy(t - 1e-3)) / 2e-3;
+            assert!((slope / law.at(t) - 1.0).abs() < 1e-8, "{t}");
+        }
+    }
+}
