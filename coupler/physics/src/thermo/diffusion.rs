@@ -99,6 +99,23 @@ mod tests {
     }
 
     #[test]
+    fn every_species_diffuses_in_nitrogen_as_an_independent_evaluation_has_it() {
+        // Fuller's formula in Python at 300 K and 1 bar.
+        for (name, expected) in [
+            ("O2", 2.108370102666e-05),
+            ("Ar", 2.012064511280e-05),
+            ("CO2", 1.660872615949e-05),
+            ("H2O", 2.639268432921e-05),
+            ("CO", 2.107377716071e-05),
+            ("H2", 7.966132994268e-05),
+            ("CH4", 2.203368558444e-05),
+        ] {
+            let d = MixtureAveraged::new(&species(&["N2", name])).pair(1, 0, 1e5, 300.0);
+            assert!((d / expected - 1.0).abs() < 1e-11, "{name}: {d:e}");
+        }
+    }
+
+    #[test]
     fn two_gases_have_the_diffusivity_of_the_pair_in_any_proportion() {
         let pair = MixtureAveraged::new(&species(&["H2", "CO2"])).pair(0, 1, 1e5, 400.0);
         for x in [1e-12, 0.3, 0.9, 1.0 - 1e-12] {

@@ -297,6 +297,18 @@ mod tests {
     }
 
     #[test]
+    fn the_upper_ranges_start_at_the_enthalpy_at_which_the_lower_ones_end() {
+        for record in &RECORDS {
+            let h = |t| record.polynomial.enthalpy(t);
+            let step = h(1000.0 * (1.0 + f64::EPSILON)) - h(1000.0);
+            assert!(step.abs() < 1e-3, "{}: {step} J/mol", record.name);
+            let joined = record.polynomial.joined();
+            let step = joined.enthalpy(1000.0 * (1.0 + f64::EPSILON)) - joined.enthalpy(1000.0);
+            assert!(step.abs() < 1e-9, "{}: {step} J/mol", record.name);
+        }
+    }
+
+    #[test]
     fn sutherland_s_constants_are_where_the_fit_is_best() {
         // A 1 % nudge of A, or 10 % of S, raises the sum of squares: the constants are the fit's.
         let kinetic = [

@@ -226,7 +226,7 @@ fn compositions() -> impl Strategy<Value = Vec<f64>> {
 
 proptest! {
     #[test]
-    fn every_property_is_positive_and_within_those_of_its_species(
+    fn every_property_is_positive_and_about_within_those_of_its_species(
         y in compositions(), t in 200.0..6000.0f64,
     ) {
         let gas = all();
@@ -235,18 +235,17 @@ proptest! {
         let most = |of: &dyn Fn(&Species) -> f64| present().map(of).fold(0.0, f64::max);
         let transport = gas.transport(t, &y);
         prop_assert_eq!(transport.viscosity, gas.viscosity(t, &y));
-        for (value, of) in [
-            (gas.molar_mass(&y), &Species::molar_mass as &dyn Fn(&Species) -> f64),
-            (gas.heat_capacity(t, &y), &|one| one.heat_capacity(t)),
-            (transport.conductivity, &|one| one.conductivity(t)),
+        for (value, of, below, above) in [
+            (gas.molar_mass(&y), &Species::molar_mass as &dyn Fn(&Species) -> f64, 1e-12, 1e-12),
+            (gas.heat_capacity(t, &y), &|one| one.heat_capacity(t), 1e-12, 1e-12),
+            // Light and heavy gases together can be more viscous than either (7.7 % in 60 000 draws in
+            // Python), and pass the conductivities of both a little (0.08 % down, 0.4 % up).
+            (transport.viscosity, &|one| one.viscosity(t), 1e-12, 0.15),
+            (transport.conductivity, &|one| one.conductivity(t), 0.01, 0.03),
         ] {
-            prop_assert!(value >= least(of) * (1.0 - 1e-12), "{} {}", value, least(of));
-            prop_assert!(value <= most(of) * (1.0 + 1e-12), "{} {}", value, most(of));
+            prop_assert!(value >= least(of) * (1.0 - below), "{} {}", value, least(of));
+            prop_assert!(value <= most(of) * (1.0 + above), "{} {}", value, most(of));
         }
-        // Light and heavy gases together can be more viscous than either, by a quarter at most.
-        let viscosity = |one: &Species| one.viscosity(t);
-        prop_assert!(transport.viscosity > 0.75 * least(&viscosity));
-        prop_assert!(transport.viscosity < 1.25 * most(&viscosity));
         let mut d = vec![0.0; 8];
         gas.diffusivities(1e5, t, &y, &mut d);
         let pairs = (0..64).map(|k| gas.pair_diffusivity((k / 8, k % 8), 1e5, t));
