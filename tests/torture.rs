@@ -4,7 +4,6 @@
 //! run, the others where it hurts: while a checkpoint is written, right after `results.h5` grew,
 //! and a second time while the run resumes.
 
-#![cfg(feature = "hdf5")]
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 #[path = "fuzz/random.rs"]

@@ -158,6 +158,37 @@ fn every_cell_is_found_at_its_centre_and_near_its_faces() {
     }
 }
 
+/// A mesh of five sizes of cells, so that bins of one size are crowded somewhere: what the locator
+/// finds is what a search over all cells finds.
+#[test]
+fn the_locator_finds_all_cells_near_a_ball_whatever_their_sizes() {
+    let mesh = refine(&plain(), &[part([-0.5, 0.0, 1.0], [-0.35, 0.15, 1.15], 4)]).unwrap();
+    let locator = Locator::new(&mesh);
+    let boxes: Vec<[Vec3; 2]> = (0..mesh.cells())
+        .map(|cell| {
+            let faces = mesh.faces_of(cell).iter();
+            let points = faces.flat_map(|&face| mesh.face_points(face as usize));
+            let infinity = Vec3::repeat(f64::INFINITY);
+            points.fold([infinity, -infinity], |[low, high], &point| {
+                let point = mesh.topology().points[point as usize];
+                [low.inf(&point), high.sup(&point)]
+            })
+        })
+        .collect();
+    for cell in (0..mesh.cells()).step_by(97) {
+        let centre = mesh.cell_centre()[cell] + Vec3::new(1e-4, 2e-4, -1e-4);
+        for radius in [0.004, 0.03, 0.2] {
+            let near =
+                |[low, high]: &[Vec3; 2]| (centre.sup(low).inf(high) - centre).norm() < radius;
+            let all = (0u32..).zip(&boxes).filter(|(_, ends)| near(ends));
+            let expected: Vec<u32> = all.map(|(cell, _)| cell).collect();
+            assert_eq!(locator.cells_near(centre, radius), expected);
+        }
+        assert_eq!(locator.cell_at(mesh.cell_centre()[cell]), Some(cell));
+    }
+    assert_eq!(locator.cell_at(Vec3::new(-0.6, 0.1, 1.1)), None);
+}
+
 #[test]
 fn a_ball_has_the_same_share_of_a_coarse_cell_whether_it_is_split_or_not() {
     for (coarse, fine) in both() {

@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-use rustix::process::{Resource, Rlimit, setrlimit};
+use rustix::process::{Resource, Rlimit, Signal, set_parent_process_death_signal, setrlimit};
 
 use crate::random::Random;
 use crate::{parent, target};
@@ -33,6 +33,8 @@ pub fn run(words: &[String]) -> ExitCode {
         maximum: Some(MEMORY),
     };
     setrlimit(Resource::As, limit).unwrap();
+    // Nobody would watch it any more.
+    set_parent_process_death_signal(Some(Signal::KILL)).unwrap();
     panic::set_hook(Box::new(|info| {
         if let Ok(mut last) = PANIC.lock() {
             *last = info.to_string();

@@ -206,11 +206,6 @@ impl World {
         Self::on(duct())
     }
 
-    /// Centre of a particle in m.
-    pub fn centre(&self, particle: usize) -> Vec3 {
-        self.position[particle]
-    }
-
     pub fn on(mesh: Mesh) -> Self {
         let cells = mesh.cells();
         let about = |name: &str| About {

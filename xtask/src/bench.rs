@@ -57,6 +57,12 @@ pub fn run(workspace: &Workspace, choice: &Choice) -> Outcome<()> {
         return print(&table(&measurements(&workspace.target, None)));
     }
     packages::install(Needs::NATIVE, &workspace.logs)?;
+    let everything = choice.words.is_empty();
+    if everything {
+        let mut build = workspace.cargo("build");
+        build.args(["--release", "-p", "calcine"]);
+        loud_step("build Calcine", || visibly(&mut build))?;
+    }
     for folder in FOLDERS {
         if !workspace.root.join(folder).join("benches").is_dir() {
             continue;
@@ -69,12 +75,12 @@ pub fn run(workspace: &Workspace, choice: &Choice) -> Outcome<()> {
             .args(&choice.words);
         loud_step(&format!("benchmarks in {folder}"), || visibly(&mut command))?;
     }
-    let phases = match choice.words.is_empty() {
-        true => Some(phases(workspace)?),
-        false => None,
-    };
+    let phases = everything.then(|| phases(workspace));
     print(&table(&measurements(&workspace.target, Some(begun))))?;
-    phases.map_or(Ok(()), |phases| print(&phases))
+    match phases {
+        Some(phases) => print(&phases?),
+        None => Ok(()),
+    }
 }
 
 fn print(table: &Table) -> Outcome<()> {
@@ -202,9 +208,6 @@ fn table(measurements: &[Measurement]) -> Table {
 
 /// Runs of the shipped heated bed on meshes of growing size: the cost of a window by phase.
 fn phases(workspace: &Workspace) -> Outcome<Table> {
-    let mut build = workspace.cargo("build");
-    build.args(["--release", "-p", "calcine"]);
-    loud_step("build Calcine", || visibly(&mut build))?;
     let log = crate::steps::new_log(&workspace.logs, "bench-phases")?;
     let mut table = Table::new([
         "cost per window by phase",

@@ -75,12 +75,15 @@ impl GasModel {
         }
     }
 
-    /// Temperature in K of a sensible enthalpy in J/kg; `guess` in K is near it.
+    /// Temperature in K of a sensible enthalpy in J/kg; `guess` in K is near it. Not a number where a
+    /// mixture has none between 1 K and 20000 K.
     pub fn temperature(&self, enthalpy: f64, composition: &[f64], guess: f64) -> f64 {
         match self {
             Self::Perfect(gas) => gas.temperature(enthalpy),
             Self::Constant(gas) => REFERENCE_TEMPERATURE + enthalpy / gas.heat_capacity,
-            Self::Mixture(mixture) => mixture.temperature(enthalpy, composition, guess),
+            Self::Mixture(mixture) => mixture
+                .temperature(enthalpy, composition, guess)
+                .unwrap_or(f64::NAN),
         }
     }
 

@@ -13,7 +13,7 @@ pub use weights::Weights;
 use crate::mesh::Mesh;
 use crate::mesh::locate::Locator;
 use overlap::Overlap;
-pub(crate) use weights::{Amount, Rows};
+pub(crate) use weights::Amount;
 
 /// Particles that cannot be mapped.
 #[derive(Clone, Debug, Error, PartialEq)]

@@ -15,7 +15,7 @@ pub struct Weights {
 
 /// A sparse matrix by rows.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Rows {
+struct Rows {
     offsets: Vec<usize>,
     columns: Vec<u32>,
     values: Vec<f64>,

@@ -6,8 +6,8 @@ use calcine_physics::Vec3;
 
 use super::Mesh;
 
-/// Finds the cells of a mesh by position: a regular grid of bins lists the cells whose bounding
-/// boxes reach into each bin; among those the faces decide.
+/// Finds the cells of a mesh by position: a regular grid of bins, finer where cells are, lists the
+/// cells whose bounding boxes reach into each bin; among those the faces decide.
 #[derive(Clone, Debug)]
 pub struct Locator<'m> {
     mesh: &'m Mesh,
@@ -165,7 +165,7 @@ fn bounds(points: impl Iterator<Item = Vec3>) -> [Vec3; 2] {
     })
 }
 
-/// A regular grid over the mesh, about as many bins as cells.
+/// A regular grid over a box, about as many bins as cells; crowded bins hold a finer grid.
 #[derive(Clone, Debug)]
 struct Bins {
     lower: Vec3,
@@ -173,33 +173,68 @@ struct Bins {
     count: [usize; 3],
     offsets: Vec<usize>,
     cells: Vec<u32>,
+    /// Grids of the crowded bins, by ascending bin.
+    finer: Vec<(usize, Bins)>,
 }
+
+/// Cells of a bin from which on it gets a finer grid; with equal cells a bin reaches into 27.
+const CROWDED: usize = 64;
+/// Grids inside one another at most.
+const DEPTH: usize = 4;
 
 impl Bins {
     fn new(boxes: &[[Vec3; 2]]) -> Self {
-        let [lower, upper] = bounds(boxes.iter().flatten().copied());
+        let all: Vec<u32> = (0..boxes.len() as u32).collect();
+        Self::over(bounds(boxes.iter().flatten().copied()), &all, boxes, 1)
+    }
+
+    fn over([lower, upper]: [Vec3; 2], cells: &[u32], boxes: &[[Vec3; 2]], depth: usize) -> Self {
         let size = upper - lower;
-        let edge = (size.product() / boxes.len() as f64).cbrt();
-        let along = |axis: usize| ((size[axis] / edge).ceil() as usize).clamp(1, boxes.len());
+        let edge = (size.product() / cells.len() as f64).cbrt();
+        let along = |axis: usize| ((size[axis] / edge).ceil() as usize).clamp(1, cells.len());
         let mut bins = Self {
             lower,
             upper,
             count: [along(0), along(1), along(2)],
             offsets: Vec::new(),
             cells: Vec::new(),
+            finer: Vec::new(),
         };
         let mut lists = vec![Vec::new(); bins.count.iter().product()];
-        for (cell, &[low, high]) in boxes.iter().enumerate() {
+        for &cell in cells {
+            let [low, high] = boxes[cell as usize];
             for bin in bins.range(low, high) {
-                lists[bin].push(cell as u32);
+                lists[bin].push(cell);
             }
         }
         bins.offsets.push(0);
-        for list in lists {
-            bins.cells.extend(list);
+        for (bin, list) in lists.into_iter().enumerate() {
+            if list.len() > CROWDED && depth < DEPTH {
+                let finer = Self::over(bins.bounds_of(bin), &list, boxes, depth + 1);
+                bins.finer.push((bin, finer));
+            } else {
+                bins.cells.extend(list);
+            }
             bins.offsets.push(bins.cells.len());
         }
         bins
+    }
+
+    /// Lowest and highest corner of a bin in m.
+    fn bounds_of(&self, bin: usize) -> [Vec3; 2] {
+        let [nx, ny, _] = self.count;
+        let place = [bin % nx, bin / nx % ny, bin / (nx * ny)];
+        [0, 1].map(|end| {
+            let share = |axis: usize| (place[axis] + end) as f64 / self.count[axis] as f64;
+            let shares = Vec3::new(share(0), share(1), share(2));
+            self.lower + (self.upper - self.lower).component_mul(&shares)
+        })
+    }
+
+    /// The finer grid of a crowded bin.
+    fn finer(&self, bin: usize) -> Option<&Self> {
+        let place = self.finer.binary_search_by_key(&bin, |(bin, _)| *bin);
+        place.ok().map(|place| &self.finer[place].1)
     }
 
     /// The bin's index along an axis, clamped into the grid.
@@ -227,21 +262,34 @@ impl Bins {
             position[axis] >= self.lower[axis] - margin
                 && position[axis] <= self.upper[axis] + margin
         };
-        let bin = (0..3)
-            .all(inside)
-            .then(|| self.range(position, position).next())??;
-        Some(&self.cells[self.offsets[bin]..self.offsets[bin + 1]])
+        (0..3).all(inside).then(|| self.near(position))
+    }
+
+    /// Cells of the bin of a position, or of the nearest bin.
+    fn near(&self, position: Vec3) -> &[u32] {
+        let [i, j, k] = [0, 1, 2].map(|axis| self.index(axis, position[axis]));
+        let bin = i + self.count[0] * (j + self.count[1] * k);
+        match self.finer(bin) {
+            Some(finer) => finer.near(position),
+            None => &self.cells[self.offsets[bin]..self.offsets[bin + 1]],
+        }
     }
 
     /// Cells of all bins of a box, ascending, each once.
     fn between(&self, low: Vec3, high: Vec3) -> Vec<u32> {
-        let mut cells: Vec<u32> = self
-            .range(low, high)
-            .flat_map(|bin| &self.cells[self.offsets[bin]..self.offsets[bin + 1]])
-            .copied()
-            .collect();
+        let mut cells = Vec::new();
+        self.gather(low, high, &mut cells);
         cells.sort_unstable();
         cells.dedup();
         cells
+    }
+
+    fn gather(&self, low: Vec3, high: Vec3, cells: &mut Vec<u32>) {
+        for bin in self.range(low, high) {
+            match self.finer(bin) {
+                Some(finer) => finer.gather(low, high, cells),
+                None => cells.extend(&self.cells[self.offsets[bin]..self.offsets[bin + 1]]),
+            }
+        }
     }
 }

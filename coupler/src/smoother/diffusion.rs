@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use super::graph::Graph;
-use crate::mapping::Amount;
+use super::parallel;
+use super::scratch::{Kept, Scratch};
 
 /// Diffusion over a length ℓ: F = (I − τ L V⁻¹)ᵐ with mτ = ℓ², L the Laplacian of the conductances
 /// and V the cell volumes. It approaches the heat kernel of variance 2ℓ² per axis, as the implicit
@@ -43,30 +42,32 @@ impl Diffusion {
     }
 
     /// F applied to amounts.
-    pub fn apply<T: Amount>(&self, amounts: &mut [T]) {
-        self.repeat(amounts, |old, cell| {
-            let fraction = |c: usize| old[c] * (1.0 / self.graph.volume[c]);
-            self.graph.laplacian(cell, fraction) * self.step
+    pub fn apply<T: Kept>(&self, amounts: &mut [T], scratch: &Scratch) {
+        let Self { graph, step, .. } = self;
+        self.repeat(amounts, scratch, |old, cell| {
+            graph.inflow(cell, |c| old[c] * (1.0 / graph.volume[c])) * *step
         });
     }
 
     /// Fᵀ applied to fields.
-    pub fn apply_transposed<T: Amount>(&self, field: &mut [T]) {
-        self.repeat(field, |old, cell| {
-            self.graph.laplacian(cell, |c| old[c]) * (self.step / self.graph.volume[cell])
+    pub fn apply_transposed<T: Kept>(&self, field: &mut [T], scratch: &Scratch) {
+        let Self { graph, step, .. } = self;
+        self.repeat(field, scratch, |old, cell| {
+            graph.inflow(cell, |c| old[c]) * (step / graph.volume[cell])
         });
     }
 
-    fn repeat<T: Amount>(&self, values: &mut [T], change: impl Fn(&[T], usize) -> T + Sync) {
-        let mut old = values.to_vec();
-        for _ in 0..self.steps {
-            old.copy_from_slice(values);
-            let from = &old;
-            values
-                .par_iter_mut()
-                .with_min_len(1024)
-                .enumerate()
-                .for_each(|(cell, value)| *value += change(from, cell));
-        }
+    fn repeat<T: Kept>(
+        &self,
+        values: &mut [T],
+        scratch: &Scratch,
+        change: impl Fn(&[T], usize) -> T + Sync,
+    ) {
+        scratch.with(values.len(), |old: &mut [T]| {
+            for _ in 0..self.steps {
+                old.copy_from_slice(values);
+                parallel::update(values, |cell, value| *value += change(old, cell));
+            }
+        });
     }
 }

@@ -1,14 +1,17 @@
 //! Cells joined by conductances: how excess and diffusion pass between neighbours.
 
-use crate::mapping::{Amount, Rows};
+use super::parallel;
+use super::sparse::Sparse;
+use crate::mapping::Amount;
 use crate::mesh::Mesh;
 
 /// Symmetric conductances g = |S_f|/|d_f| in m between neighbouring cells, fixed by the mesh
-/// (requirements VFS-4), zero into excluded cells.
+/// (requirements VFS-4), zero into excluded cells. L is their Laplacian,
+/// (L y)_i = Σ_j g_ij (y_i − y_j).
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Graph {
     /// g of each cell's neighbours, by ascending neighbour.
-    pub conductance: Rows,
+    pub conductance: Sparse,
     /// Sum of each cell's conductances in m.
     pub total: Vec<f64>,
     /// Cell volumes in m³.
@@ -17,28 +20,36 @@ pub(super) struct Graph {
 
 impl Graph {
     pub fn new(mesh: &Mesh, excluded: &[bool]) -> Self {
-        let mut rows = vec![Vec::new(); mesh.cells()];
+        let mut joined: Vec<(u32, u32, f64)> = Vec::with_capacity(mesh.neighbour().len());
         for (face, &neighbour) in mesh.neighbour().iter().enumerate() {
-            let (a, b) = (mesh.owner()[face] as usize, neighbour as usize);
-            if excluded[a] || excluded[b] {
+            let (a, b) = (mesh.owner()[face], neighbour);
+            if excluded[a as usize] || excluded[b as usize] {
                 continue;
             }
-            let distance = (mesh.cell_centre()[b] - mesh.cell_centre()[a]).norm();
+            let distance = (mesh.cell_centre()[b as usize] - mesh.cell_centre()[a as usize]).norm();
             let conductance = mesh.face_area()[face].norm() / distance;
-            rows[a].push((b as u32, conductance));
-            rows[b].push((a as u32, conductance));
+            joined.push((a.min(b), a.max(b), conductance));
         }
-        for row in &mut rows {
-            row.sort_by_key(|&(cell, _)| cell);
-        }
-        let total = rows
-            .iter()
-            .map(|row| row.iter().map(|&(_, conductance)| conductance).sum())
-            .collect();
+        // By cell, then neighbour: lower neighbours arrive before higher ones.
+        joined.sort_by_key(|&(low, high, _)| (low, high));
+        let conductance = Sparse::from_entries(mesh.cells(), |entry| {
+            for &(low, high, conductance) in &joined {
+                entry(high, low, conductance);
+            }
+            for &(low, high, conductance) in &joined {
+                entry(low, high, conductance);
+            }
+        });
+        Self::of(conductance, mesh.cell_volume().to_vec())
+    }
+
+    /// The graph of given conductances and cell volumes.
+    pub fn of(conductance: Sparse, volume: Vec<f64>) -> Self {
+        let total = |cell| conductance.row(cell).map(|(_, g)| g).sum();
         Self {
-            conductance: Rows::from_rows(rows),
-            total,
-            volume: mesh.cell_volume().to_vec(),
+            total: (0..volume.len()).map(total).collect(),
+            conductance,
+            volume,
         }
     }
 
@@ -47,8 +58,8 @@ impl Graph {
     }
 
     /// Number of the connected region of each cell, and how many regions there are.
-    pub fn regions(&self) -> (Vec<usize>, usize) {
-        const NONE: usize = usize::MAX;
+    pub fn regions(&self) -> (Vec<u32>, usize) {
+        const NONE: u32 = u32::MAX;
         let mut region = vec![NONE; self.cells()];
         let mut count = 0;
         let mut stack = Vec::new();
@@ -68,16 +79,25 @@ impl Graph {
             }
             count += 1;
         }
-        (region, count)
+        (region, count as usize)
     }
 
-    /// Σ over neighbours of g (value of the neighbour − value of the cell).
-    pub fn laplacian<T: Amount>(&self, cell: usize, value: impl Fn(usize) -> T) -> T {
+    /// −(L y) of a cell: Σ over neighbours of g (value of the neighbour − value of the cell). What
+    /// one of two neighbours gets is, to the bit, what the other gives.
+    #[inline]
+    pub fn inflow<T: Amount>(&self, cell: usize, value: impl Fn(usize) -> T) -> T {
         let own = value(cell);
         let mut sum = T::ZERO;
         for (neighbour, conductance) in self.conductance.row(cell) {
             sum += (value(neighbour) - own) * conductance;
         }
         sum
+    }
+
+    /// A − C = b − Lφ of all cells, where `excess` is b = A₀ − C and `potential` φ = U/G.
+    pub fn excess(&self, excess: &[f64], potential: &[f64], left: &mut [f64]) {
+        parallel::fill(left, |cell| {
+            excess[cell] + self.inflow(cell, |c| potential[c])
+        });
     }
 }

@@ -1,67 +1,189 @@
 //! How much must pass through each cell so that none stays above its capacity.
-
-use rayon::prelude::*;
+//!
+//! With the potential φ = U/G (U the solid volume that leaves a cell, G its conductance in all),
+//! VFS-4's (I − P)U is Lφ, L the symmetric Laplacian of the conductances. With b = A₀ − C the
+//! problem reads
+//!
+//! φ ≥ 0,   A − C = b − Lφ ≤ 0,   φ (b − Lφ) = 0.
+//!
+//! L is an M-matrix, so that the primal-dual active-set method (Newton's method for
+//! min(φ, Lφ − b) = 0) ends after finitely many steps: each solves Lφ = b on the active cells with
+//! φ = 0 elsewhere, then cells with φ < 0 leave the set and cells with b − Lφ > 0 join it. From the
+//! second step on φ only rises, and never above the solution (M. Hintermüller, K. Ito, K. Kunisch,
+//! SIAM J. Optim. 13 (2002) 865, DOI 10.1137/S1052623401383558). But the set grows by one layer of
+//! cells a step; so some projected sweeps go before each, which rise likewise and grow it by several,
+//! and the first step starts from the solution on a coarser graph.
 
 use super::graph::Graph;
+use super::multigrid::Multigrid;
+use super::multigrid::level::Matrix;
+use super::parallel;
+use super::sparse::Sparse;
 
-/// The settled bed.
-pub(super) struct Obstacle {
-    /// Solid volume A of each cell in m³.
-    pub solid: Vec<f64>,
-    /// Solid volume U in m³ that was moved out of each cell, summed over sweeps.
-    pub moved: Vec<f64>,
-    /// Whether the last sweep was enough.
-    pub settled: bool,
+/// How exactly the problem is solved.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Care {
+    /// To start a finer graph from.
+    Rough,
+    /// To round-off.
+    Full,
 }
 
-/// Sweeps as the paper does (requirements VFS-2): each moves the excess max(0, A − C) of every cell
-/// to its neighbours by the fixed shares P. The limit solves the obstacle problem of VFS-4,
-/// A = A₀ − (I − P)U ≤ C, U ≥ 0, U (C − A) = 0; all cells move at once, so that the result does not
-/// depend on their numbering. Ends when `enough(total excess, solid)` or after `most` sweeps.
-pub(super) fn solve(
+/// Steps of the active set after which it is given up.
+const MOST_STEPS: usize = 60;
+/// Projected sweeps before each step.
+const SWEEPS: usize = 12;
+/// Solid fractions that count as round-off.
+const ROUND_OFF: f64 = 1e-12;
+
+/// Changes the potential, at first a guess, to the solution; returns the steps taken, `None` where
+/// they were not enough.
+pub(super) fn settle(
     graph: &Graph,
-    capacity: &[f64],
-    before: &[f64],
-    most: u32,
-    enough: impl Fn(f64, &[f64]) -> bool,
-) -> Obstacle {
-    let mut solid = before.to_vec();
-    let mut moved = vec![0.0; solid.len()];
-    // Excess of each cell per conductance, so that neighbours gather g times it.
-    let mut pressure = vec![0.0; solid.len()];
-    for sweep in 0..=most {
-        let mut total = 0.0;
-        for cell in 0..solid.len() {
-            let excess = f64::max(0.0, solid[cell] - capacity[cell]);
-            total += excess;
-            pressure[cell] = if graph.total[cell] > 0.0 {
-                excess / graph.total[cell]
+    excess: &[f64],
+    potential: &mut Vec<f64>,
+    care: Care,
+) -> Option<usize> {
+    let cells = graph.cells();
+    let mut left = vec![0.0; cells];
+    let mut set = ActiveSet::default();
+    let mut fine = false;
+    let most = if care == Care::Rough { 8 } else { MOST_STEPS };
+    for step in 1..=most {
+        if !fine {
+            project(graph, excess, potential, &mut left);
+        }
+        set.choose(graph, excess, potential);
+        set.solve(
+            excess,
+            &graph.volume,
+            potential,
+            if fine { 1e-14 } else { 1e-7 },
+        );
+        graph.excess(excess, potential, &mut left);
+        let round_off = if fine { ROUND_OFF } else { 1e-5 };
+        let wrong = parallel::sum(cells, |cell| {
+            let volume = graph.volume[cell];
+            let negative = potential[cell] * graph.total[cell] < -round_off * volume;
+            let above = potential[cell] == 0.0
+                && graph.total[cell] > 0.0
+                && left[cell] > round_off * volume;
+            f64::from(u8::from(negative || above))
+        });
+        parallel::update(potential, |_, potential| *potential = potential.max(0.0));
+        match (wrong == 0.0, fine || care == Care::Rough) {
+            (true, true) => return Some(step),
+            (true, false) => fine = true,
+            (false, _) => fine = false,
+        }
+    }
+    None
+}
+
+/// Projected sweeps, φ ← max(0, φ + (b − Lφ)/G).
+fn project(graph: &Graph, excess: &[f64], potential: &mut Vec<f64>, spare: &mut Vec<f64>) {
+    for _ in 0..SWEEPS {
+        parallel::fill(spare, |cell| {
+            let total = graph.total[cell];
+            if total > 0.0 {
+                let around = graph.conductance.gather(cell, potential);
+                ((excess[cell] + around) / total).max(0.0)
             } else {
                 0.0
-            };
-        }
-        let settled = enough(total, &solid);
-        if settled || sweep == most {
-            return Obstacle {
-                solid,
-                moved,
-                settled,
-            };
-        }
-        let given = |cell: usize| pressure[cell] * graph.total[cell];
-        solid
-            .par_iter_mut()
-            .zip(&mut moved)
-            .with_min_len(1024)
-            .enumerate()
-            .for_each(|(cell, (amount, moved))| {
-                *moved += given(cell);
-                *amount += graph.conductance.gather(cell, &pressure) - given(cell);
-            });
+            }
+        });
+        std::mem::swap(potential, spare);
     }
-    Obstacle {
-        solid,
-        moved,
-        settled: false,
+}
+
+/// The active cells and the Laplacian among them.
+#[derive(Default)]
+struct ActiveSet {
+    cells: Vec<u32>,
+    multigrid: Option<Multigrid>,
+}
+
+impl ActiveSet {
+    /// Makes the cells with a potential active. A region in which all have one has nowhere to
+    /// send its excess: its cell with most room is left out.
+    fn choose(&mut self, graph: &Graph, excess: &[f64], potential: &mut [f64]) {
+        open(graph, excess, potential);
+        let active = |&cell: &u32| potential[cell as usize] > 0.0;
+        let cells: Vec<u32> = (0..graph.cells() as u32).filter(active).collect();
+        if self.multigrid.is_none() || cells != self.cells {
+            let diagonal = cells.iter().map(|&cell| graph.total[cell as usize]);
+            let matrix = Matrix {
+                diagonal: diagonal.collect(),
+                pull: among(graph, &cells),
+            };
+            self.multigrid = Some(Multigrid::new(matrix));
+            self.cells = cells;
+        }
+    }
+
+    fn solve(&self, excess: &[f64], volume: &[f64], potential: &mut [f64], tolerance: f64) {
+        let Some(multigrid) = &self.multigrid else {
+            return;
+        };
+        let of = |from: &[f64]| -> Vec<f64> {
+            self.cells.iter().map(|&cell| from[cell as usize]).collect()
+        };
+        let (rhs, volume, mut solution) = (of(excess), of(volume), of(potential));
+        multigrid.solve(&rhs, &mut solution, |largest| {
+            largest(&|row| volume[row]) <= tolerance
+        });
+        for (&cell, &value) in self.cells.iter().zip(&solution) {
+            potential[cell as usize] = value;
+        }
+    }
+}
+
+/// The conductances among some cells, given in ascending order.
+pub(super) fn among(graph: &Graph, cells: &[u32]) -> Sparse {
+    let mut position = vec![u32::MAX; graph.cells()];
+    for (index, &cell) in cells.iter().enumerate() {
+        position[cell as usize] = index as u32;
+    }
+    let mut among = Sparse::with_capacity(cells.len(), 6 * cells.len());
+    for &cell in cells {
+        for (other, g) in graph.conductance.row(cell as usize) {
+            if position[other] != u32::MAX {
+                among.push(position[other], g);
+            }
+        }
+        among.end_row();
+    }
+    among
+}
+
+/// Takes the potential from the cell with most room of each region where all cells have one.
+fn open(graph: &Graph, excess: &[f64], potential: &mut [f64]) {
+    let mut seen = vec![false; graph.cells()];
+    let mut region = Vec::new();
+    for seed in 0..graph.cells() {
+        if seen[seed] || potential[seed] == 0.0 {
+            continue;
+        }
+        region.clear();
+        region.push(seed);
+        seen[seed] = true;
+        let mut is_open = false;
+        let mut next = 0;
+        while let Some(&cell) = region.get(next) {
+            next += 1;
+            for (other, _) in graph.conductance.row(cell) {
+                if potential[other] == 0.0 {
+                    is_open = true;
+                } else if !seen[other] {
+                    seen[other] = true;
+                    region.push(other);
+                }
+            }
+        }
+        let room = |cell: usize| -excess[cell] / graph.volume[cell];
+        let roomiest = region.iter().max_by(|&&a, &&b| room(a).total_cmp(&room(b)));
+        if let (false, Some(&cell)) = (is_open, roomiest) {
+            potential[cell] = 0.0;
+        }
     }
 }

@@ -3,23 +3,25 @@
 use calcine_physics::Vec3;
 
 use super::diffusion::Diffusion;
-use super::sweeps::Sweeps;
-use crate::mapping::{Amount, Weights};
+use super::kernel::Kernel;
+use super::scratch::{Kept, Scratch};
+use crate::mapping::Weights;
 
 /// W = F S W₀ for the bed that it was made for. Every column sums to 1: what particles spread
 /// arrives in full, and a uniform field is sampled as it is.
 #[derive(Clone, Debug)]
 pub struct Operator {
     weights: Weights,
-    sweeps: Option<Sweeps>,
+    kernel: Option<Kernel>,
     diffusion: Option<Diffusion>,
     solid_fraction: Vec<f64>,
+    scratch: Scratch,
 }
 
 impl Operator {
     pub(super) fn new(
         weights: Weights,
-        sweeps: Option<Sweeps>,
+        kernel: Option<Kernel>,
         diffusion: Option<Diffusion>,
         cell_volume: &[f64],
         solid_volume: &[f64],
@@ -27,8 +29,9 @@ impl Operator {
         let mut operator = Self {
             solid_fraction: Vec::new(),
             weights,
-            sweeps,
+            kernel,
             diffusion,
+            scratch: Scratch::default(),
         };
         let mut fraction = vec![0.0; operator.cells()];
         operator.spread(solid_volume, &mut fraction);
@@ -59,9 +62,20 @@ impl Operator {
         &self.solid_fraction
     }
 
-    /// Sweeps K of the smoother; 0 where no cell was above the threshold.
+    /// Sweeps of the smoother, or V-cycles of the multigrid that stands for them; 0 where no cell was
+    /// above the threshold.
     pub fn sweeps(&self) -> u32 {
-        self.sweeps.as_ref().map_or(0, Sweeps::count)
+        self.kernel.as_ref().map_or(0, Kernel::count)
+    }
+
+    /// Whether multigrid stands for the sweeps.
+    pub fn is_multigrid(&self) -> bool {
+        self.kernel.as_ref().is_some_and(Kernel::is_multigrid)
+    }
+
+    /// Cells that pass on what is above the threshold.
+    pub fn active_cells(&self) -> usize {
+        self.kernel.as_ref().map_or(0, Kernel::active)
     }
 
     /// W x: amounts of particles (J, kg, N s) spread over cells. Slices must have the lengths
@@ -85,27 +99,29 @@ impl Operator {
         self.sample_any(per_cell, per_particle);
     }
 
-    fn spread_any<T: Amount>(&self, per_particle: &[T], per_cell: &mut [T]) {
+    fn spread_any<T: Kept>(&self, per_particle: &[T], per_cell: &mut [T]) {
         self.weights.spread(per_particle, per_cell);
-        if let Some(sweeps) = &self.sweeps {
-            sweeps.apply(per_cell);
+        if let Some(kernel) = &self.kernel {
+            kernel.apply(per_cell);
         }
         if let Some(diffusion) = &self.diffusion {
-            diffusion.apply(per_cell);
+            diffusion.apply(per_cell, &self.scratch);
         }
     }
 
-    fn sample_any<T: Amount>(&self, per_cell: &[T], per_particle: &mut [T]) {
-        if self.sweeps.is_none() && self.diffusion.is_none() {
+    fn sample_any<T: Kept>(&self, per_cell: &[T], per_particle: &mut [T]) {
+        if self.kernel.is_none() && self.diffusion.is_none() {
             return self.weights.sample(per_cell, per_particle);
         }
-        let mut field = per_cell.to_vec();
-        if let Some(diffusion) = &self.diffusion {
-            diffusion.apply_transposed(&mut field);
-        }
-        if let Some(sweeps) = &self.sweeps {
-            sweeps.apply_transposed(&mut field);
-        }
-        self.weights.sample(&field, per_particle);
+        self.scratch.with(per_cell.len(), |field: &mut [T]| {
+            field.copy_from_slice(per_cell);
+            if let Some(diffusion) = &self.diffusion {
+                diffusion.apply_transposed(field, &self.scratch);
+            }
+            if let Some(kernel) = &self.kernel {
+                kernel.apply_transposed(field);
+            }
+            self.weights.sample(field, per_particle);
+        });
     }
 }

@@ -12,6 +12,7 @@ mod outer;
 mod pressure;
 mod species;
 mod state;
+mod transport;
 
 use std::path::Path;
 use std::sync::Arc;

@@ -189,6 +189,13 @@ impl Momentum {
         force
     }
 
+    /// The part of a cell's diagonal that is friction and convection, in kg/s.
+    #[inline]
+    pub fn transport(&self, frame: &Frame<'_>, cell: usize) -> f64 {
+        let inertia = frame.old.mass[cell] / frame.motion_span;
+        self.matrix.diagonal()[cell] - inertia - frame.exchange.drag_coefficient[cell]
+    }
+
     /// Solves for the velocity with the pressure gradient at hand; returns the iterations.
     pub fn predict(
         &mut self,
@@ -319,7 +326,7 @@ fn face_velocity(frame: &Frame<'_>, index: usize, face: &Face, velocity: &[Vec3]
 
 /// Σ u_f S / V (Gauss): ∂u_i/∂x_j.
 #[inline]
-fn tensor(grid: &Grid, cell: usize, value: impl Fn(usize, &Face) -> Vec3) -> Matrix3<f64> {
+pub fn tensor(grid: &Grid, cell: usize, value: impl Fn(usize, &Face) -> Vec3) -> Matrix3<f64> {
     let mut sum = Matrix3::zeros();
     for link in grid.links(cell) {
         let index = link.face as usize;

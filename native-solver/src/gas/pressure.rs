@@ -9,8 +9,9 @@
 //! distance-weighted harmonic mean. p_f gives the cell's gradient (Gauss), which the momentum
 //! equation takes; gas at rest stays at rest whatever the void fraction does, and a bed's
 //! resistance is exact to its last half cell. The force of inertia at a face is taken from the
-//! face's own old flux, so that a steady flow does not depend on the time step. Rhie and Chow
-//! 1983, doi 10.2514/3.8284.
+//! face's own old flux, so that a steady flow does not depend on the time step; what friction and
+//! convection owe to the cell's own velocity in [`super::transport`]. Rhie and Chow 1983,
+//! doi 10.2514/3.8284.
 //!
 //! Continuity, for each cell: Σ φ_f = −(ε ρ V − m_old)/Δτ, ρ from the equation of state.
 
@@ -20,11 +21,12 @@ use super::attempt::{Frame, Material};
 use super::boundary::Value;
 use super::momentum::Momentum;
 use super::state::State;
+use super::transport::Transport;
 use crate::numerics::amg::Multigrid;
 use crate::numerics::grid::Face;
 use crate::numerics::krylov::{Krylov, Target};
 use crate::numerics::matrix::Matrix;
-use crate::numerics::operators::{displacement, gradient, outflow};
+use crate::numerics::operators::{displacement, outflow};
 use crate::numerics::parallel::{CHUNK, fill, sums};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
@@ -73,6 +75,7 @@ pub struct Pressure {
     /// What inertia adds to the force on the half cells of each face's owner and neighbour, along
     /// the face's normal, in N/m³: the face's own old flux in place of the cell's.
     inertia: Vec<[f64; 2]>,
+    transport: Transport,
     /// Area/(d_P/b_P + d_N/b_N) of each face in m s; zero where the flux is given.
     conductance: Vec<f64>,
     /// The flux that the forces alone would drive through each face in kg/s; the flux itself
@@ -92,6 +95,7 @@ impl Pressure {
             mobility: vec![0.0; cells],
             force: vec![Vec3::zeros(); cells],
             inertia: vec![[0.0; 2]; faces],
+            transport: Transport::new(cells, faces),
             conductance: vec![0.0; faces],
             drive: vec![0.0; faces],
             source: vec![0.0; cells],
@@ -179,6 +183,7 @@ impl Pressure {
             momentum.without_pressure(cell, velocity)
                 / (frame.void_fraction[cell] * grid.volume[cell])
         });
+        self.transport.update(frame, material, momentum, now);
         self.update_drive(frame, &now.pressure_gradient);
 
         let (drive, conductance) = (&self.drive, &self.conductance);
@@ -216,6 +221,13 @@ impl Pressure {
         self.force[face.owner].dot(&face.normal) + self.inertia[index][0]
     }
 
+    /// What transport adds to the pressure difference between the cells of an internal face, in Pa.
+    #[inline]
+    fn transport_push(&self, face: &Face, index: usize) -> f64 {
+        let [own, other] = self.transport.force[index];
+        face.owner_distance * own + face.neighbour_distance * other
+    }
+
     fn update_drive(&mut self, frame: &Frame<'_>, gradients: &[Vec3]) {
         let mut drive = std::mem::take(&mut self.drive);
         fill(&mut drive, |index| {
@@ -230,7 +242,7 @@ impl Pressure {
             let mut push = face.owner_distance * self.owner_force(face, index);
             if index < frame.grid.internal {
                 let force = self.force[face.neighbour].dot(&face.normal) + self.inertia[index][1];
-                push += face.neighbour_distance * force;
+                push += face.neighbour_distance * force + self.transport_push(face, index);
             }
             self.conductance[index] * (push + displacement(frame.grid, face, gradients))
         });
@@ -276,10 +288,22 @@ impl Pressure {
         self.face_pressure = face_pressure;
     }
 
+    /// The gradient that leaves each cell the mean of its fluxes as its velocity: from face pressures
+    /// without what transport adds, which differ on the two sides of a face by just that.
     fn update_velocity(&self, frame: &Frame<'_>, momentum: &Momentum, now: &mut State) {
         let grid = frame.grid;
         fill(&mut now.pressure_gradient, |cell| {
-            gradient(grid, &self.face_pressure, cell)
+            let mut sum = Vec3::zeros();
+            for link in grid.links(cell) {
+                let index = link.face as usize;
+                let face = &grid.faces[index];
+                let mut pressure = self.face_pressure[index];
+                if index < grid.internal && link.sign < 0.0 {
+                    pressure += self.transport_push(face, index);
+                }
+                sum += (link.sign * face.area * pressure) * face.normal;
+            }
+            sum / grid.volume[cell]
         });
         let gradients = &now.pressure_gradient;
         fill(&mut now.velocity, |cell| {

@@ -45,6 +45,48 @@ pub fn water() -> GasModel {
     })
 }
 
+/// A fluid of constant properties: density in kg/m³, c_p in J/kg/K, viscosity in Pa s, conductivity
+/// in W/m/K.
+pub fn fluid(density: f64, heat_capacity: f64, viscosity: f64, conductivity: f64) -> GasModel {
+    GasModel::Constant(ConstantGas {
+        density,
+        heat_capacity,
+        viscosity,
+        conductivity,
+    })
+}
+
+/// A no-slip wall with heat through it.
+pub fn wall(heat: WallHeat) -> GasPatch {
+    GasPatch::Wall {
+        velocity: WallVelocity::NoSlip,
+        heat,
+    }
+}
+
+/// A slip wall with heat through it.
+pub fn slip_wall(heat: WallHeat) -> GasPatch {
+    GasPatch::Wall {
+        velocity: WallVelocity::Slip,
+        heat,
+    }
+}
+
+/// Observed orders between errors on meshes (or with steps) each twice as fine as the one before.
+pub fn orders(errors: &[f64]) -> Vec<f64> {
+    let pairs = errors.windows(2);
+    pairs.map(|pair| (pair[0] / pair[1]).log2()).collect()
+}
+
+/// Root mean square over cells, weighted by their volumes.
+pub fn rms(mesh: &Mesh, error: impl Fn(usize) -> f64) -> f64 {
+    let volume = mesh.cell_volume();
+    let sum: f64 = (0..mesh.cells())
+        .map(|c| volume[c] * error(c).powi(2))
+        .sum();
+    (sum / volume.iter().sum::<f64>()).sqrt()
+}
+
 /// A box with `bottom` and `top` across z and four sides named `side`.
 pub fn duct(size: [f64; 3], cells: [usize; 3]) -> Arc<Mesh> {
     let patches = ["side", "side", "side", "side", "bottom", "top"];

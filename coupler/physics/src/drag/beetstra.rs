@@ -9,9 +9,9 @@ use crate::local::LocalGas;
 ///
 /// With φ = 1 − ε and Re = ρ U d/μ, U = ε |u − v| (superficial, diameter):
 ///
-/// F = 10 φ/(1 − φ)² + (1 − φ)² (1 + 1.5 √φ)
-///   + 0.413 Re/(24 (1 − φ)²) · ((1 − φ)⁻¹ + 3 φ (1 − φ) + 8.4 Re^−0.343)
-///                            /(1 + 10^(3φ) Re^−(1+4φ)/2)
+/// F = F₀ + F₁, F₀ = 10 φ/(1 − φ)² + (1 − φ)² (1 + 1.5 √φ),
+/// F₁ = 0.413 Re/(24 (1 − φ)²) · n/(1 + 10^(3φ) Re^−(1+4φ)/2),
+/// n = (1 − φ)⁻¹ + 3 φ (1 − φ) + 8.4 Re^−0.343
 ///
 /// Conversion: F is the drag alone over 3π μ d U: its packed limit 10 φ/ε² is ε times the
 /// 10 φ/ε³ of Carman's whole pressure gradient. So K_A = 3π μ d ε F, and β = 18 μ ε φ F/d² = n K_A.

@@ -54,6 +54,22 @@ mod tests {
     }
 
     #[test]
+    fn agrees_with_an_independent_evaluation_with_and_without_the_lowest_denominator() {
+        // In Python: (ε, Re, Pr). The denominator is 0.67, 2.30, 1, 0.113 and −0.299: the last two are
+        // kept at a quarter.
+        for (eps, re, pr, expected) in [
+            (0.45, 100.0, 0.7, 14.766161211282046),
+            (0.45, 100.0, 2.5, 20.354670339666676),
+            (0.6, 1000.0, 1.0, 39.93991827394158),
+            (0.4, 10.0, 0.4, 6.823970408770541),
+            (0.4, 1e-4, 0.7, 3.8112024853728785),
+        ] {
+            let nu = Gnielinski.nusselt(&LocalGas::of_numbers(eps, re, pr), 1.0);
+            assert!((nu / expected - 1.0).abs() < 1e-12, "{re} {pr}: {nu}");
+        }
+    }
+
+    #[test]
     fn still_gas_around_a_lone_sphere_has_a_nusselt_number_of_two() {
         assert_eq!(
             Gnielinski.nusselt(&LocalGas::of_numbers(1.0, 0.0, 0.7), 1.0),

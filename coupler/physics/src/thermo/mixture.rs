@@ -1,341 +1,304 @@
 //! Mixtures of ideal gases.
 
-use thiserror::Error;
+use super::diffusion::MixtureAveraged;
+use super::wilke::Wilke;
+use super::{Element, Species, ThermoError, eucken, inverse};
+use crate::gas::GAS_CONSTANT;
 
-use super::species::{Species, atomic_mass, species, species_names};
-use crate::gas::{GAS_CONSTANT, REFERENCE_TEMPERATURE};
+/// Most species of a mixture: what the transport properties need for each lies on the stack.
+pub const MOST_SPECIES: usize = 32;
+/// Bounds in K of the temperature of an enthalpy. They are wider than the polynomials' range: a solver may
+/// pass it on its way, and c_p stays what it is beyond.
+const BOUNDS: (f64, f64) = (1.0, 2e4);
 
-/// Species in a mixture at most.
-pub const MOST: usize = 16;
-/// Newton steps for a temperature at most.
-const STEPS: u32 = 60;
-
-/// A mixture of built-in species as an ideal gas; its state is a temperature and mass fractions in the
-/// order of the species.
+/// A mixture of ideal gases. A composition is the mass fractions Y in the order of its species.
 ///
-/// Density from Dalton's law; enthalpy and heat capacity weighted by mass; viscosity by Wilke 1950,
-/// doi 10.1063/1.1747673; conductivity by the same weights (Mason and Saxena 1958,
-/// doi 10.1063/1.1724352) from the species' modified Eucken values, κ = μ c_v (1.32 + 1.77 R/c_v)
-/// (requirements COR-7).
+/// 1/M = Σ Y_i/M_i;  ρ = p M/(R T);  c_p = Σ Y_i c_p,i;  h = Σ Y_i h_i;  viscosity and conductivity by
+/// [`super::wilke`], diffusivities by [`super::diffusion`].
+///
+/// The mass fractions are taken as they are: those of a solver sum to one but for round-off, and the
+/// sums above are linear in them. Nothing that is asked in a cell allocates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mixture {
-    names: Vec<String>,
     species: Vec<Species>,
-    /// Molar masses in kg/mol.
-    molar_mass: Vec<f64>,
-    /// Sensible enthalpies count from here, J/kg.
-    reference: Vec<f64>,
-    /// (M_j/M_i)^¼ and 1/√(8 (1 + M_i/M_j)), row i.
-    wilke: Vec<[f64; 2]>,
+    names: Vec<String>,
+    /// 1/M_i in mol/kg.
+    moles: Vec<f64>,
+    interaction: Wilke,
+    diffusion: MixtureAveraged,
+    range: (f64, f64),
 }
 
-/// Why a mixture cannot be made.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum MixtureError {
-    /// A species that is not built in.
-    #[error("the species {name} is not built in; there are {known}")]
-    Unknown {
-        /// The name.
-        name: String,
-        /// Names of the built-in species.
-        known: String,
-    },
-    /// A species that stands twice.
-    #[error("the species {name} stands twice")]
-    Twice {
-        /// The name.
-        name: String,
-    },
-    /// No species, or too many.
-    #[error("a mixture of {count} species; it needs 1 to {MOST}")]
-    Count {
-        /// How many.
-        count: usize,
-    },
+/// Viscosity and conductivity of a gas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transport {
+    /// Dynamic viscosity in Pa s.
+    pub viscosity: f64,
+    /// Thermal conductivity in W/m/K.
+    pub conductivity: f64,
 }
 
 impl Mixture {
     /// A mixture of built-in species.
-    pub fn new<'n>(names: impl IntoIterator<Item = &'n str>) -> Result<Self, MixtureError> {
-        let names: Vec<String> = names.into_iter().map(str::to_owned).collect();
-        if names.is_empty() || names.len() > MOST {
-            return Err(MixtureError::Count { count: names.len() });
+    pub fn new<'n>(names: impl IntoIterator<Item = &'n str>) -> Result<Self, ThermoError> {
+        let species = names.into_iter().map(Species::built_in);
+        Self::of(species.collect::<Result<_, _>>()?)
+    }
+
+    /// A mixture of these species.
+    pub fn of(species: Vec<Species>) -> Result<Self, ThermoError> {
+        if species.is_empty() || species.len() > MOST_SPECIES {
+            return Err(ThermoError::Count {
+                count: species.len(),
+                most: MOST_SPECIES,
+            });
         }
-        let mut found = Vec::new();
-        for (k, name) in names.iter().enumerate() {
-            let Some(&(mut one)) = species(name) else {
-                let known: Vec<_> = species_names().collect();
-                return Err(MixtureError::Unknown {
-                    name: name.clone(),
-                    known: known.join(", "),
+        for (k, one) in species.iter().enumerate() {
+            if species[..k].iter().any(|other| other.name() == one.name()) {
+                return Err(ThermoError::RepeatedSpecies {
+                    name: one.name().to_owned(),
                 });
-            };
-            if names[..k].contains(name) {
-                return Err(MixtureError::Twice { name: name.clone() });
-            }
-            one.thermo = one.thermo.joined();
-            found.push(one);
-        }
-        let molar_mass: Vec<f64> = found.iter().map(Species::molar_mass).collect();
-        let reference = found.iter().zip(&molar_mass);
-        let reference = reference.map(|(s, m)| s.thermo.enthalpy(REFERENCE_TEMPERATURE) / m);
-        let mut wilke = Vec::new();
-        for own in &molar_mass {
-            for other in &molar_mass {
-                wilke.push([
-                    (other / own).powf(0.25),
-                    1.0 / (8.0 * (1.0 + own / other)).sqrt(),
-                ]);
             }
         }
+        let ranges = || species.iter().map(|one| one.polynomial().range());
+        let lowest = ranges().map(|range| range.0).fold(0.0, f64::max);
+        let highest = ranges().map(|range| range.1).fold(f64::INFINITY, f64::min);
+        if lowest >= highest {
+            return Err(ThermoError::NoCommonRange { lowest, highest });
+        }
+        let molar_masses: Vec<f64> = species.iter().map(Species::molar_mass).collect();
         Ok(Self {
-            reference: reference.collect(),
-            names,
-            species: found,
-            molar_mass,
-            wilke,
+            names: species.iter().map(|one| one.name().to_owned()).collect(),
+            moles: molar_masses.iter().map(|mass| 1.0 / mass).collect(),
+            interaction: Wilke::new(&molar_masses),
+            diffusion: MixtureAveraged::new(&species),
+            range: (lowest, highest),
+            species,
         })
     }
 
-    /// Names of the species.
+    /// Dry air of N2, O2 and Ar, with its mass fractions. Mole fractions 0.78084, 0.209476 and 0.00934
+    /// (US Standard Atmosphere 1976, table 3), brought to a sum of one for what is left out.
+    ///
+    /// [`crate::gas::GasProperties::air`] is the same as one gas of constant heat capacity.
+    pub fn air() -> Result<(Self, [f64; 3]), ThermoError> {
+        let air = Self::new(["N2", "O2", "Ar"])?;
+        let mut composition = [0.78084, 0.209476, 0.00934];
+        air.weigh_amounts(&mut composition);
+        Ok((air, composition))
+    }
+
+    /// Its species.
+    pub fn species(&self) -> &[Species] {
+        &self.species
+    }
+
+    /// Names of its species.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// Mass fractions of mole fractions (or amounts of substance).
-    pub fn mass_fractions(&self, mole: &[f64]) -> Vec<f64> {
-        let mass: Vec<f64> = mole
-            .iter()
-            .zip(&self.molar_mass)
-            .map(|(x, m)| x * m)
-            .collect();
-        let total: f64 = mass.iter().sum();
-        mass.into_iter().map(|one| one / total).collect()
+    /// Lowest and highest temperature in K at which all its polynomials hold.
+    pub fn range(&self) -> (f64, f64) {
+        self.range
     }
 
-    /// Each element with its mass in a unit mass of each species.
-    pub fn elements(&self) -> Vec<(String, Vec<f64>)> {
-        let mut found: Vec<(String, Vec<f64>)> = Vec::new();
-        for (k, species) in self.species.iter().enumerate() {
-            for &(element, atoms) in species.elements {
-                let at = found.iter().position(|(name, _)| name == element);
-                let at = at.unwrap_or_else(|| {
-                    found.push((element.to_owned(), vec![0.0; self.species.len()]));
-                    found.len() - 1
-                });
-                found[at].1[k] = atoms * atomic_mass(element).unwrap_or(0.0) / self.molar_mass[k];
-            }
-        }
-        found
+    /// Σ Y_i f_i.
+    fn sum(&self, composition: &[f64], of: impl Fn(&Species) -> f64) -> f64 {
+        debug_assert_eq!(composition.len(), self.species.len());
+        let parts = self.species.iter().zip(composition);
+        parts.map(|(species, y)| y * of(species)).sum()
     }
 
-    /// Amount of substance of a unit mass, 1/M, in mol/kg.
+    /// Molar mass in kg/mol.
     #[inline]
-    fn moles(&self, composition: &[f64]) -> f64 {
-        composition
-            .iter()
-            .zip(&self.molar_mass)
-            .map(|(y, m)| y / m)
-            .sum()
+    pub fn molar_mass(&self, composition: &[f64]) -> f64 {
+        let moles = self.moles.iter().zip(composition);
+        1.0 / moles.map(|(n, y)| n * y).sum::<f64>()
+    }
+
+    /// Specific gas constant R/M in J/kg/K.
+    pub fn specific_gas_constant(&self, composition: &[f64]) -> f64 {
+        GAS_CONSTANT / self.molar_mass(composition)
     }
 
     /// Density in kg/m³ at a pressure in Pa and a temperature in K.
     #[inline]
     pub fn density(&self, pressure: f64, temperature: f64, composition: &[f64]) -> f64 {
-        pressure / (GAS_CONSTANT * self.moles(composition) * temperature)
+        pressure * self.molar_mass(composition) / (GAS_CONSTANT * temperature)
     }
 
     /// Specific heat capacity c_p in J/kg/K.
     #[inline]
     pub fn heat_capacity(&self, temperature: f64, composition: &[f64]) -> f64 {
-        let one = |k: usize| self.species[k].thermo.heat_capacity(temperature) / self.molar_mass[k];
-        composition
-            .iter()
-            .enumerate()
-            .map(|(k, y)| y * one(k))
-            .sum()
+        self.sum(composition, |one| one.heat_capacity(temperature))
     }
 
-    /// Sensible enthalpy of a species in J/kg, zero at 298.15 K.
-    #[inline]
-    pub fn species_enthalpy(&self, k: usize, temperature: f64) -> f64 {
-        self.species[k].thermo.enthalpy(temperature) / self.molar_mass[k] - self.reference[k]
+    /// dc_p/dT at constant composition in J/kg/K².
+    pub fn heat_capacity_slope(&self, temperature: f64, composition: &[f64]) -> f64 {
+        self.sum(composition, |one| {
+            one.polynomial().heat_capacity_slope(temperature) / one.molar_mass()
+        })
     }
 
     /// Sensible enthalpy in J/kg, zero at 298.15 K.
     #[inline]
     pub fn enthalpy(&self, temperature: f64, composition: &[f64]) -> f64 {
-        let each = composition.iter().enumerate();
-        each.map(|(k, y)| y * self.species_enthalpy(k, temperature))
-            .sum()
+        self.sum(composition, |one| one.enthalpy(temperature))
     }
 
-    /// Temperature in K of a sensible enthalpy in J/kg, from a guess in K, by Newton's method: c_p is
-    /// positive, so that the enthalpy grows with the temperature. Not a number where none is found.
-    pub fn temperature(&self, enthalpy: f64, composition: &[f64], guess: f64) -> f64 {
-        let mut temperature = guess;
-        for _ in 0..STEPS {
-            let error = self.enthalpy(temperature, composition) - enthalpy;
-            let step = error / self.heat_capacity(temperature, composition);
-            temperature -= step;
-            if step.abs() <= 4.0 * f64::EPSILON * temperature.abs() {
-                return temperature;
-            }
-        }
-        // Newton's last steps may jump between neighbours of the solution.
-        let error = self.enthalpy(temperature, composition) - enthalpy;
-        let step = error / self.heat_capacity(temperature, composition);
-        if step.abs() < 1e-10 * temperature.abs() {
-            temperature
-        } else {
-            f64::NAN
-        }
+    /// Enthalpy of formation at 298.15 K in J/kg.
+    pub fn formation_enthalpy(&self, composition: &[f64]) -> f64 {
+        self.sum(composition, Species::formation_enthalpy)
     }
 
-    /// Mole fractions and the species' viscosities.
+    /// Sensible enthalpy of a species in J/kg, zero at 298.15 K.
     #[inline]
-    fn parts(&self, temperature: f64, composition: &[f64]) -> ([f64; MOST], [f64; MOST]) {
-        let (mut mole, mut viscosity) = ([0.0; MOST], [0.0; MOST]);
-        let moles = self.moles(composition);
-        for (k, species) in self.species.iter().enumerate() {
-            // What linear solvers leave below zero counts as nothing.
-            mole[k] = composition[k].max(0.0) / self.molar_mass[k] / moles;
-            viscosity[k] = species.viscosity.viscosity(temperature);
-        }
-        (mole, viscosity)
+    pub fn species_enthalpy(&self, species: usize, temperature: f64) -> f64 {
+        self.species[species].enthalpy(temperature)
     }
 
-    /// Σ_i x_i v_i/Σ_j x_j Φ_ij.
-    #[inline]
-    fn weighted(&self, mole: &[f64; MOST], viscosity: &[f64; MOST], values: &[f64; MOST]) -> f64 {
-        let count = self.species.len();
-        let mut sum = 0.0;
-        for i in 0..count {
-            if mole[i] == 0.0 {
-                continue;
-            }
-            let mut crowd = 0.0;
-            for j in 0..count {
-                let [root, scale] = self.wilke[i * count + j];
-                let ratio = 1.0 + (viscosity[i] / viscosity[j]).sqrt() * root;
-                crowd += mole[j] * ratio * ratio * scale;
-            }
-            sum += mole[i] * values[i] / crowd;
+    /// Temperature in K of a sensible enthalpy in J/kg; `guess` in K is near it. It may lie beyond the
+    /// polynomials' range, where c_p stays what it is at its end.
+    pub fn temperature(
+        &self,
+        enthalpy: f64,
+        composition: &[f64],
+        guess: f64,
+    ) -> Result<f64, ThermoError> {
+        inverse::temperature(enthalpy, "J/kg", BOUNDS, guess, |t| {
+            (
+                self.enthalpy(t, composition),
+                self.heat_capacity(t, composition),
+            )
+        })
+    }
+
+    /// Mole fractions of a composition.
+    pub fn mole_fractions(&self, composition: &[f64], mole_fractions: &mut [f64]) {
+        let molar_mass = self.molar_mass(composition);
+        for ((x, y), n) in mole_fractions.iter_mut().zip(composition).zip(&self.moles) {
+            *x = y * n * molar_mass;
         }
-        sum
+    }
+
+    /// Composition of amounts of substance in any unit, mole fractions among them.
+    pub fn mass_fractions(&self, amounts: &[f64]) -> Vec<f64> {
+        let mut composition = amounts.to_vec();
+        self.weigh_amounts(&mut composition);
+        composition
+    }
+
+    /// Makes mass fractions of amounts of substance in place.
+    fn weigh_amounts(&self, amounts: &mut [f64]) {
+        for (amount, one) in amounts.iter_mut().zip(&self.species) {
+            *amount *= one.molar_mass();
+        }
+        let total: f64 = amounts.iter().sum();
+        amounts.iter_mut().for_each(|y| *y /= total);
+    }
+
+    /// Each element that is there with its mass in a unit mass of each species.
+    pub fn elements(&self) -> Vec<(String, Vec<f64>)> {
+        let share = |element: Element| {
+            let parts = self.species.iter().zip(&self.moles);
+            parts
+                .map(|(one, n)| one.atoms()[element as usize] * element.molar_mass() * n)
+                .collect::<Vec<_>>()
+        };
+        Element::ALL
+            .into_iter()
+            .map(|element| (element.symbol().to_owned(), share(element)))
+            .filter(|(_, shares)| shares.iter().any(|share| *share > 0.0))
+            .collect()
+    }
+
+    /// Mass fractions of the elements, in the order of [`Element::ALL`].
+    pub fn element_fractions(&self, composition: &[f64]) -> [f64; Element::COUNT] {
+        let mut fractions = [0.0; Element::COUNT];
+        for ((one, y), n) in self.species.iter().zip(composition).zip(&self.moles) {
+            for (k, atoms) in one.atoms().iter().enumerate() {
+                fractions[k] += y * n * atoms * Element::ALL[k].molar_mass();
+            }
+        }
+        fractions
     }
 
     /// Dynamic viscosity in Pa s.
     pub fn viscosity(&self, temperature: f64, composition: &[f64]) -> f64 {
-        let (mole, viscosity) = self.parts(temperature, composition);
-        self.weighted(&mole, &viscosity, &viscosity)
+        let (weights, viscosities) = self.weigh(temperature, composition);
+        self.sum_of(&weights, |k| viscosities[k])
     }
 
     /// Thermal conductivity in W/m/K.
     pub fn conductivity(&self, temperature: f64, composition: &[f64]) -> f64 {
-        let (mole, viscosity) = self.parts(temperature, composition);
-        let mut conductivity = [0.0; MOST];
-        for (k, species) in self.species.iter().enumerate() {
-            let gas_constant = GAS_CONSTANT / self.molar_mass[k];
-            let isochoric =
-                species.thermo.heat_capacity(temperature) / self.molar_mass[k] - gas_constant;
-            conductivity[k] = viscosity[k] * isochoric * (1.32 + 1.77 * gas_constant / isochoric);
+        self.transport(temperature, composition).conductivity
+    }
+
+    /// Viscosity and conductivity at once, for the price of one.
+    pub fn transport(&self, temperature: f64, composition: &[f64]) -> Transport {
+        let (weights, viscosities) = self.weigh(temperature, composition);
+        let conductivity = |k: usize| {
+            let one = &self.species[k];
+            let heat_capacity = one.heat_capacity(temperature);
+            eucken::conductivity(viscosities[k], heat_capacity, one.specific_gas_constant())
+        };
+        Transport {
+            viscosity: self.sum_of(&weights, |k| viscosities[k]),
+            conductivity: self.sum_of(&weights, conductivity),
         }
-        self.weighted(&mole, &viscosity, &conductivity)
+    }
+
+    /// Wilke's weights and the species' viscosities.
+    fn weigh(
+        &self,
+        temperature: f64,
+        composition: &[f64],
+    ) -> ([f64; MOST_SPECIES], [f64; MOST_SPECIES]) {
+        let count = self.species.len();
+        let mut amounts = [0.0; MOST_SPECIES];
+        let mut viscosities = [0.0; MOST_SPECIES];
+        let mut roots = [0.0; MOST_SPECIES];
+        for (k, one) in self.species.iter().enumerate() {
+            amounts[k] = composition[k] * self.moles[k];
+            viscosities[k] = one.viscosity(temperature);
+            roots[k] = viscosities[k].sqrt();
+        }
+        let mut weights = [0.0; MOST_SPECIES];
+        let (amounts, roots) = (&amounts[..count], &roots[..count]);
+        self.interaction
+            .weights(amounts, roots, &mut weights[..count]);
+        (weights, viscosities)
+    }
+
+    /// Σ w_k f_k over the species that are there.
+    fn sum_of(&self, weights: &[f64; MOST_SPECIES], of: impl Fn(usize) -> f64) -> f64 {
+        (0..self.species.len())
+            .filter(|k| weights[*k] != 0.0)
+            .map(|k| weights[k] * of(k))
+            .sum()
+    }
+
+    /// Diffusivity in m²/s of a pair of species.
+    pub fn pair_diffusivity(&self, pair: (usize, usize), pressure: f64, temperature: f64) -> f64 {
+        self.diffusion.pair(pair.0, pair.1, pressure, temperature)
+    }
+
+    /// Mixture-averaged diffusivities in m²/s such that j_i = −ρ D_i ∇Y_i.
+    pub fn diffusivities(
+        &self,
+        pressure: f64,
+        temperature: f64,
+        composition: &[f64],
+        diffusivities: &mut [f64],
+    ) {
+        let mut moles = [0.0; MOST_SPECIES];
+        let moles = &mut moles[..self.species.len()];
+        self.mole_fractions(composition, moles);
+        self.diffusion
+            .diffusivities(pressure, temperature, moles, composition, diffusivities);
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn air() -> (Mixture, Vec<f64>) {
-        let air = Mixture::new(["N2", "O2", "Ar"]).unwrap();
-        // US Standard Atmosphere 1976, rounded, mole fractions.
-        let composition = air.mass_fractions(&[0.7809, 0.2095, 0.0096]);
-        (air, composition)
-    }
-
-    #[test]
-    fn dry_air_has_the_properties_of_the_tables() {
-        // Incropera, table A.4: 300 K and 800 K.
-        let (air, y) = air();
-        assert!((air.density(101_325.0, 300.0, &y) - 1.1770).abs() < 1e-3);
-        for (t, heat_capacity, viscosity, conductivity) in [
-            (300.0, 1007.0, 184.6e-7, 26.3e-3),
-            (800.0, 1099.0, 369.8e-7, 57.3e-3),
-        ] {
-            assert!((air.heat_capacity(t, &y) / heat_capacity - 1.0).abs() < 3e-3);
-            assert!((air.viscosity(t, &y) / viscosity - 1.0).abs() < 0.015);
-            let found = air.conductivity(t, &y);
-            assert!((found / conductivity - 1.0).abs() < 0.06, "{t}: {found}");
-        }
-    }
-
-    #[test]
-    fn a_pure_species_in_a_mixture_is_that_species() {
-        let mixture = Mixture::new(["N2", "CO2", "H2"]).unwrap();
-        let alone = Mixture::new(["CO2"]).unwrap();
-        let y = [0.0, 1.0, 0.0];
-        let both = |f: fn(&Mixture, f64, &[f64]) -> f64| {
-            (f(&mixture, 700.0, &y), f(&alone, 700.0, &[1.0]))
-        };
-        for (found, expected) in [
-            both(Mixture::viscosity),
-            both(Mixture::conductivity),
-            both(Mixture::enthalpy),
-            both(Mixture::heat_capacity),
-        ] {
-            assert!((found / expected - 1.0).abs() < 1e-14, "{found} {expected}");
-        }
-    }
-
-    #[test]
-    fn wilke_s_viscosity_agrees_with_an_independent_evaluation() {
-        // In Python: N2 and CO2, mole fractions 0.6 and 0.4, 300 K, from the two pure viscosities.
-        let mixture = Mixture::new(["N2", "CO2"]).unwrap();
-        let y = mixture.mass_fractions(&[0.6, 0.4]);
-        let found = mixture.viscosity(300.0, &y);
-        assert!(
-            (found / 1.6512048007503728e-05 - 1.0).abs() < 1e-9,
-            "{found:e}"
-        );
-    }
-
-    #[test]
-    fn temperature_and_enthalpy_are_inverse_from_any_guess() {
-        let (air, y) = air();
-        for t in [150.0, 250.0, 298.15, 900.0, 1000.0, 2000.0, 4000.0] {
-            for guess in [200.0, 300.0, 3000.0] {
-                let found = air.temperature(air.enthalpy(t, &y), &y, guess);
-                assert!((found - t).abs() < 1e-9 * t, "{t} from {guess}: {found}");
-            }
-        }
-        assert_eq!(air.enthalpy(298.15, &y), 0.0);
-    }
-
-    #[test]
-    fn the_elements_of_a_unit_mass_sum_to_one_for_each_species() {
-        let mixture = Mixture::new(["CH4", "O2", "CO2", "H2O", "N2"]).unwrap();
-        let elements = mixture.elements();
-        for k in 0..5 {
-            let sum: f64 = elements.iter().map(|(_, mass)| mass[k]).sum();
-            assert!((sum - 1.0).abs() < 1e-15, "{k}: {sum}");
-        }
-        let carbon = &elements.iter().find(|(name, _)| name == "C").unwrap().1;
-        assert!((carbon[0] - 12.011 / 16.043).abs() < 1e-12);
-        assert_eq!(carbon[1], 0.0);
-    }
-
-    #[test]
-    fn what_is_no_mixture_is_refused_by_name() {
-        let error = Mixture::new(["N2", "Xe"]).unwrap_err().to_string();
-        assert!(
-            error.starts_with("the species Xe is not built in; there are N2, O2"),
-            "{error}"
-        );
-        let error = Mixture::new(["N2", "N2"]).unwrap_err().to_string();
-        assert_eq!(error, "the species N2 stands twice");
-        assert!(Mixture::new([]).is_err());
-    }
-}
+mod tests;

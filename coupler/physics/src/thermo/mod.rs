@@ -1,9 +1,23 @@
-//! Thermodynamics and transport of ideal gases and their mixtures.
+//! Thermophysical properties of gas mixtures, one law a file: the species' own ([`nasa7`],
+//! [`sutherland`], [`eucken`], [`fuller`]), their mixing ([`wilke`], [`diffusion`]), the built-in
+//! [`species`], and the [`mixture`] that the solvers ask.
 
-mod mixture;
-mod nasa7;
-mod species;
+pub mod diffusion;
+pub mod element;
+pub mod error;
+pub mod eucken;
+pub mod fuller;
+mod inverse;
+pub mod mixture;
+pub mod nasa7;
+pub mod species;
+pub mod sutherland;
+mod table;
+pub mod wilke;
 
-pub use mixture::{Mixture, MixtureError};
+pub use element::Element;
+pub use error::ThermoError;
+pub use mixture::{Mixture, Transport};
 pub use nasa7::Nasa7;
-pub use species::{Species, atomic_mass, species, species_names};
+pub use species::Species;
+pub use sutherland::Sutherland;

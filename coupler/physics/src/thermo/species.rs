@@ -1,207 +1,325 @@
-//! Built-in species.
+//! Species of a gas.
 
-use super::Nasa7;
+use super::table::{RECORDS, Record};
+use super::{Element, Nasa7, Sutherland, ThermoError, eucken};
+use crate::gas::{GAS_CONSTANT, REFERENCE_TEMPERATURE};
 
-/// A gas species.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A species of an ideal gas: what it is made of and its properties.
+///
+/// Built in are N2, O2, Ar, CO2, H2O, CO, H2 and CH4; the figures and their sources are in the table of
+/// this module's source. The conductivity is [`eucken`]'s of the viscosity.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Species {
-    /// Name.
-    pub name: &'static str,
-    /// Atoms of each element in a molecule.
-    pub elements: &'static [(&'static str, f64)],
-    /// Viscosity.
-    pub viscosity: Sutherland,
-    /// Heat capacity, enthalpy, entropy.
-    pub thermo: Nasa7,
-}
-
-/// Sutherland's law, μ = μ₀ √(T/T₀) (1 + T_s/T₀)/(1 + T_s/T), the form A_s √T/(1 + T_s/T) of requirement
-/// COR-7 with A_s from one known viscosity.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sutherland {
-    /// μ₀ in Pa s.
-    pub viscosity: f64,
-    /// T₀ in K.
-    pub at: f64,
-    /// T_s in K.
-    pub temperature: f64,
-}
-
-const fn sutherland(viscosity: f64, at: f64, temperature: f64) -> Sutherland {
-    Sutherland {
-        viscosity,
-        at,
-        temperature,
-    }
-}
-impl Sutherland {
-    /// Dynamic viscosity in Pa s at a temperature in K.
-    #[inline]
-    pub fn viscosity(&self, temperature: f64) -> f64 {
-        let growth = (1.0 + self.temperature / self.at) / (1.0 + self.temperature / temperature);
-        self.viscosity * (temperature / self.at).sqrt() * growth
-    }
-}
-
-/// Standard atomic mass of an element in kg/mol (IUPAC 2021, abridged).
-pub fn atomic_mass(element: &str) -> Option<f64> {
-    let grams = match element {
-        "H" => 1.008,
-        "C" => 12.011,
-        "N" => 14.007,
-        "O" => 15.999,
-        "Ar" => 39.948,
-        _ => return None,
-    };
-    Some(grams * 1e-3)
+    name: String,
+    atoms: [f64; Element::COUNT],
+    polynomial: Nasa7,
+    viscosity: Sutherland,
+    diffusion_volume: f64,
+    molar_mass: f64,
+    reference_enthalpy: f64,
 }
 
 impl Species {
+    /// A species of so many atoms of each element, in the order of [`Element::ALL`]; the diffusion
+    /// volume is that of [`super::fuller`].
+    pub fn new(
+        name: &str,
+        atoms: [f64; Element::COUNT],
+        polynomial: Nasa7,
+        viscosity: Sutherland,
+        diffusion_volume: f64,
+    ) -> Result<Self, ThermoError> {
+        let species = Self::assemble(name, atoms, polynomial, viscosity, diffusion_volume);
+        let some_atom = atoms.iter().all(|n| *n >= 0.0 && n.is_finite());
+        let molar_mass = if some_atom {
+            species.molar_mass
+        } else {
+            f64::NAN
+        };
+        for (quantity, value) in [
+            ("the molar mass in kg/mol", molar_mass),
+            (
+                "Sutherland's coefficient in kg/m/s/K^0.5",
+                viscosity.coefficient,
+            ),
+            ("Sutherland's temperature in K", viscosity.temperature),
+            ("the diffusion volume", diffusion_volume),
+        ] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(ThermoError::NotPositive {
+                    species: name.to_owned(),
+                    quantity,
+                    value,
+                });
+            }
+        }
+        Ok(species)
+    }
+
+    fn assemble(
+        name: &str,
+        atoms: [f64; Element::COUNT],
+        polynomial: Nasa7,
+        viscosity: Sutherland,
+        diffusion_volume: f64,
+    ) -> Self {
+        let polynomial = polynomial.joined();
+        let weighed = Element::ALL.iter().zip(atoms);
+        let molar_mass = weighed.map(|(element, n)| n * element.molar_mass()).sum();
+        Self {
+            name: name.to_owned(),
+            atoms,
+            polynomial,
+            viscosity,
+            diffusion_volume,
+            molar_mass,
+            reference_enthalpy: polynomial.enthalpy(REFERENCE_TEMPERATURE),
+        }
+    }
+
+    fn of(record: &Record) -> Self {
+        let mut atoms = [0.0; Element::COUNT];
+        for (element, count) in record.atoms {
+            atoms[*element as usize] = *count;
+        }
+        let Record {
+            name,
+            polynomial,
+            viscosity,
+            diffusion_volume,
+            ..
+        } = *record;
+        Self::assemble(name, atoms, polynomial, viscosity, diffusion_volume)
+    }
+
+    /// Names of the built-in species.
+    pub fn built_in_names() -> impl Iterator<Item = &'static str> {
+        RECORDS.iter().map(|record| record.name)
+    }
+
+    /// The built-in species of this name.
+    pub fn built_in(name: &str) -> Result<Self, ThermoError> {
+        let record = RECORDS.iter().find(|record| record.name == name);
+        record
+            .map(Self::of)
+            .ok_or_else(|| ThermoError::UnknownSpecies {
+                name: name.to_owned(),
+                known: Self::built_in_names().collect::<Vec<_>>().join(", "),
+            })
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Atoms in a molecule, in the order of [`Element::ALL`].
+    pub fn atoms(&self) -> &[f64; Element::COUNT] {
+        &self.atoms
+    }
+
+    /// Its polynomial, molar.
+    pub fn polynomial(&self) -> &Nasa7 {
+        &self.polynomial
+    }
+
+    /// Its law of viscosity.
+    pub fn sutherland(&self) -> &Sutherland {
+        &self.viscosity
+    }
+
+    /// Its diffusion volume as [`super::fuller`] takes it.
+    pub fn diffusion_volume(&self) -> f64 {
+        self.diffusion_volume
+    }
+
     /// Molar mass in kg/mol.
     pub fn molar_mass(&self) -> f64 {
-        let one =
-            |&(element, count): &(&str, f64)| count * atomic_mass(element).unwrap_or(f64::NAN);
-        self.elements.iter().map(one).sum()
+        self.molar_mass
+    }
+
+    /// Specific gas constant R/M in J/kg/K.
+    pub fn specific_gas_constant(&self) -> f64 {
+        GAS_CONSTANT / self.molar_mass
+    }
+
+    /// Specific heat capacity c_p in J/kg/K.
+    pub fn heat_capacity(&self, temperature: f64) -> f64 {
+        self.polynomial.heat_capacity(temperature) / self.molar_mass
+    }
+
+    /// Sensible enthalpy in J/kg, zero at 298.15 K.
+    pub fn enthalpy(&self, temperature: f64) -> f64 {
+        (self.polynomial.enthalpy(temperature) - self.reference_enthalpy) / self.molar_mass
+    }
+
+    /// Enthalpy of formation at 298.15 K in J/kg.
+    pub fn formation_enthalpy(&self) -> f64 {
+        self.reference_enthalpy / self.molar_mass
+    }
+
+    /// Dynamic viscosity in Pa s.
+    pub fn viscosity(&self, temperature: f64) -> f64 {
+        self.viscosity.viscosity(temperature)
+    }
+
+    /// Thermal conductivity in W/m/K.
+    pub fn conductivity(&self, temperature: f64) -> f64 {
+        let heat_capacity = self.heat_capacity(temperature);
+        let viscosity = self.viscosity(temperature);
+        eucken::conductivity(viscosity, heat_capacity, self.specific_gas_constant())
     }
 }
-
-/// A built-in species by its name.
-pub fn species(name: &str) -> Option<&'static Species> {
-    SPECIES.iter().find(|species| species.name == name)
-}
-
-/// Names of the built-in species.
-pub fn species_names() -> impl Iterator<Item = &'static str> {
-    SPECIES.iter().map(|species| species.name)
-}
-
-// Thermodynamics: GRI-Mech 3.0 (Smith et al., 1999), whose records are those of McBride, Gordon and
-// Reno, NASA TM-4513 (1993), and of TPIS (Gurvich et al.).
-// Viscosity: Sutherland's constants of White, Viscous Fluid Flow, table 1-2, as (viscosity at a
-// temperature, T_s); for CH4, which is not in that table, fitted at 300 and 1000 K to Chapman and Enskog
-// with σ = 3.746 Å, ε/k = 141.4 K of GRI-Mech 3.0 and the collision integral of Neufeld, Janzen and Aziz
-// 1972, doi 10.1063/1.1678363 (within 0.6 % up to 1000 K, 3.3 % at 2000 K).
-#[rustfmt::skip]
-const SPECIES: &[Species] = &[
-    Species {
-        name: "N2",
-        elements: &[("N", 2.0)],
-        viscosity: sutherland(1.663e-5, 273.0, 107.0),
-        thermo: Nasa7 {
-            low: [3.53100528, -0.000123660988, -5.02999433e-07, 2.43530612e-09, -1.40881235e-12, -1046.97628, 2.96747038],
-            high: [2.95257637, 0.0013969004, -4.92631603e-07, 7.86010195e-11, -4.60755204e-15, -923.948688, 5.87188762],
-            middle: 1000.0,
-        },
-    },
-    Species {
-        name: "O2",
-        elements: &[("O", 2.0)],
-        viscosity: sutherland(1.919e-5, 273.0, 139.0),
-        thermo: Nasa7 {
-            low: [3.78245636, -0.00299673416, 9.84730201e-06, -9.68129509e-09, 3.24372837e-12, -1063.94356, 3.65767573],
-            high: [3.28253784, 0.00148308754, -7.57966669e-07, 2.09470555e-10, -2.16717794e-14, -1088.45772, 5.45323129],
-            middle: 1000.0,
-        },
-    },
-    Species {
-        name: "Ar",
-        elements: &[("Ar", 1.0)],
-        viscosity: sutherland(2.125e-5, 273.0, 144.0),
-        thermo: Nasa7 {
-            low: [2.5, 0.0, 0.0, 0.0, 0.0, -745.375, 4.366],
-            high: [2.5, 0.0, 0.0, 0.0, 0.0, -745.375, 4.366],
-            middle: 1000.0,
-        },
-    },
-    Species {
-        name: "CO2",
-        elements: &[("C", 1.0), ("O", 2.0)],
-        viscosity: sutherland(1.370e-5, 273.0, 222.0),
-        thermo: Nasa7 {
-            low: [2.35677352, 0.00898459677, -7.12356269e-06, 2.45919022e-09, -1.43699548e-13, -48371.9697, 9.90105222],
-            high: [3.85746029, 0.00441437026, -2.21481404e-06, 5.23490188e-10, -4.72084164e-14, -48759.166, 2.27163806],
-            middle: 1000.0,
-        },
-    },
-    Species {
-        name: "H2O",
-        elements: &[("H", 2.0), ("O", 1.0)],
-        viscosity: sutherland(1.12e-5, 350.0, 1064.0),
-        thermo: Nasa7 {
-            low: [4.19864056, -0.0020364341, 6.52040211e-06, -5.48797062e-09, 1.77197817e-12, -30293.7267, -0.849032208],
-            high: [3.03399249, 0.00217691804, -1.64072518e-07, -9.7041987e-11, 1.68200992e-14, -30004.2971, 4.9667701],
-            middle: 1000.0,
-        },
-    },
-    Species {
-        name: "CO",
-        elements: &[("C", 1.0), ("O", 1.0)],
-        viscosity: sutherland(1.657e-5, 273.0, 136.0),
-        thermo: Nasa7 {
-            low: [3.57953347, -0.00061035368, 1.01681433e-06, 9.07005884e-10, -9.04424499e-13, -14344.086, 3.50840928],
-            high: [2.71518561, 0.00206252743, -9.98825771e-07, 2.30053008e-10, -2.03647716e-14, -14151.8724, 7.81868772],
-            middle: 1000.0,
-        },
-    },
-    Species {
-        name: "H2",
-        elements: &[("H", 2.0)],
-        viscosity: sutherland(8.411e-6, 273.0, 97.0),
-        thermo: Nasa7 {
-            low: [2.34433112, 0.00798052075, -1.9478151e-05, 2.01572094e-08, -7.37611761e-12, -917.935173, 0.683010238],
-            high: [3.3372792, -4.94024731e-05, 4.99456778e-07, -1.79566394e-10, 2.00255376e-14, -950.158922, -3.20502331],
-            middle: 1000.0,
-        },
-    },
-    Species {
-        name: "CH4",
-        elements: &[("C", 1.0), ("H", 4.0)],
-        viscosity: sutherland(1.145009e-5, 300.0, 161.289),
-        thermo: Nasa7 {
-            low: [5.14987613, -0.0136709788, 4.91800599e-05, -4.84743026e-08, 1.66693956e-11, -10246.6476, -4.64130376],
-            high: [0.074851495, 0.0133909467, -5.73285809e-06, 1.22292535e-09, -1.0181523e-13, -9468.34459, 18.437318],
-            middle: 1000.0,
-        },
-    },
-
-];
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn species(name: &str) -> Species {
+        Species::built_in(name).unwrap()
+    }
+
     #[test]
-    fn molar_masses_are_those_of_the_tables() {
-        for (name, grams) in [
-            ("N2", 28.014),
-            ("O2", 31.998),
-            ("CO2", 44.009),
-            ("H2O", 18.015),
+    fn heat_capacities_are_those_of_requirement_cor_8() {
+        // J/kg/K, of another set of polynomials; the requirement's molar masses have fewer digits.
+        for (name, at_300, at_800) in [
+            ("N2", 1039.69, 1121.91),
+            ("CO2", 845.67, 1168.61),
+            ("H2O", 1864.89, 2150.01),
         ] {
-            let found = species(name).unwrap().molar_mass();
-            assert!((found - grams * 1e-3).abs() < 1e-9, "{name}: {found}");
+            for (t, expected) in [(300.0, at_300), (800.0, at_800)] {
+                let c_p = species(name).heat_capacity(t);
+                assert!((c_p / expected - 1.0).abs() < 5e-5, "{name} {t}: {c_p}");
+            }
         }
     }
 
     #[test]
-    fn viscosities_agree_with_measured_ones() {
-        // NIST, Pa s at 1 atm: 300 K and 600 K; White states 2 to 4 % for his constants.
-        for (name, cold, hot) in [
-            ("N2", 17.9e-6, 29.6e-6),
-            ("O2", 20.6e-6, 34.7e-6),
-            ("CO2", 15.0e-6, 28.0e-6),
-            ("H2", 8.94e-6, 14.4e-6),
-            ("CH4", 11.1e-6, 19.4e-6),
-            ("Ar", 22.7e-6, 38.9e-6),
+    fn formation_enthalpies_and_entropies_are_codata_s() {
+        // Cox, Wagman and Medvedev, CODATA Key Values for Thermodynamics (1989), 298.15 K and 1 bar:
+        // kJ/mol and J/mol/K. CH4, which is not among them: NIST-JANAF (1998).
+        for (name, enthalpy, entropy) in [
+            ("N2", 0.0, 191.609),
+            ("O2", 0.0, 205.152),
+            ("CO2", -393.51, 213.785),
+            ("H2O", -241.826, 188.835),
+            ("CO", -110.53, 197.660),
+            ("H2", 0.0, 130.680),
+            ("CH4", -74.873, 186.251),
+            ("Ar", 0.0, 154.846),
         ] {
-            let law = species(name).unwrap().viscosity;
-            for (t, expected) in [(300.0, cold), (600.0, hot)] {
-                let found = law.viscosity(t);
-                assert!(
-                    (found / expected - 1.0).abs() < 0.045,
-                    "{name} {t}: {found:e}"
-                );
+            let gas = species(name);
+            let molar = gas.formation_enthalpy() * gas.molar_mass() / 1e3;
+            let s = gas.polynomial().entropy(REFERENCE_TEMPERATURE);
+            let (of_h, of_s) = if name == "CH4" {
+                (0.3, 0.15)
+            } else {
+                (0.005, 0.01)
+            };
+            assert!((molar - enthalpy).abs() < of_h, "{name}: {molar} kJ/mol");
+            assert!((s - entropy).abs() < of_s, "{name}: {s} J/mol/K");
+        }
+    }
+
+    #[test]
+    fn the_water_gas_shift_has_its_equilibrium_where_the_tables_have_it() {
+        // NIST-JANAF at 1000 K, log10 K_f: CO2 20.680, CO 10.459, H2O 10.062, so 0.159.
+        let g = |name| species(name).polynomial().gibbs_energy(1000.0);
+        let change = g("CO2") + g("H2") - g("CO") - g("H2O");
+        let log_k = -change / (GAS_CONSTANT * 1000.0) / std::f64::consts::LN_10;
+        assert!((log_k - 0.159).abs() < 0.005, "{log_k}");
+    }
+
+    #[test]
+    fn viscosities_are_those_of_the_handbook_within_2_5_percent() {
+        // CRC Handbook of Chemistry and Physics, "Viscosity of gases", µPa s at 300 (H2O: 400) and 600 K.
+        for (name, cold, at_cold, at_600) in [
+            ("N2", 300.0, 17.9, 29.6),
+            ("O2", 300.0, 20.7, 34.7),
+            ("CO2", 300.0, 15.0, 28.0),
+            ("H2O", 400.0, 13.4, 21.4),
+            ("CO", 300.0, 17.8, 29.1),
+            ("H2", 300.0, 8.9, 14.5),
+            ("CH4", 300.0, 11.1, 19.4),
+            ("Ar", 300.0, 22.7, 38.8),
+        ] {
+            for (t, expected) in [(cold, at_cold), (600.0, at_600)] {
+                let mu = 1e6 * species(name).viscosity(t);
+                assert!((mu / expected - 1.0).abs() < 0.025, "{name} {t}: {mu}");
             }
         }
+    }
+
+    #[test]
+    fn conductivities_agree_with_an_independent_evaluation() {
+        // In Python, with c_v (1.32 + 1.77 R/c_v).
+        for (name, t, expected) in [
+            ("N2", 300.0, 0.026883845512589634),
+            ("CO2", 600.0, 0.041981117017847853),
+            ("H2", 1000.0, 0.42568550322498083),
+            ("Ar", 1000.0, 0.04346225353964489),
+        ] {
+            let kappa = species(name).conductivity(t);
+            assert!(
+                (kappa / expected - 1.0).abs() < 1e-12,
+                "{name} {t}: {kappa}"
+            );
+        }
+    }
+
+    #[test]
+    fn conductivities_are_those_of_the_handbook_within_8_percent_but_for_water_vapour() {
+        // CRC Handbook of Chemistry and Physics, "Thermal conductivity of gases", mW/m/K.
+        for (name, t, measured) in [
+            ("N2", 300.0, 26.0),
+            ("N2", 600.0, 44.0),
+            ("O2", 300.0, 26.3),
+            ("O2", 600.0, 48.1),
+            ("CO2", 300.0, 16.8),
+            ("CO2", 600.0, 41.6),
+            ("CO", 300.0, 25.0),
+            ("CO", 600.0, 45.7),
+            ("H2", 300.0, 186.9),
+            ("H2", 400.0, 230.4),
+            ("CH4", 300.0, 34.1),
+            ("CH4", 600.0, 84.1),
+            ("Ar", 300.0, 17.9),
+            ("Ar", 600.0, 30.6),
+        ] {
+            let ratio = 1e3 * species(name).conductivity(t) / measured;
+            assert!((ratio - 1.0).abs() < 0.08, "{name} {t}: {ratio}");
+        }
+        let water = 1e3 * species("H2O").conductivity(600.0) / 47.1;
+        assert!((water - 1.31).abs() < 0.01, "{water}");
+    }
+
+    #[test]
+    fn an_unknown_species_is_refused_with_those_that_are_known() {
+        let message = Species::built_in("O3").unwrap_err().to_string();
+        assert!(
+            message.contains("O3 is not built in; there are N2, O2, Ar, CO2, H2O, CO, H2, CH4"),
+            "{message}"
+        );
+    }
+
+    #[test]
+    fn a_species_without_mass_or_with_a_negative_property_is_refused() {
+        let n2 = species("N2");
+        let with = |atoms, coefficient, volume| {
+            let viscosity = Sutherland {
+                coefficient,
+                temperature: 100.0,
+            };
+            Species::new("X", atoms, *n2.polynomial(), viscosity, volume)
+        };
+        assert!(with(*n2.atoms(), 1e-6, 18.5).is_ok());
+        assert!(with([0.0; 5], 1e-6, 18.5).is_err());
+        assert!(with([-1.0, 1.0, 1.0, 0.0, 0.0], 1e-6, 18.5).is_err());
+        assert!(with(*n2.atoms(), -1e-6, 18.5).is_err());
+        let message = with(*n2.atoms(), 1e-6, f64::NAN).unwrap_err().to_string();
+        assert!(
+            message.contains("the diffusion volume of the species X is NaN"),
+            "{message}"
+        );
     }
 }

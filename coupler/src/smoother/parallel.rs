@@ -1,0 +1,52 @@
+//! Loops and sums in fixed blocks: the same bits on any number of threads.
+
+use rayon::prelude::*;
+
+/// Elements of a block. Fixed, so that sums do not depend on the number of threads; what fits into
+/// one block is done by the caller's thread.
+pub const BLOCK: usize = 2048;
+
+/// Changes every element, given its index.
+#[inline]
+pub fn update<T: Send>(values: &mut [T], change: impl Fn(usize, &mut T) + Sync) {
+    let block = |start: usize, values: &mut [T]| {
+        for (offset, value) in values.iter_mut().enumerate() {
+            change(start + offset, value);
+        }
+    };
+    if values.len() <= BLOCK {
+        return block(0, values);
+    }
+    let blocks = values.par_chunks_mut(BLOCK).enumerate();
+    blocks.for_each(|(index, values)| block(index * BLOCK, values));
+}
+
+/// Sets every element to a function of its index.
+#[inline]
+pub fn fill<T: Send>(values: &mut [T], value: impl Fn(usize) -> T + Sync) {
+    update(values, |index, slot| *slot = value(index));
+}
+
+/// Sum of a function over `0..count`: block by block, then over the blocks.
+#[inline]
+pub fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
+    blocks(count, |range| range.map(&term).sum())
+        .into_iter()
+        .sum()
+}
+
+/// Largest value of a function over `0..count`, and 0 at least.
+#[inline]
+pub fn largest(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
+    let of = |range: std::ops::Range<usize>| range.map(&term).fold(0.0, f64::max);
+    blocks(count, of).into_iter().fold(0.0, f64::max)
+}
+
+fn blocks(count: usize, of: impl Fn(std::ops::Range<usize>) -> f64 + Sync) -> Vec<f64> {
+    let range = |block: usize| block * BLOCK..count.min((block + 1) * BLOCK);
+    if count <= BLOCK {
+        return vec![of(0..count)];
+    }
+    let blocks = (0..count.div_ceil(BLOCK)).into_par_iter();
+    blocks.map(|block| of(range(block))).collect()
+}

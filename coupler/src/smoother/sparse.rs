@@ -1,0 +1,139 @@
+//! Sparse matrices by rows.
+
+use rayon::prelude::*;
+
+use super::parallel;
+use crate::mapping::Amount;
+
+/// A sparse matrix by rows, 12 bytes per entry and 8 per row.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Sparse {
+    pub offsets: Vec<usize>,
+    pub columns: Vec<u32>,
+    pub values: Vec<f64>,
+}
+
+impl Sparse {
+    /// A matrix whose rows are pushed one after the other.
+    pub fn with_capacity(rows: usize, entries: usize) -> Self {
+        let mut offsets = Vec::with_capacity(rows + 1);
+        offsets.push(0);
+        Self {
+            offsets,
+            columns: Vec::with_capacity(entries),
+            values: Vec::with_capacity(entries),
+        }
+    }
+
+    /// Adds an entry to the last row, which `end_row` ends.
+    pub fn push(&mut self, column: u32, value: f64) {
+        self.columns.push(column);
+        self.values.push(value);
+    }
+
+    /// Ends a row.
+    pub fn end_row(&mut self) {
+        self.offsets.push(self.columns.len());
+    }
+
+    /// A matrix from (row, column, value), which `each` hands over twice in the same order.
+    pub fn from_entries(rows: usize, each: impl Fn(&mut dyn FnMut(u32, u32, f64))) -> Self {
+        let mut offsets = vec![0usize; rows + 1];
+        each(&mut |row, _, _| offsets[row as usize + 1] += 1);
+        for row in 0..rows {
+            offsets[row + 1] += offsets[row];
+        }
+        let entries = offsets[rows];
+        let (mut columns, mut values) = (vec![0; entries], vec![0.0; entries]);
+        let mut next = offsets.clone();
+        each(&mut |row, column, value| {
+            let slot = &mut next[row as usize];
+            columns[*slot] = column;
+            values[*slot] = value;
+            *slot += 1;
+        });
+        Self {
+            offsets,
+            columns,
+            values,
+        }
+    }
+
+    pub fn rows(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// Columns and values of a row.
+    #[inline]
+    pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let range = self.offsets[row]..self.offsets[row + 1];
+        let columns = self.columns[range.clone()].iter();
+        columns
+            .map(|&column| column as usize)
+            .zip(self.values[range].iter().copied())
+    }
+
+    /// The sum of one row with what its columns hold.
+    #[inline]
+    pub fn gather<T: Amount>(&self, row: usize, from: &[T]) -> T {
+        let mut sum = T::ZERO;
+        for (column, value) in self.row(row) {
+            sum += from[column] * value;
+        }
+        sum
+    }
+
+    /// The transpose, each row in ascending order of its columns.
+    pub fn transposed(&self, columns: usize) -> Self {
+        Self::from_entries(columns, |entry| {
+            for row in 0..self.rows() {
+                for (column, value) in self.row(row) {
+                    entry(column as u32, row as u32, value);
+                }
+            }
+        })
+    }
+
+    /// The product with a matrix of `columns` columns.
+    pub fn times(&self, other: &Self, columns: usize) -> Self {
+        const UNSEEN: u32 = u32::MAX;
+        let starts: Vec<usize> = (0..self.rows()).step_by(parallel::BLOCK).collect();
+        let blocks: Vec<Self> = starts
+            .into_par_iter()
+            .map_init(
+                || vec![UNSEEN; columns],
+                |place, start| {
+                    let end = self.rows().min(start + parallel::BLOCK);
+                    let mut block = Self::with_capacity(end - start, 16 * (end - start));
+                    for row in start..end {
+                        let first = block.columns.len();
+                        for (middle, a) in self.row(row) {
+                            for (column, b) in other.row(middle) {
+                                if place[column] == UNSEEN {
+                                    place[column] = block.columns.len() as u32;
+                                    block.push(column as u32, 0.0);
+                                }
+                                block.values[place[column] as usize] += a * b;
+                            }
+                        }
+                        for &column in &block.columns[first..] {
+                            place[column as usize] = UNSEEN;
+                        }
+                        block.end_row();
+                    }
+                    block
+                },
+            )
+            .collect();
+        let entries = blocks.iter().map(|block| block.columns.len()).sum();
+        let mut product = Self::with_capacity(self.rows(), entries);
+        for block in blocks {
+            let before = product.columns.len();
+            let ends = block.offsets[1..].iter().map(|end| before + end);
+            product.offsets.extend(ends);
+            product.columns.extend(block.columns);
+            product.values.extend(block.values);
+        }
+        product
+    }
+}
