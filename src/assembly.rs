@@ -415,9 +415,14 @@ fn interior(case: &Case, prepared: &Prepared) -> Thin {
         Network::new(law, all.clone().map(conductivity).collect())
     });
     Thin::new(
-        all.clone().map(|p| particles.density[p] * volume(p)).collect(),
+        all.clone()
+            .map(|p| particles.density[p] * volume(p))
+            .collect(),
         all.map(material).collect(),
-        case.materials.iter().map(|m| m.heat_capacity.clone()).collect(),
+        case.materials
+            .iter()
+            .map(|m| m.heat_capacity.clone())
+            .collect(),
         prepared.temperature.clone(),
         network,
     )

@@ -83,7 +83,11 @@ fn every_shipped_case_runs_natively_and_with_both_solvers_between_its_sources() 
             let series = Series::read(&out).unwrap();
             for name in ["gas.temperature_min", "particles.temperature_min"] {
                 let least = series.column(name).iter().copied().fold(f64::MAX, f64::min);
-                assert!(least > coldest - 1e-6, "{}: {name} {least} K", case.display());
+                assert!(
+                    least > coldest - 1e-6,
+                    "{}: {name} {least} K",
+                    case.display()
+                );
             }
             for name in ["gas.temperature_max", "particles.temperature_max"] {
                 let most = series.column(name).iter().copied().fold(f64::MIN, f64::max);

@@ -71,7 +71,11 @@ pub fn overlapping(radii: &[f64], centres: &[Vec3]) -> Vec<Touch> {
         high = high.sup(centre);
     }
     // Never a box without extent.
-    let width = radii.iter().copied().fold(0.0, f64::max).max(f64::MIN_POSITIVE);
+    let width = radii
+        .iter()
+        .copied()
+        .fold(0.0, f64::max)
+        .max(f64::MIN_POSITIVE);
     let size = (high - low).map(|length| length.max(width));
     let mut found = pairs((low, size), radii, centres, 0.0);
     found.sort_unstable();

@@ -1,8 +1,8 @@
 //! The coordinator of Calcine: three parts, two clocks, one loop.
 
 pub mod checkpoint;
-pub mod contacts;
 pub mod closures;
+pub mod contacts;
 pub mod coordinator;
 pub mod error;
 pub mod exchange;

@@ -107,8 +107,7 @@ fn splitting(text: &mut String, case: &Case, population: &Population, eps: f64) 
     };
     let nusselt = laws::heat_transfer(case.laws.heat_transfer).nusselt(&local, d);
     let volume = PI / 6.0 * d.powi(3);
-    let rate = nusselt * local.conductivity * PI * d
-        / (material.density * volume * solid_capacity);
+    let rate = nusselt * local.conductivity * PI * d / (material.density * volume * solid_capacity);
     // Requirements TSM-8: the error of process storage in shares of the span.
     let error = 0.11 * rate * factor * case.time.motion_window.seconds();
     let warn = |value: f64| {

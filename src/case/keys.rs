@@ -177,7 +177,7 @@ const KEYS: &[Key] = &[
     key("particles.diameter.seed", "whole number", Default("required with a distribution"), "Equal seeds draw equal diameters.", "1"),
     key("particles.motion", "`frozen`", Required, "How the particles move.", "\"frozen\""),
     key("particles.temperature", "temperature, K", Required, "Temperature at the start.", "\"300 K\""),
-    key("particles.place", "table", Required, "Where the particles are: exactly one of `grid`, `file` and `packing`. Populations must not overlap.", "{ file = \"bed.csv\" }"),
+    key("particles.place", "table", Required, "Where the particles are: exactly one of `grid`, `file` and `packing`. Spheres may overlap by 5 % of their diameter, as where they are pressed together.", "{ file = \"bed.csv\" }"),
     key("particles.place.grid", "table", OneOf, "A regular stacking. Either this or `file`.", "{ first = \"5 5 5 mm\", spacing = \"10 10 10 mm\", counts = [1, 1, 10] }"),
     key("particles.place.grid.first", "three lengths, m", Required, "Centre of the first particle.", "\"5 5 5 mm\""),
     key("particles.place.grid.spacing", "three lengths, m", Required, "Distances of centres along x, y, z; at least the diameter.", "\"10 10 10 mm\""),

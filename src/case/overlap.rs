@@ -15,8 +15,9 @@ pub(super) struct Overlap {
     pub radii: f64,
 }
 
-/// Touching spheres are fine; this share of the sum of radii is round-off of the units.
-const ROUND_OFF: f64 = 1e-9;
+/// Touching spheres are fine, and so is an overlap of this share of the sum of radii, as spheres have that
+/// are pressed together (and conduct heat).
+pub(super) const PRESSED: f64 = 0.05;
 
 /// The first particle that overlaps one of another population before it.
 pub(super) fn between_populations(setup: &ParticleSetup) -> Option<Overlap> {
@@ -31,10 +32,12 @@ pub(super) fn between_populations(setup: &ParticleSetup) -> Option<Overlap> {
     let foreign = |touch: &Touch| {
         let [a, b] = touch.particles;
         let radii = touch.radius[0] + touch.radius[1];
-        setup.population[a] != setup.population[b] && touch.overlap > radii * ROUND_OFF
+        setup.population[a] != setup.population[b] && touch.overlap > radii * PRESSED
     };
     let touches = overlapping(&setup.radius, &setup.position).into_iter();
-    let found = touches.filter(foreign).min_by_key(|touch| touch.particles[1])?;
+    let found = touches
+        .filter(foreign)
+        .min_by_key(|touch| touch.particles[1])?;
     let radii = found.radius[0] + found.radius[1];
     Some(Overlap {
         pair: found.particles,

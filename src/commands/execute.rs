@@ -168,7 +168,10 @@ fn closing(summary: &Summary) -> String {
     let elements = summary.ledger.elements.iter();
     let elements = elements.map(|(name, line)| (format!("element {name}"), line));
     let lines = summary.ledger.lines.iter();
-    for (name, line) in lines.map(|(name, line)| (name.clone(), line)).chain(elements) {
+    for (name, line) in lines
+        .map(|(name, line)| (name.clone(), line))
+        .chain(elements)
+    {
         let _ = writeln!(
             text,
             "  ledger {name:17} {:>16.3e} relative error",

@@ -110,7 +110,10 @@ pub(super) fn columns(case: &Case, moment: &Moment<'_>) -> Vec<Column> {
     let elements = moment.ledger.elements.iter();
     let elements = elements.map(|(name, _)| (format!("element_{name}"), "kg"));
     let lines = moment.ledger.lines().into_iter();
-    for (name, unit) in lines.map(|(name, unit, _)| (name.to_owned(), unit)).chain(elements) {
+    for (name, unit) in lines
+        .map(|(name, unit, _)| (name.to_owned(), unit))
+        .chain(elements)
+    {
         let text = "error over throughput since the start";
         list.push(Column::new(
             "ledger",

@@ -191,7 +191,11 @@ mod tests {
         (beside[0], beside[9]) = (500.0, 300.0);
         network.solve(&[1e-12; 10], &[400.0; 10], &tie, &beside);
         let flow = 200.0 / (2.0 + 9.0 / 5e-3);
-        assert!((network.heat[0] / -flow - 1.0).abs() < 1e-9, "{:?}", network.heat);
+        assert!(
+            (network.heat[0] / -flow - 1.0).abs() < 1e-9,
+            "{:?}",
+            network.heat
+        );
         assert!((network.heat[9] / flow - 1.0).abs() < 1e-9);
         assert!(network.heat.iter().sum::<f64>().abs() < 1e-12 * flow);
     }

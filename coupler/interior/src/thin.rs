@@ -97,7 +97,8 @@ impl ParticleModel for Thin {
         };
         self.capacity.clear();
         let capacities = self.heat_capacity.iter();
-        self.capacity.extend(capacities.map(|capacity| capacity / span));
+        self.capacity
+            .extend(capacities.map(|capacity| capacity / span));
         network.solve(&self.capacity, &self.committed, conductance, seen);
         let moved = self.committed.iter().zip(&network.heat).zip(&self.capacity);
         self.start.clear();
@@ -208,7 +209,13 @@ mod tests {
     fn touching_particles_in_still_gas_relax_to_their_common_temperature() {
         let network = Network::new(Box::new(BatchelorObrien), vec![50.0; 2]);
         let unit = vec![HeatCapacity::constant(1.0)];
-        let mut thin = Thin::new(vec![1.0, 3.0], vec![0, 0], unit, vec![300.0, 400.0], Some(network));
+        let mut thin = Thin::new(
+            vec![1.0, 3.0],
+            vec![0, 0],
+            unit,
+            vec![300.0, 400.0],
+            Some(network),
+        );
         thin.touch(&[Touch {
             particles: [0, 1],
             radius: [5e-3; 2],

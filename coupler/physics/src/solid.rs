@@ -36,7 +36,9 @@ impl HeatCapacity {
 
     /// c_p in J/kg/K at a temperature in K.
     pub fn at(&self, temperature: f64) -> f64 {
-        let next = self.points.partition_point(|&(from, _)| from <= temperature);
+        let next = self
+            .points
+            .partition_point(|&(from, _)| from <= temperature);
         match (next.checked_sub(1), self.points.get(next)) {
             (Some(before), Some(after)) => {
                 let before = self.points[before];
@@ -50,7 +52,9 @@ impl HeatCapacity {
 
     /// Enthalpy in J/kg, counted from the first point.
     pub fn enthalpy(&self, temperature: f64) -> f64 {
-        let next = self.points.partition_point(|&(from, _)| from <= temperature);
+        let next = self
+            .points
+            .partition_point(|&(from, _)| from <= temperature);
         let place = next.saturating_sub(1);
         let (from, capacity) = self.points[place];
         let mean = 0.5 * (capacity + self.at(temperature));
@@ -105,7 +109,10 @@ mod tests {
         assert_eq!(law.enthalpy(1300.0), 981_000.0 + 126_000.0);
         assert_eq!(law.enthalpy(200.0), -78_000.0);
         for t in [100.0, 300.0, 300.001, 450.0, 600.0, 777.7, 1200.0, 2500.0] {
-            assert!((law.temperature(law.enthalpy(t)) / t - 1.0).abs() < 1e-14, "{t}");
+            assert!(
+                (law.temperature(law.enthalpy(t)) / t - 1.0).abs() < 1e-14,
+                "{t}"
+            );
         }
     }
 

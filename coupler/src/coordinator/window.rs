@@ -167,7 +167,9 @@ impl Run<'_> {
         loop {
             if self.parts.interior.conducts() {
                 let seen = &mut work.seen.temperature;
-                mapped.operator.sample(self.parts.gas.fields().temperature, seen);
+                mapped
+                    .operator
+                    .sample(self.parts.gas.fields().temperature, seen);
                 timed(&mut timing.interior, || {
                     let conductance = &work.coefficients.conductance;
                     self.parts.interior.conduct(conductance, seen, span);

@@ -64,4 +64,3 @@ fn overlap(pairs: &[[u32; 2]], radii: &[f64], centres: &[Vec3]) -> f64 {
     };
     pairs.iter().map(of).fold(0.0, f64::max)
 }
-

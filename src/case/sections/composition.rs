@@ -14,7 +14,10 @@ pub(super) fn fractions(table: &Reader<'_>, mixture: &Mixture) -> Option<Vec<f64
     let mut given = ["mole", "mass"].into_iter().filter(|key| table.has(key));
     let (kind, more) = (given.next(), given.next());
     let (Some(kind), None) = (kind, more) else {
-        table.fail_whole("needs exactly one of mole and mass", &format!("for example {EXAMPLE}"));
+        table.fail_whole(
+            "needs exactly one of mole and mass",
+            &format!("for example {EXAMPLE}"),
+        );
         return None;
     };
     let inner = table.table(kind)?;
@@ -26,7 +29,11 @@ pub(super) fn fractions(table: &Reader<'_>, mixture: &Mixture) -> Option<Vec<f64
             return None;
         };
         if !(0.0..=1.0 + SLACK).contains(&value) {
-            inner.fail(&name, format!("is {value}"), "fractions are between 0 and 1");
+            inner.fail(
+                &name,
+                format!("is {value}"),
+                "fractions are between 0 and 1",
+            );
             return None;
         }
         fractions[k] = value;

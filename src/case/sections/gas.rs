@@ -124,10 +124,7 @@ fn schmidt(section: &Reader<'_>, gas: Option<&GasModel>) -> Option<f64> {
     section.positive("schmidt", Dimension::NONE)
 }
 
-fn initial(
-    section: &Reader<'_>,
-    gas: Option<&GasModel>,
-) -> Option<(f64, f64, Vec3, Vec<f64>)> {
+fn initial(section: &Reader<'_>, gas: Option<&GasModel>) -> Option<(f64, f64, Vec3, Vec<f64>)> {
     let initial = section.required_table(
         "initial",
         "initial = { temperature = \"300 K\", pressure = \"1 atm\" }",
@@ -148,12 +145,7 @@ fn initial(
         _ => Some(Vec::new()),
     };
     initial.finish();
-    Some((
-        temperature?,
-        pressure?,
-        Vec3::from(velocity),
-        composition?,
-    ))
+    Some((temperature?, pressure?, Vec3::from(velocity), composition?))
 }
 
 /// Defaults: 20 outer iterations to 1e-8, 2 pressure corrections, linear solvers to 1e-13, van Leer's

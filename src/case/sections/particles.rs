@@ -49,13 +49,21 @@ fn material(name: String, table: &Reader<'_>) -> Material {
 
 /// A number, or points over temperature.
 fn heat_capacity(table: &Reader<'_>) -> HeatCapacity {
-    let points = table.curve("heat_capacity", Dimension::TEMPERATURE, Dimension::HEAT_CAPACITY);
+    let points = table.curve(
+        "heat_capacity",
+        Dimension::TEMPERATURE,
+        Dimension::HEAT_CAPACITY,
+    );
     let Some(points) = points else {
         return HeatCapacity::constant(f64::NAN);
     };
     if let Some((_, value)) = points.iter().find(|point| point.1 <= 0.0) {
         let rule = format!("is {value} J/kg/K");
-        table.fail("heat_capacity", rule, "it is above zero at all temperatures");
+        table.fail(
+            "heat_capacity",
+            rule,
+            "it is above zero at all temperatures",
+        );
     }
     HeatCapacity::table(points)
 }

@@ -8,6 +8,7 @@ use calcine_coupler::physics::Vec3;
 
 use super::existing;
 use crate::case::model::{MeshSpec, Place};
+use crate::case::overlap::PRESSED;
 use crate::case::table::Reader;
 use crate::case::units::{Dimension, shown};
 
@@ -184,14 +185,18 @@ fn grid(grid: &Reader<'_>, sizes: Option<&Sizes>, mesh: Option<&MeshSpec>) -> Op
         return None;
     }
     for axis in 0..3 {
-        if counts[axis] > 1 && spacing[axis] < diameter * (1.0 - ROUND_OFF) {
+        if counts[axis] > 1 && spacing[axis] < diameter * (1.0 - PRESSED) {
             let rule = format!(
-                "is {} m along {}, less than the diameter of {} m",
+                "is {} m along {}, more than 5 % less than the diameter of {} m",
                 shown(spacing[axis]),
                 ["x", "y", "z"][axis],
                 shown(diameter)
             );
-            grid.fail("spacing", rule, "particles must not overlap");
+            grid.fail(
+                "spacing",
+                rule,
+                "spheres pressed together overlap by 5 % of their diameter at most",
+            );
         }
     }
     if let Some(MeshSpec::Box { origin, size, .. }) = mesh {

@@ -141,7 +141,9 @@ impl<'a> Reader<'a> {
         let mut found = Vec::new();
         for (name, item) in self.table.iter() {
             self.known.borrow_mut().push(name.into());
-            let number = item.as_float().or_else(|| item.as_integer().map(|n| n as f64));
+            let number = item
+                .as_float()
+                .or_else(|| item.as_integer().map(|n| n as f64));
             let Some(number) = number else {
                 self.wrong_type(name, "a number", item);
                 return None;

@@ -107,12 +107,18 @@ impl Reader<'_> {
 
     /// A value, or a list of [time, value] with increasing times.
     pub fn schedule(&self, key: &str, dimension: Dimension) -> Option<Schedule> {
-        self.points(key, (Dimension::TIME, "time"), dimension).map(Schedule)
+        self.points(key, (Dimension::TIME, "time"), dimension)
+            .map(Schedule)
     }
 
     /// A value, or a list of [argument, value] with increasing arguments, such as temperatures in K; the
     /// argument of a single value is 0.
-    pub fn curve(&self, key: &str, over: Dimension, dimension: Dimension) -> Option<Vec<(f64, f64)>> {
+    pub fn curve(
+        &self,
+        key: &str,
+        over: Dimension,
+        dimension: Dimension,
+    ) -> Option<Vec<(f64, f64)>> {
         self.points(key, (over, "temperature"), dimension)
     }
 
@@ -127,7 +133,9 @@ impl Reader<'_> {
             return None;
         };
         let Some(array) = item.as_array() else {
-            return self.quantity(key, dimension).map(|value| vec![(0.0, value)]);
+            return self
+                .quantity(key, dimension)
+                .map(|value| vec![(0.0, value)]);
         };
         let unit = if word == "time" { "s" } else { "K" };
         let mut entries: Vec<(f64, f64)> = Vec::new();
