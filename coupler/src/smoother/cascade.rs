@@ -22,7 +22,7 @@ struct Coarse {
 
 impl Cascade {
     /// A graph with no more cells is not made coarser.
-    const FEW: usize = 500;
+    const FEW: usize = 50;
     /// Neighbours are joined strongly above this share of the best that either has.
     const STRONG: f64 = 0.3;
 

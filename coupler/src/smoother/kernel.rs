@@ -37,12 +37,14 @@ use super::scratch::{Kept, Scratch};
 use super::sparse::Sparse;
 use crate::mapping::Amount;
 
-/// S and its transpose. Takes about 110 bytes per active cell with sweeps, 330 with multigrid.
+/// S and its transpose. Takes about 120 bytes per active cell with sweeps, 340 with multigrid.
 #[derive(Clone, Debug)]
 pub(super) struct Kernel {
     graph: Arc<Graph>,
     /// Cells that pass something on, ascending.
     active: Vec<u32>,
+    /// D of each active cell in m.
+    stays: Vec<f64>,
     /// Conductance of each active cell to cells that are not.
     leak: Vec<f64>,
     /// Cells that are not active but next to active ones.
@@ -66,6 +68,7 @@ enum Inverse {
         multigrid: Multigrid,
         /// Smallest eigenvalue of the cycle times H; the largest is 1.
         least: f64,
+        /// Cycles, at least 2.
         count: u32,
     },
 }
@@ -76,10 +79,9 @@ const LEAST_SHARE: f64 = 1e-14;
 const ROUND_OFF: f64 = 1e-15;
 
 impl Kernel {
-    /// The operator that takes `before` to A = `before` − Lφ.
-    pub fn new(graph: &Arc<Graph>, before: &[f64], potential: &[f64]) -> Self {
-        let mut after = vec![0.0; before.len()];
-        graph.excess(before, potential, &mut after);
+    /// The operator of the bed that keeps `after` = A of what is in active cells before, with its
+    /// potential φ.
+    pub fn new(graph: &Arc<Graph>, after: &[f64], potential: &[f64]) -> Self {
         let passes = |cell: usize| {
             let moved = potential[cell] * graph.total[cell];
             after[cell] > 0.0 && moved > LEAST_SHARE * (after[cell] + moved)
@@ -88,18 +90,18 @@ impl Kernel {
             .filter(|&cell| passes(cell))
             .map(|cell| cell as u32)
             .collect();
-        let diagonal = active.iter().map(|&cell| {
-            let cell = cell as usize;
-            graph.total[cell] + after[cell] / potential[cell]
-        });
+        let of = |cell: &u32| after[*cell as usize] / potential[*cell as usize];
+        let stays: Vec<f64> = active.iter().map(of).collect();
+        let total = active.iter().map(|&cell| graph.total[cell as usize]);
         let matrix = Matrix {
-            diagonal: diagonal.collect(),
+            diagonal: total.zip(&stays).map(|(g, d)| g + d).collect(),
             pull: obstacle::among(graph, &active),
         };
         let (leak, rim, outward) = border(graph, &active);
         Self {
             graph: graph.clone(),
             active,
+            stays,
             leak,
             rim,
             outward,
@@ -138,11 +140,12 @@ impl Kernel {
         let least = (0.9 * multigrid.least_eigenvalue()).min(0.95);
         let root = least.sqrt();
         let contraction = (1.0 - root) / (1.0 + root);
-        let count = (2.0 / ROUND_OFF).ln() / -contraction.ln();
+        // Each half of the cycles takes an error to twice the contraction's power.
+        let count = (4.0 / ROUND_OFF).ln() / -contraction.ln();
         self.inverse = Inverse::Cycles {
             multigrid,
             least,
-            count: count.ceil().min(500.0) as u32,
+            count: count.ceil().clamp(2.0, 500.0) as u32,
         };
     }
 
@@ -201,21 +204,20 @@ impl Kernel {
         self.scratch.with(self.needed(), |buffer| {
             let (rhs, rest) = buffer.split_at_mut(active);
             let (potential, rest) = rest.split_at_mut(active);
+            let (correction, rest) = rest.split_at_mut(active);
             parallel::fill(rhs, |row| cells[self.active[row] as usize]);
-            self.inverse.apply(rhs, potential, rest);
-            let potential = &*potential;
+            self.solve(rhs, potential, correction, rest);
+            let (potential, correction) = (&*potential, &*correction);
             parallel::update(rhs, |row, amount| {
-                let own = potential[row];
-                *amount += own * -self.leak[row];
-                for (other, g) in self.inverse.matrix().pull.row(row) {
-                    *amount += (potential[other] - own) * g;
-                }
+                *amount += self.inflow(row, potential, self.leak[row]);
+                *amount += self.inflow(row, correction, self.leak[row]);
             });
             for (&cell, &amount) in self.active.iter().zip(&*rhs) {
                 cells[cell as usize] = amount;
             }
             for (row, &cell) in self.rim.iter().enumerate() {
                 cells[cell as usize] += self.outward.gather(row, potential);
+                cells[cell as usize] += self.outward.gather(row, correction);
             }
         });
     }
@@ -226,16 +228,69 @@ impl Kernel {
         self.scratch.with(self.needed(), |buffer| {
             let (rhs, rest) = buffer.split_at_mut(active);
             let (change, rest) = rest.split_at_mut(active);
+            let (correction, rest) = rest.split_at_mut(active);
             // −L y
             parallel::fill(rhs, |row| {
                 self.graph
                     .inflow(self.active[row] as usize, |cell| field[cell])
             });
-            self.inverse.apply(rhs, change, rest);
-            for (&cell, &change) in self.active.iter().zip(&*change) {
+            self.solve(rhs, change, correction, rest);
+            let changes = change.iter().zip(&*correction);
+            for (&cell, (&change, &correction)) in self.active.iter().zip(changes) {
                 field[cell as usize] += change;
+                field[cell as usize] += correction;
             }
         });
+    }
+
+    /// −(L x) of an active cell, or −(H x) with D added to `ground`.
+    #[inline]
+    fn inflow<T: Amount>(&self, row: usize, x: &[T], ground: f64) -> T {
+        let own = x[row];
+        let mut sum = own * -ground;
+        for (other, g) in self.inverse.matrix().pull.row(row) {
+            sum += (x[other] - own) * g;
+        }
+        sum
+    }
+
+    /// x + correction = B rhs. In tall beds potentials are thousands of times what is spread, and
+    /// so is their round-off; only differences matter. So the second half of the cycles works on what
+    /// the first half left, found from differences, and adds a small potential of its own.
+    fn solve<T: Amount>(&self, rhs: &[T], x: &mut [T], correction: &mut [T], scratch: &mut [T]) {
+        match &self.inverse {
+            Inverse::Sweeps {
+                matrix,
+                inverse,
+                count,
+            } => {
+                x.fill(T::ZERO);
+                let (mut from, mut to) = (&mut *x, &mut *correction);
+                for _ in 0..*count {
+                    jacobi(matrix, inverse, rhs, from, to);
+                    std::mem::swap(&mut from, &mut to);
+                }
+                if count % 2 == 1 {
+                    to.copy_from_slice(from);
+                }
+                correction.fill(T::ZERO);
+            }
+            Inverse::Cycles {
+                multigrid,
+                least,
+                count,
+            } => {
+                let (left, rest) = scratch.split_at_mut(rhs.len());
+                let first = count / 2;
+                chebyshev(multigrid, *least, first, rhs, x, rest);
+                parallel::fill(left, |row| {
+                    let mut left = rhs[row];
+                    left += self.inflow(row, x, self.leak[row] + self.stays[row]);
+                    left
+                });
+                chebyshev(multigrid, *least, count - first, left, correction, rest);
+            }
+        }
     }
 
     /// Elements of scratch memory that an application takes.
@@ -243,7 +298,7 @@ impl Kernel {
         let rows = self.active.len();
         match &self.inverse {
             Inverse::Sweeps { .. } => 3 * rows,
-            Inverse::Cycles { multigrid, .. } => 5 * rows + multigrid.scratch(),
+            Inverse::Cycles { multigrid, .. } => 7 * rows + multigrid.scratch(),
         }
     }
 }
@@ -253,32 +308,6 @@ impl Inverse {
         match self {
             Self::Sweeps { matrix, .. } => matrix,
             Self::Cycles { multigrid, .. } => multigrid.matrix(),
-        }
-    }
-
-    /// x = B rhs.
-    fn apply<T: Amount>(&self, rhs: &[T], x: &mut [T], scratch: &mut [T]) {
-        match self {
-            Self::Sweeps {
-                matrix,
-                inverse,
-                count,
-            } => {
-                let (mut from, mut to) = (x, scratch);
-                from.fill(T::ZERO);
-                for _ in 0..*count {
-                    jacobi(matrix, inverse, rhs, from, to);
-                    std::mem::swap(&mut from, &mut to);
-                }
-                if count % 2 == 1 {
-                    to.copy_from_slice(from);
-                }
-            }
-            Self::Cycles {
-                multigrid,
-                least,
-                count,
-            } => chebyshev(multigrid, *least, *count, rhs, x, scratch),
         }
     }
 }

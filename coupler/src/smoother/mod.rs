@@ -165,7 +165,10 @@ impl Smoother {
             return Ok(None);
         }
         let mut potential = swept.potential;
-        if !swept.settled {
+        let mut after = vec![0.0; solid.len()];
+        if swept.settled {
+            self.graph.excess(solid, &potential, &mut after);
+        } else {
             let cascade = self.cascade.get_or_init(|| Cascade::new(&self.graph));
             let start = cascade.start(&excess);
             for (potential, start) in potential.iter_mut().zip(start) {
@@ -174,8 +177,10 @@ impl Smoother {
             if obstacle::settle(&self.graph, &excess, &mut potential, Care::Full).is_none() {
                 return Err(self.refused(solid, None));
             }
+            // Active cells are full.
+            parallel::fill(&mut after, |cell| solid[cell] - excess[cell]);
         }
-        let mut kernel = Kernel::new(&self.graph, solid, &potential);
+        let mut kernel = Kernel::new(&self.graph, &after, &potential);
         kernel.settle(solid, 0.5 * allowed, Self::MOST_SWEEPS, |cells| {
             self.is_within(cells, self.settings.tolerance)
         });
