@@ -101,7 +101,7 @@ impl Level {
         let omega = 4.0 / (3.0 * self.matrix.bound());
         let mut prolong = Sparse::with_capacity(rows, 3 * rows);
         let mut row_entries: Vec<(u32, f64)> = Vec::new();
-        for row in 0..rows {
+        for (row, diagonal) in diagonal.iter().enumerate() {
             row_entries.clear();
             let mut add = |aggregate: u32, value: f64| {
                 if aggregate == Aggregates::NONE {
@@ -114,7 +114,7 @@ impl Level {
             };
             add(aggregates.of[row], 1.0 - omega);
             for (other, p) in pull.row(row) {
-                add(aggregates.of[other], omega * p / diagonal[row]);
+                add(aggregates.of[other], omega * p / diagonal);
             }
             for &(aggregate, value) in &row_entries {
                 prolong.push(aggregate, value);
