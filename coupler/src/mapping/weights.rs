@@ -4,6 +4,9 @@ use rayon::prelude::*;
 
 use super::MappingError;
 
+/// Up to so many rows the caller's thread does the work alone: waking another costs more.
+const ALONE: usize = 16_384;
+
 /// For each particle the cells it lies in and its share in each; the shares of a particle sum to 1
 /// (requirements CON-6). Kept by particle and by cell, so that both directions gather and results
 /// do not depend on the number of threads.
@@ -105,10 +108,13 @@ impl Rows {
     /// The product with a vector.
     pub fn apply<T: Amount>(&self, from: &[T], to: &mut [T]) {
         debug_assert_eq!(to.len(), self.len());
-        to.par_iter_mut()
-            .with_min_len(1024)
-            .enumerate()
-            .for_each(|(row, value)| *value = self.gather(row, from));
+        let set = |(row, value): (usize, &mut T)| *value = self.gather(row, from);
+        if to.len() <= ALONE {
+            to.iter_mut().enumerate().for_each(set);
+        } else {
+            let rows = to.par_iter_mut().with_min_len(1024).enumerate();
+            rows.for_each(set);
+        }
     }
 }
 

@@ -2,9 +2,11 @@
 
 use rayon::prelude::*;
 
-/// Elements of a block. Fixed, so that sums do not depend on the number of threads; what fits into
-/// one block is done by the caller's thread.
+/// Elements of a block. Fixed, so that sums do not depend on the number of threads.
 pub const BLOCK: usize = 2048;
+/// Up to so many elements the caller's thread does the work alone, block by block: waking another costs
+/// more than it takes over.
+pub const ALONE: usize = 16 * BLOCK;
 
 /// Changes every element, given its index.
 #[inline]
@@ -14,7 +16,7 @@ pub fn update<T: Send>(values: &mut [T], change: impl Fn(usize, &mut T) + Sync) 
             change(start + offset, value);
         }
     };
-    if values.len() <= BLOCK {
+    if values.len() <= ALONE {
         return block(0, values);
     }
     let blocks = values.par_chunks_mut(BLOCK).enumerate();
@@ -44,9 +46,10 @@ pub fn largest(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
 
 fn blocks(count: usize, of: impl Fn(std::ops::Range<usize>) -> f64 + Sync) -> Vec<f64> {
     let range = |block: usize| block * BLOCK..count.min((block + 1) * BLOCK);
-    if count <= BLOCK {
-        return vec![of(0..count)];
+    let blocks = 0..count.div_ceil(BLOCK);
+    if count <= ALONE {
+        return blocks.map(|block| of(range(block))).collect();
     }
-    let blocks = (0..count.div_ceil(BLOCK)).into_par_iter();
+    let blocks = blocks.into_par_iter();
     blocks.map(|block| of(range(block))).collect()
 }

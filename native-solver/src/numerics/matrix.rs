@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::grid::Grid;
-use super::parallel::{self, CHUNK};
+use super::parallel::{self, ALONE, CHUNK};
 
 /// A matrix with one row per cell and one entry per pair of neighbours.
 #[derive(Clone, Debug)]
@@ -60,7 +60,7 @@ impl Matrix {
                 row(cell, diagonal, own);
             }
         };
-        if self.diagonal.len() <= CHUNK {
+        if self.diagonal.len() <= ALONE {
             chunk(0, &mut self.diagonal, &mut self.neighbours);
             return;
         }
