@@ -68,7 +68,7 @@ pub struct Smoother {
 }
 
 impl Smoother {
-    /// Most sweeps that are done; beyond, multigrid does the same for less.
+    /// Most sweeps that S is applied with; beyond, multigrid does the same for less.
     pub const MOST_SWEEPS: u32 = 150;
 
     /// The smoother of a mesh without excluded zones.
@@ -158,9 +158,11 @@ impl Smoother {
         let excess = self.excess(solid)?;
         let allowed = self.settings.tolerance * solid.iter().sum::<f64>();
         // Half the tolerance for the settled bed, the rest for what sweeps leave moving.
-        let half = 0.5 * self.settings.tolerance;
-        let enough = |total: f64, largest: f64| total <= 0.5 * allowed && largest <= half;
-        let swept = sweeps::sweep(&self.graph, &excess, Self::MOST_SWEEPS, enough);
+        let enough = sweeps::Enough {
+            total: 0.5 * allowed,
+            largest: 0.5 * self.settings.tolerance,
+        };
+        let swept = sweeps::sweep(&self.graph, &excess, &enough);
         if swept.settled && swept.sweeps == 0 {
             return Ok(None);
         }

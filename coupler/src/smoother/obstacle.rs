@@ -144,16 +144,13 @@ pub(super) fn among(graph: &Graph, cells: &[u32]) -> Sparse {
     for (index, &cell) in cells.iter().enumerate() {
         position[cell as usize] = index as u32;
     }
-    let mut among = Sparse::with_capacity(cells.len(), 6 * cells.len());
-    for &cell in cells {
-        for (other, g) in graph.conductance.row(cell as usize) {
+    Sparse::build(cells.len(), 6, |row, among| {
+        for (other, g) in graph.conductance.row(cells[row] as usize) {
             if position[other] != u32::MAX {
                 among.push(position[other], g);
             }
         }
-        among.end_row();
-    }
-    among
+    })
 }
 
 /// Takes the potential from the cell with most room of each region where all cells have one.

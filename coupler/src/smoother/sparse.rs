@@ -97,43 +97,57 @@ impl Sparse {
     /// The product with a matrix of `columns` columns.
     pub fn times(&self, other: &Self, columns: usize) -> Self {
         const UNSEEN: u32 = u32::MAX;
-        let starts: Vec<usize> = (0..self.rows()).step_by(parallel::BLOCK).collect();
-        let blocks: Vec<Self> = starts
-            .into_par_iter()
-            .map_init(
-                || vec![UNSEEN; columns],
-                |place, start| {
-                    let end = self.rows().min(start + parallel::BLOCK);
-                    let mut block = Self::with_capacity(end - start, 16 * (end - start));
-                    for row in start..end {
-                        let first = block.columns.len();
-                        for (middle, a) in self.row(row) {
-                            for (column, b) in other.row(middle) {
-                                if place[column] == UNSEEN {
-                                    place[column] = block.columns.len() as u32;
-                                    block.push(column as u32, 0.0);
-                                }
-                                block.values[place[column] as usize] += a * b;
-                            }
-                        }
-                        for &column in &block.columns[first..] {
-                            place[column as usize] = UNSEEN;
-                        }
-                        block.end_row();
+        let unseen = || vec![UNSEEN; columns];
+        Self::build_with(self.rows(), 16, unseen, |place, row, product| {
+            let first = product.columns.len();
+            for (middle, a) in self.row(row) {
+                for (column, b) in other.row(middle) {
+                    if place[column] == UNSEEN {
+                        place[column] = product.columns.len() as u32;
+                        product.push(column as u32, 0.0);
                     }
-                    block
-                },
-            )
+                    product.values[place[column] as usize] += a * b;
+                }
+            }
+            for &column in &product.columns[first..] {
+                place[column as usize] = UNSEEN;
+            }
+        })
+    }
+
+    /// A matrix of which `row` pushes each row's entries; about `width` of them.
+    pub fn build(rows: usize, width: usize, row: impl Fn(usize, &mut Self) + Sync) -> Self {
+        Self::build_with(rows, width, || (), |(), index, matrix| row(index, matrix))
+    }
+
+    /// The same with memory that may be used from row to row, but must not change what comes out.
+    fn build_with<M>(
+        rows: usize,
+        width: usize,
+        memory: impl Fn() -> M + Sync + Send,
+        row: impl Fn(&mut M, usize, &mut Self) + Sync,
+    ) -> Self {
+        let starts = (0..rows.div_ceil(parallel::BLOCK)).into_par_iter();
+        let blocks: Vec<Self> = starts
+            .map_init(memory, |memory, block| {
+                let range = block * parallel::BLOCK..rows.min((block + 1) * parallel::BLOCK);
+                let mut matrix = Self::with_capacity(range.len(), width * range.len());
+                for index in range {
+                    row(memory, index, &mut matrix);
+                    matrix.end_row();
+                }
+                matrix
+            })
             .collect();
         let entries = blocks.iter().map(|block| block.columns.len()).sum();
-        let mut product = Self::with_capacity(self.rows(), entries);
+        let mut matrix = Self::with_capacity(rows, entries);
         for block in blocks {
-            let before = product.columns.len();
+            let before = matrix.columns.len();
             let ends = block.offsets[1..].iter().map(|end| before + end);
-            product.offsets.extend(ends);
-            product.columns.extend(block.columns);
-            product.values.extend(block.values);
+            matrix.offsets.extend(ends);
+            matrix.columns.extend(block.columns);
+            matrix.values.extend(block.values);
         }
-        product
+        matrix
     }
 }

@@ -17,29 +17,40 @@ pub(super) struct Swept {
     pub settled: bool,
 }
 
+/// Excess that may stay.
+pub(super) struct Enough {
+    /// In all, in m³.
+    pub total: f64,
+    /// In a cell, as a solid fraction.
+    pub largest: f64,
+}
+
+/// Sweeps that are not worth doing: active sets take as long as some hundreds.
+pub(super) const MOST: u32 = 500;
+
 /// Sweeps (requirements VFS-2): each moves the excess max(0, A − C) of every cell to its neighbours
 /// in proportion to the conductances. All cells move at once, so that the result does not depend on
-/// their numbering. `excess` is A₀ − C. Ends when `enough(total, largest)` holds, of the excess in
-/// m³ and the largest solid fraction in excess, or after `most` sweeps. Cells far from any excess
-/// cost nothing: they are skipped by blocks.
-pub(super) fn sweep(
-    graph: &Graph,
-    excess: &[f64],
-    most: u32,
-    enough: impl Fn(f64, f64) -> bool,
-) -> Swept {
+/// their numbering. `excess` is A₀ − C. Ends with little enough excess, or without where it decays
+/// so slowly that more than `MOST` sweeps are to be expected. Cells far from any excess cost
+/// nothing: they are skipped by blocks.
+pub(super) fn sweep(graph: &Graph, excess: &[f64], enough: &Enough) -> Swept {
     let blocks = Blocks::new(graph);
     let mut left = excess.to_vec();
     let mut potential = vec![0.0; left.len()];
     // Excess per conductance, so that neighbours gather g times it.
     let mut pressure = vec![0.0; left.len()];
     let mut states = vec![State::default(); blocks.reach.len()];
-    for sweeps in 0..=most {
+    let mut looked = Look {
+        sweeps: 0,
+        total: f64::INFINITY,
+    };
+    let mut sweeps = 0;
+    loop {
         press(graph, &left, &mut pressure, &mut states);
         let total = states.iter().map(|state| state.total).sum();
         let largest = states.iter().map(|state| state.largest).fold(0.0, f64::max);
-        let settled = enough(total, largest);
-        if settled || sweeps == most {
+        let settled = total <= enough.total && largest <= enough.largest;
+        if settled || looked.gives_up(sweeps, total, enough.total) {
             return Swept {
                 potential,
                 sweeps,
@@ -62,11 +73,31 @@ pub(super) fn sweep(
                 }
             }
         });
+        sweeps += 1;
     }
-    Swept {
-        potential,
-        sweeps: most,
-        settled: false,
+}
+
+/// The excess when it was last looked at.
+struct Look {
+    sweeps: u32,
+    total: f64,
+}
+
+impl Look {
+    /// Looks at the excess each time that the sweeps have doubled. Excess that is spread by sweeps
+    /// decays exponentially at the best, and ever more slowly otherwise, so what is expected from its
+    /// present rate is no more than what it will take.
+    fn gives_up(&mut self, sweeps: u32, total: f64, enough: f64) -> bool {
+        if sweeps >= MOST {
+            return true;
+        }
+        if sweeps < 32 || !sweeps.is_power_of_two() {
+            return false;
+        }
+        let rate = (self.total / total).ln() / f64::from(sweeps - self.sweeps);
+        let expected = f64::from(sweeps) + (total / enough).ln() / rate;
+        (self.sweeps, self.total) = (sweeps, total);
+        expected > f64::from(MOST)
     }
 }
 

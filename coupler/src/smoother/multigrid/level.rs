@@ -97,31 +97,26 @@ impl Level {
 
     fn smoothed(&self, aggregates: &Aggregates) -> Sparse {
         let Matrix { diagonal, pull } = &self.matrix;
-        let rows = self.matrix.rows();
         let omega = 4.0 / (3.0 * self.matrix.bound());
-        let mut prolong = Sparse::with_capacity(rows, 3 * rows);
-        let mut row_entries: Vec<(u32, f64)> = Vec::new();
-        for (row, diagonal) in diagonal.iter().enumerate() {
-            row_entries.clear();
+        Sparse::build(self.matrix.rows(), 4, |row, prolong| {
+            let first = prolong.columns.len();
             let mut add = |aggregate: u32, value: f64| {
                 if aggregate == Aggregates::NONE {
                     return;
                 }
-                match row_entries.iter_mut().find(|(a, _)| *a == aggregate) {
-                    Some((_, sum)) => *sum += value,
-                    None => row_entries.push((aggregate, value)),
+                let known = prolong.columns[first..]
+                    .iter()
+                    .position(|&a| a == aggregate);
+                match known {
+                    Some(place) => prolong.values[first + place] += value,
+                    None => prolong.push(aggregate, value),
                 }
             };
             add(aggregates.of[row], 1.0 - omega);
             for (other, p) in pull.row(row) {
-                add(aggregates.of[other], omega * p / diagonal);
+                add(aggregates.of[other], omega * p / diagonal[row]);
             }
-            for &(aggregate, value) in &row_entries {
-                prolong.push(aggregate, value);
-            }
-            prolong.end_row();
-        }
-        prolong
+        })
     }
 
     /// First half of the smoothing, from x = 0; `spare` is overwritten.
@@ -154,31 +149,26 @@ impl Matrix {
     }
 
     fn times(&self, other: &Sparse, columns: usize) -> Sparse {
-        let mut full = Sparse::with_capacity(self.rows(), self.pull.columns.len() + self.rows());
-        for row in 0..self.rows() {
+        let full = Sparse::build(self.rows(), 7, |row, full| {
             full.push(row as u32, self.diagonal[row]);
             for (column, p) in self.pull.row(row) {
                 full.push(column as u32, -p);
             }
-            full.end_row();
-        }
+        });
         full.times(other, columns)
     }
 
     fn from_full(full: &Sparse) -> Self {
-        let rows = full.rows();
-        let mut diagonal = vec![0.0; rows];
-        let mut pull = Sparse::with_capacity(rows, full.columns.len());
-        for (row, diagonal) in diagonal.iter_mut().enumerate() {
-            for (column, value) in full.row(row) {
-                if column == row {
-                    *diagonal = value;
-                } else {
-                    pull.push(column as u32, -value);
-                }
+        let mut diagonal = vec![0.0; full.rows()];
+        parallel::fill(&mut diagonal, |row| {
+            let own = full.row(row).find(|&(column, _)| column == row);
+            own.map_or(0.0, |(_, value)| value)
+        });
+        let pull = Sparse::build(full.rows(), 24, |row, pull| {
+            for (column, value) in full.row(row).filter(|&(column, _)| column != row) {
+                pull.push(column as u32, -value);
             }
-            pull.end_row();
-        }
+        });
         Self { diagonal, pull }
     }
 }
