@@ -206,18 +206,20 @@ impl Kernel {
             let (potential, rest) = rest.split_at_mut(active);
             let (correction, rest) = rest.split_at_mut(active);
             parallel::fill(rhs, |row| cells[self.active[row] as usize]);
-            self.solve(rhs, potential, correction, rest);
-            let (potential, correction) = (&*potential, &*correction);
-            parallel::update(rhs, |row, amount| {
-                *amount += self.inflow(row, potential, self.leak[row]);
-                *amount += self.inflow(row, correction, self.leak[row]);
-            });
+            let is_corrected = self.solve(rhs, potential, correction, rest);
+            for potential in [potential, correction]
+                .iter()
+                .take(1 + usize::from(is_corrected))
+            {
+                parallel::update(rhs, |row, amount| {
+                    *amount += self.inflow(row, potential, self.leak[row]);
+                });
+                for (row, &cell) in self.rim.iter().enumerate() {
+                    cells[cell as usize] += self.outward.gather(row, potential);
+                }
+            }
             for (&cell, &amount) in self.active.iter().zip(&*rhs) {
                 cells[cell as usize] = amount;
-            }
-            for (row, &cell) in self.rim.iter().enumerate() {
-                cells[cell as usize] += self.outward.gather(row, potential);
-                cells[cell as usize] += self.outward.gather(row, correction);
             }
         });
     }
@@ -234,11 +236,14 @@ impl Kernel {
                 self.graph
                     .inflow(self.active[row] as usize, |cell| field[cell])
             });
-            self.solve(rhs, change, correction, rest);
-            let changes = change.iter().zip(&*correction);
-            for (&cell, (&change, &correction)) in self.active.iter().zip(changes) {
-                field[cell as usize] += change;
-                field[cell as usize] += correction;
+            let is_corrected = self.solve(rhs, change, correction, rest);
+            for change in [change, correction]
+                .iter()
+                .take(1 + usize::from(is_corrected))
+            {
+                for (&cell, &change) in self.active.iter().zip(change.iter()) {
+                    field[cell as usize] += change;
+                }
             }
         });
     }
@@ -254,26 +259,37 @@ impl Kernel {
         sum
     }
 
-    /// x + correction = B rhs. In tall beds potentials are thousands of times what is spread, and
-    /// so is their round-off; only differences matter. So the second half of the cycles works on what
-    /// the first half left, found from differences, and adds a small potential of its own.
-    fn solve<T: Amount>(&self, rhs: &[T], x: &mut [T], correction: &mut [T], scratch: &mut [T]) {
+    /// x = B rhs; x + correction where true is returned. In tall beds potentials are thousands of
+    /// times what is spread, and so is their round-off; only differences matter. So the second half of
+    /// the cycles works on what the first half left, found from differences, and adds a small
+    /// potential of its own.
+    fn solve<T: Amount>(
+        &self,
+        rhs: &[T],
+        x: &mut [T],
+        correction: &mut [T],
+        scratch: &mut [T],
+    ) -> bool {
         match &self.inverse {
+            Inverse::Sweeps { count: 0, .. } => {
+                x.fill(T::ZERO);
+                false
+            }
             Inverse::Sweeps {
                 matrix,
                 inverse,
                 count,
             } => {
-                x.fill(T::ZERO);
-                let (mut from, mut to) = (&mut *x, &mut *correction);
-                for _ in 0..*count {
+                parallel::fill(x, |row| rhs[row] * inverse[row]);
+                let (mut from, mut to) = (x, correction);
+                for _ in 1..*count {
                     jacobi(matrix, inverse, rhs, from, to);
                     std::mem::swap(&mut from, &mut to);
                 }
-                if count % 2 == 1 {
+                if count % 2 == 0 {
                     to.copy_from_slice(from);
                 }
-                correction.fill(T::ZERO);
+                false
             }
             Inverse::Cycles {
                 multigrid,
@@ -289,6 +305,7 @@ impl Kernel {
                     left
                 });
                 chebyshev(multigrid, *least, count - first, left, correction, rest);
+                true
             }
         }
     }

@@ -1,5 +1,16 @@
 //! The Volume Fraction Smoother (requirements VFS-1..8) as part of the operator W = F S W₀ that
 //! carries whatever the solid has to the cells, and whose transpose shows particles the gas.
+//!
+//! In three steps: how much of the solid must pass through each cell so that none stays above α_max is
+//! an obstacle problem (`obstacle`), found by sweeps or, where these would be many, by active sets
+//! and multigrid; what passes and what stays makes a linear operator (`kernel`), applied by sweeps or
+//! by multigrid; F is a diffusion over a short length (`diffusion`).
+//!
+//! A bed is refused where a connected region holds more than fits it (VFS-5), and only there: close
+//! to the threshold it costs no more. On two cores, columns of 10 x 10 x 200 cells with spiky base mappings
+//! took 0.15 to 0.3 s from solid volumes to S at every mean from 0.60 to 0.63999 (α_max 0.64), and one
+//! application of S or Sᵀ 10 to 20 ms, in place of 14,000 to 219,000 sweeps (VFS-4). In a region that is
+//! full to within a quarter of the tolerance, the threshold is raised by less than half the tolerance.
 
 mod cascade;
 mod diffusion;
@@ -52,8 +63,8 @@ impl Default for Settings {
     }
 }
 
-/// The smoother of a mesh. Takes about 180 bytes per cell, and 60 more from the first bed that
-/// needs more than sweeps.
+/// The smoother of a mesh. Takes about 130 bytes per cell of a hexahedral mesh, and 40 more from the
+/// first bed that needs more than sweeps.
 #[derive(Clone, Debug)]
 pub struct Smoother {
     settings: Settings,
@@ -176,7 +187,8 @@ impl Smoother {
             for (potential, start) in potential.iter_mut().zip(start) {
                 *potential = potential.max(start);
             }
-            if obstacle::settle(&self.graph, &excess, &mut potential, Care::Full).is_none() {
+            let steps = obstacle::settle(&self.graph, &excess, &mut potential, Care::Full);
+            if steps.is_none() && !self.is_little(&excess, &potential, &enough) {
                 return Err(self.refused(solid, None));
             }
             // Active cells are full.
@@ -187,6 +199,15 @@ impl Smoother {
             self.is_within(cells, self.settings.tolerance)
         });
         Ok(Some(kernel))
+    }
+
+    /// Whether no more than `enough` stays in excess where solid moves by a potential.
+    fn is_little(&self, excess: &[f64], potential: &[f64], enough: &sweeps::Enough) -> bool {
+        let mut left = vec![0.0; excess.len()];
+        self.graph.excess(excess, potential, &mut left);
+        let total = parallel::sum(left.len(), |cell| left[cell].max(0.0));
+        let largest = parallel::largest(left.len(), |cell| left[cell] / self.graph.volume[cell]);
+        total <= enough.total && largest <= enough.largest
     }
 
     /// Whether no cell lies above α_max by more than a solid fraction.

@@ -184,3 +184,69 @@ fn open(graph: &Graph, excess: &[f64], potential: &mut [f64]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::cascade::Cascade;
+    use super::*;
+
+    /// A box of 5 x 4 x 12 cells whose conductances and volumes differ by up to 10⁴ and 30.
+    fn box_of(conductances: &[f64], volumes: &[f64]) -> Graph {
+        let at = |i: usize, j: usize, k: usize| i + 5 * (j + 4 * k);
+        let graph = Sparse::from_entries(240, |entry| {
+            let mut next = conductances.iter().cycle();
+            for k in 0..12 {
+                for j in 0..4 {
+                    for i in 0..5 {
+                        let others = [(i + 1, j, k), (i, j + 1, k), (i, j, k + 1)];
+                        for (i2, j2, k2) in others
+                            .into_iter()
+                            .filter(|o| o.0 < 5 && o.1 < 4 && o.2 < 12)
+                        {
+                            let (a, b) = (at(i, j, k) as u32, at(i2, j2, k2) as u32);
+                            let g = next.next().copied().unwrap_or(1.0);
+                            entry(a, b, g);
+                            entry(b, a, g);
+                        }
+                    }
+                }
+            }
+        });
+        Graph::of(graph, volumes.to_vec())
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(100))]
+        /// The problem as it is stated: nothing negative, nothing above, and one of both 0.
+        #[test]
+        fn any_excess_for_which_there_is_room_is_settled(
+            exponents in prop::collection::vec(-2.0..2.0f64, 101),
+            volumes in prop::collection::vec(0.2..6.0f64, 240),
+            filled in prop::collection::vec(0.0..1.0f64, 240),
+            spikiness in 1..6i32,
+            room in 1e-4..0.3f64,
+        ) {
+            let conductances: Vec<f64> = exponents.iter().map(|e| 10f64.powf(*e)).collect();
+            let graph = box_of(&conductances, &volumes);
+            let solid = |cell: usize| filled[cell].powi(spikiness) * volumes[cell];
+            let (total, volume) = ((0..240).map(solid).sum::<f64>(), volumes.iter().sum::<f64>());
+            let scale = (1.0 - room) * volume / total;
+            let excess: Vec<f64> = (0..240).map(|c| scale * solid(c) - volumes[c]).collect();
+            let mut potential = Cascade::new(&graph).start(&excess);
+            prop_assert!(settle(&graph, &excess, &mut potential, Care::Full).is_some());
+            let mut left = vec![0.0; 240];
+            graph.excess(&excess, &potential, &mut left);
+            for cell in 0..240 {
+                prop_assert!(potential[cell] >= 0.0);
+                // Round-off of what passes through the cell.
+                let round_off = 1e-12 * (volumes[cell] + potential[cell] * graph.total[cell]);
+                prop_assert!(left[cell] <= round_off, "{cell}: {}", left[cell]);
+                if potential[cell] > 0.0 {
+                    prop_assert!(left[cell] >= -round_off, "{cell}: {}", left[cell]);
+                }
+            }
+        }
+    }
+}
