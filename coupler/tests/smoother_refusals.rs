@@ -128,3 +128,33 @@ fn settings_outside_their_range_are_refused() {
     );
     assert!(smoother.operator(weights(), &[]).is_err());
 }
+
+/// A region that is full to within a quarter of the tolerance is smoothed, one beyond is refused:
+/// VFS-5 leaves out no bed that fits.
+#[test]
+fn a_bed_fits_until_it_is_full_to_within_a_quarter_of_the_tolerance() {
+    let mesh = cubes([6, 6, 40]);
+    let smoother = Smoother::new(&mesh, settings()).unwrap();
+    let attempt = |mean: f64| {
+        let rows = (0..mesh.cells()).map(|cell| vec![(cell as u32, 1.0)]);
+        let weights = Weights::new(mesh.cells(), rows.collect()).unwrap();
+        // The lower half holds three times as much as the upper.
+        let of = |cell| if cell < 720 { 1.5 } else { 0.5 };
+        let solid: Vec<f64> = (0..mesh.cells())
+            .map(|cell| of(cell) * mean * CUBE)
+            .collect();
+        smoother.operator(weights, &solid)
+    };
+    for mean in [0.639, 0.64, 0.64 * (1.0 + 0.2e-4)] {
+        let operator = attempt(mean).unwrap();
+        let alpha = operator.solid_fraction();
+        let highest = alpha.iter().copied().fold(0.0, f64::max);
+        assert!(highest <= 0.64 + 1e-4, "{mean}: {highest}");
+    }
+    let error = attempt(0.64 * (1.0 + 0.3e-4)).unwrap_err();
+    let SmootherError::DoesNotFit { left_over, .. } = error else {
+        panic!("{error}");
+    };
+    let expected = 0.64 * 0.3e-4 * 1440.0 * CUBE;
+    assert!((left_over / expected - 1.0).abs() < 1e-6, "{left_over}");
+}

@@ -129,9 +129,7 @@ impl ActiveSet {
             self.cells.iter().map(|&cell| from[cell as usize]).collect()
         };
         let (rhs, volume, mut solution) = (of(excess), of(volume), of(potential));
-        multigrid.solve(&rhs, &mut solution, |largest| {
-            largest(&|row| volume[row]) <= tolerance
-        });
+        multigrid.solve(&rhs, &mut solution, &volume, tolerance);
         for (&cell, &value) in self.cells.iter().zip(&solution) {
             potential[cell as usize] = value;
         }
