@@ -1,6 +1,6 @@
 //! Verification of the momentum equation: the lid-driven cavity against Ghia, Ghia and Shin, and a
 //! jump of void fraction with second-order convection.
-#![allow(clippy::unwrap_used, clippy::needless_range_loop)]
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::needless_range_loop)]
 
 mod common;
 

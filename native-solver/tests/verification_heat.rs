@@ -1,6 +1,6 @@
 //! Verification of the enthalpy equation against exact solutions, with observed orders: advection
 //! and diffusion, conduction in time, heat through walls, a closed box.
-#![allow(clippy::unwrap_used, clippy::needless_range_loop)]
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::needless_range_loop)]
 
 mod common;
 

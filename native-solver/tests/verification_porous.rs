@@ -1,7 +1,7 @@
 //! Verification of the whole porous system by a manufactured solution: momentum with convection, friction
 //! (transposed and volumetric parts of the stress included), pressure, gravity and drag, and enthalpy with
 //! convection, conduction and exchange, in a closed box with walls that the gas sticks to.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod common;
 
