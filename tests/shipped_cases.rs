@@ -34,6 +34,7 @@ fn sources(case: &Path) -> (f64, f64) {
     let name = case.file_stem().unwrap().to_string_lossy();
     match &*name {
         "purged-bed" => (300.0, 600.0),
+        "packed-column" => (293.15, 313.15),
         _ => (300.0, 400.0),
     }
 }
@@ -80,18 +81,25 @@ fn every_shipped_case_runs_natively_and_with_both_solvers_between_its_sources() 
                 case.display()
             );
             let (coldest, hottest) = sources(&case);
+            // With species the enthalpy is not linear in temperature: what the outer loop leaves, 1e-6 of
+            // a heat content from 0 K, may show.
+            let slack = if has_species(&case) { 6e-4 } else { 1e-6 };
             let series = Series::read(&out).unwrap();
             for name in ["gas.temperature_min", "particles.temperature_min"] {
                 let least = series.column(name).iter().copied().fold(f64::MAX, f64::min);
                 assert!(
-                    least > coldest - 1e-6,
+                    least > coldest - slack,
                     "{}: {name} {least} K",
                     case.display()
                 );
             }
             for name in ["gas.temperature_max", "particles.temperature_max"] {
                 let most = series.column(name).iter().copied().fold(f64::MIN, f64::max);
-                assert!(most < hottest + 1e-6, "{}: {name} {most} K", case.display());
+                assert!(
+                    most < hottest + slack,
+                    "{}: {name} {most} K",
+                    case.display()
+                );
             }
         }
     }

@@ -81,7 +81,7 @@ pub(super) struct Column {
     /// Whether it is of the particles.
     pub of_particles: bool,
     /// Name of the field.
-    pub name: &'static str,
+    pub name: String,
     /// Its unit.
     pub unit: &'static str,
     /// What it is.
@@ -123,6 +123,14 @@ pub(super) fn samples<'a>(
 fn column(field: &Field<'_>, places: &[Option<usize>], of_particles: bool) -> Column {
     let value = |place: &Option<usize>| match (*place, field.values) {
         (Some(place), Values::Scalar(list)) => list[place],
+        (
+            Some(place),
+            Values::Column {
+                table,
+                column,
+                columns,
+            },
+        ) => table[place * columns + column],
         (Some(place), Values::Vector(list)) => list[place].norm(),
         (Some(place), Values::Whole(list)) => list[place] as f64,
         (Some(place), Values::Small(list)) => f64::from(list[place]),
@@ -135,7 +143,7 @@ fn column(field: &Field<'_>, places: &[Option<usize>], of_particles: bool) -> Co
     };
     Column {
         of_particles,
-        name: field.name,
+        name: field.name.to_owned(),
         unit: field.unit,
         description: format!(
             "{} {holder} (vectors: magnitude), snapshot by point",

@@ -237,7 +237,11 @@ impl Recorder {
     }
 
     fn snapshot(&mut self, moment: &Moment<'_>) -> Result<(), ResultsError> {
-        let gas = snapshot::gas(&self.case.output, moment)?;
+        let gas = snapshot::gas(
+            &self.case.output,
+            self.case.gas.properties.species(),
+            moment,
+        )?;
         let particles = snapshot::particles(&self.case.output, moment)?;
         let number = self.counters.snapshots.len();
         let now = moment.clocks.process;

@@ -11,6 +11,15 @@ use crate::case::model::Output;
 pub(super) enum Values<'a> {
     /// One number each.
     Scalar(&'a [f64]),
+    /// One number each, one column of a table of so many columns held row by row.
+    Column {
+        /// The table.
+        table: &'a [f64],
+        /// The column.
+        column: usize,
+        /// How many columns it has.
+        columns: usize,
+    },
     /// Three components each.
     Vector(&'a [Vec3]),
     /// Whole numbers.
@@ -24,10 +33,16 @@ impl Values<'_> {
     pub fn len(&self) -> usize {
         match self {
             Values::Scalar(list) => list.len(),
+            Values::Column { table, columns, .. } => table.len() / columns,
             Values::Vector(list) => list.len(),
             Values::Whole(list) => list.len(),
             Values::Small(list) => list.len(),
         }
+    }
+
+    /// The numbers of a column of a table.
+    pub fn column(table: &[f64], column: usize, columns: usize) -> Vec<f64> {
+        table.iter().skip(column).step_by(columns).copied().collect()
     }
 }
 
@@ -35,7 +50,7 @@ impl Values<'_> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Field<'a> {
     /// Name as in the case file.
-    pub name: &'static str,
+    pub name: &'a str,
     /// Unit, `1` for pure numbers.
     pub unit: &'static str,
     /// What it is.
@@ -45,7 +60,7 @@ pub(super) struct Field<'a> {
 }
 
 const fn field<'a>(
-    name: &'static str,
+    name: &'a str,
     unit: &'static str,
     description: &'static str,
     values: Values<'a>,
@@ -58,9 +73,14 @@ const fn field<'a>(
     }
 }
 
-/// The gas fields that the case asks for, in a fixed order.
+/// The name by which a case file asks for the mass fractions of all species.
+pub(super) const MASS_FRACTIONS: &str = "mass_fractions";
+
+/// The gas fields that the case asks for, in a fixed order; mass fractions go by the names of the
+/// species.
 pub(super) fn gas<'a>(
     output: &Output,
+    species: &'a [String],
     moment: &Moment<'a>,
 ) -> Result<Vec<Field<'a>>, ResultsError> {
     use Values::{Scalar, Vector};
@@ -92,7 +112,18 @@ pub(super) fn gas<'a>(
             Scalar(&moment.bed.void_fraction),
         ),
     ];
-    chosen(&all, &output.gas, moment.mesh.cells(), "gas")
+    let mut fields = chosen(&all, &output.gas, moment.mesh.cells(), "gas")?;
+    if output.gas.iter().any(|name| name == MASS_FRACTIONS) {
+        fields.extend(species.iter().enumerate().map(|(column, name)| {
+            let values = Values::Column {
+                table: gas.composition,
+                column,
+                columns: species.len(),
+            };
+            field(name, "1", "mass fraction of this species", values)
+        }));
+    }
+    Ok(fields)
 }
 
 /// What every particle snapshot holds, then the particle fields that the case asks for.

@@ -286,6 +286,11 @@ fn write_field(group: &Group, field: &Field<'_>) -> hdf5::Result<()> {
         Values::Scalar(list) => write_list(group, field.name, list)?,
         Values::Whole(list) => write_list(group, field.name, list)?,
         Values::Small(list) => write_list(group, field.name, list)?,
+        Values::Column {
+            table,
+            column,
+            columns,
+        } => write_list(group, field.name, &Values::column(table, column, columns))?,
         Values::Vector(list) => write_vectors(group, field.name, list)?,
     };
     describe(&dataset, field.unit, field.description)
@@ -340,8 +345,8 @@ fn create_probes(group: &Group, sites: &[Site]) -> hdf5::Result<()> {
 /// Appends one snapshot's row to a probe's matrix snapshot × point.
 fn write_probe(group: &Group, column: &Sampled, number: usize) -> hdf5::Result<()> {
     let points = column.values.len();
-    let dataset = if group.link_exists(column.name) {
-        group.dataset(column.name)?
+    let dataset = if group.link_exists(&column.name) {
+        group.dataset(&column.name)?
     } else {
         let dataset = group
             .new_dataset::<f64>()
@@ -349,7 +354,7 @@ fn write_probe(group: &Group, column: &Sampled, number: usize) -> hdf5::Result<(
             .chunk((16, points))
             .shuffle()
             .deflate(1)
-            .create(column.name)?;
+            .create(&*column.name)?;
         describe(&dataset, column.unit, &column.description)?;
         dataset
     };

@@ -54,6 +54,11 @@ impl Draft {
     fn field(&mut self, field: &Field<'_>) {
         match field.values {
             Values::Scalar(list) => self.floats(field.name, 1, list.iter()),
+            Values::Column {
+                table,
+                column,
+                columns,
+            } => self.floats(field.name, 1, Values::column(table, column, columns).iter()),
             Values::Vector(list) => self.vectors(field.name, list),
             Values::Whole(list) => self.wholes(field.name, list.iter().map(|&id| id as i64)),
             Values::Small(list) => self.wholes(field.name, list.iter().map(|&n| i64::from(n))),

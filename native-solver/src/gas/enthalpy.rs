@@ -4,7 +4,7 @@
 //!     = heat_source − heat_coefficient · T + ε V (p₀ − p₀_old)/Δτ
 //!
 //! Implicit Euler, h_f upwind, what a second-order value has beyond it and the enthalpy that diffusing
-//! species carry explicitly from the last iterate; T linear in h: T = θ + h/c_p, θ = T* − h*/c_p. Because
+//! species carry explicitly from the last iterate (species.rs); T linear in h: T = θ + h/c_p, θ = T* − h*/c_p. Because
 //! m + Δτ Σ φ_f = m_old, the matrix keeps a uniform temperature uniform whatever the flow does,
 //! and energy closes to the linear tolerance whatever the outer loop does. p₀ is the base pressure
 //! (it changes in a closed domain alone).
@@ -144,13 +144,13 @@ impl Enthalpy {
         }
     }
 
-    /// Assembles the equation; `diffused` is the enthalpy that diffusing species carry out of the owner
-    /// of each face in W (empty for a single gas).
+    /// Assembles the equation; `carried` is the enthalpy that species carry out of the owner of each face in W
+    /// beyond the upwind enthalpy (empty for a single gas).
     pub fn assemble(
         &mut self,
         frame: &Frame<'_>,
         material: &Material,
-        diffused: &[f64],
+        carried: &[f64],
         now: &State,
     ) {
         let grid = frame.grid;
@@ -162,7 +162,7 @@ impl Enthalpy {
         fill(&mut self.conduction, |index| {
             conduction(frame, material, index)
         });
-        self.update_explicit(frame, diffused, now);
+        self.update_explicit(frame, carried, now);
         let (conduction, heat_capacity) = (&self.conduction, &self.heat_capacity);
         self.matrix.assemble(|cell, diagonal, neighbours| {
             let own = heat_capacity[cell];
@@ -211,9 +211,9 @@ impl Enthalpy {
         });
     }
 
-    fn update_explicit(&mut self, frame: &Frame<'_>, diffused: &[f64], now: &State) {
+    fn update_explicit(&mut self, frame: &Frame<'_>, species: &[f64], now: &State) {
         let grid = frame.grid;
-        let second = frame.convection == Convection::VanLeer;
+        let second = frame.convection == Convection::VanLeer && species.is_empty();
         if second {
             let boundary = |index: usize, inner: f64| inlet(frame, index).unwrap_or(inner);
             let gradients = &mut self.gradients[0];
@@ -238,7 +238,7 @@ impl Enthalpy {
         let [carried, conducted] = &self.gradients;
         let conduction = &self.conduction;
         fill(&mut self.explicit, |index| {
-            let mut out = diffused.get(index).copied().unwrap_or(0.0);
+            let mut out = species.get(index).copied().unwrap_or(0.0);
             let flux = now.flux[index];
             if second && index < grid.internal && flux != 0.0 {
                 out += flux * beyond_upwind(grid, index, flux, &now.enthalpy, carried);

@@ -83,8 +83,8 @@ impl Equations {
         let material = &mut self.material;
         material.update(frame, now);
         self.momentum.assemble(frame, material, now);
-        let diffused = &self.species.diffused;
-        self.enthalpy.assemble(frame, material, diffused, now);
+        let carried = &self.species.carried;
+        self.enthalpy.assemble(frame, material, carried, now);
         let momentum = self.momentum.residual(frame, now);
         let continuity = pressure::residual(frame, material, now);
         let enthalpy = self.enthalpy.residual(now);
@@ -107,8 +107,8 @@ impl Equations {
         pressure::advance_mass(frame, now);
 
         iterations += self.species.solve(frame, material, krylov, tolerance, now);
-        let diffused = &self.species.diffused;
-        self.enthalpy.assemble(frame, material, diffused, now);
+        let carried = &self.species.carried;
+        self.enthalpy.assemble(frame, material, carried, now);
         iterations + self.enthalpy.solve(frame, krylov, tolerance, now)
     }
 

@@ -13,7 +13,7 @@ use calcine_coupler::setup::Convection;
 use super::attempt::{Frame, Material};
 use super::boundary::Value;
 use super::state::State;
-use crate::numerics::convection::{limited, limiter};
+use crate::numerics::convection::{beyond_upwind, limited, limiter};
 use crate::numerics::krylov::{Krylov, Target};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{conductance, displacement, face_values, gradient, interpolate};
@@ -38,8 +38,12 @@ pub struct Species {
     /// Flow of each species out of the owner of each face in kg/s, of what is taken explicitly.
     explicit: Vec<Vec<f64>>,
     source: Vec<f64>,
-    /// Enthalpy that diffusing species carry out of the owner of each face in W.
-    pub diffused: Vec<f64>,
+    /// Enthalpy that species carry out of the owner of each face in W beyond what the upwind cell's enthalpy
+    /// does: by diffusion, Σ_k h_k J_k, and by second-order convection, φ (h(T_f, Y_f) − h_up). The latter
+    /// follows temperature and fractions at the face apart: a limited enthalpy would heat gas where
+    /// compositions mix at one temperature.
+    pub carried: Vec<f64>,
+    temperature_gradients: Vec<Vec3>,
     /// Flow of each species into the domain in kg/s and the sum of its magnitudes over the faces, as the
     /// last solve took them.
     pub boundary: Vec<[f64; 2]>,
@@ -58,7 +62,8 @@ impl Species {
             faces: Vec::new(),
             explicit: Vec::new(),
             source: Vec::new(),
-            diffused: Vec::new(),
+            carried: Vec::new(),
+            temperature_gradients: Vec::new(),
             boundary: Vec::new(),
         }
     }
@@ -78,14 +83,16 @@ impl Species {
         self.limiters.resize(faces, 0.0);
         self.faces.resize(faces, 0.0);
         self.source.resize(cells, 0.0);
-        self.diffused.resize(faces, 0.0);
-        fill(&mut self.diffused, |_| 0.0);
+        self.carried.resize(faces, 0.0);
+        fill(&mut self.carried, |_| 0.0);
         for (k, fractions) in self.fractions.iter_mut().enumerate() {
             fill(fractions, |cell| frame.old.composition[cell * species + k]);
         }
+        self.temperature_gradients.resize(cells, Vec3::zeros());
         for gradients in &mut self.gradients {
             fill(gradients, |_| Vec3::zeros());
         }
+        fill(&mut self.temperature_gradients, |_| Vec3::zeros());
     }
 
     /// Assembles and solves the equations; returns the linear iterations.
@@ -132,7 +139,7 @@ impl Species {
             *fraction = fractions[i % species][i / species];
         });
         self.record(frame, now);
-        self.update_diffused(frame, now);
+        self.update_carried(frame, now);
         iterations
     }
 
@@ -287,32 +294,74 @@ impl Species {
         }
     }
 
-    /// Σ_k h_k J_k of each face, h_k at the face's temperature.
-    fn update_diffused(&mut self, frame: &Frame<'_>, now: &State) {
+    /// Sets `carried`, h_k at the face's temperature.
+    fn update_carried(&mut self, frame: &Frame<'_>, now: &State) {
         let grid = frame.grid;
-        let (diffusion, fractions) = (&self.diffusion, &self.fractions);
-        fill(&mut self.diffused, |index| {
-            if diffusion[index] == 0.0 {
-                return 0.0;
-            }
-            let face = &grid.faces[index];
-            let temperature = if index < grid.internal {
-                interpolate(face, &now.temperature)
-            } else if let Value::Inlet { gas, .. } = frame.boundary.at(index) {
-                gas.temperature
+        let second = frame.convection == Convection::VanLeer;
+        let given = |index: usize| match frame.boundary.at(index) {
+            Value::Inlet { gas, .. } => Some(gas.temperature),
+            Value::Wall { .. } | Value::Outlet { .. } => None,
+        };
+        if second {
+            let boundary = |index: usize, inner: f64| given(index).unwrap_or(inner);
+            let gradients = &mut self.temperature_gradients;
+            face_values(grid, &now.temperature, gradients, boundary, &mut self.faces);
+            let faces = &self.faces;
+            fill(gradients, |cell| gradient(grid, faces, cell));
+        }
+        let mut carried = std::mem::take(&mut self.carried);
+        fill(&mut carried, |index| {
+            let inner = index < grid.internal;
+            let temperature = if inner {
+                interpolate(&grid.faces[index], &now.temperature)
+            } else if let Some(temperature) = given(index) {
+                temperature
             } else {
                 return 0.0;
             };
-            let given = (index >= grid.internal)
-                .then(|| frame.boundary.composition(index))
-                .flatten();
-            let flow = |k: usize| {
-                let outer = given.map_or_else(|| fractions[k][face.neighbour], |y| y[k]);
-                diffusion[index] * (fractions[k][face.owner] - outer)
+            let convected = if inner && second {
+                self.convected(frame, now, index)
+            } else {
+                0.0
             };
-            let one = |k: usize| flow(k) * frame.properties.species_enthalpy(k, temperature);
-            (0..fractions.len()).map(one).sum()
+            convected + self.diffused(frame, index, temperature)
         });
+        self.carried = carried;
+    }
+
+    /// Σ_k h_k J_k of a face in W, out of its owner, at a temperature in K.
+    fn diffused(&self, frame: &Frame<'_>, index: usize, temperature: f64) -> f64 {
+        let face = &frame.grid.faces[index];
+        let given = (index >= frame.grid.internal)
+            .then(|| frame.boundary.composition(index))
+            .flatten();
+        let one = |k: usize| {
+            let outer = given.map_or_else(|| self.fractions[k][face.neighbour], |y| y[k]);
+            let flow = self.diffusion[index] * (self.fractions[k][face.owner] - outer);
+            flow * frame.properties.species_enthalpy(k, temperature)
+        };
+        (0..self.fractions.len()).map(one).sum()
+    }
+
+    /// φ (h(T_f, Y_f) − h(T_up, Y_up)) of an internal face in W, out of its owner.
+    fn convected(&self, frame: &Frame<'_>, now: &State, index: usize) -> f64 {
+        let (grid, flux) = (frame.grid, now.flux[index]);
+        if flux == 0.0 {
+            return 0.0;
+        }
+        let face = &grid.faces[index];
+        let up = if flux > 0.0 { face.owner } else { face.neighbour };
+        let before = now.temperature[up];
+        let gradients = &self.temperature_gradients;
+        let temperature =
+            before + beyond_upwind(grid, index, flux, &now.temperature, gradients);
+        let one = |k: usize| {
+            let fraction = self.fractions[k][up];
+            let more = limited(grid, index, flux, &self.fractions[k], self.limiters[index]);
+            (fraction + more) * frame.properties.species_enthalpy(k, temperature)
+                - fraction * frame.properties.species_enthalpy(k, before)
+        };
+        flux * (0..self.fractions.len()).map(one).sum::<f64>()
     }
 
     /// The balance of each species over the window, in kg.

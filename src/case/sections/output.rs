@@ -5,12 +5,13 @@ use crate::case::model::Output;
 use crate::case::table::Reader;
 
 /// Gas fields of the snapshots.
-const GAS: [&str; 5] = [
+const GAS: [&str; 6] = [
     "temperature",
     "velocity",
     "pressure",
     "density",
     "void_fraction",
+    "mass_fractions",
 ];
 /// Particle fields of the snapshots.
 const PARTICLES: [&str; 3] = ["temperature", "velocity", "heat"];
