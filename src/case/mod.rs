@@ -8,6 +8,7 @@ pub mod model;
 mod overlap;
 mod place;
 mod problem;
+pub mod schema;
 mod sections;
 mod table;
 pub mod units;

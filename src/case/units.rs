@@ -120,6 +120,11 @@ const UNITS: &[(&str, f64, [i8; 5])] = &[
     ("%", 1e-2, [0, 0, 0, 0, 0]),
 ];
 
+/// Symbols of all units but degrees Celsius.
+pub(super) fn symbols() -> impl Iterator<Item = &'static str> {
+    UNITS.iter().map(|unit| unit.0)
+}
+
 /// Zero of the Celsius scale in K.
 const CELSIUS: f64 = 273.15;
 

@@ -8,6 +8,7 @@ mod new;
 mod prepare;
 mod report;
 mod run;
+mod schema;
 mod sweep;
 
 use std::fmt;
@@ -37,6 +38,7 @@ enum Command {
     Report(report::Arguments),
     Prepare(prepare::Arguments),
     New(new::Arguments),
+    Schema(schema::Arguments),
     /// Shows which solvers, MPI and HDF5 are here, and what installs what is missing.
     Doctor,
 }
@@ -129,6 +131,7 @@ pub fn main() -> ExitCode {
         Command::Report(arguments) => report::run(arguments),
         Command::Prepare(arguments) => prepare::run(arguments),
         Command::New(arguments) => new::run(arguments),
+        Command::Schema(arguments) => schema::run(arguments),
         Command::Doctor => {
             say(doctor::run());
             Ok(exit::OK)

@@ -4,8 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{Failure, say};
+use super::{Failure, say, schema};
 use crate::exit;
+
+/// Name of the schema beside a new case.
+const SCHEMA: &str = "case.schema.json";
 
 /// Starts a case of one's own from a shipped one, in one folder.
 #[derive(Debug, Args)]
@@ -22,12 +25,21 @@ pub(super) struct Arguments {
 enum Shipped {
     /// Hot air heats a column of ten spheres.
     HeatedColumn,
+    /// Hot air heats a random packing in a tube.
+    HeatedBed,
+    /// Air flows through a tube of 14 mm spheres.
+    PackedColumn,
+    /// Nitrogen drives carbon dioxide out of a warm bed.
+    PurgedBed,
 }
 
 impl Shipped {
     fn text(self) -> &'static str {
         match self {
             Shipped::HeatedColumn => include_str!("../../cases/heated-column.toml"),
+            Shipped::HeatedBed => include_str!("../../cases/heated-bed.toml"),
+            Shipped::PackedColumn => include_str!("../../cases/packed-column.toml"),
+            Shipped::PurgedBed => include_str!("../../cases/purged-bed.toml"),
         }
     }
 }
@@ -47,7 +59,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         Failure::new(exit::OTHER, format_args!("{}: {cause}", file.display()))
     };
     std::fs::create_dir_all(folder).map_err(failed)?;
-    std::fs::write(&file, arguments.like.text()).map_err(failed)?;
+    let text = format!("#:schema {SCHEMA}\n{}", arguments.like.text());
+    std::fs::write(&file, text).map_err(failed)?;
+    std::fs::write(folder.join(SCHEMA), schema::text()).map_err(failed)?;
     say(format_args!(
         "{}: change it, then\n  calcine check {0}\n  calcine run {0}",
         file.display()

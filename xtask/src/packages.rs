@@ -14,7 +14,7 @@ pub struct Needs {
     pub openfoam: bool,
     /// The LIGGGHTS host.
     pub liggghts: bool,
-    /// What tests read results with, and a compiler for the C ABI.
+    /// What tests read results and check cases with, and a compiler for the C ABI.
     pub tests: bool,
 }
 
@@ -61,7 +61,10 @@ impl Needs {
                 "openmpi-bin",
             ],
         );
-        add(self.tests, &["g++", "python3-vtk9", "python3-h5py"]);
+        add(
+            self.tests,
+            &["g++", "python3-vtk9", "python3-h5py", "python3-jsonschema"],
+        );
         names
     }
 }

@@ -1,0 +1,37 @@
+//! `calcine schema`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{Failure, say};
+use crate::case::schema::schema;
+use crate::exit;
+
+/// Prints the JSON schema of case files, by which editors complete and check them.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Writes it into this file instead.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
+    let text = text();
+    let Some(file) = &arguments.out else {
+        say(text.trim_end());
+        return Ok(exit::OK);
+    };
+    std::fs::write(file, text)
+        .map_err(|cause| Failure::new(exit::OTHER, format_args!("{}: {cause}", file.display())))?;
+    say(format_args!(
+        "{}: name it in the first line of a case file, as\n  #:schema {0}",
+        file.display()
+    ));
+    Ok(exit::OK)
+}
+
+/// The schema as it stands in a file.
+pub(super) fn text() -> String {
+    format!("{:#}\n", schema())
+}
