@@ -354,13 +354,12 @@ fn smoother(case: &Case, prepared: &Prepared) -> Result<Smoother, AssemblyError>
 }
 
 /// Settings of the smoother. Where the case does not state the diffusion's length, it is half the
-/// mean diameter where particles are larger than a third of the cells (requirements VFS-6): without
+/// mean diameter where particles are larger than a third of the cells about them (requirements VFS-6): without
 /// it a particle that spans several cells would give heat to cells that have nothing to give.
 fn smoothing(case: &Case, prepared: &Prepared) -> Smoothing {
-    let (mesh, radii) = (&prepared.mesh, &prepared.particles.radius);
+    let radii = &prepared.particles.radius;
     let diameter = 2.0 * radii.iter().sum::<f64>() / radii.len() as f64;
-    let volume = mesh.cell_volume().iter().sum::<f64>() / mesh.cells() as f64;
-    let large = diameter > volume.cbrt() / 3.0;
+    let large = diameter > cell_size(prepared) / 3.0;
     let length = case
         .coupling
         .diffusion_length
@@ -369,6 +368,27 @@ fn smoothing(case: &Case, prepared: &Prepared) -> Smoothing {
         max_solid_fraction: case.coupling.max_solid_fraction,
         tolerance: case.coupling.smoother_tolerance,
         diffusion_length: (length > 0.0).then_some(length),
+    }
+}
+
+/// Mean size in m of the cells in the box about the particles' centres, or of all where none lies there.
+fn cell_size(prepared: &Prepared) -> f64 {
+    let (mesh, centres) = (&prepared.mesh, &prepared.particles.position);
+    let (mut low, mut high) = (Vec3::repeat(f64::MAX), Vec3::repeat(f64::MIN));
+    for centre in centres {
+        (low, high) = (low.inf(centre), high.sup(centre));
+    }
+    let within = |centre: &Vec3| (0..3).all(|i| (low[i]..=high[i]).contains(&centre[i]));
+    let cells = mesh.cell_volume().iter().zip(mesh.cell_centre());
+    let (count, volume) = cells
+        .filter(|(_, centre)| within(centre))
+        .fold((0.0, 0.0), |(count, sum), (volume, _)| {
+            (count + 1.0, sum + volume)
+        });
+    if count > 0.0 {
+        f64::cbrt(volume / count)
+    } else {
+        (mesh.cell_volume().iter().sum::<f64>() / mesh.cells() as f64).cbrt()
     }
 }
 
