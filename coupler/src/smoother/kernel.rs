@@ -95,7 +95,7 @@ impl Kernel {
         let total = active.iter().map(|&cell| graph.total[cell as usize]);
         let matrix = Matrix {
             diagonal: total.zip(&stays).map(|(g, d)| g + d).collect(),
-            pull: obstacle::among(graph, &active),
+            pull: obstacle::among(graph, &active).padded(),
         };
         let (leak, rim, outward) = border(graph, &active);
         Self {

@@ -105,7 +105,7 @@ fn inverted(matrix: &Matrix) -> Option<Vec<f64>> {
     for row in 0..rows {
         full[(row, row)] = matrix.diagonal[row];
         for (column, pull) in matrix.pull.row(row) {
-            full[(row, column)] = -pull;
+            full[(row, column)] -= pull;
         }
     }
     let inverse = full.cholesky()?.inverse();
