@@ -173,7 +173,7 @@ fn in_duct(place: &str, size: f64, width: usize, height: usize) -> String {
 format = 1
 title = "One bed on many meshes"
 [time]
-end = "60 ms"
+end = "20 ms"
 motion_window = "20 ms"
 [mesh]
 box = {{ size = "{width} {width} {length} mm", cells = {cells:?} }}
@@ -205,7 +205,7 @@ radiation = {{ law = "none" }}
 [coupling]
 mapping = "overlap"
 [output]
-every = "60 ms"
+every = "20 ms"
 series_every = "20 ms"
 gas = ["pressure", "velocity", "void_fraction"]
 [[quantities]]
