@@ -21,9 +21,9 @@
 //! non-negative, so S is.
 //!
 //! Multigrid: where K would be large, a Chebyshev polynomial in V-cycles, with as many cycles as make
-//! B equal H⁻¹ to round-off. H is an M-matrix, H⁻¹ ≥ 0, and what stays in an active cell is D ψ ≥ 0, so S is
-//! non-negative as far as B is H⁻¹: weights are above −1e-12 of the share that is spread, not by
-//! construction but by accuracy. (Fewer cycles would make them negative by as much as is left out;
+//! B equal H⁻¹ to round-off; a polynomial in a symmetric operator and H, B is fixed and symmetric. H is
+//! an M-matrix, H⁻¹ ≥ 0, and what stays in an active cell is D ψ ≥ 0, so S is non-negative as far as B is
+//! H⁻¹: weights are above −1e-12 of the share that is spread, not by construction but by accuracy. (Fewer cycles would make them negative by as much as is left out;
 //! no short polynomial with positive coefficients reaches as far as excess must go.)
 
 use std::sync::Arc;
