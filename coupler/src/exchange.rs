@@ -112,18 +112,19 @@ impl Exchange {
         self.iterate.temperature.extend_from_slice(gas.temperature);
         operator.sample(gas.temperature, &mut self.iterate.seen_temperature);
 
-        operator.spread(&self.conductance, &mut self.cells.heat_coefficient);
+        // K_p, g_p and the source side by side: three components cost little more than one.
         for p in 0..count {
-            self.scalar[p] = tie(coefficients.conductance[p], self.conductance[p]);
+            let own = self.conductance[p];
+            let tie = tie(coefficients.conductance[p], own);
+            let source = own * temperature[p] + tie * self.iterate.seen_temperature[p];
+            self.vector[p] = Vec3::new(own, tie, source);
         }
-        operator.spread(&self.scalar, &mut self.iterate.tie);
-        for p in 0..count {
-            self.scalar[p] = self.conductance[p] * temperature[p]
-                + self.scalar[p] * self.iterate.seen_temperature[p];
-        }
-        operator.spread(&self.scalar, &mut self.cells.heat_source);
+        operator.spread_vectors(&self.vector, &mut self.cell_vector);
         for c in 0..cells {
-            self.cells.heat_source[c] -= self.iterate.tie[c] * gas.temperature[c];
+            let [own, tie, source] = self.cell_vector[c].into();
+            self.cells.heat_coefficient[c] = own;
+            self.iterate.tie[c] = tie;
+            self.cells.heat_source[c] = source - tie * gas.temperature[c];
         }
 
         operator.spread(&coefficients.drag, &mut self.cells.drag_coefficient);

@@ -27,6 +27,7 @@ struct Rows {
 /// What a particle or a cell holds: a number or a vector.
 pub(crate) trait Amount:
     Copy
+    + PartialEq
     + Send
     + Sync
     + std::ops::AddAssign

@@ -100,6 +100,11 @@ impl Operator {
     }
 
     fn spread_any<T: Kept>(&self, per_particle: &[T], per_cell: &mut [T]) {
+        // What particles at rest, or solvers without an error to report, often give.
+        if per_particle.iter().all(|value| *value == T::ZERO) {
+            per_cell.fill(T::ZERO);
+            return;
+        }
         self.weights.spread(per_particle, per_cell);
         if let Some(kernel) = &self.kernel {
             kernel.apply(per_cell);
@@ -110,6 +115,10 @@ impl Operator {
     }
 
     fn sample_any<T: Kept>(&self, per_cell: &[T], per_particle: &mut [T]) {
+        if per_cell.iter().all(|value| *value == T::ZERO) {
+            per_particle.fill(T::ZERO);
+            return;
+        }
         if self.kernel.is_none() && self.diffusion.is_none() {
             return self.weights.sample(per_cell, per_particle);
         }
