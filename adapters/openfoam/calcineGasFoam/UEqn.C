@@ -10,6 +10,7 @@
 #include "convection.H"
 #include "fvm.H"
 #include "fvc.H"
+#include "basicSymmetryFvPatchFields.H"
 
 Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, report& result)
 {
@@ -51,6 +52,16 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     matrix.source() +=
         inertia*committed_.velocity + given_.dragSource + density*pores*gravity_
       + outOf(*stressForce_) - outOf(*beyond);
+
+    // The normal velocity at a wall without friction is not stressed by the wall either.
+    forAll(mesh_.boundary(), patchi)
+    {
+        if (isA<basicSymmetryFvPatchVectorField>(U_.boundaryField()[patchi]))
+        {
+            matrix.internalCoeffs()[patchi] = Zero;
+            matrix.boundaryCoeffs()[patchi] = Zero;
+        }
+    }
 
     momentumDiagonal_ = matrix.A()().primitiveField();
     const vectorField push(-pores*pressureGradient_);

@@ -133,6 +133,7 @@ void Foam::calcine::gas::measureFaces()
     conductance_.setSize(faces, 0);
     drive_.setSize(faces, 0);
     facePressure_.setSize(faces, 0);
+    transportPush_.setSize(internal, 0);
     for (label facei = 0; facei < faces; ++facei)
     {
         const vector& centre = mesh_.faceCentres()[facei];

@@ -8,7 +8,8 @@
 // harmonic mean. p_f makes the cell's gradient (Gauss), which the momentum equation takes and which is
 // reported: gas at rest stays at rest whatever the void fraction does, and a bed's resistance is exact
 // to its last half cell. The inertia at a face is that of the face's own old flux, so that a steady
-// flow does not depend on the time step. Rhie and Chow 1983, doi 10.2514/3.8284.
+// flow does not depend on the time step; what friction and convection owe to the cell's own velocity in
+// transport.C. Rhie and Chow 1983, doi 10.2514/3.8284.
 //
 // Continuity, per cell: sum phi_f = -(eps rho V - m_old)/dtau, rho of the model at pRef.
 #include "gas.H"
@@ -83,6 +84,7 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
     const labelUList& owner = mesh_.faceOwner();
     const labelUList& neighbour = mesh_.faceNeighbour();
     updateForce();
+    updateTransport(density);
 
     // What the forces alone would drive through each face; all of it where the flux is given.
     for (label facei = 0; facei < internal; ++facei)
@@ -91,6 +93,7 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
            *(
                 ownerDistance_[facei]*halfCellForce(facei, owner[facei])
               + neighbourDistance_[facei]*halfCellForce(facei, neighbour[facei])
+              + transportPush_[facei]
               + displacement(facei)
             );
     }
@@ -201,6 +204,8 @@ void Foam::calcine::gas::updateFacePressure()
             }
         }
     }
+    // The pressures on the two sides of a face differ by what transport adds: the gradient leaves each
+    // cell the mean of its fluxes as its velocity.
     pressureGradient_ = Zero;
     forAll(facePressure_, facei)
     {
@@ -208,7 +213,8 @@ void Foam::calcine::gas::updateFacePressure()
         pressureGradient_[owner[facei]] += push;
         if (facei < mesh_.nInternalFaces())
         {
-            pressureGradient_[neighbour[facei]] -= push;
+            pressureGradient_[neighbour[facei]] -=
+                push + transportPush_[facei]*mesh_.faceAreas()[facei];
         }
     }
     pressureGradient_ /= mesh_.cellVolumes();
