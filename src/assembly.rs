@@ -8,7 +8,7 @@ use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch, LiggghtsParticles}
 use calcine_adapters::openfoam::case::OpenfoamCase;
 use calcine_adapters::openfoam::{OpenfoamGas, OpenfoamLaunch};
 use calcine_coupler::closures::Closures;
-use calcine_coupler::coordinator::{CheckpointPaths, Parts, Plan, Run, RunError};
+use calcine_coupler::coordinator::{CheckpointPaths, Origin, Parts, Plan, Run, RunError};
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::interior::{Network, Thin};
 use calcine_coupler::mapping::{Mapper, Method};
@@ -193,6 +193,8 @@ pub struct Settings<'a> {
     pub results: &'a Path,
     /// True where every part starts from the committed checkpoint.
     pub resume: bool,
+    /// Another run of the same mesh and particles to continue from; not with `resume`.
+    pub from: Option<&'a Origin>,
 }
 
 /// Builds the run.
@@ -202,6 +204,10 @@ pub fn assemble<'m>(
     settings: &Settings<'_>,
     supervisor: &mut Supervisor,
 ) -> Result<Run<'m>, AssemblyError> {
+    if let Some(origin) = settings.from {
+        let species = case.gas.properties.species();
+        origin.check(&prepared.mesh, species, &prepared.particles)?;
+    }
     let checkpoint = CheckpointPaths::new(settings.results);
     let from = settings.resume.then(|| checkpoint.committed());
     let assembly = Assembly {
@@ -220,6 +226,8 @@ pub fn assemble<'m>(
     let mut run = Run::new(plan, &prepared.mesh, smoother, closures(case), parts)?;
     if settings.resume {
         run.resume()?;
+    } else if let Some(origin) = settings.from {
+        run.take_over(origin)?;
     }
     Ok(run)
 }
@@ -283,6 +291,8 @@ impl Assembly<'_> {
                 let mut gas = NativeGas::new(Arc::clone(&self.prepared.mesh), &self.case.gas)?;
                 if let Some(folder) = from {
                     gas.restore(&folder)?;
+                } else if let Some(origin) = self.settings.from {
+                    gas.take_over(&origin.path.join("gas"))?;
                 }
                 Ok(Box::new(gas))
             }

@@ -31,7 +31,7 @@ pub fn of(error: &RunError) -> u8 {
             | FailureKind::Protocol
             | FailureKind::Reported => PEER,
         },
-        RunError::Smoother(_) | RunError::Mapping(_) => CASE,
+        RunError::Smoother(_) | RunError::Mapping(_) | RunError::Origin(_) => CASE,
         RunError::Closure { .. } => DIVERGED,
         _ => OTHER,
     }

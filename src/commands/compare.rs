@@ -67,6 +67,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
             pairing,
             out: &folder,
             resume: false,
+            from: None,
             progress: !arguments.quiet,
             stop_after: None,
         };

@@ -15,7 +15,7 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use tracing::{error, info};
 
-use super::{Failure, chain, with_help};
+use super::{Failure, chain, origin, with_help};
 use crate::assembly::{self, Pairing, Prepared, assemble};
 use crate::case::model::Case;
 use crate::exit;
@@ -33,6 +33,8 @@ pub(super) struct Settings<'a> {
     pub(super) out: &'a Path,
     /// Goes on from the checkpoint in it, or starts again if there was none yet.
     pub(super) resume: bool,
+    /// The results folder of another run to continue from.
+    pub(super) from: Option<&'a Path>,
     /// Shows a progress bar.
     pub(super) progress: bool,
     /// Checkpoint and stop after this wall time.
@@ -59,6 +61,12 @@ pub(super) fn execute(
     let _lock = lock(out)?;
     let checkpoint = out.join("checkpoint");
     let resume = settings.resume && checkpoint.join("coordinator.state").is_file();
+    if settings.resume
+        && let Some(summary) = origin::finished(out)
+    {
+        return over(case, out, &summary);
+    }
+    let begun_from = origin::folder(settings.from, settings.resume && !resume, out);
     if settings.resume && !resume {
         // A run that ended before its first checkpoint is resumed by starting it again.
         let again = started_before && results::clear_start(out, &case.hash).map_err(refused)?;
@@ -71,6 +79,9 @@ pub(super) fn execute(
             return Err(Failure::new(exit::CASE, message));
         }
     }
+    let begun_from = begun_from.filter(|_| !resume);
+    let continued = begun_from.map(|folder| origin::read(&folder, settings.pairing));
+    let (origin, provenance) = continued.transpose()?.unzip();
     let from = resume.then_some(checkpoint.as_path());
     let info = RunInfo {
         gas: settings.pairing.gas.name().into(),
@@ -81,6 +92,7 @@ pub(super) fn execute(
             "shared-memory"
         }
         .into(),
+        from: provenance,
     };
     let mut recorder = Recorder::create(case, info, out, from).map_err(refused)?;
     let _log = log_to(out)?;
@@ -93,6 +105,7 @@ pub(super) fn execute(
         pairing: settings.pairing,
         results: out,
         resume,
+        from: origin.as_ref(),
     };
     let mut run = assemble(case, prepared, &assembly, &mut supervisor)?;
     let mut progress = Progress::new(case, settings.progress);
@@ -139,6 +152,26 @@ pub(super) fn execute(
             Err(failed(out, &failure))
         }
     }
+}
+
+/// `--resume` of a run that came to its end: there is nothing to do.
+fn over(case: &Case, out: &Path, summary: &Summary) -> Result<Done, Failure> {
+    if summary.case.hash != case.hash {
+        let message = format!(
+            "the run in {} came to its end, and its case differs from this one (hash {} there, {} \
+             here): `--from {0}` continues from it, into another folder",
+            out.display(),
+            summary.case.hash,
+            case.hash
+        );
+        return Err(Failure::new(exit::CASE, message));
+    }
+    let code = match summary.verdict {
+        Verdict::Fail => exit::OUTSIDE_BANDS,
+        _ => exit::OK,
+    };
+    let text = format!("the run in {} had come to its end already", out.display());
+    Ok(Done { code, text })
 }
 
 /// Says in the results that the run ended early; a failure of that is only logged.

@@ -5,6 +5,7 @@ mod compare;
 pub mod doctor;
 mod execute;
 mod new;
+mod origin;
 mod prepare;
 mod report;
 mod run;

@@ -30,6 +30,10 @@ pub(super) struct Arguments {
     /// Goes on from the last checkpoint in the results folder, or starts again if there is none yet.
     #[arg(long)]
     resume: bool,
+    /// Continues from the last checkpoint of another run of the same mesh and particles, with
+    /// this case's settings and clocks that start at zero.
+    #[arg(long, value_name = "DIR")]
+    from: Option<PathBuf>,
     /// No progress bar.
     #[arg(long)]
     quiet: bool,
@@ -48,6 +52,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         },
         out: &out,
         resume: arguments.resume,
+        from: arguments.from.as_deref(),
         progress: !arguments.quiet,
         stop_after: arguments.stop_after,
     };

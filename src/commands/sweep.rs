@@ -104,6 +104,7 @@ fn one(arguments: &Arguments, settings: &[String], folder: &Path) -> Result<(), 
         },
         out: folder,
         resume: false,
+        from: None,
         progress: !arguments.quiet,
         stop_after: None,
     };

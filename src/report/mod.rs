@@ -333,7 +333,7 @@ fn provenance(summary: &Summary) -> String {
         .iter()
         .map(|&(from, factor)| format!("{} from {}", figure(factor, 4), span(from)))
         .collect();
-    let rows = [
+    let mut rows = vec![
         ("case", escape(&summary.case.name)),
         (
             "SHA-256 of the case",
@@ -349,8 +349,22 @@ fn provenance(summary: &Summary) -> String {
         ("acceleration", schedule.join(", ")),
         ("Calcine", escape(&summary.calcine)),
     ];
-    table(
-        &["", ""],
-        &rows.map(|(name, value)| vec![name.into(), value]),
-    )
+    let mut from = summary.from.as_ref();
+    while let Some(run) = from {
+        let text = format!(
+            "{} of <code>{}</code> (case {} …), at {} of process time after {} windows",
+            escape(&run.case),
+            escape(&run.path.display().to_string()),
+            escape(run.hash.get(..12).unwrap_or(&run.hash)),
+            span(run.process_time_s),
+            run.windows
+        );
+        rows.push(("continued from", text));
+        from = run.from.as_deref();
+    }
+    let rows: Vec<Vec<String>> = rows
+        .into_iter()
+        .map(|(name, value)| vec![name.to_owned(), value])
+        .collect();
+    table(&["", ""], &rows)
 }

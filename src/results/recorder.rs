@@ -15,7 +15,8 @@ use super::series::{self, Row, TRACKED_PARTICLES, Table};
 use super::status::{Status, Watch};
 use super::store::Store;
 use super::summary::{
-    Backends, CaseName, Ledger, LedgerLine, Solver, Solvers, Summary, Verdict, WallTimes,
+    Backends, CaseName, Ledger, LedgerLine, Provenance, Solver, Solvers, Summary, Verdict,
+    WallTimes,
 };
 use super::vtk::{self, Cells};
 use super::{CASE, ResultsError, STORE, SUMMARY, files, snapshot};
@@ -25,7 +26,7 @@ use crate::case::model::Case;
 const BATCH: usize = 256;
 
 /// What the summary says of a run beside its case.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunInfo {
     /// Kind of the gas solver: `native`, `openfoam`.
     pub gas: String,
@@ -33,6 +34,8 @@ pub struct RunInfo {
     pub particles: String,
     /// How the coordinator talks to them: `none`, `shared-memory`, `mpi`.
     pub transport: String,
+    /// The run that this one continues from; where it resumes, what it began with counts.
+    pub from: Option<Provenance>,
 }
 
 /// What exists once the first moment is known.
@@ -80,6 +83,7 @@ impl Recorder {
             Some(checkpoint) => resume::restore(checkpoint, out, &case.hash)?,
             None => Counters {
                 case_hash: case.hash.clone(),
+                from: info.from.clone(),
                 captured: Captured::new(case.quantities.len()),
                 ..Counters::default()
             },
@@ -330,6 +334,7 @@ impl Recorder {
                 title: case.title.clone(),
                 hash: case.hash.clone(),
             },
+            from: self.counters.from.clone(),
             verdict,
             backend: Backends {
                 gas: self.info.gas.clone(),

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::quantities::Captured;
-use super::summary::{ConvergenceSummary, Summary, Verdict, WallTimes};
+use super::summary::{ConvergenceSummary, Provenance, Summary, Verdict, WallTimes};
 use super::{ResultsError, SERIES, STORE, SUMMARY, files};
 
 /// Name of the counters in a checkpoint directory.
@@ -17,6 +17,9 @@ const COUNTERS: &str = "recorder.json";
 pub(super) struct Counters {
     /// Hash of the case.
     pub case_hash: String,
+    /// The run that this one continued from.
+    #[serde(default)]
+    pub from: Option<Provenance>,
     /// Process time of the next row at the earliest, in ps.
     pub next_row: i64,
     /// Process time of the next snapshot at the earliest, in ps.

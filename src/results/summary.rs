@@ -1,7 +1,7 @@
 //! `summary.json`: what was run and what came out, under stable names.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -45,6 +45,9 @@ pub struct Summary {
     pub calcine: String,
     /// The case.
     pub case: CaseName,
+    /// The run whose results this one continued from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<Provenance>,
     /// The verdict over all quantities.
     pub verdict: Verdict,
     /// The kinds of solver, `native`, `openfoam`, `liggghts`.
@@ -88,6 +91,24 @@ pub struct CaseName {
     pub title: String,
     /// SHA-256 of its effective text.
     pub hash: String,
+}
+
+/// Another run, as it stood when this one continued from it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Its results folder, absolute.
+    pub path: PathBuf,
+    /// Name of its case.
+    pub case: String,
+    /// SHA-256 of its case's effective text.
+    pub hash: String,
+    /// Process time that it had reached, in s.
+    pub process_time_s: f64,
+    /// Windows that it had committed.
+    pub windows: u64,
+    /// What that run had itself continued from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<Box<Provenance>>,
 }
 
 /// One entry for the gas, one for the particles.

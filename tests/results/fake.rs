@@ -352,6 +352,7 @@ pub fn info() -> RunInfo {
         gas: "native".into(),
         particles: "native".into(),
         transport: "none".into(),
+        from: None,
     }
 }
 

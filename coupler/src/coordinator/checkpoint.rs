@@ -158,6 +158,7 @@ impl Run<'_> {
             self.parts.interior.committed_temperature(),
         );
         state.set_f64s("particle_heat", &self.work.exchange.heat);
+        self.record_identity(&mut state);
         state
     }
 

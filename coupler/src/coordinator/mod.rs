@@ -1,6 +1,7 @@
 //! The loop: windows, attempts, commits, checkpoints.
 
 mod checkpoint;
+mod origin;
 mod window;
 
 use std::path::PathBuf;
@@ -11,6 +12,7 @@ use calcine_physics::Vec3;
 use thiserror::Error;
 
 pub use checkpoint::{CheckpointError, CheckpointPaths};
+pub use origin::{Origin, OriginError};
 
 use crate::checkpoint::StateFileError;
 use crate::closures::{ClosureError, Closures, Coefficients, Seen};
@@ -90,6 +92,9 @@ pub enum RunError {
     /// A checkpoint could not be written or read.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+    /// Another run's results that this case cannot continue from.
+    #[error(transparent)]
+    Origin(#[from] OriginError),
     /// A state file could not be written or read.
     #[error(transparent)]
     StateFile(#[from] StateFileError),
@@ -189,6 +194,9 @@ impl<'m> Run<'m> {
     }
 
     /// Runs to the end, to an interrupt's checkpoint, or to an error.
+    ///
+    /// A finished run leaves a last checkpoint without the observers' part: another case may
+    /// continue from it, but there is nothing left to resume.
     pub fn run(
         &mut self,
         supervisor: &Supervisor,
@@ -224,6 +232,7 @@ impl<'m> Run<'m> {
         for observer in observers.iter_mut() {
             observer.finish(&self.moment(None))?;
         }
+        self.checkpoint(&mut [])?;
         self.finish_parts(supervisor)?;
         Ok(Ending::Finished)
     }

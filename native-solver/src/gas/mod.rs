@@ -4,6 +4,7 @@
 mod attempt;
 mod balance;
 mod boundary;
+mod continuation;
 mod enthalpy;
 mod error;
 mod guard;
@@ -28,7 +29,7 @@ use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::Window;
 
 use attempt::Frame;
-use boundary::{Boundaries, Value};
+use boundary::Boundaries;
 pub use error::NativeError;
 use outer::Equations;
 use state::State;
@@ -52,6 +53,8 @@ pub struct NativeGas {
     committed: State,
     /// True once a window is committed; before, the bed of an attempt says how much gas there is.
     started: bool,
+    /// Fields of another run to start from, their velocity superficial.
+    taken_over: Option<State>,
     now: State,
     window: Option<Window>,
     void_fraction: Vec<f64>,
@@ -86,6 +89,7 @@ impl NativeGas {
             now: committed.clone(),
             committed,
             started: false,
+            taken_over: None,
             window: None,
             void_fraction: Vec::new(),
             exchange: CellExchange::default(),
@@ -119,32 +123,6 @@ impl NativeGas {
             let composition = now.composition_of(cell, gas.species().len());
             gas.density(base, now.temperature[cell], composition)
         });
-    }
-
-    /// Fills the pores of the bed with the gas of the setup, to start the first window from.
-    fn place(&mut self) {
-        let (state, setup, grid) = (&mut self.committed, &self.setup, &self.grid);
-        let gas = &setup.properties;
-        let density = gas.density(setup.pressure, setup.temperature, &setup.composition);
-        state.mass.resize(grid.cells(), 0.0);
-        fill(&mut state.mass, |cell| {
-            density * self.void_fraction[cell] * grid.volume[cell]
-        });
-        fill(&mut state.velocity, |cell| {
-            setup.velocity / self.void_fraction[cell]
-        });
-        let boundaries = &self.boundaries;
-        fill(&mut state.flux, |index| {
-            let face = &grid.faces[index];
-            let closed =
-                index >= grid.internal && matches!(boundaries.at(index), Value::Wall { .. });
-            if closed {
-                0.0
-            } else {
-                density * face.area * setup.velocity.dot(&face.normal)
-            }
-        });
-        state.void_fraction.clone_from(&self.void_fraction);
     }
 
     fn failure(&self, kind: FailureKind, message: impl Into<String>) -> PartError {
@@ -210,6 +188,7 @@ impl Part for NativeGas {
     fn commit(&mut self) -> Result<(), PartError> {
         self.committed.take(&self.now);
         self.started = !self.committed.mass.is_empty();
+        self.taken_over = None;
         Ok(())
     }
 
@@ -220,7 +199,7 @@ impl Part for NativeGas {
         };
         if !self.started {
             // What an attempt without a commit placed is no state of the run.
-            self.committed = start(&self.setup, self.mesh.cells(), self.mesh.faces());
+            self.committed = self.origin();
         }
         self.committed
             .write(&directory.join(STATE))

@@ -1,0 +1,80 @@
+//! The state before the first window: the gas of the setup, or what another run left.
+
+use std::path::Path;
+
+use super::boundary::Value;
+use super::state::State;
+use super::{NativeError, NativeGas, STATE, start};
+use crate::numerics::parallel::fill;
+
+impl NativeGas {
+    /// Starts from the fields that another run on the same mesh left in a checkpoint's folder:
+    /// temperature, composition, pressure, superficial velocity and mass flux. What follows from
+    /// them (mass, enthalpy) is by the properties and the bed of this run, so that both may have
+    /// changed. The base pressure is the setup's, in a closed domain the other run's.
+    pub fn take_over(&mut self, directory: &Path) -> Result<(), NativeError> {
+        let gas = &self.setup.properties;
+        let species = gas.species().len();
+        let (cells, faces) = (self.mesh.cells(), self.mesh.faces());
+        let mut state = State::read(&directory.join(STATE), cells, faces, species)?;
+        if !self.boundaries.closed() {
+            let shift = state.base_pressure - self.setup.pressure;
+            state.pressure.iter_mut().for_each(|value| *value += shift);
+            state.base_pressure = self.setup.pressure;
+        }
+        for cell in 0..cells {
+            let temperature = state.temperature[cell];
+            state.enthalpy[cell] = gas.enthalpy(temperature, state.composition_of(cell, species));
+        }
+        self.now.take(&state);
+        for (velocity, pores) in state.velocity.iter_mut().zip(&state.void_fraction) {
+            *velocity *= *pores;
+        }
+        state.mass.clear();
+        state.void_fraction.clear();
+        self.committed.take(&state);
+        self.started = false;
+        self.taken_over = Some(state);
+        self.update_fields();
+        Ok(())
+    }
+
+    /// The state before anything is known of the bed; its velocity is superficial.
+    pub(super) fn origin(&self) -> State {
+        let new = || start(&self.setup, self.mesh.cells(), self.mesh.faces());
+        self.taken_over.clone().unwrap_or_else(new)
+    }
+
+    /// Fills the pores of the bed with the gas to start the first window from.
+    pub(super) fn place(&mut self) {
+        let origin = self.origin();
+        let (state, setup, grid) = (&mut self.committed, &self.setup, &self.grid);
+        let (gas, species) = (&setup.properties, setup.properties.species().len());
+        let density = |cell: usize| {
+            let composition = origin.composition_of(cell, species);
+            gas.density(origin.base_pressure, origin.temperature[cell], composition)
+        };
+        state.mass.resize(grid.cells(), 0.0);
+        fill(&mut state.mass, |cell| {
+            density(cell) * self.void_fraction[cell] * grid.volume[cell]
+        });
+        fill(&mut state.velocity, |cell| {
+            origin.velocity[cell] / self.void_fraction[cell]
+        });
+        let boundaries = &self.boundaries;
+        let taken_over = self.taken_over.is_some();
+        fill(&mut state.flux, |index| {
+            let face = &grid.faces[index];
+            let closed =
+                index >= grid.internal && matches!(boundaries.at(index), Value::Wall { .. });
+            if closed {
+                0.0
+            } else if taken_over {
+                origin.flux[index]
+            } else {
+                density(face.owner) * face.area * setup.velocity.dot(&face.normal)
+            }
+        });
+        state.void_fraction.clone_from(&self.void_fraction);
+    }
+}

@@ -1,0 +1,159 @@
+//! `--from DIR`: a changed case continues from another run's results, without a rebuild of
+//! anything, and says in its results what it came from.
+
+#![allow(clippy::unwrap_used)]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use calcine::results::Summary;
+use calcine::results::read::Series;
+
+fn run(case: &Path, out: &Path, more: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_calcine"))
+        .arg("run")
+        .arg(case)
+        .args(["--quiet", "--out"])
+        .arg(out)
+        .args(more)
+        .output()
+        .unwrap()
+}
+
+fn column() -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/heated-column.toml")
+}
+
+fn done(output: &Output) {
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{text}");
+}
+
+#[test]
+fn a_run_in_two_parts_is_the_run_in_one_and_says_what_it_continued_from() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = |name: &str| directory.path().join(name);
+    let (whole, first, second) = (folder("whole"), folder("first"), folder("second"));
+    done(&run(&column(), &whole, &["--set", "time.end=60 s"]));
+    done(&run(&column(), &first, &["--set", "time.end=30 s"]));
+    // `time.end` is another case; the end of the first is the start of the second.
+    let from = [
+        "--set",
+        "time.end=30.0000 s",
+        "--from",
+        first.to_str().unwrap(),
+    ];
+    done(&run(&column(), &second, &from));
+    let (whole, parts) = (
+        Series::read(&whole).unwrap(),
+        Series::read(&second).unwrap(),
+    );
+    let at = |series: &Series, time: f64, column: &str| {
+        let times = series.column("process_time");
+        let row = times.iter().position(|t| (t - time).abs() < 1e-9).unwrap();
+        series.column(column)[row]
+    };
+    assert_eq!(at(&parts, 0.0, "process_time"), 0.0);
+    for column in [
+        "particles.temperature_min",
+        "gas.temperature_max",
+        "particles.temperature_mean",
+    ] {
+        for time in [0.0, 10.0, 30.0] {
+            let (one, two) = (at(&whole, 30.0 + time, column), at(&parts, time, column));
+            // The gas' mass is made anew from its temperature: 1e-6 of the span of 100 K.
+            assert!(
+                (one - two).abs() < 1e-4,
+                "{column} at {time} s: {one} {two}"
+            );
+        }
+    }
+    let (before, after) = (
+        Summary::read(&first).unwrap(),
+        Summary::read(&second).unwrap(),
+    );
+    let from = after.from.unwrap();
+    assert_eq!(from.path, first);
+    assert_eq!(from.hash, before.case.hash);
+    assert_ne!(from.hash, after.case.hash);
+    assert_eq!((from.process_time_s, from.windows), (30.0, before.windows));
+    assert!(after.ledger.lines["energy"].relative_error < 1e-10);
+    assert!(after.ledger.lines["mass"].relative_error < 1e-10);
+    let page = std::fs::read_to_string(second.join("report.html")).unwrap();
+    assert!(page.contains("continued from") && page.contains(first.to_str().unwrap()));
+}
+
+#[test]
+fn settings_of_the_bed_the_gas_and_the_boundaries_may_change() {
+    let directory = tempfile::tempdir().unwrap();
+    let (first, second) = (
+        directory.path().join("first"),
+        directory.path().join("second"),
+    );
+    done(&run(&column(), &first, &["--set", "time.end=20 s"]));
+    let changed = [
+        "time.end=2 s",
+        "time.acceleration=20",
+        "laws.heat_transfer.law=wakao",
+        "coupling.mapping=centroid",
+        "coupling.smoother.max_solid_fraction=0.5",
+        "gas.initial.pressure=2 atm",
+        "gas.patch.top.outlet.pressure=2 atm",
+        "gas.patch.bottom.inlet.superficial_velocity=0.2 m/s",
+        "materials.glass.heat_capacity=900 J/kg/K",
+        "output.series_every=0.1 s",
+    ];
+    let mut more = vec!["--from", first.to_str().unwrap()];
+    more.extend(changed.iter().flat_map(|setting| ["--set", setting]));
+    done(&run(&column(), &second, &more));
+    let (old, new) = (
+        Series::read(&first).unwrap(),
+        Series::read(&second).unwrap(),
+    );
+    let name = "particles.temperature_max";
+    assert_eq!(old.column(name).last(), new.column(name).first());
+    for value in new.column("gas.temperature_max") {
+        assert!((300.0..=400.0 + 1e-6).contains(value), "{value}");
+    }
+    let summary = Summary::read(&second).unwrap();
+    assert!(summary.ledger.lines["energy"].relative_error < 1e-10);
+}
+
+#[test]
+fn what_does_not_fit_is_refused_with_its_reason() {
+    let directory = tempfile::tempdir().unwrap();
+    let first = directory.path().join("first");
+    done(&run(&column(), &first, &["--set", "time.end=1 s"]));
+    let out = directory.path().join("out");
+    let refused = |more: &[&str], from: &Path| {
+        let all = [&["--from", from.to_str().unwrap()][..], more].concat();
+        let output = run(&column(), &out, &all);
+        assert_eq!(output.status.code(), Some(2), "{more:?}");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let set = |setting| refused(&["--set", setting], &first);
+    let text = set("mesh.box.cells=[1, 1, 22]");
+    assert!(
+        text.contains("another gas mesh (11 cells, this case 22)"),
+        "{text}"
+    );
+    let text = set("mesh.box.size=\"10 10 120 mm\"");
+    assert!(text.contains("another gas mesh"), "{text}");
+    let text = set("particles[0].place.grid.counts=[1, 1, 11]");
+    assert!(
+        text.contains("holds 10 particles, this case has 11"),
+        "{text}"
+    );
+    let text = set("particles[0].diameter=9 mm");
+    assert!(text.contains("particle 1 in the order of ids"), "{text}");
+    let text = refused(&["--gas", "openfoam"], &first);
+    assert!(
+        text.contains("only a native gas continues another"),
+        "{text}"
+    );
+    let text = refused(&[], directory.path());
+    assert!(text.contains("summary.json"), "{text}");
+    std::fs::remove_dir_all(first.join("checkpoint")).unwrap();
+    let text = refused(&[], &first);
+    assert!(text.contains("there is no checkpoint in it"), "{text}");
+}
