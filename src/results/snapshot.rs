@@ -42,7 +42,12 @@ impl Values<'_> {
 
     /// The numbers of a column of a table.
     pub fn column(table: &[f64], column: usize, columns: usize) -> Vec<f64> {
-        table.iter().skip(column).step_by(columns).copied().collect()
+        table
+            .iter()
+            .skip(column)
+            .step_by(columns)
+            .copied()
+            .collect()
     }
 }
 

@@ -11,6 +11,30 @@ const HIGHEST_TEMPERATURE: f64 = 1e4;
 /// Above this speed in m/s, some thirty times that of sound in cold air, neither does.
 const HIGHEST_SPEED: f64 = 1e4;
 
+/// What is wrong with an iterate's fields, in words: what is not a number, or a temperature that no
+/// property is defined for; `None` where nothing is.
+pub fn nonsense(now: &State, centre: &[Vec3]) -> Option<String> {
+    let (cell, strangeness) = largest(centre.len(), |cell| {
+        let sum = now.temperature[cell] + now.velocity[cell].sum() + now.pressure[cell];
+        if now.temperature[cell] > 0.0 && (sum + now.mass[cell]).is_finite() {
+            0.0
+        } else {
+            1.0
+        }
+    });
+    if strangeness == 0.0 {
+        return None;
+    }
+    complaint(now, centre).or_else(|| {
+        let place = centre[cell];
+        Some(format!(
+            "diverged: fields that are not finite in cell {cell} at ({:.6}, {:.6}, {:.6}) m; \
+             a shorter `motion_window` may help",
+            place.x, place.y, place.z
+        ))
+    })
+}
+
 /// What is wrong with an attempt's fields, in words; `None` where nothing is.
 pub fn complaint(now: &State, centre: &[Vec3]) -> Option<String> {
     let cells = centre.len();

@@ -350,11 +350,14 @@ impl Species {
             return 0.0;
         }
         let face = &grid.faces[index];
-        let up = if flux > 0.0 { face.owner } else { face.neighbour };
+        let up = if flux > 0.0 {
+            face.owner
+        } else {
+            face.neighbour
+        };
         let before = now.temperature[up];
         let gradients = &self.temperature_gradients;
-        let temperature =
-            before + beyond_upwind(grid, index, flux, &now.temperature, gradients);
+        let temperature = before + beyond_upwind(grid, index, flux, &now.temperature, gradients);
         let one = |k: usize| {
             let fraction = self.fractions[k][up];
             let more = limited(grid, index, flux, &self.fractions[k], self.limiters[index]);
