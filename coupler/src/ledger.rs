@@ -33,7 +33,7 @@ impl Line {
 /// span (`accelerated`), what it stored counts AF times (requirements TSM-4).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ledger {
-    /// Gas mass in kg.
+    /// Gas mass in kg; where none passes the boundary, relative to what circulates within.
     pub mass: Line,
     /// Gas and particle energy together, in J.
     pub energy: Line,

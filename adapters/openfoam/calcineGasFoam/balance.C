@@ -20,6 +20,13 @@ void Foam::calcine::gas::finishReport(report& result) const
         result.mass.boundary -= window_.storageSpan*flux_[facei];
         result.mass.boundaryMagnitude += window_.storageSpan*mag(flux_[facei]);
     }
+    if (result.mass.boundaryMagnitude == 0)
+    {
+        // Where nothing passes the boundary: what circulates within, because the rounding of that is
+        // all that the cells of a fluid of constant density store.
+        result.mass.boundaryMagnitude =
+            window_.storageSpan*gSumMag(SubList<scalar>(flux_, mesh_.nInternalFaces()));
+    }
     balanceEnergy(result);
     balanceMomentum(result);
 }

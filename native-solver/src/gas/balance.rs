@@ -43,12 +43,17 @@ fn boundary(frame: &Frame<'_>, inflow: impl Fn(usize) -> f64 + Sync) -> [f64; 2]
     })
 }
 
+/// What passes the boundary; where nothing does, the magnitude is what circulates through the faces
+/// within, because the rounding of that is all that the cells of a fluid of constant density store.
 fn mass(frame: &Frame<'_>, now: &State) -> Balance {
     let [stored, stored_magnitude] = sums(frame.grid.cells(), |cell| {
         let stored = now.mass[cell] - frame.old.mass[cell];
         [stored, stored.abs()]
     });
-    let [inflow, magnitude] = boundary(frame, |face| -now.flux[face]);
+    let [inflow, mut magnitude] = boundary(frame, |face| -now.flux[face]);
+    if magnitude == 0.0 {
+        [magnitude] = sums(frame.grid.internal, |face| [now.flux[face].abs()]);
+    }
     Balance {
         stored,
         stored_magnitude,

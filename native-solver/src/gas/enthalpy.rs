@@ -215,7 +215,16 @@ impl Enthalpy {
         let grid = frame.grid;
         let second = frame.convection == Convection::VanLeer && species.is_empty();
         if second {
-            let boundary = |index: usize, inner: f64| inlet(frame, index).unwrap_or(inner);
+            let boundary = |index: usize, inner: f64| match frame.boundary.at(index) {
+                Value::Inlet { gas, .. } => gas.enthalpy,
+                Value::Wall {
+                    heat: Heat::Temperature(temperature),
+                    ..
+                } => frame
+                    .properties
+                    .enthalpy(temperature, frame.composition(grid.faces[index].owner)),
+                Value::Wall { .. } | Value::Outlet { .. } => inner,
+            };
             let gradients = &mut self.gradients[0];
             face_values(grid, &now.enthalpy, gradients, boundary, &mut self.faces);
             let faces = &self.faces;

@@ -313,14 +313,19 @@ impl Momentum {
     }
 }
 
-/// Velocity on a face by linear interpolation; on the boundary the given or the cell's own.
+/// Velocity on a face by linear interpolation; on the boundary the given or the cell's own, of which
+/// walls without friction let the tangential part pass.
 #[inline]
 fn face_velocity(frame: &Frame<'_>, index: usize, face: &Face, velocity: &[Vec3]) -> Vec3 {
     if index < frame.grid.internal {
         let weight = face.owner_weight();
         weight * velocity[face.owner] + (1.0 - weight) * velocity[face.neighbour]
     } else {
-        given_velocity(frame, index).unwrap_or(velocity[face.owner])
+        let own = velocity[face.owner];
+        match frame.boundary.at(index) {
+            Value::Wall { sticks: None, .. } => own - own.dot(&face.normal) * face.normal,
+            _ => given_velocity(frame, index).unwrap_or(own),
+        }
     }
 }
 
