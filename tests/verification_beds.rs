@@ -26,8 +26,7 @@ fn run_on(threads: u32, directory: &Path, name: &str, text: &str, arguments: &[&
     fs::write(&file, text).unwrap();
     let out = directory.join(name);
     let output = Command::new(env!("CARGO_BIN_EXE_calcine"))
-        .env("RAYON_NUM_THREADS", threads.to_string())
-        .arg("run")
+        .args(["run", "--threads", &threads.to_string()])
         .arg(&file)
         .args(arguments)
         .arg("--out")
@@ -284,9 +283,9 @@ fn a_whole_run_has_the_same_bits_on_one_and_on_two_threads() {
     let directory = tempfile::tempdir().unwrap();
     let set = [
         "--set",
-        "time.end=2 s",
+        "time.end=0.8 s",
         "--set",
-        "mesh.cylinder.cells=[14, 36]",
+        "mesh.cylinder.cells=[20, 56]",
         "--set",
         "output.every=1 s",
     ];
@@ -296,7 +295,8 @@ fn a_whole_run_has_the_same_bits_on_one_and_on_two_threads() {
         run_on(threads, &folder, "bed", SHIPPED, &set)
     });
     let summary = calcine::results::Summary::read(&one).unwrap();
-    assert!(summary.cells > 4096, "{} cells", summary.cells);
+    // Loops over fewer than 16 384 cells stay on one thread anyway.
+    assert!(summary.cells > 16_384, "{} cells", summary.cells);
     let differing = results_equal::differences(&one, &two);
     assert_eq!(differing, [""; 0]);
 }

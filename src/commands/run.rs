@@ -34,6 +34,10 @@ pub(super) struct Arguments {
     /// this case's settings and clocks that start at zero.
     #[arg(long, value_name = "DIR")]
     from: Option<PathBuf>,
+    /// Threads of Calcine's own solvers and of the coupling [default: one a core]. Results do not depend
+    /// on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
     /// No progress bar.
     #[arg(long)]
     quiet: bool,
@@ -43,6 +47,9 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
+    if let Some(threads) = arguments.threads {
+        use_threads(threads.into())?;
+    }
     let (case, prepared) = read_and_prepare(&arguments.case, &arguments.set)?;
     let out = results_folder(&case, arguments.out.as_ref());
     let settings = Settings {
@@ -65,6 +72,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         }
     }
     Ok(done.code)
+}
+
+fn use_threads(threads: usize) -> Result<(), Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    pool.build_global().map_err(|cause| {
+        let message = format!("{threads} threads cannot be started: {cause}");
+        Failure::new(exit::OTHER, message)
+    })
 }
 
 /// A wall time such as `90`, `45m`, `23h30m`, `1d`; a bare number is seconds.

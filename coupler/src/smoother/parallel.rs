@@ -6,7 +6,7 @@ use rayon::prelude::*;
 pub const BLOCK: usize = 2048;
 /// Up to so many elements the caller's thread does the work alone, block by block: waking another costs
 /// more than it takes over.
-pub const ALONE: usize = 16 * BLOCK;
+pub const ALONE: usize = 8 * BLOCK;
 
 /// Changes every element, given its index.
 #[inline]

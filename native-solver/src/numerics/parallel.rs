@@ -7,7 +7,7 @@ pub const CHUNK: usize = 4096;
 /// Up to so many elements the caller's thread does the work alone, chunk by chunk: waking another costs
 /// some microseconds, and a chunk of most loops takes no longer. (On the heated bed with 4416 cells, two
 /// threads took 1.5 times as long as one before.)
-pub const ALONE: usize = 8 * CHUNK;
+pub const ALONE: usize = 4 * CHUNK;
 
 /// Sets every element to a function of its index.
 #[inline]
