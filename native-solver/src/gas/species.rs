@@ -11,7 +11,7 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::Convection;
 
 use super::attempt::{Frame, Material};
-use super::boundary::Value;
+use super::boundary::{Heat, Value};
 use super::state::State;
 use crate::numerics::convection::{beyond_upwind, limited, limiter};
 use crate::numerics::krylov::{Krylov, Target};
@@ -303,7 +303,13 @@ impl Species {
             Value::Wall { .. } | Value::Outlet { .. } => None,
         };
         if second {
-            let boundary = |index: usize, inner: f64| given(index).unwrap_or(inner);
+            let boundary = |index: usize, inner: f64| match frame.boundary.at(index) {
+                Value::Wall {
+                    heat: Heat::Temperature(temperature),
+                    ..
+                } => temperature,
+                _ => given(index).unwrap_or(inner),
+            };
             let gradients = &mut self.temperature_gradients;
             face_values(grid, &now.temperature, gradients, boundary, &mut self.faces);
             let faces = &self.faces;
