@@ -1,0 +1,123 @@
+//! The small cases of the agreement tests, as text.
+
+/// Laws, coupling and results of all cases; one population of small beads.
+fn rest(particles: &str) -> String {
+    format!(
+        r#"
+[materials.glass]
+density = "2500 kg/m^3"
+heat_capacity = "840 J/kg/K"
+[[particles]]
+name = "beads"
+material = "glass"
+diameter = "4 mm"
+motion = "frozen"
+place = {{ grid = {{ {particles} }} }}
+temperature = "300 K"
+[laws]
+drag = {{ law = "ergun-wen-yu" }}
+heat_transfer = {{ law = "gunn" }}
+conduction = {{ law = "none" }}
+radiation = {{ law = "none" }}
+[coupling]
+mapping = "overlap"
+smoother = {{ max_solid_fraction = 0.64 }}
+[output]
+every = "0.5 s"
+series_every = "0.1 s"
+gas = ["temperature", "velocity", "pressure"]
+particles = ["temperature"]
+"#
+    )
+}
+
+const DROP: &str = r#"
+[[quantities]]
+name = "pressure_drop"
+measure = { difference = "pressure", patches = ["bottom", "top"] }
+"#;
+
+/// Air whose mass flow and temperature rise, through a bed in a duct with walls of a given temperature,
+/// into a pressure that rises too.
+pub fn duct(convection: &str) -> String {
+    let beads = r#"first = "5 5 15 mm", spacing = "5 5 5 mm", counts = [3, 3, 5]"#;
+    format!(
+        r#"format = 1
+title = "Hot gas of a given mass flow in a cold duct"
+[time]
+end = "2 s"
+motion_window = "5 ms"
+acceleration = 20
+gas_storage = "process"
+[mesh]
+box = {{ size = "20 20 60 mm", cells = [4, 4, 12], patches = ["side", "side", "side", "side", "bottom", "top"] }}
+[gas]
+mixture = "air"
+initial = {{ temperature = "300 K", pressure = "1 atm", velocity = "0 0 0.3 m/s" }}
+controls = {{ outer_iterations = 60, outer_tolerance = 1e-7, convection = "{convection}" }}
+[gas.patch.bottom]
+inlet = {{ mass_flow = [["0 s", "0.4 kg/h"], ["1 s", "0.8 kg/h"]], temperature = [["0 s", "300 K"], ["1 s", "400 K"]] }}
+[gas.patch.top]
+outlet = {{ pressure = [["0 s", "1 atm"], ["1 s", "1.001 atm"]] }}
+[gas.patch.side]
+wall = {{ velocity = "no-slip", heat = {{ temperature = "310 K" }} }}
+{}{DROP}"#,
+        rest(beads)
+    )
+}
+
+/// The same bed in a tube, whose cells are skewed, with a finer zone across the bed's end.
+pub fn tube() -> String {
+    let beads = r#"first = "-4.5 -4.5 15 mm", spacing = "4.5 4.5 5 mm", counts = [3, 3, 4]"#;
+    format!(
+        r#"format = 1
+title = "Hot gas in a tube with finer cells"
+[time]
+end = "2 s"
+motion_window = "5 ms"
+acceleration = 20
+gas_storage = "process"
+[mesh]
+cylinder = {{ diameter = "20 mm", length = "50 mm", cells = [6, 10], refine = [{{ cylinder = {{ from = "0 0 20 mm", to = "0 0 40 mm", radius = "5 mm" }} }}] }}
+[gas]
+mixture = "air"
+initial = {{ temperature = "300 K", pressure = "1 atm", velocity = "0 0 0.5 m/s" }}
+controls = {{ outer_iterations = 60, outer_tolerance = 1e-7 }}
+[gas.patch.bottom]
+inlet = {{ superficial_velocity = "0.5 m/s", temperature = [["0 s", "300 K"], ["1 s", "400 K"]] }}
+[gas.patch.top]
+outlet = {{ pressure = "1 atm" }}
+[gas.patch.side]
+wall = {{ velocity = "no-slip", heat = {{ coefficient = "20 W/m^2/K", ambient = "300 K" }} }}
+{}{DROP}"#,
+        rest(beads)
+    )
+}
+
+/// Air in a closed box heated by its floor: it circulates, and its pressure rises.
+pub fn heated_box(side: &str, convection: &str) -> String {
+    let beads = r#"first = "7 10 10 mm", spacing = "6 6 6 mm", counts = [1, 1, 1]"#;
+    format!(
+        r#"format = 1
+title = "A closed box of air, heated by its floor"
+[time]
+end = "2 s"
+motion_window = "10 ms"
+gas_storage = "process"
+[mesh]
+box = {{ size = "20 20 20 mm", cells = [5, 5, 5], patches = ["side", "side", "side", "side", "floor", "lid"] }}
+[gas]
+mixture = "air"
+initial = {{ temperature = "300 K", pressure = "1 atm" }}
+gravity = "0 0 -9.81 m/s^2"
+controls = {{ outer_iterations = 60, outer_tolerance = 1e-8, convection = "{convection}" }}
+[gas.patch.side]
+wall = {{ velocity = "{side}", heat = "adiabatic" }}
+[gas.patch.floor]
+wall = {{ velocity = "no-slip", heat = {{ temperature = [["0 s", "300 K"], ["0.5 s", "400 K"]] }} }}
+[gas.patch.lid]
+wall = {{ velocity = "no-slip", heat = {{ coefficient = "20 W/m^2/K", ambient = "300 K" }} }}
+{}"#,
+        rest(beads)
+    )
+}
