@@ -25,6 +25,7 @@ use clap::ValueEnum;
 use thiserror::Error;
 
 use crate::case::model::{Case, Mapping};
+use crate::case::sizes::{self, TooLarge};
 use crate::case::{MeshingError, PlaceError, Placed, mesh, particles};
 use crate::laws;
 
@@ -129,6 +130,9 @@ pub enum AssemblyError {
         /// Number of the zone, from 0.
         index: usize,
     },
+    /// More than this machine's memory.
+    #[error(transparent)]
+    TooLarge(#[from] TooLarge),
     /// The particles cannot be placed.
     #[error("particles: {0}")]
     Particles(#[from] PlaceError),
@@ -157,6 +161,7 @@ pub struct Prepared {
 impl Prepared {
     /// Generates or reads the mesh and places the particles.
     pub fn new(case: &Case) -> Result<Self, AssemblyError> {
+        sizes::fits(case)?;
         let Placed { setup, temperature } = particles(case)?;
         Ok(Self {
             mesh: Arc::new(mesh(&case.mesh)?),

@@ -3,22 +3,22 @@
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 
+use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::local::LocalGas;
 use calcine_coupler::physics::numbers::VoidFraction;
 use calcine_coupler::setup::{GasPatch, InletFlow};
 
 use super::model::{Case, DragLaw, Population};
+use super::{buoyancy, sizes};
 use crate::laws;
 
 /// Above this, a number of the time splitting gets a warning (requirements TSM-6, TSM-8).
 const WARNING: f64 = 0.1;
-/// Bytes that coordinator and native gas hold per cell, and per particle, about; measured as the
-/// growth of resident memory, rounded up.
-const BYTES: [usize; 2] = [2000, 500];
 
 /// Clocks, sizes, and how far the time splitting may be from the unsplit run.
 /// `void_fraction`: mean over the cells that hold particles.
-pub fn check_report(case: &Case, cells: usize, particles: usize, void_fraction: f64) -> String {
+pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f64) -> String {
+    let cells = mesh.cells();
     let mut text = format!("{} ({})\n", case.title, case.path.display());
     let time = &case.time;
     let (mut motion, mut windows, mut from) = (0.0, 0.0, 0.0);
@@ -41,8 +41,13 @@ pub fn check_report(case: &Case, cells: usize, particles: usize, void_fraction: 
     );
     let _ = writeln!(
         text,
-        "  motion time    {motion} s, windows of {}",
-        time.motion_window
+        "  motion time    {motion} s, windows of {}{}",
+        time.motion_window,
+        if time.process_step.is_some() {
+            " (chosen for `process_step`)"
+        } else {
+            ""
+        }
     );
     let _ = writeln!(text, "  gas storage    {}", time.storage.name());
     let _ = writeln!(text, "  mesh           {cells} cells");
@@ -50,8 +55,24 @@ pub fn check_report(case: &Case, cells: usize, particles: usize, void_fraction: 
         text,
         "  bed            {particles} particles, void fraction {void_fraction:.3}"
     );
-    let memory = (cells * BYTES[0] + particles * BYTES[1]) as f64 / 1e6;
-    let _ = writeln!(text, "  memory         about {memory:.1} MB (native)");
+    let memory = sizes::memory(cells as f64, particles as f64);
+    let _ = writeln!(
+        text,
+        "  memory         about {} (native)",
+        sizes::shown(memory)
+    );
+    let number = buoyancy::number(case, mesh);
+    let _ = match number > 0.0 {
+        true => writeln!(
+            text,
+            "  buoyancy       N sqrt(AF) dt is {number:.2e}; waves are resolved below {}",
+            buoyancy::LIMIT
+        ),
+        false => writeln!(text, "  buoyancy       none"),
+    };
+    if let Some(warning) = buoyancy::warning(number) {
+        let _ = writeln!(text, "  warning: {warning}");
+    }
     for population in &case.particles {
         splitting(&mut text, case, population, void_fraction);
     }

@@ -1,6 +1,7 @@
 //! Case files: TOML to a checked [`model::Case`].
 
 mod bed;
+pub mod buoyancy;
 mod check;
 pub mod keys;
 mod meshing;
@@ -10,6 +11,8 @@ mod place;
 mod problem;
 pub mod schema;
 mod sections;
+pub mod sizes;
+mod step;
 mod table;
 pub mod units;
 
@@ -22,6 +25,7 @@ pub use check::check_report;
 pub use meshing::{MeshingError, mesh};
 pub use place::{PlaceError, Placed, particles};
 pub use problem::{CaseErrors, Problem};
+pub use step::settle;
 
 use model::Case;
 use table::{Problems, Reader};

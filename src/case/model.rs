@@ -59,6 +59,9 @@ pub struct Case {
 pub struct Time {
     /// End of the run, process time.
     pub end: Ticks,
+    /// Length of a coupling window in process time, where the case states that instead of the
+    /// next two; they then follow from the mesh (`case::settle`).
+    pub process_step: Option<Ticks>,
     /// Length of a coupling window, motion time.
     pub motion_window: Ticks,
     /// Acceleration factor over process time.

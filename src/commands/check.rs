@@ -23,7 +23,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let void_fraction = prepared.void_fraction(&case)?;
     say(crate::case::check_report(
         &case,
-        prepared.mesh.cells(),
+        &prepared.mesh,
         particles,
         void_fraction,
     ));

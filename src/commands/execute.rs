@@ -13,10 +13,11 @@ use calcine_coupler::supervisor::{Interrupts, Supervisor};
 use rustix::fs::{FlockOperation, flock};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
-use tracing::{error, info};
+use tracing::{error, info, warn};
 
 use super::{Failure, chain, origin, with_help};
 use crate::assembly::{self, Pairing, Prepared, assemble};
+use crate::case::buoyancy;
 use crate::case::model::Case;
 use crate::exit;
 use crate::progress::Progress;
@@ -108,6 +109,16 @@ pub(super) fn execute(
         from: origin.as_ref(),
     };
     let mut run = assemble(case, prepared, &assembly, &mut supervisor)?;
+    let number = buoyancy::number(case, &prepared.mesh);
+    info!("N sqrt(AF) dt is {number:.2e}");
+    if settings.progress && number > 0.0 {
+        let limit = buoyancy::LIMIT;
+        eprintln!("buoyancy: N sqrt(AF) dt is {number:.2e} (resolved below {limit})");
+    }
+    if let Some(warning) = buoyancy::warning(number) {
+        warn!("{warning}");
+        eprintln!("warning: {warning}");
+    }
     let mut progress = Progress::new(case, settings.progress);
     let mut observers: [&mut dyn Observer; 2] = [&mut recorder, &mut progress];
     let ending = run.run(&supervisor, &mut observers);

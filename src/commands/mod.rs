@@ -104,8 +104,9 @@ fn read_case(path: &Path, set: &[String]) -> Result<Case, Failure> {
 
 /// Reads a case and makes mesh and particles.
 fn read_and_prepare(path: &Path, set: &[String]) -> Result<(Case, Prepared), Failure> {
-    let case = read_case(path, set)?;
+    let mut case = read_case(path, set)?;
     let prepared = Prepared::new(&case)?;
+    crate::case::settle(&mut case, &prepared.mesh);
     Ok((case, prepared))
 }
 

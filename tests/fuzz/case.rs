@@ -147,6 +147,6 @@ fn check(case: &Case) {
     };
     if let Ok(void) = prepared.void_fraction(case) {
         let count = prepared.particles.id.len();
-        assert!(!check_report(case, prepared.mesh.cells(), count, void).is_empty());
+        assert!(!check_report(case, &prepared.mesh, count, void).is_empty());
     }
 }

@@ -47,6 +47,7 @@ pub fn case() -> Case {
         effective: "format = 1\n".into(),
         time: Time {
             end: seconds(20.0),
+            process_step: None,
             motion_window: seconds(0.01),
             acceleration: Acceleration::constant(50.0).unwrap(),
             storage: GasStorage::Process,

@@ -9,7 +9,9 @@ use crate::case::units::Dimension;
 pub(super) fn read(root: &Reader<'_>) -> Option<(Time, GasStorage)> {
     let section = root.required_table("time", "[time] with end = \"10 min\"")?;
     let end = ticks(&section, "end", true);
-    let motion_window = ticks(&section, "motion_window", true);
+    let process_step = ticks(&section, "process_step", false);
+    let stepped = section.has("process_step");
+    let motion_window = ticks(&section, "motion_window", !stepped);
     let acceleration = acceleration(&section);
     let storages = [
         ("process", GasStorage::Process),
@@ -23,13 +25,23 @@ pub(super) fn read(root: &Reader<'_>) -> Option<(Time, GasStorage)> {
         checkpoint.finish();
     }
     section.finish();
+    if stepped {
+        exclusive(&section, storage);
+    }
+    let key = if stepped {
+        "process_step"
+    } else {
+        "motion_window"
+    };
+    let motion_window = if stepped { process_step } else { motion_window };
     let (end, motion_window, acceleration) = (end?, motion_window?, acceleration?);
     if motion_window > end {
         let rule = format!("is {motion_window}, longer than the run of {end}");
-        section.fail("motion_window", rule, "lower it, or raise `time.end`");
+        section.fail(key, rule, "lower it, or raise `time.end`");
     }
     let time = Time {
         end,
+        process_step,
         motion_window,
         acceleration,
         storage,
@@ -37,6 +49,24 @@ pub(super) fn read(root: &Reader<'_>) -> Option<(Time, GasStorage)> {
         checkpoint_wall: wall,
     };
     Some((time, storage))
+}
+
+/// A process step stands for the motion clock as a whole.
+fn exclusive(section: &Reader<'_>, storage: GasStorage) {
+    for key in ["motion_window", "acceleration"] {
+        if section.has(key) {
+            let help = "remove one of the two: `process_step` chooses the motion time by itself";
+            section.fail(key, "does not go with `time.process_step`", help);
+        }
+    }
+    if storage == GasStorage::Accelerated {
+        let help = "write gas_storage = \"process\", or `motion_window` and `acceleration`";
+        section.fail(
+            "gas_storage",
+            "is \"accelerated\", which does not go with `time.process_step`",
+            help,
+        );
+    }
 }
 
 /// A time of the case's clock; errors where it is below the tick or too long.

@@ -1,0 +1,76 @@
+//! Buoyant waves on the motion clock (requirements TSM-8).
+//!
+//! With what the gas stores on the process clock, buoyant waves run √AF times faster on the motion
+//! clock: a motion span Δt resolves them where N √AF Δt < 2, N the buoyancy frequency.
+
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::setup::{GasPatch, Schedule, WallHeat};
+
+use super::model::Case;
+
+/// The limit of N √AF Δt.
+pub const LIMIT: f64 = 2.0;
+
+/// N √AF Δt at the largest acceleration factor; zero without gravity or where nothing is warmer
+/// than anything else.
+pub fn number(case: &Case, mesh: &Mesh) -> f64 {
+    let time = &case.time;
+    frequency(case, mesh) * time.acceleration.largest().sqrt() * time.motion_window.seconds()
+}
+
+/// What is to be said of a number above the limit.
+pub fn warning(number: f64) -> Option<String> {
+    (number > LIMIT).then(|| {
+        format!(
+            "N sqrt(AF) dt is {number:.3}, above {LIMIT}: buoyant waves are not resolved on the \
+             motion clock and may grow; shorten `time.motion_window` (or `time.process_step`)"
+        )
+    })
+}
+
+/// Largest buoyancy frequency N in 1/s: N² = g Δρ/(ρ H) with the densities of the coldest and the
+/// hottest gas that the case names and the height H of the mesh along gravity. What a heat flux
+/// or a reaction adds, and differences of composition, are not known beforehand.
+pub fn frequency(case: &Case, mesh: &Mesh) -> f64 {
+    let gas = &case.gas;
+    let gravity = gas.gravity.norm();
+    if gravity == 0.0 {
+        return 0.0;
+    }
+    let (coldest, hottest) = temperatures(case);
+    let density = |kelvin: f64| {
+        gas.properties
+            .density(gas.pressure, kelvin, &gas.composition)
+    };
+    let (heavy, light) = (density(coldest), density(hottest));
+    let up = gas.gravity / -gravity;
+    let heights = mesh.topology().points.iter().map(|point| point.dot(&up));
+    let (low, high) = heights.fold((f64::MAX, f64::MIN), |(low, high), z| {
+        (low.min(z), high.max(z))
+    });
+    (gravity * (heavy - light) / (0.5 * (heavy + light) * (high - low))).sqrt()
+}
+
+/// Lowest and highest temperature in K that the case states for gas, boundaries and particles.
+fn temperatures(case: &Case) -> (f64, f64) {
+    let mut all = vec![case.gas.temperature];
+    all.extend(
+        case.particles
+            .iter()
+            .map(|population| population.temperature),
+    );
+    let mut add = |schedule: &Schedule| all.extend(schedule.0.iter().map(|entry| entry.1));
+    for (_, patch) in &case.gas.patches {
+        match patch {
+            GasPatch::Inlet { temperature, .. } => add(temperature),
+            GasPatch::Wall { heat, .. } => match heat {
+                WallHeat::Temperature(temperature) => add(temperature),
+                WallHeat::Convective { ambient, .. } => add(ambient),
+                WallHeat::Adiabatic | WallHeat::Flux(_) => {}
+            },
+            GasPatch::Outlet { .. } | GasPatch::Symmetry => {}
+        }
+    }
+    let low = all.iter().copied().fold(f64::MAX, f64::min);
+    (low, all.iter().copied().fold(f64::MIN, f64::max))
+}

@@ -1,0 +1,150 @@
+//! How much memory a case needs, estimated before anything of it is built.
+
+use std::f64::consts::PI;
+use std::fs;
+
+use thiserror::Error;
+
+use super::model::{Case, MeshSpec, Place};
+
+/// Bytes that coordinator and native gas hold per cell, and per particle, about; measured as the
+/// growth of resident memory, rounded up.
+const BYTES: [f64; 2] = [2000.0, 500.0];
+
+/// A case larger than this machine.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error(
+    "the case needs about {} ({cells:.3e} cells, {particles:.3e} particles), but this machine has \
+     {}; use fewer cells or particles, or a larger machine",
+    shown(*.needed), shown(*.there)
+)]
+pub struct TooLarge {
+    /// Cells, without refined zones.
+    pub cells: f64,
+    /// Particles.
+    pub particles: f64,
+    /// Bytes needed.
+    pub needed: f64,
+    /// Bytes of this machine.
+    pub there: f64,
+}
+
+/// Bytes that so many cells and particles need.
+pub fn memory(cells: f64, particles: f64) -> f64 {
+    cells * BYTES[0] + particles * BYTES[1]
+}
+
+/// An error where the case needs more memory than this machine has. Refined zones, and meshes and
+/// beds that are read from files, are not counted.
+pub fn fits(case: &Case) -> Result<(), TooLarge> {
+    let cells = cells(&case.mesh);
+    let particles = particles(case);
+    let needed = memory(cells, particles);
+    match installed() {
+        Some(there) if needed > there => Err(TooLarge {
+            cells,
+            particles,
+            needed,
+            there,
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Cells before refinement; zero where only a file knows.
+fn cells(mesh: &MeshSpec) -> f64 {
+    match mesh {
+        MeshSpec::Box { cells, .. } => cells.iter().map(|&count| count as f64).product(),
+        // An O-grid: the core's square, and four sides of a ring about it.
+        MeshSpec::Cylinder { cells, .. } => {
+            let ring = (cells[0] / 4).max(1) as f64;
+            let core = cells[0] as f64 - 2.0 * ring;
+            (core * core + 4.0 * core * ring) * cells[1] as f64
+        }
+        MeshSpec::PolyMesh(_) => 0.0,
+    }
+}
+
+/// Particles of stackings and random packings; files are not opened.
+fn particles(case: &Case) -> f64 {
+    let section = match &case.mesh {
+        MeshSpec::Box { size, .. } => size.x * size.y,
+        MeshSpec::Cylinder { diameter, .. } => PI / 4.0 * diameter * diameter,
+        MeshSpec::PolyMesh(_) => 0.0,
+    };
+    let populations = case.particles.iter().map(|population| {
+        let diameter = population.sizes.mean().unwrap_or(f64::INFINITY);
+        match &population.place {
+            Place::Grid { counts, .. } => counts.iter().map(|&count| count as f64).product(),
+            Place::Random {
+                layer,
+                solid_fraction,
+                ..
+            } => {
+                let sphere = PI / 6.0 * diameter.powi(3);
+                section * (layer[1] - layer[0]) * solid_fraction / sphere
+            }
+            Place::Regular { .. } | Place::File { .. } => 0.0,
+        }
+    });
+    populations.sum()
+}
+
+/// Memory of this machine in bytes; `None` where the system does not say.
+fn installed() -> Option<f64> {
+    let text = fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text
+        .lines()
+        .find_map(|line| line.strip_prefix("MemTotal:"))?;
+    let kilobytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(1024.0 * kilobytes)
+}
+
+/// An amount of memory with a unit that suits it.
+pub fn shown(bytes: f64) -> String {
+    let units = [(1e12, "TB"), (1e9, "GB"), (1e6, "MB")];
+    let unit = units.iter().find(|(size, _)| bytes >= *size);
+    match unit {
+        Some((size, name)) => format!("{:.1} {name}", bytes / size),
+        None => "1 MB or less".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use calcine_coupler::mesh::cylinder::{CylinderSpec, cylinder_mesh};
+    use calcine_coupler::mesh::grading::uniform;
+    use calcine_coupler::physics::Vec3;
+
+    #[test]
+    fn an_o_grid_has_as_many_cells_as_estimated() {
+        for across in [3, 4, 12, 17] {
+            let spec = CylinderSpec {
+                origin: Vec3::zeros(),
+                diameter: 0.05,
+                length: 0.1,
+                cells_across: across,
+                along: uniform(7),
+                patches: ["side", "bottom", "top"].map(String::from),
+            };
+            let made = cylinder_mesh(&spec).unwrap().cells();
+            let estimated = cells(&MeshSpec::Cylinder {
+                origin: spec.origin,
+                diameter: spec.diameter,
+                length: spec.length,
+                cells: [across, 7],
+                grading: Vec::new(),
+                refine: Vec::new(),
+            });
+            assert_eq!(estimated, made as f64, "{across} across");
+        }
+    }
+
+    #[test]
+    fn memory_is_shown_in_a_unit_that_suits_it() {
+        assert_eq!(shown(memory(11.0, 10.0)), "1 MB or less");
+        assert_eq!(shown(memory(6e4, 1e3)), "120.5 MB");
+        assert_eq!(shown(memory(2e9, 0.0)), "4.0 TB");
+    }
+}

@@ -1,0 +1,78 @@
+//! The motion span of a case that states `time.process_step`.
+//!
+//! Where no particle moves, the motion clock carries nothing but the gas' inertia, and its momentum
+//! is quasi-steady. Its span then is a matter of convergence alone (requirements TSM-8).
+
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::setup::{GasPatch, InletFlow, Schedule};
+use calcine_coupler::time::{Acceleration, Ticks};
+
+use super::buoyancy;
+use super::model::Case;
+
+/// Cells of mean size that the gas crosses in a motion span at its largest speed: few enough for the
+/// outer loop to converge in about as many iterations as with a window chosen by hand.
+const CELLS_CROSSED: f64 = 1.0;
+/// N √AF Δt is kept below half of its limit of 2 (requirements TSM-8).
+const BUOYANT_NUMBER: f64 = 1.0;
+
+/// Chooses motion window and acceleration factor where the case states a process step: the shorter
+/// of the time in which gas at the largest inlet superficial velocity, in the smallest void fraction
+/// that the smoother allows, crosses a cell of mean size, and of what keeps N √AF Δt at 1.
+/// Never longer than the process step itself.
+pub fn settle(case: &mut Case, mesh: &Mesh) {
+    let Some(step) = case.time.process_step else {
+        return;
+    };
+    let volume: f64 = mesh.cell_volume().iter().sum();
+    let size = (volume / mesh.cells() as f64).cbrt();
+    let pores = 1.0 - case.coupling.max_solid_fraction;
+    let speed = fastest(case, mesh) / pores;
+    let crossing = CELLS_CROSSED * size / speed;
+    // N √(Δτ/Δt) Δt = 1
+    let frequency = buoyancy::frequency(case, mesh);
+    let buoyant = BUOYANT_NUMBER.powi(2) / (frequency.powi(2) * step.seconds());
+    let span = crossing.min(buoyant).min(step.seconds());
+    // Shorter than a tick means a gas beyond any speed; one window a step is then as good.
+    let chosen = Ticks::from_seconds(span)
+        .ok()
+        .filter(|&span| span > Ticks::ZERO);
+    let motion = chosen.unwrap_or(step);
+    if let Ok(acceleration) = Acceleration::constant((step.seconds() / motion.seconds()).max(1.0)) {
+        case.time.motion_window = motion;
+        case.time.acceleration = acceleration;
+    }
+}
+
+/// The largest superficial velocity in m/s of what flows in or stands in the gas at the start.
+fn fastest(case: &Case, mesh: &Mesh) -> f64 {
+    let gas = &case.gas;
+    let start = gas.velocity.norm();
+    let largest = |schedule: &Schedule| schedule.0.iter().map(|entry| entry.1).fold(0.0, f64::max);
+    let inlets = gas.patches.iter().filter_map(|(name, patch)| match patch {
+        GasPatch::Inlet {
+            flow, temperature, ..
+        } => Some(match flow {
+            InletFlow::SuperficialVelocity(velocity) => largest(velocity),
+            InletFlow::MassFlow(flow) => {
+                let composition = &gas.composition;
+                let density =
+                    gas.properties
+                        .density(gas.pressure, largest(temperature), composition);
+                largest(flow) / (density * area(mesh, name))
+            }
+        }),
+        _ => None,
+    });
+    inlets
+        .filter(|speed| speed.is_finite())
+        .fold(start, f64::max)
+}
+
+/// Area of a patch in m².
+fn area(mesh: &Mesh, name: &str) -> f64 {
+    let faces = mesh.patch(name).map(|patch| patch.faces());
+    faces.map_or(0.0, |faces| {
+        mesh.face_area()[faces].iter().map(|area| area.norm()).sum()
+    })
+}
