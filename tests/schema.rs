@@ -106,3 +106,12 @@ fn a_new_case_has_its_schema_beside_it_and_names_it() {
     assert_eq!(found["cases"][case.to_str().unwrap()], Value::Null);
     calcine(directory.path(), &["check", "mine/mine.toml"]);
 }
+
+#[test]
+fn a_reader_that_stops_early_is_no_error() {
+    let mut command = Command::new("sh");
+    command.args(["-c", "\"$1\" schema | head -n 1", "sh"]);
+    let output = command.arg(env!("CARGO_BIN_EXE_calcine")).output().unwrap();
+    assert!(output.status.success());
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+}
