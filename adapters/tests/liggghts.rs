@@ -31,7 +31,7 @@ fn column() -> ParticleSetup {
             .collect(),
         radius: vec![0.005; count as usize],
         density: vec![2500.0; count as usize],
-        frozen: true,
+        ..ParticleSetup::default()
     }
 }
 

@@ -9,6 +9,7 @@ pub mod exchange;
 pub mod ledger;
 pub mod mapping;
 pub mod mesh;
+pub mod motion;
 pub mod observer;
 pub mod packing;
 pub mod part;

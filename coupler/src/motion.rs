@@ -1,0 +1,225 @@
+//! What a discrete element solver is told beside the particles: materials, contacts, walls. All
+//! values are of the motion clock.
+
+use calcine_physics::Vec3;
+
+/// How the particles of a run move.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Motion {
+    /// All stay where they are; their support takes up every force.
+    #[default]
+    Frozen,
+    /// They move freely under gravity, contacts and the force of the gas.
+    Free(Box<Contacts>),
+}
+
+impl Motion {
+    /// True where no particle moves.
+    pub fn is_frozen(&self) -> bool {
+        matches!(self, Motion::Frozen)
+    }
+}
+
+/// Everything that the contacts of moving particles depend on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contacts {
+    /// Time step in s of motion time.
+    pub step: f64,
+    /// Gravity in m/s².
+    pub gravity: Vec3,
+    /// Lower and upper corner of the space in which particles may be, in m; one that leaves it is
+    /// an error that names it.
+    pub bounds: (Vec3, Vec3),
+    /// Elastic constants of each material.
+    pub materials: Vec<Elastic>,
+    /// Index of the material of each population.
+    pub material_of: Vec<usize>,
+    /// True for each population that is held where it is.
+    pub held: Vec<bool>,
+    /// Law of the contact force.
+    pub law: ContactLaw,
+    /// Properties of each pair of materials, row by row of a symmetric matrix.
+    pub pairs: Vec<Pair>,
+    /// Walls.
+    pub walls: Vec<Wall>,
+}
+
+impl Contacts {
+    /// Properties of the contact of two materials.
+    pub fn pair(&self, a: usize, b: usize) -> &Pair {
+        &self.pairs[a * self.materials.len() + b]
+    }
+}
+
+/// Elastic constants of a material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Elastic {
+    /// Young's modulus in Pa.
+    pub young: f64,
+    /// Poisson's ratio.
+    pub poisson: f64,
+}
+
+/// Properties of the contact of a pair of materials.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pair {
+    /// Coefficient of restitution, above 0 and up to 1.
+    pub restitution: f64,
+    /// Coefficient of sliding friction (Coulomb).
+    pub friction: f64,
+    /// Coefficient of rolling friction.
+    pub rolling_friction: f64,
+    /// Damping of rolling as a share of the critical one (elastic-plastic law only).
+    pub rolling_damping: f64,
+    /// Cohesion energy density in J/m³ (SJKR law only).
+    pub cohesion_energy: f64,
+}
+
+/// Law of the force between two particles, or a particle and a wall, in contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactLaw {
+    /// The force along the line of centres, with the tangential spring that belongs to it.
+    pub force: ContactForce,
+    /// True where damping may pull separating spheres together (the linear oscillator of which the
+    /// restitution is derived); false where the normal force is cut at zero, which changes the
+    /// restitution (0.5 comes out as 0.55).
+    pub attractive_damping: bool,
+    /// Resistance to rolling.
+    pub rolling: Rolling,
+    /// Attraction.
+    pub cohesion: Cohesion,
+}
+
+/// Force of an elastic contact with damping and friction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ContactForce {
+    /// Hertz, Mindlin and Tsuji with tangential history (requirements COR-12).
+    HertzMindlin,
+    /// OpenFOAM's pair of spring, slider and dashpot (requirements COR-13).
+    SpringSliderDashpot,
+    /// Linear spring and dashpot with tangential history: the stiffness at which a pair that meets with this
+    /// speed in m/s overlaps as much as by Hertz' law.
+    Linear {
+        /// Characteristic speed of impact in m/s.
+        characteristic_speed: f64,
+    },
+}
+
+/// Resistance to rolling.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Rolling {
+    /// None.
+    #[default]
+    None,
+    /// Constant directional torque: μ_r R* |F_n| against the relative rotation.
+    ConstantTorque,
+    /// Elastic-plastic spring and dashpot (Ai, Chen, Rotter, Ooi 2011, doi 10.1016/j.powtec.2010.09.030).
+    ElasticPlastic,
+}
+
+/// Attraction between surfaces.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Cohesion {
+    /// None.
+    #[default]
+    None,
+    /// Simplified Johnson, Kendall, Roberts: cohesion energy density times the contact area.
+    Sjkr,
+}
+
+/// A wall.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wall {
+    /// Its name.
+    pub name: String,
+    /// Index of its material.
+    pub material: usize,
+    /// Where it is.
+    pub shape: WallShape,
+    /// How it moves.
+    pub motion: WallMotion,
+}
+
+/// Shape of a wall at the start of the run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WallShape {
+    /// A plane; particles are on the side to which the normal points.
+    Plane {
+        /// A point of it in m.
+        point: Vec3,
+        /// Unit normal, into the particles' side.
+        normal: Vec3,
+    },
+    /// The inner side of an endless circular cylinder.
+    Cylinder {
+        /// A point of the axis in m.
+        point: Vec3,
+        /// Unit vector along the axis.
+        axis: Vec3,
+        /// Radius in m.
+        radius: f64,
+    },
+    /// The inner side of the frustum of a circular cone between two points of its axis.
+    Cone {
+        /// Ends of the axis in m.
+        ends: [Vec3; 2],
+        /// Radii at these ends in m.
+        radii: [f64; 2],
+    },
+    /// Triangles, both sides of them; faces, edges and corners act once.
+    Mesh {
+        /// Corners of each triangle in m.
+        triangles: Vec<[Vec3; 3]>,
+    },
+}
+
+/// How a wall moves, on the motion clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum WallMotion {
+    /// It stays.
+    #[default]
+    Still,
+    /// It moves with this velocity in m/s.
+    Translating(Vec3),
+    /// It turns about an axis.
+    Rotating {
+        /// A point of the axis in m.
+        point: Vec3,
+        /// Angular velocity in rad/s.
+        angular_velocity: Vec3,
+    },
+}
+
+/// Particles that come and go between two windows. The coordinator decides on them, so that they
+/// are the same for every backend.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Change {
+    /// Ids of those that go.
+    pub remove: Vec<u64>,
+    /// Those that come, with ids that were never used before, ascending.
+    pub insert: Vec<NewParticle>,
+}
+
+impl Change {
+    /// True where nothing changes.
+    pub fn is_empty(&self) -> bool {
+        self.remove.is_empty() && self.insert.is_empty()
+    }
+}
+
+/// A particle that comes in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NewParticle {
+    /// Its id.
+    pub id: u64,
+    /// Index of its population.
+    pub population: u32,
+    /// Centre in m.
+    pub position: Vec3,
+    /// Velocity in m/s of motion time.
+    pub velocity: Vec3,
+    /// Radius in m.
+    pub radius: f64,
+    /// Density in kg/m³.
+    pub density: f64,
+}
