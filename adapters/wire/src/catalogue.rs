@@ -24,8 +24,15 @@ impl Record {
     pub fn of(kind: Kind) -> Option<Record> {
         match kind {
             Kind::Start => Some(Record::Start),
-            Kind::State | Kind::Finished | Kind::Checkpointed => Some(Record::State),
-            Kind::Hello | Kind::Commit | Kind::Checkpoint | Kind::Failed | Kind::Bye => None,
+            Kind::State | Kind::Finished | Kind::Checkpointed | Kind::Changed => {
+                Some(Record::State)
+            }
+            Kind::Hello
+            | Kind::Commit
+            | Kind::Checkpoint
+            | Kind::Change
+            | Kind::Failed
+            | Kind::Bye => None,
         }
     }
 

@@ -29,11 +29,15 @@ pub enum Kind {
     Failed = 8,
     /// The run ends; asked by the coordinator, answered by the solver.
     Bye = 9,
+    /// Particles that go and come between two windows (text, see the host's `change`).
+    Change = 11,
+    /// The change is made; the state after it (columns).
+    Changed = 12,
 }
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Kind; 9] = [
+    pub const ALL: [Kind; 11] = [
         Kind::Hello,
         Kind::State,
         Kind::Start,
@@ -43,6 +47,8 @@ impl Kind {
         Kind::Checkpointed,
         Kind::Failed,
         Kind::Bye,
+        Kind::Change,
+        Kind::Changed,
     ];
 
     /// The kind of a number on the wire.
