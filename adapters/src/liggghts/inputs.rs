@@ -94,7 +94,12 @@ impl Inputs<'_> {
             Motion::Frozen => (FROZEN_BED, String::new()),
             Motion::Free(contacts) => (MOVING_BED, moving::commands(contacts)),
         };
+        // Bins as large as particles would be without number in a large box with few of them.
+        let volume = (upper - lower).product();
+        let room = (volume / (4.0 * self.setup.id.len() as f64)).cbrt();
+        let bins = room.max(self.setup.radius.iter().copied().fold(0.0, f64::max) + 0.5 * skin);
         template
+            .replace("{bins}", &format!("{bins:e}"))
             .replace("{contacts}", &contacts)
             .replace("{processors}", &grid)
             .replace("{skin}", &format!("{skin:e}"))
