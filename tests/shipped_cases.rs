@@ -1,4 +1,4 @@
-//! Every shipped case runs, natively and with both production solvers, its ledger closed and its
+//! Every shipped case runs, natively (what moves, with LIGGGHTS) and with both production solvers, its ledger closed and its
 //! temperatures between those of its sources.
 
 #![allow(clippy::unwrap_used)]
@@ -25,6 +25,10 @@ fn shipped() -> Vec<PathBuf> {
     found
 }
 
+fn moves(case: &Path) -> bool {
+    fs::read_to_string(case).unwrap().contains("motion = \"free\"")
+}
+
 fn has_species(case: &Path) -> bool {
     fs::read_to_string(case).unwrap().contains("\nspecies = ")
 }
@@ -44,13 +48,17 @@ fn every_shipped_case_runs_natively_and_with_both_solvers_between_its_sources() 
     let directory = tempfile::tempdir().unwrap();
     for case in shipped() {
         for (gas, particles) in [("native", "native"), ("openfoam", "liggghts")] {
+            let (particles, end) = match moves(&case) {
+                true => ("liggghts", "time.end=0.05 s"),
+                false => (particles, "time.end=8 s"),
+            };
             let name = format!("{}-{gas}", case.file_stem().unwrap().to_string_lossy());
             let out = directory.path().join(name);
             let output = Command::new(env!("CARGO_BIN_EXE_calcine"))
                 .arg("run")
                 .arg(&case)
                 .args(["--gas", gas, "--particles", particles, "--quiet"])
-                .args(["--set", "time.end=8 s"])
+                .args(["--set", end])
                 .arg("--out")
                 .arg(&out)
                 .output()

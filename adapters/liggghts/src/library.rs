@@ -188,7 +188,8 @@ pub struct Liggghts {
 impl Liggghts {
     /// Opens LIGGGHTS with its output in a file. MPI must have been started.
     pub fn open(log: &str) -> Self {
-        let arguments = ["liggghts", "-screen", "none", "-log", log].map(c_text);
+        // Without a screen (`none`) its walls of triangles write to a null pointer.
+        let arguments = ["liggghts", "-screen", "/dev/null", "-log", log].map(c_text);
         let mut pointers = arguments.each_ref().map(|text| text.as_ptr().cast_mut());
         let mut handle = ptr::null_mut();
         // SAFETY: the texts live during the call and LIGGGHTS copies what it keeps; it does not

@@ -83,7 +83,7 @@ pub fn commands(contacts: &Contacts) -> String {
     let mut text = String::new();
     properties(&mut text, contacts);
     let model = model(contacts);
-    let _ = writeln!(text, "pair_style gran {model}\npair_coeff * *");
+    let _ = writeln!(text, "pair_style gran {model}{}\npair_coeff * *", settings(contacts));
     groups(&mut text, contacts);
     let gravity = contacts.gravity.norm();
     if gravity > 0.0 {
@@ -183,10 +183,15 @@ fn model(contacts: &Contacts) -> String {
         Rolling::ConstantTorque => model.push_str(" rolling_friction cdt"),
         Rolling::ElasticPlastic => model.push_str(" rolling_friction epsd"),
     }
-    if !law.attractive_damping {
-        model.push_str(" limitForce on");
-    }
     model
+}
+
+/// Settings of the model, which stand behind everything else.
+fn settings(contacts: &Contacts) -> &'static str {
+    match contacts.law.attractive_damping {
+        true => "",
+        false => " limitForce on",
+    }
 }
 
 fn groups(text: &mut String, contacts: &Contacts) {
@@ -258,15 +263,17 @@ fn walls(text: &mut String, contacts: &Contacts, model: &str) {
         };
         let _ = writeln!(
             text,
-            "fix calcine_wall_{index} all wall/gran {model} primitive type {kind} {primitive}"
+            "fix calcine_wall_{index} all wall/gran {model} primitive type {kind} {primitive}{}",
+            settings(contacts)
         );
     }
     if !meshes.is_empty() {
         let _ = writeln!(
             text,
-            "fix calcine_meshes all wall/gran {model} mesh n_meshes {} meshes {}",
+            "fix calcine_meshes all wall/gran {model} mesh n_meshes {} meshes {}{}",
             meshes.len(),
-            meshes.join(" ")
+            meshes.join(" "),
+            settings(contacts)
         );
     }
 }

@@ -1,0 +1,365 @@
+//! The LIGGGHTS host, as it is built, with spheres that move: exact impulses, particles that come and go,
+//! contacts, checkpoints, losses.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use calcine_adapters::liggghts::inputs::Inputs;
+use calcine_adapters::liggghts::{LiggghtsLaunch, LiggghtsParticles};
+use calcine_coupler::error::PartError;
+use calcine_coupler::motion::{
+    Change, Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, NewParticle, Pair,
+    Rolling, Wall, WallMotion, WallShape,
+};
+use calcine_coupler::part::{Part, ParticlePush, ParticleReceived, Particles};
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::ParticleSetup;
+use calcine_coupler::supervisor::{Interrupts, Supervisor};
+use calcine_coupler::time::{Clocks, Ticks, Window};
+
+const STEP: f64 = 1e-6;
+const BOX: f64 = 0.1;
+
+fn law() -> ContactLaw {
+    ContactLaw {
+        force: ContactForce::HertzMindlin,
+        attractive_damping: true,
+        rolling: Rolling::None,
+        cohesion: Cohesion::None,
+    }
+}
+
+/// A floor, no gravity unless asked for.
+fn contacts(gravity: Vec3) -> Contacts {
+    Contacts {
+        step: STEP,
+        gravity,
+        bounds: (Vec3::zeros(), Vec3::repeat(BOX)),
+        materials: vec![Elastic {
+            young: 5e7,
+            poisson: 0.25,
+        }],
+        material_of: vec![0, 0],
+        held: vec![false, true],
+        law: law(),
+        pairs: vec![Pair {
+            restitution: 0.5,
+            friction: 0.3,
+            ..Pair::default()
+        }],
+        walls: vec![Wall {
+            name: "floor".into(),
+            material: 0,
+            shape: WallShape::Plane {
+                point: Vec3::zeros(),
+                normal: Vec3::z(),
+            },
+            motion: WallMotion::Still,
+        }],
+    }
+}
+
+/// Spheres of 5 mm at these places with these velocities.
+fn setup(contacts: Contacts, spheres: &[(Vec3, Vec3)]) -> ParticleSetup {
+    let count = spheres.len();
+    ParticleSetup {
+        id: (1..=count as u64).collect(),
+        population: vec![0; count],
+        position: spheres.iter().map(|sphere| sphere.0).collect(),
+        radius: vec![0.0025; count],
+        density: vec![2500.0; count],
+        velocity: spheres.iter().map(|sphere| sphere.1).collect(),
+        motion: Motion::Free(Box::new(contacts)),
+    }
+}
+
+struct Bench {
+    folder: tempfile::TempDir,
+    supervisor: Supervisor,
+    index: u64,
+    start: Ticks,
+}
+
+impl Bench {
+    fn new() -> Self {
+        Self {
+            folder: tempfile::tempdir().unwrap(),
+            supervisor: Supervisor::new(Duration::from_secs(30), Interrupts::default()),
+            index: 0,
+            start: Ticks::ZERO,
+        }
+    }
+
+    fn launch(&mut self, setup: &ParticleSetup, name: &str, resume: Option<PathBuf>) -> LiggghtsParticles {
+        self.try_launch(setup, name, resume).unwrap()
+    }
+
+    fn try_launch(
+        &mut self,
+        setup: &ParticleSetup,
+        name: &str,
+        resume: Option<PathBuf>,
+    ) -> Result<LiggghtsParticles, PartError> {
+        let launch = LiggghtsLaunch {
+            inputs: Inputs {
+                setup,
+                bounds: (Vec3::zeros(), Vec3::repeat(BOX)),
+                step: STEP,
+                ranks: 1,
+            },
+            case_hash: "moving".into(),
+            folder: self.folder.path().join(name),
+            log: self.folder.path().join(format!("{name}.log")),
+            resume,
+            deadline: Duration::from_secs(30),
+        };
+        LiggghtsParticles::launch(launch, &mut self.supervisor)
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn window(&mut self, particles: &mut LiggghtsParticles, span: f64, force: &[Vec3]) -> Result<Vec<Vec3>, PartError> {
+        let span = Ticks::from_seconds(span).unwrap();
+        let window = Window {
+            index: self.index,
+            attempt: 0,
+            start: Clocks {
+                motion: self.start,
+                process: self.start,
+            },
+            span: Clocks {
+                motion: span,
+                process: span,
+            },
+        };
+        let push = ParticlePush {
+            force: force.to_vec(),
+        };
+        particles.start(&window, &push)?;
+        let mut received = ParticleReceived::default();
+        particles.finish(&self.supervisor, &mut received)?;
+        particles.commit()?;
+        self.index += 1;
+        self.start = self.start.checked_add(span).unwrap();
+        Ok(received.impulse)
+    }
+}
+
+const MASS: f64 = 4.0 / 3.0 * std::f64::consts::PI * 1.5625e-8 * 2500.0;
+
+#[test]
+fn the_impulse_of_a_force_is_exact_also_where_it_changes_and_the_window_is_no_whole_number_of_steps() {
+    let mut bench = Bench::new();
+    let still = (Vec3::repeat(0.05), Vec3::zeros());
+    let setup = setup(contacts(Vec3::zeros()), &[still]);
+    let mut particles = bench.launch(&setup, "a", None);
+    let mut expected = Vec3::zeros();
+    for (force, span) in [(1e-3, 1e-4), (-3e-3, 1.004e-4), (2e-3, 5.3e-6)] {
+        let force = Vec3::new(force, 0.0, 0.5 * force);
+        let impulse = bench.window(&mut particles, span, &[force]).unwrap();
+        expected += force * span;
+        assert!((impulse[0] - force * span).norm() < 1e-15 * impulse[0].norm());
+        let momentum = MASS * particles.fields().velocity[0];
+        assert!((momentum - expected).norm() < 1e-12 * expected.norm(), "{momentum} {expected}");
+    }
+}
+
+#[test]
+fn gravity_and_restitution_are_those_of_the_case() {
+    let mut bench = Bench::new();
+    let down = Vec3::new(0.0, 0.0, -0.5);
+    let setup = setup(contacts(Vec3::zeros()), &[(Vec3::new(0.05, 0.05, 0.004), down)]);
+    let mut particles = bench.launch(&setup, "a", None);
+    bench.window(&mut particles, 8e-3, &[Vec3::zeros()]).unwrap();
+    let up = particles.fields().velocity[0].z;
+    // Damping that may attract gives the stated restitution.
+    assert!((up / 0.5 - 0.5).abs() < 0.005, "{up}");
+
+    // A force that is cut at zero gives more: 0.55 for 0.5.
+    let mut cut = contacts(Vec3::zeros());
+    cut.law.attractive_damping = false;
+    let setup = setup_with(cut, &setup);
+    let mut particles = bench.launch(&setup, "b", None);
+    bench.window(&mut particles, 8e-3, &[Vec3::zeros()]).unwrap();
+    let up = particles.fields().velocity[0].z;
+    assert!((up / 0.5 - 0.55).abs() < 0.01, "{up}");
+
+    let free = self::setup(contacts(Vec3::new(0.0, 0.0, -9.81)), &[(Vec3::repeat(0.05), Vec3::zeros())]);
+    let mut particles = bench.launch(&free, "c", None);
+    bench.window(&mut particles, 1e-2, &[Vec3::zeros()]).unwrap();
+    let speed = particles.fields().velocity[0].z;
+    assert!((speed + 0.0981).abs() < 1e-12, "{speed}");
+}
+
+fn setup_with(contacts: Contacts, other: &ParticleSetup) -> ParticleSetup {
+    ParticleSetup {
+        motion: Motion::Free(Box::new(contacts)),
+        ..other.clone()
+    }
+}
+
+/// Forty spheres that fall on each other and on the floor.
+fn heap() -> ParticleSetup {
+    let spheres: Vec<(Vec3, Vec3)> = (0..40)
+        .map(|k| {
+            let (i, j, layer) = (k % 3, (k / 3) % 3, k / 9);
+            let wiggle = 1e-5 * f64::from(k % 7);
+            let centre = Vec3::new(
+                0.04 + 0.0052 * f64::from(i) + wiggle,
+                0.04 + 0.0052 * f64::from(j) - wiggle,
+                0.0026 + 0.0051 * f64::from(layer),
+            );
+            (centre, Vec3::zeros())
+        })
+        .collect();
+    setup(contacts(Vec3::new(0.0, 0.0, -9.81)), &spheres)
+}
+
+#[test]
+fn particles_come_and_go_with_the_ids_they_are_given_and_the_others_do_not_notice() {
+    let mut bench = Bench::new();
+    let setup = heap();
+    let mut particles = bench.launch(&setup, "a", None);
+    bench.window(&mut particles, 1e-3, &[Vec3::zeros(); 40]).unwrap();
+    let before: Vec<Vec3> = particles.fields().position.to_vec();
+    let new = |id: u64, x: f64| NewParticle {
+        id,
+        population: 0,
+        position: Vec3::new(x, 1.0 / 30.0, 0.08),
+        velocity: Vec3::new(0.1, 0.0, -1.0 / 3.0),
+        radius: 0.002,
+        density: 2000.0,
+    };
+    // The highest ids go; those that come go on behind them, with a gap.
+    let change = Change {
+        remove: vec![3, 39, 40],
+        insert: vec![new(41, 0.01), new(57, 0.02)],
+    };
+    particles.change(&bench.supervisor, &change).unwrap();
+    let fields = particles.fields();
+    let expected: Vec<u64> = (1..=38).filter(|id| *id != 3).chain([41, 57]).collect();
+    assert_eq!(fields.id, expected);
+    assert_eq!(fields.position[0], before[0]);
+    assert_eq!(fields.position[2], before[3]);
+    let last = fields.len() - 1;
+    assert_eq!(fields.position[last], new(57, 0.02).position);
+    assert_eq!(fields.velocity[last].z, -1.0 / 3.0);
+    assert_eq!(fields.radius[last], 0.002);
+    assert!((fields.mass[last] / (4.0 / 3.0 * std::f64::consts::PI * 8e-9 * 2000.0) - 1.0).abs() < 1e-14);
+    // A particle that went leaves a gap; the rest goes on as a heap at rest does.
+    let forces = vec![Vec3::zeros(); 39];
+    bench.window(&mut particles, 1e-3, &forces).unwrap();
+    let speeds = particles.fields().velocity[..30].iter().map(|v| v.norm());
+    assert!(speeds.fold(0.0, f64::max) < 0.2);
+    // All may be replaced, again and again.
+    let all = particles.fields().id.to_vec();
+    let change = Change {
+        remove: all,
+        insert: vec![new(100, 0.03)],
+    };
+    particles.change(&bench.supervisor, &change).unwrap();
+    assert_eq!(particles.fields().id, [100]);
+    bench.window(&mut particles, 1e-3, &[Vec3::zeros()]).unwrap();
+}
+
+#[test]
+fn after_a_checkpoint_the_resumed_run_takes_the_same_path_as_the_one_that_went_on() {
+    let mut bench = Bench::new();
+    let setup = heap();
+    let mut particles = bench.launch(&setup, "a", None);
+    let push = vec![Vec3::new(1e-4, 0.0, 2e-4); 40];
+    for _ in 0..5 {
+        bench.window(&mut particles, 1e-3, &push).unwrap();
+    }
+    let remove = Change {
+        remove: vec![7],
+        insert: Vec::new(),
+    };
+    particles.change(&bench.supervisor, &remove).unwrap();
+    let checkpoint = bench.path("checkpoint");
+    std::fs::create_dir_all(&checkpoint).unwrap();
+    particles.checkpoint(&checkpoint).unwrap();
+    let (index, start) = (bench.index, bench.start);
+    let path = |bench: &mut Bench, particles: &mut LiggghtsParticles| {
+        (bench.index, bench.start) = (index, start);
+        for window in 0..5 {
+            let push = vec![Vec3::new(1e-4, 0.0, -1e-4 * f64::from(window)); 39];
+            bench.window(particles, 1e-3, &push).unwrap();
+        }
+        let fields = particles.fields();
+        (fields.position.to_vec(), fields.velocity.to_vec(), fields.angular_velocity.to_vec())
+    };
+    let went_on = path(&mut bench, &mut particles);
+    let mut resumed = bench.launch(&setup, "b", Some(checkpoint));
+    assert_eq!(resumed.fields().len(), 39);
+    let again = path(&mut bench, &mut resumed);
+    assert!(went_on == again, "the paths differ");
+}
+
+#[test]
+fn a_particle_that_leaves_is_named_with_the_place_where_it_was() {
+    let mut bench = Bench::new();
+    let fast = (Vec3::new(0.09, 0.05, 0.05), Vec3::new(5.0, 0.0, 0.0));
+    let calm = (Vec3::repeat(0.05), Vec3::zeros());
+    let setup = setup(contacts(Vec3::zeros()), &[calm, fast]);
+    let mut particles = bench.launch(&setup, "a", None);
+    let error = bench.window(&mut particles, 2e-2, &[Vec3::zeros(); 2]).unwrap_err().to_string();
+    assert!(error.contains("particle 2"), "{error}");
+    assert!(error.contains("0.09") && error.contains("1 of 2 particles"), "{error}");
+}
+
+#[test]
+fn a_turning_wall_of_triangles_drags_what_lies_on_it() {
+    let mut bench = Bench::new();
+    let mut moving = contacts(Vec3::new(0.0, 0.0, -9.81));
+    let corner = |x: f64, y: f64| Vec3::new(x, y, 0.02);
+    moving.walls.push(Wall {
+        name: "belt".into(),
+        material: 0,
+        shape: WallShape::Mesh {
+            triangles: vec![
+                [corner(0.02, 0.02), corner(0.08, 0.02), corner(0.08, 0.08)],
+                [corner(0.02, 0.02), corner(0.08, 0.08), corner(0.02, 0.08)],
+            ],
+        },
+        motion: WallMotion::Rotating {
+            point: Vec3::new(0.05, 0.05, 0.0),
+            angular_velocity: Vec3::new(0.0, 0.0, 2.0),
+        },
+    });
+    let sphere = (Vec3::new(0.06, 0.05, 0.0225), Vec3::zeros());
+    let setup = setup(moving, &[sphere]);
+    let mut particles = bench.launch(&setup, "a", None);
+    bench.window(&mut particles, 3e-2, &[Vec3::zeros()]).unwrap();
+    let velocity = particles.fields().velocity[0];
+    // It lies 10 mm off the axis: the plate passes below at 20 mm/s along y, and drags it.
+    assert!(velocity.y > 1e-3 && velocity.y < 0.021, "{velocity}");
+    assert!(particles.fields().position[0].z > 0.022);
+}
+
+#[test]
+fn what_it_does_not_have_is_refused_before_it_starts() {
+    let mut bench = Bench::new();
+    let refused = |bench: &mut Bench, contacts: Contacts| {
+        let setup = setup(contacts, &[(Vec3::repeat(0.05), Vec3::zeros())]);
+        let error = bench.try_launch(&setup, "x", None).err().unwrap();
+        error.to_string()
+    };
+    let mut forgetful = contacts(Vec3::zeros());
+    forgetful.law.force = ContactForce::SpringSliderDashpot;
+    assert!(refused(&mut bench, forgetful).contains("spring-slider-dashpot"));
+    let mut cone = contacts(Vec3::zeros());
+    cone.walls[0].shape = WallShape::Cone {
+        ends: [Vec3::zeros(), Vec3::z()],
+        radii: [0.1, 0.2],
+    };
+    assert!(refused(&mut bench, cone).contains("wall \"floor\" is a cone"));
+    let mut soft = contacts(Vec3::zeros());
+    soft.pairs[0].restitution = 0.01;
+    assert!(refused(&mut bench, soft).contains("0.01"));
+    assert!(!Path::new(&bench.path("x")).exists());
+}
