@@ -10,10 +10,10 @@ use calcine_adapters::openfoam::{OpenfoamGas, OpenfoamLaunch};
 use calcine_coupler::closures::Closures;
 use calcine_coupler::coordinator::{CheckpointPaths, Origin, Parts, Plan, Run, RunError};
 use calcine_coupler::error::{FailureKind, PartError};
+use calcine_coupler::held::HeldGas;
 use calcine_coupler::interior::{Network, Thin};
 use calcine_coupler::mapping::{Mapper, Method};
 use calcine_coupler::mesh::Mesh;
-use calcine_coupler::held::HeldGas;
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::motion::Motion;
 use calcine_coupler::part::{Gas, ParticleFields, Particles};
@@ -499,8 +499,9 @@ fn closures(case: &Case) -> Closures {
 fn interior(case: &Case, prepared: &Prepared, particles: &ParticleFields<'_>) -> Thin {
     let all = 0..particles.id.len();
     let start = prepared.temperature.iter().copied();
-    let density =
-        |p: usize| case.materials[case.particles[particles.population[p] as usize].material].density;
+    let density = |p: usize| {
+        case.materials[case.particles[particles.population[p] as usize].material].density
+    };
     let volume = |p: usize| 4.0 / 3.0 * std::f64::consts::PI * particles.radius[p].powi(3);
     let material = |p: usize| case.particles[particles.population[p] as usize].material;
     let network = laws::conduction(case.laws.conduction).map(|law| {
@@ -509,15 +510,16 @@ fn interior(case: &Case, prepared: &Prepared, particles: &ParticleFields<'_>) ->
         Network::new(law, all.clone().map(conductivity).collect())
     });
     Thin::new(
-        all.clone()
-            .map(|p| density(p) * volume(p))
-            .collect(),
+        all.clone().map(|p| density(p) * volume(p)).collect(),
         all.clone().map(material).collect(),
         case.materials
             .iter()
             .map(|m| m.heat_capacity.clone())
             .collect(),
-        start.chain(std::iter::repeat(case.gas.temperature)).take(all.len()).collect(),
+        start
+            .chain(std::iter::repeat(case.gas.temperature))
+            .take(all.len())
+            .collect(),
         network,
     )
 }

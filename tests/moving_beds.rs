@@ -29,7 +29,7 @@ fn closed(directory: &Path, within: f64) {
 /// Void fractions of a snapshot, cell by cell.
 fn void_fractions(directory: &Path, snapshot: usize) -> Vec<f64> {
     let file = hdf5::File::open(directory.join("results.h5")).unwrap();
-    let name = format!("snapshots/{snapshot:06}/gas/void_fraction");
+    let name = format!("snapshots/{snapshot:04}/gas/void_fraction");
     file.dataset(&name).unwrap().read_raw::<f64>().unwrap()
 }
 
@@ -39,7 +39,10 @@ fn a_bed_settles_and_comes_to_rest() {
     run(&case("settled-bed"), directory.path(), &[]);
     let series = Series::read(directory.path()).unwrap();
     let last = |name: &str| *series.column(name).last().unwrap();
-    let (height, speed) = (last("quantities.mean_height"), last("quantities.mean_speed"));
+    let (height, speed) = (
+        last("quantities.mean_height"),
+        last("quantities.mean_speed"),
+    );
     let count = Summary::read(directory.path()).unwrap().particles as f64;
     // Solid fraction of a layer twice as high as its mean height, wall layers included.
     let fraction = count * PI / 6.0 * 0.002f64.powi(3) / (0.016f64.powi(2) * 2.0 * height);
@@ -67,7 +70,13 @@ fn a_fluidised_bed_weighs_on_the_flow_and_its_packed_branch_crosses_at_minimum_f
     let area = 0.016f64 * 0.016;
     let weight = count * PI / 6.0 * 0.002f64.powi(3) * (2500.0 - 998.0) * 9.81 / area;
     let of_water = 998.0 * 9.81 * 0.12;
-    let speed = |t: f64| if t < 0.5 { 0.04 } else { 0.04 - 0.009 * (t - 0.5) };
+    let speed = |t: f64| {
+        if t < 0.5 {
+            0.04
+        } else {
+            0.04 - 0.009 * (t - 0.5)
+        }
+    };
     let points: Vec<(f64, f64, f64)> = times
         .iter()
         .zip(drops)
@@ -86,7 +95,7 @@ fn a_fluidised_bed_weighs_on_the_flow_and_its_packed_branch_crosses_at_minimum_f
     // The packed branch by the law with the closures' own void fraction, that of each cell at the end.
     let last = series.column("process_time").last().copied().unwrap();
     let voids = void_fractions(directory.path(), (last / 0.25).round() as usize);
-    let layers = 15.0;
+    let layers = 30.0;
     let height = 0.12 / layers;
     let share = layers / voids.len() as f64;
     let by_law = |u: f64| -> f64 {
@@ -94,7 +103,10 @@ fn a_fluidised_bed_weighs_on_the_flow_and_its_packed_branch_crosses_at_minimum_f
         gradients.sum()
     };
     let (mut squares, mut product) = (0.0, 0.0);
-    for (_, u, drop) in points.iter().filter(|point| (0.005..0.013).contains(&point.1)) {
+    for (_, u, drop) in points
+        .iter()
+        .filter(|point| (0.005..0.013).contains(&point.1))
+    {
         squares += by_law(*u) * by_law(*u);
         product += by_law(*u) * drop;
     }
@@ -124,13 +136,21 @@ fn a_fluidised_bed_weighs_on_the_flow_and_its_packed_branch_crosses_at_minimum_f
 fn a_moving_bed_is_the_same_at_any_pace() {
     let directory = tempfile::tempdir().unwrap();
     let (slow, fast) = (directory.path().join("1"), directory.path().join("50"));
-    let set = ["time.end=60 s", "time.acceleration=5", "time.motion_window=20 ms"];
+    let set = [
+        "time.end=60 s",
+        "time.acceleration=5",
+        "time.motion_window=20 ms",
+    ];
     run(&case("moving-bed"), &slow, &set);
     run(&case("moving-bed"), &fast, &["time.end=60 s"]);
     let [a, b] = [&slow, &fast].map(|folder| Series::read(folder).unwrap());
     let name = "quantities.mean_temperature";
     let (a, b) = (a.column(name), b.column(name));
-    let worst = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let worst = a
+        .iter()
+        .zip(b)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max);
     println!("largest difference of the mean temperature: {worst} K of 100 K");
     assert!(worst < 1.0, "{worst} K");
     for folder in [&slow, &fast] {
@@ -141,8 +161,16 @@ fn a_moving_bed_is_the_same_at_any_pace() {
 #[test]
 fn a_moving_bed_with_feed_and_outlet_is_resumed_to_the_same_bits() {
     let directory = tempfile::tempdir().unwrap();
-    let set = ["time.end=40 s", "time.checkpoint.every=5 s", "output.every=10 s", "output.series_every=1 s"];
-    let (whole, killed) = (directory.path().join("whole"), directory.path().join("killed"));
+    let set = [
+        "time.end=40 s",
+        "time.checkpoint.every=5 s",
+        "output.every=10 s",
+        "output.series_every=1 s",
+    ];
+    let (whole, killed) = (
+        directory.path().join("whole"),
+        directory.path().join("killed"),
+    );
     run(&case("moving-bed"), &whole, &set);
     let mut child = command(&case("moving-bed"), &killed, &set)
         .stdin(Stdio::null())
@@ -152,13 +180,22 @@ fn a_moving_bed_with_feed_and_outlet_is_resumed_to_the_same_bits() {
         .unwrap();
     let begun = Instant::now();
     while !killed.join("checkpoint/coordinator.state").is_file() {
-        assert!(begun.elapsed() < Duration::from_secs(60), "no checkpoint in time");
-        assert!(child.try_wait().unwrap().is_none(), "it ended before a checkpoint");
+        assert!(
+            begun.elapsed() < Duration::from_secs(60),
+            "no checkpoint in time"
+        );
+        assert!(
+            child.try_wait().unwrap().is_none(),
+            "it ended before a checkpoint"
+        );
         std::thread::sleep(Duration::from_millis(1));
     }
     child.kill().unwrap();
     child.wait().unwrap();
-    let output = command(&case("moving-bed"), &killed, &set).arg("--resume").output().unwrap();
+    let output = command(&case("moving-bed"), &killed, &set)
+        .arg("--resume")
+        .output()
+        .unwrap();
     let text = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{text}");
     let differing = results_equal::differences(&whole, &killed);

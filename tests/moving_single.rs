@@ -51,14 +51,24 @@ fn a_bead_settles_at_the_terminal_velocity_of_the_law_where_the_gas_is_held() {
 fn windows_longer_than_the_beads_own_time_relax_without_overshoot() {
     let directory = tempfile::tempdir().unwrap();
     // m/K is 57 ms: a window of it and half of it more.
-    let set = ["time.motion_window=80 ms", "time.end=0.48 s", "output.series_every=80 ms"];
+    let set = [
+        "time.motion_window=80 ms",
+        "time.end=0.48 s",
+        "output.series_every=80 ms",
+    ];
     run(&case("settling-sphere"), directory.path(), &set);
     let series = Series::read(directory.path()).unwrap();
     let speeds = series.column("quantities.speed");
     let expected = terminal();
     println!("{speeds:?} {expected}");
-    assert!(speeds.iter().all(|speed| *speed < 1.02 * expected), "{speeds:?}");
-    assert!((speeds.last().unwrap() / expected - 1.0).abs() < 0.02, "{speeds:?}");
+    assert!(
+        speeds.iter().all(|speed| *speed < 1.02 * expected),
+        "{speeds:?}"
+    );
+    assert!(
+        (speeds.last().unwrap() / expected - 1.0).abs() < 0.02,
+        "{speeds:?}"
+    );
 }
 
 #[test]
@@ -70,7 +80,10 @@ fn a_bead_drags_the_air_of_its_cells_along_where_the_gas_is_solved() {
     let speed = *series.column("quantities.speed").last().unwrap();
     println!("two-way: {speed} m/s against {} m/s of the law", terminal());
     // The cells are 100 diameters wide: the disturbance is small, and always to the faster side.
-    assert!(speed > 0.99 * terminal() && speed < 1.1 * terminal(), "{speed}");
+    assert!(
+        speed > 0.99 * terminal() && speed < 1.1 * terminal(),
+        "{speed}"
+    );
     let summary = Summary::read(directory.path()).unwrap();
     for line in ["mass", "energy", "momentum"] {
         let error = summary.ledger.lines[line].relative_error;
@@ -84,7 +97,17 @@ fn what_liggghts_does_not_have_is_refused_with_the_reason() {
     let out = directory.path().join("out");
     let set = ["motion.contact.law=spring-slider-dashpot"];
     let text = refused(&case("settling-sphere"), &out, &set);
-    assert!(text.contains("has no contact law \"spring-slider-dashpot\""), "{text}");
-    let text = refused(&case("settling-sphere"), &out, &["motion.motion_step=10 us"]);
-    assert!(text.contains("a surface wave crosses the smallest particle"), "{text}");
+    assert!(
+        text.contains("has no contact law \"spring-slider-dashpot\""),
+        "{text}"
+    );
+    let text = refused(
+        &case("settling-sphere"),
+        &out,
+        &["motion.motion_step=10 us"],
+    );
+    assert!(
+        text.contains("a surface wave crosses the smallest particle"),
+        "{text}"
+    );
 }

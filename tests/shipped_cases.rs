@@ -26,7 +26,9 @@ fn shipped() -> Vec<PathBuf> {
 }
 
 fn moves(case: &Path) -> bool {
-    fs::read_to_string(case).unwrap().contains("motion = \"free\"")
+    fs::read_to_string(case)
+        .unwrap()
+        .contains("motion = \"free\"")
 }
 
 fn has_species(case: &Path) -> bool {

@@ -92,7 +92,12 @@ impl Bench {
         }
     }
 
-    fn launch(&mut self, setup: &ParticleSetup, name: &str, resume: Option<PathBuf>) -> LiggghtsParticles {
+    fn launch(
+        &mut self,
+        setup: &ParticleSetup,
+        name: &str,
+        resume: Option<PathBuf>,
+    ) -> LiggghtsParticles {
         self.try_launch(setup, name, resume).unwrap()
     }
 
@@ -122,7 +127,12 @@ impl Bench {
         self.folder.path().join(name)
     }
 
-    fn window(&mut self, particles: &mut LiggghtsParticles, span: f64, force: &[Vec3]) -> Result<Vec<Vec3>, PartError> {
+    fn window(
+        &mut self,
+        particles: &mut LiggghtsParticles,
+        span: f64,
+        force: &[Vec3],
+    ) -> Result<Vec<Vec3>, PartError> {
         let span = Ticks::from_seconds(span).unwrap();
         let window = Window {
             index: self.index,
@@ -152,7 +162,8 @@ impl Bench {
 const MASS: f64 = 4.0 / 3.0 * std::f64::consts::PI * 1.5625e-8 * 2500.0;
 
 #[test]
-fn the_impulse_of_a_force_is_exact_also_where_it_changes_and_the_window_is_no_whole_number_of_steps() {
+fn the_impulse_of_a_force_is_exact_also_where_it_changes_and_the_window_is_no_whole_number_of_steps()
+ {
     let mut bench = Bench::new();
     let still = (Vec3::repeat(0.05), Vec3::zeros());
     let setup = setup(contacts(Vec3::zeros()), &[still]);
@@ -164,7 +175,10 @@ fn the_impulse_of_a_force_is_exact_also_where_it_changes_and_the_window_is_no_wh
         expected += force * span;
         assert!((impulse[0] - force * span).norm() < 1e-15 * impulse[0].norm());
         let momentum = MASS * particles.fields().velocity[0];
-        assert!((momentum - expected).norm() < 1e-12 * expected.norm(), "{momentum} {expected}");
+        assert!(
+            (momentum - expected).norm() < 1e-12 * expected.norm(),
+            "{momentum} {expected}"
+        );
     }
 }
 
@@ -172,9 +186,14 @@ fn the_impulse_of_a_force_is_exact_also_where_it_changes_and_the_window_is_no_wh
 fn gravity_and_restitution_are_those_of_the_case() {
     let mut bench = Bench::new();
     let down = Vec3::new(0.0, 0.0, -0.5);
-    let setup = setup(contacts(Vec3::zeros()), &[(Vec3::new(0.05, 0.05, 0.004), down)]);
+    let setup = setup(
+        contacts(Vec3::zeros()),
+        &[(Vec3::new(0.05, 0.05, 0.004), down)],
+    );
     let mut particles = bench.launch(&setup, "a", None);
-    bench.window(&mut particles, 8e-3, &[Vec3::zeros()]).unwrap();
+    bench
+        .window(&mut particles, 8e-3, &[Vec3::zeros()])
+        .unwrap();
     let up = particles.fields().velocity[0].z;
     // Damping that may attract gives the stated restitution.
     assert!((up / 0.5 - 0.5).abs() < 0.005, "{up}");
@@ -184,13 +203,20 @@ fn gravity_and_restitution_are_those_of_the_case() {
     cut.law.attractive_damping = false;
     let setup = setup_with(cut, &setup);
     let mut particles = bench.launch(&setup, "b", None);
-    bench.window(&mut particles, 8e-3, &[Vec3::zeros()]).unwrap();
+    bench
+        .window(&mut particles, 8e-3, &[Vec3::zeros()])
+        .unwrap();
     let up = particles.fields().velocity[0].z;
     assert!((up / 0.5 - 0.55).abs() < 0.01, "{up}");
 
-    let free = self::setup(contacts(Vec3::new(0.0, 0.0, -9.81)), &[(Vec3::repeat(0.05), Vec3::zeros())]);
+    let free = self::setup(
+        contacts(Vec3::new(0.0, 0.0, -9.81)),
+        &[(Vec3::repeat(0.05), Vec3::zeros())],
+    );
     let mut particles = bench.launch(&free, "c", None);
-    bench.window(&mut particles, 1e-2, &[Vec3::zeros()]).unwrap();
+    bench
+        .window(&mut particles, 1e-2, &[Vec3::zeros()])
+        .unwrap();
     let speed = particles.fields().velocity[0].z;
     assert!((speed + 0.0981).abs() < 1e-12, "{speed}");
 }
@@ -224,7 +250,9 @@ fn particles_come_and_go_with_the_ids_they_are_given_and_the_others_do_not_notic
     let mut bench = Bench::new();
     let setup = heap();
     let mut particles = bench.launch(&setup, "a", None);
-    bench.window(&mut particles, 1e-3, &[Vec3::zeros(); 40]).unwrap();
+    bench
+        .window(&mut particles, 1e-3, &[Vec3::zeros(); 40])
+        .unwrap();
     let before: Vec<Vec3> = particles.fields().position.to_vec();
     let new = |id: u64, x: f64| NewParticle {
         id,
@@ -249,10 +277,18 @@ fn particles_come_and_go_with_the_ids_they_are_given_and_the_others_do_not_notic
     assert_eq!(fields.position[last], new(57, 0.02).position);
     assert_eq!(fields.velocity[last].z, -1.0 / 3.0);
     assert_eq!(fields.radius[last], 0.002);
-    assert!((fields.mass[last] / (4.0 / 3.0 * std::f64::consts::PI * 8e-9 * 2000.0) - 1.0).abs() < 1e-14);
+    assert!(
+        (fields.mass[last] / (4.0 / 3.0 * std::f64::consts::PI * 8e-9 * 2000.0) - 1.0).abs()
+            < 1e-14
+    );
     // A particle that went leaves a gap; the rest goes on as a heap at rest does.
     let forces = vec![Vec3::zeros(); 39];
     bench.window(&mut particles, 1e-3, &forces).unwrap();
+    let fall = particles.fields().velocity[38] - new(57, 0.02).velocity;
+    assert!(
+        (fall - Vec3::new(0.0, 0.0, -9.81e-3)).norm() < 1e-12,
+        "it falls: {fall}"
+    );
     let speeds = particles.fields().velocity[..30].iter().map(|v| v.norm());
     assert!(speeds.fold(0.0, f64::max) < 0.2);
     // All may be replaced, again and again.
@@ -263,7 +299,9 @@ fn particles_come_and_go_with_the_ids_they_are_given_and_the_others_do_not_notic
     };
     particles.change(&bench.supervisor, &change).unwrap();
     assert_eq!(particles.fields().id, [100]);
-    bench.window(&mut particles, 1e-3, &[Vec3::zeros()]).unwrap();
+    bench
+        .window(&mut particles, 1e-3, &[Vec3::zeros()])
+        .unwrap();
 }
 
 #[test]
@@ -291,7 +329,11 @@ fn after_a_checkpoint_the_resumed_run_takes_the_same_path_as_the_one_that_went_o
             bench.window(particles, 1e-3, &push).unwrap();
         }
         let fields = particles.fields();
-        (fields.position.to_vec(), fields.velocity.to_vec(), fields.angular_velocity.to_vec())
+        (
+            fields.position.to_vec(),
+            fields.velocity.to_vec(),
+            fields.angular_velocity.to_vec(),
+        )
     };
     let went_on = path(&mut bench, &mut particles);
     let mut resumed = bench.launch(&setup, "b", Some(checkpoint));
@@ -307,9 +349,15 @@ fn a_particle_that_leaves_is_named_with_the_place_where_it_was() {
     let calm = (Vec3::repeat(0.05), Vec3::zeros());
     let setup = setup(contacts(Vec3::zeros()), &[calm, fast]);
     let mut particles = bench.launch(&setup, "a", None);
-    let error = bench.window(&mut particles, 2e-2, &[Vec3::zeros(); 2]).unwrap_err().to_string();
+    let error = bench
+        .window(&mut particles, 2e-2, &[Vec3::zeros(); 2])
+        .unwrap_err()
+        .to_string();
     assert!(error.contains("particle 2"), "{error}");
-    assert!(error.contains("0.09") && error.contains("1 of 2 particles"), "{error}");
+    assert!(
+        error.contains("0.09") && error.contains("1 of 2 particles"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -334,7 +382,9 @@ fn a_turning_wall_of_triangles_drags_what_lies_on_it() {
     let sphere = (Vec3::new(0.06, 0.05, 0.0225), Vec3::zeros());
     let setup = setup(moving, &[sphere]);
     let mut particles = bench.launch(&setup, "a", None);
-    bench.window(&mut particles, 3e-2, &[Vec3::zeros()]).unwrap();
+    bench
+        .window(&mut particles, 3e-2, &[Vec3::zeros()])
+        .unwrap();
     let velocity = particles.fields().velocity[0];
     // It lies 10 mm off the axis: the plate passes below at 20 mm/s along y, and drags it.
     assert!(velocity.y > 1e-3 && velocity.y < 0.021, "{velocity}");

@@ -137,7 +137,8 @@ impl Gas for HeldGas {
         let heat: f64 = received.heat.iter().sum::<f64>() * span;
         let force: Vec3 = received.drag.iter().sum::<Vec3>() * self.window.span.motion.seconds();
         received.mass = Balance::default();
-        received.species = vec![Balance::default(); self.composition.len() / self.mesh.cells().max(1)];
+        received.species =
+            vec![Balance::default(); self.composition.len() / self.mesh.cells().max(1)];
         received.energy = reservoir(heat);
         received.momentum = [0, 1, 2].map(|axis| reservoir(force[axis]));
         Ok(Convergence {

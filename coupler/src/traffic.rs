@@ -215,7 +215,9 @@ impl Traffic {
     pub fn restore(&mut self, state: &StateFile) -> Result<(), StateFileError> {
         self.due = [
             state.f64s_of("traffic_feeds", self.feeds.len())?.to_vec(),
-            state.f64s_of("traffic_outlets", self.outlets.len())?.to_vec(),
+            state
+                .f64s_of("traffic_outlets", self.outlets.len())?
+                .to_vec(),
         ];
         let drawn = state.u64s("traffic_drawn")?;
         if drawn.len() != self.feeds.len() {
@@ -291,7 +293,9 @@ mod tests {
         fn stack(count: usize) -> Self {
             Self {
                 id: (1..=count as u64).collect(),
-                position: (0..count).map(|k| Vec3::new(0.05, 0.05, 0.01 * k as f64 + 0.005)).collect(),
+                position: (0..count)
+                    .map(|k| Vec3::new(0.05, 0.05, 0.01 * k as f64 + 0.005))
+                    .collect(),
                 zero: vec![Vec3::zeros(); count],
                 radius: vec![0.005; count],
                 mass: vec![1e-3; count],
@@ -347,8 +351,15 @@ mod tests {
             let trade = traffic.decide(moment(window), &bed.fields()).unwrap();
             for new in &trade.change.insert {
                 ids.push(new.id);
-                assert!((new.velocity.z + 0.5).abs() < 1e-15, "AF times faster on the motion clock");
-                assert!(bed.position.iter().all(|p| (p - new.position).norm() >= 0.01));
+                assert!(
+                    (new.velocity.z + 0.5).abs() < 1e-15,
+                    "AF times faster on the motion clock"
+                );
+                assert!(
+                    bed.position
+                        .iter()
+                        .all(|p| (p - new.position).norm() >= 0.01)
+                );
             }
         }
         // 40 particles a second for a second.
@@ -359,7 +370,14 @@ mod tests {
     fn a_batch_comes_before_the_first_window_and_a_resumed_feed_goes_on_alike() {
         let bed = Bed::stack(0);
         let mass = 4.0 / 3.0 * PI * 0.005f64.powi(3) * 2000.0;
-        let make = || Traffic::new(vec![feed(300.0 * mass, 20.0 * mass)], Vec::new(), Vec3::z(), 1);
+        let make = || {
+            Traffic::new(
+                vec![feed(300.0 * mass, 20.0 * mass)],
+                Vec::new(),
+                Vec3::z(),
+                1,
+            )
+        };
         let mut traffic = make();
         let first = traffic.decide(moment(0), &bed.fields()).unwrap();
         assert_eq!(first.change.insert.len(), 23);

@@ -285,7 +285,8 @@ mod tests {
     /// Glass of 2500 kg/m³, 5 GPa, 0.25 and a radius of 1 mm, at 1 m/s, evaluated apart.
     #[test]
     fn the_times_of_a_contact_are_those_of_rayleigh_and_hertz() {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/moving.toml");
+        let path =
+            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/moving.toml");
         let case = crate::case::read(&path, &[]).unwrap();
         let mesh = crate::case::mesh(&case.mesh).unwrap();
         let setup = crate::case::particles(&case).unwrap().setup;
@@ -296,7 +297,15 @@ mod tests {
         let limits = limits(&case, &motion, &mesh, &setup);
         // π 1e-3 √(2500/2e9)/(0.1631·0.25 + 0.8766) and 2.87 (m*²/(R* E*² v))^0.2 with
         // m* = 5.235988e-6 kg, R* = 0.5 mm, E* = 2.666667 GPa.
-        assert!((limits.rayleigh / 3.828_7e-6 - 1.0).abs() < 1e-4, "{}", limits.rayleigh);
-        assert!((limits.hertz / 1.719_1e-5 - 1.0).abs() < 1e-3, "{}", limits.hertz);
+        assert!(
+            (limits.rayleigh / 3.828_7e-6 - 1.0).abs() < 1e-4,
+            "{}",
+            limits.rayleigh
+        );
+        assert!(
+            (limits.hertz / 1.719_1e-5 - 1.0).abs() < 1e-3,
+            "{}",
+            limits.hertz
+        );
     }
 }

@@ -207,10 +207,14 @@ fn with_files(case: &Case) -> String {
         model::MeshSpec::Box { .. } | model::MeshSpec::Cylinder { .. } => Vec::new(),
     };
     let files: Vec<_> = places.chain(mesh).collect();
-    let triangles: Vec<_> = case.walls.iter().filter_map(|wall| match &wall.shape {
-        WallShape::Mesh { triangles } => Some(triangles),
-        _ => None,
-    }).collect();
+    let triangles: Vec<_> = case
+        .walls
+        .iter()
+        .filter_map(|wall| match &wall.shape {
+            WallShape::Mesh { triangles } => Some(triangles),
+            _ => None,
+        })
+        .collect();
     if files.is_empty() && triangles.is_empty() {
         return case.hash.clone();
     }

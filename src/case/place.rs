@@ -98,7 +98,11 @@ pub fn particles(case: &Case) -> Result<Placed, PlaceError> {
     if setup.id.is_empty() {
         return Err(PlaceError::Empty);
     }
-    if setup.velocity.iter().all(|velocity| *velocity == Vec3::zeros()) {
+    if setup
+        .velocity
+        .iter()
+        .all(|velocity| *velocity == Vec3::zeros())
+    {
         setup.velocity.clear();
     }
     match overlap::between_populations(setup) {

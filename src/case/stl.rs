@@ -57,7 +57,10 @@ pub fn read(path: &Path, scale: f64) -> Result<Vec<[Vec3; 3]>, StlError> {
 
 /// The triangles of a binary file: one whose length fits the number of triangles that it states.
 fn binary(bytes: &[u8]) -> Result<Option<Vec<[Vec3; 3]>>, StlError> {
-    let Some(count) = bytes.get(80..HEAD).and_then(|b| <[u8; 4]>::try_from(b).ok()) else {
+    let Some(count) = bytes
+        .get(80..HEAD)
+        .and_then(|b| <[u8; 4]>::try_from(b).ok())
+    else {
         return Ok(None);
     };
     let count = u32::from_le_bytes(count) as usize;
@@ -72,7 +75,9 @@ fn binary(bytes: &[u8]) -> Result<Option<Vec<[Vec3; 3]>>, StlError> {
     for (index, record) in bytes[HEAD..].chunks_exact(TRIANGLE).enumerate() {
         let values: Vec<f64> = record[12..48].chunks_exact(4).map(number).collect();
         if values.iter().any(|value| !value.is_finite()) {
-            return Err(StlError::NotFinite { triangle: index + 1 });
+            return Err(StlError::NotFinite {
+                triangle: index + 1,
+            });
         }
         let corner = |k: usize| Vec3::new(values[3 * k], values[3 * k + 1], values[3 * k + 2]);
         triangles.push([corner(0), corner(1), corner(2)]);
@@ -100,7 +105,10 @@ fn ascii(text: &str) -> Result<Vec<[Vec3; 3]>, StlError> {
         let corners = corners.len();
         return Err(StlError::Corners { corners });
     }
-    Ok(corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect())
+    Ok(corners
+        .chunks_exact(3)
+        .map(|c| [c[0], c[1], c[2]])
+        .collect())
 }
 
 #[cfg(test)]
@@ -114,7 +122,9 @@ mod tests {
                     vertex 0 2.5 0\n  endloop\n endfacet\nendsolid x\n";
         let mut raw = vec![0u8; 80];
         raw.extend(1u32.to_le_bytes());
-        for value in [0.0f32, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 2.5, 0.0] {
+        for value in [
+            0.0f32, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 2.5, 0.0,
+        ] {
             raw.extend(value.to_le_bytes());
         }
         raw.extend([0, 0]);
@@ -125,7 +135,10 @@ mod tests {
         assert_eq!(found, read(&b, 1e-3).unwrap());
         assert_eq!(found[0][2], Vec3::new(0.0, 2.5e-3, 0.0));
         std::fs::write(&a, text.replace("2.5", "nan")).unwrap();
-        assert_eq!(read(&a, 1.0).unwrap_err().to_string(), "has in line 6 no three finite coordinates");
+        assert_eq!(
+            read(&a, 1.0).unwrap_err().to_string(),
+            "has in line 6 no three finite coordinates"
+        );
         std::fs::write(&a, "solid\nendsolid\n").unwrap();
         assert!(read(&a, 1.0).is_err());
     }

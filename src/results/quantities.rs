@@ -1,8 +1,8 @@
 //! Quantities of interest: how each is measured at a moment, and its verdict.
 
-use calcine_coupler::physics::Vec3;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::observer::Moment;
+use calcine_coupler::physics::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::ResultsError;

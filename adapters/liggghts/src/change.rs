@@ -37,7 +37,8 @@ impl Change {
             match words[..] {
                 ["remove", id] => remove.push(id.parse().map_err(|_| refuse())?),
                 ["insert", id, kind, ref rest @ ..] => {
-                    let values: Result<Vec<f64>, _> = rest.iter().map(|word| word.parse()).collect();
+                    let values: Result<Vec<f64>, _> =
+                        rest.iter().map(|word| word.parse()).collect();
                     let values = values.map_err(|_| refuse())?;
                     insert.push(New {
                         id: id.parse().map_err(|_| refuse())?,
@@ -105,7 +106,12 @@ mod tests {
         let good = Change::parse("remove 7\ninsert 9 1 0 0 0.5 0 0 -1 1e-3 2500\n").unwrap();
         assert_eq!((good.remove[0], good.insert[0].id), (7, 9));
         assert_eq!(good.insert[0].values[2], 0.5);
-        for line in ["remove", "insert 9 1 0 0", "insert 9 1 0 0 0 0 0 0 x 1", "add 3"] {
+        for line in [
+            "remove",
+            "insert 9 1 0 0",
+            "insert 9 1 0 0 0 0 0 0 x 1",
+            "add 3",
+        ] {
             let error = Change::parse(line).err().unwrap().to_string();
             assert!(error.contains(line), "{error}");
         }

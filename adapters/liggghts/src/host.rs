@@ -20,6 +20,8 @@ const TICKS: f64 = 1e12;
 const GREETING: Duration = Duration::from_secs(30);
 /// Name of the restart file in a checkpoint's folder.
 const RESTART: &str = "liggghts.restart";
+/// How the lines of a script begin that make its groups by particles' types.
+const GROUPS: &str = "group calcine_";
 /// The fix that holds the pushed forces; the script of a moving bed makes it.
 const PUSH: &str = "calcine_push";
 /// LIGGGHTS' own log, in the script's folder; it ends where the windows begin.
@@ -202,12 +204,7 @@ impl Host {
 
     /// Has the forces act from the first half step on, and over the window's steps so much that their
     /// impulse is that over its span.
-    fn push(
-        &mut self,
-        force: &[[f64; 3]],
-        header: &Header,
-        steps: i64,
-    ) -> Result<(), HostError> {
+    fn push(&mut self, force: &[[f64; 3]], header: &Header, steps: i64) -> Result<(), HostError> {
         let step = self
             .liggghts
             .step()
@@ -241,6 +238,12 @@ impl Host {
     fn change(&mut self, text: &str) -> Result<(), HostError> {
         let change = Change::parse(text)?;
         self.particles = change.apply(&mut self.liggghts, self.particles)?;
+        // A group holds what was there when it was made: it is told again, and takes up who came.
+        for line in self.script()?.lines() {
+            if line.starts_with(GROUPS) {
+                self.liggghts.command(line);
+            }
+        }
         self.liggghts.command("run 0 post no");
         self.look()
     }
@@ -290,12 +293,7 @@ impl Host {
                 cause,
             })?;
         }
-        let script = &self.start.script;
-        let text = fs::read_to_string(script).map_err(|cause| HostError::File {
-            path: script.clone(),
-            cause,
-        })?;
-        for line in text.lines() {
+        for line in self.script()?.lines() {
             let reads = line.split_ascii_whitespace().next() == Some("read_data");
             if reads && restart.is_some() {
                 self.liggghts.command(&format!("read_restart {RESTART}"));
@@ -307,6 +305,14 @@ impl Host {
         // Each window would add its lines to the log.
         self.liggghts.command("log none");
         self.look()
+    }
+
+    fn script(&self) -> Result<String, HostError> {
+        let path = &self.start.script;
+        fs::read_to_string(path).map_err(|cause| HostError::File {
+            path: path.clone(),
+            cause,
+        })
     }
 
     /// Reads the particles; none may be lost.

@@ -304,7 +304,10 @@ impl Particles for LiggghtsParticles {
         }
         let largest = i32::MAX as u64;
         if let Some(new) = change.insert.iter().find(|new| new.id > largest) {
-            let message = format!("its ids end at {largest}, but a particle {} comes in", new.id);
+            let message = format!(
+                "its ids end at {largest}, but a particle {} comes in",
+                new.id
+            );
             return Err(self.solver.refuse(None, message));
         }
         let before = self.committed.id.len();

@@ -70,7 +70,9 @@ fn wall_refusal(wall: &Wall) -> Option<String> {
             "is a plane or a cylinder that moves"
         }
         WallShape::Plane { normal, .. } if !along(normal) => "is a plane across the axes",
-        WallShape::Cylinder { axis, .. } if axis.z.abs() != 1.0 => "is a cylinder that is not upright",
+        WallShape::Cylinder { axis, .. } if axis.z.abs() != 1.0 => {
+            "is a cylinder that is not upright"
+        }
         WallShape::Plane { .. } | WallShape::Cylinder { .. } => return None,
     };
     Some(format!(
@@ -83,7 +85,11 @@ pub fn commands(contacts: &Contacts) -> String {
     let mut text = String::new();
     properties(&mut text, contacts);
     let model = model(contacts);
-    let _ = writeln!(text, "pair_style gran {model}{}\npair_coeff * *", settings(contacts));
+    let _ = writeln!(
+        text,
+        "pair_style gran {model}{}\npair_coeff * *",
+        settings(contacts)
+    );
     groups(&mut text, contacts);
     let gravity = contacts.gravity.norm();
     if gravity > 0.0 {
@@ -126,7 +132,10 @@ fn properties(text: &mut String, contacts: &Contacts) {
     let mut scalar = |name: &str, value: &dyn Fn(usize) -> f64| {
         let values: Vec<String> = types.iter().map(|&of| format!("{:e}", value(of))).collect();
         let values = values.join(" ");
-        let _ = writeln!(text, "fix {name} all property/global {name} peratomtype {values}");
+        let _ = writeln!(
+            text,
+            "fix {name} all property/global {name} peratomtype {values}"
+        );
     };
     scalar("youngsModulus", &|of| contacts.materials[of].young);
     scalar("poissonsRatio", &|of| contacts.materials[of].poisson);
@@ -149,7 +158,9 @@ fn properties(text: &mut String, contacts: &Contacts) {
         pairs("coefficientRollingFriction", &|pair| pair.rolling_friction);
     }
     if contacts.law.rolling == Rolling::ElasticPlastic {
-        pairs("coefficientRollingViscousDamping", &|pair| pair.rolling_damping);
+        pairs("coefficientRollingViscousDamping", &|pair| {
+            pair.rolling_damping
+        });
     }
     if contacts.law.cohesion == Cohesion::Sjkr {
         pairs("cohesionEnergyDensity", &|pair| pair.cohesion_energy);
@@ -227,7 +238,11 @@ fn stl(name: &str, triangles: &[[Vec3; 3]]) -> String {
     for [a, b, c] in triangles {
         let normal = (b - a).cross(&(c - a));
         let normal = normal.try_normalize(0.0).unwrap_or(Vec3::z());
-        let _ = writeln!(text, "facet normal {:e} {:e} {:e}\nouter loop", normal.x, normal.y, normal.z);
+        let _ = writeln!(
+            text,
+            "facet normal {:e} {:e} {:e}\nouter loop",
+            normal.x, normal.y, normal.z
+        );
         for corner in [a, b, c] {
             let _ = writeln!(text, "vertex {:e} {:e} {:e}", corner.x, corner.y, corner.z);
         }

@@ -58,7 +58,8 @@ impl Network {
     /// Particles that go, by their rows in ascending order, and come; all contacts are forgotten.
     pub fn change(&mut self, gone: &[usize], new: &[Newcomer]) {
         without(&mut self.conductivity, gone);
-        self.conductivity.extend(new.iter().map(|one| one.conductivity));
+        self.conductivity
+            .extend(new.iter().map(|one| one.conductivity));
         self.heat = vec![0.0; self.conductivity.len()];
         self.bonds.clear();
     }

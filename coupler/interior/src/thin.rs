@@ -2,8 +2,8 @@
 
 use calcine_physics::solid::HeatCapacity;
 
-use crate::{Newcomer, ParticleModel, without};
 use crate::network::{Network, Touch};
+use crate::{Newcomer, ParticleModel, without};
 
 /// Particles of uniform temperature: m dh(T)/dτ = Q, h the enthalpy of the material. Good for Biot
 /// numbers below about 0.1.

@@ -159,9 +159,19 @@ impl Run<'_> {
             self.parts.interior.committed_temperature(),
         );
         state.set_f64s("particle_heat", &self.work.exchange.heat);
-        let other: Vec<f64> = self.work.other.iter().flat_map(|f| f.iter().copied()).collect();
+        let other: Vec<f64> = self
+            .work
+            .other
+            .iter()
+            .flat_map(|f| f.iter().copied())
+            .collect();
         state.set_f64s("particle_other_force", &other);
-        let moved: Vec<f64> = self.ledger.traffic.iter().flat_map(Moved::numbers).collect();
+        let moved: Vec<f64> = self
+            .ledger
+            .traffic
+            .iter()
+            .flat_map(Moved::numbers)
+            .collect();
         state.set_f64s("traffic_moved", &moved);
         self.plan.traffic.record(&mut state);
         self.record_identity(&mut state);

@@ -24,10 +24,10 @@ use crate::ledger::{Ledger, Line};
 use crate::mapping::{Mapper, MappingError, Method};
 use crate::mesh::Mesh;
 use crate::observer::{Moment, Observer, ObserverError, Timing};
+use crate::packing::PackingError;
 use crate::part::{Bed, CellReceived, Convergence, Gas, ParticlePush, ParticleReceived, Particles};
 use crate::smoother::{Operator, Smoother, SmootherError};
 use crate::supervisor::Supervisor;
-use crate::packing::PackingError;
 use crate::time::{Acceleration, Clocks, GasStorage, Ticks, TimeError};
 use crate::traffic::Traffic;
 

@@ -14,7 +14,8 @@ impl Workspace {
         let moves = |&of: &u32| free.get(of as usize).copied().unwrap_or(false);
         self.free.extend(particles.population.iter().map(moves));
         self.other.clear();
-        self.other.extend(particles.mass.iter().map(|mass| *mass * gravity));
+        self.other
+            .extend(particles.mass.iter().map(|mass| *mass * gravity));
     }
 }
 

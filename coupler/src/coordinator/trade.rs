@@ -80,7 +80,12 @@ impl Run<'_> {
             work.other.push(fields.mass[row] * self.plan.gravity);
         }
         debug_assert!(work.other.len() == fields.len() && work.free.len() == fields.len());
-        debug_assert!(self.work.other.iter().all(|force: &Vec3| force.norm().is_finite()));
+        debug_assert!(
+            self.work
+                .other
+                .iter()
+                .all(|force: &Vec3| force.norm().is_finite())
+        );
         Ok(())
     }
 }

@@ -2,13 +2,12 @@
 
 use calcine_coupler::motion::{Cohesion, ContactForce, ContactLaw, Rolling, Wall};
 
-use crate::case::model::{
-    Contact, FreeMotion, Material, Motion, MotionKind, Population, Time,
-};
+use crate::case::model::{Contact, FreeMotion, Material, Motion, MotionKind, Population, Time};
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
 
-const EXAMPLE: &str = "[motion] with kind = \"real-time\" and contact = { law = \"hertz-mindlin\" }";
+const EXAMPLE: &str =
+    "[motion] with kind = \"real-time\" and contact = { law = \"hertz-mindlin\" }";
 
 /// The laws that `contact.law` chooses from.
 #[derive(Clone, Copy)]
@@ -71,7 +70,11 @@ fn force(section: &Reader<'_>) -> Option<ContactForce> {
     }
     if law.is_some() && !linear && table.has("characteristic_speed") {
         let help = "remove it: only the linear law derives its stiffness from a speed";
-        table.fail("characteristic_speed", "belongs to the law \"linear\"", help);
+        table.fail(
+            "characteristic_speed",
+            "belongs to the law \"linear\"",
+            help,
+        );
     }
     table.finish();
     Some(match law? {
@@ -117,7 +120,11 @@ pub(super) fn fits(
     let window = time.motion_window.seconds();
     if let Some(step) = motion.step.filter(|step| *step > window) {
         let rule = format!("is {step} s, longer than the window of {window} s");
-        section.fail("motion_step", rule, "lower it, or raise `time.motion_window`");
+        section.fail(
+            "motion_step",
+            rule,
+            "lower it, or raise `time.motion_window`",
+        );
     }
 }
 
@@ -141,9 +148,15 @@ pub(super) fn need_properties(root: &Reader<'_>, meeting: &Meeting<'_>) {
         walls,
     } = meeting;
     let free = |population: &&Population| population.motion == Motion::Free;
-    let movers: Vec<usize> = particles.iter().filter(free).map(|one| one.material).collect();
+    let movers: Vec<usize> = particles
+        .iter()
+        .filter(free)
+        .map(|one| one.material)
+        .collect();
     let others = particles.iter().map(|one| one.material);
-    let mut all: Vec<usize> = others.chain(walls.iter().map(|wall| wall.material)).collect();
+    let mut all: Vec<usize> = others
+        .chain(walls.iter().map(|wall| wall.material))
+        .collect();
     all.sort_unstable();
     all.dedup();
     if movers.is_empty() {
@@ -176,9 +189,12 @@ pub(super) fn need_properties(root: &Reader<'_>, meeting: &Meeting<'_>) {
     let tables = root.tables("contacts");
     for pair in pairs {
         let [a, b] = pair.map(|index| materials[index].name.as_str());
-        let found = contacts.iter().position(|contact| same(contact.between, pair));
+        let found = contacts
+            .iter()
+            .position(|contact| same(contact.between, pair));
         let Some(at) = found else {
-            let rule = format!("has no entry between \"{a}\" and \"{b}\", whose particles may touch");
+            let rule =
+                format!("has no entry between \"{a}\" and \"{b}\", whose particles may touch");
             let help = format!(
                 "add [[contacts]] with between = [\"{a}\", \"{b}\"], restitution and friction"
             );
@@ -207,9 +223,8 @@ pub(super) fn need_properties(root: &Reader<'_>, meeting: &Meeting<'_>) {
         ];
         for (key, value, needed) in wanted {
             if let (true, None, Some(table)) = (needed, value, tables.get(at)) {
-                let rule = format!(
-                    "has no `{key}`, which the contact of \"{a}\" and \"{b}\" needs"
-                );
+                let rule =
+                    format!("has no `{key}`, which the contact of \"{a}\" and \"{b}\" needs");
                 table.fail_whole(&rule, &format!("add {key}, or choose a law without it"));
             }
         }

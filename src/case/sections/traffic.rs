@@ -20,7 +20,10 @@ fn region(table: &Reader<'_>) -> Option<Zone> {
 
 pub(super) fn feeds(root: &Reader<'_>, particles: Option<&[Population]>) -> Vec<FeedSpec> {
     let tables = root.tables("feeds");
-    tables.iter().filter_map(|table| feed(table, particles)).collect()
+    tables
+        .iter()
+        .filter_map(|table| feed(table, particles))
+        .collect()
 }
 
 fn feed(table: &Reader<'_>, particles: Option<&[Population]>) -> Option<FeedSpec> {

@@ -23,15 +23,17 @@ pub(super) fn walls(
     let mut all: Vec<Wall> = Vec::new();
     for table in root.tables("walls") {
         let name = table.required_text("name", "\"container\"");
-        let material = table.required_text("material", "\"steel\"").and_then(|name| {
-            let found = materials.iter().position(|one| one.name == name);
-            if found.is_none() {
-                let known: Vec<&str> = materials.iter().map(|one| one.name.as_str()).collect();
-                let help = format!("the materials are {}", known.join(", "));
-                table.fail("material", format!("is \"{name}\""), help);
-            }
-            found
-        });
+        let material = table
+            .required_text("material", "\"steel\"")
+            .and_then(|name| {
+                let found = materials.iter().position(|one| one.name == name);
+                if found.is_none() {
+                    let known: Vec<&str> = materials.iter().map(|one| one.name.as_str()).collect();
+                    let help = format!("the materials are {}", known.join(", "));
+                    table.fail("material", format!("is \"{name}\""), help);
+                }
+                found
+            });
         let shapes = shapes(&table, mesh, folder);
         let motion = motion(&table);
         table.finish();
@@ -79,7 +81,11 @@ fn shapes(
             match stl::read(&path, scale.unwrap_or(1.0)) {
                 Ok(triangles) => Some(vec![("", WallShape::Mesh { triangles })]),
                 Err(error) => {
-                    table.fail("stl", error.to_string(), "name an STL file, ASCII or binary");
+                    table.fail(
+                        "stl",
+                        error.to_string(),
+                        "name an STL file, ASCII or binary",
+                    );
                     None
                 }
             }
@@ -88,7 +94,10 @@ fn shapes(
         _ => {
             let help = "for example patches = [\"side\", \"bottom\"], or plane = { point = \"0 0 0 m\", \
                         normal = \"0 0 1\" }";
-            table.fail_whole("needs exactly one of plane, cylinder, cone, stl and patches", help);
+            table.fail_whole(
+                "needs exactly one of plane, cylinder, cone, stl and patches",
+                help,
+            );
             None
         }
     }
@@ -162,10 +171,16 @@ fn of_mesh(table: &Reader<'_>, mesh: Option<&MeshSpec>) -> Option<Vec<(&'static 
         known.sort_unstable();
         known.dedup();
         let rule = format!("names \"{name}\", which is no patch of the mesh");
-        table.fail("patches", rule, format!("its patches are {}", known.join(", ")));
+        table.fail(
+            "patches",
+            rule,
+            format!("its patches are {}", known.join(", ")),
+        );
         return None;
     }
-    let chosen = parts.into_iter().filter(|(patch, ..)| wanted.contains(patch));
+    let chosen = parts
+        .into_iter()
+        .filter(|(patch, ..)| wanted.contains(patch));
     Some(chosen.map(|(_, part, shape)| (part, shape)).collect())
 }
 
@@ -184,7 +199,11 @@ fn parts(mesh: &MeshSpec) -> Vec<(String, &'static str, WallShape)> {
             let side = |index: usize| {
                 let mut inward = Vec3::zeros();
                 inward[index / 2] = if index % 2 == 0 { 1.0 } else { -1.0 };
-                let corner = if index % 2 == 0 { *origin } else { origin + size };
+                let corner = if index % 2 == 0 {
+                    *origin
+                } else {
+                    origin + size
+                };
                 (patches[index].clone(), names[index], plane(corner, inward))
             };
             (0..6).map(side).collect()
@@ -213,7 +232,9 @@ fn parts(mesh: &MeshSpec) -> Vec<(String, &'static str, WallShape)> {
 }
 
 fn motion(table: &Reader<'_>) -> WallMotion {
-    let translating = table.vector("velocity", Dimension::VELOCITY).map(Vec3::from);
+    let translating = table
+        .vector("velocity", Dimension::VELOCITY)
+        .map(Vec3::from);
     let rotating = table.table("rotating").and_then(|rotating| {
         let point = rotating.required_vector("point", Dimension::LENGTH);
         let speed = rotating.required_vector("angular_velocity", Dimension::ANGULAR_VELOCITY);
