@@ -4,6 +4,7 @@
 mod grains;
 
 use calcine_coupler::motion::{Contacts, WallMotion, WallShape};
+use calcine_coupler::part::Particles;
 use calcine_coupler::physics::Vec3;
 use grains::*;
 

@@ -83,8 +83,17 @@ pub fn evaluate<L: ContactLaw, const BUDGET: bool>(
     let before = if BUDGET { *shift } else { Vec3::zeros() };
     let mut moved = *shift + slip * step;
     moved -= moved.dot(&normal) * normal;
-    let tangential = friction::<L>(moved, slip, &springs, pair.friction * push.abs());
+    let limit = pair.friction * push.abs();
+    let mut tangential = friction::<L>(moved, slip, &springs, limit);
     *shift = tangential.shift;
+    // An evaluation that only looks must not take a contact that slides for one that sticks: rounding
+    // decides which, and the dashpot is not limited.
+    if step == 0.0 {
+        let force = tangential.force.norm();
+        if force > limit {
+            tangential.force *= limit / force;
+        }
+    }
     let rolling = match rules.rolling {
         Rolling::None => Vec3::zeros(),
         Rolling::ConstantTorque => constant_torque(
