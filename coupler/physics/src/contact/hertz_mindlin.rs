@@ -36,13 +36,13 @@ impl ContactLaw for HertzMindlin {
         let normal = 2.0 * pair.young * contact_radius;
         let tangential = 8.0 * pair.shear * contact_radius;
         let elastic = 2.0 / 3.0 * normal * overlap;
-        // √(k_t/S_n) is a constant of the pair, but its root is cheaper than another number to load.
+        let damping = DAMPING * pair.damping * (normal * mass).sqrt();
         Springs {
             elastic,
             energy: 0.4 * elastic * overlap,
-            normal_damping: DAMPING * pair.damping * (normal * mass).sqrt(),
+            normal_damping: damping,
             tangential_stiffness: tangential,
-            tangential_damping: DAMPING * pair.damping * (tangential * mass).sqrt(),
+            tangential_damping: pair.stiffness_root * damping,
         }
     }
 }

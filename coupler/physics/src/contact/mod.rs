@@ -25,6 +25,8 @@ pub struct PairConstants {
     pub young: f64,
     /// Effective shear modulus G* in Pa, 1/G* = 2(2 − ν₁)(1 + ν₁)/E₁ + 2(2 − ν₂)(1 + ν₂)/E₂.
     pub shear: f64,
+    /// √(k_t/S_n) = √(4 G*/E*) of Hertz' and Mindlin's springs.
+    pub stiffness_root: f64,
     /// Damping ratio β = −ln e/√(ln² e + π²) of the restitution e; 0 for e = 1.
     pub damping: f64,
     /// Coefficient of sliding friction.
@@ -45,9 +47,11 @@ impl PairConstants {
         let normal = |i: usize| (1.0 - poisson[i] * poisson[i]) / young[i];
         let shear = |i: usize| 2.0 * (2.0 - poisson[i]) * (1.0 + poisson[i]) / young[i];
         let log = restitution.ln();
+        let (young, shear) = (1.0 / (normal(0) + normal(1)), 1.0 / (shear(0) + shear(1)));
         Self {
-            young: 1.0 / (normal(0) + normal(1)),
-            shear: 1.0 / (shear(0) + shear(1)),
+            young,
+            shear,
+            stiffness_root: (4.0 * shear / young).sqrt(),
             damping: -log / (log * log + std::f64::consts::PI.powi(2)).sqrt(),
             friction: 0.0,
             rolling_friction: 0.0,

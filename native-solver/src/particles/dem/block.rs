@@ -179,13 +179,16 @@ fn meet(rules: &Rules, a: &Place, b: &Place, va: &Moves, vb: &Moves) -> (Meeting
     let sum = a.radius + b.radius;
     let overlap = sum - distance;
     let arms = [a.radius - 0.5 * overlap, b.radius - 0.5 * overlap];
-    let radius = a.radius * b.radius / sum;
+    // R* = r₁r₂/(r₁ + r₂) and m* = 1/(1/m₁ + 1/m₂) by one division.
+    let inverse = va.inverse_mass + vb.inverse_mass;
+    let share = 1.0 / (sum * inverse);
+    let radius = a.radius * b.radius * inverse * share;
     let moment = |place: &Place, moves: &Moves| moves.inverse_mass / (place.radius * place.radius);
     let meeting = Meeting {
-        normal: between / distance,
+        normal: between * (1.0 / distance),
         overlap,
         radius,
-        mass: 1.0 / (va.inverse_mass + vb.inverse_mass),
+        mass: sum * share,
         velocity: va.velocity - vb.velocity,
         turning: arms[0] * va.spin + arms[1] * vb.spin,
         rotation: va.spin - vb.spin,
