@@ -1,10 +1,12 @@
 //! A block of neighbouring particles with the contacts that it owns.
 
+use calcine_coupler::motion::Rolling;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{Area, ContactLaw};
 
 use super::contact::{History, Meeting, evaluate};
 use super::energy::Budget;
+use super::lanes;
 use super::rules::Rules;
 use super::sphere::{Load, Moves, Place, Spheres};
 use super::walls::WallBody;
@@ -80,25 +82,59 @@ impl Block {
         scene: &Scene<'_, L>,
         outgoing: &mut [Load],
     ) {
+        let held = std::mem::take(&mut self.budget.elastic_tangential);
         self.budget.elastic_normal = 0.0;
-        self.budget.elastic_tangential = 0.0;
         self.load.fill(Load::default());
         self.walls
             .evaluate::<L, BUDGET>(scene, self.begin, &mut self.load, &mut self.budget);
-        let begin = self.begin;
-        let (load, budget) = (&mut self.load, &mut self.budget);
-        let touching = &mut self.touching;
-        let found = touching_of(&self.inner.pair, &scene.spheres.place, touching);
-        pairs::<L, BUDGET>(scene, &mut self.inner, &touching[..found], budget, |[i, j], one, other, _| {
+        let Self {
+            begin,
+            inner,
+            cross,
+            load,
+            touching,
+            budget,
+            ..
+        } = self;
+        let begin = *begin;
+        let into_block = |load: &mut [Load], [i, j]: [usize; 2], one: Load, other: Load| {
             load[i - begin].add(&one);
             load[j - begin].add(&other);
-        });
+        };
         outgoing.fill(Load::default());
-        let found = touching_of(&self.cross.pair, &scene.spheres.place, touching);
-        pairs::<L, BUDGET>(scene, &mut self.cross, &touching[..found], budget, |[i, _], one, other, slot| {
+        // Counting energies, rolling, cohesion and looks without a step go one by one.
+        let plain = !BUDGET
+            && !L::FORGETS_ON_SLIP
+            && !scene.rules.cohesion
+            && scene.rules.rolling == Rolling::None
+            && scene.step > 0.0;
+        if plain {
+            pulp::Arch::new().dispatch(
+                #[inline(always)]
+                || {
+                    let found = touching_of(&inner.pair, &scene.spheres.place, touching);
+                    lanes::pairs(scene, inner, &touching[..found], |pair, one, other, _| {
+                        into_block(load, pair, one, other);
+                    });
+                    let found = touching_of(&cross.pair, &scene.spheres.place, touching);
+                    lanes::pairs(scene, cross, &touching[..found], |[i, _], one, other, slot| {
+                        load[i - begin].add(&one);
+                        outgoing[slot] = other;
+                    });
+                },
+            );
+            return;
+        }
+        let found = touching_of(&inner.pair, &scene.spheres.place, touching);
+        pairs::<L, BUDGET>(scene, inner, &touching[..found], budget, |pair, one, other, _| {
+            into_block(load, pair, one, other);
+        });
+        let found = touching_of(&cross.pair, &scene.spheres.place, touching);
+        pairs::<L, BUDGET>(scene, cross, &touching[..found], budget, |[i, _], one, other, slot| {
             load[i - begin].add(&one);
             outgoing[slot] = other;
         });
+        budget.lost_tangential += held - budget.elastic_tangential;
     }
 
     /// Takes up the loads that other blocks left for this one's particles.
@@ -110,6 +146,7 @@ impl Block {
 }
 
 /// Lists the candidates that touch, without a branch that could be guessed wrong; returns their number.
+#[inline(always)]
 fn touching_of(pairs: &[[u32; 2]], place: &[Place], touching: &mut [u32]) -> usize {
     let mut found = 0;
     for (k, &[i, j]) in pairs.iter().enumerate() {
@@ -194,7 +231,7 @@ fn meet(rules: &Rules, a: &Place, b: &Place, va: &Moves, vb: &Moves) -> (Meeting
         rotation: va.spin - vb.spin,
         rolling_radius: radius,
         inertia: match rules.rolling {
-            calcine_coupler::motion::Rolling::ElasticPlastic => {
+            Rolling::ElasticPlastic => {
                 1.4 / (moment(a, va) + moment(b, vb))
             }
             _ => 0.0,

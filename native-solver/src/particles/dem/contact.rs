@@ -72,7 +72,7 @@ pub fn evaluate<L: ContactLaw, const BUDGET: bool>(
     if !rules.attractive && push < 0.0 {
         push = 0.0;
     }
-    let mut lost_normal = (springs.elastic - push) * approach;
+    let damped = push;
     let mut stored = springs.energy;
     if rules.cohesion {
         let (pull, energy) = sjkr(pair, meeting.area);
@@ -80,7 +80,6 @@ pub fn evaluate<L: ContactLaw, const BUDGET: bool>(
         stored += energy;
     }
     let slip = meeting.velocity - approach * normal - meeting.turning.cross(&normal);
-    let before = if BUDGET { *shift } else { Vec3::zeros() };
     let mut moved = *shift + slip * step;
     moved -= moved.dot(&normal) * normal;
     let limit = pair.friction * push.abs();
@@ -115,13 +114,11 @@ pub fn evaluate<L: ContactLaw, const BUDGET: bool>(
         }
     };
     if BUDGET {
-        let held = 0.5 * springs.tangential_stiffness * shift.norm_squared();
-        let held_before = 0.5 * springs.tangential_stiffness * before.norm_squared();
-        lost_normal *= step;
         budget.elastic_normal += stored;
-        budget.elastic_tangential += held;
-        budget.lost_normal += lost_normal;
-        budget.lost_tangential -= tangential.force.dot(&slip) * step + (held - held_before);
+        budget.elastic_tangential += 0.5 * springs.tangential_stiffness * shift.norm_squared();
+        budget.lost_normal += (springs.elastic - damped) * approach * step;
+        // The block takes off what its springs hold more than before.
+        budget.lost_tangential -= tangential.force.dot(&slip) * step;
         budget.lost_rolling -= rolling.dot(&meeting.rotation) * step;
     }
     Outcome {

@@ -11,6 +11,7 @@ mod contact;
 mod engine;
 pub mod energy;
 mod grid;
+mod lanes;
 mod motion;
 mod rebuild;
 mod rules;
