@@ -97,10 +97,6 @@ impl Block {
             ..
         } = self;
         let begin = *begin;
-        let into_block = |load: &mut [Load], [i, j]: [usize; 2], one: Load, other: Load| {
-            load[i - begin].add(&one);
-            load[j - begin].add(&other);
-        };
         outgoing.fill(Load::default());
         // Counting energies, rolling, cohesion and looks without a step go one by one.
         let plain = !BUDGET
@@ -109,25 +105,20 @@ impl Block {
             && scene.rules.rolling == Rolling::None
             && scene.step > 0.0;
         if plain {
-            pulp::Arch::new().dispatch(
-                #[inline(always)]
-                || {
-                    let found = touching_of(&inner.pair, &scene.spheres.place, touching);
-                    lanes::pairs(scene, inner, &touching[..found], |pair, one, other, _| {
-                        into_block(load, pair, one, other);
-                    });
-                    let found = touching_of(&cross.pair, &scene.spheres.place, touching);
-                    lanes::pairs(scene, cross, &touching[..found], |[i, _], one, other, slot| {
-                        load[i - begin].add(&one);
-                        outgoing[slot] = other;
-                    });
-                },
-            );
+            pulp::Arch::new().dispatch(Plain {
+                scene,
+                begin,
+                lists: [inner, cross],
+                touching,
+                load,
+                outgoing,
+            });
             return;
         }
         let found = touching_of(&inner.pair, &scene.spheres.place, touching);
-        pairs::<L, BUDGET>(scene, inner, &touching[..found], budget, |pair, one, other, _| {
-            into_block(load, pair, one, other);
+        pairs::<L, BUDGET>(scene, inner, &touching[..found], budget, |[i, j], one, other, _| {
+            load[i - begin].add(&one);
+            load[j - begin].add(&other);
         });
         let found = touching_of(&cross.pair, &scene.spheres.place, touching);
         pairs::<L, BUDGET>(scene, cross, &touching[..found], budget, |[i, _], one, other, slot| {
@@ -142,6 +133,54 @@ impl Block {
         for &[block, slot, particle] in &self.incoming {
             self.load[particle as usize].add(&outgoing[block as usize][slot as usize]);
         }
+    }
+}
+
+/// The work of a block where its contacts are plain, compiled for each set of vector instructions.
+struct Plain<'a, 'b, L> {
+    scene: &'a Scene<'b, L>,
+    begin: usize,
+    lists: [&'a mut Candidates; 2],
+    touching: &'a mut [u32],
+    load: &'a mut [Load],
+    outgoing: &'a mut [Load],
+}
+
+impl<L: ContactLaw> pulp::WithSimd for Plain<'_, '_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self {
+            scene,
+            begin,
+            lists: [inner, cross],
+            touching,
+            load,
+            outgoing,
+        } = self;
+        let found = touching_of(&inner.pair, &scene.spheres.place, touching);
+        lanes::pairs(
+            scene,
+            inner,
+            &touching[..found],
+            #[inline(always)]
+            |[i, j], one, other, _| {
+                load[i - begin].add(&one);
+                load[j - begin].add(&other);
+            },
+        );
+        let found = touching_of(&cross.pair, &scene.spheres.place, touching);
+        lanes::pairs(
+            scene,
+            cross,
+            &touching[..found],
+            #[inline(always)]
+            |[i, _], one, other, slot| {
+                load[i - begin].add(&one);
+                outgoing[slot] = other;
+            },
+        );
     }
 }
 
