@@ -48,7 +48,9 @@ fn main() {
         "| {:>9} | {:<22} | {:>7} | {:>9} | {:>9} | {:>13} | {:>6} |",
         "particles", "solver", "threads", "CPU s", "wall s", "per CPU-s", "ratio"
     );
-    println!("|----------:|------------------------|--------:|----------:|----------:|--------------:|-------:|");
+    println!(
+        "|----------:|------------------------|--------:|----------:|----------:|--------------:|-------:|"
+    );
     for (count, across, steps) in sizes {
         let width = across * 2.0 * RADIUS;
         let bed = settled(count, width);
@@ -70,7 +72,11 @@ fn main() {
         }
         let reference = best[0].or(best[1]).unwrap();
         let solvers = ["LIGGGHTS 3.8", "native", "native"];
-        for ((solver, threads), time) in solvers.iter().zip([1, 1, rayon::current_num_threads()]).zip(best) {
+        for ((solver, threads), time) in solvers
+            .iter()
+            .zip([1, 1, rayon::current_num_threads()])
+            .zip(best)
+        {
             if let Some(time) = time {
                 row(count, solver, threads, time, steps, reference);
             }
@@ -151,7 +157,10 @@ fn settled(count: usize, width: f64) -> Vec<NewParticle> {
 }
 
 fn native(bed: &[NewParticle], width: f64, threads: usize, steps: u64) -> Times {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .unwrap();
     pool.install(|| {
         let mut bed = Bed::new(rules(width), bed);
         bed.run(WARM);
@@ -175,7 +184,16 @@ fn liggghts(bed: &[NewParticle], width: f64, steps: u64) -> Option<Times> {
     );
     for one in bed {
         let p = one.position;
-        writeln!(data, "{} 1 {} 2500 {} {} {}", one.id, 2.0 * RADIUS, p.x, p.y, p.z).unwrap();
+        writeln!(
+            data,
+            "{} 1 {} 2500 {} {} {}",
+            one.id,
+            2.0 * RADIUS,
+            p.x,
+            p.y,
+            p.z
+        )
+        .unwrap();
     }
     data.push_str("\nVelocities\n\n");
     for one in bed {
@@ -188,7 +206,11 @@ fn liggghts(bed: &[NewParticle], width: f64, steps: u64) -> Option<Times> {
         let (cpu, wall) = (used(true), Instant::now());
         let mut command = Command::new("liggghts");
         command.args(["-in", "in.bed", "-log", "log.bed", "-screen", "none"]);
-        let status = command.current_dir(&folder).stdout(Stdio::null()).status().ok()?;
+        let status = command
+            .current_dir(&folder)
+            .stdout(Stdio::null())
+            .status()
+            .ok()?;
         assert!(status.success(), "see {}", folder.join("log.bed").display());
         Some([used(true) - cpu, wall.elapsed().as_secs_f64()])
     };
@@ -216,7 +238,11 @@ fn script(width: f64, steps: u64) -> String {
         ("w4", "yplane", width),
         ("w5", "zplane", 0.0),
     ] {
-        writeln!(script, "fix {name} all wall/gran {model} primitive type 1 {axis} {at}").unwrap();
+        writeln!(
+            script,
+            "fix {name} all wall/gran {model} primitive type 1 {axis} {at}"
+        )
+        .unwrap();
     }
     writeln!(
         script,
@@ -233,7 +259,10 @@ fn used(children: bool) -> f64 {
     let fields: Vec<&str> = after.split_whitespace().collect();
     // utime, stime, cutime, cstime are fields 14 to 17 of proc(5); the third is the first after the name.
     let first = if children { 13 } else { 11 };
-    let ticks: f64 = fields[first..first + 2].iter().map(|word| word.parse::<f64>().unwrap()).sum();
+    let ticks: f64 = fields[first..first + 2]
+        .iter()
+        .map(|word| word.parse::<f64>().unwrap())
+        .sum();
     ticks / 100.0
 }
 

@@ -5,7 +5,9 @@ mod grains;
 
 use std::f64::consts::PI;
 
-use calcine_coupler::motion::{Change, Cohesion, ContactForce, Contacts, Rolling, WallMotion, WallShape};
+use calcine_coupler::motion::{
+    Change, Cohesion, ContactForce, Contacts, Rolling, WallMotion, WallShape,
+};
 use calcine_coupler::part::{Part, Particles};
 use calcine_coupler::physics::Vec3;
 use grains::*;
@@ -86,18 +88,29 @@ fn spheres_settle_in_a_cylinder_to_the_void_fraction_of_a_random_bed() {
     // Volume within a core: a diameter from the wall, two above the floor and below the top.
     let mut heights: Vec<f64> = fields.position.iter().map(|place| place.z).collect();
     heights.sort_by(f64::total_cmp);
-    let (low, high, core) = (4.0 * radius, heights[count - 40] - 4.0 * radius, 0.02 - 2.0 * radius);
+    let (low, high, core) = (
+        4.0 * radius,
+        heights[count - 40] - 4.0 * radius,
+        0.02 - 2.0 * radius,
+    );
     let mut next = scatter(3);
     let points = 40_000;
     let mut inside = 0;
     for _ in 0..points {
         let (angle, out) = (2.0 * PI * next(), core * next().sqrt());
-        let point = Vec3::new(out * angle.cos(), out * angle.sin(), low + (high - low) * next());
+        let point = Vec3::new(
+            out * angle.cos(),
+            out * angle.sin(),
+            low + (high - low) * next(),
+        );
         let near = |place: &Vec3| (place - point).norm_squared() < radius * radius;
         inside += u32::from(fields.position.iter().any(near));
     }
     let void = 1.0 - f64::from(inside) / f64::from(points);
-    assert!((0.38..0.42).contains(&void), "{void}, {count} spheres up to {high} m");
+    assert!(
+        (0.38..0.42).contains(&void),
+        "{void}, {count} spheres up to {high} m"
+    );
 }
 
 #[test]
@@ -177,7 +190,10 @@ fn drum(rolling: Rolling, force: ContactForce) -> Bed {
 #[test]
 fn one_and_two_threads_give_the_same_bits() {
     let run = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
         pool.install(|| {
             let mut bed = drum(Rolling::ElasticPlastic, ContactForce::HertzMindlin);
             bed.run(1500);
@@ -231,7 +247,10 @@ fn a_checkpoint_keeps_the_springs_of_resting_contacts() {
     contacts.walls = vec![plane(Vec3::zeros(), Vec3::z())];
     // On an incline that friction holds.
     contacts.gravity = Vec3::new(0.2 * 9.81, 0.0, -9.81);
-    let mut bed = Bed::new(contacts, &[sphere(1, Vec3::z() * 1e-3, Vec3::zeros(), 1e-3)]);
+    let mut bed = Bed::new(
+        contacts,
+        &[sphere(1, Vec3::z() * 1e-3, Vec3::zeros(), 1e-3)],
+    );
     bed.run(200);
     let before = bed.velocity(0);
     bed.run(1);
@@ -263,7 +282,10 @@ fn particles_come_and_go_and_the_others_do_not_notice() {
     assert_eq!(fields.id, [1, 6, 9]);
     assert_eq!(fields.position[1], Vec3::new(0.03, 0.0, 9.9e-4));
     let events = bed.particles.events();
-    let told: Vec<_> = events.iter().map(|event| (event.id, event.inserted)).collect();
+    let told: Vec<_> = events
+        .iter()
+        .map(|event| (event.id, event.inserted))
+        .collect();
     assert_eq!(told, [(2, false), (5, false), (6, true), (9, true)]);
     assert!((events[2].momentum.x / (0.1 * fields.mass[1]) - 1.0).abs() < 1e-15);
     alone.run(300);
@@ -301,7 +323,11 @@ fn a_held_population_stays_and_carries_the_others() {
     let weight = bed.particles.fields().mass[1] * 9.81;
     let stiffness = 4.0 / 3.0 * (1e7 / 1.875) * 5e-4f64.sqrt();
     let rest = 2e-3 - (weight / stiffness).powf(2.0 / 3.0);
-    assert!((bed.place(1).z - rest).abs() < 1e-5 * (2e-3 - rest), "{}", bed.place(1).z);
+    assert!(
+        (bed.place(1).z - rest).abs() < 1e-5 * (2e-3 - rest),
+        "{}",
+        bed.place(1).z
+    );
 }
 
 #[test]
@@ -309,10 +335,16 @@ fn a_sphere_that_leaves_its_bounds_is_named_with_place_and_velocity() {
     let at = |id, speed: f64| sphere(id, Vec3::x() * (0.1 * id as f64), Vec3::z() * speed, 1e-3);
     let mut bed = Bed::new(contacts(1e-3), &[at(3, 0.1), at(8, 30.0)]);
     let text = bed.try_run(100).unwrap_err().to_string();
-    assert!(text.contains("particle 8 left its bounds at (0.8, 0, 1."), "{text}");
+    assert!(
+        text.contains("particle 8 left its bounds at (0.8, 0, 1."),
+        "{text}"
+    );
     assert!(text.contains("velocity of (0, 0, 30) m/s"), "{text}");
     let outside = sphere(4, Vec3::x() * 2.0, Vec3::zeros(), 1e-3);
-    let text = Bed::try_new(contacts(1e-3), &[outside]).err().unwrap().to_string();
+    let text = Bed::try_new(contacts(1e-3), &[outside])
+        .err()
+        .unwrap()
+        .to_string();
     assert!(text.contains("particle 4 left its bounds"), "{text}");
 }
 
@@ -327,11 +359,17 @@ fn setups_without_meaning_are_refused_with_their_place() {
     wrong.step = 1e-5;
     wrong.pairs[0].restitution = 0.0;
     let text = refused(wrong.clone());
-    assert!(text.contains("the restitution of materials 0 and 0 is 0"), "{text}");
+    assert!(
+        text.contains("the restitution of materials 0 and 0 is 0"),
+        "{text}"
+    );
     wrong.pairs[0].restitution = 0.5;
     wrong.walls = vec![plane(Vec3::zeros(), Vec3::z() * 2.0)];
     let text = refused(wrong.clone());
-    assert!(text.contains("the length of the normal of wall `wall` is 2"), "{text}");
+    assert!(
+        text.contains("the length of the normal of wall `wall` is 2"),
+        "{text}"
+    );
     wrong.walls[0].material = 3;
     assert!(refused(wrong).contains("the index of the material of wall `wall` is 3"));
 }

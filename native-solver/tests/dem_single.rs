@@ -50,7 +50,10 @@ fn a_sphere_falls_as_galileo_says_and_an_elastic_floor_gives_its_height_back() {
     let mut contacts = floor(1.0, 200.0, 1.0, 0.0);
     contacts.gravity = Vec3::z() * -9.81;
     let (step, height) = (contacts.step, 0.05);
-    let mut bed = Bed::new(contacts, &[sphere(1, Vec3::z() * height, Vec3::zeros(), RADIUS)]);
+    let mut bed = Bed::new(
+        contacts,
+        &[sphere(1, Vec3::z() * height, Vec3::zeros(), RADIUS)],
+    );
     let fall = ((2.0 * (height - RADIUS) / 9.81).sqrt() / step) as u64;
     bed.run(fall);
     let time = fall as f64 * step;
@@ -68,10 +71,17 @@ fn a_sphere_falls_as_galileo_says_and_an_elastic_floor_gives_its_height_back() {
 fn the_rebound_is_the_restitution_over_four_decades_of_speed() {
     for restitution in [0.1, 0.3, 0.5, 0.9, 1.0] {
         for speed in [1e-3, 1e-2, 0.1, 1.0, 10.0] {
-            let bed = thrown(floor(speed, 1000.0, restitution, 0.3), Vec3::z() * -speed, 4000.0);
+            let bed = thrown(
+                floor(speed, 1000.0, restitution, 0.3),
+                Vec3::z() * -speed,
+                4000.0,
+            );
             let found = bed.velocity(0).z / speed;
             // A step of a thousandth of the contact; a low restitution damps much within a few steps.
-            assert!((found - restitution).abs() < 4e-3, "{restitution} at {speed} m/s: {found}");
+            assert!(
+                (found - restitution).abs() < 4e-3,
+                "{restitution} at {speed} m/s: {found}"
+            );
         }
     }
 }
@@ -89,7 +99,11 @@ fn clipped_damping_gives_055_for_a_restitution_of_05() {
 #[test]
 fn an_elastic_impact_has_the_depth_and_duration_of_hertz() {
     for pair in [true, false] {
-        let (radius, reduced) = if pair { (0.5 * RADIUS, 0.5 * mass(RADIUS)) } else { (RADIUS, mass(RADIUS)) };
+        let (radius, reduced) = if pair {
+            (0.5 * RADIUS, 0.5 * mass(RADIUS))
+        } else {
+            (RADIUS, mass(RADIUS))
+        };
         let time = hertz_collision(radius, reduced, MODULUS, 2.0);
         let mut contacts = floor(1.0, 1.0, 1.0, 0.0);
         contacts.step = time / 2000.0;
@@ -132,8 +146,14 @@ fn an_oblique_impact_that_slides_loses_what_friction_takes() {
         let bed = thrown(contacts, Vec3::new(along, 0.0, -normal), 1000.0);
         let impulse = friction * (1.0 + restitution) * normal;
         let (speed, spin) = (bed.velocity(0).x, bed.spin(0).y);
-        assert!(((along - speed) / impulse - 1.0).abs() < 5e-3, "{degrees}: {speed}");
-        assert!((spin * RADIUS / (2.5 * impulse) - 1.0).abs() < 2e-2, "{degrees}: {spin}");
+        assert!(
+            ((along - speed) / impulse - 1.0).abs() < 5e-3,
+            "{degrees}: {speed}"
+        );
+        assert!(
+            (spin * RADIUS / (2.5 * impulse) - 1.0).abs() < 2e-2,
+            "{degrees}: {spin}"
+        );
     }
 }
 
@@ -144,7 +164,10 @@ fn a_spinning_sphere_is_thrown_aside_and_two_of_them_turn_each_other() {
     let contacts = stiff(floor(0.2, 500.0, restitution, friction));
     let start = Vec3::z() * RADIUS;
     let push = friction * (1.0 + restitution) * 0.2;
-    let mut bed = Bed::new(contacts, &[sphere(1, start, Vec3::new(1.0, 0.0, -0.2), RADIUS)]);
+    let mut bed = Bed::new(
+        contacts,
+        &[sphere(1, start, Vec3::new(1.0, 0.0, -0.2), RADIUS)],
+    );
     bed.run(1000);
     assert!(((1.0 - bed.velocity(0).x) / push - 1.0).abs() < 5e-3);
     // Two spheres that slide past each other while they meet: tests 7 and 8, of unequal size.
@@ -156,7 +179,12 @@ fn a_spinning_sphere_is_thrown_aside_and_two_of_them_turn_each_other() {
         contacts,
         &[
             sphere(1, Vec3::zeros(), Vec3::new(0.2, 1.0, 0.0), first),
-            sphere(2, Vec3::x() * (first + second), Vec3::new(-0.2, 0.0, 0.0), second),
+            sphere(
+                2,
+                Vec3::x() * (first + second),
+                Vec3::new(-0.2, 0.0, 0.0),
+                second,
+            ),
         ],
     );
     bed.run(1500);
@@ -165,7 +193,10 @@ fn a_spinning_sphere_is_thrown_aside_and_two_of_them_turn_each_other() {
     assert!((lost / impulse - 1.0).abs() < 2e-2, "{lost} {impulse}");
     for (row, radius) in [(0, first), (1, second)] {
         let turned = bed.spin(row).z * 0.4 * mass(radius) * radius;
-        assert!((turned.abs() / impulse - 1.0).abs() < 3e-2, "{row}: {turned}");
+        assert!(
+            (turned.abs() / impulse - 1.0).abs() < 3e-2,
+            "{row}: {turned}"
+        );
     }
     let momentum = mass(first) * bed.velocity(0) + mass(second) * bed.velocity(1);
     let before = Vec3::new(0.2 * (mass(first) - mass(second)), mass(first), 0.0);
@@ -182,9 +213,20 @@ fn two_stacked_spheres_rest_at_the_overlaps_of_hertz() {
     let weight = mass(RADIUS) * 9.81;
     let lower = (2.0 * weight / (4.0 / 3.0 * MODULUS * RADIUS.sqrt())).powf(2.0 / 3.0);
     let upper = (weight / (4.0 / 3.0 * MODULUS * (0.5 * RADIUS).sqrt())).powf(2.0 / 3.0);
-    let found = [RADIUS - bed.place(0).z, 2.0 * RADIUS - (bed.place(1).z - bed.place(0).z)];
-    assert!((found[0] / lower - 1.0).abs() < 1e-6, "{} {lower}", found[0]);
-    assert!((found[1] / upper - 1.0).abs() < 1e-6, "{} {upper}", found[1]);
+    let found = [
+        RADIUS - bed.place(0).z,
+        2.0 * RADIUS - (bed.place(1).z - bed.place(0).z),
+    ];
+    assert!(
+        (found[0] / lower - 1.0).abs() < 1e-6,
+        "{} {lower}",
+        found[0]
+    );
+    assert!(
+        (found[1] / upper - 1.0).abs() < 1e-6,
+        "{} {upper}",
+        found[1]
+    );
 }
 
 #[test]
@@ -200,7 +242,11 @@ fn a_sliding_sphere_ends_rolling_with_five_sevenths_of_its_speed() {
     let slides = 2.0 * 0.2 / (7.0 * 0.3 * 9.81);
     bed.run((0.9 * slides / step) as u64);
     let wanted = 0.2 - 0.3 * 9.81 * bed.clocks.motion.seconds();
-    assert!((bed.velocity(0).x / wanted - 1.0).abs() < 1e-4, "{}", bed.velocity(0).x);
+    assert!(
+        (bed.velocity(0).x / wanted - 1.0).abs() < 1e-4,
+        "{}",
+        bed.velocity(0).x
+    );
     bed.run((0.6 * slides / step) as u64);
     let found = bed.velocity(0).x / 0.2;
     assert!((found - 5.0 / 7.0).abs() < 2e-3, "{found}");
@@ -209,7 +255,10 @@ fn a_sliding_sphere_ends_rolling_with_five_sevenths_of_its_speed() {
 
 #[test]
 fn a_pushed_sphere_takes_up_exactly_the_impulse_that_is_reported() {
-    let mut bed = Bed::new(contacts(1e-5), &[sphere(1, Vec3::zeros(), Vec3::zeros(), RADIUS)]);
+    let mut bed = Bed::new(
+        contacts(1e-5),
+        &[sphere(1, Vec3::zeros(), Vec3::zeros(), RADIUS)],
+    );
     let mut given = Vec3::zeros();
     for window in 0..20 {
         bed.push.force[0] = Vec3::new(1e-5, -2e-5, 3e-6 * f64::from(window));
@@ -217,14 +266,20 @@ fn a_pushed_sphere_takes_up_exactly_the_impulse_that_is_reported() {
         given += bed.received.impulse[0];
     }
     let taken = mass(RADIUS) * bed.velocity(0);
-    assert!((taken - given).norm() < 1e-13 * given.norm(), "{taken} {given}");
+    assert!(
+        (taken - given).norm() < 1e-13 * given.norm(),
+        "{taken} {given}"
+    );
 }
 
 #[test]
 fn a_projectile_follows_its_parabola() {
     let mut contacts = contacts(1e-4);
     contacts.gravity = Vec3::z() * -9.81;
-    let mut bed = Bed::new(contacts, &[sphere(1, Vec3::zeros(), Vec3::new(1.0, 0.0, 2.0), RADIUS)]);
+    let mut bed = Bed::new(
+        contacts,
+        &[sphere(1, Vec3::zeros(), Vec3::new(1.0, 0.0, 2.0), RADIUS)],
+    );
     bed.push.force[0] = Vec3::y() * mass(RADIUS) * 3.0;
     bed.run(2000);
     let wanted = Vec3::new(0.2, 0.5 * 3.0 * 0.04, 0.4 - 0.5 * 9.81 * 0.04);

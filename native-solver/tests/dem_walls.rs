@@ -22,7 +22,12 @@ fn tiles(half: i32, size: f64) -> WallShape {
     let mut triangles = Vec::new();
     for i in -half..half {
         for j in -half..half {
-            let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i, j + 1), corner(i + 1, j + 1)];
+            let [a, b, c, d] = [
+                corner(i, j),
+                corner(i + 1, j),
+                corner(i, j + 1),
+                corner(i + 1, j + 1),
+            ];
             triangles.extend([[a, b, c], [b, d, c]]);
         }
     }
@@ -34,7 +39,10 @@ fn faces_edges_and_corners_of_a_mesh_carry_a_sphere_as_one_plane_does() {
     let rest = |shape: WallShape, x: f64, y: f64| {
         let mut contacts = heavy(1e-5);
         contacts.walls = vec![wall(shape)];
-        let mut bed = Bed::new(contacts, &[sphere(1, Vec3::new(x, y, RADIUS), Vec3::zeros(), RADIUS)]);
+        let mut bed = Bed::new(
+            contacts,
+            &[sphere(1, Vec3::new(x, y, RADIUS), Vec3::zeros(), RADIUS)],
+        );
         bed.run(5000);
         bed.place(0)
     };
@@ -53,8 +61,14 @@ fn faces_edges_and_corners_of_a_mesh_carry_a_sphere_as_one_plane_does() {
         (2e-5, 3e-6, 4e-6),
     ] {
         let found = rest(tiles(3, size), x, y);
-        assert!((found.z - plane).abs() < 1e-6 * (RADIUS - plane), "{size} {x} {y}: {found}");
-        assert!((found.x - x).abs() < 1e-12 && (found.y - y).abs() < 1e-12, "{found}");
+        assert!(
+            (found.z - plane).abs() < 1e-6 * (RADIUS - plane),
+            "{size} {x} {y}: {found}"
+        );
+        assert!(
+            (found.x - x).abs() < 1e-12 && (found.y - y).abs() < 1e-12,
+            "{found}"
+        );
     }
 }
 
@@ -64,7 +78,10 @@ fn a_sphere_rolls_across_triangles_as_over_a_plane() {
         let mut contacts = heavy(1e-5);
         contacts.walls = vec![wall(shape)];
         let start = Vec3::new(-0.01, 3e-4, RADIUS);
-        let mut bed = Bed::new(contacts, &[sphere(1, start, Vec3::new(0.2, 0.03, 0.0), RADIUS)]);
+        let mut bed = Bed::new(
+            contacts,
+            &[sphere(1, start, Vec3::new(0.2, 0.03, 0.0), RADIUS)],
+        );
         bed.run(8000);
         (bed.place(0), bed.velocity(0), bed.spin(0))
     };
@@ -93,14 +110,21 @@ fn a_groove_of_two_faces_carries_a_sphere_on_both_and_a_ridge_throws_it_once() {
     contacts.pairs[0].friction = 0.0;
     contacts.walls = vec![roof(1.0)];
     let touch = 2f64.sqrt() * RADIUS;
-    let mut bed = Bed::new(contacts.clone(), &[sphere(1, Vec3::z() * touch, Vec3::zeros(), RADIUS)]);
+    let mut bed = Bed::new(
+        contacts.clone(),
+        &[sphere(1, Vec3::z() * touch, Vec3::zeros(), RADIUS)],
+    );
     bed.run(20_000);
     // Each face carries the weight over √2.
     let weight = bed.particles.fields().mass[0] * 9.81;
     let stiffness = 4.0 / 3.0 * (1e7 / 1.875) * RADIUS.sqrt();
     let overlap = (weight / 2f64.sqrt() / stiffness).powf(2.0 / 3.0);
     let wanted = 2f64.sqrt() * (RADIUS - overlap);
-    assert!((bed.place(0).z - wanted).abs() < 1e-5 * overlap, "{}", bed.place(0).z - wanted);
+    assert!(
+        (bed.place(0).z - wanted).abs() < 1e-5 * overlap,
+        "{}",
+        bed.place(0).z - wanted
+    );
     // On the ridge the elastic rebound is that from one plane: the same speed, the same time.
     contacts.pairs[0].restitution = 1.0;
     contacts.gravity = Vec3::zeros();
@@ -145,9 +169,16 @@ fn a_rising_floor_lifts_and_a_turning_mesh_drags_as_its_cylinder_does() {
     let mut contacts = heavy(1e-5);
     contacts.walls = vec![plane(Vec3::zeros(), Vec3::z())];
     contacts.walls[0].motion = WallMotion::Translating(Vec3::z() * 0.1);
-    let mut bed = Bed::new(contacts, &[sphere(1, Vec3::z() * RADIUS, Vec3::zeros(), RADIUS)]);
+    let mut bed = Bed::new(
+        contacts,
+        &[sphere(1, Vec3::z() * RADIUS, Vec3::zeros(), RADIUS)],
+    );
     bed.run(20_000);
-    assert!((bed.place(0).z - (0.02 + RADIUS)).abs() < 1e-5, "{}", bed.place(0));
+    assert!(
+        (bed.place(0).z - (0.02 + RADIUS)).abs() < 1e-5,
+        "{}",
+        bed.place(0)
+    );
     assert!((bed.velocity(0).z - 0.1).abs() < 1e-4);
     // A plate that turns about the upright axis carries what sticks to it round.
     let mut contacts = heavy(1e-5);
@@ -159,7 +190,12 @@ fn a_rising_floor_lifts_and_a_turning_mesh_drags_as_its_cylinder_does() {
     };
     let mut mesh = Bed::new(
         contacts.clone(),
-        &[sphere(1, Vec3::new(0.01, 0.0, RADIUS), Vec3::zeros(), RADIUS)],
+        &[sphere(
+            1,
+            Vec3::new(0.01, 0.0, RADIUS),
+            Vec3::zeros(),
+            RADIUS,
+        )],
     );
     contacts.walls[0].shape = WallShape::Plane {
         point: Vec3::zeros(),
@@ -167,12 +203,22 @@ fn a_rising_floor_lifts_and_a_turning_mesh_drags_as_its_cylinder_does() {
     };
     let mut flat = Bed::new(
         contacts,
-        &[sphere(1, Vec3::new(0.01, 0.0, RADIUS), Vec3::zeros(), RADIUS)],
+        &[sphere(
+            1,
+            Vec3::new(0.01, 0.0, RADIUS),
+            Vec3::zeros(),
+            RADIUS,
+        )],
     );
     mesh.run(20_000);
     flat.run(20_000);
     assert!(flat.velocity(0).norm() > 1e-3);
-    assert!((mesh.place(0) - flat.place(0)).norm() < 1e-7, "{} {}", mesh.place(0), flat.place(0));
+    assert!(
+        (mesh.place(0) - flat.place(0)).norm() < 1e-7,
+        "{} {}",
+        mesh.place(0),
+        flat.place(0)
+    );
 }
 
 #[test]
@@ -183,7 +229,15 @@ fn a_cone_guides_a_sphere_to_its_hole_and_holds_one_that_is_larger() {
             ends: [Vec3::zeros(), Vec3::z() * 0.02],
             radii: [3e-3, 0.02],
         })];
-        let mut bed = Bed::new(contacts, &[sphere(1, Vec3::new(0.01, 0.0, 0.025), Vec3::zeros(), radius)]);
+        let mut bed = Bed::new(
+            contacts,
+            &[sphere(
+                1,
+                Vec3::new(0.01, 0.0, 0.025),
+                Vec3::zeros(),
+                radius,
+            )],
+        );
         bed.run(20_000);
         bed.place(0)
     };

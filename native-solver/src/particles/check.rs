@@ -20,7 +20,11 @@ pub fn check(setup: &ParticleSetup) -> Result<(), NativeError> {
         }
     }
     if !setup.velocity.is_empty() && setup.velocity.len() != count {
-        return Err(length("the list of velocities", setup.velocity.len(), count));
+        return Err(length(
+            "the list of velocities",
+            setup.velocity.len(),
+            count,
+        ));
     }
     for i in 0..count {
         let place = || format!("particle {}", setup.id[i]);
@@ -48,7 +52,12 @@ fn contact(contacts: &Contacts, population: &[u32]) -> Result<(), NativeError> {
     positive("the time step", contacts.step, "s", motion)?;
     let (low, high) = contacts.bounds;
     for axis in 0..3 {
-        positive("the extent of the bounds", high[axis] - low[axis], "m", motion)?;
+        positive(
+            "the extent of the bounds",
+            high[axis] - low[axis],
+            "m",
+            motion,
+        )?;
     }
     if let ContactForce::Linear {
         characteristic_speed: speed,
@@ -61,7 +70,14 @@ fn contact(contacts: &Contacts, population: &[u32]) -> Result<(), NativeError> {
         let place = || format!("material {k}");
         positive("Young's modulus", material.young, "Pa", place)?;
         let rule = |value: f64| value > -1.0 && value < 0.5;
-        within("Poisson's ratio", material.poisson, "", place, "between -1 and 0.5", rule)?;
+        within(
+            "Poisson's ratio",
+            material.poisson,
+            "",
+            place,
+            "between -1 and 0.5",
+            rule,
+        )?;
     }
     if contacts.pairs.len() != materials * materials {
         return Err(NativeError::Length {
@@ -74,7 +90,14 @@ fn contact(contacts: &Contacts, population: &[u32]) -> Result<(), NativeError> {
     for (k, pair) in contacts.pairs.iter().enumerate() {
         let place = || format!("materials {} and {}", k / materials, k % materials);
         let rule = |value: f64| value > 0.0 && value <= 1.0;
-        within("the restitution", pair.restitution, "", place, "above 0 and at most 1", rule)?;
+        within(
+            "the restitution",
+            pair.restitution,
+            "",
+            place,
+            "above 0 and at most 1",
+            rule,
+        )?;
         for (field, value, unit) in [
             ("the friction", pair.friction, ""),
             ("the rolling friction", pair.rolling_friction, ""),
@@ -93,9 +116,16 @@ fn contact(contacts: &Contacts, population: &[u32]) -> Result<(), NativeError> {
             });
         }
     }
-    let populations = population.iter().map(|&p| p as usize + 1).max().unwrap_or(0);
+    let populations = population
+        .iter()
+        .map(|&p| p as usize + 1)
+        .max()
+        .unwrap_or(0);
     for (field, found) in [
-        ("the list of populations' materials", contacts.material_of.len()),
+        (
+            "the list of populations' materials",
+            contacts.material_of.len(),
+        ),
         ("the list of held populations", contacts.held.len()),
     ] {
         if found < populations {
@@ -111,7 +141,10 @@ fn contact(contacts: &Contacts, population: &[u32]) -> Result<(), NativeError> {
     if let Some(index) = used.find(|&index| index >= materials) {
         return Err(no_material("a population".into(), index));
     }
-    contacts.walls.iter().try_for_each(|one| wall(one, materials))
+    contacts
+        .walls
+        .iter()
+        .try_for_each(|one| wall(one, materials))
 }
 
 fn wall(wall: &Wall, materials: usize) -> Result<(), NativeError> {
@@ -132,14 +165,23 @@ fn wall(wall: &Wall, materials: usize) -> Result<(), NativeError> {
         WallShape::Cone { ends, radii } => {
             positive("the length", (ends[1] - ends[0]).norm(), "m", place)?;
             for radius in radii {
-                within("the radius", *radius, "m", place, "0 or more", |value| value >= 0.0)?;
+                within("the radius", *radius, "m", place, "0 or more", |value| {
+                    value >= 0.0
+                })?;
             }
             positive("the larger radius", radii[0].max(radii[1]), "m", place)
         }
-        WallShape::Mesh { triangles } => triangles.iter().enumerate().try_for_each(|(k, [a, b, c])| {
-            let place = || format!("triangle {k} of wall `{}`", wall.name);
-            positive("the area", 0.5 * (b - a).cross(&(c - a)).norm(), "m^2", place)
-        }),
+        WallShape::Mesh { triangles } => {
+            triangles.iter().enumerate().try_for_each(|(k, [a, b, c])| {
+                let place = || format!("triangle {k} of wall `{}`", wall.name);
+                positive(
+                    "the area",
+                    0.5 * (b - a).cross(&(c - a)).norm(),
+                    "m^2",
+                    place,
+                )
+            })
+        }
     }
 }
 
@@ -186,7 +228,10 @@ fn within(
 pub fn change(change: &Change, id: &[u64], populations: usize) -> Result<Vec<usize>, NativeError> {
     let mut rows = Vec::with_capacity(change.remove.len());
     for &gone in &change.remove {
-        rows.push(id.binary_search(&gone).map_err(|_| NativeError::NoParticle { id: gone })?);
+        rows.push(
+            id.binary_search(&gone)
+                .map_err(|_| NativeError::NoParticle { id: gone })?,
+        );
     }
     rows.sort_unstable();
     if let Some(twice) = rows.windows(2).find(|pair| pair[0] == pair[1]) {
@@ -209,7 +254,14 @@ pub fn change(change: &Change, id: &[u64], populations: usize) -> Result<Vec<usi
         positive("the density", new.density, "kg/m^3", place)?;
         let rule = |value: f64| value < populations as f64;
         let known = "that of a population with a material";
-        within("the population", f64::from(new.population), "", place, known, rule)?;
+        within(
+            "the population",
+            f64::from(new.population),
+            "",
+            place,
+            known,
+            rule,
+        )?;
     }
     Ok(rows)
 }

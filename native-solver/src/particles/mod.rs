@@ -63,7 +63,9 @@ impl NativeParticles {
             velocity: vec![Vec3::zeros(); count],
             angular_velocity: vec![Vec3::zeros(); count],
             radius: setup.radius.clone(),
-            mass: spheres.map(|(&radius, &density)| mass(radius, density)).collect(),
+            mass: spheres
+                .map(|(&radius, &density)| mass(radius, density))
+                .collect(),
             started: None,
             impulse: vec![Vec3::zeros(); count],
             events: Vec::new(),
@@ -95,7 +97,10 @@ impl NativeParticles {
 
     /// Energies of a moving bed now, as far as they are counted.
     pub fn energy(&self) -> Energy {
-        self.engine.as_ref().map(|engine| engine.energy()).unwrap_or_default()
+        self.engine
+            .as_ref()
+            .map(|engine| engine.energy())
+            .unwrap_or_default()
     }
 
     /// Gives all particles to the solver, with the memories of their contacts.
@@ -125,7 +130,11 @@ impl NativeParticles {
     /// Takes over what the solver has reached.
     fn read(&mut self) {
         if let Some(engine) = &self.engine {
-            engine.read(&mut self.position, &mut self.velocity, &mut self.angular_velocity);
+            engine.read(
+                &mut self.position,
+                &mut self.velocity,
+                &mut self.angular_velocity,
+            );
         }
     }
 
@@ -140,7 +149,10 @@ impl NativeParticles {
 
     fn advance(&mut self, window: &Window, supervisor: &Supervisor) -> Result<(), PartError> {
         let end = window.start.motion.count() + window.span.motion.count();
-        let (mut done, end) = (self.nearest(window.start.motion), self.nearest(Ticks::new(end)));
+        let (mut done, end) = (
+            self.nearest(window.start.motion),
+            self.nearest(Ticks::new(end)),
+        );
         while done < end {
             let steps = (end - done).min(SLICE);
             let Some(engine) = &mut self.engine else {
@@ -155,7 +167,9 @@ impl NativeParticles {
             }
             done += steps;
             if supervisor.interrupts().count() >= 2 {
-                return Err(self.failure(FailureKind::Interrupted, "interrupted").in_window(window));
+                return Err(self
+                    .failure(FailureKind::Interrupted, "interrupted")
+                    .in_window(window));
             }
         }
         self.steps = end;
@@ -166,7 +180,10 @@ impl NativeParticles {
     /// The step nearest to a motion time; windows are whole steps between those of their ends, so that
     /// rounding never adds up.
     fn nearest(&self, time: Ticks) -> i64 {
-        let step = self.engine.as_ref().map_or(1.0, |engine| engine.contacts().step);
+        let step = self
+            .engine
+            .as_ref()
+            .map_or(1.0, |engine| engine.contacts().step);
         (time.count() as f64 / (step * Ticks::PER_SECOND)).round() as i64
     }
 
@@ -175,7 +192,8 @@ impl NativeParticles {
     }
 
     fn refused(&self, error: NativeError) -> PartError {
-        self.failure(FailureKind::Protocol, error.to_string()).caused_by(error)
+        self.failure(FailureKind::Protocol, error.to_string())
+            .caused_by(error)
     }
 
     /// Takes particles out and puts new ones in; the others keep the memories of their contacts.
@@ -184,7 +202,11 @@ impl NativeParticles {
             return Ok(());
         };
         let (mut pairs, mut walls) = engine.memories();
-        let populations = engine.contacts().material_of.len().min(engine.contacts().held.len());
+        let populations = engine
+            .contacts()
+            .material_of
+            .len()
+            .min(engine.contacts().held.len());
         let events = check::change(change, &self.id, populations)?;
         self.events.clear();
         let mut keep = vec![true; self.id.len()];
@@ -241,7 +263,8 @@ impl NativeParticles {
             });
         }
         self.impulse = vec![Vec3::zeros(); self.id.len()];
-        self.hand_over((pairs, walls)).map_err(|stray| self.outside(stray))
+        self.hand_over((pairs, walls))
+            .map_err(|stray| self.outside(stray))
     }
 }
 

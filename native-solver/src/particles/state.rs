@@ -27,10 +27,17 @@ impl NativeParticles {
         file.set_f64s("mass", &self.mass);
         if let Some(engine) = &mut self.engine {
             let (pairs, walls) = engine.memories();
-            let rows: Vec<u64> = pairs.iter().flat_map(|one| one.rows).map(u64::from).collect();
+            let rows: Vec<u64> = pairs
+                .iter()
+                .flat_map(|one| one.rows)
+                .map(u64::from)
+                .collect();
             let near = walls.iter().flat_map(|one| [one.row, one.wall]);
             let near: Vec<u64> = near.map(u64::from).collect();
-            let values: Vec<Vec3> = pairs.iter().flat_map(|one| [one.shift, one.rolling]).collect();
+            let values: Vec<Vec3> = pairs
+                .iter()
+                .flat_map(|one| [one.shift, one.rolling])
+                .collect();
             let memory = |one: &CarriedWall| [one.point, one.shift, one.rolling];
             let wall_values: Vec<Vec3> = walls.iter().flat_map(memory).collect();
             file.set_u64s("contact_rows", &rows);
@@ -53,10 +60,17 @@ impl NativeParticles {
         }
         let population = file.u64s("population")?;
         if population.len() != count {
-            return Err(length("the state's list of populations", population.len(), count));
+            return Err(length(
+                "the state's list of populations",
+                population.len(),
+                count,
+            ));
         }
         self.id = id.to_vec();
-        self.population = population.iter().map(|&population| population as u32).collect();
+        self.population = population
+            .iter()
+            .map(|&population| population as u32)
+            .collect();
         self.position = vectors(file.f64s_of("position", 3 * count)?);
         self.velocity = vectors(file.f64s_of("velocity", 3 * count)?);
         self.angular_velocity = vectors(file.f64s_of("angular_velocity", 3 * count)?);
@@ -67,13 +81,21 @@ impl NativeParticles {
             return Ok(());
         };
         let contacts = engine.contacts();
-        let (known, walls) = (contacts.material_of.len().min(contacts.held.len()), contacts.walls.len());
-        if self.population.iter().any(|&population| population as usize >= known) {
+        let (known, walls) = (
+            contacts.material_of.len().min(contacts.held.len()),
+            contacts.walls.len(),
+        );
+        if self
+            .population
+            .iter()
+            .any(|&population| population as usize >= known)
+        {
             return Err(length("the state's highest population", known + 1, known));
         }
         let memories = memories(&file, count, walls)?;
         self.steps = file.u64s("steps")?.first().copied().unwrap_or(0) as i64;
-        self.hand_over(memories).map_err(|stray| self.outside(stray))
+        self.hand_over(memories)
+            .map_err(|stray| self.outside(stray))
     }
 }
 
@@ -87,9 +109,15 @@ fn memories(
     let near = file.u64s("wall_rows")?.as_chunks::<2>().0;
     let wall_values = vectors(file.f64s_of("wall_memory", 9 * near.len())?);
     let strange = rows.iter().flatten().any(|&row| row >= count as u64)
-        || near.iter().any(|&[row, wall]| row >= count as u64 || wall >= walls as u64);
+        || near
+            .iter()
+            .any(|&[row, wall]| row >= count as u64 || wall >= walls as u64);
     if strange {
-        return Err(length("the state's list of contacts", rows.len() + near.len(), count));
+        return Err(length(
+            "the state's list of contacts",
+            rows.len() + near.len(),
+            count,
+        ));
     }
     let pair = |(rows, values): (&[u64; 2], &[Vec3])| Carried {
         rows: rows.map(|row| row as u32),

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use calcine_coupler::error::PartError;
 use calcine_coupler::motion::{
-    Change, Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, NewParticle, Pair, Rolling, Wall,
-    WallMotion, WallShape,
+    Change, Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, NewParticle, Pair,
+    Rolling, Wall, WallMotion, WallShape,
 };
 use calcine_coupler::part::{ParticlePush, ParticleReceived, Particles};
 use calcine_coupler::physics::Vec3;
@@ -61,7 +61,9 @@ pub fn wall(shape: WallShape) -> Wall {
 pub fn cuboid(low: Vec3, high: Vec3) -> Vec<Wall> {
     let axes = [Vec3::x(), Vec3::y(), Vec3::z()];
     let lower = axes.iter().map(|&axis| plane(low, axis));
-    lower.chain(axes.iter().map(|&axis| plane(high, -axis))).collect()
+    lower
+        .chain(axes.iter().map(|&axis| plane(high, -axis)))
+        .collect()
 }
 
 /// A sphere of glass' density.
@@ -121,7 +123,8 @@ impl Bed {
             ..Window::default()
         };
         self.particles.start(&window, &self.push)?;
-        self.particles.finish(&self.supervisor, &mut self.received)?;
+        self.particles
+            .finish(&self.supervisor, &mut self.received)?;
         self.clocks = window.end().unwrap();
         Ok(())
     }
@@ -151,8 +154,14 @@ impl Bed {
     /// The bits of all places, velocities and rotations.
     pub fn bits(&self) -> Vec<u64> {
         let fields = self.particles.fields();
-        let all = fields.position.iter().chain(fields.velocity).chain(fields.angular_velocity);
-        all.flat_map(|vector| [vector.x, vector.y, vector.z]).map(f64::to_bits).collect()
+        let all = fields
+            .position
+            .iter()
+            .chain(fields.velocity)
+            .chain(fields.angular_velocity);
+        all.flat_map(|vector| [vector.x, vector.y, vector.z])
+            .map(f64::to_bits)
+            .collect()
     }
 }
 

@@ -21,8 +21,7 @@ impl Area {
         let (sum, difference) = ((first + second).powi(2), (first - second).powi(2));
         let square = distance * distance;
         // −∫ A dd from r₁ + r₂ inwards
-        let primitive =
-            |x: f64| x * x * x / 3.0 - (sum + difference) * x - sum * difference / x;
+        let primitive = |x: f64| x * x * x / 3.0 - (sum + difference) * x - sum * difference / x;
         Self {
             area: -PI / 4.0 * (square - sum) * (square - difference) / square,
             integral: -PI / 4.0 * (primitive(first + second) - primitive(distance)),
@@ -48,7 +47,10 @@ impl Area {
 /// doi 10.1098/rspa.1971.0141.
 #[inline]
 pub fn sjkr(pair: &PairConstants, area: Area) -> (f64, f64) {
-    (-pair.cohesion_energy * area.area, -pair.cohesion_energy * area.integral)
+    (
+        -pair.cohesion_energy * area.area,
+        -pair.cohesion_energy * area.integral,
+    )
 }
 
 #[cfg(test)]
@@ -62,7 +64,9 @@ mod tests {
         let area = Area::of_spheres(3.0, 4.0, 5.0).area;
         assert!((area / (PI * 5.76) - 1.0).abs() < 1e-14);
         assert!((Area::of_wall(5.0, 3.0).area / (PI * 16.0) - 1.0).abs() < 1e-15);
-        assert!((sjkr(&glass(0.5), Area::of_wall(5.0, 3.0)).0 / (-16_000.0 * PI) - 1.0).abs() < 1e-14);
+        assert!(
+            (sjkr(&glass(0.5), Area::of_wall(5.0, 3.0)).0 / (-16_000.0 * PI) - 1.0).abs() < 1e-14
+        );
     }
 
     #[test]
@@ -73,7 +77,10 @@ mod tests {
             |d: f64| Area::of_wall(1.7, d),
         ] {
             let slope = (sjkr(&pair, area(1.649)).1 - sjkr(&pair, area(1.651)).1) / 2e-3;
-            assert!((slope / sjkr(&pair, area(1.65)).0 - 1.0).abs() < 1e-4, "{slope}");
+            assert!(
+                (slope / sjkr(&pair, area(1.65)).0 - 1.0).abs() < 1e-4,
+                "{slope}"
+            );
             assert!(area(1.7).integral.abs() < 1e-15);
         }
     }

@@ -20,7 +20,12 @@ pub struct Tangential {
 ///
 /// Source: Cundall and Strack, Géotechnique 29 (1979) 47, doi 10.1680/geot.1979.29.1.47.
 #[inline(always)]
-pub fn friction<L: ContactLaw>(shift: Vec3, slip: Vec3, springs: &Springs, limit: f64) -> Tangential {
+pub fn friction<L: ContactLaw>(
+    shift: Vec3,
+    slip: Vec3,
+    springs: &Springs,
+    limit: f64,
+) -> Tangential {
     let stiffness = springs.tangential_stiffness;
     let squared = stiffness * stiffness * shift.norm_squared();
     if squared <= limit * limit {
@@ -31,7 +36,11 @@ pub fn friction<L: ContactLaw>(shift: Vec3, slip: Vec3, springs: &Springs, limit
     }
     if L::FORGETS_ON_SLIP {
         let speed = slip.norm();
-        let direction = if speed > 0.0 { slip / speed } else { shift.normalize() };
+        let direction = if speed > 0.0 {
+            slip / speed
+        } else {
+            shift.normalize()
+        };
         return Tangential {
             force: -limit * direction,
             shift: Vec3::zeros(),

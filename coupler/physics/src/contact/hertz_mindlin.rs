@@ -57,7 +57,8 @@ mod tests {
         // By hand for E* = 5.3333333e6, G* = 1.1428571e6, R* = 1e-3, δ = 1e-6, m* = 1e-5, e = 0.5
         // (β = 0.21545376): √(R*δ) = 3.1622777e-5, S_n = 337.30962.
         let s = HertzMindlin.springs(&glass(0.5), 0.0, 1e-6, 1e-3, 1e-5);
-        let near = |value: f64, wanted: f64| assert!((value / wanted - 1.0).abs() < 1e-6, "{value}");
+        let near =
+            |value: f64, wanted: f64| assert!((value / wanted - 1.0).abs() < 1e-6, "{value}");
         near(s.elastic, 2.248_730_8e-4);
         near(s.energy, 8.994_923e-11);
         near(s.normal_damping, 0.022_845_876);

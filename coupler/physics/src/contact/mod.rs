@@ -132,7 +132,15 @@ mod tests {
         assert!((pair.shear / (4e6 / (2.0 * 1.75)) - 1.0).abs() < 1e-15);
         // steel 210 GPa, 0.3 against aluminium 70 GPa, 0.33
         let mixed = PairConstants::new([210e9, 0.3], [70e9, 0.33], 0.5);
-        assert!((mixed.young / 5.860_519_63e10 - 1.0).abs() < 1e-6, "{}", mixed.young);
-        assert!((mixed.shear / 1.183_325_26e10 - 1.0).abs() < 1e-6, "{}", mixed.shear);
+        assert!(
+            (mixed.young / 5.860_519_63e10 - 1.0).abs() < 1e-6,
+            "{}",
+            mixed.young
+        );
+        assert!(
+            (mixed.shear / 1.183_325_26e10 - 1.0).abs() < 1e-6,
+            "{}",
+            mixed.shear
+        );
     }
 }

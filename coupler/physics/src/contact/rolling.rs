@@ -78,8 +78,14 @@ mod tests {
         let pair = glass(0.5);
         let torque = constant_torque(&pair, 2.0, 1e-3, Vec3::x() * 7.0, Vec3::z());
         assert!((torque - Vec3::x() * -2e-4).norm() < 1e-18);
-        assert_eq!(constant_torque(&pair, 2.0, 1e-3, Vec3::z(), Vec3::z()).norm(), 0.0);
-        assert_eq!(constant_torque(&pair, 2.0, 1e-3, Vec3::zeros(), Vec3::z()).norm(), 0.0);
+        assert_eq!(
+            constant_torque(&pair, 2.0, 1e-3, Vec3::z(), Vec3::z()).norm(),
+            0.0
+        );
+        assert_eq!(
+            constant_torque(&pair, 2.0, 1e-3, Vec3::zeros(), Vec3::z()).norm(),
+            0.0
+        );
     }
 
     #[test]

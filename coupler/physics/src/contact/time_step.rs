@@ -50,6 +50,9 @@ mod tests {
             })
             .sum();
         let quadrature = 2.0 * deepest * sum / f64::from(count);
-        assert!((unit / quadrature - 1.0).abs() < 1e-6, "{unit} {quadrature}");
+        assert!(
+            (unit / quadrature - 1.0).abs() < 1e-6,
+            "{unit} {quadrature}"
+        );
     }
 }

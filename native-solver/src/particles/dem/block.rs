@@ -116,15 +116,27 @@ impl Block {
             return;
         }
         let found = touching_of(&inner.pair, &scene.spheres.place, touching);
-        pairs::<L, BUDGET>(scene, inner, &touching[..found], budget, |[i, j], one, other, _| {
-            load[i - begin].add(&one);
-            load[j - begin].add(&other);
-        });
+        pairs::<L, BUDGET>(
+            scene,
+            inner,
+            &touching[..found],
+            budget,
+            |[i, j], one, other, _| {
+                load[i - begin].add(&one);
+                load[j - begin].add(&other);
+            },
+        );
         let found = touching_of(&cross.pair, &scene.spheres.place, touching);
-        pairs::<L, BUDGET>(scene, cross, &touching[..found], budget, |[i, _], one, other, slot| {
-            load[i - begin].add(&one);
-            outgoing[slot] = other;
-        });
+        pairs::<L, BUDGET>(
+            scene,
+            cross,
+            &touching[..found],
+            budget,
+            |[i, _], one, other, slot| {
+                load[i - begin].add(&one);
+                outgoing[slot] = other;
+            },
+        );
         budget.lost_tangential += held - budget.elastic_tangential;
     }
 
@@ -270,9 +282,7 @@ fn meet(rules: &Rules, a: &Place, b: &Place, va: &Moves, vb: &Moves) -> (Meeting
         rotation: va.spin - vb.spin,
         rolling_radius: radius,
         inertia: match rules.rolling {
-            Rolling::ElasticPlastic => {
-                1.4 / (moment(a, va) + moment(b, vb))
-            }
+            Rolling::ElasticPlastic => 1.4 / (moment(a, va) + moment(b, vb)),
             _ => 0.0,
         },
         area: if rules.cohesion {

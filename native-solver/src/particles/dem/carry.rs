@@ -75,7 +75,8 @@ impl Carry {
                 }
             }
             for group in &block.walls.groups {
-                let slots = &block.walls.slots[group.slots.start as usize..group.slots.end as usize];
+                let slots =
+                    &block.walls.slots[group.slots.start as usize..group.slots.end as usize];
                 for slot in slots.iter().filter(|slot| slot.stamp == stamp) {
                     self.walls.push(CarriedWall {
                         row: spheres.row[block.begin + group.particle as usize],
@@ -93,9 +94,18 @@ impl Carry {
     pub fn sort(&mut self, rows: usize) {
         self.pairs.sort_unstable_by_key(|carried| carried.rows);
         // Contacts of one sphere with one mesh keep their order.
-        self.walls.sort_by_key(|carried| (carried.row, carried.wall));
-        index(&mut self.pair_of, rows, self.pairs.iter().map(|one| one.rows[0]));
-        index(&mut self.wall_of, rows, self.walls.iter().map(|one| one.row));
+        self.walls
+            .sort_by_key(|carried| (carried.row, carried.wall));
+        index(
+            &mut self.pair_of,
+            rows,
+            self.pairs.iter().map(|one| one.rows[0]),
+        );
+        index(
+            &mut self.wall_of,
+            rows,
+            self.walls.iter().map(|one| one.row),
+        );
     }
 
     /// The memory of a pair of rows, as the first of them sees it.

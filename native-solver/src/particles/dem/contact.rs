@@ -3,7 +3,8 @@
 use calcine_coupler::motion::Rolling;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{
-    Area, ContactLaw, PairConstants, RollingSpring, constant_torque, elastic_plastic, friction, sjkr,
+    Area, ContactLaw, PairConstants, RollingSpring, constant_torque, elastic_plastic, friction,
+    sjkr,
 };
 
 use super::energy::Budget;
@@ -55,6 +56,7 @@ pub struct Outcome {
 
 /// Evaluates a contact and brings its memory up to date over a step in s.
 #[inline(always)]
+#[allow(clippy::too_many_arguments)]
 pub fn evaluate<L: ContactLaw, const BUDGET: bool>(
     law: &L,
     rules: &Rules,
@@ -66,7 +68,13 @@ pub fn evaluate<L: ContactLaw, const BUDGET: bool>(
     budget: &mut Budget,
 ) -> Outcome {
     let normal = meeting.normal;
-    let springs = law.springs(pair, prepared, meeting.overlap, meeting.radius, meeting.mass);
+    let springs = law.springs(
+        pair,
+        prepared,
+        meeting.overlap,
+        meeting.radius,
+        meeting.mass,
+    );
     let approach = meeting.velocity.dot(&normal);
     let mut push = springs.elastic - springs.normal_damping * approach;
     if !rules.attractive && push < 0.0 {

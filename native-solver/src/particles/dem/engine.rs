@@ -23,6 +23,12 @@ const STEPS: [u64; 2] = [15, 60];
 /// After so many steps without a search the skin is too wide in any case.
 const IDLE: u64 = 500;
 
+/// A block with its share of places, motions and pushes.
+type Portion<'a> = (
+    ((&'a mut Block, &'a mut [Place]), &'a mut [Moves]),
+    &'a [Vec3],
+);
+
 /// A particle as it comes into the solver.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Newcomer {
@@ -119,15 +125,27 @@ impl Engine {
         let spheres = &mut self.spheres;
         *spheres = Spheres::default();
         for (row, particle) in particles.iter().enumerate() {
-            let inverse = if particle.held { 0.0 } else { 1.0 / particle.mass };
+            let inverse = if particle.held {
+                0.0
+            } else {
+                1.0 / particle.mass
+            };
             spheres.place.push(Place {
                 centre: particle.centre,
                 radius: particle.radius,
             });
             spheres.moves.push(Moves {
-                velocity: if particle.held { Vec3::zeros() } else { particle.velocity },
+                velocity: if particle.held {
+                    Vec3::zeros()
+                } else {
+                    particle.velocity
+                },
                 inverse_mass: inverse,
-                spin: if particle.held { Vec3::zeros() } else { particle.spin },
+                spin: if particle.held {
+                    Vec3::zeros()
+                } else {
+                    particle.spin
+                },
                 inverse_inertia: 2.5 * inverse / (particle.radius * particle.radius),
             });
             spheres.material.push(particle.material);
@@ -226,8 +244,8 @@ impl Engine {
             self.age += 1;
             let near = self.gone + self.gone.max(self.wall_gone);
             let idle = self.age >= IDLE && self.skin > SKINS[0] * self.smallest;
-            // A speed that is not a number is found out by the check.
-            if !(near < self.skin) || idle {
+            // A speed that is not a number is no speed here; the check of places finds it out.
+            if near >= self.skin || idle {
                 self.check()?;
                 self.adapt();
                 let carry = &mut self.search.carry;
@@ -297,7 +315,7 @@ impl Engine {
         let (parallel, counting) = (self.parallel(), self.counting);
         let kick = self.kick(times);
         let (outgoing, spheres) = (&self.outgoing, &mut self.spheres);
-        let work = |(((block, place), moves), push): (((&mut Block, &mut [Place]), &mut [Moves]), &[Vec3])| {
+        let work = |(((block, place), moves), push): Portion<'_>| {
             if times > 1 {
                 block.take_up(outgoing);
             }
@@ -330,7 +348,12 @@ impl Engine {
     fn close(&mut self) {
         let kick = self.kick(1);
         let chunks = self.spheres.moves.chunks_mut(SIZE);
-        for ((block, moves), push) in self.blocks.iter().zip(chunks).zip(self.spheres.push.chunks(SIZE)) {
+        for ((block, moves), push) in self
+            .blocks
+            .iter()
+            .zip(chunks)
+            .zip(self.spheres.push.chunks(SIZE))
+        {
             motion::close(block, &kick, moves, push);
         }
     }
@@ -383,8 +406,12 @@ impl Engine {
     fn evaluate(&mut self, step: f64) {
         self.stamp += 1;
         match (self.contacts.law.force, self.counting) {
-            (ContactForce::HertzMindlin, false) => self.evaluate_with::<_, false>(&HertzMindlin, step),
-            (ContactForce::HertzMindlin, true) => self.evaluate_with::<_, true>(&HertzMindlin, step),
+            (ContactForce::HertzMindlin, false) => {
+                self.evaluate_with::<_, false>(&HertzMindlin, step)
+            }
+            (ContactForce::HertzMindlin, true) => {
+                self.evaluate_with::<_, true>(&HertzMindlin, step)
+            }
             (ContactForce::SpringSliderDashpot, false) => {
                 self.evaluate_with::<_, false>(&SpringSliderDashpot, step);
             }
@@ -420,9 +447,15 @@ impl Engine {
             block.evaluate::<L, BUDGET>(&scene, outgoing);
         };
         if parallel {
-            self.blocks.par_iter_mut().zip(&mut self.outgoing).for_each(work);
+            self.blocks
+                .par_iter_mut()
+                .zip(&mut self.outgoing)
+                .for_each(work);
         } else {
-            self.blocks.iter_mut().zip(&mut self.outgoing).for_each(work);
+            self.blocks
+                .iter_mut()
+                .zip(&mut self.outgoing)
+                .for_each(work);
         }
     }
 }

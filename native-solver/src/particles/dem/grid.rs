@@ -161,7 +161,10 @@ impl Grid {
             if (0..3).any(|axis| to[axis] < from[axis]) {
                 continue;
             }
-            let (first, last) = (cell(self.low, level.cell, from), cell(self.low, level.cell, to));
+            let (first, last) = (
+                cell(self.low, level.cell, from),
+                cell(self.low, level.cell, to),
+            );
             let cells: f64 = (0..3).map(|k| (last[k] - first[k] + 1) as f64).product();
             if cells > level.members.len() as f64 {
                 level.members.iter().for_each(|&sphere| near(sphere));

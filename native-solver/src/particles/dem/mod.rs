@@ -8,8 +8,8 @@
 mod block;
 mod carry;
 mod contact;
-mod engine;
 pub mod energy;
+mod engine;
 mod grid;
 mod lanes;
 mod motion;

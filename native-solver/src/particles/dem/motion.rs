@@ -20,7 +20,11 @@ pub struct Kick {
 #[inline(always)]
 fn kick(kick: &Kick, moves: &mut Moves, force: Vec3, torque: Vec3) {
     // A held particle has no inverse mass: no gravity either.
-    let gravity = if moves.inverse_mass > 0.0 { kick.gravity } else { Vec3::zeros() };
+    let gravity = if moves.inverse_mass > 0.0 {
+        kick.gravity
+    } else {
+        Vec3::zeros()
+    };
     let change = (force * moves.inverse_mass + gravity) * kick.half;
     let turn = torque * (moves.inverse_inertia * kick.half);
     for _ in 0..kick.times {

@@ -77,7 +77,11 @@ impl Search {
             outgoing.resize(block.cross.pair.len(), Load::default());
         };
         if parallel {
-            blocks.par_iter_mut().zip(outgoing).enumerate().for_each(list);
+            blocks
+                .par_iter_mut()
+                .zip(outgoing)
+                .enumerate()
+                .for_each(list);
         } else {
             blocks.iter_mut().zip(outgoing).enumerate().for_each(list);
         }
@@ -111,8 +115,8 @@ impl Search {
         for i in block.begin..end {
             let place = spheres.place[i];
             let own = self.grid.level(i);
-            for level in own..self.grid.levels() {
-                for j in self.grid.around(level, place.centre, &mut memory[level]) {
+            for (level, memory) in memory.iter_mut().enumerate().skip(own) {
+                for j in self.grid.around(level, place.centre, memory) {
                     let other = j as usize;
                     if level == own && other <= i {
                         continue;
@@ -123,7 +127,11 @@ impl Search {
                         spheres.moves[i].inverse_mass + spheres.moves[other].inverse_mass == 0.0;
                     if apart < cut * cut && !held {
                         let inner = (block.begin..end).contains(&other);
-                        let list = if inner { &mut block.inner } else { &mut block.cross };
+                        let list = if inner {
+                            &mut block.inner
+                        } else {
+                            &mut block.cross
+                        };
                         self.add(task, spheres, list, i, other);
                     }
                 }
@@ -140,7 +148,9 @@ impl Search {
         i: usize,
         j: usize,
     ) {
-        let (history, rolling) = self.carry.history(spheres.row[i], spheres.row[j], task.stamp);
+        let (history, rolling) = self
+            .carry
+            .history(spheres.row[i], spheres.row[j], task.stamp);
         list.pair.push([i as u32, j as u32]);
         list.history.push(history);
         if task.rules.rolling == Rolling::ElasticPlastic {
@@ -150,7 +160,8 @@ impl Search {
             let pair = task.rules.pair(spheres.material[i], spheres.material[j]);
             let [a, b] = [i, j].map(|k| spheres.place[k].radius);
             let mass = 1.0 / (spheres.moves[i].inverse_mass + spheres.moves[j].inverse_mass);
-            list.prepared.push(task.law.prepare(pair, a * b / (a + b), mass));
+            list.prepared
+                .push(task.law.prepare(pair, a * b / (a + b), mass));
         }
     }
 
@@ -162,7 +173,9 @@ impl Search {
         end: usize,
     ) {
         block.walls.clear();
-        let first = self.triangles.partition_point(|near| (near[0] as usize) < block.begin);
+        let first = self
+            .triangles
+            .partition_point(|near| (near[0] as usize) < block.begin);
         let mut near = &self.triangles[first..];
         for i in block.begin..end {
             let place = &spheres.place[i];
@@ -173,15 +186,19 @@ impl Search {
                 let groups = block.walls.groups.len();
                 let (particle, wall_index) = ((i - block.begin) as u32, index as u32);
                 if let WallShape::Mesh { .. } = wall.shape {
-                    let skip = near.partition_point(|one| [one[0], one[1]] < [i as u32, wall_index]);
+                    let skip =
+                        near.partition_point(|one| [one[0], one[1]] < [i as u32, wall_index]);
                     near = &near[skip..];
-                    let count = near.partition_point(|one| [one[0], one[1]] <= [i as u32, wall_index]);
+                    let count =
+                        near.partition_point(|one| [one[0], one[1]] <= [i as u32, wall_index]);
                     let triangles = near[..count].iter().map(|one| one[2]);
                     block.walls.add(particle, wall_index, triangles, true);
                 } else if shape::nearest(&wall.shape, wall.own(place.centre))
                     .is_some_and(|near| near.distance < place.radius + task.skin)
                 {
-                    block.walls.add(particle, wall_index, std::iter::empty(), false);
+                    block
+                        .walls
+                        .add(particle, wall_index, std::iter::empty(), false);
                 }
                 if block.walls.groups.len() > groups {
                     self.begin_wall(task, spheres, block, i, wall);
@@ -203,7 +220,8 @@ impl Search {
             return;
         };
         let slots = &mut block.walls.slots[group.slots.start as usize..group.slots.end as usize];
-        self.carry.fill(spheres.row[i], group.wall, slots, task.stamp);
+        self.carry
+            .fill(spheres.row[i], group.wall, slots, task.stamp);
         if task.prepares {
             let pair: &PairConstants = task.rules.pair(spheres.material[i], wall.material);
             let mass = 1.0 / spheres.moves[i].inverse_mass;

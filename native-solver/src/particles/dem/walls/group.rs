@@ -10,9 +10,9 @@ use super::super::block::Scene;
 use super::super::contact::{Meeting, evaluate};
 use super::super::energy::Budget;
 use super::super::sphere::{Load, Place};
+use super::WallBody;
 use super::shape::{self, Nearest};
 use super::triangle::{self, MOST, Touch};
-use super::WallBody;
 
 /// Most contacts of one sphere with one mesh.
 pub const CONTACTS: usize = 8;
@@ -74,16 +74,27 @@ impl WallContacts {
     }
 
     /// Adds a wall that is near a particle.
-    pub fn add(&mut self, particle: u32, wall: u32, triangles: impl Iterator<Item = u32>, mesh: bool) {
+    pub fn add(
+        &mut self,
+        particle: u32,
+        wall: u32,
+        triangles: impl Iterator<Item = u32>,
+        mesh: bool,
+    ) {
         let first = self.triangles.len() as u32;
         self.triangles.extend(triangles);
         let end = self.triangles.len() as u32;
         if mesh && first == end {
             return;
         }
-        let contacts = if mesh { (end - first).min(CONTACTS as u32) } else { 1 };
+        let contacts = if mesh {
+            (end - first).min(CONTACTS as u32)
+        } else {
+            1
+        };
         let slot = self.slots.len() as u32;
-        self.slots.resize((slot + contacts) as usize, Slot::default());
+        self.slots
+            .resize((slot + contacts) as usize, Slot::default());
         self.groups.push(Group {
             particle,
             wall,
@@ -115,8 +126,8 @@ impl WallContacts {
             };
             match &wall.shape {
                 WallShape::Mesh { triangles } => {
-                    let near =
-                        &self.triangles[group.triangles.start as usize..group.triangles.end as usize];
+                    let near = &self.triangles
+                        [group.triangles.start as usize..group.triangles.end as usize];
                     let mut touches = [Touch::default(); MOST];
                     let found = touching(near, triangles, own, place.radius, &mut touches);
                     let touches = &mut touches[..found];
@@ -168,7 +179,13 @@ fn touching(
 }
 
 /// The memory of a contact: of the slot that touched in the last evaluation near this point, else a free one.
-fn memory(slots: &mut [Slot], point: Vec3, radius: f64, stamp: u64, alone: bool) -> Option<&mut Slot> {
+fn memory(
+    slots: &mut [Slot],
+    point: Vec3,
+    radius: f64,
+    stamp: u64,
+    alone: bool,
+) -> Option<&mut Slot> {
     let mut best: Option<(usize, f64)> = None;
     for (k, slot) in slots.iter().enumerate() {
         let square = (slot.point - point).norm_squared();
@@ -237,7 +254,9 @@ fn contact<L: ContactLaw, const BUDGET: bool>(
             }
         },
     };
-    let pair = scene.rules.pair(scene.spheres.material[index], wall.material);
+    let pair = scene
+        .rules
+        .pair(scene.spheres.material[index], wall.material);
     let outcome = evaluate::<L, BUDGET>(
         scene.law,
         scene.rules,

@@ -52,7 +52,11 @@ fn cone(place: Vec3, ends: &[Vec3; 2], radii: &[f64; 2]) -> Option<Nearest> {
         out / distance
     } else {
         // On the axis every direction is the same by symmetry.
-        let other = if axis.x.abs() < 0.5 { Vec3::x() } else { Vec3::y() };
+        let other = if axis.x.abs() < 0.5 {
+            Vec3::x()
+        } else {
+            Vec3::y()
+        };
         axis.cross(&other).normalize()
     };
     let (rise, spread) = (length, radii[1] - radii[0]);

@@ -69,7 +69,9 @@ pub fn keep_distinct(
     touches.sort_unstable_by(|a, b| {
         let order = a.square.total_cmp(&b.square);
         // Of equals a face goes first, then the lower index.
-        order.then(b.face.cmp(&a.face)).then(a.triangle.cmp(&b.triangle))
+        order
+            .then(b.face.cmp(&a.face))
+            .then(a.triangle.cmp(&b.triangle))
     });
     let near = (1e-6 * radius).powi(2);
     let mut kept = 0;
