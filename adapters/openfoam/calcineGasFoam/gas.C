@@ -292,6 +292,8 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
     result = report();
     for (label outer = 1; outer <= max(outerIterations_, 1); ++outer)
     {
+        // The switching of limiters may otherwise lead from one iterate to another and back for ever.
+        share_ = outer > 8 ? 0.5 : 1;
         updateBasePressure();
         const scalarField rho(density());
         setFlux();

@@ -24,12 +24,11 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
         "conduction", fvc::interpolate(voidFraction_*thermo_->alphahe())
     );
     enthalpy_.reset();
-    autoPtr<surfaceScalarField> beyond;
     enthalpy_.reset
     (
         new fvScalarMatrix
         (
-            convect(phi_, h, "div(phi,h)", beyond) - fvm::laplacian(conduction, h)
+            convect(phi_, h, "div(phi,h)", share_, beyondH_) - fvm::laplacian(conduction, h)
         )
     );
     fvScalarMatrix& matrix = *enthalpy_;
@@ -37,7 +36,7 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
         committed_.mass/span + given_.heatCoefficient/heatCapacity_ - outflow();
     matrix.source() += committed_.mass*committed_.enthalpy/span
       + given_.heatSource - given_.heatCoefficient*temperatureBase_
-      - outOf(*beyond) + compression*given_.voidFraction*mesh_.cellVolumes();
+      - outOf(*beyondH_) + compression*given_.voidFraction*mesh_.cellVolumes();
     boundary_.addHeat
     (
         window_.processEnd,
