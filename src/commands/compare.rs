@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::execute::{self, Settings};
 use super::{Failure, chain, read_and_prepare, results_folder, say};
-use crate::assembly::Pairing;
+use crate::assembly::{Pairing, Starts};
 use crate::exit;
 
 /// Runs several pairings of one case and says how far they differ against the case's bands.
@@ -65,6 +65,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         say(format_args!("{}:", pairing.name()));
         let settings = Settings {
             pairing,
+            starts: &Starts::default(),
             out: &folder,
             resume: false,
             from: None,

@@ -6,6 +6,7 @@ pub mod doctor;
 mod execute;
 mod new;
 mod origin;
+mod parallel;
 mod prepare;
 mod report;
 mod run;

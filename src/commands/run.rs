@@ -6,6 +6,7 @@ use std::time::Duration;
 use clap::Args;
 
 use super::execute::{self, Settings};
+use super::parallel::Parallel;
 use super::{Failure, read_and_prepare, results_folder, say};
 use crate::assembly::{GasBackend, Pairing, ParticleBackend};
 use crate::exit;
@@ -21,6 +22,8 @@ pub(super) struct Arguments {
     /// Who computes the particles.
     #[arg(long, value_enum, default_value_t)]
     particles: ParticleBackend,
+    #[command(flatten)]
+    parallel: Parallel,
     /// The results folder [default: results/NAME].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -52,11 +55,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     }
     let (case, prepared) = read_and_prepare(&arguments.case, &arguments.set)?;
     let out = results_folder(&case, arguments.out.as_ref());
+    let pairing = Pairing {
+        gas: arguments.gas,
+        particles: arguments.particles,
+    };
     let settings = Settings {
-        pairing: Pairing {
-            gas: arguments.gas,
-            particles: arguments.particles,
-        },
+        pairing,
+        starts: &arguments.parallel.starts(pairing)?,
         out: &out,
         resume: arguments.resume,
         from: arguments.from.as_deref(),

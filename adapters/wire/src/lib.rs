@@ -7,6 +7,7 @@
 pub mod catalogue;
 pub mod hello;
 pub mod link;
+pub mod process;
 pub mod record;
 pub mod run;
 pub mod shared_memory;
@@ -20,6 +21,7 @@ mod words;
 pub use catalogue::{Catalogue, Field, Record};
 pub use hello::Hello;
 pub use link::Link;
+pub use process::Process;
 pub use record::{Header, Kind};
 pub use run::{LinkAddress, Run};
 pub use shared_memory::SharedMemory;

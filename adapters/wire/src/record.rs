@@ -5,7 +5,7 @@ use iceoryx2::prelude::ZeroCopySend;
 /// Marks a header of this wire: "calcine" and a one.
 pub const MAGIC: u64 = u64::from_le_bytes(*b"calcine\x01");
 /// Version of the protocol; both ends must have the same.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// What a message is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,11 +29,14 @@ pub enum Kind {
     Failed = 8,
     /// The run ends; asked by the coordinator, answered by the solver.
     Bye = 9,
+    /// Which cells of the whole mesh the rank of a gas has, in the order of all its columns; sent
+    /// once, after the handshake (columns).
+    Owned = 10,
 }
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Kind; 9] = [
+    pub const ALL: [Kind; 10] = [
         Kind::Hello,
         Kind::State,
         Kind::Start,
@@ -43,6 +46,7 @@ impl Kind {
         Kind::Checkpointed,
         Kind::Failed,
         Kind::Bye,
+        Kind::Owned,
     ];
 
     /// The kind of a number on the wire.

@@ -88,6 +88,18 @@ impl LinkAddress {
         self.name.bytes().fold(0xcbf2_9ce4_8422_2325, mix)
     }
 
+    /// Makes the folder where Open MPI keeps the shared memory between a solver's ranks. Its own
+    /// names would say neither whose it is nor whether it is still in use.
+    pub fn make_mpi_memory(&self) -> Result<PathBuf, WireError> {
+        let path = Path::new(MEMORY).join(format!("{}_mpi-{}", self.name, self.role));
+        match DirBuilder::new().mode(0o700).create(&path) {
+            Err(source) if source.kind() != ErrorKind::AlreadyExists => {
+                Err(WireError::File { path, source })
+            }
+            _ => Ok(path),
+        }
+    }
+
     /// Removes every file of the run.
     pub fn remove_files(&self) {
         remove_files(&self.name, &self.root);
@@ -239,7 +251,13 @@ fn remove_files(name: &str, root: &Path) {
             .file_name()
             .to_str()
             .is_some_and(|name| name.starts_with(&prefix));
-        if own && let Err(error) = fs::remove_file(entry.path()) {
+        let folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
+        let removed = match (own, folder) {
+            (false, _) => Ok(()),
+            (true, false) => fs::remove_file(entry.path()),
+            (true, true) => fs::remove_dir_all(entry.path()),
+        };
+        if let Err(error) = removed {
             tell(&entry.path(), error);
         }
     }
@@ -274,6 +292,8 @@ mod tests {
         let address = run.address("gas");
         assert_eq!(files_of(&address.name), 1);
         assert!(address.root.is_dir());
+        fs::write(address.make_mpi_memory().unwrap().join("segment"), b"x").unwrap();
+        assert_eq!(files_of(&address.name), 2);
         drop(run);
         assert_eq!(files_of(&address.name), 0);
         assert!(!address.root.exists());

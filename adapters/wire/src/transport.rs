@@ -85,7 +85,7 @@ pub enum WireError {
         what: &'static str,
     },
     /// A line that is no field of a catalogue.
-    #[error("`{line}` is no field; write `start|state name components unit item|rank`")]
+    #[error("`{line}` is no field; write `start|state|owned name components unit item|rank`")]
     Catalogue {
         /// The line.
         line: String,
