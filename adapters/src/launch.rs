@@ -336,6 +336,9 @@ impl Drop for Processes {
         if let Some(child) = &mut self.child {
             let _ = child.wait();
         }
+        for rank in &self.ranks {
+            has_ended(rank, GRACE);
+        }
     }
 }
 

