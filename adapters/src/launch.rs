@@ -1,16 +1,18 @@
 //! Starting a solver's processes and ending them, whatever happens.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
+use std::fmt;
 use std::fs::{self, File};
 use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::supervisor::has_ended;
 use calcine_wire::run::VARIABLE;
-use calcine_wire::{LinkAddress, WireError};
+use calcine_wire::{LinkAddress, Network, Transport, WireError};
 use rustix::process::{Pid, PidfdFlags, Signal, kill_process_group, pidfd_open, pidfd_send_signal};
 
 /// How long processes may take to end after SIGTERM, before SIGKILL.
@@ -40,7 +42,27 @@ pub enum Launcher {
     Own(Vec<String>),
     /// The user, by hand: Calcine says what to start, and waits.
     Hand,
+    /// MPI, in a world of their own that also carries the messages.
+    Network(Spawner),
 }
+
+/// What spawns ranks.
+#[derive(Clone)]
+pub struct Spawner(pub Arc<dyn Network>);
+
+impl fmt::Debug for Spawner {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Spawner")
+    }
+}
+
+impl PartialEq for Spawner {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl Eq for Spawner {}
 
 impl Launcher {
     /// The launcher of a command line, words separated by blanks.
@@ -98,13 +120,9 @@ impl Program {
         command
     }
 
-    /// What to type where somebody starts the ranks by hand.
-    fn by_hand(&self, ranks: u32, variables: &[(&str, OsString)]) -> String {
-        let quoted = |word: &std::ffi::OsStr| {
-            let text = word.to_string_lossy().replace('\'', "'\\''");
-            format!("'{text}'")
-        };
-        let mut line = format!("cd {} && env", quoted(self.directory.as_os_str()));
+    /// A line of a shell that starts the program in its folder, behind a launcher's words.
+    fn line(&self, words: &[OsString], variables: &[(&str, OsString)]) -> String {
+        let mut line = format!("cd {} && exec env", quoted(self.directory.as_os_str()));
         let own = self.environment.iter();
         let own = own.map(|(name, value)| (name.to_string_lossy(), value));
         let ours = variables
@@ -113,7 +131,6 @@ impl Program {
         for (name, value) in ours.chain(own) {
             line.push_str(&format!(" {name}={}", quoted(value)));
         }
-        let words = Launcher::Mpirun.words(ranks);
         let words = words.iter().map(|word| word.to_string_lossy().into_owned());
         let program = [self.path.as_os_str()].into_iter();
         let program = program.chain(self.arguments.iter().map(OsString::as_os_str));
@@ -153,6 +170,37 @@ pub fn find_program(variable: &str, name: &str, remedy: &str) -> Result<PathBuf,
         );
         PartError::new(name, FailureKind::NotStarted, message)
     })
+}
+
+/// Has MPI start a program on every rank, its output in a log; gives the coordinator's ends.
+pub fn spawn(
+    network: &dyn Network,
+    program: &Program,
+    ranks: u32,
+    address: &LinkAddress,
+    log: &Path,
+    patience: Duration,
+) -> Result<Vec<Box<dyn Transport + Send>>, WireError> {
+    let failed = |source| WireError::File {
+        path: log.to_owned(),
+        source,
+    };
+    if let Some(folder) = log.parent() {
+        fs::create_dir_all(folder).map_err(failed)?;
+    }
+    File::create(log).map_err(failed)?;
+    let line = program.line(&[], &[(VARIABLE, address.to_text().into())]);
+    let line = format!("{line} >>{} 2>&1", quoted(log.as_os_str()));
+    network.spawn(
+        &["/bin/sh".into(), "-c".into(), line.into()],
+        ranks,
+        patience,
+    )
+}
+
+/// A word for a shell.
+fn quoted(word: &OsStr) -> String {
+    format!("'{}'", word.to_string_lossy().replace('\'', "'\\''"))
 }
 
 /// The processes of a started solver: a group of their own, ended and reaped when this is dropped.
@@ -209,13 +257,9 @@ impl Processes {
             PartError::new(who, FailureKind::NotStarted, "its environment").caused_by(error)
         })?;
         if *launcher == Launcher::Hand {
-            let line = program.by_hand(ranks, &variables);
-            eprintln!("{who} waits for {ranks} rank(s); start them with\n  {line}");
-            return Ok(Self {
-                child: None,
-                ranks: Vec::new(),
-                ended: false,
-            });
+            let line = program.line(&Launcher::Mpirun.words(ranks), &variables);
+            eprintln!("{who} waits for {ranks} rank(s); start them with\n  ({line})");
+            return Ok(Self::elsewhere());
         }
         if let Some(folder) = log.parent() {
             let doing = format!("the folder {} cannot be made", folder.display());
@@ -242,6 +286,15 @@ impl Processes {
             ranks: Vec::new(),
             ended: false,
         })
+    }
+
+    /// Processes that somebody else starts.
+    pub fn elsewhere() -> Self {
+        Self {
+            child: None,
+            ranks: Vec::new(),
+            ended: false,
+        }
     }
 
     /// Process id of the solver, or of the launcher above it.
@@ -379,10 +432,10 @@ mod tests {
 
     #[test]
     fn what_to_start_by_hand_can_be_pasted() {
-        let line = program().by_hand(1, &[("CALCINE_LINK", "1 a b".into())]);
+        let line = program().line(&[], &[("CALCINE_LINK", "1 a b".into())]);
         assert_eq!(
             line,
-            "cd '/case' && env CALCINE_LINK='1 a b' PWD='/case' '/opt/it'\\''s here/solver' \
+            "cd '/case' && exec env CALCINE_LINK='1 a b' PWD='/case' '/opt/it'\\''s here/solver' \
              '-parallel'"
         );
     }

@@ -9,9 +9,9 @@ use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::supervisor::{Supervisor, log_end};
 use calcine_coupler::time::Window;
 use calcine_wire::shared_memory::End;
-use calcine_wire::{Header, Hello, Kind, Link, Record, Run, SharedMemory, WireError};
+use calcine_wire::{Header, Hello, Kind, Link, Network, Record, Run, SharedMemory, WireError};
 
-use crate::launch::{Launcher, Processes, Program};
+use crate::launch::{Launcher, Processes, Program, Spawner, spawn};
 
 /// What is to be launched.
 #[derive(Clone, Debug)]
@@ -52,7 +52,9 @@ pub struct ExternalSolver {
     links: Vec<Link>,
     // Dropped in this order: processes end before the run's files go.
     processes: Processes,
-    _run: Run,
+    _run: Option<Run>,
+    /// Where MPI spawned the ranks: told when they have ended well.
+    network: Option<Arc<dyn Network>>,
     peer: Peer,
     hello: Hello,
     /// By rank: the cells of the whole mesh that it has; empty for particles.
@@ -214,21 +216,54 @@ impl ExternalSolver {
             let message = "its link cannot be opened";
             PartError::new(&launch.name, FailureKind::NotStarted, message).caused_by(error)
         };
-        let run = Run::create().map_err(unopened)?;
-        let links = open_links(&run, &launch.hello).map_err(unopened)?;
-        let processes = Processes::start(
-            &launch.name,
-            &launch.program,
-            &launch.launcher,
-            launch.hello.ranks,
-            &run.address(&launch.hello.role),
-            &launch.log,
-        )?;
+        let ranks = launch.hello.ranks;
+        let (run, links, processes);
+        if let Launcher::Network(Spawner(network)) = &launch.launcher {
+            let address = network.address(&launch.hello.role);
+            let program = &launch.program;
+            let ends = spawn(
+                &**network,
+                program,
+                ranks,
+                &address,
+                &launch.log,
+                launch.handshake,
+            );
+            let ends = ends.map_err(|error| {
+                let message = "its ranks cannot be spawned by MPI";
+                let error =
+                    PartError::new(&launch.name, FailureKind::NotStarted, message).caused_by(error);
+                error.with_log(log_end(&launch.log))
+            })?;
+            let number = address.number();
+            let opened = ends.into_iter().zip(0..);
+            links = opened
+                .map(|(end, rank)| Link::new(end, number, rank))
+                .collect();
+            processes = Processes::elsewhere();
+            run = None;
+        } else {
+            let own = Run::create().map_err(unopened)?;
+            links = open_links(&own, &launch.hello).map_err(unopened)?;
+            processes = Processes::start(
+                &launch.name,
+                &launch.program,
+                &launch.launcher,
+                ranks,
+                &own.address(&launch.hello.role),
+                &launch.log,
+            )?;
+            run = Some(own);
+        }
         let peer = Peer::new(&launch, processes.pid(), supervisor)?;
         let mut solver = Self {
             links,
             processes,
             _run: run,
+            network: match launch.launcher {
+                Launcher::Network(Spawner(network)) => Some(network),
+                _ => None,
+            },
             peer,
             hello: launch.hello,
             owned: Arc::default(),
@@ -384,7 +419,11 @@ impl ExternalSolver {
     pub fn goodbye(&mut self) -> Result<(), PartError> {
         self.send_text(Kind::Bye, "")?;
         self.wait_alone(Kind::Bye)?;
-        self.processes.wait(&self.peer.name, self.deadline)
+        self.processes.wait(&self.peer.name, self.deadline)?;
+        if let Some(network) = &self.network {
+            network.goodbye();
+        }
+        Ok(())
     }
 
     fn send_text(&mut self, kind: Kind, text: &str) -> Result<(), PartError> {

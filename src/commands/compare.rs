@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::execute::{self, Settings};
+use super::parallel::Transport;
 use super::{Failure, chain, read_and_prepare, results_folder, say};
 use crate::assembly::{Pairing, Starts};
 use crate::exit;
@@ -66,6 +67,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         let settings = Settings {
             pairing,
             starts: &Starts::default(),
+            transport: Transport::default(),
             out: &folder,
             resume: false,
             from: None,

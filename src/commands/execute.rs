@@ -15,7 +15,8 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use tracing::{error, info, warn};
 
-use super::{Failure, chain, origin, parallel, with_help};
+use super::parallel::{self, Transport};
+use super::{Failure, chain, origin, with_help};
 use crate::assembly::{self, Pairing, Prepared, Starts, assemble};
 use crate::case::buoyancy;
 use crate::case::model::Case;
@@ -32,6 +33,8 @@ pub(super) struct Settings<'a> {
     pub(super) pairing: Pairing,
     /// How external solvers are started.
     pub(super) starts: &'a Starts,
+    /// What carries their messages.
+    pub(super) transport: Transport,
     /// The results folder.
     pub(super) out: &'a Path,
     /// Goes on from the checkpoint in it, or starts again if there was none yet.
@@ -92,7 +95,7 @@ pub(super) fn execute(
         transport: if settings.pairing.is_native() {
             "none"
         } else {
-            "shared-memory"
+            settings.transport.name()
         }
         .into(),
         from: provenance,

@@ -1,11 +1,34 @@
 //! How external solvers are started: ranks, launchers, by hand.
 
-use calcine_adapters::launch::Launcher;
-use clap::Args;
+use std::sync::Arc;
+
+use calcine_adapters::launch::{Launcher, Spawner};
+use calcine_wire::Network;
+use clap::{Args, ValueEnum};
 
 use super::Failure;
 use crate::assembly::{GasBackend, Pairing, ParticleBackend, Start, Starts};
 use crate::exit;
+
+/// What carries messages between Calcine and external solvers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum Transport {
+    /// Memory of this machine.
+    #[default]
+    SharedMemory,
+    /// MPI, also between machines; the program `calcine-mpi` takes over.
+    Mpi,
+}
+
+impl Transport {
+    /// The name as users write it.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Transport::SharedMemory => "shared-memory",
+            Transport::Mpi => "mpi",
+        }
+    }
+}
 
 /// Options of external solvers.
 #[derive(Clone, Debug, Default, Args)]
@@ -16,6 +39,9 @@ pub(super) struct Parallel {
     /// MPI ranks of LIGGGHTS [default: 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     ranks_particles: Option<u16>,
+    /// What carries messages between Calcine and external solvers.
+    #[arg(long, value_enum, default_value_t)]
+    transport: Transport,
     /// Starts OpenFOAM's ranks instead of `mpirun`, for example "srun -n 16"; state as many with
     /// `--ranks-gas`.
     #[arg(long, value_name = "WORDS", value_parser = Launcher::parse)]
@@ -23,14 +49,24 @@ pub(super) struct Parallel {
     /// Starts LIGGGHTS' ranks instead of `mpirun`; state as many with `--ranks-particles`.
     #[arg(long, value_name = "WORDS", value_parser = Launcher::parse)]
     launch_particles: Option<Launcher>,
-    /// Says what to start by hand, for debuggers and queues, and waits for it.
+    /// Says what to start by hand, for debuggers and queues, and waits for it; messages go through
+    /// shared memory.
     #[arg(long, conflicts_with_all = ["launch_gas", "launch_particles"])]
     attach: bool,
 }
 
 impl Parallel {
+    /// What carries the messages of a pairing's solvers.
+    pub(super) fn transport(&self) -> Transport {
+        self.transport
+    }
+
     /// What was asked for; an option for a solver that does not take part is refused.
-    pub(super) fn starts(&self, pairing: Pairing) -> Result<Starts, Failure> {
+    pub(super) fn starts(
+        &self,
+        pairing: Pairing,
+        network: Option<&Arc<dyn Network>>,
+    ) -> Result<Starts, Failure> {
         let gas = pairing.gas == GasBackend::Openfoam;
         let particles = pairing.particles == ParticleBackend::Liggghts;
         for (option, given, taken, remedy) in [
@@ -73,12 +109,21 @@ impl Parallel {
                 return Err(Failure::new(exit::CASE, message));
             }
         }
+        let own = self.launch_gas.is_some() || self.launch_particles.is_some() || self.attach;
+        let network = network.filter(|_| self.transport == Transport::Mpi);
+        if own && self.transport == Transport::Mpi {
+            let message = "over MPI Calcine spawns the ranks itself, where MPI's own settings say; \
+                           leave out --launch-gas, --launch-particles and --attach, or take \
+                           --transport shared-memory";
+            return Err(Failure::new(exit::CASE, message));
+        }
         let start = |ranks: Option<u16>, launcher: &Option<Launcher>| Start {
             ranks: ranks.unwrap_or(1).into(),
-            launcher: match launcher {
-                Some(launcher) => launcher.clone(),
-                None if self.attach => Launcher::Hand,
-                None => Launcher::Mpirun,
+            launcher: match (launcher, network) {
+                (Some(launcher), _) => launcher.clone(),
+                (None, Some(network)) => Launcher::Network(Spawner(Arc::clone(network))),
+                (None, None) if self.attach => Launcher::Hand,
+                (None, None) => Launcher::Mpirun,
             },
         };
         Ok(Starts {
@@ -99,9 +144,13 @@ pub(super) fn flags(starts: &Starts) -> String {
             text.push_str(&format!(" --launch-{name} \"{}\"", words.join(" ")));
         }
     }
-    let by_hand = [&starts.gas, &starts.particles];
-    if by_hand.iter().any(|start| start.launcher == Launcher::Hand) {
+    let both = [&starts.gas, &starts.particles];
+    if both.iter().any(|start| start.launcher == Launcher::Hand) {
         text.push_str(" --attach");
+    }
+    let spawned = |start: &&&Start| matches!(start.launcher, Launcher::Network(_));
+    if both.iter().any(|start| spawned(&start)) {
+        text.push_str(" --transport mpi");
     }
     text
 }
@@ -122,7 +171,7 @@ mod tests {
         let line = Line::try_parse_from(words).map_err(|error| error.to_string())?;
         let pairing = Pairing::parse(pairing).unwrap();
         line.parallel
-            .starts(pairing)
+            .starts(pairing, None)
             .map_err(|failure| failure.message)
     }
 

@@ -1,12 +1,14 @@
 //! `calcine run CASE`.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 
+use calcine_wire::Network;
 use clap::Args;
 
 use super::execute::{self, Settings};
-use super::parallel::Parallel;
+use super::parallel::{Parallel, Transport};
 use super::{Failure, read_and_prepare, results_folder, say};
 use crate::assembly::{GasBackend, Pairing, ParticleBackend};
 use crate::exit;
@@ -49,7 +51,18 @@ pub(super) struct Arguments {
     stop_after: Option<Duration>,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
+impl Arguments {
+    /// True where the solvers talk over MPI.
+    pub(super) fn needs_mpi(&self) -> bool {
+        let external = self.gas != GasBackend::Native || self.particles != ParticleBackend::Native;
+        external && self.parallel.transport() == Transport::Mpi
+    }
+}
+
+pub(super) fn run(
+    arguments: &Arguments,
+    network: Option<&Arc<dyn Network>>,
+) -> Result<u8, Failure> {
     if let Some(threads) = arguments.threads {
         use_threads(threads.into())?;
     }
@@ -61,7 +74,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     };
     let settings = Settings {
         pairing,
-        starts: &arguments.parallel.starts(pairing)?,
+        starts: &arguments.parallel.starts(pairing, network)?,
+        transport: arguments.parallel.transport(),
         out: &out,
         resume: arguments.resume,
         from: arguments.from.as_deref(),

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::execute::{self, Settings};
+use super::parallel::Transport;
 use super::{Failure, chain, read_and_prepare, read_case, results_folder, say};
 use crate::assembly::{GasBackend, Pairing, ParticleBackend, Starts};
 use crate::compare::deviation::{Deviation, deviation};
@@ -99,6 +100,7 @@ fn one(arguments: &Arguments, settings: &[String], folder: &Path) -> Result<(), 
     let (case, prepared) = read_and_prepare(&arguments.case, settings)?;
     let settings = Settings {
         starts: &Starts::default(),
+        transport: Transport::default(),
         pairing: Pairing {
             gas: arguments.gas,
             particles: arguments.particles,

@@ -1,4 +1,5 @@
 #include "link.H"
+#include "parent.H"
 
 #include <algorithm>
 #include <cstring>
@@ -47,7 +48,15 @@ Foam::calcine::link::link(label rank)
 :
     link_(nullptr)
 {
-    check(calcine_link_open(static_cast<uint32_t>(rank), &link_));
+    uint32_t carried = 0;
+    check(calcine_link_needs_carrier(&carried));
+    calcine_carrier carrier{};
+    if (carried)
+    {
+        parent_.reset(new parent);
+        carrier = parent_->carrier();
+    }
+    check(calcine_link_open(static_cast<uint32_t>(rank), carried ? &carrier : nullptr, &link_));
 }
 
 

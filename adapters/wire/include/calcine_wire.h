@@ -2,7 +2,7 @@
  *
  * A solver's rank opens its link, shakes hands, sends its first state, and then answers:
  *
- *   calcine_link_open(rank, &link)               what to open stands in the variable CALCINE_LINK
+ *   calcine_link_open(rank, carrier, &link)      what to open stands in the variable CALCINE_LINK
  *   calcine_link_handshake(link, &hello, 10000)  compares versions, hashes, catalogue, count
  *   loan(CALCINE_OWNED) … send                   a gas: which cells of the whole mesh this rank has
  *   loan(CALCINE_STATE) … send                   the state that the run starts from
@@ -103,8 +103,27 @@ typedef struct calcine_hello {
  * at a multiple of 64 bytes. With CALCINE_STATE and CALCINE_CHECKPOINTED, `heat`, `drag`, `balances`
  * and `convergence` are zero. */
 
-/* Opens the link of a rank, as the variable CALCINE_LINK describes it. */
-calcine_status calcine_link_open(uint32_t rank, calcine_link **link);
+/* What moves messages where the coordinator started the ranks by MPI: functions of the solver, over the
+ * intercommunicator to its parent. None may block; a negative result is an error's code. */
+typedef struct calcine_carrier {
+    void *context;
+    /* Begins to send; the words stay until `pending` no longer counts the message. */
+    int64_t (*post)(void *context, const uint64_t *words, uint64_t count);
+    /* Moves on what was posted; messages that the coordinator has not taken, in order. */
+    int64_t (*pending)(void *context);
+    /* Words of the next message that waits here; 0: none. */
+    int64_t (*arrived)(void *context);
+    /* Takes the message that waits into as many words. */
+    int64_t (*take)(void *context, uint64_t *words, uint64_t count);
+} calcine_carrier;
+
+/* Whether the link that the variable CALCINE_LINK describes needs a carrier: 1 or 0. */
+calcine_status calcine_link_needs_carrier(uint32_t *needs);
+
+/* Opens the link of a rank, as the variable CALCINE_LINK describes it; `carrier` may be NULL where
+ * none is needed. */
+calcine_status calcine_link_open(uint32_t rank, const calcine_carrier *carrier,
+                                 calcine_link **link);
 
 /* Says hello and compares with what the coordinator answers; an error names both values. */
 calcine_status calcine_link_handshake(calcine_link *link, const calcine_hello *hello,

@@ -9,6 +9,9 @@ use crate::record::{Header, Kind, MAGIC, VERSION};
 use crate::transport::{Transport, WireError};
 use crate::words;
 
+/// How long a process that fails may take to say so.
+const LAST_WORD: Duration = Duration::from_secs(2);
+
 /// One end of one rank's link.
 pub struct Link {
     transport: Box<dyn Transport + Send>,
@@ -109,6 +112,12 @@ impl Link {
         let payload = self.transport.loan(header, text.len().div_ceil(8))?;
         words::bytes_mut(payload)[..text.len()].copy_from_slice(text.as_bytes());
         self.transport.send()
+    }
+
+    /// Tells the other end why this process ends, and stays until it has heard, 2 s at most.
+    pub fn send_last_word(&mut self, header: Header, text: &str) -> Result<(), WireError> {
+        self.send_text(header, text)?;
+        self.transport.settle(LAST_WORD)
     }
 
     /// Reserves a message with columns for `count` items; the header's kind decides which.

@@ -70,7 +70,8 @@ fn word(path: &str) -> String {
         .unwrap_or_default()
 }
 
-fn machine() -> String {
+/// The boot and the process-id namespace of this process: where its process ids mean something.
+pub(crate) fn machine() -> String {
     let space = fs::read_link(Path::new("/proc/self/ns/pid")).unwrap_or_default();
     let boot = word("/proc/sys/kernel/random/boot_id");
     format!("{boot}/{}", space.display())
