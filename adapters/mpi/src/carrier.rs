@@ -45,6 +45,8 @@ pub fn place_files(root: &Path, memory: &Path) {
     set("OMPI_MCA_btl_vader_backing_directory", memory.as_os_str());
     set("OMPI_MCA_rmaps_base_oversubscribe", "1".as_ref());
     set("OMPI_MCA_mpi_yield_when_idle", "1".as_ref());
+    // Each world would bind its ranks to the same processors.
+    set("OMPI_MCA_hwloc_base_binding_policy", "none".as_ref());
     // Between processes of one machine that are not of one world Open MPI uses TCP.
     let elsewhere = [
         "OMPI_MCA_orte_default_hostfile",
