@@ -173,7 +173,7 @@ mod tests {
                 h.mesh_hash = "0c".into()
             }),
             ("is 12 here, but 13", |h| h.count = 13),
-            ("void_fraction", |h| {
+            ("owned cell 1 u64 item", |h| {
                 h.catalogue = Catalogue::standard("particles").unwrap()
             }),
         ];
