@@ -141,8 +141,8 @@ void Foam::calcine::gas::measureFaces()
     neighbourSkew_.setSize(faces, Zero);
     conductance_.setSize(faces, 0);
     drive_.setSize(faces, 0);
-    facePressure_.setSize(faces, 0);
     transportPush_.setSize(faces, 0);
+    recovery_ = tensorField(mesh_.nCells(), Zero);
     for (label facei = 0; facei < faces; ++facei)
     {
         const vector& centre = mesh_.faceCentres()[facei];
@@ -156,6 +156,17 @@ void Foam::calcine::gas::measureFaces()
             neighbourDistance_[facei] = n & toNeighbour;
             neighbourSkew_[facei] = toNeighbour - neighbourDistance_[facei]*n;
         }
+        if (facei < mesh_.nInternalFaces())
+        {
+            recovery_[mesh_.faceNeighbour()[facei]] +=
+                neighbourDistance_[facei]*mag(mesh_.faceAreas()[facei])*n*n;
+        }
+        recovery_[mesh_.faceOwner()[facei]] +=
+            ownerDistance_[facei]*mag(mesh_.faceAreas()[facei])*n*n;
+    }
+    forAll(recovery_, celli)
+    {
+        recovery_[celli] = inv(recovery_[celli]/mesh_.cellVolumes()[celli]);
     }
 }
 

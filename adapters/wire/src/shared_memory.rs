@@ -5,7 +5,7 @@ use std::os::unix::ffi::OsStrExt;
 use std::time::{Duration, Instant};
 
 use iceoryx2::port::BackpressureAction;
-use iceoryx2::port::listener::Listener;
+use iceoryx2::port::listener::{Listener, ListenerWaitError};
 use iceoryx2::port::notifier::Notifier;
 use iceoryx2::port::publisher::Publisher;
 use iceoryx2::port::subscriber::Subscriber;
@@ -261,10 +261,11 @@ impl Transport for SharedMemory {
             if left.is_zero() {
                 return Ok(false);
             }
-            ports
-                .listener
-                .timed_wait(|_| {}, left.min(LOOK))
-                .map_err(failed("waiting for a message"))?;
+            match ports.listener.timed_wait(|_| {}, left.min(LOOK)) {
+                // A signal, such as Ctrl-C, is dealt with elsewhere; the wait goes on.
+                Ok(_) | Err(ListenerWaitError::InterruptSignal) => {}
+                Err(error) => return Err(failed("waiting for a message")(error)),
+            }
         }
     }
 
