@@ -217,6 +217,20 @@ pub struct Starts {
     pub particles: Start,
 }
 
+impl Starts {
+    /// As many ranks as the case says, started by Calcine.
+    pub fn of(case: &Case) -> Self {
+        let start = |ranks: u32| Start {
+            ranks: ranks.max(1),
+            ..Start::default()
+        };
+        Self {
+            gas: start(case.openfoam.ranks),
+            particles: start(case.liggghts.ranks),
+        }
+    }
+}
+
 /// How a run is put together, beside its case.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings<'a> {
@@ -275,6 +289,7 @@ pub fn write_inputs(
     pairing: Pairing,
     folder: &Path,
 ) -> Result<Vec<std::path::PathBuf>, AssemblyError> {
+    let starts = Starts::of(case);
     let mut written = Vec::new();
     if pairing.gas == GasBackend::Openfoam {
         let target = folder.join("openfoam");
@@ -283,14 +298,14 @@ pub fn write_inputs(
             mesh: &prepared.mesh,
             template: case.openfoam.template.as_deref(),
             case_hash: &case.hash,
-            ranks: 1,
+            ranks: starts.gas.ranks,
         }
         .write(&target)?;
         written.push(target);
     }
     if pairing.particles == ParticleBackend::Liggghts {
         let target = folder.join("liggghts");
-        liggghts_inputs(prepared, 1).write(&target)?;
+        liggghts_inputs(prepared, starts.particles.ranks).write(&target)?;
         written.push(target);
     }
     Ok(written)

@@ -203,6 +203,11 @@ impl Peer {
                 Err(word) if word.kind == FailureKind::Reported => Err(word),
                 _ => Err(death),
             },
+            Err(mut silence) if silence.kind == FailureKind::Silent => {
+                let rank = arrived.iter().position(|arrived| !arrived);
+                silence.who = self.who(rank);
+                Err(silence.with_log(log_end(&self.log)))
+            }
             waited => waited,
         }
     }

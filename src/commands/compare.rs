@@ -66,7 +66,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         say(format_args!("{}:", pairing.name()));
         let settings = Settings {
             pairing,
-            starts: &Starts::default(),
+            starts: &Starts::of(&case),
             transport: Transport::default(),
             out: &folder,
             resume: false,

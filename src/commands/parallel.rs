@@ -33,10 +33,10 @@ impl Transport {
 /// Options of external solvers.
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct Parallel {
-    /// MPI ranks of OpenFOAM [default: 1].
+    /// MPI ranks of OpenFOAM [default: as the case says, or 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     ranks_gas: Option<u16>,
-    /// MPI ranks of LIGGGHTS [default: 1].
+    /// MPI ranks of LIGGGHTS [default: as the case says, or 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     ranks_particles: Option<u16>,
     /// What carries messages between Calcine and external solvers.
@@ -65,6 +65,7 @@ impl Parallel {
     pub(super) fn starts(
         &self,
         pairing: Pairing,
+        case: &Starts,
         network: Option<&Arc<dyn Network>>,
     ) -> Result<Starts, Failure> {
         let gas = pairing.gas == GasBackend::Openfoam;
@@ -117,8 +118,8 @@ impl Parallel {
                            --transport shared-memory";
             return Err(Failure::new(exit::CASE, message));
         }
-        let start = |ranks: Option<u16>, launcher: &Option<Launcher>| Start {
-            ranks: ranks.unwrap_or(1).into(),
+        let start = |ranks: Option<u16>, case: &Start, launcher: &Option<Launcher>| Start {
+            ranks: ranks.map_or(case.ranks, u32::from),
             launcher: match (launcher, network) {
                 (Some(launcher), _) => launcher.clone(),
                 (None, Some(network)) => Launcher::Network(Spawner(Arc::clone(network))),
@@ -127,8 +128,12 @@ impl Parallel {
             },
         };
         Ok(Starts {
-            gas: start(self.ranks_gas, &self.launch_gas),
-            particles: start(self.ranks_particles, &self.launch_particles),
+            gas: start(self.ranks_gas, &case.gas, &self.launch_gas),
+            particles: start(
+                self.ranks_particles,
+                &case.particles,
+                &self.launch_particles,
+            ),
         })
     }
 }
@@ -171,7 +176,7 @@ mod tests {
         let line = Line::try_parse_from(words).map_err(|error| error.to_string())?;
         let pairing = Pairing::parse(pairing).unwrap();
         line.parallel
-            .starts(pairing, None)
+            .starts(pairing, &Starts::default(), None)
             .map_err(|failure| failure.message)
     }
 

@@ -10,7 +10,7 @@ use clap::Args;
 use super::execute::{self, Settings};
 use super::parallel::{Parallel, Transport};
 use super::{Failure, read_and_prepare, results_folder, say};
-use crate::assembly::{GasBackend, Pairing, ParticleBackend};
+use crate::assembly::{GasBackend, Pairing, ParticleBackend, Starts};
 use crate::exit;
 
 /// Runs a case, natively or with production solvers.
@@ -72,7 +72,9 @@ pub(super) fn run(
     };
     let settings = Settings {
         pairing,
-        starts: &arguments.parallel.starts(pairing, network)?,
+        starts: &arguments
+            .parallel
+            .starts(pairing, &Starts::of(&case), network)?,
         transport: arguments.parallel.transport(),
         out: &out,
         resume: arguments.resume,
