@@ -1,7 +1,12 @@
 //! calcineGasFoam on several ranks: the same gas as on one, balances that close, checkpoints that any
 //! number of ranks can take up, and the death of each process.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout
+)]
 
 mod openfoam_support;
 
