@@ -29,7 +29,8 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     );
     forAll(mesh_.boundary(), patchi)
     {
-        if (boundary_.of(patchi) != passage::open && !U_.boundaryField()[patchi].fixesValue())
+        const passage way = boundary_.of(patchi);
+        if (way != passage::open && way != passage::within && !U_.boundaryField()[patchi].fixesValue())
         {
             stress.boundaryFieldRef()[patchi] = Zero;
         }

@@ -53,16 +53,21 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
     (
         given_.heatSource - given_.heatCoefficient*T.primitiveField()
     );
-    scalar moving = gSumMag(heat) + gSumMag
+    scalar moving = sumMag(heat) + sumMag
     (
         mass_*(h.primitiveField() - referenceEnthalpy_)
       - committed_.mass*(committed_.enthalpy - referenceEnthalpy_)
     )/span;
     for (const fvPatch& patch : mesh_.boundary())
     {
+        if (boundary_.of(patch.index()) == passage::within)
+        {
+            continue;
+        }
         const fvsPatchScalarField& flux = phi_.boundaryField()[patch.index()];
-        moving += gSumMag(flux*(h.boundaryField()[patch.index()] - referenceEnthalpy_));
+        moving += sumMag(flux*(h.boundaryField()[patch.index()] - referenceEnthalpy_));
     }
+    reduce(moving, sumOp<scalar>());
     const scalar target = max(linearTolerance_*moving, 1e-15*content);
     const solved solution =
         enthalpySolver_.solve(matrix, scalarField(matrix.source()), target, h);
