@@ -302,8 +302,8 @@ pub enum Mapping {
 pub struct External {
     /// Template (absolute path); `None`: all inputs are generated.
     pub template: Option<PathBuf>,
-    /// Ranks.
-    pub ranks: usize,
+    /// MPI ranks, unless the command line states others.
+    pub ranks: u32,
 }
 
 /// What is written.

@@ -24,12 +24,11 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
         "conduction", fvc::interpolate(voidFraction_*thermo_->alphahe())
     );
     enthalpy_.reset();
-    autoPtr<surfaceScalarField> beyond;
     enthalpy_.reset
     (
         new fvScalarMatrix
         (
-            convect(phi_, h, "div(phi,h)", beyond) - fvm::laplacian(conduction, h)
+            convect(phi_, h, "div(phi,h)", share_, beyondH_) - fvm::laplacian(conduction, h)
         )
     );
     fvScalarMatrix& matrix = *enthalpy_;
@@ -37,7 +36,7 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
         committed_.mass/span + given_.heatCoefficient/heatCapacity_ - outflow();
     matrix.source() += committed_.mass*committed_.enthalpy/span
       + given_.heatSource - given_.heatCoefficient*temperatureBase_
-      - outOf(*beyond) + compression*given_.voidFraction*mesh_.cellVolumes();
+      - outOf(*beyondH_) + compression*given_.voidFraction*mesh_.cellVolumes();
     boundary_.addHeat
     (
         window_.processEnd,
@@ -54,16 +53,21 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
     (
         given_.heatSource - given_.heatCoefficient*T.primitiveField()
     );
-    scalar moving = gSumMag(heat) + gSumMag
+    scalar moving = sumMag(heat) + sumMag
     (
         mass_*(h.primitiveField() - referenceEnthalpy_)
       - committed_.mass*(committed_.enthalpy - referenceEnthalpy_)
     )/span;
     for (const fvPatch& patch : mesh_.boundary())
     {
+        if (boundary_.of(patch.index()) == passage::within)
+        {
+            continue;
+        }
         const fvsPatchScalarField& flux = phi_.boundaryField()[patch.index()];
-        moving += gSumMag(flux*(h.boundaryField()[patch.index()] - referenceEnthalpy_));
+        moving += sumMag(flux*(h.boundaryField()[patch.index()] - referenceEnthalpy_));
     }
+    reduce(moving, sumOp<scalar>());
     const scalar target = max(linearTolerance_*moving, 1e-15*content);
     const solved solution =
         enthalpySolver_.solve(matrix, scalarField(matrix.source()), target, h);

@@ -8,7 +8,7 @@ use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::{Mesh, polymesh};
 use calcine_coupler::setup::GasSetup;
 
-use super::{NAME, dictionaries};
+use super::{NAME, decompose, dictionaries};
 
 /// Schemes and linear solvers where no template brings its own.
 const DEFAULTS: [(&str, &str); 2] = [
@@ -33,6 +33,8 @@ pub struct OpenfoamCase<'a> {
     pub template: Option<&'a Path>,
     /// Hash of the case, compared in the handshake.
     pub case_hash: &'a str,
+    /// Number of ranks; how the mesh is divided among more than one is written too.
+    pub ranks: u32,
 }
 
 impl OpenfoamCase<'_> {
@@ -70,11 +72,37 @@ impl OpenfoamCase<'_> {
         ] {
             put(&folder.join(name), &text)?;
         }
+        if self.ranks > 1 {
+            self.divide(folder)?;
+        }
         let poly_mesh = folder.join("constant/polyMesh");
         polymesh::write(self.mesh, &poly_mesh).map_err(|error| {
             let message = format!("the mesh cannot be written to {}", poly_mesh.display());
             PartError::new(NAME, FailureKind::Io, message).caused_by(error)
         })
+    }
+
+    /// How the mesh is divided: Calcine's own way, or as a template's `decomposeParDict` says.
+    fn divide(&self, folder: &Path) -> Result<(), PartError> {
+        let cells = self.mesh.cells();
+        if self.ranks as usize > cells {
+            let ranks = self.ranks;
+            let message = format!("{ranks} ranks cannot share {cells} cells; use fewer ranks");
+            return Err(PartError::new(NAME, FailureKind::NotStarted, message));
+        }
+        let own = |template: &Path| template.join(decompose::DICTIONARY).is_file();
+        if self.template.is_some_and(own) {
+            return Ok(());
+        }
+        put(
+            &folder.join(decompose::DICTIONARY),
+            &dictionaries::decompose(self.ranks),
+        )?;
+        let ranks = decompose::divide(self.mesh.cell_centre(), self.ranks);
+        put(
+            &folder.join("constant").join(decompose::DATA),
+            &dictionaries::labels(decompose::DATA, &ranks),
+        )
     }
 
     /// Every patch of the mesh needs its condition, and every condition its patch.
@@ -231,6 +259,7 @@ mod tests {
             mesh: &mesh,
             template: Some(&template),
             case_hash: "0a",
+            ranks: 1,
         };
         let written = folder.path().join("case");
         case.write(&written).unwrap();
@@ -255,6 +284,25 @@ mod tests {
     }
 
     #[test]
+    fn a_mesh_for_two_ranks_is_divided_and_for_more_ranks_than_cells_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let (setup, mesh) = (setup(), mesh());
+        let case = |ranks| OpenfoamCase {
+            setup: &setup,
+            mesh: &mesh,
+            template: None,
+            case_hash: "0a",
+            ranks,
+        };
+        case(2).write(folder.path()).unwrap();
+        let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+        assert!(read("system/decomposeParDict").contains("numberOfSubdomains 2;"));
+        assert!(read("constant/cellDecomposition").ends_with("3\n(\n0\n0\n1\n)\n"));
+        let error = case(4).write(folder.path()).unwrap_err().to_string();
+        assert!(error.contains("4 ranks cannot share 3 cells"), "{error}");
+    }
+
+    #[test]
     fn numbers_are_written_with_all_their_bits() {
         let text = dictionaries::calcine(&setup(), "0a");
         let third = text
@@ -275,6 +323,7 @@ mod tests {
                 mesh: &mesh,
                 template: None,
                 case_hash: "0a",
+                ranks: 1,
             };
             case.write(folder.path()).unwrap_err().to_string()
         };

@@ -2,6 +2,7 @@
 
 pub mod case;
 mod columns;
+mod decompose;
 mod dictionaries;
 mod identity;
 
@@ -18,12 +19,12 @@ use calcine_coupler::part::{
 use calcine_coupler::setup::GasSetup;
 use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::{GasStorage, Window};
-use calcine_wire::{Catalogue, Hello, Kind, WireError};
+use calcine_wire::{Catalogue, Hello, Kind};
 
-use crate::launch::{Program, find_program};
+use crate::launch::{Launcher, Program, find_program};
 use crate::solver::{ExternalSolver, Launch, header};
 use case::OpenfoamCase;
-use columns::State;
+use columns::{Ranks, State};
 
 /// Name in messages.
 const NAME: &str = "OpenFOAM (gas)";
@@ -49,6 +50,10 @@ pub struct OpenfoamLaunch<'a> {
     pub folder: PathBuf,
     /// Where the solver's output goes.
     pub log: PathBuf,
+    /// Number of ranks; more than one work on a decomposed case.
+    pub ranks: u32,
+    /// Who starts them.
+    pub launcher: Launcher,
     /// The gas' folder of the checkpoint to start from.
     pub resume: Option<PathBuf>,
     /// Longest silence while starting, writing a checkpoint or ending.
@@ -78,6 +83,7 @@ impl OpenfoamGas {
             mesh: &launch.mesh,
             template: launch.template,
             case_hash: &launch.case_hash,
+            ranks: launch.ranks,
         };
         for folder in [Some(&launch.folder), launch.resume.as_ref()]
             .into_iter()
@@ -86,7 +92,11 @@ impl OpenfoamGas {
             without_spaces(folder)?;
         }
         case.write(&launch.folder)?;
-        let mut arguments = Vec::new();
+        let mut arguments: Vec<OsString> = Vec::new();
+        if launch.ranks > 1 {
+            decompose::run(&launch.folder, launch.ranks, &environment(&launch.folder))?;
+            arguments.push("-parallel".into());
+        }
         if let Some(folder) = &launch.resume {
             let folder = std::path::absolute(folder).map_err(|error| {
                 let message = format!("the checkpoint {} cannot be used", folder.display());
@@ -101,7 +111,7 @@ impl OpenfoamGas {
             mesh_hash: identity::mesh_hash(&launch.mesh),
             case_hash: launch.case_hash,
             count: launch.mesh.cells() as u64,
-            ranks: 1,
+            ranks: launch.ranks,
             catalogue: Catalogue::standard("gas").map_err(|error| {
                 PartError::new(NAME, FailureKind::NotStarted, "its columns").caused_by(error)
             })?,
@@ -116,6 +126,7 @@ impl OpenfoamGas {
             Launch {
                 name: NAME.into(),
                 program,
+                launcher: launch.launcher,
                 log: launch.log,
                 hello,
                 handshake: launch.deadline,
@@ -126,7 +137,7 @@ impl OpenfoamGas {
         let about = About {
             name: solver.hello().name.clone(),
             version: solver.hello().version.clone(),
-            ranks: 1,
+            ranks: launch.ranks as usize,
         };
         let mut gas = Self {
             solver,
@@ -145,12 +156,15 @@ impl OpenfoamGas {
         self.solver.pid()
     }
 
-    /// Takes the state out of the message that the link holds.
+    /// Process ids of the ranks.
+    pub fn rank_pids(&self) -> &[u32] {
+        self.solver.rank_pids()
+    }
+
+    /// Takes the state out of the messages that the links hold.
     fn read_state(&mut self, window: Option<&Window>) -> Result<(), PartError> {
-        let read = match self.solver.links() {
-            [link] => self.state.read(link),
-            _ => Err(NO_LINK),
-        };
+        let ranks = ranks(&self.solver, &self.mesh);
+        let read = self.state.read(ranks);
         read.map_err(|error| self.solver.failure(window, error))
     }
 }
@@ -169,9 +183,13 @@ fn without_spaces(folder: &Path) -> Result<(), PartError> {
     Err(PartError::new(NAME, FailureKind::NotStarted, message))
 }
 
-const NO_LINK: WireError = WireError::Order {
-    what: "a serial solver has exactly one link",
-};
+fn ranks<'a>(solver: &'a ExternalSolver, mesh: &Mesh) -> Ranks<'a> {
+    Ranks {
+        links: solver.links(),
+        owned: solver.owned(),
+        cells: mesh.cells(),
+    }
+}
 
 /// OpenFOAM compares PWD with the folder it runs in, and looks for its `etc` where WM_PROJECT_DIR
 /// says: Debian's, unless the user has set both another solver and its OpenFOAM.
@@ -238,9 +256,13 @@ impl Gas for OpenfoamGas {
             GasStorage::Accelerated => request.span_motion,
         };
         self.window = Some(*window);
-        self.solver.send_columns(window, request, cells, |link| {
-            columns::write(link, bed, exchange)
-        })
+        let owned = Arc::clone(self.solver.owned());
+        self.solver.send_columns(
+            window,
+            request,
+            |rank| owned[rank].len(),
+            |rank, link| columns::write(link, &owned[rank], bed, exchange),
+        )
     }
 
     fn finish(
@@ -259,10 +281,7 @@ impl Gas for OpenfoamGas {
                 }
                 error
             })?;
-        let convergence = match self.solver.links() {
-            [link] => columns::read(link, received),
-            _ => Err(NO_LINK),
-        };
+        let convergence = columns::read(ranks(&self.solver, &self.mesh), received);
         let convergence = convergence.map_err(|error| self.solver.failure(Some(&window), error))?;
         self.read_state(Some(&window))?;
         Ok(convergence)
