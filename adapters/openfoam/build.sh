@@ -44,5 +44,5 @@ mv "$OUT_DIR/.libcalcineFoam.so" "$OUT_DIR/libcalcineFoam.so"
 mapfile -t solver < <(own calcineGasFoam)
 g++ -o "$OUT_DIR/.calcineGasFoam" "${solver[@]}" -L "$OUT_DIR" '-Wl,-rpath,$ORIGIN' \
     -Xlinker --add-needed -Xlinker --no-as-needed -lcalcineFoam -lfiniteVolume -lmeshTools \
-    -lfluidThermophysicalModels -lspecie -lOpenFOAM -lPstream -ldl -lm
+    -lfluidThermophysicalModels -lcompressibleTransportModels -lspecie -lOpenFOAM -lPstream -ldl -lm
 mv "$OUT_DIR/.calcineGasFoam" "$OUT_DIR/calcineGasFoam"

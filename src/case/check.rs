@@ -85,9 +85,6 @@ fn honoured(text: &mut String, case: &Case) {
     let _ = writeln!(text, "  backends:");
     for name in ["native gas", "OpenFOAM", "native particles", "LIGGGHTS"] {
         let note = match name {
-            "OpenFOAM" if !case.gas.properties.species().is_empty() => {
-                "not this case: calcineGasFoam carries no species (`gas.species`)"
-            }
             "OpenFOAM" if case.openfoam.template.is_some() => {
                 "every key, and `openfoam.template`, which restricts the case to this gas"
             }

@@ -118,7 +118,7 @@ const KEYS: &[Key] = &[
     key("gas.initial.composition.mass", "table of numbers", OneOf, "Mass fractions by species, which sum to 1. Either this or `mole`.", "{ N2 = 1 }"),
     key("gas.initial.velocity", "three velocities, m/s", Default("0 0 0 m/s"), "Velocity.", "\"0 0 0.5 m/s\""),
     key("gas.gravity", "three accelerations, m/s^2", Default("0 0 0 m/s^2"), "Gravity on the gas.", "\"0 0 -9.81 m/s^2\""),
-    key("gas.species", "list of `N2`, `O2`, `Ar`, `CO2`, `H2O`, `CO`, `H2`, `CH4`", Default("a single gas"), "Species of a mixture of ideal gases; with `gas.schmidt`, and a composition wherever gas stands at the start or flows in. Not with an OpenFOAM gas.", "[\"N2\", \"O2\"]"),
+    key("gas.species", "list of `N2`, `O2`, `Ar`, `CO2`, `H2O`, `CO`, `H2`, `CH4`", Default("a single gas"), "Species of a mixture of ideal gases; with `gas.schmidt`, and a composition wherever gas stands at the start or flows in.", "[\"N2\", \"O2\"]"),
     key("gas.schmidt", "number", Default("goes with `species`"), "Schmidt number of all species: they diffuse alike, with viscosity over density over this.", "0.7"),
     key("gas.constant", "table", Default("an ideal gas"), "A fluid of constant properties; not with `gas.properties`. Its enthalpy is c_p (T - 298.15 K).", "[gas.constant]"),
     key("gas.constant.density", "density, kg/m^3", Required, "Density.", "\"1.2 kg/m^3\""),

@@ -27,6 +27,7 @@ void Foam::calcine::gas::finishReport(report& result) const
         result.mass.boundaryMagnitude =
             window_.storageSpan*gSumMag(SubList<scalar>(flux_, mesh_.nInternalFaces()));
     }
+    balanceSpecies(result);
     balanceEnergy(result);
     balanceMomentum(result);
 }
@@ -54,7 +55,8 @@ void Foam::calcine::gas::balanceEnergy(report& result) const
         forAll(cells, i)
         {
             const scalar out = enthalpy_->internalCoeffs()[patchi][i]*h[cells[i]]
-              - enthalpy_->boundaryCoeffs()[patchi][i] - flux[i]*referenceEnthalpy_;
+              - enthalpy_->boundaryCoeffs()[patchi][i] - flux[i]*referenceEnthalpy_
+              + (carried_.valid() ? carried_->boundaryField()[patchi][i] : 0);
             energy.boundary -= window_.storageSpan*out;
             energy.boundaryMagnitude += window_.storageSpan*mag(out);
         }

@@ -12,6 +12,7 @@
 #include "fvMesh.H"
 #include "IOdictionary.H"
 #include "sigFpe.H"
+#include "stringList.H"
 #include "SolverPerformance.H"
 #include "Time.H"
 
@@ -104,12 +105,20 @@ void send
     link.put("density", gas.gasDensity());
     link.put("velocity", gas.velocity());
     link.put("pressure_gradient", gas.pressureGradient());
-    DynamicList<scalar> balances(35);
+    if (gas.speciesNames().size())
+    {
+        link.put("composition", gas.composition());
+    }
+    DynamicList<scalar> balances(35 + 7*gas.speciesNames().size());
     append(balances, result.mass);
     append(balances, result.energy);
     for (const calcine::balance& component : result.momentum)
     {
         append(balances, component);
+    }
+    for (const calcine::balance& species : result.species)
+    {
+        append(balances, species);
     }
     link.put("balances", balances);
     const scalarList convergence
@@ -122,9 +131,10 @@ void send
 }
 
 // Nothing received, nothing solved: what goes with a state.
-calcine::report emptyReport(label cells)
+calcine::report emptyReport(label cells, label species)
 {
     calcine::report empty;
+    empty.species.setSize(species);
     empty.heat.setSize(cells, 0);
     empty.drag.setSize(cells, Zero);
     return empty;
@@ -159,7 +169,7 @@ void serve(calcine::link& link, calcine::gas& gas, label cells, calcine::windowL
                 break;
             case CALCINE_CHECKPOINT:
                 gas.checkpoint(link.text());
-                send(link, CALCINE_CHECKPOINTED, gas, emptyReport(cells));
+                send(link, CALCINE_CHECKPOINTED, gas, emptyReport(cells, gas.speciesNames().size()));
                 break;
             case CALCINE_BYE:
                 link.loan(CALCINE_BYE, 0);
@@ -202,8 +212,12 @@ void run(const argList& args, calcine::link& link)
     own.caseHash = properties.get<string>("caseHash");
     own.meshHash = calcine::meshHash(mesh);
     own.cells = mesh.nCells();
+    for (const string& column : properties.get<stringList>("catalogue"))
+    {
+        own.catalogue += (own.catalogue.empty() ? "" : "\n") + column;
+    }
     link.greet(own);
-    send(link, CALCINE_STATE, gas, emptyReport(mesh.nCells()));
+    send(link, CALCINE_STATE, gas, emptyReport(mesh.nCells(), gas.speciesNames().size()));
     calcine::windowLog log(properties.lookupOrDefault<scalar>("logInterval", 1));
     serve(link, gas, mesh.nCells(), log);
     Info<< "End" << endl;

@@ -52,7 +52,12 @@ volScalarField relativePressure(const fvMesh& mesh, scalar pRef)
 // Enthalpy is what the equation of hEqn.C balances; an internal energy would need pressure work.
 autoPtr<fluidThermo> readThermo(const fvMesh& mesh)
 {
-    autoPtr<fluidThermo> thermo(fluidThermo::New(mesh));
+    autoPtr<fluidThermo> thermo
+    (
+        calcine::speciesThermo::wanted(mesh)
+      ? autoPtr<fluidThermo>(new calcine::speciesThermo(mesh))
+      : fluidThermo::New(mesh)
+    );
     thermo->validate("calcineGasFoam", "h");
     return thermo;
 }
@@ -72,6 +77,7 @@ Foam::calcine::gas::gas(fvMesh& mesh, const dictionary& properties)
         dimensionedScalar("p", dimPressure, pRef_)
     ),
     thermo_(readThermo(mesh)),
+    species_(dynamic_cast<speciesThermo*>(thermo_.get())),
     voidFraction_
     (
         IOobject("voidFraction", mesh.time().timeName(), mesh),
@@ -98,6 +104,7 @@ Foam::calcine::gas::gas(fvMesh& mesh, const dictionary& properties)
     momentumSolver_(mesh, "U"),
     pressureSolver_(mesh, "p"),
     enthalpySolver_(mesh, "h"),
+    schmidt_(properties.lookupOrDefault<scalar>("schmidt", 1)),
     startVelocity_(U_.primitiveField())
 {
     const dictionary& controls = properties.subDict("controls");
@@ -110,6 +117,16 @@ Foam::calcine::gas::gas(fvMesh& mesh, const dictionary& properties)
     const scalarField reference(1, 298.15);
     referenceEnthalpy_ = thermo_->he(scalarField(1, pRef_), reference, labelList(1, 0))()[0];
 
+    if (species_)
+    {
+        speciesSolver_.reset(new linear(mesh, "Yi"));
+        committed_.composition.setSize(species_->Y().size());
+        forAll(species_->Y(), k)
+        {
+            mesh.setFluxRequired(species_->Y()[k].name());
+            committed_.composition[k] = species_->Y()[k].primitiveField();
+        }
+    }
     committed_.mass = mass_;
     committed_.enthalpy = thermo_->he().primitiveField();
     committed_.temperature = thermo_->T().primitiveField();
@@ -175,6 +192,11 @@ void Foam::calcine::gas::restore()
 {
     thermo_->he().primitiveFieldRef() = committed_.enthalpy;
     thermo_->T().primitiveFieldRef() = committed_.temperature;
+    forAll(committed_.composition, k)
+    {
+        species_->Y()[k].primitiveFieldRef() = committed_.composition[k];
+        species_->Y()[k].correctBoundaryConditions();
+    }
     U_.primitiveFieldRef() = committed_.velocity;
     p_.primitiveFieldRef() = committed_.pressure;
     modelPressure_ == dimensionedScalar("p", dimPressure, committed_.basePressure);
@@ -251,7 +273,7 @@ Foam::scalarField Foam::calcine::gas::wantedOutflow(const scalarField& density) 
 
 void Foam::calcine::gas::resume(const fileName& directory)
 {
-    committed_.read(directory, mesh_.nCells(), mesh_.nFaces());
+    committed_.read(directory, mesh_.nCells(), mesh_.nFaces(), speciesNames().size());
     restore();
     thermo_->he().correctBoundaryConditions();
     thermo_->correct();
@@ -268,6 +290,10 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
     // Inlets of a given velocity carry gas of pRef, whatever the pressure of a closed domain is.
     modelPressure_ == dimensionedScalar("p", dimPressure, pRef_);
     boundary_.updateState(when.processEnd, pRef_, thermo_->T(), p_);
+    if (species_)
+    {
+        boundary_.updateComposition(when.processEnd, species_->Y());
+    }
     thermo_->he().correctBoundaryConditions();
     thermo_->correct();
     boundary_.updateVelocity(when.processEnd, given_.voidFraction, thermo_->rho()(), U_);
@@ -295,6 +321,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
         }
         mass_ = committed_.mass - window_.storageSpan*outflow();
         setFlux();
+        result.residual = max(result.residual, solveSpecies(result));
         result.residual = max(result.residual, solveEnthalpy(result));
         guard();
         result.outerIterations = outer;
@@ -315,6 +342,10 @@ void Foam::calcine::gas::commit()
     committed_.mass = mass_;
     committed_.enthalpy = thermo_->he().primitiveField();
     committed_.temperature = thermo_->T().primitiveField();
+    forAll(committed_.composition, k)
+    {
+        committed_.composition[k] = species_->Y()[k].primitiveField();
+    }
     committed_.velocity = U_.primitiveField();
     committed_.pressure = p_.primitiveField();
     committed_.basePressure = basePressure();
@@ -379,4 +410,26 @@ const Foam::vectorField& Foam::calcine::gas::velocity() const
 const Foam::vectorField& Foam::calcine::gas::pressureGradient() const
 {
     return pressureGradient_;
+}
+
+
+Foam::wordList Foam::calcine::gas::speciesNames() const
+{
+    return species_ ? species_->mixture().names() : wordList();
+}
+
+
+Foam::scalarField Foam::calcine::gas::composition() const
+{
+    const label count = speciesNames().size();
+    scalarField all(count*mesh_.nCells());
+    for (label k = 0; k < count; ++k)
+    {
+        const scalarField& Y = species_->Y()[k].primitiveField();
+        forAll(Y, celli)
+        {
+            all[celli*count + k] = Y[celli];
+        }
+    }
+    return all;
 }

@@ -7,7 +7,7 @@ namespace
 {
 
 // First and last word of a file of state: a file cut short lacks the last.
-const char* const firstWord = "calcineGasState2";
+const char* const firstWord = "calcineGasState3";
 const char* const lastWord = "complete";
 
 Foam::fileName stateFile(const Foam::fileName& directory)
@@ -24,8 +24,13 @@ void Foam::calcine::gasState::write(const fileName& directory) const
     OFstream file(stateFile(directory), IOstream::BINARY);
     file<< word(firstWord) << nl << label(placed) << nl
         << mass << nl << enthalpy << nl << temperature << nl << velocity << nl
-        << pressure << nl << basePressure << nl << pressureGradient << nl << flux << nl << voidFraction << nl
-        << word(lastWord) << endl;
+        << pressure << nl << basePressure << nl << pressureGradient << nl << flux << nl
+        << voidFraction << nl << composition.size() << nl;
+    for (const scalarField& fractions : composition)
+    {
+        file<< fractions << nl;
+    }
+    file<< word(lastWord) << endl;
     if (!file.good())
     {
         FatalErrorInFunction
@@ -34,7 +39,7 @@ void Foam::calcine::gasState::write(const fileName& directory) const
 }
 
 
-void Foam::calcine::gasState::read(const fileName& directory, label cells, label faces)
+void Foam::calcine::gasState::read(const fileName& directory, label cells, label faces, label species)
 {
     IFstream file(stateFile(directory), IOstream::BINARY);
     if (!file.good() || word(file) != firstWord)
@@ -45,6 +50,18 @@ void Foam::calcine::gasState::read(const fileName& directory, label cells, label
     placed = readLabel(file) != 0;
     file>> mass >> enthalpy >> temperature >> velocity >> pressure >> basePressure
         >> pressureGradient >> flux >> voidFraction;
+    const label found = readLabel(file);
+    if (found != species)
+    {
+        FatalErrorInFunction
+            << file.name() << " holds " << found << " species, the gas " << species
+            << exit(FatalError);
+    }
+    composition.setSize(found);
+    for (scalarField& fractions : composition)
+    {
+        file>> fractions;
+    }
     if (word(file) != lastWord || mass.size() != cells || flux.size() != faces)
     {
         FatalErrorInFunction

@@ -61,7 +61,7 @@ void Foam::calcine::link::greet(const introduction& own)
     const calcine_hello hello =
     {
         "gas", "OpenFOAM", own.version.c_str(), own.caseHash.c_str(), own.meshHash.c_str(),
-        nullptr, static_cast<uint64_t>(own.cells), 1
+        own.catalogue.c_str(), static_cast<uint64_t>(own.cells), 1
     };
     check(calcine_link_handshake(link_, &hello, handshakePatience));
 }

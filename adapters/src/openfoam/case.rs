@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::{Mesh, polymesh};
 use calcine_coupler::setup::GasSetup;
+use calcine_wire::Catalogue;
 
-use super::{NAME, dictionaries};
+use super::{NAME, dictionaries, species};
 
 /// Schemes and linear solvers where no template brings its own.
 const DEFAULTS: [(&str, &str); 2] = [
@@ -39,11 +40,9 @@ impl OpenfoamCase<'_> {
     /// Writes the case into a folder, which is made if it is not there.
     pub fn write(&self, folder: &Path) -> Result<(), PartError> {
         self.check()?;
-        let Some(thermophysical) = dictionaries::thermophysical(self.setup) else {
-            let message = "calcineGasFoam carries no species, and this gas is a mixture; \
-                           run the case with --gas native";
-            return Err(PartError::new(NAME, FailureKind::NotStarted, message));
-        };
+        let catalogue = Catalogue::gas(self.setup.properties.species().len()).map_err(|error| {
+            PartError::new(NAME, FailureKind::NotStarted, "its columns").caused_by(error)
+        })?;
         make(folder)?;
         if let Some(template) = self.template {
             copy(template, folder)?;
@@ -57,11 +56,14 @@ impl OpenfoamCase<'_> {
         let setup = self.setup;
         for (name, text) in [
             ("system/controlDict", dictionaries::control()),
-            ("constant/thermophysicalProperties", thermophysical),
+            (
+                "constant/thermophysicalProperties",
+                dictionaries::thermophysical(setup),
+            ),
             ("constant/g", dictionaries::gravity(setup)),
             (
                 "constant/calcineGas",
-                dictionaries::calcine(setup, self.case_hash),
+                dictionaries::calcine(setup, self.case_hash, &catalogue),
             ),
             ("constant/calcineCells", dictionaries::cells(self.mesh)),
             ("0/U", dictionaries::velocity(setup)),
@@ -69,6 +71,10 @@ impl OpenfoamCase<'_> {
             ("0/p", dictionaries::pressure(setup)),
         ] {
             put(&folder.join(name), &text)?;
+        }
+        for (k, name) in setup.properties.species().iter().enumerate() {
+            let fraction = species::fraction(setup, k, name);
+            put(&folder.join("0").join(name), &fraction)?;
         }
         let poly_mesh = folder.join("constant/polyMesh");
         polymesh::write(self.mesh, &poly_mesh).map_err(|error| {

@@ -10,6 +10,8 @@ pub struct State {
     temperature: Vec<f64>,
     pressure: Vec<f64>,
     density: Vec<f64>,
+    /// Mass fractions, species by species within each cell; empty for a single gas.
+    composition: Vec<f64>,
     velocity: Vec<Vec3>,
     pressure_gradient: Vec<Vec3>,
 }
@@ -29,11 +31,14 @@ fn copy_vectors(link: &Link, name: &str, to: &mut Vec<Vec3>) -> Result<(), WireE
 }
 
 impl State {
-    /// Takes the state out of the message that a link holds.
-    pub fn read(&mut self, link: &Link) -> Result<(), WireError> {
+    /// Takes the state, of so many species, out of the message that a link holds.
+    pub fn read(&mut self, link: &Link, species: usize) -> Result<(), WireError> {
         copy(link, "temperature", &mut self.temperature)?;
         copy(link, "pressure", &mut self.pressure)?;
         copy(link, "density", &mut self.density)?;
+        if species > 0 {
+            copy(link, "composition", &mut self.composition)?;
+        }
         copy_vectors(link, "velocity", &mut self.velocity)?;
         copy_vectors(link, "pressure_gradient", &mut self.pressure_gradient)
     }
@@ -44,7 +49,7 @@ impl State {
             temperature: &self.temperature,
             pressure: &self.pressure,
             density: &self.density,
-            composition: &[],
+            composition: &self.composition,
             velocity: &self.velocity,
             pressure_gradient: &self.pressure_gradient,
         }
@@ -80,9 +85,10 @@ pub fn read(link: &Link, received: &mut CellReceived) -> Result<Convergence, Wir
         .map(|&numbers| balance(numbers));
     let mut next = || balances.next().unwrap_or_default();
     received.mass = next();
-    received.species.clear();
     received.energy = next();
     received.momentum = [next(), next(), next()];
+    received.species.clear();
+    received.species.extend(balances);
     let numbers = link.column("convergence")?;
     let [outer, linear, residual, volume, converged] = *numbers else {
         return Err(WireError::Order {

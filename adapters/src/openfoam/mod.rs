@@ -4,6 +4,7 @@ pub mod case;
 mod columns;
 mod dictionaries;
 mod identity;
+mod species;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -61,6 +62,8 @@ pub struct OpenfoamGas {
     about: About,
     mesh: Arc<Mesh>,
     storage: GasStorage,
+    /// Number of species; zero for a single gas.
+    species: usize,
     state: State,
     window: Option<Window>,
 }
@@ -94,6 +97,7 @@ impl OpenfoamGas {
             })?;
             arguments.extend(["-resume".into(), folder.into()]);
         }
+        let species = launch.setup.properties.species().len();
         let hello = Hello {
             role: "gas".into(),
             name: "Calcine".into(),
@@ -102,7 +106,7 @@ impl OpenfoamGas {
             case_hash: launch.case_hash,
             count: launch.mesh.cells() as u64,
             ranks: 1,
-            catalogue: Catalogue::standard("gas").map_err(|error| {
+            catalogue: Catalogue::gas(species).map_err(|error| {
                 PartError::new(NAME, FailureKind::NotStarted, "its columns").caused_by(error)
             })?,
         };
@@ -133,6 +137,7 @@ impl OpenfoamGas {
             about,
             mesh: launch.mesh,
             storage: launch.setup.storage,
+            species,
             state: State::default(),
             window: None,
         };
@@ -148,7 +153,7 @@ impl OpenfoamGas {
     /// Takes the state out of the message that the link holds.
     fn read_state(&mut self, window: Option<&Window>) -> Result<(), PartError> {
         let read = match self.solver.links() {
-            [link] => self.state.read(link),
+            [link] => self.state.read(link, self.species),
             _ => Err(NO_LINK),
         };
         read.map_err(|error| self.solver.failure(window, error))
