@@ -252,6 +252,7 @@ pub fn write_inputs(
             setup: &case.gas,
             mesh: &prepared.mesh,
             template: case.openfoam.template.as_deref(),
+            start: case.openfoam.start.as_deref(),
             case_hash: &case.hash,
         }
         .write(&target)?;
@@ -306,9 +307,14 @@ impl Assembly<'_> {
                     setup: &self.case.gas,
                     mesh: Arc::clone(&self.prepared.mesh),
                     template: self.case.openfoam.template.as_deref(),
+                    start: self.case.openfoam.start.as_deref(),
                     case_hash: self.case.hash.clone(),
                     folder: self.absolute("solvers/openfoam")?,
                     log: self.absolute("log/openfoam.log")?,
+                    from: match (&from, self.settings.from) {
+                        (None, Some(origin)) => Some(origin.path.join("gas")),
+                        _ => None,
+                    },
                     resume: from,
                     deadline: self.case.coupling.deadline,
                 };

@@ -88,6 +88,9 @@ fn honoured(text: &mut String, case: &Case) {
             "OpenFOAM" if case.openfoam.template.is_some() => {
                 "every key, and `openfoam.template`, which restricts the case to this gas"
             }
+            "native gas" if case.openfoam.start.is_some() => {
+                "not its start: `openfoam.start` is the start of an OpenFOAM gas alone"
+            }
             "native gas" if case.openfoam.template.is_some() => {
                 "every key but `openfoam.template`: what only the template states is left out"
             }

@@ -302,6 +302,8 @@ pub enum Mapping {
 pub struct External {
     /// Template (absolute path); `None`: all inputs are generated.
     pub template: Option<PathBuf>,
+    /// Time directory of OpenFOAM whose fields the gas starts from (absolute path).
+    pub start: Option<PathBuf>,
     /// Ranks.
     pub ranks: usize,
 }

@@ -1,6 +1,7 @@
 // calcineGasFoam: the gas of a coupled run, as Calcine's coordinator asks for it.
 //
-// Started by Calcine in a case folder; -resume DIR takes up the state that a checkpoint left in DIR.
+// Started by Calcine in a case folder; -resume DIR takes up the state that a checkpoint left in DIR, -from
+// DIR starts a run of its own from it.
 // Ends with 0 when asked to, with 1 after telling the coordinator what failed, and with 2 where there
 // is no coordinator any more.
 #include "gas.H"
@@ -206,6 +207,10 @@ void run(const argList& args, calcine::link& link)
     {
         gas.resume(args.opt<fileName>("resume"));
     }
+    else if (args.found("from"))
+    {
+        gas.takeOver(args.opt<fileName>("from"));
+    }
 
     calcine::introduction own;
     own.version = std::to_string(OPENFOAM);
@@ -250,6 +255,7 @@ int main(int argc, char* argv[])
     argList::noParallel();
     argList::noFunctionObjects();
     argList::addOption("resume", "dir", "take up the state of a checkpoint in this folder");
+    argList::addOption("from", "dir", "start from the fields of another run's checkpoint");
     argList args(argc, argv);
     FatalError.throwExceptions();
     FatalIOError.throwExceptions();

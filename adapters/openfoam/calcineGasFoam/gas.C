@@ -39,6 +39,7 @@ volScalarField relativePressure(const fvMesh& mesh, scalar pRef)
         dimensionedScalar(dimPressure, Zero),
         types
     );
+    relative.primitiveFieldRef() = absolute.primitiveField() - pRef;
     forAll(types, patchi)
     {
         if (types[patchi] == "fixedValue")
@@ -178,12 +179,25 @@ void Foam::calcine::gas::place()
     committed_.mass = rho*given_.voidFraction*mesh_.cellVolumes();
     for (label facei = 0; facei < mesh_.nFaces(); ++facei)
     {
-        const label patchi =
-            facei < mesh_.nInternalFaces() ? -1 : mesh_.boundaryMesh().whichPatch(facei);
-        const bool closed = patchi >= 0 && boundary_.of(patchi) == passage::closed;
         const label owner = mesh_.faceOwner()[facei];
+        if (facei < mesh_.nInternalFaces())
+        {
+            const label neighbour = mesh_.faceNeighbour()[facei];
+            const scalar weight = ownerWeight(facei);
+            const vector massVelocity =
+                weight*rho[owner]*startVelocity_[owner]
+              + (1 - weight)*rho[neighbour]*startVelocity_[neighbour];
+            committed_.flux[facei] = massVelocity & mesh_.faceAreas()[facei];
+            continue;
+        }
+        const label patchi = mesh_.boundaryMesh().whichPatch(facei);
         committed_.flux[facei] =
-            closed ? 0 : rho[owner]*(startVelocity_[owner] & mesh_.faceAreas()[facei]);
+            boundary_.of(patchi) == passage::closed
+          ? 0 : rho[owner]*(startVelocity_[owner] & mesh_.faceAreas()[facei]);
+    }
+    if (startFlux_.size())
+    {
+        committed_.flux = startFlux_;
     }
 }
 
@@ -274,6 +288,32 @@ Foam::scalarField Foam::calcine::gas::wantedOutflow(const scalarField& density) 
 void Foam::calcine::gas::resume(const fileName& directory)
 {
     committed_.read(directory, mesh_.nCells(), mesh_.nFaces(), speciesNames().size());
+    restore();
+    thermo_->he().correctBoundaryConditions();
+    thermo_->correct();
+}
+
+
+void Foam::calcine::gas::takeOver(const fileName& directory)
+{
+    resume(directory);
+    if (committed_.placed)
+    {
+        startVelocity_ = committed_.velocity*committed_.voidFraction;
+        startFlux_ = committed_.flux;
+    }
+    else
+    {
+        startVelocity_ = committed_.velocity;
+    }
+    if (!boundary_.closed())
+    {
+        committed_.pressure += committed_.basePressure - pRef_;
+        committed_.basePressure = pRef_;
+    }
+    committed_.placed = false;
+    thermo_->T().primitiveFieldRef() = committed_.temperature;
+    committed_.enthalpy = thermo_->he(modelPressure_, thermo_->T())().primitiveField();
     restore();
     thermo_->he().correctBoundaryConditions();
     thermo_->correct();

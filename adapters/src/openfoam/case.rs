@@ -9,6 +9,7 @@ use calcine_coupler::mesh::{Mesh, polymesh};
 use calcine_coupler::setup::GasSetup;
 use calcine_wire::Catalogue;
 
+use super::start::Start;
 use super::{NAME, dictionaries, species};
 
 /// Schemes and linear solvers where no template brings its own.
@@ -32,6 +33,8 @@ pub struct OpenfoamCase<'a> {
     pub mesh: &'a Mesh,
     /// A folder whose files are taken over where the case does not speak.
     pub template: Option<&'a Path>,
+    /// A time directory that OpenFOAM wrote on the same mesh, whose fields the gas starts from.
+    pub start: Option<&'a Path>,
     /// Hash of the case, compared in the handshake.
     pub case_hash: &'a str,
 }
@@ -54,6 +57,11 @@ impl OpenfoamCase<'_> {
             }
         }
         let setup = self.setup;
+        let names = setup.properties.species();
+        let start = self
+            .start
+            .map(|folder| Start::read(folder, names, self.mesh.cells()));
+        let start = start.transpose()?.unwrap_or_default();
         for (name, text) in [
             ("system/controlDict", dictionaries::control()),
             (
@@ -66,14 +74,14 @@ impl OpenfoamCase<'_> {
                 dictionaries::calcine(setup, self.case_hash, &catalogue),
             ),
             ("constant/calcineCells", dictionaries::cells(self.mesh)),
-            ("0/U", dictionaries::velocity(setup)),
-            ("0/T", dictionaries::temperature(setup)),
-            ("0/p", dictionaries::pressure(setup)),
+            ("0/U", start.applied("U", dictionaries::velocity(setup))),
+            ("0/T", start.applied("T", dictionaries::temperature(setup))),
+            ("0/p", start.applied("p", dictionaries::pressure(setup))),
         ] {
             put(&folder.join(name), &text)?;
         }
-        for (k, name) in setup.properties.species().iter().enumerate() {
-            let fraction = species::fraction(setup, k, name);
+        for (k, name) in names.iter().enumerate() {
+            let fraction = start.applied(name, species::fraction(setup, k, name));
             put(&folder.join("0").join(name), &fraction)?;
         }
         let poly_mesh = folder.join("constant/polyMesh");

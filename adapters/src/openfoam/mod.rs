@@ -5,6 +5,7 @@ mod columns;
 mod dictionaries;
 mod identity;
 mod species;
+mod start;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -44,6 +45,8 @@ pub struct OpenfoamLaunch<'a> {
     pub mesh: Arc<Mesh>,
     /// A folder whose files are taken over where the case does not speak.
     pub template: Option<&'a Path>,
+    /// A time directory that OpenFOAM wrote, whose fields the gas starts from.
+    pub start: Option<&'a Path>,
     /// Hash of the case.
     pub case_hash: String,
     /// Where the OpenFOAM case is written and the solver runs.
@@ -52,6 +55,8 @@ pub struct OpenfoamLaunch<'a> {
     pub log: PathBuf,
     /// The gas' folder of the checkpoint to start from.
     pub resume: Option<PathBuf>,
+    /// The gas' folder of another run's checkpoint to continue from.
+    pub from: Option<PathBuf>,
     /// Longest silence while starting, writing a checkpoint or ending.
     pub deadline: Duration,
 }
@@ -80,22 +85,29 @@ impl OpenfoamGas {
             setup: launch.setup,
             mesh: &launch.mesh,
             template: launch.template,
+            start: launch.start,
             case_hash: &launch.case_hash,
         };
-        for folder in [Some(&launch.folder), launch.resume.as_ref()]
-            .into_iter()
-            .flatten()
+        let given = [("-resume", &launch.resume), ("-from", &launch.from)];
+        for folder in [
+            Some(&launch.folder),
+            launch.resume.as_ref(),
+            launch.from.as_ref(),
+        ]
+        .into_iter()
+        .flatten()
         {
             without_spaces(folder)?;
         }
         case.write(&launch.folder)?;
         let mut arguments = Vec::new();
-        if let Some(folder) = &launch.resume {
+        for (option, folder) in given {
+            let Some(folder) = folder else { continue };
             let folder = std::path::absolute(folder).map_err(|error| {
                 let message = format!("the checkpoint {} cannot be used", folder.display());
                 PartError::new(NAME, FailureKind::Io, message).caused_by(error)
             })?;
-            arguments.extend(["-resume".into(), folder.into()]);
+            arguments.extend([option.into(), folder.into()]);
         }
         let species = launch.setup.properties.species().len();
         let hello = Hello {

@@ -220,9 +220,10 @@ impl Enthalpy {
                 Value::Wall {
                     heat: Heat::Temperature(temperature),
                     ..
-                } => frame
-                    .properties
-                    .enthalpy(temperature, frame.composition(grid.faces[index].owner)),
+                } => frame.properties.enthalpy(
+                    temperature,
+                    now.composition_of(grid.faces[index].owner, frame.species()),
+                ),
                 Value::Wall { .. } | Value::Outlet { .. } => inner,
             };
             let gradients = &mut self.gradients[0];

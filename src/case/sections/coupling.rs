@@ -80,10 +80,14 @@ fn fraction(table: &Reader<'_>, key: &str) -> Option<f64> {
 pub(super) fn external(root: &Reader<'_>, key: &str, folder: &Path) -> External {
     let mut external = External {
         template: None,
+        start: None,
         ranks: 1,
     };
     if let Some(section) = root.table(key) {
         external.template = existing(&section, "template", folder);
+        if key == "openfoam" {
+            external.start = existing(&section, "start", folder);
+        }
         if let Some(ranks) = section.whole("ranks", 1..=100_000) {
             if ranks > 1 {
                 section.fail(
