@@ -47,10 +47,7 @@ Foam::scalar Foam::calcine::gas::solveSpecies(report& result)
     const label last = Y.size() - 1;
     const scalar span = window_.storageSpan;
     const label internal = mesh_.nInternalFaces();
-    const surfaceScalarField diffusion
-    (
-        "speciesDiffusion", fvc::interpolate(voidFraction_*thermo_->mu()/schmidt_)
-    );
+    const surfaceScalarField diffusion("speciesDiffusion", fvc::interpolate(diffusivity()));
     // Of the linear value, what the limited one has more than the upwind one, as a mass flux.
     const upwind<scalar> up(mesh_, phi_);
     const surfaceScalarField limitedFlux(phi_*speciesLimiter());

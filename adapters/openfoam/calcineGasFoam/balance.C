@@ -48,6 +48,13 @@ void Foam::calcine::gas::balanceEnergy(report& result) const
     energy.source = (basePressure() - committed_.basePressure)
        *gSum(given_.voidFraction*mesh_.cellVolumes());
     energy.sourceMagnitude = mag(energy.source);
+    if (models_->radiates())
+    {
+        const scalarField T(temperatureBase_ + h/heatCapacity_);
+        const scalarField radiation(radiationSource_ - radiationCoefficient_*T);
+        energy.source += window_.storageSpan*gSum(radiation);
+        energy.sourceMagnitude += window_.storageSpan*gSumMag(radiation);
+    }
     forAll(mesh_.boundary(), patchi)
     {
         const labelUList& cells = mesh_.boundary()[patchi].faceCells();

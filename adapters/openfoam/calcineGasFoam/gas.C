@@ -114,6 +114,7 @@ Foam::calcine::gas::gas(fvMesh& mesh, const dictionary& properties)
     outerTolerance_ = controls.get<scalar>("outerTolerance");
     linearTolerance_ = controls.get<scalar>("linearTolerance");
     measureFaces();
+    models_.reset(new models(mesh, U_, phi_, *thermo_));
 
     const scalarField reference(1, 298.15);
     referenceEnthalpy_ = thermo_->he(scalarField(1, pRef_), reference, labelList(1, 0))()[0];
@@ -291,6 +292,11 @@ void Foam::calcine::gas::resume(const fileName& directory)
     restore();
     thermo_->he().correctBoundaryConditions();
     thermo_->correct();
+    models_->read(directory);
+    if (committed_.placed)
+    {
+        models_->setDensity(committed_.voidFraction*density());
+    }
 }
 
 
@@ -347,6 +353,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
     }
     U_.correctBoundaryConditions();
 
+    models_->begin();
     result = report();
     for (label outer = 1; outer <= max(outerIterations_, 1); ++outer)
     {
@@ -392,12 +399,14 @@ void Foam::calcine::gas::commit()
     committed_.pressureGradient = pressureGradient_;
     committed_.flux = flux_;
     committed_.voidFraction = given_.voidFraction;
+    models_->advance(window_.motionSpan, committed_.voidFraction*density());
 }
 
 
 void Foam::calcine::gas::checkpoint(const fileName& directory)
 {
     committed_.write(directory);
+    models_->write(directory);
     resume(directory);
 }
 
@@ -472,4 +481,29 @@ Foam::scalarField Foam::calcine::gas::composition() const
         }
     }
     return all;
+}
+
+
+Foam::tmp<Foam::volScalarField> Foam::calcine::gas::viscosity() const
+{
+    tmp<volScalarField> laminar(voidFraction_*thermo_->mu());
+    return models_->turbulent() ? laminar + models_->eddyViscosity() : laminar;
+}
+
+
+Foam::tmp<Foam::volScalarField> Foam::calcine::gas::conductivity() const
+{
+    tmp<volScalarField> laminar(voidFraction_*thermo_->kappa());
+    return models_->turbulent()
+      ? laminar + thermo_->Cp()*models_->eddyDiffusivity()
+      : laminar;
+}
+
+
+Foam::tmp<Foam::volScalarField> Foam::calcine::gas::diffusivity() const
+{
+    tmp<volScalarField> laminar(voidFraction_*thermo_->mu()/schmidt_);
+    return models_->turbulent()
+      ? laminar + models_->eddyViscosity()/models_->turbulentSchmidt()
+      : laminar;
 }

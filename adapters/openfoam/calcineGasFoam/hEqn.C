@@ -39,10 +39,19 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
     matrix.source() += committed_.mass*committed_.enthalpy/span
       + given_.heatSource - given_.heatCoefficient*temperatureBase_
       - outOf(*beyond) + compression*given_.voidFraction*mesh_.cellVolumes();
+    if (models_->radiates())
+    {
+        const scalarField pores(given_.voidFraction*mesh_.cellVolumes());
+        models_->radiativeHeat(T.primitiveField(), radiationCoefficient_, radiationSource_);
+        radiationCoefficient_ *= pores;
+        radiationSource_ *= pores;
+        matrix.diag() += radiationCoefficient_/heatCapacity_;
+        matrix.source() += radiationSource_ - radiationCoefficient_*temperatureBase_;
+    }
     boundary_.addHeat
     (
         window_.processEnd,
-        given_.voidFraction*thermo_->kappa()().primitiveField(),
+        conductivity()().primitiveField(),
         temperatureBase_,
         heatCapacity_,
         ownerDistance_,
@@ -77,10 +86,7 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
 void Foam::calcine::gas::addConduction(fvScalarMatrix& enthalpy) const
 {
     const volScalarField& T = thermo_->T();
-    const surfaceScalarField conduction
-    (
-        "conduction", fvc::interpolate(voidFraction_*thermo_->kappa())
-    );
+    const surfaceScalarField conduction("conduction", fvc::interpolate(conductivity()));
     const fvScalarMatrix heat(fvm::laplacian(conduction, T));
     const labelUList& owner = mesh_.owner();
     const labelUList& neighbour = mesh_.neighbour();

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::{Mesh, polymesh};
-use calcine_coupler::setup::GasSetup;
+use calcine_coupler::setup::{GasPatch, GasSetup};
 use calcine_wire::Catalogue;
 
 use super::start::Start;
@@ -62,8 +62,9 @@ impl OpenfoamCase<'_> {
             .start
             .map(|folder| Start::read(folder, names, self.mesh.cells()));
         let start = start.transpose()?.unwrap_or_default();
+        let control = self.control(folder)?;
         for (name, text) in [
-            ("system/controlDict", dictionaries::control()),
+            ("system/controlDict", control),
             (
                 "constant/thermophysicalProperties",
                 dictionaries::thermophysical(setup),
@@ -85,10 +86,34 @@ impl OpenfoamCase<'_> {
             put(&folder.join("0").join(name), &fraction)?;
         }
         let poly_mesh = folder.join("constant/polyMesh");
-        polymesh::write(self.mesh, &poly_mesh).map_err(|error| {
+        polymesh::write_with(self.mesh, &poly_mesh, |name| self.kind(name)).map_err(|error| {
             let message = format!("the mesh cannot be written to {}", poly_mesh.display());
             PartError::new(NAME, FailureKind::Io, message).caused_by(error)
         })
+    }
+
+    /// OpenFOAM's wall functions ask for patches of the type `wall`.
+    fn kind(&self, patch: &str) -> &'static str {
+        let condition = self.setup.patches.iter().find(|(name, _)| name == patch);
+        match condition {
+            Some((_, GasPatch::Wall { .. })) => "wall",
+            _ => "patch",
+        }
+    }
+
+    /// A template's own `controlDict` goes beside ours, which includes it: its `libs` stay, and what the
+    /// coordinator drives is ours.
+    fn control(&self, folder: &Path) -> Result<String, PartError> {
+        let name = "system/controlDict";
+        let own = self.template.map(|template| template.join(name));
+        let Some(own) = own.filter(|path| path.is_file()) else {
+            return Ok(dictionaries::control(""));
+        };
+        let beside = folder.join("system/controlDict.template");
+        fs::copy(&own, &beside).map_err(failed(&own, "copied"))?;
+        Ok(dictionaries::control(
+            "#include \"controlDict.template\"\n\n",
+        ))
     }
 
     /// Every patch of the mesh needs its condition, and every condition its patch.
@@ -181,9 +206,7 @@ mod tests {
     use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
     use calcine_coupler::physics::Vec3;
     use calcine_coupler::physics::gas::GasProperties;
-    use calcine_coupler::setup::{
-        Convection, GasControls, GasPatch, Schedule, WallHeat, WallVelocity,
-    };
+    use calcine_coupler::setup::{Convection, GasControls, Schedule, WallHeat, WallVelocity};
     use calcine_coupler::time::GasStorage;
 
     fn mesh() -> Mesh {

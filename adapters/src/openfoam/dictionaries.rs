@@ -33,9 +33,11 @@ pub(super) fn table(schedule: &Schedule) -> String {
     format!("({})", entries.join(" "))
 }
 
-/// `system/controlDict`. The coordinator drives time, so that none of its times matters.
-pub fn control() -> String {
+/// `system/controlDict`, after what it includes. The coordinator drives time, so that none of its times
+/// matters.
+pub fn control(include: &str) -> String {
     header("dictionary", "controlDict")
+        + include
         + "application     calcineGasFoam;\nstartFrom       startTime;\nstartTime       0;\n\
            stopAt          endTime;\nendTime         1;\ndeltaT          1;\n\
            writeControl    timeStep;\nwriteInterval   1;\nwriteFormat     binary;\n\

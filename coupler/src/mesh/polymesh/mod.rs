@@ -12,7 +12,7 @@ use thiserror::Error;
 
 pub use field::internal_field;
 pub use read::read;
-pub use write::write;
+pub use write::{write, write_with};
 
 use super::MeshError;
 
