@@ -151,8 +151,8 @@ void Foam::calcine::gas::measureFaces()
     neighbourSkew_.setSize(internal);
     conductance_.setSize(faces, 0);
     drive_.setSize(faces, 0);
-    facePressure_.setSize(faces, 0);
     transportPush_.setSize(internal, 0);
+    recovery_ = tensorField(mesh_.nCells(), Zero);
     for (label facei = 0; facei < faces; ++facei)
     {
         const vector& centre = mesh_.faceCentres()[facei];
@@ -166,7 +166,15 @@ void Foam::calcine::gas::measureFaces()
                 mesh_.cellCentres()[mesh_.faceNeighbour()[facei]] - centre;
             neighbourDistance_[facei] = n & toNeighbour;
             neighbourSkew_[facei] = toNeighbour - neighbourDistance_[facei]*n;
+            recovery_[mesh_.faceNeighbour()[facei]] +=
+                neighbourDistance_[facei]*mag(mesh_.faceAreas()[facei])*n*n;
         }
+        recovery_[mesh_.faceOwner()[facei]] +=
+            ownerDistance_[facei]*mag(mesh_.faceAreas()[facei])*n*n;
+    }
+    forAll(recovery_, celli)
+    {
+        recovery_[celli] = inv(recovery_[celli]/mesh_.cellVolumes()[celli]);
     }
 }
 

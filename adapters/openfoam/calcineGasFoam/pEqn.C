@@ -5,24 +5,28 @@
 //   p_f = p_P + d_P (F_P.n - G/b_P)   and   p_N = p_f + d_N (F_N.n - G/b_N),
 //
 // so G = (d_P F_P.n + d_N F_N.n + p_P - p_N)/(d_P/b_P + d_N/b_N): Rhie-Chow with a distance-weighted
-// harmonic mean. p_f makes the cell's gradient (Gauss), which the momentum equation takes and which is
-// reported: gas at rest stays at rest whatever the void fraction does, and a bed's resistance is exact
-// to its last half cell. The inertia at a face is that of the face's own old flux, so that a steady
+// harmonic mean. The slopes F.n - G/b of a cell's halves make its gradient, which the momentum equation
+// takes and which is reported: sum A d n (n.grad p) = sum A d n (F.n - G/b), Gauss' theorem with what lies
+// along the faces on the left side, so that skewed cells need no iteration. Gas at rest stays at rest
+// whatever the void fraction does, and a bed's resistance is exact to its last half cell. The inertia at a face is that of the face's own old flux, so that a steady
 // flow does not depend on the time step; what friction and convection owe to the cell's own velocity in
 // transport.C. Rhie and Chow 1983, doi 10.2514/3.8284.
 //
 // Continuity, per cell: sum phi_f = -(eps rho V - m_old)/dtau, rho of the model at pRef.
 #include "gas.H"
 
-Foam::scalar Foam::calcine::gas::halfCellForce(label facei, label celli) const
+Foam::scalar Foam::calcine::gas::inertia(label facei, label celli) const
 {
-    const vector& n = normal_[facei];
     const scalar faceFlux = committed_.flux[facei]/mag(mesh_.faceAreas()[facei]);
     const scalar cellFlux =
-        committed_.mass[celli]/mesh_.cellVolumes()[celli]*(committed_.velocity[celli] & n);
-    return
-        (force_[celli] & n)
-      + (faceFlux - cellFlux)/(window_.motionSpan*given_.voidFraction[celli]);
+        committed_.mass[celli]/mesh_.cellVolumes()[celli]*(committed_.velocity[celli] & normal_[facei]);
+    return (faceFlux - cellFlux)/(window_.motionSpan*given_.voidFraction[celli]);
+}
+
+
+Foam::scalar Foam::calcine::gas::halfCellForce(label facei, label celli) const
+{
+    return (force_[celli] & normal_[facei]) + inertia(facei, celli);
 }
 
 
@@ -173,7 +177,7 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
                 conductance_[facei]*(p_[owner[facei]] - p_.boundaryField()[patchi][i]);
         }
     }
-    updateFacePressure();
+    updatePressureGradient();
 
     U_.primitiveFieldRef() =
         given_.voidFraction/momentumDiagonal_*(force_ - pressureGradient_);
@@ -181,41 +185,24 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
 }
 
 
-void Foam::calcine::gas::updateFacePressure()
+void Foam::calcine::gas::updatePressureGradient()
 {
-    const labelUList& owner = mesh_.faceOwner();
-    const labelUList& neighbour = mesh_.faceNeighbour();
-    forAll(facePressure_, facei)
-    {
-        const label celli = owner[facei];
-        const scalar loss =
-            flux_[facei]/(mag(mesh_.faceAreas()[facei])*mobility_[celli]);
-        facePressure_[facei] =
-            p_[celli] + ownerDistance_[facei]*(halfCellForce(facei, celli) - loss)
-          + (ownerSkew_[facei] & pressureGradient_[celli]);
-    }
-    for (const fvPatch& patch : mesh_.boundary())
-    {
-        if (boundary_.of(patch.index()) == passage::open)
-        {
-            forAll(patch, i)
-            {
-                facePressure_[patch.start() + i] = p_.boundaryField()[patch.index()][i];
-            }
-        }
-    }
-    // The pressures on the two sides of a face differ by what transport adds: the gradient leaves each
-    // cell the mean of its fluxes as its velocity.
+    // What the slopes of a cell's halves have beyond its own force: without what transport adds, by
+    // which the pressures on the two sides of a face differ.
     pressureGradient_ = Zero;
-    forAll(facePressure_, facei)
+    const auto add = [this](label facei, label celli, scalar distance)
     {
-        const vector push = facePressure_[facei]*mesh_.faceAreas()[facei];
-        pressureGradient_[owner[facei]] += push;
+        const scalar area = mag(mesh_.faceAreas()[facei]);
+        const scalar slope = area*inertia(facei, celli) - flux_[facei]/mobility_[celli];
+        pressureGradient_[celli] += distance*slope*normal_[facei];
+    };
+    forAll(flux_, facei)
+    {
+        add(facei, mesh_.faceOwner()[facei], ownerDistance_[facei]);
         if (facei < mesh_.nInternalFaces())
         {
-            pressureGradient_[neighbour[facei]] -=
-                push + transportPush_[facei]*mesh_.faceAreas()[facei];
+            add(facei, mesh_.faceNeighbour()[facei], neighbourDistance_[facei]);
         }
     }
-    pressureGradient_ /= mesh_.cellVolumes();
+    pressureGradient_ = force_ + (recovery_ & (pressureGradient_/mesh_.cellVolumes()));
 }

@@ -6,9 +6,10 @@
 //! p_f = p_P + d_P (F_P·n − G/b_P)  and  p_N = p_f + d_N (F_N·n − G/b_N),
 //!
 //! so G = (d_P F_P·n + d_N F_N·n + p_P − p_N)/(d_P/b_P + d_N/b_N): Rhie–Chow with a
-//! distance-weighted harmonic mean. p_f gives the cell's gradient (Gauss), which the momentum
-//! equation takes; gas at rest stays at rest whatever the void fraction does, and a bed's
-//! resistance is exact to its last half cell. The force of inertia at a face is taken from the
+//! distance-weighted harmonic mean. The slopes F·n − G/b of a cell's halves give its gradient, which the
+//! momentum equation takes: Σ A d n (n·∇p) = Σ A d n (F·n − G/b), the sum over faces of Gauss' theorem with what
+//! lies along the faces on the left side, so that skewed cells need no iteration. Gas at rest stays at
+//! rest whatever the void fraction does, and a bed's resistance is exact to its last half cell. The force of inertia at a face is taken from the
 //! face's own old flux, so that a steady flow does not depend on the time step; what friction and
 //! convection owe to the cell's own velocity in [`super::transport`]. Rhie and Chow 1983,
 //! doi 10.2514/3.8284.
@@ -16,6 +17,7 @@
 //! Continuity, for each cell: Σ φ_f = −(ε ρ V − m_old)/Δτ, ρ from the equation of state.
 
 use calcine_coupler::physics::Vec3;
+use nalgebra::Matrix3;
 
 use super::attempt::{Frame, Material};
 use super::boundary::Value;
@@ -23,7 +25,7 @@ use super::momentum::Momentum;
 use super::state::State;
 use super::transport::Transport;
 use crate::numerics::amg::Multigrid;
-use crate::numerics::grid::Face;
+use crate::numerics::grid::{Face, Grid};
 use crate::numerics::krylov::{Krylov, Target};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{displacement, outflow};
@@ -82,13 +84,15 @@ pub struct Pressure {
     /// where it is given.
     drive: Vec<f64>,
     source: Vec<f64>,
-    face_pressure: Vec<f64>,
+    /// V (Σ A d n nᵀ)⁻¹ of each cell; empty where it is the identity.
+    recovery: Vec<Matrix3<f64>>,
 }
 
 impl Pressure {
     /// An empty equation on a matrix's graph.
     pub fn new(matrix: Matrix) -> Self {
         let (cells, faces) = (matrix.grid().cells(), matrix.grid().faces.len());
+        let recovery = recovery(matrix.grid());
         Self {
             matrix,
             preconditioner: Approximation::new(cells),
@@ -99,7 +103,7 @@ impl Pressure {
             conductance: vec![0.0; faces],
             drive: vec![0.0; faces],
             source: vec![0.0; cells],
-            face_pressure: vec![0.0; faces],
+            recovery,
         }
     }
 
@@ -266,44 +270,34 @@ impl Pressure {
             let fall = pressure[face.owner] - outer(index, face, pressure);
             self.drive[index] + self.conductance[index] * fall
         });
-        let flux = &now.flux;
-        let gradients = &now.pressure_gradient;
-        let mut face_pressure = std::mem::take(&mut self.face_pressure);
-        fill(&mut face_pressure, |index| {
-            let face = &grid.faces[index];
-            if index >= grid.internal
-                && let Value::Outlet { pressure } = frame.boundary.at(index)
-            {
-                return pressure;
-            }
-            let loss = flux[index] / (face.area * self.mobility[face.owner]);
-            let along = self.owner_force(face, index) - loss;
-            let inner = pressure[face.owner] + face.owner_distance * along;
-            if grid.orthogonal {
-                inner
-            } else {
-                inner + face.owner_skew.dot(&gradients[face.owner])
-            }
-        });
-        self.face_pressure = face_pressure;
     }
 
-    /// The gradient that leaves each cell the mean of its fluxes as its velocity: from face pressures
-    /// without what transport adds, which differ on the two sides of a face by just that.
+    /// The gradient that leaves each cell the mean of its fluxes as its velocity: without what transport
+    /// adds, by which the pressures on the two sides of a face differ.
     fn update_velocity(&self, frame: &Frame<'_>, momentum: &Momentum, now: &mut State) {
         let grid = frame.grid;
-        fill(&mut now.pressure_gradient, |cell| {
+        let flux = &now.flux;
+        // What the slopes have beyond the cell's own force F.
+        let beyond = |cell: usize| {
             let mut sum = Vec3::zeros();
             for link in grid.links(cell) {
                 let index = link.face as usize;
                 let face = &grid.faces[index];
-                let mut pressure = self.face_pressure[index];
-                if index < grid.internal && link.sign < 0.0 {
-                    pressure += self.transport_push(face, index);
-                }
-                sum += (link.sign * face.area * pressure) * face.normal;
+                let (distance, inertia) = if link.sign > 0.0 {
+                    (face.owner_distance, self.inertia[index][0])
+                } else {
+                    (face.neighbour_distance, self.inertia[index][1])
+                };
+                let slope = face.area * inertia - flux[index] / self.mobility[cell];
+                sum += (distance * slope) * face.normal;
             }
             sum / grid.volume[cell]
+        };
+        fill(&mut now.pressure_gradient, |cell| {
+            match self.recovery.get(cell) {
+                Some(recovery) => self.force[cell] + recovery * beyond(cell),
+                None => self.force[cell] + beyond(cell),
+            }
         });
         let gradients = &now.pressure_gradient;
         fill(&mut now.velocity, |cell| {
@@ -311,6 +305,30 @@ impl Pressure {
             pores / momentum.matrix.diagonal()[cell] * (self.force[cell] - gradients[cell])
         });
     }
+}
+
+/// V (Σ A d n nᵀ)⁻¹ of each cell, the sum over its faces, d the distance of its centre from their planes.
+fn recovery(grid: &Grid) -> Vec<Matrix3<f64>> {
+    if grid.orthogonal {
+        return Vec::new();
+    }
+    let mut inverse = vec![Matrix3::identity(); grid.cells()];
+    fill(&mut inverse, |cell| {
+        let mut sum = Matrix3::zeros();
+        for link in grid.links(cell) {
+            let face = &grid.faces[link.face as usize];
+            let distance = if link.sign > 0.0 {
+                face.owner_distance
+            } else {
+                face.neighbour_distance
+            };
+            sum += (face.area * distance) * face.normal * face.normal.transpose();
+        }
+        (sum / grid.volume[cell])
+            .try_inverse()
+            .unwrap_or_else(Matrix3::identity)
+    });
+    inverse
 }
 
 /// The outflow that continuity asks of a cell in kg/s.
