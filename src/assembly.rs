@@ -6,7 +6,7 @@ use std::sync::Arc;
 use calcine_adapters::liggghts::inputs::Inputs;
 use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch, LiggghtsParticles};
 use calcine_adapters::openfoam::case::OpenfoamCase;
-use calcine_adapters::openfoam::{OpenfoamGas, OpenfoamLaunch};
+use calcine_adapters::openfoam::{LIBRARY, OpenfoamGas, OpenfoamLaunch};
 use calcine_coupler::closures::Closures;
 use calcine_coupler::coordinator::{CheckpointPaths, Origin, Parts, Plan, Run, RunError};
 use calcine_coupler::error::{FailureKind, PartError};
@@ -227,7 +227,13 @@ pub fn assemble<'m>(
         interior: Box::new(interior(case, prepared)),
     };
     let smoother = smoother(case, prepared)?;
-    let plan = plan(case, checkpoint);
+    let mut plan = plan(case, checkpoint);
+    let foam = settings.pairing.gas == GasBackend::Openfoam;
+    if foam && case.openfoam.solver.is_stock() {
+        // A stock solver cannot go back to the start of a time step.
+        plan.exchange_attempts = 1;
+        plan.repeats = false;
+    }
     let mut run = Run::new(plan, &prepared.mesh, smoother, closures(case), parts)?;
     if settings.resume {
         run.resume()?;
@@ -253,6 +259,8 @@ pub fn write_inputs(
             mesh: &prepared.mesh,
             template: case.openfoam.template.as_deref(),
             start: case.openfoam.start.as_deref(),
+            solver: case.openfoam.solver,
+            library: Path::new(LIBRARY),
             case_hash: &case.hash,
         }
         .write(&target)?;
@@ -308,6 +316,7 @@ impl Assembly<'_> {
                     mesh: Arc::clone(&self.prepared.mesh),
                     template: self.case.openfoam.template.as_deref(),
                     start: self.case.openfoam.start.as_deref(),
+                    solver: self.case.openfoam.solver,
                     case_hash: self.case.hash.clone(),
                     folder: self.absolute("solvers/openfoam")?,
                     log: self.absolute("log/openfoam.log")?,
@@ -432,6 +441,7 @@ fn plan(case: &Case, checkpoint: CheckpointPaths) -> Plan {
         mapping: method(case),
         exchange_tolerance: case.coupling.exchange_tolerance,
         exchange_attempts: case.coupling.exchange_attempts,
+        repeats: true,
         case_hash: case.hash.clone(),
         checkpoint,
     }

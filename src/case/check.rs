@@ -85,6 +85,10 @@ fn honoured(text: &mut String, case: &Case) {
     let _ = writeln!(text, "  backends:");
     for name in ["native gas", "OpenFOAM", "native particles", "LIGGGHTS"] {
         let note = match name {
+            "OpenFOAM" if case.openfoam.solver.is_stock() => {
+                "every key, approximately: a stock solver (`openfoam.solver`) has no void fraction in \
+                 its storage; see docs/stock-solvers.md"
+            }
             "OpenFOAM" if case.openfoam.template.is_some() => {
                 "every key, and `openfoam.template`, which restricts the case to this gas"
             }

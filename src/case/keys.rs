@@ -222,6 +222,7 @@ const KEYS: &[Key] = &[
     key("coupling.deadline", "time, s", Default("60 s"), "The longest wall time that a solver may stay silent.", "\"60 s\""),
     key("openfoam", "table", Default("all inputs are generated"), "What only an OpenFOAM gas needs; a native gas ignores it.", "[openfoam]"),
     key("openfoam.template", "path", Default("none"), "Folder of OpenFOAM files to start from.", "\"foam\""),
+    key("openfoam.solver", "`calcineGasFoam`, `buoyantPimpleFoam`", Default("`calcineGasFoam`"), "Program of an OpenFOAM gas: Calcine's own, or a stock solver with Calcine's sources in it, which is approximate (docs/stock-solvers.md).", "\"buoyantPimpleFoam\""),
     key("openfoam.start", "path", Default("`gas.initial`"), "Time directory that OpenFOAM wrote on the same mesh, of a whole (reconstructed) case: its T, p (absolute), U (superficial) and mass fractions, as far as they are there, are the start of the gas.", "\"foam/0.5\""),
     key("openfoam.ranks", "whole number", Default("1"), "Ranks; only 1 is supported yet.", "1"),
     key("liggghts", "table", Default("all inputs are generated"), "What only LIGGGHTS particles need; native particles ignore it.", "[liggghts]"),

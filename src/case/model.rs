@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use calcine_adapters::openfoam::stock::Solver;
 use calcine_coupler::mesh::grading::Stretch;
 use calcine_coupler::mesh::refine::Refinement;
 use calcine_coupler::mesh::zone::Zone;
@@ -304,6 +305,8 @@ pub struct External {
     pub template: Option<PathBuf>,
     /// Time directory of OpenFOAM whose fields the gas starts from (absolute path).
     pub start: Option<PathBuf>,
+    /// Program of an OpenFOAM gas.
+    pub solver: Solver,
     /// Ranks.
     pub ranks: usize,
 }

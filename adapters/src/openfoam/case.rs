@@ -10,6 +10,7 @@ use calcine_coupler::setup::{GasPatch, GasSetup};
 use calcine_wire::Catalogue;
 
 use super::start::Start;
+use super::stock::{self, Solver};
 use super::{NAME, dictionaries, species};
 
 /// Schemes and linear solvers where no template brings its own.
@@ -24,6 +25,18 @@ const DEFAULTS: [(&str, &str); 2] = [
     ),
 ];
 
+/// The same for a stock solver.
+const STOCK_DEFAULTS: [(&str, &str); 2] = [
+    (
+        "system/fvSchemes",
+        include_str!("../../../of-cases/buoyantPimpleFoam/system/fvSchemes"),
+    ),
+    (
+        "system/fvSolution",
+        include_str!("../../../of-cases/buoyantPimpleFoam/system/fvSolution"),
+    ),
+];
+
 /// What an OpenFOAM case is made from.
 #[derive(Clone, Copy, Debug)]
 pub struct OpenfoamCase<'a> {
@@ -35,6 +48,10 @@ pub struct OpenfoamCase<'a> {
     pub template: Option<&'a Path>,
     /// A time directory that OpenFOAM wrote on the same mesh, whose fields the gas starts from.
     pub start: Option<&'a Path>,
+    /// Which program computes the gas.
+    pub solver: Solver,
+    /// The library that a stock solver opens.
+    pub library: &'a Path,
     /// Hash of the case, compared in the handshake.
     pub case_hash: &'a str,
 }
@@ -50,7 +67,12 @@ impl OpenfoamCase<'_> {
         if let Some(template) = self.template {
             copy(template, folder)?;
         }
-        for (name, text) in DEFAULTS {
+        let defaults = if self.solver.is_stock() {
+            STOCK_DEFAULTS
+        } else {
+            DEFAULTS
+        };
+        for (name, text) in defaults {
             if self.template.is_none_or(|own| !own.join(name).is_file()) {
                 let text = dictionaries::schemes(text, self.setup.controls.convection);
                 put(&folder.join(name), &suited(&text, self.mesh))?;
@@ -62,12 +84,15 @@ impl OpenfoamCase<'_> {
             .start
             .map(|folder| Start::read(folder, names, self.mesh.cells()));
         let start = start.transpose()?.unwrap_or_default();
-        let control = self.control(folder)?;
+        if self.solver.is_stock() {
+            self.write_stock(folder, &start)?;
+        } else {
+            self.write_own(folder, &start)?;
+        }
         for (name, text) in [
-            ("system/controlDict", control),
             (
                 "constant/thermophysicalProperties",
-                dictionaries::thermophysical(setup),
+                dictionaries::thermophysical(setup, self.solver),
             ),
             ("constant/g", dictionaries::gravity(setup)),
             (
@@ -75,9 +100,6 @@ impl OpenfoamCase<'_> {
                 dictionaries::calcine(setup, self.case_hash, &catalogue),
             ),
             ("constant/calcineCells", dictionaries::cells(self.mesh)),
-            ("0/U", start.applied("U", dictionaries::velocity(setup))),
-            ("0/T", start.applied("T", dictionaries::temperature(setup))),
-            ("0/p", start.applied("p", dictionaries::pressure(setup))),
         ] {
             put(&folder.join(name), &text)?;
         }
@@ -92,6 +114,46 @@ impl OpenfoamCase<'_> {
         })
     }
 
+    fn write_own(&self, folder: &Path, start: &Start) -> Result<(), PartError> {
+        let setup = self.setup;
+        let control = dictionaries::control(&self.beside(folder, "system/controlDict")?);
+        for (name, text) in [
+            ("system/controlDict", control),
+            ("0/U", start.applied("U", dictionaries::velocity(setup))),
+            ("0/T", start.applied("T", dictionaries::temperature(setup))),
+            ("0/p", start.applied("p", dictionaries::pressure(setup))),
+        ] {
+            put(&folder.join(name), &text)?;
+        }
+        Ok(())
+    }
+
+    fn write_stock(&self, folder: &Path, start: &Start) -> Result<(), PartError> {
+        let setup = self.setup;
+        let include = self.beside(folder, "system/controlDict")?;
+        let library = self.library.to_string_lossy();
+        let control = stock::control(self.solver, &include, &library);
+        let options = stock::options(&self.beside(folder, "constant/fvOptions")?);
+        let [absolute, driving] = stock::pressures(setup);
+        let velocity = start.applied("U", stock::velocity(setup));
+        let temperature = start.applied("T", stock::temperature(setup));
+        for (name, text) in [
+            ("system/controlDict", control),
+            ("constant/fvOptions", options),
+            ("0/U", velocity),
+            ("0/T", temperature),
+            (absolute.0, start.applied("p", absolute.1)),
+            (driving.0, start.applied("p_rgh", driving.1)),
+        ] {
+            put(&folder.join(name), &text)?;
+        }
+        let turbulence = folder.join("constant/turbulenceProperties");
+        if !turbulence.is_file() {
+            put(&turbulence, &stock::laminar())?;
+        }
+        Ok(())
+    }
+
     /// OpenFOAM's wall functions ask for patches of the type `wall`.
     fn kind(&self, patch: &str) -> &'static str {
         let condition = self.setup.patches.iter().find(|(name, _)| name == patch);
@@ -101,19 +163,17 @@ impl OpenfoamCase<'_> {
         }
     }
 
-    /// A template's own `controlDict` goes beside ours, which includes it: its `libs` stay, and what the
-    /// coordinator drives is ours.
-    fn control(&self, folder: &Path) -> Result<String, PartError> {
-        let name = "system/controlDict";
+    /// A template's own file of a dictionary that we write goes beside ours; the words by which ours includes
+    /// it, so that its `libs` (or fvOptions) stay, and what the coordinator drives is ours.
+    fn beside(&self, folder: &Path, name: &str) -> Result<String, PartError> {
         let own = self.template.map(|template| template.join(name));
         let Some(own) = own.filter(|path| path.is_file()) else {
-            return Ok(dictionaries::control(""));
+            return Ok(String::new());
         };
-        let beside = folder.join("system/controlDict.template");
-        fs::copy(&own, &beside).map_err(failed(&own, "copied"))?;
-        Ok(dictionaries::control(
-            "#include \"controlDict.template\"\n\n",
-        ))
+        let beside = format!("{name}.template");
+        fs::copy(&own, folder.join(&beside)).map_err(failed(&own, "copied"))?;
+        let file = Path::new(&beside).file_name().unwrap_or_default();
+        Ok(format!("#include \"{}\"\n\n", file.to_string_lossy()))
     }
 
     /// Every patch of the mesh needs its condition, and every condition its patch.

@@ -11,6 +11,7 @@ use calcine_coupler::setup::{
 use calcine_wire::Catalogue;
 
 use super::species;
+use super::stock::Solver;
 
 /// The header of an OpenFOAM file.
 pub(super) fn header(class: &str, object: &str) -> String {
@@ -23,7 +24,7 @@ pub(super) fn header(class: &str, object: &str) -> String {
 // Numbers are written with `e`, which prints the shortest digits that read back to the same bits.
 // Writing into a String cannot fail, so the results of write! below carry nothing.
 
-fn vector(v: Vec3) -> String {
+pub(super) fn vector(v: Vec3) -> String {
     format!("({:e} {:e} {:e})", v.x, v.y, v.z)
 }
 
@@ -47,10 +48,16 @@ pub fn control(include: &str) -> String {
 
 /// `constant/thermophysicalProperties`: an ideal gas with constant heat capacity and Sutherland
 /// transport, a fluid of constant properties, or a mixture of species.
-pub fn thermophysical(setup: &GasSetup) -> String {
+pub fn thermophysical(setup: &GasSetup, solver: Solver) -> String {
+    // buoyantPimpleFoam asks for a model of the density.
+    let psi = if solver.is_stock() {
+        "heRhoThermo"
+    } else {
+        "hePsiThermo"
+    };
     let (kinds, numbers) = match &setup.properties {
         GasModel::Perfect(gas) => (
-            ["hePsiThermo", "sutherland", "perfectGas"],
+            [psi, "sutherland", "perfectGas"],
             [
                 ("molWeight", gas.molar_mass * 1e3),
                 ("Cp", gas.heat_capacity),

@@ -6,6 +6,7 @@ mod dictionaries;
 mod identity;
 mod species;
 mod start;
+pub mod stock;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -26,11 +27,14 @@ use crate::launch::{Program, find_program};
 use crate::solver::{ExternalSolver, Launch, header};
 use case::OpenfoamCase;
 use columns::State;
+use stock::Solver;
 
 /// Name in messages.
 const NAME: &str = "OpenFOAM (gas)";
 /// Name of the solver's program.
 pub const SOLVER: &str = "calcineGasFoam";
+/// The library with Calcine's fvOption, beside it.
+pub const LIBRARY: &str = "libcalcineFoam.so";
 /// The variable that names another solver program.
 pub const SOLVER_VARIABLE: &str = "CALCINE_GASFOAM";
 /// Where Debian's OpenFOAM has its `etc`.
@@ -47,6 +51,8 @@ pub struct OpenfoamLaunch<'a> {
     pub template: Option<&'a Path>,
     /// A time directory that OpenFOAM wrote, whose fields the gas starts from.
     pub start: Option<&'a Path>,
+    /// Which program computes the gas.
+    pub solver: Solver,
     /// Hash of the case.
     pub case_hash: String,
     /// Where the OpenFOAM case is written and the solver runs.
@@ -80,12 +86,25 @@ impl OpenfoamGas {
         supervisor: &mut Supervisor,
     ) -> Result<Self, PartError> {
         let remedy = "`cargo xtask setup` installs OpenFOAM and builds it";
-        let path = find_program(SOLVER_VARIABLE, SOLVER, remedy)?;
+        let own = find_program(SOLVER_VARIABLE, SOLVER, remedy)?;
+        let library = own.with_file_name(LIBRARY);
+        let path = if launch.solver.is_stock() {
+            stock_program(launch.solver.name())?
+        } else {
+            own
+        };
+        if launch.solver.is_stock() && (launch.resume.is_some() || launch.from.is_some()) {
+            let message = "a stock solver takes up no checkpoint; its checkpoint is a time directory, \
+                           which `openfoam.start` takes as a start";
+            return Err(PartError::new(NAME, FailureKind::NotStarted, message));
+        }
         let case = OpenfoamCase {
             setup: launch.setup,
             mesh: &launch.mesh,
             template: launch.template,
             start: launch.start,
+            solver: launch.solver,
+            library: &library,
             case_hash: &launch.case_hash,
         };
         let given = [("-resume", &launch.resume), ("-from", &launch.from)];
@@ -170,6 +189,21 @@ impl OpenfoamGas {
         };
         read.map_err(|error| self.solver.failure(window, error))
     }
+}
+
+/// A program of Debian's OpenFOAM, on the path.
+fn stock_program(name: &str) -> Result<PathBuf, PartError> {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let found = std::env::split_paths(&path)
+        .map(|folder| folder.join(name))
+        .find(|program| program.is_file());
+    found.ok_or_else(|| {
+        let message = format!(
+            "{name} is nowhere on the PATH; it comes with Debian's package openfoam, which `cargo xtask \
+             setup` installs"
+        );
+        PartError::new(NAME, FailureKind::NotStarted, message)
+    })
 }
 
 /// OpenFOAM takes no path with a space or a quote in it.
