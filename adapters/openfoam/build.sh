@@ -39,7 +39,8 @@ own() { for file in "$1"/*.C; do echo "$objects/$(basename "$file" .C).o"; done;
 # A new file takes the old one's place at once: a running solver keeps what it has opened.
 mapfile -t library < <(own library)
 g++ -shared -Wl,-soname,libcalcineFoam.so -o "$OUT_DIR/.libcalcineFoam.so" "${library[@]}" "$WIRE_LIB" \
-    -Wl,--exclude-libs,ALL,--strip-debug -lfluidThermophysicalModels -lfiniteVolume -lmeshTools -lOpenFOAM \
+    -Wl,--exclude-libs,ALL,--strip-debug -lcompressibleTurbulenceModels -lturbulenceModels -lcompressibleTransportModels \
+    -lfluidThermophysicalModels -lfiniteVolume -lmeshTools -lOpenFOAM \
     -lgcc_s -lutil -lrt -lpthread -lm -ldl
 mv "$OUT_DIR/.libcalcineFoam.so" "$OUT_DIR/libcalcineFoam.so"
 mapfile -t solver < <(own calcineGasFoam)

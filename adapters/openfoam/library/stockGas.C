@@ -6,6 +6,7 @@
 #include "OSspecific.H"
 #include "Time.H"
 #include "stringList.H"
+#include "turbulentFluidThermoModel.H"
 #include "uniformDimensionedFields.H"
 
 namespace Foam
@@ -228,16 +229,18 @@ Foam::DynamicList<Foam::scalar> Foam::calcine::stockGas::balances() const
     );
     scalar massIn = 0, massMagnitude = 0, energyIn = 0, energyMagnitude = 0;
     vector momentumIn(Zero), momentumMagnitude(Zero);
-    const tmp<volScalarField> kappa(thermo_.kappa());
-    const tmp<volScalarField> mu(thermo_.mu());
+    // Of conduction and friction what the solver's own model has at the boundary.
+    const auto* model =
+        mesh_.findObject<compressible::turbulenceModel>(turbulenceModel::propertiesName);
+    const tmp<volScalarField> alpha(model ? model->alphaEff() : thermo_.alphahe());
+    const tmp<volScalarField> mu(model ? model->muEff() : thermo_.mu());
     forAll(mesh_.boundary(), patchi)
     {
         const scalarField& out = phi.boundaryField()[patchi];
         const fvPatch& patch = mesh_.boundary()[patchi];
         const scalarField conducted
         (
-            kappa().boundaryField()[patchi]*thermo_.T().boundaryField()[patchi].snGrad()
-           *patch.magSf()
+            alpha().boundaryField()[patchi]*h.boundaryField()[patchi].snGrad()*patch.magSf()
         );
         const scalarField carried
         (
