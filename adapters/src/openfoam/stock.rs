@@ -1,9 +1,7 @@
 //! Cases of a stock solver, which Calcine's fvOption `calcineSource` couples.
 
 use calcine_coupler::physics::gas_model::GasModel;
-use calcine_coupler::setup::{
-    GasPatch, GasSetup, InletFlow, Schedule, WallHeat, WallVelocity,
-};
+use calcine_coupler::setup::{GasPatch, GasSetup, InletFlow, Schedule, WallHeat, WallVelocity};
 
 use super::dictionaries::{field, fixed, header, vector, zero_gradient};
 
@@ -47,7 +45,9 @@ pub fn refusal(setup: &GasSetup, moving_clock: bool) -> Option<String> {
             }
             GasPatch::Outlet { pressure } => {
                 if pressure.0.len() > 1 {
-                    return Some(format!("the pressure of the outlet `{name}` must be constant"));
+                    return Some(format!(
+                        "the pressure of the outlet `{name}` must be constant"
+                    ));
                 }
                 Vec::new()
             }
@@ -104,7 +104,9 @@ pub fn control(solver: Solver, include: &str, library: &str) -> String {
 
 /// `constant/fvOptions`, after what it includes.
 pub fn options(include: &str) -> String {
-    header("dictionary", "fvOptions") + include + "calcine\n{\n    type            calcineSource;\n}\n"
+    header("dictionary", "fvOptions")
+        + include
+        + "calcine\n{\n    type            calcineSource;\n}\n"
 }
 
 /// `constant/turbulenceProperties` where no template brings its own.
