@@ -144,7 +144,8 @@ pub trait Gas: Part {
     /// Fields after the last finished attempt (initially: the start of the run).
     fn fields(&self) -> GasFields<'_>;
 
-    /// Starts an attempt from the last commit; does not wait.
+    /// Starts an attempt from the last commit; does not wait. Attempts of one window above 0 may take what the
+    /// attempt before found as their first guess, never as the old state.
     fn start(
         &mut self,
         window: &Window,

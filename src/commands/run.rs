@@ -47,9 +47,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
-    if let Some(threads) = arguments.threads {
-        use_threads(threads.into())?;
-    }
+    use_threads(arguments.threads.map(usize::from))?;
     let (case, prepared) = read_and_prepare(&arguments.case, &arguments.set)?;
     let out = results_folder(&case, arguments.out.as_ref());
     let settings = Settings {
@@ -74,8 +72,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     Ok(done.code)
 }
 
-fn use_threads(threads: usize) -> Result<(), Failure> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+/// Starts the threads; this one is one of them, so that no loop is handed over from thread to thread.
+fn use_threads(threads: Option<usize>) -> Result<(), Failure> {
+    let threads =
+        threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
+    let pool = rayon::ThreadPoolBuilder::new();
+    let pool = pool.num_threads(threads).use_current_thread();
     pool.build_global().map_err(|cause| {
         let message = format!("{threads} threads cannot be started: {cause}");
         Failure::new(exit::OTHER, message)

@@ -14,6 +14,7 @@ use calcine_coupler::setup::Convection;
 
 use super::attempt::{Frame, Material};
 use super::boundary::{Heat, Value};
+use super::outer::Goal;
 use super::state::State;
 use crate::numerics::convection::beyond_upwind;
 use crate::numerics::krylov::{Krylov, Target};
@@ -270,19 +271,18 @@ impl Enthalpy {
         error / content
     }
 
-    /// Solves for the enthalpy, to a tolerance relative to the energy that moves; returns the
-    /// iterations.
+    /// Solves for the enthalpy; returns the iterations.
     pub fn solve(
         &mut self,
         frame: &Frame<'_>,
         krylov: &mut Krylov,
-        tolerance: f64,
+        goal: Goal,
         now: &mut State,
     ) -> u32 {
         let target = Target {
-            absolute: tolerance * self.throughput(frame, now),
+            absolute: goal.absolute * self.throughput(frame, now),
             of_terms: 0.0,
-            relative: 0.0,
+            relative: goal.relative,
             iterations: ITERATIONS,
         };
         self.preconditioner.update(&self.matrix);

@@ -56,6 +56,8 @@ pub struct NativeGas {
     /// Fields of another run to start from, their velocity superficial.
     taken_over: Option<State>,
     now: State,
+    /// Index and attempt of the window that `now` is of, as long as it is not committed.
+    attempted: Option<(u64, u32)>,
     window: Option<Window>,
     void_fraction: Vec<f64>,
     exchange: CellExchange,
@@ -87,6 +89,7 @@ impl NativeGas {
             setup: setup.clone(),
             boundaries,
             now: committed.clone(),
+            attempted: None,
             committed,
             started: false,
             taken_over: None,
@@ -110,6 +113,7 @@ impl NativeGas {
             self.setup.properties.species().len(),
         )?;
         self.started = !self.committed.mass.is_empty();
+        self.attempted = None;
         self.now.take(&self.committed);
         self.update_fields();
         Ok(())
@@ -188,6 +192,7 @@ impl Part for NativeGas {
     fn commit(&mut self) -> Result<(), PartError> {
         self.committed.take(&self.now);
         self.started = !self.committed.mass.is_empty();
+        self.attempted = None;
         self.taken_over = None;
         Ok(())
     }
@@ -261,7 +266,13 @@ impl Gas for NativeGas {
         if !self.started {
             self.place();
         }
-        self.now.take(&self.committed);
+        // A repeated attempt takes what the one before found as its first guess; old is what is committed.
+        let continues =
+            window.attempt > 0 && self.attempted == Some((window.index, window.attempt - 1));
+        if !continues {
+            self.now.take(&self.committed);
+        }
+        self.attempted = Some((window.index, window.attempt));
         self.now.void_fraction.clone_from(&self.void_fraction);
         let frame = Frame {
             grid: &self.grid,
@@ -278,7 +289,7 @@ impl Gas for NativeGas {
         };
         let solved = self
             .equations
-            .solve(&frame, &self.setup.controls, &mut self.now);
+            .solve(&frame, &self.setup.controls, continues, &mut self.now);
         let convergence = solved.map_err(|words| {
             self.failure(FailureKind::Diverged, words)
                 .in_window(&window)

@@ -17,6 +17,19 @@ use crate::numerics::krylov::Krylov;
 use crate::numerics::matrix::Matrix;
 use crate::numerics::parallel::largest;
 
+/// Species and enthalpy need not be solved closer than this share of their initial residuals as
+/// long as the outer loop goes on. After it they are, so that energy and species close whatever it did.
+const SCALARS: f64 = 1e-2;
+
+/// When the solve of a scalar ends: where its residual is below either.
+#[derive(Clone, Copy, Debug)]
+pub struct Goal {
+    /// As a share of what moves: through the boundary, from the particles, into storage.
+    pub absolute: f64,
+    /// As a share of the initial residual.
+    pub relative: f64,
+}
+
 /// The equations and their scratch memory, reused from window to window.
 #[derive(Debug)]
 pub struct Equations {
@@ -47,19 +60,22 @@ impl Equations {
         }
     }
 
-    /// Advances `now`, which holds the old state, to the end of the window; the words of what
-    /// diverged otherwise.
+    /// Advances `now` to the end of the window; the words of what diverged otherwise. `now` holds the
+    /// old state, or, where the attempt `continues` the one before, what that one found.
     pub fn solve(
         &mut self,
         frame: &Frame<'_>,
         controls: &GasControls,
+        continues: bool,
         now: &mut State,
     ) -> Result<Convergence, String> {
         let mut convergence = Convergence::default();
-        self.pressure.begin(frame);
-        self.momentum.begin();
-        self.enthalpy.begin();
-        self.species.begin(frame);
+        if !continues {
+            self.pressure.begin(frame);
+            self.momentum.begin();
+            self.enthalpy.begin();
+            self.species.begin(frame);
+        }
         self.assess(frame, now);
         for outer in 1..=controls.outer_iterations.max(1) {
             convergence.linear_iterations += self.iterate(frame, controls, now);
@@ -75,6 +91,7 @@ impl Equations {
                 break;
             }
         }
+        convergence.linear_iterations += self.scalars(frame, controls.linear_tolerance, 0.0, now);
         if let Some(words) = guard::complaint(now, &frame.grid.centre) {
             return Err(words);
         }
@@ -103,18 +120,25 @@ impl Equations {
         let (krylov, material) = (&mut self.krylov, &self.material);
         let mut iterations = self.momentum.predict(frame, krylov, tolerance, now);
 
-        self.pressure.assemble(frame, material, &self.momentum);
+        self.pressure.assemble(frame, material, &self.momentum, now);
         for _ in 0..controls.pressure_corrections.max(1) {
             iterations +=
                 self.pressure
                     .correct(frame, material, &self.momentum, krylov, tolerance, now);
         }
         pressure::advance_mass(frame, now);
+        iterations + self.scalars(frame, tolerance, SCALARS, now)
+    }
 
-        iterations += self.species.solve(frame, material, krylov, tolerance, now);
+    /// Species and enthalpy with the fluxes and masses at hand, to a tolerance relative to what moves or a
+    /// share of their initial residuals; returns linear iterations.
+    fn scalars(&mut self, frame: &Frame<'_>, absolute: f64, relative: f64, now: &mut State) -> u32 {
+        let (krylov, material) = (&mut self.krylov, &self.material);
+        let goal = Goal { absolute, relative };
+        let iterations = self.species.solve(frame, material, krylov, goal, now);
         let carried = &self.species.carried;
         self.enthalpy.assemble(frame, material, carried, now);
-        iterations + self.enthalpy.solve(frame, krylov, tolerance, now)
+        iterations + self.enthalpy.solve(frame, krylov, goal, now)
     }
 
     fn volume_residual(&self, frame: &Frame<'_>, now: &State) -> f64 {

@@ -132,7 +132,14 @@ impl Pressure {
     }
 
     /// Assembles the matrix for the momentum equation and properties at hand.
-    pub fn assemble(&mut self, frame: &Frame<'_>, material: &Material, momentum: &Momentum) {
+    pub fn assemble(
+        &mut self,
+        frame: &Frame<'_>,
+        material: &Material,
+        momentum: &Momentum,
+        now: &State,
+    ) {
+        self.transport.update(frame, material, momentum, now);
         let grid = frame.grid;
         fill(&mut self.mobility, |cell| {
             let pores = frame.void_fraction[cell];
@@ -187,7 +194,6 @@ impl Pressure {
             momentum.without_pressure(cell, velocity)
                 / (frame.void_fraction[cell] * grid.volume[cell])
         });
-        self.transport.update(frame, material, momentum, now);
         self.update_drive(frame, &now.pressure_gradient);
 
         let (drive, conductance) = (&self.drive, &self.conductance);

@@ -12,6 +12,7 @@ use calcine_coupler::setup::Convection;
 
 use super::attempt::{Frame, Material};
 use super::boundary::{Heat, Value};
+use super::outer::Goal;
 use super::state::State;
 use crate::numerics::convection::{beyond_upwind, limited, limiter};
 use crate::numerics::krylov::{Krylov, Target};
@@ -101,7 +102,7 @@ impl Species {
         frame: &Frame<'_>,
         material: &Material,
         krylov: &mut Krylov,
-        tolerance: f64,
+        goal: Goal,
         now: &mut State,
     ) -> u32 {
         let species = frame.species();
@@ -115,9 +116,9 @@ impl Species {
         for k in 0..species - 1 {
             self.fill_source(frame, now, k);
             let target = Target {
-                absolute: tolerance * self.throughput(frame, now, k),
+                absolute: goal.absolute * self.throughput(frame, now, k),
                 of_terms: 0.0,
-                relative: 0.0,
+                relative: goal.relative,
                 iterations: ITERATIONS,
             };
             let solved = krylov.general(
