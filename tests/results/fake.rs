@@ -79,7 +79,6 @@ pub fn case() -> Case {
             smoother_tolerance: 1e-12,
             exchange_tolerance: 1e-10,
             exchange_attempts: 20,
-            repeats: true,
             deadline: Duration::from_secs(10),
         },
         openfoam: External::default(),
