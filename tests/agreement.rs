@@ -106,7 +106,12 @@ fn agree_on(text: &str, bands: &Bands) {
 fn a_fluid_of_constant_density_under_a_moving_lid_with_heat_flux_loss_and_symmetry() {
     let directory = tempfile::tempdir().unwrap();
     let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/closed-box.toml");
-    agree(&case, directory.path(), &CLOSE);
+    // What moves is 1e-7 of what is held, so that round-off of OpenFOAM's enthalpies shows.
+    let bands = Bands {
+        ledger: 1e-9,
+        ..CLOSE
+    };
+    agree(&case, directory.path(), &bands);
 }
 
 #[test]

@@ -21,6 +21,10 @@ for part in OpenFOAM OSspecific/POSIX finiteVolume meshTools thermophysicalModel
     flags+=(-isystem "$src/$part/lnInclude")
 done
 
+# For the link to a coordinator that spawned the solver by MPI.
+read -ra folders <<<"$(mpicc --showme:incdirs)"
+for folder in "${folders[@]}"; do flags+=(-isystem "$folder"); done
+
 objects=$OUT_DIR/objects
 mkdir -p "$objects"
 rebuild_after=$(ls -t build.sh library/*.H calcineGasFoam/*.H "$WIRE_INCLUDE/calcine_wire.h" | head -n 1)
@@ -40,7 +44,7 @@ own() { for file in "$1"/*.C; do echo "$objects/$(basename "$file" .C).o"; done;
 mapfile -t library < <(own library)
 g++ -shared -Wl,-soname,libcalcineFoam.so -o "$OUT_DIR/.libcalcineFoam.so" "${library[@]}" "$WIRE_LIB" \
     -Wl,--exclude-libs,ALL,--strip-debug -lcompressibleTurbulenceModels -lturbulenceModels -lcompressibleTransportModels \
-    -lfluidThermophysicalModels -lfiniteVolume -lmeshTools -lOpenFOAM \
+    -lfluidThermophysicalModels -lfiniteVolume -lmeshTools -lOpenFOAM -lmpi \
     -lgcc_s -lutil -lrt -lpthread -lm -ldl
 mv "$OUT_DIR/.libcalcineFoam.so" "$OUT_DIR/libcalcineFoam.so"
 mapfile -t solver < <(own calcineGasFoam)

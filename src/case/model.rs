@@ -307,8 +307,8 @@ pub struct External {
     pub start: Option<PathBuf>,
     /// Program of an OpenFOAM gas.
     pub solver: Solver,
-    /// Ranks.
-    pub ranks: usize,
+    /// MPI ranks, unless the command line states others.
+    pub ranks: u32,
 }
 
 /// What is written.

@@ -6,6 +6,8 @@
 mod host;
 #[allow(unsafe_code)]
 mod library;
+#[allow(unsafe_code)]
+mod parent;
 mod state;
 
 use std::path::PathBuf;

@@ -26,7 +26,8 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     );
     forAll(mesh_.boundary(), patchi)
     {
-        if (boundary_.of(patchi) != passage::open && !U_.boundaryField()[patchi].fixesValue())
+        const passage way = boundary_.of(patchi);
+        if (way != passage::open && way != passage::within && !U_.boundaryField()[patchi].fixesValue())
         {
             stress.boundaryFieldRef()[patchi] = Zero;
         }
@@ -35,12 +36,11 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
 
     // The matrix of the last outer iteration goes first, with the memory it holds.
     momentum_.reset();
-    autoPtr<surfaceVectorField> beyond;
     momentum_.reset
     (
         new fvVectorMatrix
         (
-            convect(phi_, U_, "div(phi,U)", beyond) - fvm::laplacian(faceViscosity, U_)
+            convect(phi_, U_, "div(phi,U)", share_, beyondU_) - fvm::laplacian(faceViscosity, U_)
         )
     );
     fvVectorMatrix& matrix = *momentum_;
@@ -48,7 +48,7 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     matrix.diag() += inertia + given_.dragCoefficient - outflow_;
     matrix.source() +=
         inertia*committed_.velocity + given_.dragSource + density*pores*gravity_
-      + outOf(*stressForce_) - outOf(*beyond);
+      + outOf(*stressForce_) - outOf(*beyondU_);
 
     // The normal velocity at a wall without friction is not stressed by the wall either.
     forAll(mesh_.boundary(), patchi)

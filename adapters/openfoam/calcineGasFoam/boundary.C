@@ -1,4 +1,5 @@
 #include "boundary.H"
+#include "processorFvPatch.H"
 
 namespace
 {
@@ -72,6 +73,11 @@ Foam::calcine::boundary::boundary
 
     forAll(passages_, patchi)
     {
+        if (isA<processorFvPatch>(mesh_.boundary()[patchi]))
+        {
+            passages_[patchi] = passage::within;
+            continue;
+        }
         if (mesh_.boundary()[patchi].coupled())
         {
             FatalErrorInFunction
@@ -148,13 +154,19 @@ void Foam::calcine::boundary::updateVelocity
     for (const driven& d : driven_)
     {
         const fvPatch& patch = mesh_.boundary()[d.patch];
-        if (!patch.size() || !(d.superficialVelocity.valid() || d.massFlow.valid()))
+        if (!(d.superficialVelocity.valid() || d.massFlow.valid()))
+        {
+            continue;
+        }
+        // Of all ranks; those that have none of the patch take part in the sum.
+        const scalar area = gSum(patch.magSf());
+        if (!patch.size())
         {
             continue;
         }
         const scalarField& rho = density.boundaryField()[d.patch];
         massFlux_[d.patch] = d.massFlow.valid()
-          ? d.massFlow->at(time)/gSum(patch.magSf())
+          ? d.massFlow->at(time)/area
           : rho[0]*d.superficialVelocity->at(time);
         drivesFlux_[d.patch] = true;
         const scalarField pores(voidFraction, patch.faceCells());

@@ -66,9 +66,17 @@ autoPtr<fluidThermo> readThermo(const fvMesh& mesh)
 } // End anonymous namespace
 
 
-Foam::calcine::gas::gas(fvMesh& mesh, const dictionary& properties)
+Foam::calcine::gas::gas
+(
+    fvMesh& mesh,
+    const dictionary& properties,
+    const addressing& numbers
+)
 :
     mesh_(mesh),
+    numbers_(numbers),
+    shared_(mesh),
+    firstCell_(numbers.local(0)),
     pRef_(properties.get<scalar>("pRef")),
     gravity_(properties.get<vector>("gravity")),
     modelPressure_
@@ -143,15 +151,16 @@ Foam::calcine::gas::gas(fvMesh& mesh, const dictionary& properties)
 
 void Foam::calcine::gas::measureFaces()
 {
-    const label faces = mesh_.nFaces(), internal = mesh_.nInternalFaces();
+    const label faces = mesh_.nFaces();
+    const vectorField beyond(shared_.pointsBeyond(mesh_.cellCentres()));
     ownerDistance_.setSize(faces);
-    neighbourDistance_.setSize(internal);
+    neighbourDistance_.setSize(faces, 0);
     normal_.setSize(faces);
     ownerSkew_.setSize(faces);
-    neighbourSkew_.setSize(internal);
+    neighbourSkew_.setSize(faces, Zero);
     conductance_.setSize(faces, 0);
     drive_.setSize(faces, 0);
-    transportPush_.setSize(internal, 0);
+    transportPush_.setSize(faces, 0);
     recovery_ = tensorField(mesh_.nCells(), Zero);
     for (label facei = 0; facei < faces; ++facei)
     {
@@ -160,12 +169,14 @@ void Foam::calcine::gas::measureFaces()
         const vector fromOwner = centre - mesh_.cellCentres()[mesh_.faceOwner()[facei]];
         ownerDistance_[facei] = n & fromOwner;
         ownerSkew_[facei] = fromOwner - ownerDistance_[facei]*n;
-        if (facei < internal)
+        if (shared_.within(facei))
         {
-            const vector toNeighbour =
-                mesh_.cellCentres()[mesh_.faceNeighbour()[facei]] - centre;
+            const vector toNeighbour = beyond[facei] - centre;
             neighbourDistance_[facei] = n & toNeighbour;
             neighbourSkew_[facei] = toNeighbour - neighbourDistance_[facei]*n;
+        }
+        if (facei < mesh_.nInternalFaces())
+        {
             recovery_[mesh_.faceNeighbour()[facei]] +=
                 neighbourDistance_[facei]*mag(mesh_.faceAreas()[facei])*n*n;
         }
@@ -208,6 +219,7 @@ void Foam::calcine::gas::place()
     {
         committed_.flux = startFlux_;
     }
+    shared_.agree(committed_.flux);
 }
 
 
@@ -277,13 +289,20 @@ void Foam::calcine::gas::updateBasePressure()
     {
         return;
     }
-    scalar held = gSum(committed_.mass);
-    for (label facei = mesh_.nInternalFaces(); facei < mesh_.nFaces(); ++facei)
-    {
-        held -= window_.storageSpan*flux_[facei];
-    }
+    const scalar held = gSum(committed_.mass) - window_.storageSpan*boundaryOutflow();
     modelPressure_ == dimensionedScalar("p", dimPressure, held/atOnePascal);
     thermo_->correct();
+}
+
+
+Foam::scalar Foam::calcine::gas::boundaryOutflow() const
+{
+    scalar sum = 0;
+    for (label facei = mesh_.nInternalFaces(); facei < mesh_.nFaces(); ++facei)
+    {
+        sum += shared_.within(facei) ? 0 : flux_[facei];
+    }
+    return returnReduce(sum, sumOp<scalar>());
 }
 
 
@@ -296,7 +315,7 @@ Foam::scalarField Foam::calcine::gas::wantedOutflow(const scalarField& density) 
 
 void Foam::calcine::gas::resume(const fileName& directory)
 {
-    committed_.read(directory, mesh_.nCells(), mesh_.nFaces(), speciesNames().size());
+    committed_.read(directory, numbers_, speciesNames().size());
     restore();
     thermo_->he().correctBoundaryConditions();
     thermo_->correct();
@@ -365,6 +384,8 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
     result = report();
     for (label outer = 1; outer <= max(outerIterations_, 1); ++outer)
     {
+        // The switching of limiters may otherwise lead from one iterate to another and back for ever.
+        share_ = outer > 8 ? 0.5 : 1;
         updateBasePressure();
         const scalarField rho(density());
         setFlux();
@@ -413,7 +434,7 @@ void Foam::calcine::gas::commit()
 
 void Foam::calcine::gas::checkpoint(const fileName& directory)
 {
-    committed_.write(directory);
+    committed_.write(directory, numbers_);
     models_->write(directory);
     resume(directory);
 }
@@ -434,7 +455,7 @@ void Foam::calcine::gas::guard() const
         FatalErrorInFunction
             << "diverged: temperature " << T << " K, speed " << speed
             << " m/s, pressure above the reference " << p_[celli] << " Pa, gas mass "
-            << mass_[celli] << " kg in cell " << celli << " at "
+            << mass_[celli] << " kg in cell " << numbers_.cells[celli] << " at "
             << mesh_.cellCentres()[celli] << " m" << exit(FatalError);
     }
 }

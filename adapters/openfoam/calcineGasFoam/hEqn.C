@@ -20,17 +20,16 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
 
     const scalar compression = (basePressure() - committed_.basePressure)/span;
     enthalpy_.reset();
-    autoPtr<surfaceScalarField> beyond;
     enthalpy_.reset
     (
         new fvScalarMatrix
         (
-            convect(phi_, h, "div(phi,h)", beyond)
+            convect(phi_, h, "div(phi,h)", share_, beyondH_)
         )
     );
     if (species_)
     {
-        beyond.reset(new surfaceScalarField(*carried_));
+        beyondH_.reset(new surfaceScalarField(*carried_));
     }
     fvScalarMatrix& matrix = *enthalpy_;
     addConduction(matrix);
@@ -38,7 +37,7 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
         committed_.mass/span + given_.heatCoefficient/heatCapacity_ - outflow();
     matrix.source() += committed_.mass*committed_.enthalpy/span
       + given_.heatSource - given_.heatCoefficient*temperatureBase_
-      - outOf(*beyond) + compression*given_.voidFraction*mesh_.cellVolumes();
+      - outOf(*beyondH_) + compression*given_.voidFraction*mesh_.cellVolumes();
     if (models_->radiates())
     {
         const scalarField pores(given_.voidFraction*mesh_.cellVolumes());
@@ -64,16 +63,21 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
     (
         given_.heatSource - given_.heatCoefficient*T.primitiveField()
     );
-    scalar moving = gSumMag(heat) + gSumMag
+    scalar moving = sumMag(heat) + sumMag
     (
         mass_*(h.primitiveField() - referenceEnthalpy_)
       - committed_.mass*(committed_.enthalpy - referenceEnthalpy_)
     )/span;
     for (const fvPatch& patch : mesh_.boundary())
     {
+        if (boundary_.of(patch.index()) == passage::within)
+        {
+            continue;
+        }
         const fvsPatchScalarField& flux = phi_.boundaryField()[patch.index()];
-        moving += gSumMag(flux*(h.boundaryField()[patch.index()] - referenceEnthalpy_));
+        moving += sumMag(flux*(h.boundaryField()[patch.index()] - referenceEnthalpy_));
     }
+    reduce(moving, sumOp<scalar>());
     const scalar target = max(linearTolerance_*moving, 1e-15*content);
     const solved solution =
         enthalpySolver_.solve(matrix, scalarField(matrix.source()), target, h);
@@ -104,11 +108,25 @@ void Foam::calcine::gas::addConduction(fvScalarMatrix& enthalpy) const
         source[P] += upper[facei]*temperatureBase_[N];
         source[N] += upper[facei]*temperatureBase_[P];
     }
+    const scalarField baseBeyond(shared_.beyond(temperatureBase_));
+    const scalarField capacityBeyond(shared_.beyond(heatCapacity_));
     forAll(mesh_.boundary(), patchi)
     {
         const labelUList& cells = mesh_.boundary()[patchi].faceCells();
         const scalarField& own = heat.internalCoeffs()[patchi];
         const scalarField& given = heat.boundaryCoeffs()[patchi];
+        if (boundary_.of(patchi) == passage::within)
+        {
+            // The other rank's cell is a neighbour like any other.
+            forAll(cells, i)
+            {
+                const label celli = cells[i], facei = mesh_.boundary()[patchi].start() + i;
+                enthalpy.internalCoeffs()[patchi][i] -= own[i]/heatCapacity_[celli];
+                enthalpy.boundaryCoeffs()[patchi][i] -= given[i]/capacityBeyond[facei];
+                source[celli] += own[i]*temperatureBase_[celli] - given[i]*baseBeyond[facei];
+            }
+            continue;
+        }
         forAll(cells, i)
         {
             const label celli = cells[i];

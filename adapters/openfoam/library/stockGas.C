@@ -61,7 +61,8 @@ Foam::calcine::stockGas::stockGas(const fvMesh& mesh)
         FatalErrorInFunction
             << "calcineSource couples a stock solver on one rank only" << exit(FatalError);
     }
-    compareCells(mesh);
+    const addressing numbers(mesh);
+    compareCells(mesh, numbers);
     const IOdictionary properties
     (
         IOobject
@@ -75,13 +76,15 @@ Foam::calcine::stockGas::stockGas(const fvMesh& mesh)
     introduction own;
     own.version = std::to_string(OPENFOAM);
     own.caseHash = properties.get<string>("caseHash");
-    own.meshHash = meshHash(mesh);
-    own.cells = mesh.nCells();
+    own.meshHash = meshHash(mesh, numbers);
+    own.cells = numbers.allCells;
+    own.ranks = 1;
     for (const string& column : properties.get<stringList>("catalogue"))
     {
         own.catalogue += (own.catalogue.empty() ? "" : "\n") + column;
     }
     link_.greet(own);
+    link_.claim(numbers.cells);
     remember();
 }
 

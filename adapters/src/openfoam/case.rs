@@ -11,7 +11,7 @@ use calcine_wire::Catalogue;
 
 use super::start::Start;
 use super::stock::{self, Solver};
-use super::{NAME, dictionaries, species};
+use super::{NAME, decompose, dictionaries, species};
 
 /// Schemes and linear solvers where no template brings its own.
 const DEFAULTS: [(&str, &str); 2] = [
@@ -54,6 +54,8 @@ pub struct OpenfoamCase<'a> {
     pub library: &'a Path,
     /// Hash of the case, compared in the handshake.
     pub case_hash: &'a str,
+    /// Number of ranks; how the mesh is divided among more than one is written too.
+    pub ranks: u32,
 }
 
 impl OpenfoamCase<'_> {
@@ -106,6 +108,9 @@ impl OpenfoamCase<'_> {
         for (k, name) in names.iter().enumerate() {
             let fraction = start.applied(name, species::fraction(setup, k, name));
             put(&folder.join("0").join(name), &fraction)?;
+        }
+        if self.ranks > 1 {
+            self.divide(folder)?;
         }
         let poly_mesh = folder.join("constant/polyMesh");
         polymesh::write_with(self.mesh, &poly_mesh, |name| self.kind(name)).map_err(|error| {
@@ -174,6 +179,29 @@ impl OpenfoamCase<'_> {
         fs::copy(&own, folder.join(&beside)).map_err(failed(&own, "copied"))?;
         let file = Path::new(&beside).file_name().unwrap_or_default();
         Ok(format!("#include \"{}\"\n\n", file.to_string_lossy()))
+    }
+
+    /// How the mesh is divided: Calcine's own way, or as a template's `decomposeParDict` says.
+    fn divide(&self, folder: &Path) -> Result<(), PartError> {
+        let cells = self.mesh.cells();
+        if self.ranks as usize > cells {
+            let ranks = self.ranks;
+            let message = format!("{ranks} ranks cannot share {cells} cells; use fewer ranks");
+            return Err(PartError::new(NAME, FailureKind::NotStarted, message));
+        }
+        let own = |template: &Path| template.join(decompose::DICTIONARY).is_file();
+        if self.template.is_some_and(own) {
+            return Ok(());
+        }
+        put(
+            &folder.join(decompose::DICTIONARY),
+            &dictionaries::decompose(self.ranks),
+        )?;
+        let ranks = decompose::divide(self.mesh.cell_centre(), self.ranks);
+        put(
+            &folder.join("constant").join(decompose::DATA),
+            &dictionaries::labels(decompose::DATA, &ranks),
+        )
     }
 
     /// Every patch of the mesh needs its condition, and every condition its patch.
@@ -328,6 +356,7 @@ mod tests {
             mesh: &mesh,
             template: Some(&template),
             case_hash: "0a",
+            ranks: 1,
         };
         let written = folder.path().join("case");
         case.write(&written).unwrap();
@@ -352,6 +381,25 @@ mod tests {
     }
 
     #[test]
+    fn a_mesh_for_two_ranks_is_divided_and_for_more_ranks_than_cells_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let (setup, mesh) = (setup(), mesh());
+        let case = |ranks| OpenfoamCase {
+            setup: &setup,
+            mesh: &mesh,
+            template: None,
+            case_hash: "0a",
+            ranks,
+        };
+        case(2).write(folder.path()).unwrap();
+        let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+        assert!(read("system/decomposeParDict").contains("numberOfSubdomains 2;"));
+        assert!(read("constant/cellDecomposition").ends_with("3\n(\n0\n0\n1\n)\n"));
+        let error = case(4).write(folder.path()).unwrap_err().to_string();
+        assert!(error.contains("4 ranks cannot share 3 cells"), "{error}");
+    }
+
+    #[test]
     fn numbers_are_written_with_all_their_bits() {
         let text = dictionaries::calcine(&setup(), "0a");
         let third = text
@@ -372,6 +420,7 @@ mod tests {
                 mesh: &mesh,
                 template: None,
                 case_hash: "0a",
+                ranks: 1,
             };
             case.write(folder.path()).unwrap_err().to_string()
         };

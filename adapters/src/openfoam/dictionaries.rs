@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::decompose;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas_model::GasModel;
@@ -44,6 +45,25 @@ pub fn control(include: &str) -> String {
            writeControl    timeStep;\nwriteInterval   1;\nwriteFormat     binary;\n\
            writePrecision  8;\nwriteCompression off;\ntimeFormat      general;\n\
            timePrecision   6;\nrunTimeModifiable no;\n"
+}
+
+/// `system/decomposeParDict`: cells go where a list says.
+pub fn decompose(ranks: u32) -> String {
+    let list = decompose::DATA;
+    header("dictionary", "decomposeParDict")
+        + &format!(
+            "numberOfSubdomains {ranks};\nmethod          manual;\n\
+             manualCoeffs {{ dataFile \"{list}\"; }}\n"
+        )
+}
+
+/// A list of labels in `constant/`.
+pub fn labels(name: &str, values: &[u32]) -> String {
+    let mut text = header("labelList", name) + &format!("{}\n(\n", values.len());
+    for value in values {
+        let _ = writeln!(text, "{value}");
+    }
+    text + ")\n"
 }
 
 /// `constant/thermophysicalProperties`: an ideal gas with constant heat capacity and Sutherland

@@ -2,6 +2,7 @@
 
 pub mod case;
 mod columns;
+mod decompose;
 mod dictionaries;
 mod identity;
 mod species;
@@ -21,12 +22,12 @@ use calcine_coupler::part::{
 use calcine_coupler::setup::GasSetup;
 use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::{GasStorage, Window};
-use calcine_wire::{Catalogue, Hello, Kind, WireError};
+use calcine_wire::{Catalogue, Hello, Kind};
 
-use crate::launch::{Program, find_program};
+use crate::launch::{Launcher, Program, find_program};
 use crate::solver::{ExternalSolver, Launch, header};
 use case::OpenfoamCase;
-use columns::State;
+use columns::{Ranks, State};
 use stock::Solver;
 
 /// Name in messages.
@@ -59,6 +60,10 @@ pub struct OpenfoamLaunch<'a> {
     pub folder: PathBuf,
     /// Where the solver's output goes.
     pub log: PathBuf,
+    /// Number of ranks; more than one work on a decomposed case.
+    pub ranks: u32,
+    /// Who starts them.
+    pub launcher: Launcher,
     /// The gas' folder of the checkpoint to start from.
     pub resume: Option<PathBuf>,
     /// The gas' folder of another run's checkpoint to continue from.
@@ -93,6 +98,10 @@ impl OpenfoamGas {
         } else {
             own
         };
+        if launch.solver.is_stock() && launch.ranks > 1 {
+            let message = "a stock solver is coupled on one rank only: leave `openfoam.ranks` out";
+            return Err(PartError::new(NAME, FailureKind::NotStarted, message));
+        }
         if launch.solver.is_stock() && (launch.resume.is_some() || launch.from.is_some()) {
             let message = "a stock solver takes up no checkpoint; its checkpoint is a time directory, \
                            which `openfoam.start` takes as a start";
@@ -106,6 +115,7 @@ impl OpenfoamGas {
             solver: launch.solver,
             library: &library,
             case_hash: &launch.case_hash,
+            ranks: launch.ranks,
         };
         let given = [("-resume", &launch.resume), ("-from", &launch.from)];
         for folder in [
@@ -119,7 +129,11 @@ impl OpenfoamGas {
             without_spaces(folder)?;
         }
         case.write(&launch.folder)?;
-        let mut arguments = Vec::new();
+        let mut arguments: Vec<OsString> = Vec::new();
+        if launch.ranks > 1 {
+            decompose::run(&launch.folder, launch.ranks, &environment(&launch.folder))?;
+            arguments.push("-parallel".into());
+        }
         for (option, folder) in given {
             let Some(folder) = folder else { continue };
             let folder = std::path::absolute(folder).map_err(|error| {
@@ -136,7 +150,7 @@ impl OpenfoamGas {
             mesh_hash: identity::mesh_hash(&launch.mesh),
             case_hash: launch.case_hash,
             count: launch.mesh.cells() as u64,
-            ranks: 1,
+            ranks: launch.ranks,
             catalogue: Catalogue::gas(species).map_err(|error| {
                 PartError::new(NAME, FailureKind::NotStarted, "its columns").caused_by(error)
             })?,
@@ -151,6 +165,7 @@ impl OpenfoamGas {
             Launch {
                 name: NAME.into(),
                 program,
+                launcher: launch.launcher,
                 log: launch.log,
                 hello,
                 handshake: launch.deadline,
@@ -161,7 +176,7 @@ impl OpenfoamGas {
         let about = About {
             name: solver.hello().name.clone(),
             version: solver.hello().version.clone(),
-            ranks: 1,
+            ranks: launch.ranks as usize,
         };
         let mut gas = Self {
             solver,
@@ -181,12 +196,15 @@ impl OpenfoamGas {
         self.solver.pid()
     }
 
-    /// Takes the state out of the message that the link holds.
+    /// Process ids of the ranks.
+    pub fn rank_pids(&self) -> &[u32] {
+        self.solver.rank_pids()
+    }
+
+    /// Takes the state out of the messages that the links hold.
     fn read_state(&mut self, window: Option<&Window>) -> Result<(), PartError> {
-        let read = match self.solver.links() {
-            [link] => self.state.read(link, self.species),
-            _ => Err(NO_LINK),
-        };
+        let ranks = ranks(&self.solver, &self.mesh);
+        let read = self.state.read(ranks, self.species);
         read.map_err(|error| self.solver.failure(window, error))
     }
 }
@@ -220,9 +238,13 @@ fn without_spaces(folder: &Path) -> Result<(), PartError> {
     Err(PartError::new(NAME, FailureKind::NotStarted, message))
 }
 
-const NO_LINK: WireError = WireError::Order {
-    what: "a serial solver has exactly one link",
-};
+fn ranks<'a>(solver: &'a ExternalSolver, mesh: &Mesh) -> Ranks<'a> {
+    Ranks {
+        links: solver.links(),
+        owned: solver.owned(),
+        cells: mesh.cells(),
+    }
+}
 
 /// OpenFOAM compares PWD with the folder it runs in, and looks for its `etc` where WM_PROJECT_DIR
 /// says: Debian's, unless the user has set both another solver and its OpenFOAM.
@@ -289,9 +311,13 @@ impl Gas for OpenfoamGas {
             GasStorage::Accelerated => request.span_motion,
         };
         self.window = Some(*window);
-        self.solver.send_columns(window, request, cells, |link| {
-            columns::write(link, bed, exchange)
-        })
+        let owned = Arc::clone(self.solver.owned());
+        self.solver.send_columns(
+            window,
+            request,
+            |rank| owned[rank].len(),
+            |rank, link| columns::write(link, &owned[rank], bed, exchange),
+        )
     }
 
     fn finish(
@@ -310,10 +336,7 @@ impl Gas for OpenfoamGas {
                 }
                 error
             })?;
-        let convergence = match self.solver.links() {
-            [link] => columns::read(link, received),
-            _ => Err(NO_LINK),
-        };
+        let convergence = columns::read(ranks(&self.solver, &self.mesh), received);
         let convergence = convergence.map_err(|error| self.solver.failure(Some(&window), error))?;
         self.read_state(Some(&window))?;
         Ok(convergence)

@@ -17,6 +17,8 @@ pub enum Record {
     Start,
     /// `State`, `Finished`, `Checkpointed`, from the solver.
     State,
+    /// `Owned`, from a gas.
+    Owned,
 }
 
 impl Record {
@@ -25,6 +27,7 @@ impl Record {
         match kind {
             Kind::Start => Some(Record::Start),
             Kind::State | Kind::Finished | Kind::Checkpointed => Some(Record::State),
+            Kind::Owned => Some(Record::Owned),
             Kind::Hello | Kind::Commit | Kind::Checkpoint | Kind::Failed | Kind::Bye => None,
         }
     }
@@ -33,6 +36,7 @@ impl Record {
         match self {
             Record::Start => "start",
             Record::State => "state",
+            Record::Owned => "owned",
         }
     }
 }
@@ -80,6 +84,7 @@ impl FromStr for Field {
         let record = match next()? {
             "start" => Record::Start,
             "state" => Record::State,
+            "owned" => Record::Owned,
             _ => return Err(refuse()),
         };
         let name = next()?.to_owned();
@@ -111,6 +116,7 @@ pub struct Catalogue {
 
 /// The standard catalogue of a gas; one value per cell, signs as in the coordinator's exchange.
 const GAS: &str = "\
+owned cell 1 u64 item
 start void_fraction 1 1 item
 start drag_coefficient 1 kg/s item
 start drag_source 3 N item

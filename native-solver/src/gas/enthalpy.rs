@@ -19,7 +19,9 @@ use super::state::State;
 use crate::numerics::convection::beyond_upwind;
 use crate::numerics::krylov::{Krylov, Target};
 use crate::numerics::matrix::Matrix;
-use crate::numerics::operators::{conductance, displacement, face_values, gradient, interpolate};
+use crate::numerics::operators::{
+    conductance, displacement, face_values, follow, gradient, interpolate,
+};
 use crate::numerics::parallel::{fill, sum, sums, update};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
@@ -146,12 +148,14 @@ impl Enthalpy {
     }
 
     /// Assembles the equation; `carried` is the enthalpy that species carry out of the owner of each face in W
-    /// beyond the upwind enthalpy (empty for a single gas).
+    /// beyond the upwind enthalpy (empty for a single gas). Of what is
+    /// explicit a share follows the fields.
     pub fn assemble(
         &mut self,
         frame: &Frame<'_>,
         material: &Material,
         carried: &[f64],
+        share: f64,
         now: &State,
     ) {
         let grid = frame.grid;
@@ -163,7 +167,7 @@ impl Enthalpy {
         fill(&mut self.conduction, |index| {
             conduction(frame, material, now, index)
         });
-        self.update_explicit(frame, carried, now);
+        self.update_explicit(frame, carried, share, now);
         let (conduction, heat_capacity) = (&self.conduction, &self.heat_capacity);
         self.matrix.assemble(|cell, diagonal, neighbours| {
             let own = heat_capacity[cell];
@@ -212,7 +216,7 @@ impl Enthalpy {
         });
     }
 
-    fn update_explicit(&mut self, frame: &Frame<'_>, species: &[f64], now: &State) {
+    fn update_explicit(&mut self, frame: &Frame<'_>, species: &[f64], share: f64, now: &State) {
         let grid = frame.grid;
         let second = frame.convection == Convection::VanLeer && species.is_empty();
         if second {
@@ -248,7 +252,7 @@ impl Enthalpy {
         }
         let [carried, conducted] = &self.gradients;
         let conduction = &self.conduction;
-        fill(&mut self.explicit, |index| {
+        let explicit = |index: usize| {
             let mut out = species.get(index).copied().unwrap_or(0.0);
             let flux = now.flux[index];
             if second && index < grid.internal && flux != 0.0 {
@@ -258,6 +262,9 @@ impl Enthalpy {
                 out += conduction[index] * displacement(grid, &grid.faces[index], conducted);
             }
             out
+        };
+        update(&mut self.explicit, |index, last| {
+            follow(last, explicit(index), share)
         });
     }
 

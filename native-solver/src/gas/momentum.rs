@@ -19,7 +19,7 @@ use crate::numerics::convection::vector_beyond_upwind;
 use crate::numerics::grid::{Face, Grid};
 use crate::numerics::krylov::{Krylov, Target};
 use crate::numerics::matrix::Matrix;
-use crate::numerics::operators::{conductance, interpolate};
+use crate::numerics::operators::{conductance, follow, interpolate};
 use crate::numerics::parallel::{fill, sums, update};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
@@ -112,13 +112,14 @@ impl Momentum {
     }
 
     /// Assembles A and b for the fluxes and properties at hand.
-    pub fn assemble(&mut self, frame: &Frame<'_>, material: &Material, now: &State) {
+    /// Of what is explicit a share follows the fields.
+    pub fn assemble(&mut self, frame: &Frame<'_>, material: &Material, share: f64, now: &State) {
         let grid = frame.grid;
         fill(&mut self.viscous, |index| {
             viscous(frame, material, now, index)
         });
         self.update_gradients(frame, &now.velocity);
-        self.update_explicit(frame, material, now);
+        self.update_explicit(frame, material, share, now);
         let viscous = &self.viscous;
         let inertia = |cell: usize| frame.old.mass[cell] / frame.motion_span;
         self.matrix.assemble(|cell, diagonal, neighbours| {
@@ -279,11 +280,11 @@ impl Momentum {
         self.scratch = last;
     }
 
-    fn update_explicit(&mut self, frame: &Frame<'_>, material: &Material, now: &State) {
+    fn update_explicit(&mut self, frame: &Frame<'_>, material: &Material, share: f64, now: &State) {
         let grid = frame.grid;
         let (gradients, viscous) = (&self.gradients, &self.viscous);
         let second = frame.convection == Convection::VanLeer;
-        fill(&mut self.explicit, |index| {
+        let explicit = |index: usize| {
             let face = &grid.faces[index];
             if index >= grid.internal {
                 let own = &gradients[face.owner];
@@ -311,6 +312,9 @@ impl Momentum {
                 + transposed(other, &face.normal)
                     * ((1.0 - weight) * material.viscosity[face.neighbour]);
             out - face.area * stress
+        };
+        update(&mut self.explicit, |index, last| {
+            follow(last, explicit(index), share)
         });
     }
 }

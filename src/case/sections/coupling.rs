@@ -121,14 +121,7 @@ pub(super) fn external(root: &Reader<'_>, key: &str, folder: &Path) -> External 
             external.solver = section.choice("solver", &solvers).unwrap_or_default();
         }
         if let Some(ranks) = section.whole("ranks", 1..=100_000) {
-            if ranks > 1 {
-                section.fail(
-                    "ranks",
-                    format!("is {ranks}; more than one rank is not supported yet"),
-                    "write 1, or leave it out",
-                );
-            }
-            external.ranks = usize::try_from(ranks).unwrap_or(1);
+            external.ranks = u32::try_from(ranks).unwrap_or(1);
         }
         section.finish();
     }
