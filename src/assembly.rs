@@ -7,7 +7,7 @@ use calcine_adapters::launch::Launcher;
 use calcine_adapters::liggghts::inputs::Inputs;
 use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch, LiggghtsParticles};
 use calcine_adapters::openfoam::case::OpenfoamCase;
-use calcine_adapters::openfoam::{OpenfoamGas, OpenfoamLaunch};
+use calcine_adapters::openfoam::{LIBRARY, OpenfoamGas, OpenfoamLaunch};
 use calcine_coupler::closures::Closures;
 use calcine_coupler::coordinator::{CheckpointPaths, Origin, Parts, Plan, Run, RunError};
 use calcine_coupler::error::{FailureKind, PartError};
@@ -271,7 +271,13 @@ pub fn assemble<'m>(
         interior: Box::new(interior(case, prepared)),
     };
     let smoother = smoother(case, prepared)?;
-    let plan = plan(case, checkpoint);
+    let mut plan = plan(case, checkpoint);
+    let foam = settings.pairing.gas == GasBackend::Openfoam;
+    if foam && case.openfoam.solver.is_stock() {
+        // A stock solver cannot go back to the start of a time step.
+        plan.exchange_attempts = 1;
+        plan.repeats = false;
+    }
     let mut run = Run::new(plan, &prepared.mesh, smoother, closures(case), parts)?;
     if settings.resume {
         run.resume()?;
@@ -297,6 +303,9 @@ pub fn write_inputs(
             setup: &case.gas,
             mesh: &prepared.mesh,
             template: case.openfoam.template.as_deref(),
+            start: case.openfoam.start.as_deref(),
+            solver: case.openfoam.solver,
+            library: Path::new(LIBRARY),
             case_hash: &case.hash,
             ranks: starts.gas.ranks,
         }
@@ -352,9 +361,15 @@ impl Assembly<'_> {
                     setup: &self.case.gas,
                     mesh: Arc::clone(&self.prepared.mesh),
                     template: self.case.openfoam.template.as_deref(),
+                    start: self.case.openfoam.start.as_deref(),
+                    solver: self.case.openfoam.solver,
                     case_hash: self.case.hash.clone(),
                     folder: self.absolute("solvers/openfoam")?,
                     log: self.absolute("log/openfoam.log")?,
+                    from: match (&from, self.settings.from) {
+                        (None, Some(origin)) => Some(origin.path.join("gas")),
+                        _ => None,
+                    },
                     ranks: self.settings.starts.gas.ranks,
                     launcher: self.settings.starts.gas.launcher.clone(),
                     resume: from,
@@ -476,6 +491,7 @@ fn plan(case: &Case, checkpoint: CheckpointPaths) -> Plan {
         mapping: method(case),
         exchange_tolerance: case.coupling.exchange_tolerance,
         exchange_attempts: case.coupling.exchange_attempts,
+        repeats: true,
         case_hash: case.hash.clone(),
         checkpoint,
     }

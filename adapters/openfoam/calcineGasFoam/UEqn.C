@@ -5,7 +5,7 @@
 //       - sum (eps mu)_f (grad(u) + grad(u)^T - 2/3 div(u)).S = -eps grad(p) V + eps rho V g + S_d - K_d u
 //
 // u_f as fvSchemes says, beyond upwind explicitly; of the viscous stress the part grad(u).S is implicit. No viscous stress acts on
-// slip walls; gas leaves an outlet as if the flow were developed there.
+// slip walls; mu with that of eddies (models.H); gas leaves an outlet as if the flow were developed there.
 #include "gas.H"
 #include "convection.H"
 #include "fvm.H"
@@ -17,15 +17,12 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     const scalarField& volume = mesh_.cellVolumes();
     const scalarField pores(given_.voidFraction*volume);
     const scalarField inertia(committed_.mass/window_.motionSpan);
-    const surfaceScalarField viscosity
-    (
-        "viscosity", fvc::interpolate(voidFraction_*thermo_->mu())
-    );
+    const surfaceScalarField faceViscosity("viscosity", fvc::interpolate(viscosity()));
 
     // Force of the explicit part of the stress on the owner of each face, in N.
     volTensorField stress
     (
-        "explicitStress", voidFraction_*thermo_->mu()*dev2(T(fvc::grad(U_)))
+        "explicitStress", viscosity()*dev2(T(fvc::grad(U_)))
     );
     forAll(mesh_.boundary(), patchi)
     {
@@ -43,7 +40,7 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     (
         new fvVectorMatrix
         (
-            convect(phi_, U_, "div(phi,U)", share_, beyondU_) - fvm::laplacian(viscosity, U_)
+            convect(phi_, U_, "div(phi,U)", share_, beyondU_) - fvm::laplacian(faceViscosity, U_)
         )
     );
     fvVectorMatrix& matrix = *momentum_;

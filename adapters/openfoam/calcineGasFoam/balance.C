@@ -30,6 +30,7 @@ void Foam::calcine::gas::finishReport(report& result) const
         // all that the cells of a fluid of constant density store.
         result.mass.boundaryMagnitude = window_.storageSpan*circulating;
     }
+    balanceSpecies(result);
     balanceEnergy(result);
     balanceMomentum(result);
 }
@@ -50,6 +51,13 @@ void Foam::calcine::gas::balanceEnergy(report& result) const
     energy.source = (basePressure() - committed_.basePressure)
        *gSum(given_.voidFraction*mesh_.cellVolumes());
     energy.sourceMagnitude = mag(energy.source);
+    if (models_->radiates())
+    {
+        const scalarField T(temperatureBase_ + h/heatCapacity_);
+        const scalarField radiation(radiationSource_ - radiationCoefficient_*T);
+        energy.source += window_.storageSpan*gSum(radiation);
+        energy.sourceMagnitude += window_.storageSpan*gSumMag(radiation);
+    }
     forAll(mesh_.boundary(), patchi)
     {
         if (boundary_.of(patchi) == passage::within)
@@ -61,7 +69,8 @@ void Foam::calcine::gas::balanceEnergy(report& result) const
         forAll(cells, i)
         {
             const scalar out = enthalpy_->internalCoeffs()[patchi][i]*h[cells[i]]
-              - enthalpy_->boundaryCoeffs()[patchi][i] - flux[i]*referenceEnthalpy_;
+              - enthalpy_->boundaryCoeffs()[patchi][i] - flux[i]*referenceEnthalpy_
+              + (carried_.valid() ? carried_->boundaryField()[patchi][i] : 0);
             energy.boundary -= window_.storageSpan*out;
             energy.boundaryMagnitude += window_.storageSpan*mag(out);
         }

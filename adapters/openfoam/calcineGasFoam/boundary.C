@@ -52,6 +52,14 @@ Foam::calcine::boundary::boundary
         readTable(dict, "massFlow", d.massFlow);
         readTable(dict, "temperature", d.temperature);
         readTable(dict, "pressure", d.pressure);
+        if (dict.found("composition"))
+        {
+            const dictionary& composition = dict.subDict("composition");
+            for (const entry& species : composition)
+            {
+                d.composition.set(species.keyword(), new schedule(composition, species.keyword()));
+            }
+        }
         readTable(dict, "heatFlux", d.heatFlux);
         readTable(dict, "coefficient", d.coefficient);
         readTable(dict, "ambient", d.ambient);
@@ -111,6 +119,25 @@ void Foam::calcine::boundary::updateState
         if (d.pressure.valid())
         {
             pressure.boundaryFieldRef()[d.patch] == d.pressure->at(time) - pRef;
+        }
+    }
+}
+
+
+void Foam::calcine::boundary::updateComposition
+(
+    scalar time,
+    PtrList<volScalarField>& fractions
+) const
+{
+    for (const driven& d : driven_)
+    {
+        for (volScalarField& Y : fractions)
+        {
+            if (d.composition.found(Y.name()))
+            {
+                Y.boundaryFieldRef()[d.patch] == d.composition[Y.name()]->at(time);
+            }
         }
     }
 }

@@ -1,7 +1,8 @@
 // calcineGasFoam: the gas of a coupled run, as Calcine's coordinator asks for it.
 //
 // Started by Calcine in a case folder, under mpirun with -parallel on several ranks, each of which has
-// a link of its own; -resume DIR takes up the state that a checkpoint left in DIR.
+// a link of its own; -resume DIR takes up the state that a checkpoint left in DIR, -from
+// DIR starts a run of its own from it.
 // Ends with 0 when asked to, with 1 after telling the coordinator what failed, and with 2 where there
 // is no coordinator any more.
 #include "gas.H"
@@ -13,6 +14,7 @@
 #include "fvMesh.H"
 #include "IOdictionary.H"
 #include "sigFpe.H"
+#include "stringList.H"
 #include "SolverPerformance.H"
 #include "Time.H"
 
@@ -111,12 +113,20 @@ void send
     link.put("density", gas.gasDensity());
     link.put("velocity", gas.velocity());
     link.put("pressure_gradient", gas.pressureGradient());
-    DynamicList<scalar> balances(35);
+    if (gas.speciesNames().size())
+    {
+        link.put("composition", gas.composition());
+    }
+    DynamicList<scalar> balances(35 + 7*gas.speciesNames().size());
     append(balances, result.mass);
     append(balances, result.energy);
     for (const calcine::balance& component : result.momentum)
     {
         append(balances, component);
+    }
+    for (const calcine::balance& species : result.species)
+    {
+        append(balances, species);
     }
     link.put("balances", balances);
     const scalarList convergence
@@ -129,9 +139,10 @@ void send
 }
 
 // Nothing received, nothing solved: what goes with a state.
-calcine::report emptyReport(label cells)
+calcine::report emptyReport(label cells, label species)
 {
     calcine::report empty;
+    empty.species.setSize(species);
     empty.heat.setSize(cells, 0);
     empty.drag.setSize(cells, Zero);
     return empty;
@@ -173,7 +184,7 @@ void serve
                 break;
             case CALCINE_CHECKPOINT:
                 gas.checkpoint(link.text());
-                send(link, CALCINE_CHECKPOINTED, gas, emptyReport(cells));
+                send(link, CALCINE_CHECKPOINTED, gas, emptyReport(cells, gas.speciesNames().size()));
                 break;
             case CALCINE_BYE:
                 link.loan(CALCINE_BYE, 0);
@@ -211,6 +222,10 @@ void run(const argList& args, calcine::link& link)
     {
         gas.resume(args.opt<fileName>("resume"));
     }
+    else if (args.found("from"))
+    {
+        gas.takeOver(args.opt<fileName>("from"));
+    }
 
     calcine::introduction own;
     own.version = std::to_string(OPENFOAM);
@@ -218,9 +233,13 @@ void run(const argList& args, calcine::link& link)
     own.meshHash = calcine::meshHash(mesh, numbers);
     own.cells = numbers.allCells;
     own.ranks = Pstream::nProcs();
+    for (const string& column : properties.get<stringList>("catalogue"))
+    {
+        own.catalogue += (own.catalogue.empty() ? "" : "\n") + column;
+    }
     link.greet(own);
     link.claim(numbers.cells);
-    send(link, CALCINE_STATE, gas, emptyReport(mesh.nCells()));
+    send(link, CALCINE_STATE, gas, emptyReport(mesh.nCells(), gas.speciesNames().size()));
     calcine::windowLog log(properties.lookupOrDefault<scalar>("logInterval", 1));
     serve(link, gas, numbers, log);
     Info<< "End" << endl;
@@ -257,6 +276,7 @@ int main(int argc, char* argv[])
 {
     argList::noFunctionObjects();
     argList::addOption("resume", "dir", "take up the state of a checkpoint in this folder");
+    argList::addOption("from", "dir", "start from the fields of another run's checkpoint");
     argList args(argc, argv);
     FatalError.throwExceptions();
     FatalIOError.throwExceptions();

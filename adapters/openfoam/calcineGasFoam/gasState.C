@@ -11,7 +11,7 @@ namespace
 using namespace Foam;
 
 // First and last word of a file of state: a file cut short lacks the last.
-const char* const firstWord = "calcineGasState3";
+const char* const firstWord = "calcineGasState4";
 const char* const lastWord = "complete";
 
 fileName stateFile(const fileName& directory, label rank)
@@ -26,7 +26,7 @@ struct part
     labelList cells, faces;
     calcine::gasState state;
 
-    explicit part(const fileName& path)
+    part(const fileName& path, label species)
     {
         IFstream file(path, IOstream::BINARY);
         if (!file.good() || word(file) != firstWord)
@@ -40,6 +40,11 @@ struct part
         file>> state.mass >> state.enthalpy >> state.temperature >> state.velocity
             >> state.pressure >> state.basePressure >> state.pressureGradient >> state.flux
             >> state.voidFraction;
+        state.composition.setSize(readLabel(file));
+        for (scalarField& fractions : state.composition)
+        {
+            file>> fractions;
+        }
         if
         (
             word(file) != lastWord || state.voidFraction.size() != cells.size()
@@ -47,6 +52,12 @@ struct part
         )
         {
             FatalErrorInFunction << path << " is cut short" << exit(FatalError);
+        }
+        if (state.composition.size() != species)
+        {
+            FatalErrorInFunction
+                << path << " holds " << state.composition.size() << " species, the gas " << species
+                << exit(FatalError);
         }
     }
 };
@@ -71,8 +82,13 @@ void Foam::calcine::gasState::write
     file<< word(firstWord) << nl << Pstream::nProcs() << nl
         << numbers.cells << nl << numbers.faces << nl << label(placed) << nl
         << mass << nl << enthalpy << nl << temperature << nl << velocity << nl
-        << pressure << nl << basePressure << nl << pressureGradient << nl << flux << nl << voidFraction << nl
-        << word(lastWord) << endl;
+        << pressure << nl << basePressure << nl << pressureGradient << nl << flux << nl
+        << voidFraction << nl << composition.size() << nl;
+    for (const scalarField& fractions : composition)
+    {
+        file<< fractions << nl;
+    }
+    file<< word(lastWord) << endl;
     if (!file.good())
     {
         FatalErrorInFunction
@@ -81,13 +97,18 @@ void Foam::calcine::gasState::write
 }
 
 
-void Foam::calcine::gasState::read(const fileName& directory, const addressing& numbers)
+void Foam::calcine::gasState::read
+(
+    const fileName& directory,
+    const addressing& numbers,
+    label species
+)
 {
     // As many ranks as those that wrote, and the same parts: only what this one wrote.
     const label own = Pstream::myProcNo();
     if (own == 0 || isFile(stateFile(directory, own)))
     {
-        const part mine(stateFile(directory, own));
+        const part mine(stateFile(directory, own), species);
         if
         (
             mine.ranks == Pstream::nProcs() && mine.cells == numbers.cells
@@ -112,6 +133,11 @@ void Foam::calcine::gasState::read(const fileName& directory, const addressing& 
     {
         values->setSize(numbers.cells.size());
     }
+    composition.setSize(species);
+    for (scalarField& fractions : composition)
+    {
+        fractions.setSize(numbers.cells.size());
+    }
     velocity.setSize(numbers.cells.size());
     pressureGradient.setSize(numbers.cells.size());
     flux.setSize(numbers.faces.size());
@@ -119,7 +145,7 @@ void Foam::calcine::gasState::read(const fileName& directory, const addressing& 
     label ranks = 1, found = 0, foundFaces = 0;
     for (label rank = 0; rank < ranks; ++rank)
     {
-        const part theirs(stateFile(directory, rank));
+        const part theirs(stateFile(directory, rank), species);
         ranks = theirs.ranks;
         placed = theirs.state.placed;
         basePressure = theirs.state.basePressure;
@@ -132,6 +158,10 @@ void Foam::calcine::gasState::read(const fileName& directory, const addressing& 
                 pick(mass, *to, theirs.state.mass, from);
                 pick(enthalpy, *to, theirs.state.enthalpy, from);
                 pick(temperature, *to, theirs.state.temperature, from);
+                forAll(composition, k)
+                {
+                    pick(composition[k], *to, theirs.state.composition[k], from);
+                }
                 pick(velocity, *to, theirs.state.velocity, from);
                 pick(pressure, *to, theirs.state.pressure, from);
                 pick(pressureGradient, *to, theirs.state.pressureGradient, from);

@@ -71,7 +71,7 @@ void Foam::calcine::link::greet(const introduction& own)
     const calcine_hello hello =
     {
         "gas", "OpenFOAM", own.version.c_str(), own.caseHash.c_str(), own.meshHash.c_str(),
-        nullptr, static_cast<uint64_t>(own.cells), static_cast<uint32_t>(own.ranks)
+        own.catalogue.c_str(), static_cast<uint64_t>(own.cells), static_cast<uint32_t>(own.ranks)
     };
     check(calcine_link_handshake(link_, &hello, handshakePatience));
 }

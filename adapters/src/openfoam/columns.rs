@@ -10,6 +10,8 @@ pub struct State {
     temperature: Vec<f64>,
     pressure: Vec<f64>,
     density: Vec<f64>,
+    /// Mass fractions, species by species within each cell; empty for a single gas.
+    composition: Vec<f64>,
     velocity: Vec<Vec3>,
     pressure_gradient: Vec<Vec3>,
 }
@@ -37,6 +39,18 @@ impl Ranks<'_> {
         Ok(())
     }
 
+    /// The same for so many numbers a cell.
+    fn copy_items(self, name: &str, items: usize, to: &mut Vec<f64>) -> Result<(), WireError> {
+        to.resize(self.cells * items, 0.0);
+        for (link, cells) in self.links.iter().zip(self.owned) {
+            let values = link.column(name)?.chunks_exact(items);
+            for (&cell, values) in cells.iter().zip(values) {
+                to[cell * items..][..items].copy_from_slice(values);
+            }
+        }
+        Ok(())
+    }
+
     /// The same for vectors.
     fn copy_vectors(self, name: &str, to: &mut Vec<Vec3>) -> Result<(), WireError> {
         to.resize(self.cells, Vec3::zeros());
@@ -58,11 +72,14 @@ impl Ranks<'_> {
 }
 
 impl State {
-    /// Takes the state out of the messages that the links hold.
-    pub fn read(&mut self, ranks: Ranks<'_>) -> Result<(), WireError> {
+    /// Takes the state, of so many species, out of the messages that the links hold.
+    pub fn read(&mut self, ranks: Ranks<'_>, species: usize) -> Result<(), WireError> {
         ranks.copy("temperature", &mut self.temperature)?;
         ranks.copy("pressure", &mut self.pressure)?;
         ranks.copy("density", &mut self.density)?;
+        if species > 0 {
+            ranks.copy_items("composition", species, &mut self.composition)?;
+        }
         ranks.copy_vectors("velocity", &mut self.velocity)?;
         ranks.copy_vectors("pressure_gradient", &mut self.pressure_gradient)
     }
@@ -73,7 +90,7 @@ impl State {
             temperature: &self.temperature,
             pressure: &self.pressure,
             density: &self.density,
-            composition: &[],
+            composition: &self.composition,
             velocity: &self.velocity,
             pressure_gradient: &self.pressure_gradient,
         }
@@ -119,9 +136,10 @@ pub fn read(ranks: Ranks<'_>, received: &mut CellReceived) -> Result<Convergence
         .map(|&numbers| balance(numbers));
     let mut next = || balances.next().unwrap_or_default();
     received.mass = next();
-    received.species.clear();
     received.energy = next();
     received.momentum = [next(), next(), next()];
+    received.species.clear();
+    received.species.extend(balances);
     let numbers = link.column("convergence")?;
     let [outer, linear, residual, volume, converged] = *numbers else {
         return Err(WireError::Order {

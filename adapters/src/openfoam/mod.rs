@@ -5,6 +5,9 @@ mod columns;
 mod decompose;
 mod dictionaries;
 mod identity;
+mod species;
+mod start;
+pub mod stock;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -25,11 +28,14 @@ use crate::launch::{Launcher, Program, find_program};
 use crate::solver::{ExternalSolver, Launch, header};
 use case::OpenfoamCase;
 use columns::{Ranks, State};
+use stock::Solver;
 
 /// Name in messages.
 const NAME: &str = "OpenFOAM (gas)";
 /// Name of the solver's program.
 pub const SOLVER: &str = "calcineGasFoam";
+/// The library with Calcine's fvOption, beside it.
+pub const LIBRARY: &str = "libcalcineFoam.so";
 /// The variable that names another solver program.
 pub const SOLVER_VARIABLE: &str = "CALCINE_GASFOAM";
 /// Where Debian's OpenFOAM has its `etc`.
@@ -44,6 +50,10 @@ pub struct OpenfoamLaunch<'a> {
     pub mesh: Arc<Mesh>,
     /// A folder whose files are taken over where the case does not speak.
     pub template: Option<&'a Path>,
+    /// A time directory that OpenFOAM wrote, whose fields the gas starts from.
+    pub start: Option<&'a Path>,
+    /// Which program computes the gas.
+    pub solver: Solver,
     /// Hash of the case.
     pub case_hash: String,
     /// Where the OpenFOAM case is written and the solver runs.
@@ -56,6 +66,8 @@ pub struct OpenfoamLaunch<'a> {
     pub launcher: Launcher,
     /// The gas' folder of the checkpoint to start from.
     pub resume: Option<PathBuf>,
+    /// The gas' folder of another run's checkpoint to continue from.
+    pub from: Option<PathBuf>,
     /// Longest silence while starting, writing a checkpoint or ending.
     pub deadline: Duration,
 }
@@ -66,6 +78,8 @@ pub struct OpenfoamGas {
     about: About,
     mesh: Arc<Mesh>,
     storage: GasStorage,
+    /// Number of species; zero for a single gas.
+    species: usize,
     state: State,
     window: Option<Window>,
 }
@@ -77,17 +91,40 @@ impl OpenfoamGas {
         supervisor: &mut Supervisor,
     ) -> Result<Self, PartError> {
         let remedy = "`cargo xtask setup` installs OpenFOAM and builds it";
-        let path = find_program(SOLVER_VARIABLE, SOLVER, remedy)?;
+        let own = find_program(SOLVER_VARIABLE, SOLVER, remedy)?;
+        let library = own.with_file_name(LIBRARY);
+        let path = if launch.solver.is_stock() {
+            stock_program(launch.solver.name())?
+        } else {
+            own
+        };
+        if launch.solver.is_stock() && launch.ranks > 1 {
+            let message = "a stock solver is coupled on one rank only: leave `openfoam.ranks` out";
+            return Err(PartError::new(NAME, FailureKind::NotStarted, message));
+        }
+        if launch.solver.is_stock() && (launch.resume.is_some() || launch.from.is_some()) {
+            let message = "a stock solver takes up no checkpoint; its checkpoint is a time directory, \
+                           which `openfoam.start` takes as a start";
+            return Err(PartError::new(NAME, FailureKind::NotStarted, message));
+        }
         let case = OpenfoamCase {
             setup: launch.setup,
             mesh: &launch.mesh,
             template: launch.template,
+            start: launch.start,
+            solver: launch.solver,
+            library: &library,
             case_hash: &launch.case_hash,
             ranks: launch.ranks,
         };
-        for folder in [Some(&launch.folder), launch.resume.as_ref()]
-            .into_iter()
-            .flatten()
+        let given = [("-resume", &launch.resume), ("-from", &launch.from)];
+        for folder in [
+            Some(&launch.folder),
+            launch.resume.as_ref(),
+            launch.from.as_ref(),
+        ]
+        .into_iter()
+        .flatten()
         {
             without_spaces(folder)?;
         }
@@ -97,13 +134,15 @@ impl OpenfoamGas {
             decompose::run(&launch.folder, launch.ranks, &environment(&launch.folder))?;
             arguments.push("-parallel".into());
         }
-        if let Some(folder) = &launch.resume {
+        for (option, folder) in given {
+            let Some(folder) = folder else { continue };
             let folder = std::path::absolute(folder).map_err(|error| {
                 let message = format!("the checkpoint {} cannot be used", folder.display());
                 PartError::new(NAME, FailureKind::Io, message).caused_by(error)
             })?;
-            arguments.extend(["-resume".into(), folder.into()]);
+            arguments.extend([option.into(), folder.into()]);
         }
+        let species = launch.setup.properties.species().len();
         let hello = Hello {
             role: "gas".into(),
             name: "Calcine".into(),
@@ -112,7 +151,7 @@ impl OpenfoamGas {
             case_hash: launch.case_hash,
             count: launch.mesh.cells() as u64,
             ranks: launch.ranks,
-            catalogue: Catalogue::standard("gas").map_err(|error| {
+            catalogue: Catalogue::gas(species).map_err(|error| {
                 PartError::new(NAME, FailureKind::NotStarted, "its columns").caused_by(error)
             })?,
         };
@@ -144,6 +183,7 @@ impl OpenfoamGas {
             about,
             mesh: launch.mesh,
             storage: launch.setup.storage,
+            species,
             state: State::default(),
             window: None,
         };
@@ -164,9 +204,24 @@ impl OpenfoamGas {
     /// Takes the state out of the messages that the links hold.
     fn read_state(&mut self, window: Option<&Window>) -> Result<(), PartError> {
         let ranks = ranks(&self.solver, &self.mesh);
-        let read = self.state.read(ranks);
+        let read = self.state.read(ranks, self.species);
         read.map_err(|error| self.solver.failure(window, error))
     }
+}
+
+/// A program of Debian's OpenFOAM, on the path.
+fn stock_program(name: &str) -> Result<PathBuf, PartError> {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let found = std::env::split_paths(&path)
+        .map(|folder| folder.join(name))
+        .find(|program| program.is_file());
+    found.ok_or_else(|| {
+        let message = format!(
+            "{name} is nowhere on the PATH; it comes with Debian's package openfoam, which `cargo xtask \
+             setup` installs"
+        );
+        PartError::new(NAME, FailureKind::NotStarted, message)
+    })
 }
 
 /// OpenFOAM takes no path with a space or a quote in it.

@@ -99,6 +99,8 @@ typedef struct calcine_hello {
  *       stored_magnitude, boundary, boundary_magnitude, exchange, source, source_magnitude,
  *     convergence 5 numbers: outer_iterations, linear_iterations, residual, volume_residual,
  *       converged (1 or 0)
+ * A gas of N species adds (calcine_hello.catalogue then has all lines): composition N [1] per cell, mass
+ * fractions, and N more balances, in kg of each species, after the momentum's.
  * A vector column is interleaved: x, y, z of the first cell, then of the second. Every column starts
  * at a multiple of 64 bytes. With CALCINE_STATE and CALCINE_CHECKPOINTED, `heat`, `drag`, `balances`
  * and `convergence` are zero. */

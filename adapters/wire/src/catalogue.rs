@@ -155,6 +155,22 @@ impl Catalogue {
         }
     }
 
+    /// That of a gas of so many species (0: a single gas): the standard one with the composition, species by
+    /// species within each cell, and a balance of each species after the momentum's.
+    pub fn gas(species: usize) -> Result<Self, WireError> {
+        let mut gas = Self::standard("gas")?;
+        if species > 0 {
+            for field in &mut gas.fields {
+                if field.name == "balances" {
+                    field.components += 7 * species;
+                }
+            }
+            gas.fields
+                .push(format!("state composition {species} 1 item").parse()?);
+        }
+        Ok(gas)
+    }
+
     /// The fields, in the order of the columns.
     pub fn fields(&self) -> &[Field] {
         &self.fields
@@ -250,6 +266,15 @@ mod tests {
             35
         );
         assert_eq!(gas.words(Record::Start, 12), Some(16 + 16 + 40 + 16 + 16));
+    }
+
+    #[test]
+    fn species_add_a_column_of_mass_fractions_and_a_balance_each() {
+        let gas = Catalogue::gas(3).unwrap();
+        let length = |name| gas.column(Record::State, name, 12).unwrap().1.len();
+        assert_eq!(length("composition"), 36);
+        assert_eq!(length("balances"), 35 + 21);
+        assert_eq!(Catalogue::gas(0), Catalogue::standard("gas"));
     }
 
     #[test]

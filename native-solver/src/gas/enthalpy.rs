@@ -97,7 +97,7 @@ fn imposed(frame: &Frame<'_>, index: usize) -> f64 {
 
 /// Thermal conductance of a face in W/K; zero where no heat is conducted.
 #[inline]
-fn conduction(frame: &Frame<'_>, material: &Material, index: usize) -> f64 {
+fn conduction(frame: &Frame<'_>, material: &Material, now: &State, index: usize) -> f64 {
     let face = &frame.grid.faces[index];
     if index < frame.grid.internal {
         return conductance(face, interpolate(face, &material.conductivity));
@@ -107,7 +107,7 @@ fn conduction(frame: &Frame<'_>, material: &Material, index: usize) -> f64 {
         Value::Inlet { gas, .. } => conductance(face, pores * gas.conductivity),
         Value::Wall { heat, .. } => match heat {
             Heat::Temperature(temperature) => {
-                let composition = frame.composition(face.owner);
+                let composition = now.composition_of(face.owner, frame.species());
                 let conductivity = frame.properties.conductivity(temperature, composition);
                 conductance(face, pores * conductivity)
             }
@@ -165,7 +165,7 @@ impl Enthalpy {
             now.temperature[cell] - now.enthalpy[cell] / heat_capacity[cell]
         });
         fill(&mut self.conduction, |index| {
-            conduction(frame, material, index)
+            conduction(frame, material, now, index)
         });
         self.update_explicit(frame, carried, share, now);
         let (conduction, heat_capacity) = (&self.conduction, &self.heat_capacity);
@@ -225,9 +225,10 @@ impl Enthalpy {
                 Value::Wall {
                     heat: Heat::Temperature(temperature),
                     ..
-                } => frame
-                    .properties
-                    .enthalpy(temperature, frame.composition(grid.faces[index].owner)),
+                } => frame.properties.enthalpy(
+                    temperature,
+                    now.composition_of(grid.faces[index].owner, frame.species()),
+                ),
                 Value::Wall { .. } | Value::Outlet { .. } => inner,
             };
             let gradients = &mut self.gradients[0];

@@ -66,7 +66,7 @@ pub fn given_velocity(frame: &Frame<'_>, index: usize) -> Option<Vec3> {
 
 /// Viscous conductance of a face in kg/s, and on the boundary only where the velocity is given.
 #[inline]
-fn viscous(frame: &Frame<'_>, material: &Material, index: usize) -> f64 {
+fn viscous(frame: &Frame<'_>, material: &Material, now: &State, index: usize) -> f64 {
     let face = &frame.grid.faces[index];
     if index < frame.grid.internal {
         return conductance(face, interpolate(face, &material.viscosity));
@@ -78,7 +78,7 @@ fn viscous(frame: &Frame<'_>, material: &Material, index: usize) -> f64 {
             sticks: Some(_),
             heat: Heat::Temperature(temperature),
         } => {
-            let composition = frame.composition(face.owner);
+            let composition = now.composition_of(face.owner, frame.species());
             let viscosity = frame.properties.viscosity(temperature, composition);
             conductance(face, pores * viscosity)
         }
@@ -115,7 +115,9 @@ impl Momentum {
     /// Of what is explicit a share follows the fields.
     pub fn assemble(&mut self, frame: &Frame<'_>, material: &Material, share: f64, now: &State) {
         let grid = frame.grid;
-        fill(&mut self.viscous, |index| viscous(frame, material, index));
+        fill(&mut self.viscous, |index| {
+            viscous(frame, material, now, index)
+        });
         self.update_gradients(frame, &now.velocity);
         self.update_explicit(frame, material, share, now);
         let viscous = &self.viscous;

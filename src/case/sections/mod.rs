@@ -59,6 +59,9 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     let output = output::output(root);
     let probes = probes::probes(root);
     let quantities = quantities::quantities(root, mesh.as_ref(), particles.as_deref(), &probes);
+    if let (Some(gas), Some((time, _))) = (&gas, &time) {
+        coupling::check_stock(root, &openfoam, gas, time);
+    }
     let (time, _) = time?;
     Some(Case {
         name: path
