@@ -11,15 +11,18 @@ use calcine_adapters::openfoam::{LIBRARY, OpenfoamGas, OpenfoamLaunch};
 use calcine_coupler::closures::Closures;
 use calcine_coupler::coordinator::{CheckpointPaths, Origin, Parts, Plan, Run, RunError};
 use calcine_coupler::error::{FailureKind, PartError};
+use calcine_coupler::held::HeldGas;
 use calcine_coupler::interior::{Network, Thin};
 use calcine_coupler::mapping::{Mapper, Method};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::zone::Zone;
-use calcine_coupler::part::{Gas, Particles};
+use calcine_coupler::motion::Motion;
+use calcine_coupler::part::{Gas, ParticleFields, Particles};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::smoother::{Settings as Smoothing, Smoother};
 use calcine_coupler::supervisor::Supervisor;
+use calcine_coupler::traffic::{Feed, Traffic};
 use calcine_native::gas::{NativeError, NativeGas};
 use calcine_native::particles::NativeParticles;
 use clap::ValueEnum;
@@ -27,7 +30,7 @@ use thiserror::Error;
 
 use crate::case::model::{Case, Mapping};
 use crate::case::sizes::{self, TooLarge};
-use crate::case::{MeshingError, PlaceError, Placed, mesh, particles};
+use crate::case::{MeshingError, PlaceError, Placed, contacts, mesh, particles};
 use crate::laws;
 
 /// Who computes the gas.
@@ -163,9 +166,14 @@ impl Prepared {
     /// Generates or reads the mesh and places the particles.
     pub fn new(case: &Case) -> Result<Self, AssemblyError> {
         sizes::fits(case)?;
-        let Placed { setup, temperature } = particles(case)?;
+        let Placed {
+            mut setup,
+            temperature,
+        } = particles(case)?;
+        let mesh = Arc::new(mesh(&case.mesh)?);
+        setup.motion = contacts::motion(case, &mesh, &setup).map_err(PlaceError::from)?;
         Ok(Self {
-            mesh: Arc::new(mesh(&case.mesh)?),
+            mesh,
             particles: setup,
             temperature,
         })
@@ -265,13 +273,16 @@ pub fn assemble<'m>(
         settings,
         from: from.as_deref(),
     };
+    let gas = assembly.gas(supervisor)?;
+    let particles = assembly.particles(supervisor)?;
+    let interior = Box::new(interior(case, prepared, &particles.fields()));
     let parts = Parts {
-        gas: assembly.gas(supervisor)?,
-        particles: assembly.particles(supervisor)?,
-        interior: Box::new(interior(case, prepared)),
+        gas,
+        particles,
+        interior,
     };
     let smoother = smoother(case, prepared)?;
-    let mut plan = plan(case, checkpoint);
+    let mut plan = plan(case, prepared, checkpoint);
     let foam = settings.pairing.gas == GasBackend::Openfoam;
     if foam && case.openfoam.solver.is_stock() {
         // A stock solver cannot go back to the start of a time step.
@@ -330,7 +341,10 @@ fn liggghts_inputs(prepared: &Prepared, ranks: u32) -> Inputs<'_> {
     Inputs {
         setup: &prepared.particles,
         bounds,
-        step: FROZEN_STEP,
+        step: match &prepared.particles.motion {
+            Motion::Frozen => FROZEN_STEP,
+            Motion::Free(contacts) => contacts.step,
+        },
         ranks,
     }
 }
@@ -346,6 +360,10 @@ struct Assembly<'a> {
 impl Assembly<'_> {
     fn gas(&self, supervisor: &mut Supervisor) -> Result<Box<dyn Gas>, AssemblyError> {
         let from = self.from.map(|folder| folder.join("gas"));
+        if self.case.gas_held {
+            let mesh = Arc::clone(&self.prepared.mesh);
+            return Ok(Box::new(HeldGas::new(mesh, &self.case.gas)));
+        }
         match self.settings.pairing.gas {
             GasBackend::Native => {
                 let mut gas = NativeGas::new(Arc::clone(&self.prepared.mesh), &self.case.gas)?;
@@ -480,7 +498,29 @@ fn method(case: &Case) -> Method {
     }
 }
 
-fn plan(case: &Case, checkpoint: CheckpointPaths) -> Plan {
+/// Feeds and outlets of the case; ids go on after those of the start.
+fn traffic(case: &Case, prepared: &Prepared) -> Traffic {
+    let feeds = case.feeds.iter().map(|feed| {
+        let population = &case.particles[feed.population];
+        Feed {
+            name: feed.name.clone(),
+            population: u32::try_from(feed.population).unwrap_or(u32::MAX),
+            zone: feed.zone,
+            rate: feed.rate,
+            batch: feed.batch,
+            sizes: population.sizes.clone(),
+            density: case.materials[population.material].density,
+            velocity: feed.velocity,
+            temperature: feed.temperature,
+            seed: feed.seed,
+        }
+    });
+    let up = (-case.gas.gravity).try_normalize(0.0).unwrap_or(Vec3::z());
+    let next = prepared.particles.id.last().map_or(1, |last| last + 1);
+    Traffic::new(feeds.collect(), case.outlets.clone(), up, next)
+}
+
+fn plan(case: &Case, prepared: &Prepared, checkpoint: CheckpointPaths) -> Plan {
     Plan {
         end: case.time.end,
         motion_window: case.time.motion_window,
@@ -494,6 +534,21 @@ fn plan(case: &Case, checkpoint: CheckpointPaths) -> Plan {
         repeats: true,
         case_hash: case.hash.clone(),
         checkpoint,
+        free: match &prepared.particles.motion {
+            Motion::Frozen => Vec::new(),
+            Motion::Free(contacts) => contacts.held.iter().map(|held| !held).collect(),
+        },
+        gravity: case.gas.gravity,
+        traffic: traffic(case, prepared),
+        substance: case
+            .particles
+            .iter()
+            .map(|population| {
+                let material = population.material;
+                let conductivity = case.materials[material].conductivity;
+                (material, conductivity.unwrap_or(0.0))
+            })
+            .collect(),
     }
 }
 
@@ -505,9 +560,14 @@ fn closures(case: &Case) -> Closures {
     }
 }
 
-fn interior(case: &Case, prepared: &Prepared) -> Thin {
-    let particles = &prepared.particles;
+/// The interior of the particles that the run starts with; those of a checkpoint may be others than
+/// those of the case, and get their temperatures from it.
+fn interior(case: &Case, prepared: &Prepared, particles: &ParticleFields<'_>) -> Thin {
     let all = 0..particles.id.len();
+    let start = prepared.temperature.iter().copied();
+    let density = |p: usize| {
+        case.materials[case.particles[particles.population[p] as usize].material].density
+    };
     let volume = |p: usize| 4.0 / 3.0 * std::f64::consts::PI * particles.radius[p].powi(3);
     let material = |p: usize| case.particles[particles.population[p] as usize].material;
     let network = laws::conduction(case.laws.conduction).map(|law| {
@@ -516,15 +576,16 @@ fn interior(case: &Case, prepared: &Prepared) -> Thin {
         Network::new(law, all.clone().map(conductivity).collect())
     });
     Thin::new(
-        all.clone()
-            .map(|p| particles.density[p] * volume(p))
-            .collect(),
-        all.map(material).collect(),
+        all.clone().map(|p| density(p) * volume(p)).collect(),
+        all.clone().map(material).collect(),
         case.materials
             .iter()
             .map(|m| m.heat_capacity.clone())
             .collect(),
-        prepared.temperature.clone(),
+        start
+            .chain(std::iter::repeat(case.gas.temperature))
+            .take(all.len())
+            .collect(),
         network,
     )
 }

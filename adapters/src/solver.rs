@@ -420,6 +420,13 @@ impl ExternalSolver {
         self.wait_alone(Kind::Checkpointed)
     }
 
+    /// Has particles taken out and put in, as told in a text; afterwards each link holds a `Changed`.
+    pub fn change(&mut self, supervisor: &Supervisor, text: &str) -> Result<(), PartError> {
+        self.send_text(Kind::Change, text)?;
+        self.peer
+            .wait(&mut self.links, supervisor, None, Kind::Changed)
+    }
+
     /// Ends the solver in an orderly way.
     pub fn goodbye(&mut self) -> Result<(), PartError> {
         self.send_text(Kind::Bye, "")?;

@@ -110,6 +110,62 @@ pub struct Coefficients {
     pub drag: Vec<f64>,
     /// Heat conductance h A in W/K.
     pub conductance: Vec<f64>,
+    /// Share of the other forces in N that drag holds back within the window (requirements
+    /// DRG-2, see [`Coefficients::relax`]); zero, or empty, where particles are held.
+    pub held_back: Vec<Vec3>,
+}
+
+/// What particles are to their drag besides their velocity, one value each.
+#[derive(Clone, Copy, Debug)]
+pub struct Inertia<'a> {
+    /// Masses in kg.
+    pub mass: &'a [f64],
+    /// True for those that move.
+    pub free: &'a [bool],
+    /// Everything but drag that acted on each in the last window, contacts included, in N.
+    pub other: &'a [Vec3],
+    /// The coming window's motion span in s.
+    pub span: f64,
+    /// Its acceleration factor.
+    pub acceleration: f64,
+}
+
+impl Coefficients {
+    /// Stiff drag (requirements DRG-2). The force on a particle is constant over a window; it is the
+    /// mean of what acts on one that moves by drag and by all else as in the last window:
+    /// m dv/dt = K (u − v/AF) + F. With a = K Δt/(m AF) and φ = (1 − e^−a)/a that mean is
+    ///
+    /// K φ (u − v/AF) − (1 − φ) F,
+    ///
+    /// with the velocity v at the window's start. A free particle relaxes without overshoot however
+    /// long the window; one that contacts hold has F = −K u at rest and feels its full drag K u.
+    pub fn relax(&mut self, inertia: &Inertia<'_>) {
+        self.held_back.clear();
+        for (p, drag) in self.drag.iter_mut().enumerate() {
+            if !inertia.free[p] {
+                self.held_back.push(Vec3::zeros());
+                continue;
+            }
+            let a = *drag * inertia.span / (inertia.mass[p] * inertia.acceleration);
+            let share = if a > 0.0 { -(-a).exp_m1() / a } else { 1.0 };
+            *drag *= share;
+            self.held_back.push((1.0 - share) * inertia.other[p]);
+        }
+    }
+
+    fn back(&self, p: usize) -> Vec3 {
+        self.held_back.get(p).copied().unwrap_or_default()
+    }
+
+    /// Drag on particle p in N at the slip u − v/AF in m/s of a window's start.
+    pub fn drag_at(&self, p: usize, slip: Vec3) -> Vec3 {
+        self.drag[p] * slip - self.back(p)
+    }
+
+    /// What does not depend on the gas of the drag on the gas, in N.
+    pub fn drag_source(&self, p: usize, velocity: Vec3, acceleration: f64) -> Vec3 {
+        self.drag[p] * velocity / acceleration + self.back(p)
+    }
 }
 
 impl Closures {

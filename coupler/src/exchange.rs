@@ -20,7 +20,13 @@
 //! little less than they would be.) What the gas reports beyond R_c (a solver's tolerance, an enthalpy that
 //! is not linear in T) is credited to the particles of the cell by their share W_cp K_p/H_c,
 //! H_c = Σ_p W_cp K_p. Drag acts cell by cell too, W_cp K_A (v/AF − u_c); the velocity of particles
-//! is given over a window, so that nothing ties its cells.
+//! is given over a window, so that nothing ties its cells (for stiff drag K_A is what
+//! `Coefficients::relax` makes of it).
+//!
+//! Momentum is exchanged by model A (requirements DRG-1), here and in both gases: the gas carries
+//! −ε ∇p and the drag −Σ W K_A (u − v/AF), a particle −V_p Σ_c W_cp ∇p and the drag. Model B, in which
+//! the gas carries all of ∇p and a particle its weight less that of the gas it displaces, is not
+//! computed; its laws (K_A/ε) are converted where they are transcribed.
 
 use calcine_physics::Vec3;
 
@@ -129,7 +135,7 @@ impl Exchange {
 
         operator.spread(&coefficients.drag, &mut self.cells.drag_coefficient);
         for p in 0..count {
-            self.vector[p] = coefficients.drag[p] * particles.velocity[p] / *acceleration;
+            self.vector[p] = coefficients.drag_source(p, particles.velocity[p], *acceleration);
         }
         operator.spread_vectors(&self.vector, &mut self.cells.drag_source);
     }
@@ -212,7 +218,7 @@ impl Exchange {
         operator.sample_vectors(gas.velocity, &mut self.vector);
         for p in 0..operator.particles() {
             let slip = self.vector[p] - particles.velocity[p] / *acceleration;
-            self.drag[p] = coefficients.drag[p] * (slip - self.drag[p]);
+            self.drag[p] = coefficients.drag_at(p, slip - self.drag[p]);
         }
     }
 

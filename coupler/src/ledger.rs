@@ -1,5 +1,7 @@
 //! The ledger: every window's mass, momentum and energy, summed over the run (requirements CON-2).
 
+use calcine_physics::Vec3;
+
 /// One line: the sum of |Σ terms| over the windows, against the sum of Σ|terms|.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Line {
@@ -29,6 +31,45 @@ impl Line {
     }
 }
 
+/// What particles carried in or out.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moved {
+    /// Number of particles.
+    pub particles: u64,
+    /// Their mass in kg.
+    pub mass: f64,
+    /// Their enthalpy in J, as their materials count it.
+    pub enthalpy: f64,
+    /// Their momentum in kg m/s of motion time.
+    pub momentum: Vec3,
+}
+
+impl Moved {
+    /// Adds one particle.
+    pub fn add(&mut self, mass: f64, enthalpy: f64, velocity: Vec3) {
+        self.particles += 1;
+        self.mass += mass;
+        self.enthalpy += enthalpy;
+        self.momentum += mass * velocity;
+    }
+
+    /// The numbers in one order, for a checkpoint.
+    pub fn numbers(&self) -> [f64; 6] {
+        let [x, y, z] = self.momentum.into();
+        [self.particles as f64, self.mass, self.enthalpy, x, y, z]
+    }
+
+    /// From these numbers.
+    pub fn from_numbers([particles, mass, enthalpy, x, y, z]: [f64; 6]) -> Self {
+        Self {
+            particles: particles as u64,
+            mass,
+            enthalpy,
+            momentum: Vec3::new(x, y, z),
+        }
+    }
+}
+
 /// The ledger of a run. Gas amounts count in process time: where the gas stores over the motion
 /// span (`accelerated`), what it stored counts AF times (requirements TSM-4).
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -43,19 +84,24 @@ pub struct Ledger {
     pub momentum_exchange: Line,
     /// The gas' own momentum balance (residual of pressure and momentum solves), in N s.
     pub gas_momentum: Line,
+    /// Particle mass in kg: what the particles hold against what feeds and outlets moved.
+    pub particle_mass: Line,
+    /// What feeds brought and outlets took so far.
+    pub traffic: [Moved; 2],
     /// Mass of each element of a gas mixture in kg, by its symbol.
     pub elements: Vec<(String, Line)>,
 }
 
 impl Ledger {
     /// Lines by their stable names, those of elements apart.
-    pub fn lines(&self) -> [(&'static str, &'static str, Line); 5] {
+    pub fn lines(&self) -> [(&'static str, &'static str, Line); 6] {
         [
             ("mass", "kg", self.mass),
             ("energy", "J", self.energy),
             ("energy_exchange", "J", self.energy_exchange),
             ("momentum", "N s", self.momentum_exchange),
             ("gas_momentum", "N s", self.gas_momentum),
+            ("particle_mass", "kg", self.particle_mass),
         ]
     }
 
@@ -67,6 +113,7 @@ impl Ledger {
             &mut self.energy_exchange,
             &mut self.momentum_exchange,
             &mut self.gas_momentum,
+            &mut self.particle_mass,
         ];
         lines.extend(self.elements.iter_mut().map(|(_, line)| line));
         lines

@@ -6,6 +6,7 @@ pub mod contacts;
 pub mod coordinator;
 pub mod error;
 pub mod exchange;
+pub mod held;
 pub mod ledger;
 pub mod mapping;
 pub mod mesh;
@@ -17,6 +18,7 @@ pub mod setup;
 pub mod smoother;
 pub mod supervisor;
 pub mod time;
+pub mod traffic;
 
 pub use calcine_interior as interior;
 pub use calcine_physics as physics;

@@ -3,6 +3,7 @@
 mod bed;
 pub mod buoyancy;
 mod check;
+pub mod contacts;
 pub mod keys;
 mod meshing;
 pub mod model;
@@ -13,6 +14,7 @@ pub mod schema;
 mod sections;
 pub mod sizes;
 mod step;
+mod stl;
 mod table;
 pub mod units;
 
@@ -27,6 +29,7 @@ pub use place::{PlaceError, Placed, particles};
 pub use problem::{CaseErrors, Problem};
 pub use step::settle;
 
+use calcine_coupler::motion::WallShape;
 use model::Case;
 use table::{Problems, Reader};
 
@@ -204,7 +207,15 @@ fn with_files(case: &Case) -> String {
         model::MeshSpec::Box { .. } | model::MeshSpec::Cylinder { .. } => Vec::new(),
     };
     let files: Vec<_> = places.chain(mesh).collect();
-    if files.is_empty() {
+    let triangles: Vec<_> = case
+        .walls
+        .iter()
+        .filter_map(|wall| match &wall.shape {
+            WallShape::Mesh { triangles } => Some(triangles),
+            _ => None,
+        })
+        .collect();
+    if files.is_empty() && triangles.is_empty() {
         return case.hash.clone();
     }
     let mut digest = Sha256::new();
@@ -212,6 +223,11 @@ fn with_files(case: &Case) -> String {
     for file in files {
         // A file that cannot be read is an error of the mesh or of the bed, told there.
         digest.update(std::fs::read(file).unwrap_or_default());
+    }
+    for corner in triangles.into_iter().flatten().flatten() {
+        for value in corner.iter() {
+            digest.update(value.to_le_bytes());
+        }
     }
     digest
         .finalize()

@@ -7,12 +7,14 @@ use calcine_adapters::openfoam::stock::Solver;
 use calcine_coupler::mesh::grading::Stretch;
 use calcine_coupler::mesh::refine::Refinement;
 use calcine_coupler::mesh::zone::Zone;
+use calcine_coupler::motion::{ContactLaw, Wall};
 use calcine_coupler::packing::Sizes;
 use calcine_coupler::packing::regular::Lattice;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::setup::GasSetup;
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
+use calcine_coupler::traffic::Outlet;
 
 /// A checked case.
 #[derive(Clone, Debug)]
@@ -35,10 +37,20 @@ pub struct Case {
     pub materials: Vec<Material>,
     /// Contact properties of pairs of materials.
     pub contacts: Vec<Contact>,
+    /// Walls that particles touch.
+    pub walls: Vec<Wall>,
+    /// How particles that are free move.
+    pub motion: Option<FreeMotion>,
     /// The gas.
     pub gas: GasSetup,
+    /// True where the gas is held as it is at the start.
+    pub gas_held: bool,
     /// Populations, in the order of the file.
     pub particles: Vec<Population>,
+    /// What comes in.
+    pub feeds: Vec<FeedSpec>,
+    /// What goes out.
+    pub outlets: Vec<Outlet>,
     /// Laws between and inside the phases.
     pub laws: Laws,
     /// How gas and particles are coupled.
@@ -139,6 +151,32 @@ pub struct Contact {
     pub restitution: Option<f64>,
     /// Coefficient of friction.
     pub friction: Option<f64>,
+    /// Coefficient of rolling friction.
+    pub rolling_friction: Option<f64>,
+    /// Damping of rolling as a share of the critical one.
+    pub rolling_damping: Option<f64>,
+    /// Cohesion energy density in J/m³.
+    pub cohesion_energy: Option<f64>,
+}
+
+/// `[motion]`: how particles that are free move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeMotion {
+    /// Which clock the motion belongs to.
+    pub kind: MotionKind,
+    /// Time step in s of motion time; `None`: chosen from the contacts.
+    pub step: Option<f64>,
+    /// Law of contacts.
+    pub law: ContactLaw,
+}
+
+/// Which clock the motion of particles belongs to (requirements TSM-7).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MotionKind {
+    /// Fluidised beds, drums, sprays: the motion is what it is in process time, so that AF is 1.
+    RealTime,
+    /// Shafts and moving beds, slow and the same at any pace: AF times faster on the motion clock.
+    Accelerated,
 }
 
 /// Particles of one kind.
@@ -154,10 +192,33 @@ pub struct Population {
     pub size_seed: u64,
     /// How the particles move.
     pub motion: Motion,
+    /// Velocity at the start in m/s of motion time.
+    pub velocity: Vec3,
     /// Where they are at the start.
     pub place: Place,
     /// Start temperature in K; a file of particles may state its own.
     pub temperature: f64,
+}
+
+/// Particles that come in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FeedSpec {
+    /// Name.
+    pub name: String,
+    /// Index of their population, which gives material and sizes.
+    pub population: usize,
+    /// Where they appear.
+    pub zone: Zone,
+    /// Mass flow in kg/s.
+    pub rate: f64,
+    /// Mass in kg at the start.
+    pub batch: f64,
+    /// Their velocity in m/s of process time.
+    pub velocity: Vec3,
+    /// Their temperature in K.
+    pub temperature: f64,
+    /// Equal seeds give equal particles.
+    pub seed: u64,
 }
 
 /// How particles move.
@@ -165,6 +226,8 @@ pub struct Population {
 pub enum Motion {
     /// They stay where they are.
     Frozen,
+    /// They move by gravity, contacts and the force of the gas.
+    Free,
 }
 
 /// Where particles are at the start.

@@ -8,6 +8,7 @@ use calcine_coupler::packing::{
 };
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
+use calcine_coupler::time::Ticks;
 use thiserror::Error;
 
 use super::bed::{self, Choice};
@@ -58,6 +59,9 @@ pub enum PlaceError {
         /// Why.
         cause: PackingError,
     },
+    /// Contacts that cannot be stepped through.
+    #[error(transparent)]
+    Contacts(#[from] super::contacts::ContactsError),
     /// No particle at all.
     #[error("the case has no particles")]
     Empty,
@@ -79,17 +83,27 @@ pub fn particles(case: &Case) -> Result<Placed, PlaceError> {
     let setup = &mut placed.setup;
     for (index, population) in (0u32..).zip(&case.particles) {
         let density = case.materials[population.material].density;
+        let (factor, _) = case.time.acceleration.at(Ticks::ZERO);
+        let velocity = factor * population.velocity;
         for sphere in spheres(case, population)? {
             setup.id.push(setup.id.len() as u64 + 1);
             setup.population.push(index);
             setup.position.push(sphere.centre);
             setup.radius.push(0.5 * sphere.diameter);
             setup.density.push(density);
+            setup.velocity.push(velocity);
             placed.temperature.push(sphere.temperature);
         }
     }
     if setup.id.is_empty() {
         return Err(PlaceError::Empty);
+    }
+    if setup
+        .velocity
+        .iter()
+        .all(|velocity| *velocity == Vec3::zeros())
+    {
+        setup.velocity.clear();
     }
     match overlap::between_populations(setup) {
         None => Ok(placed),
@@ -209,7 +223,7 @@ fn grid(first: &Vec3, spacing: &Vec3, counts: [usize; 3]) -> Vec<Vec3> {
 }
 
 /// The diameter of the circle that touches the sides of a cylinder's polygon from inside, in m.
-fn inner_diameter(diameter: f64, across: usize) -> f64 {
+pub(crate) fn inner_diameter(diameter: f64, across: usize) -> f64 {
     let sides = 4 * (across - 2 * (across / 4).max(1));
     diameter * (std::f64::consts::PI / sides as f64).cos()
 }

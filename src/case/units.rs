@@ -43,6 +43,7 @@ dimensions! {
     MASS_FLOW = [0, 1, -1, 0, 0], "a mass flow", "1 kg/h";
     HEAT_FLUX = [0, 1, -3, 0, 0], "a heat flux", "1 kW/m^2";
     HEAT_TRANSFER = [0, 1, -3, -1, 0], "a heat transfer coefficient", "10 W/m^2/K";
+    ANGULAR_VELOCITY = [0, 0, -1, 0, 0], "an angular velocity", "3 rad/s";
     MOLAR_MASS = [0, 1, 0, 0, -1], "a molar mass", "28.96 g/mol";
 }
 
@@ -117,6 +118,8 @@ const UNITS: &[(&str, f64, [i8; 5])] = &[
     ("W", 1.0, [2, 1, -3, 0, 0]),
     ("mW", 1e-3, [2, 1, -3, 0, 0]),
     ("kW", 1e3, [2, 1, -3, 0, 0]),
+    ("rad", 1.0, [0, 0, 0, 0, 0]),
+    ("rpm", std::f64::consts::PI / 30.0, [0, 0, -1, 0, 0]),
     ("%", 1e-2, [0, 0, 0, 0, 0]),
 ];
 

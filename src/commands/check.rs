@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::case::contacts;
+
 use super::{Failure, read_and_prepare, say};
 use crate::exit;
 
@@ -27,5 +29,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         particles,
         void_fraction,
     ));
+    if let Some(text) = contacts::report(&case, &prepared.mesh, &prepared.particles) {
+        say(text);
+    }
     Ok(exit::OK)
 }

@@ -2,6 +2,7 @@
 
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::observer::Moment;
+use calcine_coupler::physics::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::ResultsError;
@@ -88,11 +89,12 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &Moment<'_>, sites: &[Site])
             weighted(*which, &values)
         }
         Measure::Particles {
+            field,
             over,
             statistic: which,
-            ..
         } => {
-            let (bed, all) = (moment.particles, moment.particle_temperature);
+            let values = of_particles(moment, field);
+            let (bed, all) = (moment.particles, &values[..]);
             let values: Vec<f64> = match over {
                 ParticlePlace::Everywhere => return statistic(*which, all),
                 ParticlePlace::Population(index) => {
@@ -109,11 +111,24 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &Moment<'_>, sites: &[Site])
             };
             statistic(*which, &values)
         }
-        Measure::Particle { number, .. } => number
+        Measure::Particle { field, number } => number
             .checked_sub(1)
-            .and_then(|place| moment.particle_temperature.get(place))
-            .copied()
+            .and_then(|place| of_particles(moment, field).get(place).copied())
             .unwrap_or(f64::NAN),
+    }
+}
+
+/// A field of all particles; speeds are those of process time.
+fn of_particles(moment: &Moment<'_>, field: &str) -> Vec<f64> {
+    let bed = moment.particles;
+    match field {
+        "speed" => {
+            let acceleration = moment.window.map_or(1.0, |window| window.acceleration());
+            let speed = |velocity: &Vec3| velocity.norm() / acceleration;
+            bed.velocity.iter().map(speed).collect()
+        }
+        "height" => bed.position.iter().map(|centre| centre.z).collect(),
+        _ => moment.particle_temperature.to_vec(),
     }
 }
 

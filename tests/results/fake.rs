@@ -64,6 +64,11 @@ pub fn case() -> Case {
         },
         materials: vec![],
         contacts: vec![],
+        walls: vec![],
+        motion: None,
+        feeds: vec![],
+        outlets: vec![],
+        gas_held: false,
         gas: gas_setup(),
         particles: vec![],
         laws: Laws {

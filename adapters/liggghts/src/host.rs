@@ -13,6 +13,7 @@ use calcine_wire::{
 };
 use thiserror::Error;
 
+use crate::change::Change;
 use crate::library::{self, Liggghts};
 use crate::parent::Parent;
 use crate::state::State;
@@ -23,6 +24,8 @@ const TICKS: f64 = 1e12;
 const GREETING: Duration = Duration::from_secs(30);
 /// Name of the restart file in a checkpoint's folder.
 const RESTART: &str = "liggghts.restart";
+/// The fix that holds the pushed forces; the script of a moving bed makes it.
+const PUSH: &str = "calcine_push";
 /// LIGGGHTS' own log, in the script's folder; it ends where the windows begin.
 const LOG: &str = "log.liggghts";
 
@@ -61,12 +64,30 @@ pub enum HostError {
         name: &'static str,
     },
     /// Particles that went away.
-    #[error("{found} of {expected} particles are left; they left the box or their speed exploded")]
+    #[error(
+        "{found} of {expected} particles are left; they left the box or their speed exploded{which}"
+    )]
     Lost {
         /// Particles now.
         found: u64,
-        /// Particles at the start.
+        /// Particles before.
         expected: u64,
+        /// The first that is gone, with where it was last seen.
+        which: String,
+    },
+    /// A window without a step.
+    #[error("a window of {span} s holds no time step of {step} s; shorten `motion.motion_step`")]
+    NoStep {
+        /// The window in s.
+        span: f64,
+        /// The step in s.
+        step: f64,
+    },
+    /// A change that cannot be understood.
+    #[error("the change of particles has a line that is not understood: {line}")]
+    Change {
+        /// The line.
+        line: String,
     },
     /// The push is for other particles.
     #[error("the push has no force for particle {id}")]
@@ -138,6 +159,11 @@ impl Host {
                     self.checkpoint(&directory)?;
                     self.answer(header.answer(Kind::Checkpointed), &[])?;
                 }
+                Some(Kind::Change) => {
+                    let text = on_link(|link| link.text().map(str::to_owned))?;
+                    self.change(&text)?;
+                    self.answer(header.answer(Kind::Changed), &[])?;
+                }
                 Some(Kind::Bye) => {
                     self.tell("goodbye");
                     on_link(|link| link.send_plain(header.answer(Kind::Bye)))?;
@@ -169,15 +195,56 @@ impl Host {
         if self.told.elapsed() > Duration::from_secs(1) {
             self.tell(&format!("window {}: {steps} steps", header.window));
         }
+        self.push(&force, &header, steps)?;
         if steps > 0 {
             self.liggghts
                 .command(&format!("run {steps} pre no post no"));
         }
         self.look()?;
-        // The support of a held particle takes up the force; its impulse is the force's own.
+        // Of a free particle the steps add up to it; of a held one its support takes it up.
         let span = header.span_motion as f64 / TICKS;
         let impulse: Vec<f64> = force.iter().flatten().map(|force| force * span).collect();
         self.answer(header.answer(Kind::Finished), &impulse)
+    }
+
+    /// Has the forces act from the first half step on, and over the window's steps so much that their
+    /// impulse is that over its span.
+    fn push(&mut self, force: &[[f64; 3]], header: &Header, steps: i64) -> Result<(), HostError> {
+        let step = self
+            .liggghts
+            .step()
+            .ok_or(HostError::Missing { name: "dt" })?;
+        let Some(pushed) = self.liggghts.fix_vectors_mut(PUSH) else {
+            return Ok(()); // a bed that is held
+        };
+        let span = header.span_motion as f64 / TICKS;
+        if steps == 0 {
+            return Err(HostError::NoStep { span, step });
+        }
+        let scale = span / (steps as f64 * step);
+        let mut change = vec![0.0; pushed.len()];
+        for (&place, force) in self.state.place.iter().zip(force) {
+            for (axis, value) in force.iter().enumerate() {
+                let index = 3 * place + axis;
+                change[index] = scale * value - pushed[index];
+                pushed[index] = scale * value;
+            }
+        }
+        // The first half kick of a run uses the forces of the last one's end.
+        let forces = self.liggghts.vectors_mut("f");
+        let forces = forces.ok_or(HostError::Missing { name: "f" })?;
+        for (force, change) in forces.iter_mut().zip(change) {
+            *force += change;
+        }
+        Ok(())
+    }
+
+    /// Takes particles out and puts new ones in, then sets everything up for them.
+    fn change(&mut self, text: &str) -> Result<(), HostError> {
+        let change = Change::parse(text)?;
+        self.particles = change.apply(&mut self.liggghts, self.particles)?;
+        self.liggghts.command("run 0 post no");
+        self.look()
     }
 
     /// Steps of a window: those between the steps nearest to its start and to its end, so that
@@ -251,10 +318,25 @@ impl Host {
             return Err(HostError::Lost {
                 found,
                 expected: self.particles,
+                which: self.first_lost()?,
             });
         }
         self.state = State::read(&self.liggghts)?;
         Ok(())
+    }
+
+    /// The first particle of this rank's that is gone, in words.
+    fn first_lost(&self) -> Result<String, HostError> {
+        let now = State::read(&self.liggghts)?;
+        let gone = |(_, id): &(usize, &u64)| now.id.binary_search(id).is_err();
+        let lost = self.state.id.iter().enumerate().find(gone);
+        Ok(lost.map_or_else(String::new, |(row, id)| {
+            let at = &self.state.position[3 * row..3 * row + 3];
+            format!(
+                "; particle {id} was last seen at ({:.6}, {:.6}, {:.6}) m",
+                at[0], at[1], at[2]
+            )
+        }))
     }
 
     /// Sends the state; without impulses they are zero.

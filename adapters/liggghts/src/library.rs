@@ -37,6 +37,14 @@ unsafe extern "C" {
     fn lammps_command(lammps: *mut c_void, line: *const c_char) -> *mut c_char;
     fn lammps_extract_global(lammps: *mut c_void, name: *const c_char) -> *mut c_void;
     fn lammps_extract_atom(lammps: *mut c_void, name: *const c_char) -> *mut c_void;
+    fn lammps_extract_fix(
+        lammps: *mut c_void,
+        name: *const c_char,
+        style: c_int,
+        kind: c_int,
+        i: c_int,
+        j: c_int,
+    ) -> *mut c_void;
     fn _exit(status: c_int) -> !;
 }
 
@@ -249,6 +257,71 @@ impl Liggghts {
             let first = *rows.as_ref()?;
             (!first.is_null()).then(|| std::slice::from_raw_parts(first, 3 * count))
         }
+    }
+
+    /// The same, to be written.
+    pub fn vectors_mut(&mut self, name: &str) -> Option<&mut [f64]> {
+        let count = self.vectors(name)?.len();
+        if count == 0 {
+            return Some(&mut []);
+        }
+        let name = c_text(name);
+        // SAFETY: as for `vectors`, which found `count` numbers; borrowed mutably, alone.
+        unsafe {
+            let rows: *const *mut f64 = lammps_extract_atom(self.handle, name.as_ptr()).cast();
+            Some(std::slice::from_raw_parts_mut(*rows.as_ref()?, count))
+        }
+    }
+
+    /// Vectors of a `fix property/atom`, one for each of this rank's particles, to be written;
+    /// `None` where there is no such fix.
+    pub fn fix_vectors_mut(&mut self, fix: &str) -> Option<&mut [f64]> {
+        let count = self.local();
+        let name = c_text(fix);
+        // SAFETY: the handle is open; style 1 and kind 2 ask for per-atom vectors, a table of row
+        // pointers whose rows are contiguous, at least `nlocal` of them; an unknown fix gives NULL.
+        unsafe {
+            let rows: *const *mut f64 =
+                lammps_extract_fix(self.handle, name.as_ptr(), 1, 2, 0, 0).cast();
+            let first = *rows.as_ref()?;
+            if count == 0 || first.is_null() {
+                return Some(&mut []);
+            }
+            Some(std::slice::from_raw_parts_mut(first, 3 * count))
+        }
+    }
+
+    /// A scalar of this rank's particle at a place, to be written.
+    pub fn scalars_mut(&mut self, name: &str) -> Option<&mut [f64]> {
+        let count = self.scalars(name)?.len();
+        if count == 0 {
+            return Some(&mut []);
+        }
+        let name = c_text(name);
+        // SAFETY: as for `scalars`, which found `count` numbers; borrowed mutably, alone.
+        unsafe {
+            let values: *mut f64 = lammps_extract_atom(self.handle, name.as_ptr()).cast();
+            Some(std::slice::from_raw_parts_mut(values, count))
+        }
+    }
+
+    /// Tags of this rank's particles, to be written.
+    pub fn tags_mut(&mut self) -> Option<&mut [c_int]> {
+        let count = self.integers("id")?.len();
+        if count == 0 {
+            return Some(&mut []);
+        }
+        let name = c_text("id");
+        // SAFETY: as for `integers`, which found `count` numbers; borrowed mutably, alone.
+        unsafe {
+            let values: *mut c_int = lammps_extract_atom(self.handle, name.as_ptr()).cast();
+            Some(std::slice::from_raw_parts_mut(values, count))
+        }
+    }
+
+    /// This rank's particles.
+    pub fn here(&self) -> usize {
+        self.local()
     }
 
     fn column<T>(&self, name: &str, components: usize) -> Option<&[T]> {

@@ -3,6 +3,7 @@
 //!
 //! `calcine-liggghts SCRIPT CASE-HASH [RESTART-FILE]`, started by Calcine in the script's folder.
 
+mod change;
 mod host;
 #[allow(unsafe_code)]
 mod library;

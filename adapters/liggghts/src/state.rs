@@ -11,8 +11,11 @@ use crate::library::{self, Liggghts};
 pub struct State {
     /// LIGGGHTS' tags.
     pub id: Vec<u64>,
+    /// Place of each in LIGGGHTS' own arrays, until its next command.
+    pub place: Vec<usize>,
     population: Vec<u64>,
-    position: Vec<f64>,
+    /// Centres in m, interleaved.
+    pub position: Vec<f64>,
     velocity: Vec<f64>,
     angular_velocity: Vec<f64>,
     radius: Vec<f64>,
@@ -55,6 +58,7 @@ impl State {
             angular_velocity: vectors("omega")?,
             radius: scalars("radius")?,
             mass: scalars("rmass")?,
+            place: order,
         })
     }
 

@@ -5,8 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use calcine_coupler::error::{FailureKind, PartError};
+use calcine_coupler::motion::{Motion, WallShape};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
+
+use super::moving;
 
 /// Name of the script.
 pub const SCRIPT: &str = "in.liggghts";
@@ -14,6 +17,8 @@ pub const SCRIPT: &str = "in.liggghts";
 pub const DATA: &str = "particles.data";
 /// The script of a bed that is held; it reads [`DATA`].
 const FROZEN_BED: &str = include_str!("../../../liggghts-inputs/frozen-bed.in");
+/// The script of a bed that moves.
+const MOVING_BED: &str = include_str!("../../../liggghts-inputs/moving-bed.in");
 const WHO: &str = "LIGGGHTS (particles)";
 
 /// What the inputs are made from.
@@ -37,9 +42,15 @@ impl Inputs<'_> {
             (folder.join(SCRIPT), self.script()),
             (folder.join(DATA), self.data()),
         ];
+        let meshes = match &self.setup.motion {
+            Motion::Free(contacts) => moving::meshes(contacts),
+            Motion::Frozen => Vec::new(),
+        };
         fs::create_dir_all(folder).map_err(|error| unwritable(folder, error))?;
-        for (path, text) in &files {
-            fs::write(path, text).map_err(|error| unwritable(path, error))?;
+        let meshes = meshes.into_iter();
+        let meshes = meshes.map(|(name, text)| (folder.join(name), text));
+        for (path, text) in files.iter().cloned().chain(meshes) {
+            fs::write(&path, text).map_err(|error| unwritable(&path, error))?;
         }
         Ok(files.map(|(path, _)| path))
     }
@@ -47,8 +58,10 @@ impl Inputs<'_> {
     fn check(&self) -> Result<(), PartError> {
         let refuse = |message: String| Err(PartError::new(WHO, FailureKind::NotStarted, message));
         let setup = self.setup;
-        if !setup.motion.is_frozen() {
-            return refuse("it holds frozen beds only; set `motion = \"frozen\"`".into());
+        if let Motion::Free(contacts) = &setup.motion
+            && let Some(reason) = moving::refusal(contacts)
+        {
+            return refuse(reason);
         }
         if setup.id.is_empty() {
             return refuse("there are no particles".into());
@@ -74,8 +87,20 @@ impl Inputs<'_> {
         } else {
             format!("1 {} 1", self.ranks)
         };
-        let skin = 0.1 * self.setup.radius.iter().copied().fold(0.0, f64::max);
-        FROZEN_BED
+        let moves = !self.setup.motion.is_frozen();
+        let share = if moves { 0.4 } else { 0.1 };
+        let skin = share * self.setup.radius.iter().copied().fold(0.0, f64::max);
+        let (template, contacts) = match &self.setup.motion {
+            Motion::Frozen => (FROZEN_BED, String::new()),
+            Motion::Free(contacts) => (MOVING_BED, moving::commands(contacts)),
+        };
+        // Bins as large as particles would be without number in a large box with few of them.
+        let volume = (upper - lower).product();
+        let room = (volume / (4.0 * self.setup.id.len() as f64)).cbrt();
+        let bins = room.max(self.setup.radius.iter().copied().fold(0.0, f64::max) + 0.5 * skin);
+        template
+            .replace("{bins}", &format!("{bins:e}"))
+            .replace("{contacts}", &contacts)
             .replace("{processors}", &grid)
             .replace("{skin}", &format!("{skin:e}"))
             .replace("{step}", &format!("{:e}", self.step))
@@ -84,7 +109,10 @@ impl Inputs<'_> {
     fn data(&self) -> String {
         let setup = self.setup;
         let (lower, upper) = self.corners();
-        let types = setup.population.iter().max().map_or(1, |last| last + 1);
+        let types = match &setup.motion {
+            Motion::Frozen => setup.population.iter().max().map_or(1, |last| last + 1) as usize,
+            Motion::Free(contacts) => moving::types(contacts),
+        };
         let mut text = format!(
             "Written by Calcine: id, type (population + 1), diameter, density, centre; SI\n\n\
              {} atoms\n{types} atom types\n",
@@ -109,6 +137,13 @@ impl Inputs<'_> {
                 centre.z
             );
         }
+        if !setup.velocity.is_empty() {
+            text.push_str("\nVelocities\n\n");
+        }
+        for (id, velocity) in setup.id.iter().zip(&setup.velocity) {
+            let [x, y, z] = (*velocity).into();
+            let _ = writeln!(text, "{id} {x:e} {y:e} {z:e} 0 0 0");
+        }
         text
     }
 
@@ -118,6 +153,15 @@ impl Inputs<'_> {
         for (centre, &radius) in self.setup.position.iter().zip(&self.setup.radius) {
             lower = lower.inf(&centre.add_scalar(-radius));
             upper = upper.sup(&centre.add_scalar(radius));
+        }
+        if let Motion::Free(contacts) = &self.setup.motion {
+            let triangles = contacts.walls.iter().filter_map(|wall| match &wall.shape {
+                WallShape::Mesh { triangles } => Some(triangles),
+                _ => None,
+            });
+            for corner in triangles.flatten().flatten() {
+                (lower, upper) = (lower.inf(corner), upper.sup(corner));
+            }
         }
         let margin = 0.01 * (upper - lower);
         (lower - margin, upper + margin)

@@ -1,10 +1,13 @@
 //! Particles in Debian's LIGGGHTS, run as a library by the host `calcine-liggghts`.
 
 pub mod inputs;
+pub mod moving;
 
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use calcine_coupler::checkpoint::{StateFile, StateFileError};
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::motion::Change;
 use calcine_coupler::part::{
@@ -28,6 +31,8 @@ pub const HOST: &str = "calcine-liggghts";
 pub const HOST_VARIABLE: &str = "CALCINE_LIGGGHTS_HOST";
 /// Name of the restart file in a checkpoint's folder, as the host writes it.
 const RESTART: &str = "liggghts.restart";
+/// Name of the file with ids and radii in a checkpoint's folder.
+const IDENTITY: &str = "identity.state";
 /// Time step in s for a bed that is held: nothing happens within it.
 pub const FROZEN_STEP: f64 = 1e-4;
 
@@ -48,6 +53,37 @@ pub struct LiggghtsLaunch<'a> {
     pub resume: Option<PathBuf>,
     /// Longest silence while starting, writing a checkpoint or ending.
     pub deadline: Duration,
+}
+
+/// Ids and radii in m of a checkpoint's particles.
+fn identity(folder: &Path) -> Result<(Vec<u64>, Vec<f64>), PartError> {
+    let read = || {
+        let state = StateFile::read(&folder.join(IDENTITY))?;
+        Ok((state.u64s("id")?.to_vec(), state.f64s("radius")?.to_vec()))
+    };
+    read().map_err(|error| unusable(folder, error))
+}
+
+fn unusable(folder: &Path, error: StateFileError) -> PartError {
+    let message = format!("the checkpoint {} cannot be used", folder.display());
+    PartError::new(NAME, FailureKind::Io, message).caused_by(error)
+}
+
+/// A change in the host's lines, with every digit.
+fn change_text(change: &Change) -> String {
+    let mut text = String::new();
+    for id in &change.remove {
+        let _ = writeln!(text, "remove {id}");
+    }
+    for new in &change.insert {
+        let _ = write!(text, "insert {} {}", new.id, new.population + 1);
+        let values = new.position.iter().chain(new.velocity.iter());
+        for value in values.chain([&new.radius, &new.density]) {
+            let _ = write!(text, " {value:e}");
+        }
+        text.push('\n');
+    }
+    text
 }
 
 /// Particles as columns, in ascending id.
@@ -92,13 +128,17 @@ impl LiggghtsParticles {
             arguments.push(file.into());
         }
         let setup = launch.inputs.setup;
+        let identity = match &launch.resume {
+            Some(folder) if folder.join(IDENTITY).is_file() => identity(folder)?,
+            _ => (setup.id.clone(), setup.radius.clone()),
+        };
         let hello = Hello {
             role: "particles".into(),
             name: "Calcine".into(),
             version: env!("CARGO_PKG_VERSION").into(),
             case_hash: launch.case_hash,
-            mesh_hash: hash_text(particles_hash(&setup.id, &setup.radius)),
-            count: setup.id.len() as u64,
+            mesh_hash: hash_text(particles_hash(&identity.0, &identity.1)),
+            count: identity.0.len() as u64,
             ranks: launch.inputs.ranks,
             catalogue: Catalogue::standard("particles").map_err(|error| {
                 PartError::new(NAME, FailureKind::NotStarted, "its columns").caused_by(error)
@@ -241,7 +281,13 @@ impl Part for LiggghtsParticles {
     fn checkpoint(&mut self, directory: &Path) -> Result<(), PartError> {
         self.solver.checkpoint(directory)?;
         self.committed = self.read(None)?;
-        Ok(())
+        // Which particles a resumed run must agree on: they may be others than at the start.
+        let mut state = StateFile::new();
+        state.set_u64s("id", &self.committed.id);
+        state.set_f64s("radius", &self.committed.radius);
+        state
+            .write(&directory.join(IDENTITY))
+            .map_err(|error| unusable(directory, error))
     }
 
     fn finish_run(&mut self, _supervisor: &Supervisor) -> Result<(), PartError> {
@@ -267,15 +313,31 @@ impl Particles for LiggghtsParticles {
         &[]
     }
 
-    fn change(&mut self, _supervisor: &Supervisor, change: &Change) -> Result<(), PartError> {
+    fn change(&mut self, supervisor: &Supervisor, change: &Change) -> Result<(), PartError> {
         if change.is_empty() {
             return Ok(());
         }
-        Err(PartError::new(
-            self.about().name.clone(),
-            FailureKind::Protocol,
-            "a frozen bed takes no particles in or out",
-        ))
+        let largest = i32::MAX as u64;
+        if let Some(new) = change.insert.iter().find(|new| new.id > largest) {
+            let message = format!(
+                "its ids end at {largest}, but a particle {} comes in",
+                new.id
+            );
+            return Err(self.solver.refuse(None, message));
+        }
+        let before = self.committed.id.len();
+        self.solver.change(supervisor, &change_text(change))?;
+        self.attempt = self.read(None)?;
+        self.committed.clone_from(&self.attempt);
+        let (now, due) = (
+            self.committed.id.len(),
+            before + change.insert.len() - change.remove.len(),
+        );
+        if now != due {
+            let message = format!("{now} particles are left after a change, not {due}");
+            return Err(self.solver.refuse(None, message));
+        }
+        Ok(())
     }
 
     fn start(&mut self, window: &Window, push: &ParticlePush) -> Result<(), PartError> {

@@ -26,9 +26,16 @@ impl Record {
     pub fn of(kind: Kind) -> Option<Record> {
         match kind {
             Kind::Start => Some(Record::Start),
-            Kind::State | Kind::Finished | Kind::Checkpointed => Some(Record::State),
+            Kind::State | Kind::Finished | Kind::Checkpointed | Kind::Changed => {
+                Some(Record::State)
+            }
             Kind::Owned => Some(Record::Owned),
-            Kind::Hello | Kind::Commit | Kind::Checkpoint | Kind::Failed | Kind::Bye => None,
+            Kind::Hello
+            | Kind::Commit
+            | Kind::Checkpoint
+            | Kind::Change
+            | Kind::Failed
+            | Kind::Bye => None,
         }
     }
 

@@ -32,11 +32,15 @@ pub enum Kind {
     /// Which cells of the whole mesh the rank of a gas has, in the order of all its columns; sent
     /// once, after the handshake (columns).
     Owned = 10,
+    /// Particles that go and come between two windows (text, see the host's `change`).
+    Change = 11,
+    /// The change is made; the state after it (columns).
+    Changed = 12,
 }
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Kind; 10] = [
+    pub const ALL: [Kind; 12] = [
         Kind::Hello,
         Kind::State,
         Kind::Start,
@@ -47,6 +51,8 @@ impl Kind {
         Kind::Failed,
         Kind::Bye,
         Kind::Owned,
+        Kind::Change,
+        Kind::Changed,
     ];
 
     /// The kind of a number on the wire.

@@ -2,6 +2,19 @@
 
 use crate::network::Touch;
 
+/// A particle that comes in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Newcomer {
+    /// Its mass in kg.
+    pub mass: f64,
+    /// Index of its material.
+    pub material: usize,
+    /// Its conductivity in W/m/K; only asked for where particles conduct.
+    pub conductivity: f64,
+    /// Its temperature in K.
+    pub temperature: f64,
+}
+
 /// Inside of all particles. An attempt always starts from the last commit.
 pub trait ParticleModel: Send {
     /// Surface temperature of each particle in K after the last attempt.
@@ -39,6 +52,12 @@ pub trait ParticleModel: Send {
 
     /// Energy stored by the last attempt in J: the sum over particles, and the sum of magnitudes.
     fn stored_change(&self) -> (f64, f64);
+
+    /// Takes particles out, by their rows in ascending order, and appends new ones; after a commit.
+    fn change(&mut self, gone: &[usize], new: &[Newcomer]);
+
+    /// Enthalpy of each particle at its committed temperature in J, from 0 K of its heat capacity's law on.
+    fn enthalpy(&self, row: usize) -> f64;
 
     /// Takes up temperatures in K from a checkpoint, as committed.
     fn restore(&mut self, temperature: &[f64]);

@@ -2,6 +2,8 @@
 
 use calcine_physics::conduction::{Conduction, Contact};
 
+use crate::{Newcomer, without};
+
 /// Relative residual at which the implicit step ends: far below what a window's other errors are, and
 /// energy does not depend on it, because flows go from one particle to the other whatever they are.
 const TOLERANCE: f64 = 1e-12;
@@ -51,6 +53,15 @@ impl Network {
             heat,
             solver: Solver::default(),
         }
+    }
+
+    /// Particles that go, by their rows in ascending order, and come; all contacts are forgotten.
+    pub fn change(&mut self, gone: &[usize], new: &[Newcomer]) {
+        without(&mut self.conductivity, gone);
+        self.conductivity
+            .extend(new.iter().map(|one| one.conductivity));
+        self.heat = vec![0.0; self.conductivity.len()];
+        self.bonds.clear();
     }
 
     /// Takes up which particles touch.

@@ -2,8 +2,8 @@
 
 use calcine_physics::solid::HeatCapacity;
 
-use crate::ParticleModel;
 use crate::network::{Network, Touch};
+use crate::{Newcomer, ParticleModel, without};
 
 /// Particles of uniform temperature: m dh(T)/dτ = Q, h the enthalpy of the material. Good for Biot
 /// numbers below about 0.1.
@@ -147,6 +147,28 @@ impl ParticleModel for Thin {
         (0..self.temperature.len()).fold((0.0, 0.0), |(sum, magnitude), p| {
             (sum + change(p), magnitude + change(p).abs())
         })
+    }
+
+    fn change(&mut self, gone: &[usize], new: &[Newcomer]) {
+        without(&mut self.mass, gone);
+        without(&mut self.material, gone);
+        without(&mut self.committed, gone);
+        self.mass.extend(new.iter().map(|one| one.mass));
+        self.material.extend(new.iter().map(|one| one.material));
+        self.committed.extend(new.iter().map(|one| one.temperature));
+        self.temperature.clone_from(&self.committed);
+        self.start.clone_from(&self.committed);
+        self.heat_capacity.resize(self.mass.len(), 0.0);
+        if let Some(network) = &mut self.network {
+            network.change(gone, new);
+        }
+        self.update_heat_capacity();
+        self.start_over();
+    }
+
+    fn enthalpy(&self, row: usize) -> f64 {
+        let law = &self.materials[self.material[row]];
+        self.mass[row] * law.enthalpy(self.committed[row])
     }
 
     fn restore(&mut self, temperature: &[f64]) {

@@ -10,6 +10,7 @@ use thiserror::Error;
 
 use super::{Run, RunError};
 use crate::checkpoint::StateFile;
+use crate::ledger::Moved;
 use crate::observer::Observer;
 use crate::time::{Clocks, Ticks};
 
@@ -158,6 +159,21 @@ impl Run<'_> {
             self.parts.interior.committed_temperature(),
         );
         state.set_f64s("particle_heat", &self.work.exchange.heat);
+        let other: Vec<f64> = self
+            .work
+            .other
+            .iter()
+            .flat_map(|f| f.iter().copied())
+            .collect();
+        state.set_f64s("particle_other_force", &other);
+        let moved: Vec<f64> = self
+            .ledger
+            .traffic
+            .iter()
+            .flat_map(Moved::numbers)
+            .collect();
+        state.set_f64s("traffic_moved", &moved);
+        self.plan.traffic.record(&mut state);
         self.record_identity(&mut state);
         state
     }
@@ -192,6 +208,16 @@ impl Run<'_> {
             }
             .into());
         }
+        let other = state.f64s_of("particle_other_force", 3 * expected)?;
+        for (force, values) in self.work.other.iter_mut().zip(other.chunks_exact(3)) {
+            force.copy_from_slice(values);
+        }
+        let moved = state.f64s_of("traffic_moved", 12)?.chunks_exact(6);
+        for (total, values) in self.ledger.traffic.iter_mut().zip(moved) {
+            let numbers = <[f64; 6]>::try_from(values).unwrap_or_default();
+            *total = Moved::from_numbers(numbers);
+        }
+        self.plan.traffic.restore(&state)?;
         self.parts.interior.restore(temperature);
         self.work.exchange.heat.copy_from_slice(heat);
         for (line, values) in self

@@ -1,7 +1,9 @@
 //! The loop: windows, attempts, commits, checkpoints.
 
 mod checkpoint;
+mod momentum;
 mod origin;
+mod trade;
 mod window;
 
 use std::path::PathBuf;
@@ -22,10 +24,12 @@ use crate::ledger::{Ledger, Line};
 use crate::mapping::{Mapper, MappingError, Method};
 use crate::mesh::Mesh;
 use crate::observer::{Moment, Observer, ObserverError, Timing};
+use crate::packing::PackingError;
 use crate::part::{Bed, CellReceived, Convergence, Gas, ParticlePush, ParticleReceived, Particles};
 use crate::smoother::{Operator, Smoother, SmootherError};
 use crate::supervisor::Supervisor;
 use crate::time::{Acceleration, Clocks, GasStorage, Ticks, TimeError};
+use crate::traffic::Traffic;
 
 /// When windows, checkpoints and the run end, and how exactly a window is exchanged.
 #[derive(Clone, Debug)]
@@ -54,6 +58,14 @@ pub struct Plan {
     pub case_hash: String,
     /// Where checkpoints go.
     pub checkpoint: CheckpointPaths,
+    /// True for each population that moves; empty where none does.
+    pub free: Vec<bool>,
+    /// Gravity in m/s².
+    pub gravity: Vec3,
+    /// Feeds and outlets.
+    pub traffic: Traffic,
+    /// Material and conductivity in W/m/K of each population, for what feeds bring in.
+    pub substance: Vec<(usize, f64)>,
 }
 
 /// How a run ended without an error.
@@ -85,6 +97,9 @@ pub enum RunError {
         /// What the law said.
         cause: ClosureError,
     },
+    /// A feed whose particles cannot be drawn.
+    #[error("feeds: {0}")]
+    Feed(#[from] PackingError),
     /// The clock ended.
     #[error(transparent)]
     Time(#[from] TimeError),
@@ -131,6 +146,11 @@ struct Workspace {
     particle_received: ParticleReceived,
     push: ParticlePush,
     pressure_force: Vec<Vec3>,
+    /// Velocities in m/s at the start of the window.
+    velocity: Vec<Vec3>,
+    /// All but drag that acted on each particle in the last window, in N.
+    other: Vec<Vec3>,
+    free: Vec<bool>,
 }
 
 /// A run: the parts, the laws, the state of the loop.
@@ -169,6 +189,7 @@ impl<'m> Run<'m> {
         work.exchange
             .heat
             .resize(parts.particles.fields().len(), 0.0);
+        work.begin(&parts.particles.fields(), &plan.free, plan.gravity);
         let mut run = Self {
             plan,
             mesh,
@@ -210,6 +231,7 @@ impl<'m> Run<'m> {
         let mut last_checkpoint = Instant::now();
         while self.clocks.process < self.plan.end {
             let window = self.next_window()?;
+            self.trade(supervisor, &window)?;
             self.advance(supervisor, &window)?;
 
             let output = Instant::now();

@@ -144,7 +144,9 @@ impl Run<'_> {
                 cause,
             })?;
         let span = window.span.process.seconds();
-        work.exchange.conductance.resize(particles.len(), 0.0);
+        self.relax_drag(window);
+        let (work, count) = (&mut self.work, self.parts.particles.fields().len());
+        work.exchange.conductance.resize(count, 0.0);
         self.parts.interior.eliminated(
             &work.coefficients.conductance,
             span,
@@ -223,6 +225,7 @@ impl Run<'_> {
 
     fn move_particles(&mut self, supervisor: &Supervisor, window: &Window) -> Result<(), RunError> {
         let begun = Instant::now();
+        self.note_velocities();
         let work = &mut self.work;
         work.exchange.push(
             &self.mapped.operator,
@@ -243,6 +246,7 @@ impl Run<'_> {
         self.close_ledger(window);
         self.parts.gas.commit()?;
         self.parts.particles.commit()?;
+        self.note_forces(window);
         self.parts.interior.commit();
         self.clocks = window.end()?;
         self.windows += 1;

@@ -1,7 +1,7 @@
 //! Packed beds to start from: random packings by geometry alone, and regular stackings.
 
 mod container;
-mod random;
+pub(crate) mod random;
 pub mod regular;
 mod relax;
 mod sizes;

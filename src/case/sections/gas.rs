@@ -17,7 +17,7 @@ pub(super) fn read(
     root: &Reader<'_>,
     mesh: Option<&MeshSpec>,
     storage: Option<GasStorage>,
-) -> Option<GasSetup> {
+) -> Option<(GasSetup, bool)> {
     let section = root.required_table("gas", "[gas] with mixture = \"air\"")?;
     let mixture = section.required_text("mixture", "\"air\"");
     let properties = properties(&section, mixture);
@@ -26,11 +26,12 @@ pub(super) fn read(
     let gravity = section
         .vector("gravity", Dimension::ACCELERATION)
         .unwrap_or([0.0; 3]);
+    let held = section.truth("held").unwrap_or(false);
     let patches = boundary(&section, mesh, properties.as_ref());
     let controls = controls(&section);
     section.finish();
     let (temperature, pressure, velocity, composition) = initial?;
-    Some(GasSetup {
+    let setup = GasSetup {
         mixture: mixture?.into(),
         properties: properties?,
         schmidt: schmidt?,
@@ -42,7 +43,8 @@ pub(super) fn read(
         gravity: Vec3::from(gravity),
         patches: patches?,
         controls,
-    })
+    };
+    Some((setup, held))
 }
 
 /// A built-in mixture, or the properties of `[gas.properties]` or `[gas.constant]`.

@@ -6,6 +6,7 @@ mod gas;
 mod gas_patch;
 mod laws;
 mod mesh;
+mod motion;
 mod output;
 mod particles;
 mod place;
@@ -13,6 +14,8 @@ mod probes;
 mod quantities;
 mod sizes;
 mod time;
+mod traffic;
+mod walls;
 mod zone;
 
 use std::path::{Path, PathBuf};
@@ -49,7 +52,11 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         time.as_ref().map(|(_, storage)| *storage),
     );
     let particles = particles::populations(root, &materials, mesh.as_ref(), folder);
+    let feeds = traffic::feeds(root, particles.as_deref());
+    let outlets = traffic::outlets(root);
     let laws = laws::read(root);
+    let walls = walls::walls(root, &materials, mesh.as_ref(), folder);
+    let motion = motion::motion(root);
     let coupling = coupling::read(root);
     let openfoam = coupling::external(root, "openfoam", folder);
     let liggghts = coupling::external(root, "liggghts", folder);
@@ -59,10 +66,24 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     let output = output::output(root);
     let probes = probes::probes(root);
     let quantities = quantities::quantities(root, mesh.as_ref(), particles.as_deref(), &probes);
-    if let (Some(gas), Some((time, _))) = (&gas, &time) {
+    if let (Some((gas, _)), Some((time, _))) = (&gas, &time) {
         coupling::check_stock(root, &openfoam, gas, time);
     }
+    if let (Some((time, _)), Some(particles)) = (&time, &particles) {
+        motion::fits(root, motion.as_ref(), time, particles);
+        if let Some(motion) = &motion {
+            let meeting = motion::Meeting {
+                motion,
+                materials: &materials,
+                contacts: &contacts,
+                particles,
+                walls: &walls,
+            };
+            motion::need_properties(root, &meeting);
+        }
+    }
     let (time, _) = time?;
+    let (gas, gas_held) = gas?;
     Some(Case {
         name: path
             .file_stem()
@@ -75,8 +96,13 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         mesh: mesh?,
         materials,
         contacts,
-        gas: gas?,
+        walls,
+        motion,
+        gas,
+        gas_held,
         particles: particles?,
+        feeds,
+        outlets,
         laws: laws?,
         coupling: coupling?,
         openfoam,

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::solid::HeatCapacity;
 
 use super::place::place;
@@ -102,7 +103,6 @@ pub(super) fn contacts(root: &Reader<'_>, materials: &[Material]) -> Vec<Contact
                 table.missing("between", "[\"glass\", \"glass\"]");
             }
             let restitution = table.quantity("restitution", Dimension::NONE);
-            let friction = table.quantity("friction", Dimension::NONE);
             if restitution.is_some_and(|e| !(e > 0.0 && e <= 1.0)) {
                 table.fail(
                     "restitution",
@@ -110,9 +110,18 @@ pub(super) fn contacts(root: &Reader<'_>, materials: &[Material]) -> Vec<Contact
                     "it lies above 0 and up to 1",
                 );
             }
-            if friction.is_some_and(|mu| mu < 0.0) {
-                table.fail("friction", "is negative", "it is zero or above");
-            }
+            let zero_or_above = |key, dimension| {
+                let value = table.quantity(key, dimension);
+                if value.is_some_and(|value| value < 0.0) {
+                    table.fail(key, "is negative", "it is zero or above");
+                }
+                value
+            };
+            let friction = zero_or_above("friction", Dimension::NONE);
+            let rolling_friction = zero_or_above("rolling_friction", Dimension::NONE);
+            let rolling_damping = zero_or_above("rolling_damping", Dimension::NONE);
+            // J/m³ is Pa.
+            let cohesion_energy = zero_or_above("cohesion_energy", Dimension::PRESSURE);
             table.finish();
             let index = |name: &String| materials.iter().position(|other| other.name == *name);
             let pair: Option<Vec<usize>> = between?.iter().map(index).collect();
@@ -128,6 +137,9 @@ pub(super) fn contacts(root: &Reader<'_>, materials: &[Material]) -> Vec<Contact
                 between: pair?,
                 restitution,
                 friction,
+                rolling_friction,
+                rolling_damping,
+                cohesion_energy,
             })
         })
         .collect()
@@ -188,7 +200,15 @@ fn population(
             found
         });
     let sizes = sizes(table);
-    let motion = table.required_choice("motion", &[("frozen", Motion::Frozen)]);
+    let motion = table.required_choice(
+        "motion",
+        &[("frozen", Motion::Frozen), ("free", Motion::Free)],
+    );
+    let velocity = table.vector("velocity", Dimension::VELOCITY);
+    if velocity.is_some() && motion == Some(Motion::Frozen) {
+        let help = "remove it, or write motion = \"free\"";
+        table.fail("velocity", "does not go with motion = \"frozen\"", help);
+    }
     let temperature = table.required_positive("temperature", Dimension::TEMPERATURE);
     let placed = table
         .required_table("place", "place = { grid = { first = \"5 5 5 mm\", spacing = \"10 10 10 mm\", counts = [1, 1, 10] } }")
@@ -206,6 +226,7 @@ fn population(
         sizes,
         size_seed,
         motion: motion?,
+        velocity: velocity.map_or(Vec3::zeros(), Vec3::from),
         place: placed?,
         temperature: temperature?,
     })

@@ -55,6 +55,7 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
         "density" => (Dimension::DENSITY, "kg/m^3"),
         "speed" => (Dimension::VELOCITY, "m/s"),
         "void_fraction" => (Dimension::NONE, "1"),
+        "height" => (Dimension::LENGTH, "m"),
         _ => (Dimension::TEMPERATURE, "K"),
     };
     let agree = if agree {
@@ -125,7 +126,11 @@ const GAS: [(&str, &str); 5] = [
     ("void_fraction", "void_fraction"),
 ];
 /// Fields of particles.
-const PARTICLES: [(&str, &str); 1] = [("temperature", "temperature")];
+const PARTICLES: [(&str, &str); 3] = [
+    ("temperature", "temperature"),
+    ("speed", "speed"),
+    ("height", "height"),
+];
 
 /// The measure and the field that it is of.
 fn measure(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {

@@ -70,6 +70,16 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// `true` or `false`.
+    pub fn truth(&self, key: &str) -> Option<bool> {
+        let item = self.item(key)?;
+        let truth = item.as_bool();
+        if truth.is_none() {
+            self.wrong_type(key, "true or false", item);
+        }
+        truth
+    }
+
     /// Several whole numbers, at least 1 each.
     pub fn wholes<const N: usize>(&self, key: &str) -> Option<[usize; N]> {
         let Some(item) = self.item(key) else {

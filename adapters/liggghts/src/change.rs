@@ -1,0 +1,119 @@
+//! Particles that go and come between two windows.
+//!
+//! The coordinator tells them as lines: `remove ID`, and `insert ID TYPE x y z vx vy vz RADIUS DENSITY`
+//! in SI with every digit.
+
+use std::f64::consts::PI;
+
+use crate::host::HostError;
+use crate::library::Liggghts;
+
+/// Ids in one command: LIGGGHTS' lines are limited to 2048 letters.
+const IDS_A_LINE: usize = 100;
+/// The group of those that go.
+const GROUP: &str = "calcine_gone";
+
+/// One particle that comes.
+struct New {
+    id: i32,
+    kind: i32,
+    /// Centre, velocity, radius, density.
+    values: [f64; 8],
+}
+
+/// What goes and comes.
+pub struct Change {
+    remove: Vec<u64>,
+    insert: Vec<New>,
+}
+
+impl Change {
+    /// Reads the lines.
+    pub fn parse(text: &str) -> Result<Self, HostError> {
+        let (mut remove, mut insert) = (Vec::new(), Vec::new());
+        for line in text.lines() {
+            let refuse = || HostError::Change { line: line.into() };
+            let words: Vec<&str> = line.split_ascii_whitespace().collect();
+            match words[..] {
+                ["remove", id] => remove.push(id.parse().map_err(|_| refuse())?),
+                ["insert", id, kind, ref rest @ ..] => {
+                    let values: Result<Vec<f64>, _> =
+                        rest.iter().map(|word| word.parse()).collect();
+                    let values = values.map_err(|_| refuse())?;
+                    insert.push(New {
+                        id: id.parse().map_err(|_| refuse())?,
+                        kind: kind.parse().map_err(|_| refuse())?,
+                        values: <[f64; 8]>::try_from(values).map_err(|_| refuse())?,
+                    });
+                }
+                _ => return Err(refuse()),
+            }
+        }
+        Ok(Self { remove, insert })
+    }
+
+    /// Makes the change; how many particles there must be afterwards.
+    pub fn apply(&self, liggghts: &mut Liggghts, before: u64) -> Result<u64, HostError> {
+        for new in &self.insert {
+            put_in(liggghts, new)?;
+        }
+        // Deleting comes last, be it of nobody: it makes LIGGGHTS' map of ids anew, which must hold
+        // the ids given here.
+        liggghts.command(&format!("group {GROUP} subtract all all"));
+        for ids in self.remove.chunks(IDS_A_LINE) {
+            let words: Vec<String> = ids.iter().map(u64::to_string).collect();
+            liggghts.command(&format!("group {GROUP} id {}", words.join(" ")));
+        }
+        // Without `no` the ids of those that stay would be counted anew.
+        liggghts.command(&format!("delete_atoms group {GROUP} compress no"));
+        liggghts.command(&format!("group {GROUP} delete"));
+        Ok(before + self.insert.len() as u64 - self.remove.len() as u64)
+    }
+}
+
+/// Creates a particle and gives it its id and its state, on the rank that has its place.
+fn put_in(liggghts: &mut Liggghts, new: &New) -> Result<(), HostError> {
+    let [x, y, z, vx, vy, vz, radius, density] = new.values;
+    let before = liggghts.here();
+    liggghts.command(&format!(
+        "create_atoms {} single {x:e} {y:e} {z:e} units box",
+        new.kind
+    ));
+    let place = before;
+    if liggghts.here() == before {
+        return Ok(()); // another rank's, or beyond the box: then it is noticed as lost
+    }
+    let missing = |name| HostError::Missing { name };
+    let mass = 4.0 / 3.0 * PI * radius.powi(3) * density;
+    for (name, value) in [("radius", radius), ("density", density), ("rmass", mass)] {
+        let column = liggghts.scalars_mut(name);
+        column.ok_or_else(|| missing(name))?[place] = value;
+    }
+    for (name, vector) in [("x", [x, y, z]), ("v", [vx, vy, vz]), ("omega", [0.0; 3])] {
+        let column = liggghts.vectors_mut(name).ok_or_else(|| missing(name))?;
+        column[3 * place..3 * place + 3].copy_from_slice(&vector);
+    }
+    liggghts.tags_mut().ok_or_else(|| missing("id"))?[place] = new.id;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_that_are_not_understood_are_told() {
+        let good = Change::parse("remove 7\ninsert 9 1 0 0 0.5 0 0 -1 1e-3 2500\n").unwrap();
+        assert_eq!((good.remove[0], good.insert[0].id), (7, 9));
+        assert_eq!(good.insert[0].values[2], 0.5);
+        for line in [
+            "remove",
+            "insert 9 1 0 0",
+            "insert 9 1 0 0 0 0 0 0 x 1",
+            "add 3",
+        ] {
+            let error = Change::parse(line).err().unwrap().to_string();
+            assert!(error.contains(line), "{error}");
+        }
+    }
+}

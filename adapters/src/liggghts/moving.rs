@@ -1,0 +1,314 @@
+//! Materials, contacts, walls and forces of a moving bed as LIGGGHTS' commands.
+//!
+//! Atom types are the populations in their order, then the materials in theirs: walls are of the latter.
+
+use std::fmt::Write;
+
+use calcine_coupler::motion::{
+    Cohesion, ContactForce, Contacts, Pair, Rolling, Wall, WallMotion, WallShape,
+};
+use calcine_coupler::physics::Vec3;
+
+/// LIGGGHTS refuses softer ones unless told that they are meant, and harder ones than the second.
+const USUAL_YOUNG: [f64; 2] = [5e6, 1e9];
+/// Restitution below which LIGGGHTS refuses a pair.
+const LEAST_RESTITUTION: f64 = 0.05;
+/// Characteristic speed in m/s below which LIGGGHTS refuses the linear law.
+const LEAST_SPEED: f64 = 1e-2;
+
+/// Number of atom types.
+pub fn types(contacts: &Contacts) -> usize {
+    contacts.material_of.len() + contacts.materials.len()
+}
+
+/// What LIGGGHTS cannot do of a case, with the remedy.
+pub fn refusal(contacts: &Contacts) -> Option<String> {
+    match contacts.law.force {
+        ContactForce::SpringSliderDashpot => {
+            return Some(
+                "it has no contact law \"spring-slider-dashpot\", which forgets its tangential spring as \
+                 it slips; write motion.contact = { law = \"hertz-mindlin\" }"
+                    .into(),
+            );
+        }
+        ContactForce::Linear {
+            characteristic_speed,
+        } if characteristic_speed < LEAST_SPEED => {
+            return Some(format!(
+                "its linear law takes no characteristic speed below {LEAST_SPEED} m/s; \
+                 `motion.contact.characteristic_speed` is {characteristic_speed} m/s"
+            ));
+        }
+        ContactForce::Linear { .. } | ContactForce::HertzMindlin => {}
+    }
+    for material in &contacts.materials {
+        if material.poisson < 0.0 {
+            return Some(format!(
+                "it takes no negative Poisson's ratio; a material has {}",
+                material.poisson
+            ));
+        }
+    }
+    let pairs = contacts.pairs.iter();
+    let low = pairs.map(|pair| pair.restitution).fold(1.0, f64::min);
+    if low < LEAST_RESTITUTION {
+        return Some(format!(
+            "it takes no restitution below {LEAST_RESTITUTION}; a pair of `contacts` has {low}"
+        ));
+    }
+    contacts.walls.iter().find_map(wall_refusal)
+}
+
+fn wall_refusal(wall: &Wall) -> Option<String> {
+    let name = &wall.name;
+    let along = |direction: &Vec3| direction.iter().any(|value| value.abs() == 1.0);
+    let moves = wall.motion != WallMotion::Still;
+    let what = match &wall.shape {
+        WallShape::Mesh { .. } => return None,
+        WallShape::Cone { .. } => "is a cone",
+        WallShape::Plane { .. } | WallShape::Cylinder { .. } if moves => {
+            "is a plane or a cylinder that moves"
+        }
+        WallShape::Plane { normal, .. } if !along(normal) => "is a plane across the axes",
+        WallShape::Cylinder { axis, .. } if axis.z.abs() != 1.0 => {
+            "is a cylinder that is not upright"
+        }
+        WallShape::Plane { .. } | WallShape::Cylinder { .. } => return None,
+    };
+    Some(format!(
+        "wall \"{name}\" {what}, which it does not have; give its triangles: walls.stl = \"{name}.stl\""
+    ))
+}
+
+/// The commands after the particles are read.
+pub fn commands(contacts: &Contacts) -> String {
+    let mut text = String::new();
+    properties(&mut text, contacts);
+    let model = model(contacts);
+    let _ = writeln!(text, "pair_style gran {model}\npair_coeff * *");
+    groups(&mut text, contacts);
+    let gravity = contacts.gravity.norm();
+    if gravity > 0.0 {
+        let [x, y, z] = (contacts.gravity / gravity).into();
+        let _ = writeln!(
+            text,
+            "fix calcine_gravity calcine_free gravity {gravity:e} vector {x:e} {y:e} {z:e}"
+        );
+    }
+    walls(&mut text, contacts, &model);
+    text.push_str(
+        "fix calcine_push all property/atom calcine_push vector yes no no 0. 0. 0.\n\
+         variable calcine_x atom f_calcine_push[1]\n\
+         variable calcine_y atom f_calcine_push[2]\n\
+         variable calcine_z atom f_calcine_push[3]\n\
+         fix calcine_add calcine_free addforce v_calcine_x v_calcine_y v_calcine_z\n",
+    );
+    if contacts.held.contains(&true) {
+        text.push_str("fix calcine_hold calcine_held freeze\n");
+    }
+    text.push_str("fix calcine_move calcine_free nve/sphere\n");
+    text
+}
+
+/// The material of each atom type.
+fn material_of_type(contacts: &Contacts) -> Vec<usize> {
+    let walls = 0..contacts.materials.len();
+    contacts.material_of.iter().copied().chain(walls).collect()
+}
+
+fn properties(text: &mut String, contacts: &Contacts) {
+    let types = material_of_type(contacts);
+    let young = contacts.materials.iter().map(|material| material.young);
+    if young.clone().fold(f64::INFINITY, f64::min) < USUAL_YOUNG[0] {
+        text.push_str("soft_particles yes\n");
+    }
+    if young.fold(0.0, f64::max) > USUAL_YOUNG[1] {
+        text.push_str("hard_particles yes\n");
+    }
+    let mut scalar = |name: &str, value: &dyn Fn(usize) -> f64| {
+        let values: Vec<String> = types.iter().map(|&of| format!("{:e}", value(of))).collect();
+        let values = values.join(" ");
+        let _ = writeln!(
+            text,
+            "fix {name} all property/global {name} peratomtype {values}"
+        );
+    };
+    scalar("youngsModulus", &|of| contacts.materials[of].young);
+    scalar("poissonsRatio", &|of| contacts.materials[of].poisson);
+    let mut pairs = |name: &str, value: &dyn Fn(&Pair) -> f64| {
+        let rows = types.iter().flat_map(|&a| {
+            let pair = move |&b: &usize| contacts.pair(a, b);
+            types.iter().map(pair)
+        });
+        let values: Vec<String> = rows.map(|pair| format!("{:e}", value(pair))).collect();
+        let _ = writeln!(
+            text,
+            "fix {name} all property/global {name} peratomtypepair {} {}",
+            types.len(),
+            values.join(" ")
+        );
+    };
+    pairs("coefficientRestitution", &|pair| pair.restitution);
+    pairs("coefficientFriction", &|pair| pair.friction);
+    if contacts.law.rolling != Rolling::None {
+        pairs("coefficientRollingFriction", &|pair| pair.rolling_friction);
+    }
+    if contacts.law.rolling == Rolling::ElasticPlastic {
+        pairs("coefficientRollingViscousDamping", &|pair| {
+            pair.rolling_damping
+        });
+    }
+    if contacts.law.cohesion == Cohesion::Sjkr {
+        pairs("cohesionEnergyDensity", &|pair| pair.cohesion_energy);
+    }
+    if let ContactForce::Linear {
+        characteristic_speed,
+    } = contacts.law.force
+    {
+        let _ = writeln!(
+            text,
+            "fix characteristicVelocity all property/global characteristicVelocity scalar \
+             {characteristic_speed:e}"
+        );
+    }
+}
+
+/// The contact model in LIGGGHTS' order of words. Its `limitForce` cuts the normal force at zero; without
+/// it damping may attract (checked by the restitution that comes out).
+fn model(contacts: &Contacts) -> String {
+    let law = &contacts.law;
+    let mut model = match law.force {
+        ContactForce::Linear { .. } => "model hooke".to_owned(),
+        ContactForce::HertzMindlin | ContactForce::SpringSliderDashpot => "model hertz".to_owned(),
+    };
+    model.push_str(" tangential history");
+    if law.cohesion == Cohesion::Sjkr {
+        model.push_str(" cohesion sjkr");
+    }
+    match law.rolling {
+        Rolling::None => {}
+        Rolling::ConstantTorque => model.push_str(" rolling_friction cdt"),
+        Rolling::ElasticPlastic => model.push_str(" rolling_friction epsd"),
+    }
+    if !law.attractive_damping {
+        model.push_str(" limitForce on");
+    }
+    model
+}
+
+fn groups(text: &mut String, contacts: &Contacts) {
+    for (group, held) in [("calcine_free", false), ("calcine_held", true)] {
+        let of = contacts.held.iter().enumerate();
+        let types: Vec<String> = of
+            .filter(|(_, is)| **is == held)
+            .map(|(index, _)| (index + 1).to_string())
+            .collect();
+        if !types.is_empty() {
+            let _ = writeln!(text, "group {group} type {}", types.join(" "));
+        }
+    }
+}
+
+/// Name of a wall's file of triangles.
+fn file(index: usize) -> String {
+    format!("wall-{index}.stl")
+}
+
+/// Names and contents of the files of walls that are triangles.
+pub fn meshes(contacts: &Contacts) -> Vec<(String, String)> {
+    let walls = contacts.walls.iter().enumerate();
+    let meshes = walls.filter_map(|(index, wall)| match &wall.shape {
+        WallShape::Mesh { triangles } => Some((file(index), stl(&wall.name, triangles))),
+        _ => None,
+    });
+    meshes.collect()
+}
+
+fn stl(name: &str, triangles: &[[Vec3; 3]]) -> String {
+    let mut text = format!("solid {name}\n");
+    for [a, b, c] in triangles {
+        let normal = (b - a).cross(&(c - a));
+        let normal = normal.try_normalize(0.0).unwrap_or(Vec3::z());
+        let _ = writeln!(
+            text,
+            "facet normal {:e} {:e} {:e}\nouter loop",
+            normal.x, normal.y, normal.z
+        );
+        for corner in [a, b, c] {
+            let _ = writeln!(text, "vertex {:e} {:e} {:e}", corner.x, corner.y, corner.z);
+        }
+        text.push_str("endloop\nendfacet\n");
+    }
+    let _ = writeln!(text, "endsolid {name}");
+    text
+}
+
+fn walls(text: &mut String, contacts: &Contacts, model: &str) {
+    let mut meshes = Vec::new();
+    for (index, wall) in contacts.walls.iter().enumerate() {
+        let kind = contacts.material_of.len() + wall.material + 1;
+        let primitive = match &wall.shape {
+            WallShape::Plane { point, normal } => {
+                let axis = normal.iamax();
+                format!("{}plane {:e}", ["x", "y", "z"][axis], point[axis])
+            }
+            WallShape::Cylinder { point, radius, .. } => {
+                format!("zcylinder {radius:e} {:e} {:e}", point.x, point.y)
+            }
+            WallShape::Cone { .. } => continue, // refused before
+            WallShape::Mesh { .. } => {
+                let _ = writeln!(
+                    text,
+                    "fix calcine_mesh_{index} all mesh/surface file {} type {kind}",
+                    file(index)
+                );
+                moving_mesh(text, index, wall.motion);
+                meshes.push(format!("calcine_mesh_{index}"));
+                continue;
+            }
+        };
+        let _ = writeln!(
+            text,
+            "fix calcine_wall_{index} all wall/gran {model} primitive type {kind} {primitive}"
+        );
+    }
+    if !meshes.is_empty() {
+        let _ = writeln!(
+            text,
+            "fix calcine_meshes all wall/gran {model} mesh n_meshes {} meshes {}",
+            meshes.len(),
+            meshes.join(" ")
+        );
+    }
+}
+
+fn moving_mesh(text: &mut String, index: usize, motion: WallMotion) {
+    let head = format!("fix calcine_turn_{index} all move/mesh mesh calcine_mesh_{index}");
+    match motion {
+        WallMotion::Still => {}
+        WallMotion::Translating(v) => {
+            let _ = writeln!(text, "{head} linear {:e} {:e} {:e}", v.x, v.y, v.z);
+        }
+        WallMotion::Rotating {
+            point,
+            angular_velocity,
+        } => {
+            let speed = angular_velocity.norm();
+            if speed == 0.0 {
+                return;
+            }
+            let axis = angular_velocity / speed;
+            let _ = writeln!(
+                text,
+                "{head} rotate origin {:e} {:e} {:e} axis {:e} {:e} {:e} period {:e}",
+                point.x,
+                point.y,
+                point.z,
+                axis.x,
+                axis.y,
+                axis.z,
+                2.0 * std::f64::consts::PI / speed
+            );
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Particles that come and go between two windows, in every part alike.
+
+use calcine_interior::{Newcomer, without};
+use calcine_physics::Vec3;
+
+use super::{Run, RunError};
+use crate::supervisor::Supervisor;
+use crate::time::Window;
+use crate::traffic::Moment;
+
+impl Run<'_> {
+    /// Lets feeds and outlets act before a window, and books what they moved.
+    pub(super) fn trade(
+        &mut self,
+        supervisor: &Supervisor,
+        window: &Window,
+    ) -> Result<(), RunError> {
+        if self.plan.traffic.is_none() {
+            return Ok(());
+        }
+        let moment = Moment {
+            window: window.index,
+            span: window.span.process.seconds(),
+            acceleration: window.acceleration(),
+        };
+        let fields = self.parts.particles.fields();
+        let trade = self.plan.traffic.decide(moment, &fields)?;
+        if trade.change.is_empty() {
+            return Ok(());
+        }
+        let held = |masses: &[f64]| masses.iter().sum::<f64>();
+        let before = held(fields.mass);
+        let [mut came, mut went] = self.ledger.traffic;
+        let gone_before = went.mass;
+        for &row in &trade.rows {
+            let enthalpy = self.parts.interior.enthalpy(row);
+            went.add(fields.mass[row], enthalpy, fields.velocity[row]);
+        }
+        self.parts.particles.change(supervisor, &trade.change)?;
+
+        // New ids are the highest: their rows are the last ones.
+        let fields = self.parts.particles.fields();
+        let first = fields.len() - trade.change.insert.len();
+        let newcomers: Vec<Newcomer> = (first..fields.len())
+            .zip(&trade.temperature)
+            .map(|(row, &temperature)| {
+                let population = fields.population[row] as usize;
+                let substance = self.plan.substance.get(population);
+                let (material, conductivity) = substance.copied().unwrap_or_default();
+                Newcomer {
+                    mass: fields.mass[row],
+                    material,
+                    conductivity,
+                    temperature,
+                }
+            })
+            .collect();
+        self.parts.interior.change(&trade.rows, &newcomers);
+        let brought_before = came.mass;
+        for row in first..fields.len() {
+            let enthalpy = self.parts.interior.enthalpy(row);
+            came.add(fields.mass[row], enthalpy, fields.velocity[row]);
+        }
+        let (brought, taken) = (came.mass - brought_before, went.mass - gone_before);
+        let after = held(fields.mass);
+        self.ledger.traffic = [came, went];
+        self.ledger
+            .particle_mass
+            .book(after - before - brought + taken, brought + taken);
+
+        let work = &mut self.work;
+        without(&mut work.exchange.heat, &trade.rows);
+        without(&mut work.other, &trade.rows);
+        without(&mut work.free, &trade.rows);
+        work.exchange.heat.resize(fields.len(), 0.0);
+        for row in first..fields.len() {
+            let population = fields.population[row] as usize;
+            let free = self.plan.free.get(population).copied().unwrap_or(false);
+            work.free.push(free);
+            work.other.push(fields.mass[row] * self.plan.gravity);
+        }
+        debug_assert!(work.other.len() == fields.len() && work.free.len() == fields.len());
+        debug_assert!(
+            self.work
+                .other
+                .iter()
+                .all(|force: &Vec3| force.norm().is_finite())
+        );
+        Ok(())
+    }
+}

@@ -1,0 +1,159 @@
+//! A gas that stays as it is, whatever the particles give it: to see what a given flow does to them.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use calcine_physics::Vec3;
+
+use crate::error::PartError;
+use crate::mesh::Mesh;
+use crate::part::{
+    About, Balance, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part,
+};
+use crate::setup::GasSetup;
+use crate::supervisor::Supervisor;
+use crate::time::Window;
+
+/// The gas of a setup at its start: its superficial velocity everywhere, its temperature, and a
+/// pressure gradient of its own weight. What it receives goes to a reservoir, as a source of its
+/// balances.
+#[derive(Debug)]
+pub struct HeldGas {
+    about: About,
+    mesh: Arc<Mesh>,
+    superficial: Vec3,
+    temperature: Vec<f64>,
+    pressure: Vec<f64>,
+    density: Vec<f64>,
+    composition: Vec<f64>,
+    velocity: Vec<Vec3>,
+    pressure_gradient: Vec<Vec3>,
+    exchange: CellExchange,
+    window: Window,
+    storage: crate::time::GasStorage,
+}
+
+impl HeldGas {
+    /// The gas of a setup on a mesh; its pressure is that of the setup at the mesh's first cell.
+    pub fn new(mesh: Arc<Mesh>, setup: &GasSetup) -> Self {
+        let cells = mesh.cells();
+        let gas = &setup.properties;
+        let density = gas.density(setup.pressure, setup.temperature, &setup.composition);
+        let weight = density * setup.gravity;
+        let origin = mesh.cell_centre().first().copied().unwrap_or_default();
+        let centres = mesh.cell_centre().iter();
+        Self {
+            about: About {
+                name: "held gas".into(),
+                version: env!("CARGO_PKG_VERSION").into(),
+                ranks: 1,
+            },
+            superficial: setup.velocity,
+            temperature: vec![setup.temperature; cells],
+            pressure: centres
+                .map(|centre| setup.pressure + weight.dot(&(centre - origin)))
+                .collect(),
+            density: vec![density; cells],
+            composition: setup.composition.repeat(cells),
+            velocity: vec![setup.velocity; cells],
+            pressure_gradient: vec![weight; cells],
+            exchange: CellExchange::default(),
+            window: Window::default(),
+            storage: setup.storage,
+            mesh,
+        }
+    }
+}
+
+impl Part for HeldGas {
+    fn about(&self) -> &About {
+        &self.about
+    }
+
+    fn commit(&mut self) -> Result<(), PartError> {
+        Ok(())
+    }
+
+    fn checkpoint(&mut self, _directory: &Path) -> Result<(), PartError> {
+        Ok(())
+    }
+
+    fn finish_run(&mut self, _supervisor: &Supervisor) -> Result<(), PartError> {
+        Ok(())
+    }
+}
+
+impl Gas for HeldGas {
+    fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    fn fields(&self) -> GasFields<'_> {
+        GasFields {
+            temperature: &self.temperature,
+            pressure: &self.pressure,
+            density: &self.density,
+            composition: &self.composition,
+            velocity: &self.velocity,
+            pressure_gradient: &self.pressure_gradient,
+        }
+    }
+
+    fn start(
+        &mut self,
+        window: &Window,
+        bed: &Bed,
+        exchange: &CellExchange,
+    ) -> Result<(), PartError> {
+        for (velocity, pores) in self.velocity.iter_mut().zip(&bed.void_fraction) {
+            *velocity = self.superficial / *pores;
+        }
+        self.exchange.clone_from(exchange);
+        self.window = *window;
+        Ok(())
+    }
+
+    fn finish(
+        &mut self,
+        _supervisor: &Supervisor,
+        received: &mut CellReceived,
+    ) -> Result<Convergence, PartError> {
+        let told = &self.exchange;
+        let heats = told.heat_source.iter().zip(&told.heat_coefficient);
+        received.heat.clear();
+        received.heat.extend(
+            heats
+                .zip(&self.temperature)
+                .map(|((source, coefficient), kelvin)| source - coefficient * kelvin),
+        );
+        let drags = told.drag_source.iter().zip(&told.drag_coefficient);
+        received.drag.clear();
+        received.drag.extend(
+            drags
+                .zip(&self.velocity)
+                .map(|((source, coefficient), velocity)| source - *coefficient * velocity),
+        );
+        let span = self.storage.span(&self.window);
+        let heat: f64 = received.heat.iter().sum::<f64>() * span;
+        let force: Vec3 = received.drag.iter().sum::<Vec3>() * self.window.span.motion.seconds();
+        received.mass = Balance::default();
+        received.species =
+            vec![Balance::default(); self.composition.len() / self.mesh.cells().max(1)];
+        received.energy = reservoir(heat);
+        received.momentum = [0, 1, 2].map(|axis| reservoir(force[axis]));
+        Ok(Convergence {
+            converged: true,
+            ..Convergence::default()
+        })
+    }
+}
+
+/// The balance of a gas that stores nothing: a reservoir takes what it receives.
+fn reservoir(received: f64) -> Balance {
+    Balance {
+        exchange: received,
+        source: -received,
+        source_magnitude: received.abs(),
+        ..Balance::default()
+    }
+}

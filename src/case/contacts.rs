@@ -1,0 +1,311 @@
+//! From the sections of a case to what a discrete element solver is told, and its time step.
+
+use std::f64::consts::PI;
+
+use calcine_adapters::liggghts::moving;
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::motion::{
+    ContactForce, Contacts, Elastic, Motion as Told, Pair, Wall, WallMotion,
+};
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::ParticleSetup;
+use thiserror::Error;
+
+use super::model::{Case, FreeMotion, Material, Motion, MotionKind};
+use super::units::shown;
+
+/// A step above this share of Rayleigh's time gets a warning, above the second it is refused.
+const RAYLEIGH: [f64; 2] = [0.2, 0.5];
+/// The same for the duration of a Hertzian impact.
+const HERTZ: [f64; 2] = [0.1, 0.25];
+/// Shares by which a step is chosen where the case states none.
+const CHOSEN: [f64; 2] = [0.15, 0.05];
+
+/// Contacts that cannot be computed.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ContactsError {
+    /// The step is too long for the contacts.
+    #[error(
+        "`motion.motion_step` is {} s, but a surface wave crosses the smallest particle in {} s \
+         (Rayleigh) and the fastest impact lasts {} s (Hertz, at {} m/s); write {} s or less, or a \
+         softer material", shown(*.step), shown(*.rayleigh), shown(*.hertz), shown(*.speed),
+        shown(*.fit)
+    )]
+    Step {
+        /// The step in s.
+        step: f64,
+        /// Rayleigh's time in s.
+        rayleigh: f64,
+        /// Duration of an impact in s.
+        hertz: f64,
+        /// Speed of the impact in m/s.
+        speed: f64,
+        /// A step that fits, in s.
+        fit: f64,
+    },
+    /// Walls that move over a changing acceleration factor.
+    #[error(
+        "wall \"{wall}\" moves, but `time.acceleration` changes: its speed on the motion clock would \
+         change too; write one factor"
+    )]
+    Schedule {
+        /// Its name.
+        wall: String,
+    },
+}
+
+/// Times that limit the step of a contact solver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Time in s that a Rayleigh wave takes around the smallest particle:
+    /// π R √(ρ/G)/(0.1631 ν + 0.8766) (Thornton, Randall 1988).
+    pub rayleigh: f64,
+    /// Shortest duration in s of an impact at `speed`: 2.87 (m*²/(R* E*² v))^(1/5) (Hertz).
+    pub hertz: f64,
+    /// Speed in m/s: of the start, of walls, or of a fall through the mesh, whichever is largest.
+    pub speed: f64,
+}
+
+impl Limits {
+    /// The step in s that suits both.
+    pub fn fit(&self) -> f64 {
+        (CHOSEN[0] * self.rayleigh).min(CHOSEN[1] * self.hertz)
+    }
+
+    /// What is to be said of a step in s.
+    pub fn warning(&self, step: f64) -> Option<String> {
+        let shares = [step / self.rayleigh, step / self.hertz];
+        (shares[0] > RAYLEIGH[0] || shares[1] > HERTZ[0]).then(|| {
+            format!(
+                "`motion.motion_step` is {:.0} % of Rayleigh's time and {:.0} % of the shortest impact; \
+                 contacts lose accuracy above {:.0} % and {:.0} %",
+                100.0 * shares[0],
+                100.0 * shares[1],
+                100.0 * RAYLEIGH[0],
+                100.0 * HERTZ[0]
+            )
+        })
+    }
+
+    fn refuse(&self, step: f64) -> Option<ContactsError> {
+        let far = step > RAYLEIGH[1] * self.rayleigh || step > HERTZ[1] * self.hertz;
+        far.then(|| ContactsError::Step {
+            step,
+            rayleigh: self.rayleigh,
+            hertz: self.hertz,
+            speed: self.speed,
+            fit: self.fit(),
+        })
+    }
+}
+
+/// How the particles of a case move, on the motion clock.
+pub fn motion(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Result<Told, ContactsError> {
+    let free = case.particles.iter().any(|one| one.motion == Motion::Free);
+    let Some(motion) = case.motion.filter(|_| free) else {
+        return Ok(Told::Frozen);
+    };
+    let limits = limits(case, &motion, mesh, setup);
+    let window = case.time.motion_window.seconds();
+    let step = match motion.step {
+        Some(step) => step,
+        // A whole number of steps fills a window.
+        None => window / (window / limits.fit()).ceil(),
+    };
+    if let Some(error) = limits.refuse(step) {
+        return Err(error);
+    }
+    // The reader asks for the elastic constants of what touches; others are never used.
+    let elastic = |material: &Material| Elastic {
+        young: material.young.unwrap_or(1e7),
+        poisson: material.poisson.unwrap_or(0.3),
+    };
+    Ok(Told::Free(Box::new(Contacts {
+        step,
+        gravity: case.gas.gravity,
+        bounds: bounds(mesh),
+        materials: case.materials.iter().map(elastic).collect(),
+        material_of: case.particles.iter().map(|one| one.material).collect(),
+        held: case
+            .particles
+            .iter()
+            .map(|one| one.motion == Motion::Frozen)
+            .collect(),
+        law: motion.law,
+        pairs: pairs(case),
+        walls: walls(case)?,
+    })))
+}
+
+/// Properties of all pairs; those that are not stated never touch.
+fn pairs(case: &Case) -> Vec<Pair> {
+    let count = case.materials.len();
+    let unused = Pair {
+        restitution: 1.0,
+        ..Pair::default()
+    };
+    let mut pairs = vec![unused; count * count];
+    for contact in &case.contacts {
+        let [a, b] = contact.between;
+        let pair = Pair {
+            restitution: contact.restitution.unwrap_or(1.0),
+            friction: contact.friction.unwrap_or(0.0),
+            rolling_friction: contact.rolling_friction.unwrap_or(0.0),
+            rolling_damping: contact.rolling_damping.unwrap_or(0.0),
+            cohesion_energy: contact.cohesion_energy.unwrap_or(0.0),
+        };
+        pairs[a * count + b] = pair;
+        pairs[b * count + a] = pair;
+    }
+    pairs
+}
+
+/// The walls; what users write of their speed is process time.
+fn walls(case: &Case) -> Result<Vec<Wall>, ContactsError> {
+    let factor = case.time.acceleration.largest();
+    let changes = case.time.acceleration.steps().len() > 1;
+    let quicker = |wall: &Wall| {
+        let motion = match wall.motion {
+            WallMotion::Still => WallMotion::Still,
+            _ if changes => {
+                let wall = wall.name.clone();
+                return Err(ContactsError::Schedule { wall });
+            }
+            WallMotion::Translating(velocity) => WallMotion::Translating(factor * velocity),
+            WallMotion::Rotating {
+                point,
+                angular_velocity,
+            } => WallMotion::Rotating {
+                point,
+                angular_velocity: factor * angular_velocity,
+            },
+        };
+        Ok(Wall {
+            motion,
+            ..wall.clone()
+        })
+    };
+    case.walls.iter().map(quicker).collect()
+}
+
+/// Lower and upper corner of a mesh in m.
+fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {
+    mesh.topology().points.iter().fold(
+        (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)),
+        |(low, high), point| (low.inf(point), high.sup(point)),
+    )
+}
+
+/// What limits the time step, over all particles that are free.
+pub fn limits(case: &Case, motion: &FreeMotion, mesh: &Mesh, setup: &ParticleSetup) -> Limits {
+    let (low, high) = bounds(mesh);
+    let gravity = case.gas.gravity.norm();
+    let fall = match gravity > 0.0 {
+        true => (2.0 * gravity * (high - low).dot(&case.gas.gravity.abs()) / gravity).sqrt(),
+        false => 0.0,
+    };
+    let start = setup.velocity.iter().map(|velocity| velocity.norm());
+    let moving = case.walls.iter().filter_map(|wall| match wall.motion {
+        WallMotion::Translating(velocity) => Some(velocity.norm()),
+        _ => None,
+    });
+    let mut limits = Limits {
+        rayleigh: f64::INFINITY,
+        hertz: f64::INFINITY,
+        speed: match motion.law.force {
+            ContactForce::Linear {
+                characteristic_speed,
+            } => characteristic_speed,
+            _ => start.chain(moving).fold(fall, f64::max),
+        },
+    };
+    for (index, population) in case.particles.iter().enumerate() {
+        let material = &case.materials[population.material];
+        let (Some(young), Some(poisson)) = (material.young, material.poisson) else {
+            continue;
+        };
+        if population.motion == Motion::Frozen {
+            continue;
+        }
+        let own = setup.population.iter().zip(&setup.radius);
+        let smallest = own
+            .filter(|(of, _)| **of as usize == index)
+            .map(|(_, radius)| *radius)
+            .fold(f64::INFINITY, f64::min);
+        let radius = match smallest.is_finite() {
+            true => smallest,
+            false => 0.5 * population.sizes.largest(),
+        };
+        let shear = young / (2.0 * (1.0 + poisson));
+        let wave = 0.1631 * poisson + 0.8766;
+        let rayleigh = PI * radius * (material.density / shear).sqrt() / wave;
+        // Two equal spheres: m* = m/2, R* = R/2, E* = E/(2(1 − ν²)).
+        let mass = 2.0 / 3.0 * PI * radius.powi(3) * material.density;
+        let stiff = young / (2.0 * (1.0 - poisson * poisson));
+        let hertz = 2.87 * (mass * mass / (0.5 * radius * stiff * stiff * limits.speed)).powf(0.2);
+        limits.rayleigh = limits.rayleigh.min(rayleigh);
+        limits.hertz = limits.hertz.min(hertz);
+    }
+    limits
+}
+
+/// What `calcine check` says of moving particles: step, times, and what no backend but some honours.
+pub fn report(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Option<String> {
+    let (Told::Free(contacts), Some(motion)) = (&setup.motion, &case.motion) else {
+        return None;
+    };
+    let limits = limits(case, motion, mesh, setup);
+    let step = contacts.step;
+    let window = case.time.motion_window.seconds();
+    let kind = match motion.kind {
+        MotionKind::RealTime => "real-time",
+        MotionKind::Accelerated => "accelerated",
+    };
+    let mut text = format!(
+        "  moving particles ({kind}):\n    step {step:.3e} s of motion time, {:.0} in a window; Rayleigh's time \
+         {:.3e} s, shortest impact {:.3e} s (at {:.3} m/s)\n",
+        window / step,
+        limits.rayleigh,
+        limits.hertz,
+        limits.speed
+    );
+    if let Some(warning) = limits.warning(step) {
+        text.push_str(&format!("    warning: {warning}\n"));
+    }
+    if let Some(reason) = moving::refusal(contacts) {
+        text.push_str(&format!("    not with LIGGGHTS: {reason}\n"));
+    }
+    Some(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Glass of 2500 kg/m³, 5 GPa, 0.25 and a radius of 1 mm, at 1 m/s, evaluated apart.
+    #[test]
+    fn the_times_of_a_contact_are_those_of_rayleigh_and_hertz() {
+        let path =
+            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/moving.toml");
+        let case = crate::case::read(&path, &[]).unwrap();
+        let mesh = crate::case::mesh(&case.mesh).unwrap();
+        let setup = crate::case::particles(&case).unwrap().setup;
+        let mut motion = case.motion.unwrap();
+        motion.law.force = ContactForce::Linear {
+            characteristic_speed: 1.0,
+        };
+        let limits = limits(&case, &motion, &mesh, &setup);
+        // π 1e-3 √(2500/2e9)/(0.1631·0.25 + 0.8766) and 2.87 (m*²/(R* E*² v))^0.2 with
+        // m* = 5.235988e-6 kg, R* = 0.5 mm, E* = 2.666667 GPa.
+        assert!(
+            (limits.rayleigh / 3.828_7e-6 - 1.0).abs() < 1e-4,
+            "{}",
+            limits.rayleigh
+        );
+        assert!(
+            (limits.hertz / 1.719_1e-5 - 1.0).abs() < 1e-3,
+            "{}",
+            limits.hertz
+        );
+    }
+}

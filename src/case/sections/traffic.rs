@@ -1,0 +1,83 @@
+//! `[[feeds]]` and `[[outlets]]`: particles that come and go.
+
+use calcine_coupler::mesh::zone::Zone;
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::traffic::Outlet;
+
+use super::zone::zone;
+use crate::case::model::{FeedSpec, Motion, Population};
+use crate::case::table::Reader;
+use crate::case::units::Dimension;
+
+const REGION: &str = "region = { box = { from = \"0 0 80 mm\", to = \"50 50 100 mm\" } }";
+
+fn region(table: &Reader<'_>) -> Option<Zone> {
+    let region = table.required_table("region", REGION)?;
+    let zone = zone(&region);
+    region.finish();
+    zone
+}
+
+pub(super) fn feeds(root: &Reader<'_>, particles: Option<&[Population]>) -> Vec<FeedSpec> {
+    let tables = root.tables("feeds");
+    tables
+        .iter()
+        .filter_map(|table| feed(table, particles))
+        .collect()
+}
+
+fn feed(table: &Reader<'_>, particles: Option<&[Population]>) -> Option<FeedSpec> {
+    let name = table.required_text("name", "\"charge\"");
+    let population = table.required_text("population", "\"beads\"");
+    let region = region(table);
+    let rate = table.positive("mass_rate", Dimension::MASS_FLOW);
+    let batch = table.positive("batch", Dimension::MASS);
+    if !table.has("mass_rate") && !table.has("batch") {
+        let help = "add mass_rate = \"1 kg/h\", or batch = \"20 g\" for what is there at the start";
+        table.fail_whole("needs `mass_rate` or `batch`", help);
+    }
+    let velocity = table.vector("velocity", Dimension::VELOCITY);
+    let temperature = table.positive("temperature", Dimension::TEMPERATURE);
+    if !table.has("seed") {
+        table.missing("seed", "1");
+    }
+    let seed = table.whole("seed", 0..=i64::MAX);
+    table.finish();
+    let (particles, population) = (particles?, population?);
+    let index = particles.iter().position(|one| one.name == population);
+    let Some(index) = index else {
+        let known: Vec<&str> = particles.iter().map(|one| one.name.as_str()).collect();
+        let help = format!("the populations are {}", known.join(", "));
+        table.fail("population", format!("is \"{population}\""), help);
+        return None;
+    };
+    if particles[index].motion == Motion::Frozen {
+        let rule = format!("is \"{population}\", whose particles are frozen");
+        table.fail("population", rule, "write motion = \"free\" for it");
+    }
+    Some(FeedSpec {
+        name: name?.into(),
+        population: index,
+        zone: region?,
+        rate: rate.unwrap_or(0.0),
+        batch: batch.unwrap_or(0.0),
+        velocity: velocity.map_or(Vec3::zeros(), Vec3::from),
+        temperature: temperature.unwrap_or(particles[index].temperature),
+        seed: seed?,
+    })
+}
+
+pub(super) fn outlets(root: &Reader<'_>) -> Vec<Outlet> {
+    let one = |table: &Reader<'_>| {
+        let name = table.required_text("name", "\"discharge\"");
+        let zone = region(table);
+        let rate = table.positive("mass_rate", Dimension::MASS_FLOW);
+        table.finish();
+        Some(Outlet {
+            name: name?.into(),
+            zone: zone?,
+            rate,
+        })
+    };
+    root.tables("outlets").iter().filter_map(one).collect()
+}

@@ -1,0 +1,256 @@
+//! `[[walls]]`: what particles bounce off.
+
+use std::path::Path;
+
+use calcine_coupler::motion::{Wall, WallMotion, WallShape};
+use calcine_coupler::physics::Vec3;
+
+use super::existing;
+use crate::case::model::{Material, MeshSpec};
+use crate::case::place::inner_diameter;
+use crate::case::stl;
+use crate::case::table::Reader;
+use crate::case::units::Dimension;
+
+const SHAPES: [&str; 5] = ["plane", "cylinder", "cone", "stl", "patches"];
+
+pub(super) fn walls(
+    root: &Reader<'_>,
+    materials: &[Material],
+    mesh: Option<&MeshSpec>,
+    folder: &Path,
+) -> Vec<Wall> {
+    let mut all: Vec<Wall> = Vec::new();
+    for table in root.tables("walls") {
+        let name = table.required_text("name", "\"container\"");
+        let material = table
+            .required_text("material", "\"steel\"")
+            .and_then(|name| {
+                let found = materials.iter().position(|one| one.name == name);
+                if found.is_none() {
+                    let known: Vec<&str> = materials.iter().map(|one| one.name.as_str()).collect();
+                    let help = format!("the materials are {}", known.join(", "));
+                    table.fail("material", format!("is \"{name}\""), help);
+                }
+                found
+            });
+        let shapes = shapes(&table, mesh, folder);
+        let motion = motion(&table);
+        table.finish();
+        let (Some(name), Some(material), Some(shapes)) = (name, material, shapes) else {
+            continue;
+        };
+        let several = shapes.len() > 1;
+        for (part, shape) in shapes {
+            let name = match several {
+                true => format!("{name}.{part}"),
+                false => name.to_owned(),
+            };
+            if all.iter().any(|other| other.name == name) {
+                let rule = format!("is \"{name}\" a second time");
+                table.fail("name", rule, "names of walls must differ");
+            }
+            all.push(Wall {
+                name,
+                material,
+                shape,
+                motion,
+            });
+        }
+    }
+    all
+}
+
+/// The shapes of one entry, with the part of the mesh that each is.
+fn shapes(
+    table: &Reader<'_>,
+    mesh: Option<&MeshSpec>,
+    folder: &Path,
+) -> Option<Vec<(&'static str, WallShape)>> {
+    let given: Vec<&str> = SHAPES.into_iter().filter(|kind| table.has(kind)).collect();
+    let scale = table.positive("scale", Dimension::NONE);
+    if scale.is_some() && given != ["stl"] {
+        table.fail("scale", "goes with `stl` only", "remove it");
+    }
+    match given[..] {
+        ["plane"] => plane(&table.table("plane")?).map(|shape| vec![("", shape)]),
+        ["cylinder"] => cylinder(&table.table("cylinder")?).map(|shape| vec![("", shape)]),
+        ["cone"] => cone(&table.table("cone")?).map(|shape| vec![("", shape)]),
+        ["stl"] => {
+            let path = existing(table, "stl", folder)?;
+            match stl::read(&path, scale.unwrap_or(1.0)) {
+                Ok(triangles) => Some(vec![("", WallShape::Mesh { triangles })]),
+                Err(error) => {
+                    table.fail(
+                        "stl",
+                        error.to_string(),
+                        "name an STL file, ASCII or binary",
+                    );
+                    None
+                }
+            }
+        }
+        ["patches"] => of_mesh(table, mesh),
+        _ => {
+            let help = "for example patches = [\"side\", \"bottom\"], or plane = { point = \"0 0 0 m\", \
+                        normal = \"0 0 1\" }";
+            table.fail_whole(
+                "needs exactly one of plane, cylinder, cone, stl and patches",
+                help,
+            );
+            None
+        }
+    }
+}
+
+/// A direction, made one long.
+fn direction(table: &Reader<'_>, key: &str) -> Option<Vec3> {
+    if !table.has(key) {
+        table.missing(key, "\"0 0 1\"");
+    }
+    let vector = Vec3::from(table.vector(key, Dimension::NONE)?);
+    if vector.norm() == 0.0 {
+        table.fail(key, "has no length", "write a direction such as \"0 0 1\"");
+        return None;
+    }
+    Some(vector.normalize())
+}
+
+fn plane(table: &Reader<'_>) -> Option<WallShape> {
+    let point = table.required_vector("point", Dimension::LENGTH);
+    let normal = direction(table, "normal");
+    table.finish();
+    Some(WallShape::Plane {
+        point: point?.into(),
+        normal: normal?,
+    })
+}
+
+fn cylinder(table: &Reader<'_>) -> Option<WallShape> {
+    let point = table.required_vector("point", Dimension::LENGTH);
+    let axis = direction(table, "axis");
+    let radius = table.required_positive("radius", Dimension::LENGTH);
+    table.finish();
+    Some(WallShape::Cylinder {
+        point: point?.into(),
+        axis: axis?,
+        radius: radius?,
+    })
+}
+
+fn cone(table: &Reader<'_>) -> Option<WallShape> {
+    let from = table.required_vector("from", Dimension::LENGTH);
+    let to = table.required_vector("to", Dimension::LENGTH);
+    let low = table.required_quantity("from_radius", Dimension::LENGTH);
+    let high = table.required_quantity("to_radius", Dimension::LENGTH);
+    table.finish();
+    let ends: [Vec3; 2] = [from?.into(), to?.into()];
+    let radii = [low?, high?];
+    if ends[0] == ends[1] || radii.iter().any(|radius| *radius < 0.0) {
+        let help = "the ends of its axis differ, and no radius is negative";
+        table.fail_whole("is no frustum of a cone", help);
+        return None;
+    }
+    Some(WallShape::Cone { ends, radii })
+}
+
+/// The sides of the generated mesh that carry one of the named patches.
+fn of_mesh(table: &Reader<'_>, mesh: Option<&MeshSpec>) -> Option<Vec<(&'static str, WallShape)>> {
+    let wanted = table.texts("patches")?;
+    let parts = parts(mesh?);
+    let unknown = wanted
+        .iter()
+        .find(|name| !parts.iter().any(|(patch, ..)| patch == *name));
+    if parts.is_empty() {
+        let help = "write planes, cylinders or STL files";
+        table.fail("patches", "needs a generated box or cylinder mesh", help);
+        return None;
+    }
+    if let Some(name) = unknown {
+        let mut known: Vec<&str> = parts.iter().map(|(patch, ..)| patch.as_str()).collect();
+        known.sort_unstable();
+        known.dedup();
+        let rule = format!("names \"{name}\", which is no patch of the mesh");
+        table.fail(
+            "patches",
+            rule,
+            format!("its patches are {}", known.join(", ")),
+        );
+        return None;
+    }
+    let chosen = parts
+        .into_iter()
+        .filter(|(patch, ..)| wanted.contains(patch));
+    Some(chosen.map(|(_, part, shape)| (part, shape)).collect())
+}
+
+/// Patch, name and shape of each side of a generated mesh; the round side of a cylinder is the circle
+/// that touches its polygon from inside.
+fn parts(mesh: &MeshSpec) -> Vec<(String, &'static str, WallShape)> {
+    let plane = |point: Vec3, normal: Vec3| WallShape::Plane { point, normal };
+    match mesh {
+        MeshSpec::Box {
+            origin,
+            size,
+            patches,
+            ..
+        } => {
+            let names = ["x-", "x+", "y-", "y+", "z-", "z+"];
+            let side = |index: usize| {
+                let mut inward = Vec3::zeros();
+                inward[index / 2] = if index % 2 == 0 { 1.0 } else { -1.0 };
+                let corner = if index % 2 == 0 {
+                    *origin
+                } else {
+                    origin + size
+                };
+                (patches[index].clone(), names[index], plane(corner, inward))
+            };
+            (0..6).map(side).collect()
+        }
+        MeshSpec::Cylinder {
+            origin,
+            diameter,
+            length,
+            cells,
+            ..
+        } => {
+            let round = WallShape::Cylinder {
+                point: *origin,
+                axis: Vec3::z(),
+                radius: 0.5 * inner_diameter(*diameter, cells[0]),
+            };
+            let top = origin + *length * Vec3::z();
+            vec![
+                ("side".into(), "side", round),
+                ("bottom".into(), "bottom", plane(*origin, Vec3::z())),
+                ("top".into(), "top", plane(top, -Vec3::z())),
+            ]
+        }
+        MeshSpec::PolyMesh(_) => Vec::new(),
+    }
+}
+
+fn motion(table: &Reader<'_>) -> WallMotion {
+    let translating = table
+        .vector("velocity", Dimension::VELOCITY)
+        .map(Vec3::from);
+    let rotating = table.table("rotating").and_then(|rotating| {
+        let point = rotating.required_vector("point", Dimension::LENGTH);
+        let speed = rotating.required_vector("angular_velocity", Dimension::ANGULAR_VELOCITY);
+        rotating.finish();
+        Some(WallMotion::Rotating {
+            point: point?.into(),
+            angular_velocity: speed?.into(),
+        })
+    });
+    match (translating, rotating) {
+        (Some(_), Some(_)) => {
+            table.fail_whole("has `velocity` and `rotating`", "write one of the two");
+            WallMotion::Still
+        }
+        (Some(velocity), None) => WallMotion::Translating(velocity),
+        (None, Some(rotating)) => rotating,
+        (None, None) => WallMotion::Still,
+    }
+}
