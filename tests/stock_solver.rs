@@ -42,7 +42,7 @@ fn a_stock_solver_heats_the_bed_as_calcine_gas_foam_does_and_starts_from_its_che
     let share = rise(&stock) / rise(&own);
     assert!((0.9..1.1).contains(&share), "{share}");
     let drop = |out: &Path| last(out, "quantities.pressure_drop");
-    // Half a cell of the bed of ten is at the jump of the void fraction.
+    // 3.4 % lower after 3 s (stock-solvers.md).
     let share = drop(&stock) / drop(&own);
     assert!((0.94..1.02).contains(&share), "{share}");
     let summary = Summary::read(&stock).unwrap();

@@ -355,6 +355,9 @@ mod tests {
             setup: &setup,
             mesh: &mesh,
             template: Some(&template),
+            start: None,
+            solver: Solver::default(),
+            library: Path::new("libcalcineFoam.so"),
             case_hash: "0a",
             ranks: 1,
         };
@@ -388,6 +391,9 @@ mod tests {
             setup: &setup,
             mesh: &mesh,
             template: None,
+            start: None,
+            solver: Solver::default(),
+            library: Path::new("libcalcineFoam.so"),
             case_hash: "0a",
             ranks,
         };
@@ -401,7 +407,7 @@ mod tests {
 
     #[test]
     fn numbers_are_written_with_all_their_bits() {
-        let text = dictionaries::calcine(&setup(), "0a");
+        let text = dictionaries::calcine(&setup(), "0a", &Catalogue::standard("gas").unwrap());
         let third = text
             .split_whitespace()
             .find(|word| word.starts_with("3.33"))
@@ -419,6 +425,9 @@ mod tests {
                 setup,
                 mesh: &mesh,
                 template: None,
+                start: None,
+                solver: Solver::default(),
+                library: Path::new("libcalcineFoam.so"),
                 case_hash: "0a",
                 ranks: 1,
             };

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use calcine_adapters::launch::Launcher;
+use calcine_adapters::openfoam::stock::Solver;
 use calcine_adapters::openfoam::{OpenfoamGas, OpenfoamLaunch};
 use calcine_coupler::error::PartError;
 use calcine_coupler::mesh::Mesh;
@@ -154,12 +155,15 @@ impl Duct {
             setup,
             mesh: Arc::new(mesh),
             template: None,
+            start: None,
+            solver: Solver::default(),
             case_hash: "test".into(),
             folder: folder.join("case"),
             log: folder.join("log"),
             ranks,
             launcher: Launcher::Mpirun,
             resume: resume.map(Path::to_owned),
+            from: None,
             deadline: Duration::from_secs(30),
         };
         let gas = OpenfoamGas::launch(launch, &mut supervisor)?;

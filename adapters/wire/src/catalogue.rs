@@ -281,7 +281,8 @@ mod tests {
         let length = |name| gas.column(Record::State, name, 12).unwrap().1.len();
         assert_eq!(length("composition"), 36);
         assert_eq!(length("balances"), 35 + 21);
-        assert_eq!(Catalogue::gas(0), Catalogue::standard("gas"));
+        let single = Catalogue::standard("gas").unwrap();
+        assert_eq!(Catalogue::gas(0).unwrap(), single);
     }
 
     #[test]
