@@ -3,10 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use calcine_adapters::launch::Launcher;
 use calcine_adapters::liggghts::inputs::Inputs;
 use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch, LiggghtsParticles};
 use calcine_adapters::openfoam::case::OpenfoamCase;
-use calcine_adapters::openfoam::{OpenfoamGas, OpenfoamLaunch};
+use calcine_adapters::openfoam::{LIBRARY, OpenfoamGas, OpenfoamLaunch};
 use calcine_coupler::closures::Closures;
 use calcine_coupler::coordinator::{CheckpointPaths, Origin, Parts, Plan, Run, RunError};
 use calcine_coupler::error::{FailureKind, PartError};
@@ -197,11 +198,54 @@ impl Prepared {
     }
 }
 
+/// How an external solver is started.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Start {
+    /// Number of ranks.
+    pub ranks: u32,
+    /// Who starts them.
+    pub launcher: Launcher,
+}
+
+impl Default for Start {
+    fn default() -> Self {
+        Self {
+            ranks: 1,
+            launcher: Launcher::default(),
+        }
+    }
+}
+
+/// How the external solvers of a run are started; natively it does not matter.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Starts {
+    /// That of the gas.
+    pub gas: Start,
+    /// That of the particles.
+    pub particles: Start,
+}
+
+impl Starts {
+    /// As many ranks as the case says, started by Calcine.
+    pub fn of(case: &Case) -> Self {
+        let start = |ranks: u32| Start {
+            ranks: ranks.max(1),
+            ..Start::default()
+        };
+        Self {
+            gas: start(case.openfoam.ranks),
+            particles: start(case.liggghts.ranks),
+        }
+    }
+}
+
 /// How a run is put together, beside its case.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings<'a> {
     /// Who computes what.
     pub pairing: Pairing,
+    /// How external solvers are started.
+    pub starts: &'a Starts,
     /// The results folder; inputs of external solvers go to `solvers/`, logs to `log/` in it.
     pub results: &'a Path,
     /// True where every part starts from the committed checkpoint.
@@ -238,7 +282,13 @@ pub fn assemble<'m>(
         interior,
     };
     let smoother = smoother(case, prepared)?;
-    let plan = plan(case, prepared, checkpoint);
+    let mut plan = plan(case, prepared, checkpoint);
+    let foam = settings.pairing.gas == GasBackend::Openfoam;
+    if foam && case.openfoam.solver.is_stock() {
+        // A stock solver cannot go back to the start of a time step.
+        plan.exchange_attempts = 1;
+        plan.repeats = false;
+    }
     let mut run = Run::new(plan, &prepared.mesh, smoother, closures(case), parts)?;
     if settings.resume {
         run.resume()?;
@@ -256,6 +306,7 @@ pub fn write_inputs(
     pairing: Pairing,
     folder: &Path,
 ) -> Result<Vec<std::path::PathBuf>, AssemblyError> {
+    let starts = Starts::of(case);
     let mut written = Vec::new();
     if pairing.gas == GasBackend::Openfoam {
         let target = folder.join("openfoam");
@@ -263,21 +314,25 @@ pub fn write_inputs(
             setup: &case.gas,
             mesh: &prepared.mesh,
             template: case.openfoam.template.as_deref(),
+            start: case.openfoam.start.as_deref(),
+            solver: case.openfoam.solver,
+            library: Path::new(LIBRARY),
             case_hash: &case.hash,
+            ranks: starts.gas.ranks,
         }
         .write(&target)?;
         written.push(target);
     }
     if pairing.particles == ParticleBackend::Liggghts {
         let target = folder.join("liggghts");
-        liggghts_inputs(prepared).write(&target)?;
+        liggghts_inputs(prepared, starts.particles.ranks).write(&target)?;
         written.push(target);
     }
     Ok(written)
 }
 
 /// What LIGGGHTS is told of the particles, in the box of the mesh's points.
-fn liggghts_inputs(prepared: &Prepared) -> Inputs<'_> {
+fn liggghts_inputs(prepared: &Prepared, ranks: u32) -> Inputs<'_> {
     let points = &prepared.mesh.topology().points;
     let bounds = points.iter().fold(
         (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)),
@@ -290,7 +345,7 @@ fn liggghts_inputs(prepared: &Prepared) -> Inputs<'_> {
             Motion::Frozen => FROZEN_STEP,
             Motion::Free(contacts) => contacts.step,
         },
-        ranks: 1,
+        ranks,
     }
 }
 
@@ -324,9 +379,17 @@ impl Assembly<'_> {
                     setup: &self.case.gas,
                     mesh: Arc::clone(&self.prepared.mesh),
                     template: self.case.openfoam.template.as_deref(),
+                    start: self.case.openfoam.start.as_deref(),
+                    solver: self.case.openfoam.solver,
                     case_hash: self.case.hash.clone(),
                     folder: self.absolute("solvers/openfoam")?,
                     log: self.absolute("log/openfoam.log")?,
+                    from: match (&from, self.settings.from) {
+                        (None, Some(origin)) => Some(origin.path.join("gas")),
+                        _ => None,
+                    },
+                    ranks: self.settings.starts.gas.ranks,
+                    launcher: self.settings.starts.gas.launcher.clone(),
                     resume: from,
                     deadline: self.case.coupling.deadline,
                 };
@@ -347,9 +410,11 @@ impl Assembly<'_> {
                 Ok(Box::new(particles))
             }
             ParticleBackend::Liggghts => {
-                let inputs = liggghts_inputs(self.prepared);
+                let start = &self.settings.starts.particles;
+                let inputs = liggghts_inputs(self.prepared, start.ranks);
                 let launch = LiggghtsLaunch {
                     inputs,
+                    launcher: start.launcher.clone(),
                     case_hash: self.case.hash.clone(),
                     folder: self.absolute("solvers/liggghts")?,
                     log: self.absolute("log/liggghts.log")?,
@@ -466,6 +531,7 @@ fn plan(case: &Case, prepared: &Prepared, checkpoint: CheckpointPaths) -> Plan {
         mapping: method(case),
         exchange_tolerance: case.coupling.exchange_tolerance,
         exchange_attempts: case.coupling.exchange_attempts,
+        repeats: true,
         case_hash: case.hash.clone(),
         checkpoint,
         free: match &prepared.particles.motion {

@@ -12,7 +12,7 @@ use serde_json::Value;
 
 /// All arrows there may be: a crate and the crates of this workspace that it may use. Another
 /// arrow is a change of the design (CONTRIBUTING.md), not of this table alone.
-const ARROWS: [(&str, &[&str]); 9] = [
+const ARROWS: [(&str, &[&str]); 10] = [
     (
         "calcine",
         &[
@@ -28,6 +28,8 @@ const ARROWS: [(&str, &[&str]); 9] = [
     ("calcine-coupler", &["calcine-interior", "calcine-physics"]),
     ("calcine-interior", &["calcine-physics"]),
     ("calcine-liggghts", &["calcine-wire"]),
+    // The same command line, where MPI spawns the solvers.
+    ("calcine-mpi", &["calcine", "calcine-wire"]),
     ("calcine-native", &["calcine-coupler"]),
     ("calcine-physics", &[]),
     ("calcine-wire", &[]),
@@ -36,12 +38,13 @@ const ARROWS: [(&str, &[&str]); 9] = [
 
 /// Libraries that only some crates may use: the coupler and the solvers know neither
 /// transports, nor TOML, nor HDF5.
-const KEPT_TO: [(&str, &[&str]); 5] = [
+const KEPT_TO: [(&str, &[&str]); 6] = [
     ("hdf5-metno", &["calcine"]),
     ("toml", &["calcine"]),
     ("toml_edit", &["calcine"]),
     ("clap", &["calcine"]),
     ("iceoryx2", &["calcine-wire"]),
+    ("mpi", &["calcine-mpi"]),
 ];
 
 /// Longest source file, in lines.

@@ -31,13 +31,32 @@ fn done(output: &Output) {
 
 #[test]
 fn a_run_in_two_parts_is_the_run_in_one_and_says_what_it_continued_from() {
+    two_parts("native");
+}
+
+#[test]
+fn so_is_one_with_an_openfoam_gas() {
+    two_parts("openfoam");
+}
+
+fn two_parts(gas: &str) {
     let directory = tempfile::tempdir().unwrap();
     let folder = |name: &str| directory.path().join(name);
     let (whole, first, second) = (folder("whole"), folder("first"), folder("second"));
-    done(&run(&column(), &whole, &["--set", "time.end=60 s"]));
-    done(&run(&column(), &first, &["--set", "time.end=30 s"]));
+    done(&run(
+        &column(),
+        &whole,
+        &["--gas", gas, "--set", "time.end=60 s"],
+    ));
+    done(&run(
+        &column(),
+        &first,
+        &["--gas", gas, "--set", "time.end=30 s"],
+    ));
     // `time.end` is another case; the end of the first is the start of the second.
     let from = [
+        "--gas",
+        gas,
         "--set",
         "time.end=30.0000 s",
         "--from",
@@ -148,7 +167,7 @@ fn what_does_not_fit_is_refused_with_its_reason() {
     assert!(text.contains("particle 1 in the order of ids"), "{text}");
     let text = refused(&["--gas", "openfoam"], &first);
     assert!(
-        text.contains("only a native gas continues another"),
+        text.contains("of the gas backend `native`, this run has `openfoam`"),
         "{text}"
     );
     let text = refused(&[], directory.path());
@@ -156,4 +175,79 @@ fn what_does_not_fit_is_refused_with_its_reason() {
     std::fs::remove_dir_all(first.join("checkpoint")).unwrap();
     let text = refused(&[], &first);
     assert!(text.contains("there is no checkpoint in it"), "{text}");
+}
+
+#[test]
+fn an_openfoam_gas_starts_from_a_time_directory_that_openfoam_wrote() {
+    let directory = tempfile::tempdir().unwrap();
+    let inputs = directory.path().join("inputs");
+    let prepared = Command::new(env!("CARGO_BIN_EXE_calcine"))
+        .args(["prepare", "--gas", "openfoam", "--out"])
+        .arg(&inputs)
+        .arg(column())
+        .output()
+        .unwrap();
+    done(&prepared);
+    // OpenFOAM itself sets the upper half of the column to 350 K and writes it in binary.
+    let case = inputs.join("openfoam");
+    std::fs::write(
+        case.join("system/setFieldsDict"),
+        "FoamFile { version 2.0; format ascii; class dictionary; object setFieldsDict; }\n\
+         defaultFieldValues ();\nregions ( boxToCell { box (-1 -1 0.05) (1 1 1); \
+         fieldValues ( volScalarFieldValue T 350 ); } );\n",
+    )
+    .unwrap();
+    let set = Command::new("setFields")
+        .current_dir(&case)
+        .env("PWD", &case)
+        .env("WM_PROJECT_DIR", "/usr/share/openfoam")
+        .output()
+        .unwrap();
+    assert!(
+        set.status.success(),
+        "{}",
+        String::from_utf8_lossy(&set.stderr)
+    );
+    let start = format!("openfoam.start={}", case.join("0").display());
+    let out = directory.path().join("out");
+    let settings = [
+        "--gas",
+        "openfoam",
+        "--set",
+        "time.end=1 s",
+        "--set",
+        &start,
+    ];
+    done(&run(&column(), &out, &settings));
+    let series = Series::read(&out).unwrap();
+    let first = |name: &str| series.column(name)[0];
+    assert_eq!(first("gas.temperature_min"), 300.0);
+    assert!((first("gas.temperature_max") - 350.0).abs() < 1e-9);
+    let summary = Summary::read(&out).unwrap();
+    assert!(summary.ledger.lines["energy"].relative_error < 1e-10);
+    // A directory of another mesh, and one without fields.
+    let text = |path: &Path| {
+        let set = format!("openfoam.start={}", path.display());
+        let output = run(
+            &column(),
+            &directory.path().join("refused"),
+            &[
+                "--gas",
+                "openfoam",
+                "--set",
+                &set,
+                "--set",
+                "mesh.box.cells=[1, 1, 22]",
+            ],
+        );
+        assert!(!output.status.success());
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let other = text(&case.join("0"));
+    assert!(
+        other.contains("11 values for a mesh of 22 cells"),
+        "{other}"
+    );
+    let none = text(&case.join("system"));
+    assert!(none.contains("none of the fields T, p, U"), "{none}");
 }

@@ -3,130 +3,17 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
+#[path = "support/processes.rs"]
+mod processes;
+
 use std::fs;
 use std::io::Read;
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::Command;
+use std::time::Duration;
 
-use rustix::process::{Pid, Signal, kill_process};
-
-/// How long a run may take to get under way on a busy machine.
-const PATIENCE: Duration = Duration::from_secs(90);
-
-fn case() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/heated-column.toml")
-}
-
-/// A coupled run with both external solvers that would take minutes.
-fn start(out: &Path) -> Child {
-    Command::new(env!("CARGO_BIN_EXE_calcine"))
-        .arg("run")
-        .arg(case())
-        .args(["--gas", "openfoam", "--particles", "liggghts", "--quiet"])
-        .args([
-            "--set",
-            "time.acceleration=1",
-            "--set",
-            "output.series_every=0.01 s",
-        ])
-        .arg("--out")
-        .arg(out)
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap()
-}
-
-fn command_line(pid: u32) -> String {
-    fs::read(format!("/proc/{pid}/cmdline"))
-        .map(|bytes| String::from_utf8_lossy(&bytes).replace('\0', " "))
-        .unwrap_or_default()
-}
-
-/// All living descendants of a process.
-fn descendants(pid: u32) -> Vec<u32> {
-    let mut found = Vec::new();
-    for entry in fs::read_dir("/proc").unwrap().flatten() {
-        let Ok(other) = entry.file_name().to_string_lossy().parse::<u32>() else {
-            continue;
-        };
-        let Ok(stat) = fs::read_to_string(format!("/proc/{other}/stat")) else {
-            continue;
-        };
-        let Some((_, rest)) = stat.rsplit_once(')') else {
-            continue;
-        };
-        let mut fields = rest.split_whitespace();
-        let state = fields.next();
-        if fields.next() == Some(&pid.to_string()) && state != Some("Z") {
-            found.push(other);
-            found.extend(descendants(other));
-        }
-    }
-    found
-}
-
-fn alive(pid: u32) -> bool {
-    fs::read_to_string(format!("/proc/{pid}/stat")).is_ok_and(|stat| {
-        stat.rsplit_once(')')
-            .is_some_and(|(_, rest)| !rest.starts_with(" Z"))
-    })
-}
-
-/// Entries of /dev/shm that belong to the run of this coordinator.
-fn shared_memory(pid: u32) -> Vec<String> {
-    let mark = format!("{pid}");
-    fs::read_dir("/dev/shm")
-        .map(|entries| {
-            entries
-                .flatten()
-                .map(|entry| entry.file_name().to_string_lossy().into_owned())
-                .filter(|name| name.contains("calcine") && name.contains(&mark))
-                .collect()
-        })
-        .unwrap_or_default()
-}
-
-/// Waits until windows are being committed.
-fn wait_for_windows(run: &mut Child, out: &Path) {
-    let begun = Instant::now();
-    loop {
-        let rows =
-            fs::read_to_string(out.join("series.csv")).map_or(0, |text| text.lines().count());
-        if rows > 4 {
-            return;
-        }
-        if let Some(status) = run.try_wait().unwrap() {
-            let mut text = String::new();
-            run.stderr
-                .take()
-                .unwrap()
-                .read_to_string(&mut text)
-                .unwrap();
-            panic!("the run ended early with {status}: {text}");
-        }
-        assert!(
-            begun.elapsed() < PATIENCE,
-            "no window was committed within {PATIENCE:?}"
-        );
-        std::thread::sleep(Duration::from_millis(50));
-    }
-}
-
-fn kill(pid: u32) {
-    let pid = Pid::from_raw(i32::try_from(pid).unwrap()).unwrap();
-    kill_process(pid, Signal::KILL).unwrap();
-}
-
-fn wait_until(limit: Duration, mut done: impl FnMut() -> bool) -> Duration {
-    let begun = Instant::now();
-    while !done() && begun.elapsed() < limit {
-        std::thread::sleep(Duration::from_millis(10));
-    }
-    begun.elapsed()
-}
+use processes::{
+    alive, case, command_line, descendants, kill, leftovers, start, wait_for_windows, wait_until,
+};
 
 /// Kills the first descendant whose command line contains `mark`, and returns the message.
 fn kill_peer(mark: &str) -> (String, Duration, i32) {
@@ -165,7 +52,7 @@ fn kill_peer(mark: &str) -> (String, Duration, i32) {
             command_line(pid)
         );
     }
-    assert_eq!(shared_memory(coordinator), Vec::<String>::new());
+    assert_eq!(leftovers(coordinator), Vec::<String>::new());
     (text, taken, code)
 }
 
@@ -207,7 +94,7 @@ fn when_the_coordinator_is_killed_both_solvers_say_so_and_nothing_stays_behind()
     println!("both solvers had ended {taken:?} after the kill of the coordinator");
     run.wait().unwrap();
     assert!(taken < Duration::from_secs(5), "{taken:?}");
-    assert_eq!(shared_memory(coordinator), Vec::<String>::new());
+    assert_eq!(leftovers(coordinator), Vec::<String>::new());
     let mut named = 0;
     for entry in fs::read_dir(out.join("log")).unwrap().flatten() {
         let text = fs::read_to_string(entry.path()).unwrap_or_default();

@@ -16,9 +16,14 @@ flags=(-std=c++14 -m64 -DOPENFOAM=1912 -DWM_DP -DWM_LABEL_SIZE=32 -Dlinux64 -DWM
     -Wall -Wextra -Wno-unused-parameter -Wno-old-style-cast -Wnon-virtual-dtor
     -I library -I calcineGasFoam -I "$WIRE_INCLUDE")
 for part in OpenFOAM OSspecific/POSIX finiteVolume meshTools thermophysicalModels/basic \
-    thermophysicalModels/specie transportModels/compressible; do
+    thermophysicalModels/specie thermophysicalModels/radiation transportModels/compressible \
+    TurbulenceModels/turbulenceModels TurbulenceModels/compressible; do
     flags+=(-isystem "$src/$part/lnInclude")
 done
+
+# For the link to a coordinator that spawned the solver by MPI.
+read -ra folders <<<"$(mpicc --showme:incdirs)"
+for folder in "${folders[@]}"; do flags+=(-isystem "$folder"); done
 
 objects=$OUT_DIR/objects
 mkdir -p "$objects"
@@ -38,11 +43,13 @@ own() { for file in "$1"/*.C; do echo "$objects/$(basename "$file" .C).o"; done;
 # A new file takes the old one's place at once: a running solver keeps what it has opened.
 mapfile -t library < <(own library)
 g++ -shared -Wl,-soname,libcalcineFoam.so -o "$OUT_DIR/.libcalcineFoam.so" "${library[@]}" "$WIRE_LIB" \
-    -Wl,--exclude-libs,ALL,--strip-debug -lfiniteVolume -lmeshTools -lOpenFOAM \
+    -Wl,--exclude-libs,ALL,--strip-debug -lcompressibleTurbulenceModels -lturbulenceModels -lcompressibleTransportModels \
+    -lfluidThermophysicalModels -lfiniteVolume -lmeshTools -lOpenFOAM -lmpi \
     -lgcc_s -lutil -lrt -lpthread -lm -ldl
 mv "$OUT_DIR/.libcalcineFoam.so" "$OUT_DIR/libcalcineFoam.so"
 mapfile -t solver < <(own calcineGasFoam)
 g++ -o "$OUT_DIR/.calcineGasFoam" "${solver[@]}" -L "$OUT_DIR" '-Wl,-rpath,$ORIGIN' \
     -Xlinker --add-needed -Xlinker --no-as-needed -lcalcineFoam -lfiniteVolume -lmeshTools \
-    -lfluidThermophysicalModels -lspecie -lOpenFOAM -lPstream -ldl -lm
+    -lfluidThermophysicalModels -lcompressibleTransportModels -lturbulenceModels \
+    -lcompressibleTurbulenceModels -lradiationModels -lspecie -lOpenFOAM -lPstream -ldl -lm
 mv "$OUT_DIR/.calcineGasFoam" "$OUT_DIR/calcineGasFoam"

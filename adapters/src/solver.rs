@@ -2,23 +2,26 @@
 //! and ended. One link per rank; every wait goes through a supervisor.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::supervisor::{Supervisor, log_end};
 use calcine_coupler::time::Window;
 use calcine_wire::shared_memory::End;
-use calcine_wire::{Header, Hello, Kind, Link, Run, SharedMemory, WireError};
+use calcine_wire::{Header, Hello, Kind, Link, Network, Record, Run, SharedMemory, WireError};
 
-use crate::launch::{Processes, Program};
+use crate::launch::{Launcher, Processes, Program, Spawner, spawn};
 
 /// What is to be launched.
 #[derive(Clone, Debug)]
 pub struct Launch {
     /// Name for messages, for example "LIGGGHTS (particles)".
     pub name: String,
-    /// The program; with more than one rank it runs under `mpirun`.
+    /// The program of each rank.
     pub program: Program,
+    /// Who starts it.
+    pub launcher: Launcher,
     /// Where its output goes.
     pub log: PathBuf,
     /// What the solver must agree with; `ranks` says how many are started.
@@ -29,10 +32,16 @@ pub struct Launch {
     pub deadline: Duration,
 }
 
+/// How long somebody may take who starts a solver by hand.
+const BY_HAND: Duration = Duration::from_secs(24 * 3600);
+
 /// Who is at the other end, for errors and for waits of its own.
 struct Peer {
     name: String,
-    pid: u32,
+    /// The solver or its launcher; `None` where somebody else started it.
+    pid: Option<u32>,
+    /// Ranks' process ids, once they introduced themselves.
+    ranks: Vec<u32>,
     log: PathBuf,
     /// Watches this solver only, for waits that have no supervisor of the run.
     own: Supervisor,
@@ -43,9 +52,13 @@ pub struct ExternalSolver {
     links: Vec<Link>,
     // Dropped in this order: processes end before the run's files go.
     processes: Processes,
-    _run: Run,
+    _run: Option<Run>,
+    /// Where MPI spawned the ranks: told when they have ended well.
+    network: Option<Arc<dyn Network>>,
     peer: Peer,
     hello: Hello,
+    /// By rank: the cells of the whole mesh that it has; empty for particles.
+    owned: Arc<[Vec<usize>]>,
     deadline: Duration,
 }
 
@@ -74,26 +87,64 @@ fn open_links(run: &Run, hello: &Hello) -> Result<Vec<Link>, WireError> {
 }
 
 impl Peer {
-    fn watched(
-        name: &str,
-        pid: u32,
-        log: &Path,
-        deadline: Duration,
-        supervisor: &Supervisor,
-    ) -> Result<Self, PartError> {
-        let mut own = Supervisor::new(deadline, supervisor.interrupts().clone());
-        own.watch(name, pid, Some(log))?;
-        Ok(Self {
-            name: name.into(),
+    fn new(launch: &Launch, pid: Option<u32>, supervisor: &Supervisor) -> Result<Self, PartError> {
+        let silence = if launch.launcher == Launcher::Hand {
+            BY_HAND
+        } else {
+            launch.handshake
+        };
+        let mut peer = Self {
+            name: launch.name.clone(),
             pid,
-            log: log.into(),
-            own,
-        })
+            ranks: Vec::new(),
+            log: launch.log.clone(),
+            own: Supervisor::new(silence, supervisor.interrupts().clone()),
+        };
+        if let Some(pid) = pid {
+            peer.own.watch(&peer.name, pid, Some(&peer.log))?;
+        }
+        Ok(peer)
+    }
+
+    /// Has a supervisor watch every process of the solver, the ranks first: a launcher ends soon after
+    /// the rank that is to be named.
+    fn watch(&self, supervisor: &mut Supervisor, local: &[(usize, u32)]) -> Result<(), PartError> {
+        for &(rank, pid) in local.iter().filter(|(_, pid)| Some(*pid) != self.pid) {
+            supervisor.watch(&self.called(&format!("rank {rank}")), pid, Some(&self.log))?;
+        }
+        let Some(pid) = self.pid else { return Ok(()) };
+        let name = if local.iter().any(|&(_, rank)| rank == pid) {
+            self.name.clone()
+        } else {
+            self.called("launcher")
+        };
+        supervisor.watch(&name, pid, Some(&self.log))
+    }
+
+    /// The name with more in its brackets: "OpenFOAM (gas, rank 1)".
+    fn called(&self, what: &str) -> String {
+        match self.name.strip_suffix(')') {
+            Some(name) => format!("{name}, {what})"),
+            None => format!("{} ({what})", self.name),
+        }
+    }
+
+    /// Name and process id, of a rank where one is meant.
+    fn who(&self, rank: Option<usize>) -> String {
+        let of_rank = rank.and_then(|rank| self.ranks.get(rank));
+        match (rank, of_rank, self.pid) {
+            (Some(rank), Some(pid), _) if self.ranks.len() > 1 => {
+                format!("{}, pid {pid}", self.called(&format!("rank {rank}")))
+            }
+            (_, Some(pid), None) => format!("{}, pid {pid}", self.name),
+            (_, _, Some(pid)) => format!("{}, pid {pid}", self.name),
+            _ => self.name.clone(),
+        }
     }
 
     /// A wire's error as the part's: its own words, else its death, else the wire's.
-    fn failure(&self, window: Option<&Window>, error: WireError) -> PartError {
-        let who = format!("{}, pid {}", self.name, self.pid);
+    fn failure(&self, rank: Option<usize>, window: Option<&Window>, error: WireError) -> PartError {
+        let who = self.who(rank);
         let log = log_end(&self.log);
         let mut part = match error {
             WireError::Failed { text } => PartError::new(who, FailureKind::Reported, text),
@@ -125,19 +176,19 @@ impl Peer {
         let mut arrived = vec![false; links.len()];
         let mut poll = |slice: Duration| {
             let share = slice / u32::try_from(arrived.len().max(1)).unwrap_or(1);
-            for (link, arrived) in links.iter_mut().zip(&mut arrived) {
+            for (rank, (link, arrived)) in links.iter_mut().zip(&mut arrived).enumerate() {
                 if *arrived {
                     continue;
                 }
                 let received = link.receive(share);
-                let received = received.map_err(|error| self.failure(window, error))?;
+                let received = received.map_err(|error| self.failure(Some(rank), window, error))?;
                 if let Some(header) = received {
                     if header.kind() != Some(kind) {
                         let error = WireError::Unexpected {
                             found: header.kind,
                             expected: "another answer",
                         };
-                        return Err(self.failure(window, error));
+                        return Err(self.failure(Some(rank), window, error));
                     }
                     *arrived = true;
                 }
@@ -152,6 +203,11 @@ impl Peer {
                 Err(word) if word.kind == FailureKind::Reported => Err(word),
                 _ => Err(death),
             },
+            Err(mut silence) if silence.kind == FailureKind::Silent => {
+                let rank = arrived.iter().position(|arrived| !arrived);
+                silence.who = self.who(rank);
+                Err(silence.with_log(log_end(&self.log)))
+            }
             waited => waited,
         }
     }
@@ -165,35 +221,121 @@ impl ExternalSolver {
             let message = "its link cannot be opened";
             PartError::new(&launch.name, FailureKind::NotStarted, message).caused_by(error)
         };
-        let run = Run::create().map_err(unopened)?;
-        let links = open_links(&run, &launch.hello).map_err(unopened)?;
-        let (name, log) = (&launch.name, &launch.log);
-        let address = run.address(&launch.hello.role);
         let ranks = launch.hello.ranks;
-        let processes = Processes::start(name, &launch.program, ranks, &address, log)?;
-        let pid = processes.pid();
+        let (run, links, processes);
+        if let Launcher::Network(Spawner(network)) = &launch.launcher {
+            let address = network.address(&launch.hello.role);
+            let program = &launch.program;
+            let ends = spawn(
+                &**network,
+                program,
+                ranks,
+                &address,
+                &launch.log,
+                launch.handshake,
+            );
+            let ends = ends.map_err(|error| {
+                let message = "its ranks cannot be spawned by MPI";
+                let error =
+                    PartError::new(&launch.name, FailureKind::NotStarted, message).caused_by(error);
+                error.with_log(log_end(&launch.log))
+            })?;
+            let number = address.number();
+            let opened = ends.into_iter().zip(0..);
+            links = opened
+                .map(|(end, rank)| Link::new(end, number, rank))
+                .collect();
+            processes = Processes::elsewhere();
+            run = None;
+        } else {
+            let own = Run::create().map_err(unopened)?;
+            links = open_links(&own, &launch.hello).map_err(unopened)?;
+            processes = Processes::start(
+                &launch.name,
+                &launch.program,
+                &launch.launcher,
+                ranks,
+                &own.address(&launch.hello.role),
+                &launch.log,
+            )?;
+            run = Some(own);
+        }
+        let peer = Peer::new(&launch, processes.pid(), supervisor)?;
         let mut solver = Self {
             links,
             processes,
             _run: run,
-            peer: Peer::watched(name, pid, log, launch.handshake, supervisor)?,
-            hello: launch.hello.clone(),
+            network: match launch.launcher {
+                Launcher::Network(Spawner(network)) => Some(network),
+                _ => None,
+            },
+            peer,
+            hello: launch.hello,
+            owned: Arc::default(),
             deadline: launch.deadline,
         };
-        solver.shake_hands()?;
-        solver.peer = Peer::watched(name, pid, log, launch.deadline, supervisor)?;
-        supervisor.watch(name, pid, Some(log))?;
+        solver.shake_hands(supervisor)?;
         Ok(solver)
     }
 
-    fn shake_hands(&mut self) -> Result<(), PartError> {
+    fn shake_hands(&mut self, supervisor: &mut Supervisor) -> Result<(), PartError> {
         let ours = self.hello.clone();
         self.wait_alone(Kind::Hello)?;
-        for link in &mut self.links {
+        let mut local = Vec::new();
+        for (rank, link) in self.links.iter_mut().enumerate() {
             let answer = link.answer_greeting(&ours);
-            self.hello = answer.map_err(|error| self.peer.failure(None, error))?;
+            self.hello = answer.map_err(|error| self.peer.failure(None, None, error))?;
+            let Some(process) = link.peer() else { continue };
+            self.peer.ranks.push(process.pid);
+            if process.is_here() {
+                local.push((rank, process.pid));
+                self.processes.add_rank(process.pid);
+            }
+        }
+        let mut own = Supervisor::new(self.deadline, supervisor.interrupts().clone());
+        self.peer.watch(&mut own, &local)?;
+        self.peer.own = own;
+        self.peer.watch(supervisor, &local)?;
+        if ours.catalogue.of(Record::Owned).next().is_some() {
+            self.wait_alone(Kind::Owned)?;
+            let owned = self.claims();
+            self.owned = owned.map_err(|error| self.failure(None, error))?.into();
+            self.check_claims()?;
         }
         self.wait_alone(Kind::State)
+    }
+
+    /// The cells that each rank says it has.
+    fn claims(&self) -> Result<Vec<Vec<usize>>, WireError> {
+        let claim = |link: &Link| {
+            let cells = link.column_words("cell")?.iter();
+            Ok(cells.map(|&cell| cell as usize).collect())
+        };
+        self.links.iter().map(claim).collect()
+    }
+
+    /// Every cell must be on one rank.
+    fn check_claims(&self) -> Result<(), PartError> {
+        let mut times = vec![0u32; self.hello.count as usize];
+        for &cell in self.owned.iter().flatten() {
+            let Some(times) = times.get_mut(cell) else {
+                let message = format!("a rank has cell {cell} of {}", self.hello.count);
+                return Err(self.refuse(None, message));
+            };
+            *times += 1;
+        }
+        match times.iter().position(|&times| times != 1) {
+            None => Ok(()),
+            Some(cell) => {
+                let message = format!("{} ranks have cell {cell}", times[cell]);
+                Err(self.refuse(None, message))
+            }
+        }
+    }
+
+    /// By rank: the cells of the whole mesh that it has, in the order of its columns.
+    pub fn owned(&self) -> &Arc<[Vec<usize>]> {
+        &self.owned
     }
 
     /// The solver's introduction: name and version.
@@ -201,9 +343,15 @@ impl ExternalSolver {
         &self.hello
     }
 
-    /// Process id of the solver, or of the `mpirun` above it.
+    /// Process id of the solver, or of the launcher above it.
     pub fn pid(&self) -> u32 {
-        self.peer.pid
+        let first = || self.peer.ranks.first().copied();
+        self.peer.pid.or_else(first).unwrap_or_default()
+    }
+
+    /// Process ids of the ranks, as they introduced themselves.
+    pub fn rank_pids(&self) -> &[u32] {
+        &self.peer.ranks
     }
 
     /// Links, one per rank, each with the message that was waited for last.
@@ -213,31 +361,32 @@ impl ExternalSolver {
 
     /// A wire's error as the part's, with name, pid and the end of the log.
     pub fn failure(&self, window: Option<&Window>, error: WireError) -> PartError {
-        self.peer.failure(window, error)
+        self.peer.failure(None, window, error)
     }
 
     /// An error of this part in words, with name, pid and the end of the log.
     pub fn refuse(&self, window: Option<&Window>, message: String) -> PartError {
-        let who = format!("{}, pid {}", self.peer.name, self.peer.pid);
-        let mut error = PartError::new(who, FailureKind::Protocol, message);
+        let mut error = PartError::new(self.peer.who(None), FailureKind::Protocol, message);
         error.window = window.copied();
         error.with_log(log_end(&self.peer.log))
     }
 
-    /// Sends every rank a message of `count` items whose columns `fill` fills in.
+    /// Sends every rank a message of as many items as `count` says, whose columns `fill` fills in.
     pub fn send_columns(
         &mut self,
         window: &Window,
         header: Header,
-        count: usize,
-        fill: impl Fn(&mut Link) -> Result<(), WireError>,
+        count: impl Fn(usize) -> usize,
+        fill: impl Fn(usize, &mut Link) -> Result<(), WireError>,
     ) -> Result<(), PartError> {
-        let sent = self.links.iter_mut().try_for_each(|link| {
-            link.loan(header, count)?;
-            fill(link)?;
-            link.send()
-        });
-        sent.map_err(|error| self.peer.failure(Some(window), error))
+        for (rank, link) in self.links.iter_mut().enumerate() {
+            let sent = link
+                .loan(header, count(rank))
+                .and_then(|()| fill(rank, link))
+                .and_then(|()| link.send());
+            sent.map_err(|error| self.peer.failure(Some(rank), Some(window), error))?;
+        }
+        Ok(())
     }
 
     /// Waits until every rank has answered with a message of a kind; the links then hold it.
@@ -282,14 +431,18 @@ impl ExternalSolver {
     pub fn goodbye(&mut self) -> Result<(), PartError> {
         self.send_text(Kind::Bye, "")?;
         self.wait_alone(Kind::Bye)?;
-        self.processes.wait(&self.peer.name, self.deadline)
+        self.processes.wait(&self.peer.name, self.deadline)?;
+        if let Some(network) = &self.network {
+            network.goodbye();
+        }
+        Ok(())
     }
 
     fn send_text(&mut self, kind: Kind, text: &str) -> Result<(), PartError> {
-        let sent = self
-            .links
-            .iter_mut()
-            .try_for_each(|link| link.send_text(Header::of(kind), text));
-        sent.map_err(|error| self.peer.failure(None, error))
+        for (rank, link) in self.links.iter_mut().enumerate() {
+            let sent = link.send_text(Header::of(kind), text);
+            sent.map_err(|error| self.peer.failure(Some(rank), None, error))?;
+        }
+        Ok(())
     }
 }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use calcine_adapters::launch::Launcher;
 use calcine_adapters::liggghts::inputs::Inputs;
 use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch, LiggghtsParticles};
 use calcine_coupler::error::{FailureKind, PartError};
@@ -81,6 +82,7 @@ impl Bench {
                 step: FROZEN_STEP,
                 ranks,
             },
+            launcher: Launcher::Mpirun,
             case_hash: "abc".into(),
             folder: self.folder.path().join("liggghts"),
             log: self.log(),

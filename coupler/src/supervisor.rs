@@ -94,22 +94,22 @@ impl Supervisor {
         self.peers.retain(|peer| peer.pid != pid);
     }
 
-    /// An error that names the first peer found dead, with the end of its log.
+    /// An error that names the peers found dead, with the end of the first one's log. Which of them was
+    /// the first to die cannot be known: MPI ends all ranks soon after one.
     pub fn check(&self, window: Option<&Window>) -> Result<(), PartError> {
-        let mut dead = None;
-        for peer in &self.peers {
-            if has_ended(&peer.pidfd, Duration::ZERO) {
-                dead = Some(peer);
-                break;
-            }
+        let dead = |peer: &&Peer| has_ended(&peer.pidfd, Duration::ZERO);
+        let mut dead = self.peers.iter().filter(dead);
+        let Some(peer) = dead.next() else {
+            return Ok(());
+        };
+        let mut message = format!("died: {}", ending(&peer.pidfd));
+        for other in dead {
+            message.push_str("; so did ");
+            message.push_str(&label(&other.name, other.pid));
         }
-        let Some(peer) = dead else { return Ok(()) };
-        let mut error = PartError::new(
-            label(&peer.name, peer.pid),
-            FailureKind::Died,
-            format!("died: {}", ending(&peer.pidfd)),
-        )
-        .with_log(peer.log.as_deref().map(log_end).unwrap_or_default());
+        let who = label(&peer.name, peer.pid);
+        let mut error = PartError::new(who, FailureKind::Died, message)
+            .with_log(peer.log.as_deref().map(log_end).unwrap_or_default());
         error.window = window.copied();
         Err(error)
     }

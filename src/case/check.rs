@@ -84,12 +84,11 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
 fn honoured(text: &mut String, case: &Case) {
     let _ = writeln!(text, "  backends:");
     for name in ["native gas", "OpenFOAM", "native particles", "LIGGGHTS"] {
+        let foam = openfoam(case);
         let note = match name {
-            "OpenFOAM" if !case.gas.properties.species().is_empty() => {
-                "not this case: calcineGasFoam carries no species (`gas.species`)"
-            }
-            "OpenFOAM" if case.openfoam.template.is_some() => {
-                "every key, and `openfoam.template`, which restricts the case to this gas"
+            "OpenFOAM" => foam.as_str(),
+            "native gas" if case.openfoam.start.is_some() => {
+                "not its start: `openfoam.start` is the start of an OpenFOAM gas alone"
             }
             "native gas" if case.openfoam.template.is_some() => {
                 "every key but `openfoam.template`: what only the template states is left out"
@@ -104,6 +103,38 @@ fn honoured(text: &mut String, case: &Case) {
         };
         let _ = writeln!(text, "    {name:<17} {note}");
     }
+}
+
+/// What an OpenFOAM gas makes of the case, and what its template alone states.
+fn openfoam(case: &Case) -> String {
+    let mut text = String::from("every key");
+    if case.openfoam.solver.is_stock() {
+        text += ", approximately: a stock solver (`openfoam.solver`) has no void fraction in its storage; \
+                 see docs/stock-solvers.md";
+    }
+    if let Some(template) = &case.openfoam.template {
+        // What the case states is written over a template's.
+        let stated = ["U", "T", "p", "p_rgh", "g", "thermophysicalProperties"];
+        let mut names = Vec::new();
+        for folder in ["0", "constant", "system"] {
+            let Ok(entries) = std::fs::read_dir(template.join(folder)) else {
+                continue;
+            };
+            for entry in entries.filter_map(Result::ok) {
+                let name = entry.file_name().to_string_lossy().into_owned();
+                if entry.path().is_file() && !stated.contains(&name.as_str()) {
+                    names.push(format!("{folder}/{name}"));
+                }
+            }
+        }
+        names.sort();
+        let _ = write!(
+            text,
+            "; `openfoam.template`, which restricts the case to this gas, adds {}",
+            names.join(", ")
+        );
+    }
+    text
 }
 
 /// R, the error of process storage, and the window against the drag's own time.

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use calcine_adapters::openfoam::stock::Solver;
 use calcine_coupler::mesh::grading::Stretch;
 use calcine_coupler::mesh::refine::Refinement;
 use calcine_coupler::mesh::zone::Zone;
@@ -365,8 +366,12 @@ pub enum Mapping {
 pub struct External {
     /// Template (absolute path); `None`: all inputs are generated.
     pub template: Option<PathBuf>,
-    /// Ranks.
-    pub ranks: usize,
+    /// Time directory of OpenFOAM whose fields the gas starts from (absolute path).
+    pub start: Option<PathBuf>,
+    /// Program of an OpenFOAM gas.
+    pub solver: Solver,
+    /// MPI ranks, unless the command line states others.
+    pub ranks: u32,
 }
 
 /// What is written.

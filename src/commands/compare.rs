@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::execute::{self, Settings};
+use super::parallel::Transport;
 use super::{Failure, chain, read_and_prepare, results_folder, say};
-use crate::assembly::Pairing;
+use crate::assembly::{Pairing, Starts};
 use crate::exit;
 
 /// Runs several pairings of one case and says how far they differ against the case's bands.
@@ -65,6 +66,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         say(format_args!("{}:", pairing.name()));
         let settings = Settings {
             pairing,
+            starts: &Starts::of(&case),
+            transport: Transport::default(),
             out: &folder,
             resume: false,
             from: None,

@@ -31,6 +31,8 @@ pub struct DoctorReport {
     pub liggghts: Option<String>,
     /// Our host of LIGGGHTS.
     pub liggghts_adapter: Adapter,
+    /// The program that spawns solvers by MPI.
+    pub mpi_adapter: Adapter,
     /// Free and total bytes of /dev/shm.
     pub shared_memory: Option<(u64, u64)>,
 }
@@ -105,6 +107,7 @@ pub fn run() -> DoctorReport {
         openfoam_adapter: Adapter::find("calcineGasFoam", &folders),
         liggghts: package_version("libliggghts-dev").or_else(|| package_version("liggghts")),
         liggghts_adapter: Adapter::find("calcine-liggghts", &folders),
+        mpi_adapter: Adapter::find("calcine-mpi", &folders),
         shared_memory: shared_memory(Path::new("/dev/shm")),
     }
 }
@@ -199,9 +202,23 @@ impl DoctorReport {
             ("calcineGasFoam", self.openfoam_adapter.works()),
             ("LIGGGHTS", self.liggghts.is_some()),
             ("calcine-liggghts", self.liggghts_adapter.works()),
+            ("calcine-mpi", self.mpi_adapter.works()),
         ];
         all.into_iter()
             .filter(|(_, here)| !here)
+            .map(|(name, _)| name)
+            .collect()
+    }
+
+    /// What can carry messages between Calcine and external solvers here.
+    fn transports(&self) -> Vec<&'static str> {
+        let mpi = self.mpi.is_some() && self.mpi_adapter.works();
+        let all = [
+            ("shared-memory", self.shared_memory.is_some()),
+            ("mpi", mpi),
+        ];
+        all.into_iter()
+            .filter(|(_, works)| *works)
             .map(|(name, _)| name)
             .collect()
     }
@@ -239,6 +256,7 @@ impl fmt::Display for DoctorReport {
         writeln!(f, "  calcineGasFoam    {}", self.openfoam_adapter)?;
         writeln!(f, "  LIGGGHTS          {}", or_not(&self.liggghts))?;
         writeln!(f, "  calcine-liggghts  {}", self.liggghts_adapter)?;
+        writeln!(f, "  calcine-mpi       {}", self.mpi_adapter)?;
         match self.shared_memory {
             None => writeln!(
                 f,
@@ -260,6 +278,7 @@ impl fmt::Display for DoctorReport {
             }
         }
         write!(f, "pairings that run here: {}", self.pairings().join(", "))?;
+        write!(f, "\ntransports: {}", self.transports().join(", "))?;
         let missing = self.missing();
         if missing.is_empty() {
             return Ok(());
@@ -286,6 +305,7 @@ mod tests {
             openfoam_adapter: adapter("calcineGasFoam"),
             liggghts: Some("3.8.0+repack1-9+b2".into()),
             liggghts_adapter: adapter("calcine-liggghts"),
+            mpi_adapter: adapter("calcine-mpi"),
             shared_memory: Some((1 << 30, 1 << 30)),
             ..DoctorReport::default()
         }
@@ -309,7 +329,8 @@ mod tests {
     fn a_machine_with_everything_runs_all_pairings() {
         let text = whole().to_string();
         let all = "native+native, native+liggghts, openfoam+native, openfoam+liggghts";
-        assert!(text.ends_with(all), "{text}");
+        assert!(text.contains(all), "{text}");
+        assert!(text.ends_with("transports: shared-memory, mpi"), "{text}");
         assert!(!text.contains("missing"), "{text}");
     }
 

@@ -15,8 +15,9 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use tracing::{error, info, warn};
 
+use super::parallel::{self, Transport};
 use super::{Failure, chain, origin, with_help};
-use crate::assembly::{self, Pairing, Prepared, assemble};
+use crate::assembly::{self, Pairing, Prepared, Starts, assemble};
 use crate::case::buoyancy;
 use crate::case::model::Case;
 use crate::exit;
@@ -30,6 +31,10 @@ const LOCK: &str = "lock";
 pub(super) struct Settings<'a> {
     /// Who computes what.
     pub(super) pairing: Pairing,
+    /// How external solvers are started.
+    pub(super) starts: &'a Starts,
+    /// What carries their messages.
+    pub(super) transport: Transport,
     /// The results folder.
     pub(super) out: &'a Path,
     /// Goes on from the checkpoint in it, or starts again if there was none yet.
@@ -90,7 +95,7 @@ pub(super) fn execute(
         transport: if settings.pairing.is_native() {
             "none"
         } else {
-            "shared-memory"
+            settings.transport.name()
         }
         .into(),
         from: provenance,
@@ -104,6 +109,7 @@ pub(super) fn execute(
     info!(case = %case.name, pairing = %settings.pairing.name(), resume, "start");
     let assembly = assembly::Settings {
         pairing: settings.pairing,
+        starts: settings.starts,
         results: out,
         resume,
         from: origin.as_ref(),
@@ -147,11 +153,12 @@ pub(super) fn execute(
             stopped(&mut recorder);
             info!(path = %path.display(), "checkpointed");
             let text = format!(
-                "stopped with a checkpoint in {}; go on with\n  calcine run {} --out {} --resume{}",
+                "stopped with a checkpoint in {}; go on with\n  calcine run {} --out {} --resume{}{}",
                 path.display(),
                 case.path.display(),
                 out.display(),
                 backend_flags(settings.pairing),
+                parallel::flags(settings.starts),
             );
             Ok(Done {
                 code: exit::CHECKPOINTED,

@@ -6,6 +6,7 @@ pub mod doctor;
 mod execute;
 mod new;
 mod origin;
+mod parallel;
 mod prepare;
 mod report;
 mod run;
@@ -14,9 +15,13 @@ mod sweep;
 
 use std::fmt;
 use std::io::Write;
+use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::process::{self, ExitCode};
+use std::sync::Arc;
 
+use calcine_adapters::launch::find_program;
+use calcine_wire::Network;
 use clap::{Parser, Subcommand};
 
 use crate::assembly::{AssemblyError, Prepared};
@@ -124,9 +129,16 @@ fn say(text: impl fmt::Display) {
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
+    ExitCode::from(run_line(None))
+}
+
+/// Runs the command line of this process, with what can spawn solvers by MPI; without that, a run that
+/// needs it goes to the program `calcine-mpi`. Gives the exit code.
+pub fn run_line(network: Option<&Arc<dyn Network>>) -> u8 {
     let arguments = Arguments::parse();
     let outcome = match &arguments.command {
-        Command::Run(arguments) => run::run(arguments),
+        Command::Run(arguments) if network.is_none() && arguments.needs_mpi() => Err(become_mpi()),
+        Command::Run(arguments) => run::run(arguments, network),
         Command::Check(arguments) => check::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Sweep(arguments) => sweep::run(arguments),
@@ -140,10 +152,24 @@ pub fn main() -> ExitCode {
         }
     };
     match outcome {
-        Ok(code) => ExitCode::from(code),
+        Ok(code) => code,
         Err(failure) => {
             eprintln!("{}", failure.message.trim_end());
-            ExitCode::from(failure.code)
+            failure.code
         }
     }
+}
+
+/// Replaces this process by `calcine-mpi` with the same words; returns only where that fails.
+fn become_mpi() -> Failure {
+    let remedy = "`cargo xtask setup` installs what it needs and builds it";
+    let program = match find_program("CALCINE_MPI", "calcine-mpi", remedy) {
+        Ok(program) => program,
+        Err(error) => return Failure::new(exit::PEER, chain(&error)),
+    };
+    let cause = process::Command::new(&program)
+        .args(std::env::args_os().skip(1))
+        .exec();
+    let message = format!("{} cannot be started: {cause}", program.display());
+    Failure::new(exit::PEER, message)
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use calcine_coupler::coordinator::Origin;
 
 use super::{Failure, chain, with_help};
-use crate::assembly::{GasBackend, Pairing};
+use crate::assembly::Pairing;
 use crate::exit;
 use crate::results::summary::{Provenance, Verdict};
 use crate::results::{SUMMARY, Summary};
@@ -22,18 +22,13 @@ pub(super) fn folder(asked: Option<&Path>, again: bool, out: &Path) -> Option<Pa
 pub(super) fn read(folder: &Path, pairing: Pairing) -> Result<(Origin, Provenance), Failure> {
     let refused = |message: String| Failure::new(exit::CASE, message);
     let summary = Summary::read(folder).map_err(|error| refused(with_help(&error)))?;
-    let native = GasBackend::Native.name();
-    for (gas, whose) in [
-        (summary.backend.gas.as_str(), "the results are of"),
-        (pairing.gas.name(), "this run has"),
-    ] {
-        if gas != native {
-            return Err(refused(format!(
-                "--from {}: {whose} the gas backend `{gas}`; only a native gas continues another \
-                 native gas: run both with `--gas native`",
-                folder.display()
-            )));
-        }
+    let (found, asked) = (summary.backend.gas.as_str(), pairing.gas.name());
+    if found != asked {
+        return Err(refused(format!(
+            "--from {}: the results are of the gas backend `{found}`, this run has `{asked}`, and the \
+             state of one is no start of the other: run both with `--gas {found}`",
+            folder.display()
+        )));
     }
     let state = folder.join("checkpoint").join("coordinator.state");
     if !state.is_file() {

@@ -1,13 +1,16 @@
 //! `calcine run CASE`.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 
+use calcine_wire::Network;
 use clap::Args;
 
 use super::execute::{self, Settings};
+use super::parallel::{Parallel, Transport};
 use super::{Failure, read_and_prepare, results_folder, say};
-use crate::assembly::{GasBackend, Pairing, ParticleBackend};
+use crate::assembly::{GasBackend, Pairing, ParticleBackend, Starts};
 use crate::exit;
 
 /// Runs a case, natively or with production solvers.
@@ -21,6 +24,8 @@ pub(super) struct Arguments {
     /// Who computes the particles.
     #[arg(long, value_enum, default_value_t)]
     particles: ParticleBackend,
+    #[command(flatten)]
+    parallel: Parallel,
     /// The results folder [default: results/NAME].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -46,15 +51,31 @@ pub(super) struct Arguments {
     stop_after: Option<Duration>,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
+impl Arguments {
+    /// True where the solvers talk over MPI.
+    pub(super) fn needs_mpi(&self) -> bool {
+        let external = self.gas != GasBackend::Native || self.particles != ParticleBackend::Native;
+        external && self.parallel.transport() == Transport::Mpi
+    }
+}
+
+pub(super) fn run(
+    arguments: &Arguments,
+    network: Option<&Arc<dyn Network>>,
+) -> Result<u8, Failure> {
     use_threads(arguments.threads.map(usize::from))?;
     let (case, prepared) = read_and_prepare(&arguments.case, &arguments.set)?;
     let out = results_folder(&case, arguments.out.as_ref());
+    let pairing = Pairing {
+        gas: arguments.gas,
+        particles: arguments.particles,
+    };
     let settings = Settings {
-        pairing: Pairing {
-            gas: arguments.gas,
-            particles: arguments.particles,
-        },
+        pairing,
+        starts: &arguments
+            .parallel
+            .starts(pairing, &Starts::of(&case), network)?,
+        transport: arguments.parallel.transport(),
         out: &out,
         resume: arguments.resume,
         from: arguments.from.as_deref(),

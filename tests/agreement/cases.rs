@@ -66,6 +66,37 @@ wall = {{ velocity = "no-slip", heat = {{ temperature = "310 K" }} }}
     )
 }
 
+/// Hot hydrogen and nitrogen drive carbon dioxide out of a bed: unlike molar masses, heat capacities and
+/// viscosities, slow enough for diffusion to matter at the inlet.
+pub fn purge(convection: &str) -> String {
+    let beads = r#"first = "5 5 15 mm", spacing = "5 5 5 mm", counts = [3, 3, 5]"#;
+    format!(
+        r#"format = 1
+title = "Hydrogen and nitrogen purge carbon dioxide from a bed"
+[time]
+end = "1 s"
+motion_window = "5 ms"
+acceleration = 10
+gas_storage = "process"
+[mesh]
+box = {{ size = "20 20 60 mm", cells = [2, 2, 12], patches = ["side", "side", "side", "side", "bottom", "top"] }}
+[gas]
+mixture = "purge"
+species = ["N2", "H2", "CO2"]
+schmidt = 0.4
+initial = {{ temperature = "300 K", pressure = "1 atm", velocity = "0 0 0.1 m/s", composition = {{ mole = {{ CO2 = 1 }} }} }}
+controls = {{ outer_iterations = 80, outer_tolerance = 1e-8, convection = "{convection}" }}
+[gas.patch.bottom]
+inlet = {{ superficial_velocity = "0.1 m/s", temperature = [["0 s", "300 K"], ["0.5 s", "400 K"]], composition = [["0 s", {{ mole = {{ CO2 = 1 }} }}], ["0.4 s", {{ mole = {{ H2 = 0.5, N2 = 0.5 }} }}]] }}
+[gas.patch.top]
+outlet = {{ pressure = "1 atm" }}
+[gas.patch.side]
+wall = {{ velocity = "no-slip", heat = {{ temperature = "310 K" }} }}
+{}{DROP}"#,
+        rest(beads).replace(r#""pressure"]"#, r#""pressure", "mass_fractions"]"#)
+    )
+}
+
 /// The same bed in a tube, whose cells are skewed, with a finer zone across the bed's end.
 pub fn tube() -> String {
     let beads = r#"first = "-4.5 -4.5 15 mm", spacing = "4.5 4.5 5 mm", counts = [3, 3, 4]"#;

@@ -14,6 +14,8 @@ pub struct Needs {
     pub openfoam: bool,
     /// The LIGGGHTS host.
     pub liggghts: bool,
+    /// The program that spawns solvers by MPI.
+    pub mpi: bool,
     /// What tests read results and check cases with, and a compiler for the C ABI.
     pub tests: bool,
 }
@@ -23,12 +25,14 @@ impl Needs {
     pub const NATIVE: Self = Self {
         openfoam: false,
         liggghts: false,
+        mpi: false,
         tests: false,
     };
     /// Everything.
     pub const ALL: Self = Self {
         openfoam: true,
         liggghts: true,
+        mpi: true,
         tests: true,
     };
 
@@ -61,6 +65,8 @@ impl Needs {
                 "openmpi-bin",
             ],
         );
+        // What rsmpi is built with: mpicc, and libclang for its bindings.
+        add(self.mpi, &["libopenmpi-dev", "openmpi-bin", "libclang-dev"]);
         add(
             self.tests,
             &["g++", "python3-vtk9", "python3-h5py", "python3-jsonschema"],
@@ -223,6 +229,7 @@ mod tests {
             "openfoam",
             "libliggghts-dev",
             "openmpi-bin",
+            "libclang-dev",
             "dpkg-dev",
             "python3-h5py",
         ] {

@@ -79,6 +79,9 @@ pub fn install(workspace: &Workspace, prefix: &Path, needs: Needs) -> Outcome<()
             libexec.join("calcine-liggghts"),
         ));
     }
+    if needs.mpi {
+        copies.push((built.join("calcine-mpi"), libexec.join("calcine-mpi")));
+    }
     if needs.openfoam {
         for path in OpenfoamAdapter::new(workspace)?.products()? {
             let name = path.file_name().unwrap_or_default().to_owned();
@@ -103,7 +106,7 @@ fn build_parts(workspace: &Workspace, needs: Needs, profile: Profile) -> Outcome
     command.args(["--profile", profile.name()]);
     if profile == Profile::Dev {
         // The C ABI's test links the static library, which only `cargo build` leaves in place.
-        command.args(needs.liggghts.then_some("--workspace"));
+        command.args((needs.liggghts && needs.mpi).then_some("--workspace"));
     } else {
         command.args(["-p", "calcine"]);
         if adapter
@@ -114,6 +117,9 @@ fn build_parts(workspace: &Workspace, needs: Needs, profile: Profile) -> Outcome
         }
         if needs.liggghts {
             command.args(["-p", "calcine-liggghts"]);
+        }
+        if needs.mpi {
+            command.args(["-p", "calcine-mpi"]);
         }
     }
     loud_step("build the Rust parts", || visibly(&mut command))?;
@@ -129,7 +135,7 @@ fn needs_of(words: &[OsString]) -> Needs {
         needs.openfoam |= everything || value.contains("openfoam");
         needs.liggghts |= everything || value.contains("liggghts");
     };
-    let mut pairings = false;
+    let (mut pairings, mut mpi) = (false, false);
     for (at, word) in texts.iter().enumerate() {
         let (option, value) = match word.split_once('=') {
             Some((option, value)) => (option, value),
@@ -137,6 +143,7 @@ fn needs_of(words: &[OsString]) -> Needs {
         };
         match option {
             "--gas" | "--particles" => name(value, false),
+            "--transport" => mpi |= value == "mpi",
             "--pairings" => {
                 pairings = true;
                 name(value, value == "all");
@@ -147,6 +154,7 @@ fn needs_of(words: &[OsString]) -> Needs {
     if texts.first().is_some_and(|word| word == "compare") && !pairings {
         name("", true);
     }
+    needs.mpi = mpi && (needs.openfoam || needs.liggghts);
     needs
 }
 
@@ -201,6 +209,15 @@ mod tests {
             ..Needs::NATIVE
         };
         assert_eq!(needs("run --particles liggghts case.toml"), liggghts);
+        let mpi = Needs {
+            mpi: true,
+            ..liggghts
+        };
+        assert_eq!(
+            needs("run --particles liggghts case.toml --transport mpi"),
+            mpi
+        );
+        assert_eq!(needs("run case.toml --transport mpi"), Needs::NATIVE);
     }
 
     #[test]
@@ -208,7 +225,7 @@ mod tests {
         let both = Needs {
             openfoam: true,
             liggghts: true,
-            tests: false,
+            ..Needs::NATIVE
         };
         assert_eq!(needs("compare case.toml"), both);
         assert_eq!(needs("compare case.toml --pairings all"), both);

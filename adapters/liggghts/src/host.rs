@@ -7,11 +7,15 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use calcine_wire::shared_memory::End;
-use calcine_wire::{Catalogue, Header, Hello, Kind, Link, LinkAddress, SharedMemory, WireError};
+use calcine_wire::{
+    Carried, Catalogue, Header, Hello, Kind, Link, LinkAddress, Means, SharedMemory, Transport,
+    WireError,
+};
 use thiserror::Error;
 
 use crate::change::Change;
 use crate::library::{self, Liggghts};
+use crate::parent::Parent;
 use crate::state::State;
 
 /// Ticks of the wire's clocks in one second.
@@ -110,8 +114,11 @@ impl Host {
     pub fn begin(start: Start) -> Result<Self, HostError> {
         let (rank, ranks) = library::start_mpi();
         let address = LinkAddress::from_environment()?;
-        let transport = SharedMemory::open(&address, rank, End::Solver)?;
-        library::keep_link(Link::new(Box::new(transport), address.number(), rank));
+        let transport: Box<dyn Transport + Send> = match address.means {
+            Means::SharedMemory => Box::new(SharedMemory::open(&address, rank, End::Solver)?),
+            Means::Mpi { .. } => Box::new(Carried::of_solver(Parent::find()?, &address)?),
+        };
+        library::keep_link(Link::new(transport, address.number(), rank));
         let mut host = Self {
             liggghts: Liggghts::open(LOG),
             start,

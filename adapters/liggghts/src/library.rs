@@ -75,7 +75,7 @@ pub fn report(text: &str) {
         && let Some(link) = link.as_mut()
     {
         // Whoever started this process sees its end, even if the link is what failed.
-        let _ = link.send_text(Header::of(Kind::Failed), text);
+        let _ = link.send_last_word(Header::of(Kind::Failed), text);
     }
 }
 

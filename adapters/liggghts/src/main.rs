@@ -7,6 +7,8 @@ mod change;
 mod host;
 #[allow(unsafe_code)]
 mod library;
+#[allow(unsafe_code)]
+mod parent;
 mod state;
 
 use std::path::PathBuf;

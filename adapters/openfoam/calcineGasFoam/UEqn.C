@@ -5,7 +5,7 @@
 //       - sum (eps mu)_f (grad(u) + grad(u)^T - 2/3 div(u)).S = -eps grad(p) V + eps rho V g + S_d - K_d u
 //
 // u_f as fvSchemes says, beyond upwind explicitly; of the viscous stress the part grad(u).S is implicit. No viscous stress acts on
-// slip walls; gas leaves an outlet as if the flow were developed there.
+// slip walls; mu with that of eddies (models.H); gas leaves an outlet as if the flow were developed there.
 #include "gas.H"
 #include "convection.H"
 #include "fvm.H"
@@ -17,19 +17,17 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     const scalarField& volume = mesh_.cellVolumes();
     const scalarField pores(given_.voidFraction*volume);
     const scalarField inertia(committed_.mass/window_.motionSpan);
-    const surfaceScalarField viscosity
-    (
-        "viscosity", fvc::interpolate(voidFraction_*thermo_->mu())
-    );
+    const surfaceScalarField faceViscosity("viscosity", fvc::interpolate(viscosity()));
 
     // Force of the explicit part of the stress on the owner of each face, in N.
     volTensorField stress
     (
-        "explicitStress", voidFraction_*thermo_->mu()*dev2(T(fvc::grad(U_)))
+        "explicitStress", viscosity()*dev2(T(fvc::grad(U_)))
     );
     forAll(mesh_.boundary(), patchi)
     {
-        if (boundary_.of(patchi) != passage::open && !U_.boundaryField()[patchi].fixesValue())
+        const passage way = boundary_.of(patchi);
+        if (way != passage::open && way != passage::within && !U_.boundaryField()[patchi].fixesValue())
         {
             stress.boundaryFieldRef()[patchi] = Zero;
         }
@@ -38,12 +36,11 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
 
     // The matrix of the last outer iteration goes first, with the memory it holds.
     momentum_.reset();
-    autoPtr<surfaceVectorField> beyond;
     momentum_.reset
     (
         new fvVectorMatrix
         (
-            convect(phi_, U_, "div(phi,U)", beyond) - fvm::laplacian(viscosity, U_)
+            convect(phi_, U_, "div(phi,U)", share_, beyondU_) - fvm::laplacian(faceViscosity, U_)
         )
     );
     fvVectorMatrix& matrix = *momentum_;
@@ -51,7 +48,7 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     matrix.diag() += inertia + given_.dragCoefficient - outflow_;
     matrix.source() +=
         inertia*committed_.velocity + given_.dragSource + density*pores*gravity_
-      + outOf(*stressForce_) - outOf(*beyond);
+      + outOf(*stressForce_) - outOf(*beyondU_);
 
     // The normal velocity at a wall without friction is not stressed by the wall either.
     forAll(mesh_.boundary(), patchi)

@@ -15,18 +15,22 @@ void Foam::calcine::gas::finishReport(report& result) const
     const scalarField stored(mass_ - committed_.mass);
     result.mass.stored = gSum(stored);
     result.mass.storedMagnitude = gSumMag(stored);
-    for (label facei = mesh_.nInternalFaces(); facei < mesh_.nFaces(); ++facei)
+    scalar passing = 0, circulating = 0;
+    forAll(flux_, facei)
     {
-        result.mass.boundary -= window_.storageSpan*flux_[facei];
-        result.mass.boundaryMagnitude += window_.storageSpan*mag(flux_[facei]);
+        (shared_.within(facei) ? circulating : passing) += shared_.share(facei)*mag(flux_[facei]);
     }
+    reduce(circulating, sumOp<scalar>());
+    result.mass.boundary = -window_.storageSpan*boundaryOutflow();
+    result.mass.boundaryMagnitude =
+        window_.storageSpan*returnReduce(passing, sumOp<scalar>());
     if (result.mass.boundaryMagnitude == 0)
     {
         // Where nothing passes the boundary: what circulates within, because the rounding of that is
         // all that the cells of a fluid of constant density store.
-        result.mass.boundaryMagnitude =
-            window_.storageSpan*gSumMag(SubList<scalar>(flux_, mesh_.nInternalFaces()));
+        result.mass.boundaryMagnitude = window_.storageSpan*circulating;
     }
+    balanceSpecies(result);
     balanceEnergy(result);
     balanceMomentum(result);
 }
@@ -47,18 +51,32 @@ void Foam::calcine::gas::balanceEnergy(report& result) const
     energy.source = (basePressure() - committed_.basePressure)
        *gSum(given_.voidFraction*mesh_.cellVolumes());
     energy.sourceMagnitude = mag(energy.source);
+    if (models_->radiates())
+    {
+        const scalarField T(temperatureBase_ + h/heatCapacity_);
+        const scalarField radiation(radiationSource_ - radiationCoefficient_*T);
+        energy.source += window_.storageSpan*gSum(radiation);
+        energy.sourceMagnitude += window_.storageSpan*gSumMag(radiation);
+    }
     forAll(mesh_.boundary(), patchi)
     {
+        if (boundary_.of(patchi) == passage::within)
+        {
+            continue;
+        }
         const labelUList& cells = mesh_.boundary()[patchi].faceCells();
         const fvsPatchScalarField& flux = phi_.boundaryField()[patchi];
         forAll(cells, i)
         {
             const scalar out = enthalpy_->internalCoeffs()[patchi][i]*h[cells[i]]
-              - enthalpy_->boundaryCoeffs()[patchi][i] - flux[i]*referenceEnthalpy_;
+              - enthalpy_->boundaryCoeffs()[patchi][i] - flux[i]*referenceEnthalpy_
+              + (carried_.valid() ? carried_->boundaryField()[patchi][i] : 0);
             energy.boundary -= window_.storageSpan*out;
             energy.boundaryMagnitude += window_.storageSpan*mag(out);
         }
     }
+    reduce(energy.boundary, sumOp<scalar>());
+    reduce(energy.boundaryMagnitude, sumOp<scalar>());
 }
 
 
@@ -83,6 +101,10 @@ void Foam::calcine::gas::balanceMomentum(report& result) const
         momentum.sourceMagnitude = span*gSumMag(source.component(axis)());
         forAll(mesh_.boundary(), patchi)
         {
+            if (boundary_.of(patchi) == passage::within)
+            {
+                continue;
+            }
             const labelUList& cells = mesh_.boundary()[patchi].faceCells();
             const vectorField& internal = momentum_->internalCoeffs()[patchi];
             const vectorField& given = momentum_->boundaryCoeffs()[patchi];
@@ -94,5 +116,7 @@ void Foam::calcine::gas::balanceMomentum(report& result) const
                 momentum.boundaryMagnitude += span*mag(out);
             }
         }
+        reduce(momentum.boundary, sumOp<scalar>());
+        reduce(momentum.boundaryMagnitude, sumOp<scalar>());
     }
 }

@@ -1,4 +1,5 @@
 #include "boundary.H"
+#include "processorFvPatch.H"
 
 namespace
 {
@@ -51,6 +52,14 @@ Foam::calcine::boundary::boundary
         readTable(dict, "massFlow", d.massFlow);
         readTable(dict, "temperature", d.temperature);
         readTable(dict, "pressure", d.pressure);
+        if (dict.found("composition"))
+        {
+            const dictionary& composition = dict.subDict("composition");
+            for (const entry& species : composition)
+            {
+                d.composition.set(species.keyword(), new schedule(composition, species.keyword()));
+            }
+        }
         readTable(dict, "heatFlux", d.heatFlux);
         readTable(dict, "coefficient", d.coefficient);
         readTable(dict, "ambient", d.ambient);
@@ -64,6 +73,11 @@ Foam::calcine::boundary::boundary
 
     forAll(passages_, patchi)
     {
+        if (isA<processorFvPatch>(mesh_.boundary()[patchi]))
+        {
+            passages_[patchi] = passage::within;
+            continue;
+        }
         if (mesh_.boundary()[patchi].coupled())
         {
             FatalErrorInFunction
@@ -110,6 +124,25 @@ void Foam::calcine::boundary::updateState
 }
 
 
+void Foam::calcine::boundary::updateComposition
+(
+    scalar time,
+    PtrList<volScalarField>& fractions
+) const
+{
+    for (const driven& d : driven_)
+    {
+        for (volScalarField& Y : fractions)
+        {
+            if (d.composition.found(Y.name()))
+            {
+                Y.boundaryFieldRef()[d.patch] == d.composition[Y.name()]->at(time);
+            }
+        }
+    }
+}
+
+
 void Foam::calcine::boundary::updateVelocity
 (
     scalar time,
@@ -121,13 +154,19 @@ void Foam::calcine::boundary::updateVelocity
     for (const driven& d : driven_)
     {
         const fvPatch& patch = mesh_.boundary()[d.patch];
-        if (!patch.size() || !(d.superficialVelocity.valid() || d.massFlow.valid()))
+        if (!(d.superficialVelocity.valid() || d.massFlow.valid()))
+        {
+            continue;
+        }
+        // Of all ranks; those that have none of the patch take part in the sum.
+        const scalar area = gSum(patch.magSf());
+        if (!patch.size())
         {
             continue;
         }
         const scalarField& rho = density.boundaryField()[d.patch];
         massFlux_[d.patch] = d.massFlow.valid()
-          ? d.massFlow->at(time)/gSum(patch.magSf())
+          ? d.massFlow->at(time)/area
           : rho[0]*d.superficialVelocity->at(time);
         drivesFlux_[d.patch] = true;
         const scalarField pores(voidFraction, patch.faceCells());

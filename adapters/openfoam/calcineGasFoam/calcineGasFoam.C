@@ -1,6 +1,8 @@
 // calcineGasFoam: the gas of a coupled run, as Calcine's coordinator asks for it.
 //
-// Started by Calcine in a case folder; -resume DIR takes up the state that a checkpoint left in DIR.
+// Started by Calcine in a case folder, under mpirun with -parallel on several ranks, each of which has
+// a link of its own; -resume DIR takes up the state that a checkpoint left in DIR, -from
+// DIR starts a run of its own from it.
 // Ends with 0 when asked to, with 1 after telling the coordinator what failed, and with 2 where there
 // is no coordinator any more.
 #include "gas.H"
@@ -12,9 +14,11 @@
 #include "fvMesh.H"
 #include "IOdictionary.H"
 #include "sigFpe.H"
+#include "stringList.H"
 #include "SolverPerformance.H"
 #include "Time.H"
 
+#include <cstdlib>
 #include <sstream>
 
 namespace
@@ -47,7 +51,12 @@ calcine::window windowOf(const calcine_header& header)
     return when;
 }
 
-void receive(const calcine::link& link, calcine::exchange& given)
+void receive
+(
+    const calcine::link& link,
+    const calcine::addressing& numbers,
+    calcine::exchange& given
+)
 {
     link.get("void_fraction", given.voidFraction);
     link.get("drag_coefficient", given.dragCoefficient);
@@ -64,7 +73,7 @@ void receive(const calcine::link& link, calcine::exchange& given)
         if (!allowed)
         {
             FatalErrorInFunction
-                << "in cell " << celli << ": void fraction " << pores << " (must be in (0, 1]), "
+                << "in cell " << numbers.cells[celli] << ": void fraction " << pores << " (must be in (0, 1]), "
                 << given.dragCoefficient[celli] << " kg/s, " << given.dragSource[celli] << " N, "
                 << given.heatCoefficient[celli] << " W/K, " << given.heatSource[celli]
                 << " W (coefficients must be finite and not negative)" << exit(FatalError);
@@ -104,12 +113,20 @@ void send
     link.put("density", gas.gasDensity());
     link.put("velocity", gas.velocity());
     link.put("pressure_gradient", gas.pressureGradient());
-    DynamicList<scalar> balances(35);
+    if (gas.speciesNames().size())
+    {
+        link.put("composition", gas.composition());
+    }
+    DynamicList<scalar> balances(35 + 7*gas.speciesNames().size());
     append(balances, result.mass);
     append(balances, result.energy);
     for (const calcine::balance& component : result.momentum)
     {
         append(balances, component);
+    }
+    for (const calcine::balance& species : result.species)
+    {
+        append(balances, species);
     }
     link.put("balances", balances);
     const scalarList convergence
@@ -122,16 +139,24 @@ void send
 }
 
 // Nothing received, nothing solved: what goes with a state.
-calcine::report emptyReport(label cells)
+calcine::report emptyReport(label cells, label species)
 {
     calcine::report empty;
+    empty.species.setSize(species);
     empty.heat.setSize(cells, 0);
     empty.drag.setSize(cells, Zero);
     return empty;
 }
 
-void serve(calcine::link& link, calcine::gas& gas, label cells, calcine::windowLog& log)
+void serve
+(
+    calcine::link& link,
+    calcine::gas& gas,
+    const calcine::addressing& numbers,
+    calcine::windowLog& log
+)
 {
+    const label cells = numbers.cells.size();
     calcine::exchange given;
     given.voidFraction.setSize(cells);
     given.dragCoefficient.setSize(cells);
@@ -148,7 +173,7 @@ void serve(calcine::link& link, calcine::gas& gas, label cells, calcine::windowL
             case CALCINE_START:
             {
                 const calcine::window when = windowOf(header);
-                receive(link, given);
+                receive(link, numbers, given);
                 gas.attempt(when, given, result);
                 log.tell(when, result);
                 send(link, CALCINE_FINISHED, gas, result);
@@ -159,7 +184,7 @@ void serve(calcine::link& link, calcine::gas& gas, label cells, calcine::windowL
                 break;
             case CALCINE_CHECKPOINT:
                 gas.checkpoint(link.text());
-                send(link, CALCINE_CHECKPOINTED, gas, emptyReport(cells));
+                send(link, CALCINE_CHECKPOINTED, gas, emptyReport(cells, gas.speciesNames().size()));
                 break;
             case CALCINE_BYE:
                 link.loan(CALCINE_BYE, 0);
@@ -186,26 +211,37 @@ void run(const argList& args, calcine::link& link)
     (
         IOobject(fvMesh::defaultRegion, runTime.timeName(), runTime, IOobject::MUST_READ)
     );
-    calcine::compareCells(mesh);
+    const calcine::addressing numbers(mesh);
+    calcine::compareCells(mesh, numbers);
     const IOdictionary properties
     (
         IOobject("calcineGas", runTime.constant(), mesh, IOobject::MUST_READ)
     );
-    calcine::gas gas(mesh, properties);
+    calcine::gas gas(mesh, properties, numbers);
     if (args.found("resume"))
     {
         gas.resume(args.opt<fileName>("resume"));
+    }
+    else if (args.found("from"))
+    {
+        gas.takeOver(args.opt<fileName>("from"));
     }
 
     calcine::introduction own;
     own.version = std::to_string(OPENFOAM);
     own.caseHash = properties.get<string>("caseHash");
-    own.meshHash = calcine::meshHash(mesh);
-    own.cells = mesh.nCells();
+    own.meshHash = calcine::meshHash(mesh, numbers);
+    own.cells = numbers.allCells;
+    own.ranks = Pstream::nProcs();
+    for (const string& column : properties.get<stringList>("catalogue"))
+    {
+        own.catalogue += (own.catalogue.empty() ? "" : "\n") + column;
+    }
     link.greet(own);
-    send(link, CALCINE_STATE, gas, emptyReport(mesh.nCells()));
+    link.claim(numbers.cells);
+    send(link, CALCINE_STATE, gas, emptyReport(mesh.nCells(), gas.speciesNames().size()));
     calcine::windowLog log(properties.lookupOrDefault<scalar>("logInterval", 1));
-    serve(link, gas, mesh.nCells(), log);
+    serve(link, gas, numbers, log);
     Info<< "End" << endl;
 }
 
@@ -213,6 +249,11 @@ int fail(calcine::link& link, const std::string& text)
 {
     Serr<< "calcineGasFoam failed: " << text.c_str() << endl;
     link.failed(text);
+    if (Pstream::parRun())
+    {
+        // The other ranks wait for this one somewhere: MPI cannot be ended in an orderly way.
+        std::_Exit(1);
+    }
     return 1;
 }
 
@@ -233,16 +274,16 @@ std::string words(const error& what, const std::string& place)
 
 int main(int argc, char* argv[])
 {
-    argList::noParallel();
     argList::noFunctionObjects();
     argList::addOption("resume", "dir", "take up the state of a checkpoint in this folder");
+    argList::addOption("from", "dir", "start from the fields of another run's checkpoint");
     argList args(argc, argv);
     FatalError.throwExceptions();
     FatalIOError.throwExceptions();
 
     try
     {
-        calcine::link link(0);
+        calcine::link link(Pstream::myProcNo());
         try
         {
             run(args, link);

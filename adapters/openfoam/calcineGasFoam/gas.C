@@ -39,6 +39,7 @@ volScalarField relativePressure(const fvMesh& mesh, scalar pRef)
         dimensionedScalar(dimPressure, Zero),
         types
     );
+    relative.primitiveFieldRef() = absolute.primitiveField() - pRef;
     forAll(types, patchi)
     {
         if (types[patchi] == "fixedValue")
@@ -52,7 +53,12 @@ volScalarField relativePressure(const fvMesh& mesh, scalar pRef)
 // Enthalpy is what the equation of hEqn.C balances; an internal energy would need pressure work.
 autoPtr<fluidThermo> readThermo(const fvMesh& mesh)
 {
-    autoPtr<fluidThermo> thermo(fluidThermo::New(mesh));
+    autoPtr<fluidThermo> thermo
+    (
+        calcine::speciesThermo::wanted(mesh)
+      ? autoPtr<fluidThermo>(new calcine::speciesThermo(mesh))
+      : fluidThermo::New(mesh)
+    );
     thermo->validate("calcineGasFoam", "h");
     return thermo;
 }
@@ -60,9 +66,17 @@ autoPtr<fluidThermo> readThermo(const fvMesh& mesh)
 } // End anonymous namespace
 
 
-Foam::calcine::gas::gas(fvMesh& mesh, const dictionary& properties)
+Foam::calcine::gas::gas
+(
+    fvMesh& mesh,
+    const dictionary& properties,
+    const addressing& numbers
+)
 :
     mesh_(mesh),
+    numbers_(numbers),
+    shared_(mesh),
+    firstCell_(numbers.local(0)),
     pRef_(properties.get<scalar>("pRef")),
     gravity_(properties.get<vector>("gravity")),
     modelPressure_
@@ -72,6 +86,7 @@ Foam::calcine::gas::gas(fvMesh& mesh, const dictionary& properties)
         dimensionedScalar("p", dimPressure, pRef_)
     ),
     thermo_(readThermo(mesh)),
+    species_(dynamic_cast<speciesThermo*>(thermo_.get())),
     voidFraction_
     (
         IOobject("voidFraction", mesh.time().timeName(), mesh),
@@ -98,6 +113,7 @@ Foam::calcine::gas::gas(fvMesh& mesh, const dictionary& properties)
     momentumSolver_(mesh, "U"),
     pressureSolver_(mesh, "p"),
     enthalpySolver_(mesh, "h"),
+    schmidt_(properties.lookupOrDefault<scalar>("schmidt", 1)),
     startVelocity_(U_.primitiveField())
 {
     const dictionary& controls = properties.subDict("controls");
@@ -106,10 +122,21 @@ Foam::calcine::gas::gas(fvMesh& mesh, const dictionary& properties)
     outerTolerance_ = controls.get<scalar>("outerTolerance");
     linearTolerance_ = controls.get<scalar>("linearTolerance");
     measureFaces();
+    models_.reset(new models(mesh, U_, phi_, *thermo_));
 
     const scalarField reference(1, 298.15);
     referenceEnthalpy_ = thermo_->he(scalarField(1, pRef_), reference, labelList(1, 0))()[0];
 
+    if (species_)
+    {
+        speciesSolver_.reset(new linear(mesh, "Yi"));
+        committed_.composition.setSize(species_->Y().size());
+        forAll(species_->Y(), k)
+        {
+            mesh.setFluxRequired(species_->Y()[k].name());
+            committed_.composition[k] = species_->Y()[k].primitiveField();
+        }
+    }
     committed_.mass = mass_;
     committed_.enthalpy = thermo_->he().primitiveField();
     committed_.temperature = thermo_->T().primitiveField();
@@ -124,15 +151,16 @@ Foam::calcine::gas::gas(fvMesh& mesh, const dictionary& properties)
 
 void Foam::calcine::gas::measureFaces()
 {
-    const label faces = mesh_.nFaces(), internal = mesh_.nInternalFaces();
+    const label faces = mesh_.nFaces();
+    const vectorField beyond(shared_.pointsBeyond(mesh_.cellCentres()));
     ownerDistance_.setSize(faces);
-    neighbourDistance_.setSize(internal);
+    neighbourDistance_.setSize(faces, 0);
     normal_.setSize(faces);
     ownerSkew_.setSize(faces);
-    neighbourSkew_.setSize(internal);
+    neighbourSkew_.setSize(faces, Zero);
     conductance_.setSize(faces, 0);
     drive_.setSize(faces, 0);
-    transportPush_.setSize(internal, 0);
+    transportPush_.setSize(faces, 0);
     recovery_ = tensorField(mesh_.nCells(), Zero);
     for (label facei = 0; facei < faces; ++facei)
     {
@@ -141,12 +169,14 @@ void Foam::calcine::gas::measureFaces()
         const vector fromOwner = centre - mesh_.cellCentres()[mesh_.faceOwner()[facei]];
         ownerDistance_[facei] = n & fromOwner;
         ownerSkew_[facei] = fromOwner - ownerDistance_[facei]*n;
-        if (facei < internal)
+        if (shared_.within(facei))
         {
-            const vector toNeighbour =
-                mesh_.cellCentres()[mesh_.faceNeighbour()[facei]] - centre;
+            const vector toNeighbour = beyond[facei] - centre;
             neighbourDistance_[facei] = n & toNeighbour;
             neighbourSkew_[facei] = toNeighbour - neighbourDistance_[facei]*n;
+        }
+        if (facei < mesh_.nInternalFaces())
+        {
             recovery_[mesh_.faceNeighbour()[facei]] +=
                 neighbourDistance_[facei]*mag(mesh_.faceAreas()[facei])*n*n;
         }
@@ -169,13 +199,27 @@ void Foam::calcine::gas::place()
     committed_.mass = rho*given_.voidFraction*mesh_.cellVolumes();
     for (label facei = 0; facei < mesh_.nFaces(); ++facei)
     {
-        const label patchi =
-            facei < mesh_.nInternalFaces() ? -1 : mesh_.boundaryMesh().whichPatch(facei);
-        const bool closed = patchi >= 0 && boundary_.of(patchi) == passage::closed;
         const label owner = mesh_.faceOwner()[facei];
+        if (facei < mesh_.nInternalFaces())
+        {
+            const label neighbour = mesh_.faceNeighbour()[facei];
+            const scalar weight = ownerWeight(facei);
+            const vector massVelocity =
+                weight*rho[owner]*startVelocity_[owner]
+              + (1 - weight)*rho[neighbour]*startVelocity_[neighbour];
+            committed_.flux[facei] = massVelocity & mesh_.faceAreas()[facei];
+            continue;
+        }
+        const label patchi = mesh_.boundaryMesh().whichPatch(facei);
         committed_.flux[facei] =
-            closed ? 0 : rho[owner]*(startVelocity_[owner] & mesh_.faceAreas()[facei]);
+            boundary_.of(patchi) == passage::closed
+          ? 0 : rho[owner]*(startVelocity_[owner] & mesh_.faceAreas()[facei]);
     }
+    if (startFlux_.size())
+    {
+        committed_.flux = startFlux_;
+    }
+    shared_.agree(committed_.flux);
 }
 
 
@@ -183,6 +227,11 @@ void Foam::calcine::gas::restore()
 {
     thermo_->he().primitiveFieldRef() = committed_.enthalpy;
     thermo_->T().primitiveFieldRef() = committed_.temperature;
+    forAll(committed_.composition, k)
+    {
+        species_->Y()[k].primitiveFieldRef() = committed_.composition[k];
+        species_->Y()[k].correctBoundaryConditions();
+    }
     U_.primitiveFieldRef() = committed_.velocity;
     p_.primitiveFieldRef() = committed_.pressure;
     modelPressure_ == dimensionedScalar("p", dimPressure, committed_.basePressure);
@@ -240,13 +289,20 @@ void Foam::calcine::gas::updateBasePressure()
     {
         return;
     }
-    scalar held = gSum(committed_.mass);
-    for (label facei = mesh_.nInternalFaces(); facei < mesh_.nFaces(); ++facei)
-    {
-        held -= window_.storageSpan*flux_[facei];
-    }
+    const scalar held = gSum(committed_.mass) - window_.storageSpan*boundaryOutflow();
     modelPressure_ == dimensionedScalar("p", dimPressure, held/atOnePascal);
     thermo_->correct();
+}
+
+
+Foam::scalar Foam::calcine::gas::boundaryOutflow() const
+{
+    scalar sum = 0;
+    for (label facei = mesh_.nInternalFaces(); facei < mesh_.nFaces(); ++facei)
+    {
+        sum += shared_.within(facei) ? 0 : flux_[facei];
+    }
+    return returnReduce(sum, sumOp<scalar>());
 }
 
 
@@ -259,7 +315,38 @@ Foam::scalarField Foam::calcine::gas::wantedOutflow(const scalarField& density) 
 
 void Foam::calcine::gas::resume(const fileName& directory)
 {
-    committed_.read(directory, mesh_.nCells(), mesh_.nFaces());
+    committed_.read(directory, numbers_, speciesNames().size());
+    restore();
+    thermo_->he().correctBoundaryConditions();
+    thermo_->correct();
+    models_->read(directory);
+    if (committed_.placed)
+    {
+        models_->setDensity(committed_.voidFraction*density());
+    }
+}
+
+
+void Foam::calcine::gas::takeOver(const fileName& directory)
+{
+    resume(directory);
+    if (committed_.placed)
+    {
+        startVelocity_ = committed_.velocity*committed_.voidFraction;
+        startFlux_ = committed_.flux;
+    }
+    else
+    {
+        startVelocity_ = committed_.velocity;
+    }
+    if (!boundary_.closed())
+    {
+        committed_.pressure += committed_.basePressure - pRef_;
+        committed_.basePressure = pRef_;
+    }
+    committed_.placed = false;
+    thermo_->T().primitiveFieldRef() = committed_.temperature;
+    committed_.enthalpy = thermo_->he(modelPressure_, thermo_->T())().primitiveField();
     restore();
     thermo_->he().correctBoundaryConditions();
     thermo_->correct();
@@ -276,6 +363,10 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
     // Inlets of a given velocity carry gas of pRef, whatever the pressure of a closed domain is.
     modelPressure_ == dimensionedScalar("p", dimPressure, pRef_);
     boundary_.updateState(when.processEnd, pRef_, thermo_->T(), p_);
+    if (species_)
+    {
+        boundary_.updateComposition(when.processEnd, species_->Y());
+    }
     thermo_->he().correctBoundaryConditions();
     thermo_->correct();
     boundary_.updateVelocity(when.processEnd, given_.voidFraction, thermo_->rho()(), U_);
@@ -289,9 +380,12 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
     }
     U_.correctBoundaryConditions();
 
+    models_->begin();
     result = report();
     for (label outer = 1; outer <= max(outerIterations_, 1); ++outer)
     {
+        // The switching of limiters may otherwise lead from one iterate to another and back for ever.
+        share_ = outer > 8 ? 0.5 : 1;
         updateBasePressure();
         const scalarField rho(density());
         setFlux();
@@ -303,6 +397,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
         }
         mass_ = committed_.mass - window_.storageSpan*outflow();
         setFlux();
+        result.residual = max(result.residual, solveSpecies(result));
         result.residual = max(result.residual, solveEnthalpy(result));
         guard();
         result.outerIterations = outer;
@@ -323,18 +418,24 @@ void Foam::calcine::gas::commit()
     committed_.mass = mass_;
     committed_.enthalpy = thermo_->he().primitiveField();
     committed_.temperature = thermo_->T().primitiveField();
+    forAll(committed_.composition, k)
+    {
+        committed_.composition[k] = species_->Y()[k].primitiveField();
+    }
     committed_.velocity = U_.primitiveField();
     committed_.pressure = p_.primitiveField();
     committed_.basePressure = basePressure();
     committed_.pressureGradient = pressureGradient_;
     committed_.flux = flux_;
     committed_.voidFraction = given_.voidFraction;
+    models_->advance(window_.motionSpan, committed_.voidFraction*density());
 }
 
 
 void Foam::calcine::gas::checkpoint(const fileName& directory)
 {
-    committed_.write(directory);
+    committed_.write(directory, numbers_);
+    models_->write(directory);
     resume(directory);
 }
 
@@ -354,7 +455,7 @@ void Foam::calcine::gas::guard() const
         FatalErrorInFunction
             << "diverged: temperature " << T << " K, speed " << speed
             << " m/s, pressure above the reference " << p_[celli] << " Pa, gas mass "
-            << mass_[celli] << " kg in cell " << celli << " at "
+            << mass_[celli] << " kg in cell " << numbers_.cells[celli] << " at "
             << mesh_.cellCentres()[celli] << " m" << exit(FatalError);
     }
 }

@@ -1,6 +1,6 @@
 // Enthalpy, with exactly the fluxes and masses of continuity, per cell:
 //
-//   (m h - m_old h_old)/dtau + sum phi_f h_f - sum (eps kappa/c_p)_f grad(h).S = S - K T(h) + eps V (p0 - p0_old)/dtau
+//   (m h - m_old h_old)/dtau + sum phi_f h_f - sum (eps kappa)_f grad(T).S = S - K T(h) + eps V (p0 - p0_old)/dtau
 //
 // h_f as fvSchemes says, beyond upwind explicitly; T linear in h: T = T* + (h - h*)/c_p. Because m = m_old - dtau sum phi_f, a uniform temperature
 // stays uniform whatever the flow does (p0, the model's pressure, changes in a closed domain alone), and energy closes to the linear tolerance whatever the outer
@@ -19,29 +19,38 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
     temperatureBase_ = T.primitiveField() - h.primitiveField()/heatCapacity_;
 
     const scalar compression = (basePressure() - committed_.basePressure)/span;
-    const surfaceScalarField conduction
-    (
-        "conduction", fvc::interpolate(voidFraction_*thermo_->alphahe())
-    );
     enthalpy_.reset();
-    autoPtr<surfaceScalarField> beyond;
     enthalpy_.reset
     (
         new fvScalarMatrix
         (
-            convect(phi_, h, "div(phi,h)", beyond) - fvm::laplacian(conduction, h)
+            convect(phi_, h, "div(phi,h)", share_, beyondH_)
         )
     );
+    if (species_)
+    {
+        beyondH_.reset(new surfaceScalarField(*carried_));
+    }
     fvScalarMatrix& matrix = *enthalpy_;
+    addConduction(matrix);
     matrix.diag() +=
         committed_.mass/span + given_.heatCoefficient/heatCapacity_ - outflow();
     matrix.source() += committed_.mass*committed_.enthalpy/span
       + given_.heatSource - given_.heatCoefficient*temperatureBase_
-      - outOf(*beyond) + compression*given_.voidFraction*mesh_.cellVolumes();
+      - outOf(*beyondH_) + compression*given_.voidFraction*mesh_.cellVolumes();
+    if (models_->radiates())
+    {
+        const scalarField pores(given_.voidFraction*mesh_.cellVolumes());
+        models_->radiativeHeat(T.primitiveField(), radiationCoefficient_, radiationSource_);
+        radiationCoefficient_ *= pores;
+        radiationSource_ *= pores;
+        matrix.diag() += radiationCoefficient_/heatCapacity_;
+        matrix.source() += radiationSource_ - radiationCoefficient_*temperatureBase_;
+    }
     boundary_.addHeat
     (
         window_.processEnd,
-        given_.voidFraction*thermo_->kappa()().primitiveField(),
+        conductivity()().primitiveField(),
         temperatureBase_,
         heatCapacity_,
         ownerDistance_,
@@ -54,19 +63,75 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
     (
         given_.heatSource - given_.heatCoefficient*T.primitiveField()
     );
-    scalar moving = gSumMag(heat) + gSumMag
+    scalar moving = sumMag(heat) + sumMag
     (
         mass_*(h.primitiveField() - referenceEnthalpy_)
       - committed_.mass*(committed_.enthalpy - referenceEnthalpy_)
     )/span;
     for (const fvPatch& patch : mesh_.boundary())
     {
+        if (boundary_.of(patch.index()) == passage::within)
+        {
+            continue;
+        }
         const fvsPatchScalarField& flux = phi_.boundaryField()[patch.index()];
-        moving += gSumMag(flux*(h.boundaryField()[patch.index()] - referenceEnthalpy_));
+        moving += sumMag(flux*(h.boundaryField()[patch.index()] - referenceEnthalpy_));
     }
+    reduce(moving, sumOp<scalar>());
     const scalar target = max(linearTolerance_*moving, 1e-15*content);
     const solved solution =
         enthalpySolver_.solve(matrix, scalarField(matrix.source()), target, h);
     result.linearIterations += solution.iterations;
     return solution.initial/content;
+}
+
+
+// Takes the conduction of T = base + h/c_p, each cell with its own base and c_p, from the equation.
+void Foam::calcine::gas::addConduction(fvScalarMatrix& enthalpy) const
+{
+    const volScalarField& T = thermo_->T();
+    const surfaceScalarField conduction("conduction", fvc::interpolate(conductivity()));
+    const fvScalarMatrix heat(fvm::laplacian(conduction, T));
+    const labelUList& owner = mesh_.owner();
+    const labelUList& neighbour = mesh_.neighbour();
+    const scalarField& upper = heat.upper();
+    scalarField& diagonal = enthalpy.diag();
+    scalarField& source = enthalpy.source();
+
+    diagonal -= heat.diag()/heatCapacity_;
+    source -= heat.source() - heat.diag()*temperatureBase_;
+    forAll(upper, facei)
+    {
+        const label P = owner[facei], N = neighbour[facei];
+        enthalpy.upper()[facei] -= upper[facei]/heatCapacity_[N];
+        enthalpy.lower()[facei] -= upper[facei]/heatCapacity_[P];
+        source[P] += upper[facei]*temperatureBase_[N];
+        source[N] += upper[facei]*temperatureBase_[P];
+    }
+    const scalarField baseBeyond(shared_.beyond(temperatureBase_));
+    const scalarField capacityBeyond(shared_.beyond(heatCapacity_));
+    forAll(mesh_.boundary(), patchi)
+    {
+        const labelUList& cells = mesh_.boundary()[patchi].faceCells();
+        const scalarField& own = heat.internalCoeffs()[patchi];
+        const scalarField& given = heat.boundaryCoeffs()[patchi];
+        if (boundary_.of(patchi) == passage::within)
+        {
+            // The other rank's cell is a neighbour like any other.
+            forAll(cells, i)
+            {
+                const label celli = cells[i], facei = mesh_.boundary()[patchi].start() + i;
+                enthalpy.internalCoeffs()[patchi][i] -= own[i]/heatCapacity_[celli];
+                enthalpy.boundaryCoeffs()[patchi][i] -= given[i]/capacityBeyond[facei];
+                source[celli] += own[i]*temperatureBase_[celli] - given[i]*baseBeyond[facei];
+            }
+            continue;
+        }
+        forAll(cells, i)
+        {
+            const label celli = cells[i];
+            enthalpy.internalCoeffs()[patchi][i] -= own[i]/heatCapacity_[celli];
+            enthalpy.boundaryCoeffs()[patchi][i] -= given[i] - own[i]*temperatureBase_[celli];
+        }
+    }
 }

@@ -30,15 +30,13 @@ Foam::scalar Foam::calcine::gas::halfCellForce(label facei, label celli) const
 }
 
 
-Foam::scalar Foam::calcine::gas::displacement(label facei) const
+Foam::scalar Foam::calcine::gas::ownerPush(label facei) const
 {
-    // Added to p_P - p_N it leaves the fall of pressure along the normal alone.
-    scalar sum = ownerSkew_[facei] & pressureGradient_[mesh_.faceOwner()[facei]];
-    if (facei < mesh_.nInternalFaces())
-    {
-        sum += neighbourSkew_[facei] & pressureGradient_[mesh_.faceNeighbour()[facei]];
-    }
-    return sum;
+    // The second term, added to p_P, leaves the fall of pressure along the normal alone.
+    const label celli = mesh_.faceOwner()[facei];
+    return
+        ownerDistance_[facei]*halfCellForce(facei, celli)
+      + (ownerSkew_[facei] & pressureGradient_[celli]);
 }
 
 
@@ -52,18 +50,25 @@ Foam::scalar Foam::calcine::gas::assemblePressure(const scalarField& density)
 {
     mobility_ = density*sqr(given_.voidFraction)/momentumDiagonal_;
     const labelUList& owner = mesh_.faceOwner();
-    const labelUList& neighbour = mesh_.faceNeighbour();
-    for (label facei = 0; facei < mesh_.nInternalFaces(); ++facei)
+    const scalarField mobilityBeyond(shared_.beyond(mobility_));
+    forAll(conductance_, facei)
     {
-        conductance_[facei] = mag(mesh_.faceAreas()[facei])
-           /(
-                ownerDistance_[facei]/mobility_[owner[facei]]
-              + neighbourDistance_[facei]/mobility_[neighbour[facei]]
-            );
+        if (shared_.within(facei))
+        {
+            conductance_[facei] = mag(mesh_.faceAreas()[facei])
+               /(
+                    ownerDistance_[facei]/mobility_[owner[facei]]
+                  + neighbourDistance_[facei]/mobilityBeyond[facei]
+                );
+        }
     }
     for (const fvPatch& patch : mesh_.boundary())
     {
         const bool open = boundary_.of(patch.index()) == passage::open;
+        if (boundary_.of(patch.index()) == passage::within)
+        {
+            continue;
+        }
         for (label facei = patch.start(); facei < patch.start() + patch.size(); ++facei)
         {
             conductance_[facei] = !open ? 0
@@ -73,12 +78,17 @@ Foam::scalar Foam::calcine::gas::assemblePressure(const scalarField& density)
 
     // How far the flux at hand is from continuity, relative to what is held and what flows.
     const scalar error = gSumMag(wantedOutflow(density) - outflow());
-    scalar terms = gSum(committed_.mass)/window_.storageSpan;
+    scalar flowing = 0;
     forAll(flux_, facei)
     {
-        terms += (facei < mesh_.nInternalFaces() ? 1 : 0.5)*mag(flux_[facei]);
+        flowing += (facei < mesh_.nInternalFaces() ? 1 : 0.5)*mag(flux_[facei]);
     }
-    return error/terms;
+    return
+        error
+       /(
+            gSum(committed_.mass)/window_.storageSpan
+          + returnReduce(flowing, sumOp<scalar>())
+        );
 }
 
 
@@ -93,14 +103,23 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
     // What the forces alone would drive through each face; all of it where the flux is given.
     for (label facei = 0; facei < internal; ++facei)
     {
+        const label N = neighbour[facei];
         drive_[facei] = conductance_[facei]
            *(
-                ownerDistance_[facei]*halfCellForce(facei, owner[facei])
-              + neighbourDistance_[facei]*halfCellForce(facei, neighbour[facei])
+                ownerPush(facei)
+              + neighbourDistance_[facei]*halfCellForce(facei, N)
+              + (neighbourSkew_[facei] & pressureGradient_[N])
               + transportPush_[facei]
-              + displacement(facei)
             );
     }
+    // The neighbour of a shared face is the owner on the other rank, where everything along the normal
+    // has the other sign.
+    scalarField otherPush(mesh_.nFaces(), 0);
+    for (label facei = internal; facei < mesh_.nFaces(); ++facei)
+    {
+        otherPush[facei] = ownerPush(facei);
+    }
+    shared_.swap(otherPush);
     const tmp<volScalarField> model(thermo_->rho());
     for (const fvPatch& patch : mesh_.boundary())
     {
@@ -117,11 +136,11 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
                     drive_[facei] = boundary_.flow(patch, i, model(), voidFraction_, U_);
                     break;
                 case passage::open:
+                    drive_[facei] = conductance_[facei]*ownerPush(facei);
+                    break;
+                case passage::within:
                     drive_[facei] = conductance_[facei]
-                       *(
-                            ownerDistance_[facei]*halfCellForce(facei, owner[facei])
-                          + displacement(facei)
-                        );
+                       *(ownerPush(facei) - otherPush[facei] + transportPush_[facei]);
                     break;
             }
         }
@@ -139,27 +158,38 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
         diagonal[owner[facei]] += conductance_[facei];
         diagonal[neighbour[facei]] += conductance_[facei];
     }
-    if (boundary_.closed())
+    if (boundary_.closed() && firstCell_ >= 0)
     {
         // The pressure of the first cell is the model's; no gas flows for it, because the wanted
         // outflows of all cells sum to what flows in.
-        diagonal[0] *= 2;
+        diagonal[firstCell_] *= 2;
     }
-    scalar terms = gSumMag(source);
+    scalar terms = sumMag(source) + sumMag(diagonal*p_.primitiveField());
     forAll(mesh_.boundary(), patchi)
     {
         const fvPatch& patch = mesh_.boundary()[patchi];
-        const fvPatchScalarField& value = p_.boundaryField()[patchi];
         if (!patch.size())
         {
             continue;
         }
-        matrix.internalCoeffs()[patchi] =
-            SubList<scalar>(conductance_, patch.size(), patch.start());
-        matrix.boundaryCoeffs()[patchi] = matrix.internalCoeffs()[patchi]*value;
-        terms += gSumMag(matrix.boundaryCoeffs()[patchi]);
+        const scalarField coefficient
+        (
+            SubList<scalar>(conductance_, patch.size(), patch.start())
+        );
+        matrix.internalCoeffs()[patchi] = coefficient;
+        if (boundary_.of(patchi) == passage::within)
+        {
+            // OpenFOAM multiplies it with the pressure beyond.
+            matrix.boundaryCoeffs()[patchi] = coefficient;
+            terms += sumMag(coefficient*p_.boundaryField()[patchi].patchInternalField());
+        }
+        else
+        {
+            matrix.boundaryCoeffs()[patchi] = coefficient*p_.boundaryField()[patchi];
+            terms += sumMag(matrix.boundaryCoeffs()[patchi]);
+        }
     }
-    terms += gSumMag(diagonal*p_.primitiveField());
+    reduce(terms, sumOp<scalar>());
     result.linearIterations +=
         pressureSolver_.solve(matrix, source, linearTolerance_*terms, p_).iterations;
 
@@ -177,6 +207,7 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
                 conductance_[facei]*(p_[owner[facei]] - p_.boundaryField()[patchi][i]);
         }
     }
+    shared_.agree(flux_);
     updatePressureGradient();
 
     U_.primitiveFieldRef() =

@@ -15,20 +15,22 @@
 Foam::tensorField Foam::calcine::gas::massVelocityGradient(const vectorField& massVelocity) const
 {
     const labelUList& owner = mesh_.faceOwner();
-    const labelUList& neighbour = mesh_.faceNeighbour();
+    const vectorField beyond(shared_.beyond(massVelocity));
     tensorField gradient(mesh_.nCells(), Zero);
     forAll(flux_, facei)
     {
         const vector& S = mesh_.faceAreas()[facei];
         const vector& n = normal_[facei];
         const vector& own = massVelocity[owner[facei]];
-        if (facei < mesh_.nInternalFaces())
+        if (shared_.within(facei))
         {
             const scalar weight = ownerWeight(facei);
-            const tensor part =
-                S*(weight*own + (1 - weight)*massVelocity[neighbour[facei]]);
+            const tensor part = S*(weight*own + (1 - weight)*beyond[facei]);
             gradient[owner[facei]] += part;
-            gradient[neighbour[facei]] -= part;
+            if (facei < mesh_.nInternalFaces())
+            {
+                gradient[mesh_.faceNeighbour()[facei]] -= part;
+            }
         }
         else
         {
@@ -44,7 +46,6 @@ Foam::tensorField Foam::calcine::gas::massVelocityGradient(const vectorField& ma
 void Foam::calcine::gas::updateTransport(const scalarField& density)
 {
     const labelUList& owner = mesh_.faceOwner();
-    const labelUList& neighbour = mesh_.faceNeighbour();
     const vectorField massVelocity(density*given_.voidFraction*U_.primitiveField());
     const tensorField gradient(massVelocityGradient(massVelocity));
     const scalarField perFlux
@@ -55,21 +56,28 @@ void Foam::calcine::gas::updateTransport(const scalarField& density)
         )
        /(density*sqr(given_.voidFraction))
     );
+    const vectorField massVelocityBeyond(shared_.beyond(massVelocity));
+    const tensorField gradientBeyond(shared_.beyond(gradient));
+    const scalarField perFluxBeyond(shared_.beyond(perFlux));
     forAll(transportPush_, facei)
     {
-        const label P = owner[facei], N = neighbour[facei];
+        if (!shared_.within(facei))
+        {
+            continue;
+        }
+        const label P = owner[facei];
         const vector& n = normal_[facei];
         const scalar weight = ownerWeight(facei);
-        const scalar here = massVelocity[P] & n, there = massVelocity[N] & n;
+        const scalar here = massVelocity[P] & n, there = massVelocityBeyond[facei] & n;
         const scalar bend =
-            ownerDistance_[facei]*weight*(n & ((gradient[N] - gradient[P]) & n));
+            ownerDistance_[facei]*weight*(n & ((gradientBeyond[facei] - gradient[P]) & n));
         const vector miss = weight*ownerSkew_[facei] - (1 - weight)*neighbourSkew_[facei];
-        const tensor slope = weight*gradient[P] + (1 - weight)*gradient[N];
+        const tensor slope = weight*gradient[P] + (1 - weight)*gradientBeyond[facei];
         const scalar mean =
             weight*here + (1 - weight)*there - bend + ((miss & slope) & n);
         transportPush_[facei] =
             ownerDistance_[facei]*perFlux[P]*(mean - here)
-          + neighbourDistance_[facei]*perFlux[N]*(mean - there);
+          + neighbourDistance_[facei]*perFluxBeyond[facei]*(mean - there);
     }
 }
 

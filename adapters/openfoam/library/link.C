@@ -1,6 +1,8 @@
 #include "link.H"
+#include "parent.H"
 
 #include <algorithm>
+#include <cstring>
 
 namespace
 {
@@ -46,7 +48,15 @@ Foam::calcine::link::link(label rank)
 :
     link_(nullptr)
 {
-    check(calcine_link_open(static_cast<uint32_t>(rank), &link_));
+    uint32_t carried = 0;
+    check(calcine_link_needs_carrier(&carried));
+    calcine_carrier carrier{};
+    if (carried)
+    {
+        parent_.reset(new parent);
+        carrier = parent_->carrier();
+    }
+    check(calcine_link_open(static_cast<uint32_t>(rank), carried ? &carrier : nullptr, &link_));
 }
 
 
@@ -61,9 +71,25 @@ void Foam::calcine::link::greet(const introduction& own)
     const calcine_hello hello =
     {
         "gas", "OpenFOAM", own.version.c_str(), own.caseHash.c_str(), own.meshHash.c_str(),
-        nullptr, static_cast<uint64_t>(own.cells), 1
+        own.catalogue.c_str(), static_cast<uint64_t>(own.cells), static_cast<uint32_t>(own.ranks)
     };
     check(calcine_link_handshake(link_, &hello, handshakePatience));
+}
+
+
+void Foam::calcine::link::claim(const labelUList& cells)
+{
+    loan(CALCINE_OWNED, cells.size());
+    double* column = nullptr;
+    uint64_t length = 0;
+    check(calcine_link_loaned_column(link_, "cell", &column, &length));
+    requireLength("cell", length, cells.size());
+    forAll(cells, i)
+    {
+        const uint64_t cell = cells[i];
+        std::memcpy(column + i, &cell, sizeof cell);
+    }
+    send();
 }
 
 

@@ -19,7 +19,7 @@ use calcine_coupler::time::Window;
 use calcine_wire::hello::{hash_text, particles_hash};
 use calcine_wire::{Catalogue, Hello, Kind, Link, WireError};
 
-use crate::launch::{Program, find_program};
+use crate::launch::{Launcher, Program, find_program};
 use crate::liggghts::inputs::{Inputs, SCRIPT};
 use crate::solver::{ExternalSolver, Launch, header};
 
@@ -43,6 +43,8 @@ pub struct LiggghtsLaunch<'a> {
     pub inputs: Inputs<'a>,
     /// Hash of the case.
     pub case_hash: String,
+    /// Who starts the ranks.
+    pub launcher: Launcher,
     /// Where the inputs are written and the host runs.
     pub folder: PathBuf,
     /// Where the host's output goes.
@@ -95,6 +97,8 @@ struct State {
     radius: Vec<f64>,
     mass: Vec<f64>,
     impulse: Vec<Vec3>,
+    /// By rank: where the particles that it had stand in the columns above, in ascending id.
+    places: Vec<Vec<usize>>,
 }
 
 /// The particles of a running LIGGGHTS.
@@ -150,6 +154,7 @@ impl LiggghtsParticles {
                     directory: launch.folder,
                     environment: Vec::new(),
                 },
+                launcher: launch.launcher,
                 log: launch.log,
                 hello,
                 handshake: launch.deadline,
@@ -177,6 +182,11 @@ impl LiggghtsParticles {
     /// Process id of the host (or of the `mpirun` above it).
     pub fn pid(&self) -> u32 {
         self.solver.pid()
+    }
+
+    /// Process ids of the ranks.
+    pub fn rank_pids(&self) -> &[u32] {
+        self.solver.rank_pids()
     }
 
     /// The particles in the messages that the links hold.
@@ -220,6 +230,10 @@ impl State {
             order.extend(ids.map(|(row, &id)| (id, rank, row)));
         }
         order.sort_unstable();
+        let mut places = vec![Vec::new(); links.len()];
+        for (place, &(_, rank, _)) in order.iter().enumerate() {
+            places[rank].push(place);
+        }
         let words = |name: &str| {
             let columns = links.iter().map(|link| link.column_words(name));
             let columns = columns.collect::<Result<Vec<_>, _>>()?;
@@ -248,6 +262,7 @@ impl State {
             radius: scalars("radius")?,
             mass: scalars("mass")?,
             impulse: vectors("impulse")?,
+            places,
         })
     }
 }
@@ -332,16 +347,24 @@ impl Particles for LiggghtsParticles {
             let message = format!("{} forces for {count} particles", push.force.len());
             return Err(self.solver.refuse(Some(window), message));
         }
-        let ids = &self.committed.id;
-        self.solver
-            .send_columns(window, header(Kind::Start, window), count, |link| {
-                link.column_words_mut("id")?.copy_from_slice(ids);
-                let places = link.column_mut("force")?.chunks_exact_mut(3);
-                for (place, force) in places.zip(&push.force) {
-                    place.copy_from_slice(force.as_slice());
+        // To each rank what it had at the last state: particles change ranks within windows only.
+        let (ids, places) = (&self.committed.id, &self.committed.places);
+        self.solver.send_columns(
+            window,
+            header(Kind::Start, window),
+            |rank| places[rank].len(),
+            |rank, link| {
+                let own = link.column_words_mut("id")?.iter_mut();
+                for (id, &place) in own.zip(&places[rank]) {
+                    *id = ids[place];
+                }
+                let own = link.column_mut("force")?.chunks_exact_mut(3);
+                for (force, &place) in own.zip(&places[rank]) {
+                    force.copy_from_slice(push.force[place].as_slice());
                 }
                 Ok(())
-            })
+            },
+        )
     }
 
     fn finish(

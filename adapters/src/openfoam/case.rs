@@ -6,9 +6,12 @@ use std::path::{Path, PathBuf};
 
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::{Mesh, polymesh};
-use calcine_coupler::setup::GasSetup;
+use calcine_coupler::setup::{GasPatch, GasSetup};
+use calcine_wire::Catalogue;
 
-use super::{NAME, dictionaries};
+use super::start::Start;
+use super::stock::{self, Solver};
+use super::{NAME, decompose, dictionaries, species};
 
 /// Schemes and linear solvers where no template brings its own.
 const DEFAULTS: [(&str, &str); 2] = [
@@ -22,6 +25,18 @@ const DEFAULTS: [(&str, &str); 2] = [
     ),
 ];
 
+/// The same for a stock solver.
+const STOCK_DEFAULTS: [(&str, &str); 2] = [
+    (
+        "system/fvSchemes",
+        include_str!("../../../of-cases/buoyantPimpleFoam/system/fvSchemes"),
+    ),
+    (
+        "system/fvSolution",
+        include_str!("../../../of-cases/buoyantPimpleFoam/system/fvSolution"),
+    ),
+];
+
 /// What an OpenFOAM case is made from.
 #[derive(Clone, Copy, Debug)]
 pub struct OpenfoamCase<'a> {
@@ -31,50 +46,162 @@ pub struct OpenfoamCase<'a> {
     pub mesh: &'a Mesh,
     /// A folder whose files are taken over where the case does not speak.
     pub template: Option<&'a Path>,
+    /// A time directory that OpenFOAM wrote on the same mesh, whose fields the gas starts from.
+    pub start: Option<&'a Path>,
+    /// Which program computes the gas.
+    pub solver: Solver,
+    /// The library that a stock solver opens.
+    pub library: &'a Path,
     /// Hash of the case, compared in the handshake.
     pub case_hash: &'a str,
+    /// Number of ranks; how the mesh is divided among more than one is written too.
+    pub ranks: u32,
 }
 
 impl OpenfoamCase<'_> {
     /// Writes the case into a folder, which is made if it is not there.
     pub fn write(&self, folder: &Path) -> Result<(), PartError> {
         self.check()?;
-        let Some(thermophysical) = dictionaries::thermophysical(self.setup) else {
-            let message = "calcineGasFoam carries no species, and this gas is a mixture; \
-                           run the case with --gas native";
-            return Err(PartError::new(NAME, FailureKind::NotStarted, message));
-        };
+        let catalogue = Catalogue::gas(self.setup.properties.species().len()).map_err(|error| {
+            PartError::new(NAME, FailureKind::NotStarted, "its columns").caused_by(error)
+        })?;
         make(folder)?;
         if let Some(template) = self.template {
             copy(template, folder)?;
         }
-        for (name, text) in DEFAULTS {
+        let defaults = if self.solver.is_stock() {
+            STOCK_DEFAULTS
+        } else {
+            DEFAULTS
+        };
+        for (name, text) in defaults {
             if self.template.is_none_or(|own| !own.join(name).is_file()) {
                 let text = dictionaries::schemes(text, self.setup.controls.convection);
                 put(&folder.join(name), &suited(&text, self.mesh))?;
             }
         }
         let setup = self.setup;
+        let names = setup.properties.species();
+        let start = self
+            .start
+            .map(|folder| Start::read(folder, names, self.mesh.cells()));
+        let start = start.transpose()?.unwrap_or_default();
+        if self.solver.is_stock() {
+            self.write_stock(folder, &start)?;
+        } else {
+            self.write_own(folder, &start)?;
+        }
         for (name, text) in [
-            ("system/controlDict", dictionaries::control()),
-            ("constant/thermophysicalProperties", thermophysical),
+            (
+                "constant/thermophysicalProperties",
+                dictionaries::thermophysical(setup, self.solver),
+            ),
             ("constant/g", dictionaries::gravity(setup)),
             (
                 "constant/calcineGas",
-                dictionaries::calcine(setup, self.case_hash),
+                dictionaries::calcine(setup, self.case_hash, &catalogue),
             ),
             ("constant/calcineCells", dictionaries::cells(self.mesh)),
-            ("0/U", dictionaries::velocity(setup)),
-            ("0/T", dictionaries::temperature(setup)),
-            ("0/p", dictionaries::pressure(setup)),
         ] {
             put(&folder.join(name), &text)?;
         }
+        for (k, name) in names.iter().enumerate() {
+            let fraction = start.applied(name, species::fraction(setup, k, name));
+            put(&folder.join("0").join(name), &fraction)?;
+        }
+        if self.ranks > 1 {
+            self.divide(folder)?;
+        }
         let poly_mesh = folder.join("constant/polyMesh");
-        polymesh::write(self.mesh, &poly_mesh).map_err(|error| {
+        polymesh::write_with(self.mesh, &poly_mesh, |name| self.kind(name)).map_err(|error| {
             let message = format!("the mesh cannot be written to {}", poly_mesh.display());
             PartError::new(NAME, FailureKind::Io, message).caused_by(error)
         })
+    }
+
+    fn write_own(&self, folder: &Path, start: &Start) -> Result<(), PartError> {
+        let setup = self.setup;
+        let control = dictionaries::control(&self.beside(folder, "system/controlDict")?);
+        for (name, text) in [
+            ("system/controlDict", control),
+            ("0/U", start.applied("U", dictionaries::velocity(setup))),
+            ("0/T", start.applied("T", dictionaries::temperature(setup))),
+            ("0/p", start.applied("p", dictionaries::pressure(setup))),
+        ] {
+            put(&folder.join(name), &text)?;
+        }
+        Ok(())
+    }
+
+    fn write_stock(&self, folder: &Path, start: &Start) -> Result<(), PartError> {
+        let setup = self.setup;
+        let include = self.beside(folder, "system/controlDict")?;
+        let library = self.library.to_string_lossy();
+        let control = stock::control(self.solver, &include, &library);
+        let options = stock::options(&self.beside(folder, "constant/fvOptions")?);
+        let [absolute, driving] = stock::pressures(setup);
+        let velocity = start.applied("U", stock::velocity(setup));
+        let temperature = start.applied("T", stock::temperature(setup));
+        for (name, text) in [
+            ("system/controlDict", control),
+            ("constant/fvOptions", options),
+            ("0/U", velocity),
+            ("0/T", temperature),
+            (absolute.0, start.applied("p", absolute.1)),
+            (driving.0, start.applied("p_rgh", driving.1)),
+        ] {
+            put(&folder.join(name), &text)?;
+        }
+        let turbulence = folder.join("constant/turbulenceProperties");
+        if !turbulence.is_file() {
+            put(&turbulence, &stock::laminar())?;
+        }
+        Ok(())
+    }
+
+    /// OpenFOAM's wall functions ask for patches of the type `wall`.
+    fn kind(&self, patch: &str) -> &'static str {
+        let condition = self.setup.patches.iter().find(|(name, _)| name == patch);
+        match condition {
+            Some((_, GasPatch::Wall { .. })) => "wall",
+            _ => "patch",
+        }
+    }
+
+    /// A template's own file of a dictionary that we write goes beside ours; the words by which ours includes
+    /// it, so that its `libs` (or fvOptions) stay, and what the coordinator drives is ours.
+    fn beside(&self, folder: &Path, name: &str) -> Result<String, PartError> {
+        let own = self.template.map(|template| template.join(name));
+        let Some(own) = own.filter(|path| path.is_file()) else {
+            return Ok(String::new());
+        };
+        let beside = format!("{name}.template");
+        fs::copy(&own, folder.join(&beside)).map_err(failed(&own, "copied"))?;
+        let file = Path::new(&beside).file_name().unwrap_or_default();
+        Ok(format!("#include \"{}\"\n\n", file.to_string_lossy()))
+    }
+
+    /// How the mesh is divided: Calcine's own way, or as a template's `decomposeParDict` says.
+    fn divide(&self, folder: &Path) -> Result<(), PartError> {
+        let cells = self.mesh.cells();
+        if self.ranks as usize > cells {
+            let ranks = self.ranks;
+            let message = format!("{ranks} ranks cannot share {cells} cells; use fewer ranks");
+            return Err(PartError::new(NAME, FailureKind::NotStarted, message));
+        }
+        let own = |template: &Path| template.join(decompose::DICTIONARY).is_file();
+        if self.template.is_some_and(own) {
+            return Ok(());
+        }
+        put(
+            &folder.join(decompose::DICTIONARY),
+            &dictionaries::decompose(self.ranks),
+        )?;
+        let ranks = decompose::divide(self.mesh.cell_centre(), self.ranks);
+        put(
+            &folder.join("constant").join(decompose::DATA),
+            &dictionaries::labels(decompose::DATA, &ranks),
+        )
     }
 
     /// Every patch of the mesh needs its condition, and every condition its patch.
@@ -167,9 +294,7 @@ mod tests {
     use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
     use calcine_coupler::physics::Vec3;
     use calcine_coupler::physics::gas::GasProperties;
-    use calcine_coupler::setup::{
-        Convection, GasControls, GasPatch, Schedule, WallHeat, WallVelocity,
-    };
+    use calcine_coupler::setup::{Convection, GasControls, Schedule, WallHeat, WallVelocity};
     use calcine_coupler::time::GasStorage;
 
     fn mesh() -> Mesh {
@@ -230,7 +355,11 @@ mod tests {
             setup: &setup,
             mesh: &mesh,
             template: Some(&template),
+            start: None,
+            solver: Solver::default(),
+            library: Path::new("libcalcineFoam.so"),
             case_hash: "0a",
+            ranks: 1,
         };
         let written = folder.path().join("case");
         case.write(&written).unwrap();
@@ -255,8 +384,30 @@ mod tests {
     }
 
     #[test]
+    fn a_mesh_for_two_ranks_is_divided_and_for_more_ranks_than_cells_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let (setup, mesh) = (setup(), mesh());
+        let case = |ranks| OpenfoamCase {
+            setup: &setup,
+            mesh: &mesh,
+            template: None,
+            start: None,
+            solver: Solver::default(),
+            library: Path::new("libcalcineFoam.so"),
+            case_hash: "0a",
+            ranks,
+        };
+        case(2).write(folder.path()).unwrap();
+        let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+        assert!(read("system/decomposeParDict").contains("numberOfSubdomains 2;"));
+        assert!(read("constant/cellDecomposition").ends_with("3\n(\n0\n0\n1\n)\n"));
+        let error = case(4).write(folder.path()).unwrap_err().to_string();
+        assert!(error.contains("4 ranks cannot share 3 cells"), "{error}");
+    }
+
+    #[test]
     fn numbers_are_written_with_all_their_bits() {
-        let text = dictionaries::calcine(&setup(), "0a");
+        let text = dictionaries::calcine(&setup(), "0a", &Catalogue::standard("gas").unwrap());
         let third = text
             .split_whitespace()
             .find(|word| word.starts_with("3.33"))
@@ -274,7 +425,11 @@ mod tests {
                 setup,
                 mesh: &mesh,
                 template: None,
+                start: None,
+                solver: Solver::default(),
+                library: Path::new("libcalcineFoam.so"),
                 case_hash: "0a",
+                ranks: 1,
             };
             case.write(folder.path()).unwrap_err().to_string()
         };

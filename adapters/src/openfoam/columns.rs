@@ -10,32 +10,78 @@ pub struct State {
     temperature: Vec<f64>,
     pressure: Vec<f64>,
     density: Vec<f64>,
+    /// Mass fractions, species by species within each cell; empty for a single gas.
+    composition: Vec<f64>,
     velocity: Vec<Vec3>,
     pressure_gradient: Vec<Vec3>,
 }
 
-fn copy(link: &Link, name: &str, to: &mut Vec<f64>) -> Result<(), WireError> {
-    let column = link.column(name)?;
-    to.clear();
-    to.extend_from_slice(column);
-    Ok(())
+/// The links of all ranks, and the cells of the whole mesh that each has.
+#[derive(Clone, Copy)]
+pub struct Ranks<'a> {
+    /// One link a rank.
+    pub links: &'a [Link],
+    /// By rank, in the order of its columns.
+    pub owned: &'a [Vec<usize>],
+    /// Cells of the whole mesh; each is on one rank.
+    pub cells: usize,
 }
 
-fn copy_vectors(link: &Link, name: &str, to: &mut Vec<Vec3>) -> Result<(), WireError> {
-    let triples = link.column(name)?.as_chunks::<3>().0;
-    to.clear();
-    to.extend(triples.iter().map(|&[x, y, z]| Vec3::new(x, y, z)));
-    Ok(())
+impl Ranks<'_> {
+    /// Joins a column of all ranks.
+    fn copy(self, name: &str, to: &mut Vec<f64>) -> Result<(), WireError> {
+        to.resize(self.cells, 0.0);
+        for (link, cells) in self.links.iter().zip(self.owned) {
+            for (&cell, &value) in cells.iter().zip(link.column(name)?) {
+                to[cell] = value;
+            }
+        }
+        Ok(())
+    }
+
+    /// The same for so many numbers a cell.
+    fn copy_items(self, name: &str, items: usize, to: &mut Vec<f64>) -> Result<(), WireError> {
+        to.resize(self.cells * items, 0.0);
+        for (link, cells) in self.links.iter().zip(self.owned) {
+            let values = link.column(name)?.chunks_exact(items);
+            for (&cell, values) in cells.iter().zip(values) {
+                to[cell * items..][..items].copy_from_slice(values);
+            }
+        }
+        Ok(())
+    }
+
+    /// The same for vectors.
+    fn copy_vectors(self, name: &str, to: &mut Vec<Vec3>) -> Result<(), WireError> {
+        to.resize(self.cells, Vec3::zeros());
+        for (link, cells) in self.links.iter().zip(self.owned) {
+            let triples = link.column(name)?.as_chunks::<3>().0;
+            for (&cell, &[x, y, z]) in cells.iter().zip(triples) {
+                to[cell] = Vec3::new(x, y, z);
+            }
+        }
+        Ok(())
+    }
+
+    /// The first rank's link: what ranks have summed up stands in each of them.
+    fn first(&self) -> Result<&Link, WireError> {
+        self.links.first().ok_or(WireError::Order {
+            what: "a solver has at least one link",
+        })
+    }
 }
 
 impl State {
-    /// Takes the state out of the message that a link holds.
-    pub fn read(&mut self, link: &Link) -> Result<(), WireError> {
-        copy(link, "temperature", &mut self.temperature)?;
-        copy(link, "pressure", &mut self.pressure)?;
-        copy(link, "density", &mut self.density)?;
-        copy_vectors(link, "velocity", &mut self.velocity)?;
-        copy_vectors(link, "pressure_gradient", &mut self.pressure_gradient)
+    /// Takes the state, of so many species, out of the messages that the links hold.
+    pub fn read(&mut self, ranks: Ranks<'_>, species: usize) -> Result<(), WireError> {
+        ranks.copy("temperature", &mut self.temperature)?;
+        ranks.copy("pressure", &mut self.pressure)?;
+        ranks.copy("density", &mut self.density)?;
+        if species > 0 {
+            ranks.copy_items("composition", species, &mut self.composition)?;
+        }
+        ranks.copy_vectors("velocity", &mut self.velocity)?;
+        ranks.copy_vectors("pressure_gradient", &mut self.pressure_gradient)
     }
 
     /// As the coordinator sees it.
@@ -44,34 +90,44 @@ impl State {
             temperature: &self.temperature,
             pressure: &self.pressure,
             density: &self.density,
-            composition: &[],
+            composition: &self.composition,
             velocity: &self.velocity,
             pressure_gradient: &self.pressure_gradient,
         }
     }
 }
 
-/// Fills the columns of a start.
-pub fn write(link: &mut Link, bed: &Bed, exchange: &CellExchange) -> Result<(), WireError> {
+/// Fills the columns of a start for a rank that has these cells.
+pub fn write(
+    link: &mut Link,
+    owned: &[usize],
+    bed: &Bed,
+    exchange: &CellExchange,
+) -> Result<(), WireError> {
     for (name, values) in [
         ("void_fraction", &bed.void_fraction),
         ("drag_coefficient", &exchange.drag_coefficient),
         ("heat_coefficient", &exchange.heat_coefficient),
         ("heat_source", &exchange.heat_source),
     ] {
-        link.column_mut(name)?.copy_from_slice(values);
+        let places = link.column_mut(name)?.iter_mut();
+        for (place, &cell) in places.zip(owned) {
+            *place = values[cell];
+        }
     }
     let places = link.column_mut("drag_source")?.as_chunks_mut::<3>().0;
-    for (place, source) in places.iter_mut().zip(&exchange.drag_source) {
+    for (place, &cell) in places.iter_mut().zip(owned) {
+        let source = exchange.drag_source[cell];
         *place = [source.x, source.y, source.z];
     }
     Ok(())
 }
 
 /// Reads what an attempt received, and how it went.
-pub fn read(link: &Link, received: &mut CellReceived) -> Result<Convergence, WireError> {
-    copy(link, "heat", &mut received.heat)?;
-    copy_vectors(link, "drag", &mut received.drag)?;
+pub fn read(ranks: Ranks<'_>, received: &mut CellReceived) -> Result<Convergence, WireError> {
+    ranks.copy("heat", &mut received.heat)?;
+    ranks.copy_vectors("drag", &mut received.drag)?;
+    let link = ranks.first()?;
     let mut balances = link
         .column("balances")?
         .as_chunks::<7>()
@@ -80,9 +136,10 @@ pub fn read(link: &Link, received: &mut CellReceived) -> Result<Convergence, Wir
         .map(|&numbers| balance(numbers));
     let mut next = || balances.next().unwrap_or_default();
     received.mass = next();
-    received.species.clear();
     received.energy = next();
     received.momentum = [next(), next(), next()];
+    received.species.clear();
+    received.species.extend(balances);
     let numbers = link.column("convergence")?;
     let [outer, linear, residual, volume, converged] = *numbers else {
         return Err(WireError::Order {

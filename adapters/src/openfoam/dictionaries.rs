@@ -2,15 +2,20 @@
 
 use std::fmt::Write;
 
+use super::decompose;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::{
     Convection, GasPatch, GasSetup, InletFlow, Schedule, WallHeat, WallVelocity,
 };
+use calcine_wire::Catalogue;
+
+use super::species;
+use super::stock::Solver;
 
 /// The header of an OpenFOAM file.
-fn header(class: &str, object: &str) -> String {
+pub(super) fn header(class: &str, object: &str) -> String {
     format!(
         "// Written by Calcine.\nFoamFile\n{{\n    version     2.0;\n    format      ascii;\n    \
          class       {class};\n    object      {object};\n}}\n\n"
@@ -20,19 +25,21 @@ fn header(class: &str, object: &str) -> String {
 // Numbers are written with `e`, which prints the shortest digits that read back to the same bits.
 // Writing into a String cannot fail, so the results of write! below carry nothing.
 
-fn vector(v: Vec3) -> String {
+pub(super) fn vector(v: Vec3) -> String {
     format!("({:e} {:e} {:e})", v.x, v.y, v.z)
 }
 
-fn table(schedule: &Schedule) -> String {
+pub(super) fn table(schedule: &Schedule) -> String {
     let entries = schedule.0.iter();
     let entries: Vec<_> = entries.map(|(t, v)| format!("({t:e} {v:e})")).collect();
     format!("({})", entries.join(" "))
 }
 
-/// `system/controlDict`. The coordinator drives time, so that none of its times matters.
-pub fn control() -> String {
+/// `system/controlDict`, after what it includes. The coordinator drives time, so that none of its times
+/// matters.
+pub fn control(include: &str) -> String {
     header("dictionary", "controlDict")
+        + include
         + "application     calcineGasFoam;\nstartFrom       startTime;\nstartTime       0;\n\
            stopAt          endTime;\nendTime         1;\ndeltaT          1;\n\
            writeControl    timeStep;\nwriteInterval   1;\nwriteFormat     binary;\n\
@@ -40,13 +47,37 @@ pub fn control() -> String {
            timePrecision   6;\nrunTimeModifiable no;\n"
 }
 
+/// `system/decomposeParDict`: cells go where a list says.
+pub fn decompose(ranks: u32) -> String {
+    let list = decompose::DATA;
+    header("dictionary", "decomposeParDict")
+        + &format!(
+            "numberOfSubdomains {ranks};\nmethod          manual;\n\
+             manualCoeffs {{ dataFile \"{list}\"; }}\n"
+        )
+}
+
+/// A list of labels in `constant/`.
+pub fn labels(name: &str, values: &[u32]) -> String {
+    let mut text = header("labelList", name) + &format!("{}\n(\n", values.len());
+    for value in values {
+        let _ = writeln!(text, "{value}");
+    }
+    text + ")\n"
+}
+
 /// `constant/thermophysicalProperties`: an ideal gas with constant heat capacity and Sutherland
-/// transport, or a fluid of constant properties; `None` for a mixture of species, which calcineGasFoam
-/// does not carry.
-pub fn thermophysical(setup: &GasSetup) -> Option<String> {
+/// transport, a fluid of constant properties, or a mixture of species.
+pub fn thermophysical(setup: &GasSetup, solver: Solver) -> String {
+    // buoyantPimpleFoam asks for a model of the density.
+    let psi = if solver.is_stock() {
+        "heRhoThermo"
+    } else {
+        "hePsiThermo"
+    };
     let (kinds, numbers) = match &setup.properties {
         GasModel::Perfect(gas) => (
-            ["hePsiThermo", "sutherland", "perfectGas"],
+            [psi, "sutherland", "perfectGas"],
             [
                 ("molWeight", gas.molar_mass * 1e3),
                 ("Cp", gas.heat_capacity),
@@ -66,7 +97,7 @@ pub fn thermophysical(setup: &GasSetup) -> Option<String> {
             ]
             .map(|(key, value)| (key, format!("{value:e}"))),
         ),
-        GasModel::Mixture(_) => return None,
+        GasModel::Mixture(mixture) => return species::thermophysical(&setup.mixture, mixture),
     };
     let [kind, transport, state] = kinds;
     let [weight, capacity, first, second] = numbers.map(|(key, value)| format!("{key} {value};"));
@@ -74,7 +105,7 @@ pub fn thermophysical(setup: &GasSetup) -> Option<String> {
         GasModel::Constant(gas) => format!("    equationOfState {{ rho {:e}; }}\n", gas.density),
         GasModel::Perfect(_) | GasModel::Mixture(_) => String::new(),
     };
-    let text = header("dictionary", "thermophysicalProperties")
+    header("dictionary", "thermophysicalProperties")
         + &format!(
             "// {}\nthermoType\n{{\n    type            {kind};\n    \
                  mixture         pureMixture;\n    transport       {transport};\n    \
@@ -83,8 +114,7 @@ pub fn thermophysical(setup: &GasSetup) -> Option<String> {
                  {{\n    specie {{ {weight} }}\n    thermodynamics {{ {capacity} Hf 0; }}\n    \
                  transport {{ {first} {second} }}\n{density}}}\n",
             setup.mixture
-        );
-    Some(text)
+        )
 }
 
 /// `constant/g`, for OpenFOAM's own tools; the solver reads it in `calcineGas`.
@@ -97,7 +127,7 @@ pub fn gravity(setup: &GasSetup) -> String {
 }
 
 /// `constant/calcineGas`: what only calcineGasFoam reads.
-pub fn calcine(setup: &GasSetup, case_hash: &str) -> String {
+pub fn calcine(setup: &GasSetup, case_hash: &str, catalogue: &Catalogue) -> String {
     let controls = &setup.controls;
     let mut text = header("dictionary", "calcineGas");
     let _ = write!(
@@ -116,30 +146,45 @@ pub fn calcine(setup: &GasSetup, case_hash: &str) -> String {
         controls.outer_tolerance,
         controls.linear_tolerance
     );
+    let names = setup.properties.species();
     for (name, condition) in &setup.patches {
-        let entries = entries(condition);
+        let entries = entries(condition, names);
         if !entries.is_empty() {
             let _ = writeln!(text, "    {name}\n    {{");
             for (key, value) in entries {
-                let _ = writeln!(text, "        {key:<19} {value};");
+                // A dictionary ends without a semicolon.
+                let end = if value.ends_with('}') { "" } else { ";" };
+                let _ = writeln!(text, "        {key:<19} {value}{end}");
             }
             let _ = writeln!(text, "    }}");
         }
     }
-    text + "}\n"
+    text += "}\n\n// Schmidt number of all species of a mixture.\n";
+    let _ = writeln!(text, "schmidt         {:e};\n", setup.schmidt);
+    text += "// Columns of the link to Calcine.\ncatalogue\n(\n";
+    for column in catalogue.fields() {
+        let _ = writeln!(text, "    \"{column}\"");
+    }
+    text + ");\n"
 }
 
 /// What calcineGasFoam drives at a patch: keys and tables over process time.
-fn entries(condition: &GasPatch) -> Vec<(&'static str, String)> {
+fn entries(condition: &GasPatch, names: &[String]) -> Vec<(&'static str, String)> {
     match condition {
         GasPatch::Inlet {
-            flow, temperature, ..
+            flow,
+            temperature,
+            composition,
         } => {
             let flow = match flow {
                 InletFlow::SuperficialVelocity(flow) => ("superficialVelocity", table(flow)),
                 InletFlow::MassFlow(flow) => ("massFlow", table(flow)),
             };
-            vec![flow, ("temperature", table(temperature))]
+            let mut entries = vec![flow, ("temperature", table(temperature))];
+            if let Some(composition) = composition {
+                entries.push(("composition", species::tables(composition, names)));
+            }
+            entries
         }
         GasPatch::Outlet { pressure } => vec![("pressure", table(pressure))],
         GasPatch::Symmetry => vec![("closed", "true".into())],
@@ -176,6 +221,10 @@ pub fn schemes(text: &str, convection: Convection) -> String {
             .replace(
                 "div(phi,h)      Gauss upwind;",
                 "div(phi,h)      Gauss vanLeer;",
+            )
+            .replace(
+                "div(phi,Yi)     Gauss upwind;",
+                "div(phi,Yi)     Gauss vanLeer;",
             ),
     }
 }
@@ -194,7 +243,7 @@ pub fn cells(mesh: &Mesh) -> String {
 }
 
 /// A field of `0/` with a boundary condition for each patch.
-fn field(
+pub(super) fn field(
     (class, name, dimensions, start): (&str, &str, &str, &str),
     setup: &GasSetup,
     condition: impl Fn(&GasPatch) -> String,
@@ -211,11 +260,11 @@ fn field(
     text + "}\n"
 }
 
-fn fixed(value: &str) -> String {
+pub(super) fn fixed(value: &str) -> String {
     format!("type            fixedValue;\n        value           uniform {value};")
 }
 
-fn zero_gradient() -> String {
+pub(super) fn zero_gradient() -> String {
     "type            zeroGradient;".into()
 }
 

@@ -14,20 +14,40 @@ impl Fnv {
     }
 }
 
-/// Hash of point coordinates, points of each face, owners and neighbours, in 16 digits.
-pub fn mesh_hash(mesh: &Mesh) -> String {
+/// First words of what is hashed of a face.
+const OF_POINTS: u64 = 1;
+const OF_OWNER: u64 = 2;
+const OF_NEIGHBOUR: u64 = 3;
+
+/// Hash of some words.
+fn hash(words: impl IntoIterator<Item = u64>) -> u64 {
     let mut hash = Fnv(0xcbf2_9ce4_8422_2325);
-    for point in &mesh.topology().points {
-        // A sum with zero makes -0 the same as 0.
-        point.iter().for_each(|x| hash.add((x + 0.0).to_bits()));
-    }
+    words.into_iter().for_each(|word| hash.add(word));
+    hash.0
+}
+
+/// Hash, in 16 digits: the sum over faces of the hashes of the face's number and points, of its number
+/// and owner, and of its number and neighbour. A sum, so that the parts of a divided mesh add up.
+pub fn mesh_hash(mesh: &Mesh) -> String {
+    let points = &mesh.topology().points;
+    let mut sum = 0u64;
     for face in 0..mesh.faces() {
-        let points = mesh.face_points(face);
-        hash.add(points.len() as u64);
-        points.iter().for_each(|&point| hash.add(point.into()));
+        let number = face as u64;
+        let corners = mesh.face_points(face);
+        // A sum with zero makes -0 the same as 0.
+        let coordinates = corners.iter().flat_map(|&point| {
+            let point = points[point as usize];
+            [point.x, point.y, point.z].map(|x| (x + 0.0).to_bits())
+        });
+        let count = corners.len() as u64;
+        sum = sum
+            .wrapping_add(hash(
+                [OF_POINTS, number, count].into_iter().chain(coordinates),
+            ))
+            .wrapping_add(hash([OF_OWNER, number, mesh.owner()[face].into()]));
+        if let Some(&other) = mesh.neighbour().get(face) {
+            sum = sum.wrapping_add(hash([OF_NEIGHBOUR, number, other.into()]));
+        }
     }
-    for &cell in mesh.owner().iter().chain(mesh.neighbour()) {
-        hash.add(cell.into());
-    }
-    format!("{:016x}", hash.0)
+    format!("{sum:016x}")
 }

@@ -2,8 +2,12 @@
 
 pub mod case;
 mod columns;
+mod decompose;
 mod dictionaries;
 mod identity;
+mod species;
+mod start;
+pub mod stock;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -18,17 +22,20 @@ use calcine_coupler::part::{
 use calcine_coupler::setup::GasSetup;
 use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::{GasStorage, Window};
-use calcine_wire::{Catalogue, Hello, Kind, WireError};
+use calcine_wire::{Catalogue, Hello, Kind};
 
-use crate::launch::{Program, find_program};
+use crate::launch::{Launcher, Program, find_program};
 use crate::solver::{ExternalSolver, Launch, header};
 use case::OpenfoamCase;
-use columns::State;
+use columns::{Ranks, State};
+use stock::Solver;
 
 /// Name in messages.
 const NAME: &str = "OpenFOAM (gas)";
 /// Name of the solver's program.
 pub const SOLVER: &str = "calcineGasFoam";
+/// The library with Calcine's fvOption, beside it.
+pub const LIBRARY: &str = "libcalcineFoam.so";
 /// The variable that names another solver program.
 pub const SOLVER_VARIABLE: &str = "CALCINE_GASFOAM";
 /// Where Debian's OpenFOAM has its `etc`.
@@ -43,14 +50,24 @@ pub struct OpenfoamLaunch<'a> {
     pub mesh: Arc<Mesh>,
     /// A folder whose files are taken over where the case does not speak.
     pub template: Option<&'a Path>,
+    /// A time directory that OpenFOAM wrote, whose fields the gas starts from.
+    pub start: Option<&'a Path>,
+    /// Which program computes the gas.
+    pub solver: Solver,
     /// Hash of the case.
     pub case_hash: String,
     /// Where the OpenFOAM case is written and the solver runs.
     pub folder: PathBuf,
     /// Where the solver's output goes.
     pub log: PathBuf,
+    /// Number of ranks; more than one work on a decomposed case.
+    pub ranks: u32,
+    /// Who starts them.
+    pub launcher: Launcher,
     /// The gas' folder of the checkpoint to start from.
     pub resume: Option<PathBuf>,
+    /// The gas' folder of another run's checkpoint to continue from.
+    pub from: Option<PathBuf>,
     /// Longest silence while starting, writing a checkpoint or ending.
     pub deadline: Duration,
 }
@@ -61,6 +78,8 @@ pub struct OpenfoamGas {
     about: About,
     mesh: Arc<Mesh>,
     storage: GasStorage,
+    /// Number of species; zero for a single gas.
+    species: usize,
     state: State,
     window: Option<Window>,
 }
@@ -72,28 +91,58 @@ impl OpenfoamGas {
         supervisor: &mut Supervisor,
     ) -> Result<Self, PartError> {
         let remedy = "`cargo xtask setup` installs OpenFOAM and builds it";
-        let path = find_program(SOLVER_VARIABLE, SOLVER, remedy)?;
+        let own = find_program(SOLVER_VARIABLE, SOLVER, remedy)?;
+        let library = own.with_file_name(LIBRARY);
+        let path = if launch.solver.is_stock() {
+            stock_program(launch.solver.name())?
+        } else {
+            own
+        };
+        if launch.solver.is_stock() && launch.ranks > 1 {
+            let message = "a stock solver is coupled on one rank only: leave `openfoam.ranks` out";
+            return Err(PartError::new(NAME, FailureKind::NotStarted, message));
+        }
+        if launch.solver.is_stock() && (launch.resume.is_some() || launch.from.is_some()) {
+            let message = "a stock solver takes up no checkpoint; its checkpoint is a time directory, \
+                           which `openfoam.start` takes as a start";
+            return Err(PartError::new(NAME, FailureKind::NotStarted, message));
+        }
         let case = OpenfoamCase {
             setup: launch.setup,
             mesh: &launch.mesh,
             template: launch.template,
+            start: launch.start,
+            solver: launch.solver,
+            library: &library,
             case_hash: &launch.case_hash,
+            ranks: launch.ranks,
         };
-        for folder in [Some(&launch.folder), launch.resume.as_ref()]
-            .into_iter()
-            .flatten()
+        let given = [("-resume", &launch.resume), ("-from", &launch.from)];
+        for folder in [
+            Some(&launch.folder),
+            launch.resume.as_ref(),
+            launch.from.as_ref(),
+        ]
+        .into_iter()
+        .flatten()
         {
             without_spaces(folder)?;
         }
         case.write(&launch.folder)?;
-        let mut arguments = Vec::new();
-        if let Some(folder) = &launch.resume {
+        let mut arguments: Vec<OsString> = Vec::new();
+        if launch.ranks > 1 {
+            decompose::run(&launch.folder, launch.ranks, &environment(&launch.folder))?;
+            arguments.push("-parallel".into());
+        }
+        for (option, folder) in given {
+            let Some(folder) = folder else { continue };
             let folder = std::path::absolute(folder).map_err(|error| {
                 let message = format!("the checkpoint {} cannot be used", folder.display());
                 PartError::new(NAME, FailureKind::Io, message).caused_by(error)
             })?;
-            arguments.extend(["-resume".into(), folder.into()]);
+            arguments.extend([option.into(), folder.into()]);
         }
+        let species = launch.setup.properties.species().len();
         let hello = Hello {
             role: "gas".into(),
             name: "Calcine".into(),
@@ -101,8 +150,8 @@ impl OpenfoamGas {
             mesh_hash: identity::mesh_hash(&launch.mesh),
             case_hash: launch.case_hash,
             count: launch.mesh.cells() as u64,
-            ranks: 1,
-            catalogue: Catalogue::standard("gas").map_err(|error| {
+            ranks: launch.ranks,
+            catalogue: Catalogue::gas(species).map_err(|error| {
                 PartError::new(NAME, FailureKind::NotStarted, "its columns").caused_by(error)
             })?,
         };
@@ -116,6 +165,7 @@ impl OpenfoamGas {
             Launch {
                 name: NAME.into(),
                 program,
+                launcher: launch.launcher,
                 log: launch.log,
                 hello,
                 handshake: launch.deadline,
@@ -126,13 +176,14 @@ impl OpenfoamGas {
         let about = About {
             name: solver.hello().name.clone(),
             version: solver.hello().version.clone(),
-            ranks: 1,
+            ranks: launch.ranks as usize,
         };
         let mut gas = Self {
             solver,
             about,
             mesh: launch.mesh,
             storage: launch.setup.storage,
+            species,
             state: State::default(),
             window: None,
         };
@@ -145,14 +196,32 @@ impl OpenfoamGas {
         self.solver.pid()
     }
 
-    /// Takes the state out of the message that the link holds.
+    /// Process ids of the ranks.
+    pub fn rank_pids(&self) -> &[u32] {
+        self.solver.rank_pids()
+    }
+
+    /// Takes the state out of the messages that the links hold.
     fn read_state(&mut self, window: Option<&Window>) -> Result<(), PartError> {
-        let read = match self.solver.links() {
-            [link] => self.state.read(link),
-            _ => Err(NO_LINK),
-        };
+        let ranks = ranks(&self.solver, &self.mesh);
+        let read = self.state.read(ranks, self.species);
         read.map_err(|error| self.solver.failure(window, error))
     }
+}
+
+/// A program of Debian's OpenFOAM, on the path.
+fn stock_program(name: &str) -> Result<PathBuf, PartError> {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let found = std::env::split_paths(&path)
+        .map(|folder| folder.join(name))
+        .find(|program| program.is_file());
+    found.ok_or_else(|| {
+        let message = format!(
+            "{name} is nowhere on the PATH; it comes with Debian's package openfoam, which `cargo xtask \
+             setup` installs"
+        );
+        PartError::new(NAME, FailureKind::NotStarted, message)
+    })
 }
 
 /// OpenFOAM takes no path with a space or a quote in it.
@@ -169,9 +238,13 @@ fn without_spaces(folder: &Path) -> Result<(), PartError> {
     Err(PartError::new(NAME, FailureKind::NotStarted, message))
 }
 
-const NO_LINK: WireError = WireError::Order {
-    what: "a serial solver has exactly one link",
-};
+fn ranks<'a>(solver: &'a ExternalSolver, mesh: &Mesh) -> Ranks<'a> {
+    Ranks {
+        links: solver.links(),
+        owned: solver.owned(),
+        cells: mesh.cells(),
+    }
+}
 
 /// OpenFOAM compares PWD with the folder it runs in, and looks for its `etc` where WM_PROJECT_DIR
 /// says: Debian's, unless the user has set both another solver and its OpenFOAM.
@@ -238,9 +311,13 @@ impl Gas for OpenfoamGas {
             GasStorage::Accelerated => request.span_motion,
         };
         self.window = Some(*window);
-        self.solver.send_columns(window, request, cells, |link| {
-            columns::write(link, bed, exchange)
-        })
+        let owned = Arc::clone(self.solver.owned());
+        self.solver.send_columns(
+            window,
+            request,
+            |rank| owned[rank].len(),
+            |rank, link| columns::write(link, &owned[rank], bed, exchange),
+        )
     }
 
     fn finish(
@@ -259,10 +336,7 @@ impl Gas for OpenfoamGas {
                 }
                 error
             })?;
-        let convergence = match self.solver.links() {
-            [link] => columns::read(link, received),
-            _ => Err(NO_LINK),
-        };
+        let convergence = columns::read(ranks(&self.solver, &self.mesh), received);
         let convergence = convergence.map_err(|error| self.solver.failure(Some(&window), error))?;
         self.read_state(Some(&window))?;
         Ok(convergence)

@@ -7,6 +7,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
+use calcine_adapters::launch::Launcher;
+use calcine_adapters::openfoam::stock::Solver;
 use calcine_adapters::openfoam::{OpenfoamGas, OpenfoamLaunch};
 use calcine_coupler::error::PartError;
 use calcine_coupler::mesh::Mesh;
@@ -137,15 +139,31 @@ impl Duct {
         folder: &Path,
         resume: Option<&Path>,
     ) -> Result<Self, PartError> {
+        Self::try_launch_on_ranks(1, mesh, setup, folder, resume)
+    }
+
+    /// The same on a number of ranks.
+    pub fn try_launch_on_ranks(
+        ranks: u32,
+        mesh: Mesh,
+        setup: &GasSetup,
+        folder: &Path,
+        resume: Option<&Path>,
+    ) -> Result<Self, PartError> {
         let mut supervisor = Supervisor::new(Duration::from_secs(30), Interrupts::default());
         let launch = OpenfoamLaunch {
             setup,
             mesh: Arc::new(mesh),
             template: None,
+            start: None,
+            solver: Solver::default(),
             case_hash: "test".into(),
             folder: folder.join("case"),
             log: folder.join("log"),
+            ranks,
+            launcher: Launcher::Mpirun,
             resume: resume.map(Path::to_owned),
+            from: None,
             deadline: Duration::from_secs(30),
         };
         let gas = OpenfoamGas::launch(launch, &mut supervisor)?;

@@ -2,8 +2,9 @@
  *
  * A solver's rank opens its link, shakes hands, sends its first state, and then answers:
  *
- *   calcine_link_open(rank, &link)               what to open stands in the variable CALCINE_LINK
+ *   calcine_link_open(rank, carrier, &link)      what to open stands in the variable CALCINE_LINK
  *   calcine_link_handshake(link, &hello, 10000)  compares versions, hashes, catalogue, count
+ *   loan(CALCINE_OWNED) … send                   a gas: which cells of the whole mesh this rank has
  *   loan(CALCINE_STATE) … send                   the state that the run starts from
  *   loop: calcine_link_receive
  *     CALCINE_START       compute one attempt from the last commit; answer CALCINE_FINISHED
@@ -26,7 +27,7 @@ extern "C" {
 #endif
 
 /* Version of the protocol; both sides must have the same. */
-#define CALCINE_WIRE_VERSION 1u
+#define CALCINE_WIRE_VERSION 2u
 
 /* One end of a link. */
 typedef struct calcine_link calcine_link;
@@ -50,7 +51,8 @@ typedef enum calcine_kind {
     CALCINE_CHECKPOINT = 6,
     CALCINE_CHECKPOINTED = 7,
     CALCINE_FAILED = 8,
-    CALCINE_BYE = 9
+    CALCINE_BYE = 9,
+    CALCINE_OWNED = 10
 } calcine_kind;
 
 /* What stands before the columns of a message. Times in ticks of 1e-12 s. */
@@ -80,7 +82,7 @@ typedef struct calcine_hello {
     const char *case_hash; /* of the case that the inputs were written for */
     const char *mesh_hash; /* of the mesh (gas) or of the initial particles */
     const char *catalogue; /* NULL: the standard catalogue of the role; else one field a line */
-    uint64_t count;        /* cells or particles on this rank */
+    uint64_t count;        /* cells or particles of all ranks */
     uint32_t ranks;        /* ranks of the solver */
 } calcine_hello;
 
@@ -88,6 +90,8 @@ typedef struct calcine_hello {
  *   received with CALCINE_START:
  *     void_fraction 1 [1], drag_coefficient 1 [kg/s], drag_source 3 [N],
  *     heat_coefficient 1 [W/K], heat_source 1 [W]
+ *   sent once, with CALCINE_OWNED:
+ *     cell 1 [u64]: numbers in the whole mesh, in the order of all other columns
  *   sent with CALCINE_STATE, CALCINE_FINISHED, CALCINE_CHECKPOINTED:
  *     heat 1 [W], drag 3 [N], temperature 1 [K], pressure 1 [Pa], density 1 [kg/m^3],
  *     velocity 3 [m/s], pressure_gradient 3 [Pa/m],
@@ -95,12 +99,33 @@ typedef struct calcine_hello {
  *       stored_magnitude, boundary, boundary_magnitude, exchange, source, source_magnitude,
  *     convergence 5 numbers: outer_iterations, linear_iterations, residual, volume_residual,
  *       converged (1 or 0)
+ * A gas of N species adds (calcine_hello.catalogue then has all lines): composition N [1] per cell, mass
+ * fractions, and N more balances, in kg of each species, after the momentum's.
  * A vector column is interleaved: x, y, z of the first cell, then of the second. Every column starts
  * at a multiple of 64 bytes. With CALCINE_STATE and CALCINE_CHECKPOINTED, `heat`, `drag`, `balances`
  * and `convergence` are zero. */
 
-/* Opens the link of a rank, as the variable CALCINE_LINK describes it. */
-calcine_status calcine_link_open(uint32_t rank, calcine_link **link);
+/* What moves messages where the coordinator started the ranks by MPI: functions of the solver, over the
+ * intercommunicator to its parent. None may block; a negative result is an error's code. */
+typedef struct calcine_carrier {
+    void *context;
+    /* Begins to send; the words stay until `pending` no longer counts the message. */
+    int64_t (*post)(void *context, const uint64_t *words, uint64_t count);
+    /* Moves on what was posted; messages that the coordinator has not taken, in order. */
+    int64_t (*pending)(void *context);
+    /* Words of the next message that waits here; 0: none. */
+    int64_t (*arrived)(void *context);
+    /* Takes the message that waits into as many words. */
+    int64_t (*take)(void *context, uint64_t *words, uint64_t count);
+} calcine_carrier;
+
+/* Whether the link that the variable CALCINE_LINK describes needs a carrier: 1 or 0. */
+calcine_status calcine_link_needs_carrier(uint32_t *needs);
+
+/* Opens the link of a rank, as the variable CALCINE_LINK describes it; `carrier` may be NULL where
+ * none is needed. */
+calcine_status calcine_link_open(uint32_t rank, const calcine_carrier *carrier,
+                                 calcine_link **link);
 
 /* Says hello and compares with what the coordinator answers; an error names both values. */
 calcine_status calcine_link_handshake(calcine_link *link, const calcine_hello *hello,
@@ -121,7 +146,7 @@ calcine_status calcine_link_column(calcine_link *link, const char *name, const d
 calcine_status calcine_link_text(calcine_link *link, const char **text);
 
 /* Reserves the next message of a kind with columns for `count` cells or particles. Window, attempt
- * and clocks are those of the message received last. Columns are for Finished, State, Checkpointed;
+ * and clocks are those of the message received last. Columns are for Finished, State, Checkpointed, Owned;
  * other kinds have none. */
 calcine_status calcine_link_loan(calcine_link *link, calcine_kind kind, uint64_t count);
 

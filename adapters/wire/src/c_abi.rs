@@ -5,18 +5,20 @@
 //! `calcine_last_error`.
 
 use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
 use std::time::Duration;
 
+use crate::carried::{Carried, Carrier, Message};
 use crate::catalogue::Catalogue;
 use crate::hello::Hello;
 use crate::link::Link;
 use crate::record::{Header, Kind};
-use crate::run::LinkAddress;
+use crate::run::{LinkAddress, Means};
 use crate::shared_memory::{End, SharedMemory};
-use crate::transport::WireError;
+use crate::transport::{Transport, WireError};
 
 /// How a call ended; `calcine_status` in C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,14 +122,103 @@ fn text_of(text: *const c_char) -> Result<String, WireError> {
     Ok(text.to_string_lossy().into_owned())
 }
 
+/// `calcine_carrier` of C: what moves messages there, by functions that give a negative number where
+/// they fail.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct CCarrier {
+    context: *mut c_void,
+    post: extern "C" fn(*mut c_void, *const u64, u64) -> i64,
+    pending: extern "C" fn(*mut c_void) -> i64,
+    arrived: extern "C" fn(*mut c_void) -> i64,
+    take: extern "C" fn(*mut c_void, *mut u64, u64) -> i64,
+}
+
+const _: () = assert!(size_of::<CCarrier>() == 40);
+
+/// A carrier of C with the messages that it still sends.
+struct CarriedByC {
+    calls: CCarrier,
+    posted: VecDeque<Message>,
+}
+
+// SAFETY: C promises that a link, its carrier with it, may be used by one thread at a time.
+unsafe impl Send for CarriedByC {}
+
+/// The result of a carrier's function; negative numbers are its errors.
+fn number(doing: &'static str, result: i64) -> Result<usize, WireError> {
+    usize::try_from(result).map_err(|_| WireError::Mpi {
+        doing,
+        code: i32::try_from(-result).unwrap_or(i32::MAX),
+    })
+}
+
+impl Carrier for CarriedByC {
+    fn post(&mut self, message: Message) -> Result<(), WireError> {
+        let words = message.words();
+        let (start, count) = (words.as_ptr(), words.len() as u64);
+        number(
+            "sending",
+            (self.calls.post)(self.calls.context, start, count),
+        )?;
+        // The words do not move with the message that owns them.
+        self.posted.push_back(message);
+        Ok(())
+    }
+
+    fn pending(&mut self) -> Result<usize, WireError> {
+        let left = number("sending", (self.calls.pending)(self.calls.context))?;
+        while self.posted.len() > left {
+            self.posted.pop_front();
+        }
+        Ok(left)
+    }
+
+    fn arrived(&mut self) -> Result<Option<usize>, WireError> {
+        let words = number("looking", (self.calls.arrived)(self.calls.context))?;
+        Ok((words > 0).then_some(words))
+    }
+
+    fn take(&mut self, words: &mut [u64]) -> Result<(), WireError> {
+        let (start, count) = (words.as_mut_ptr(), words.len() as u64);
+        number(
+            "receiving",
+            (self.calls.take)(self.calls.context, start, count),
+        )?;
+        Ok(())
+    }
+}
+
 #[unsafe(no_mangle)]
-extern "C" fn calcine_link_open(rank: u32, link: *mut *mut CLink) -> Status {
+extern "C" fn calcine_link_needs_carrier(needs: *mut u32) -> Status {
+    guarded(|| {
+        let address = LinkAddress::from_environment()?;
+        put(needs, u32::from(address.means != Means::SharedMemory))?;
+        Ok(Status::Ok)
+    })
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn calcine_link_open(
+    rank: u32,
+    carrier: *const CCarrier,
+    link: *mut *mut CLink,
+) -> Status {
     guarded(|| {
         put(link, ptr::null_mut())?;
         let address = LinkAddress::from_environment()?;
-        let transport = SharedMemory::open(&address, rank, End::Solver)?;
+        // SAFETY: C passes NULL or a filled-in struct that lives during the call.
+        let calls = unsafe { carrier.as_ref() }.copied();
+        let transport: Box<dyn Transport + Send> = match (&address.means, calls) {
+            (Means::SharedMemory, _) => Box::new(SharedMemory::open(&address, rank, End::Solver)?),
+            (Means::Mpi { .. }, Some(calls)) => {
+                let posted = VecDeque::new();
+                Box::new(Carried::of_solver(CarriedByC { calls, posted }, &address)?)
+            }
+            (Means::Mpi { .. }, None) => return Err(NULL),
+        };
         let opened = CLink {
-            link: Link::new(Box::new(transport), address.number(), rank),
+            link: Link::new(transport, address.number(), rank),
             last: Header::default(),
             text: CString::default(),
         };
@@ -261,7 +352,7 @@ extern "C" fn calcine_link_failed(link: *mut CLink, text: *const c_char) -> Stat
     guarded(|| {
         let link = of(link)?;
         let header = link.last.answer(Kind::Failed);
-        link.link.send_text(header, &text_of(text)?)?;
+        link.link.send_last_word(header, &text_of(text)?)?;
         Ok(Status::Ok)
     })
 }

@@ -17,6 +17,8 @@ pub enum Record {
     Start,
     /// `State`, `Finished`, `Checkpointed`, from the solver.
     State,
+    /// `Owned`, from a gas.
+    Owned,
 }
 
 impl Record {
@@ -27,6 +29,7 @@ impl Record {
             Kind::State | Kind::Finished | Kind::Checkpointed | Kind::Changed => {
                 Some(Record::State)
             }
+            Kind::Owned => Some(Record::Owned),
             Kind::Hello
             | Kind::Commit
             | Kind::Checkpoint
@@ -40,6 +43,7 @@ impl Record {
         match self {
             Record::Start => "start",
             Record::State => "state",
+            Record::Owned => "owned",
         }
     }
 }
@@ -87,6 +91,7 @@ impl FromStr for Field {
         let record = match next()? {
             "start" => Record::Start,
             "state" => Record::State,
+            "owned" => Record::Owned,
             _ => return Err(refuse()),
         };
         let name = next()?.to_owned();
@@ -118,6 +123,7 @@ pub struct Catalogue {
 
 /// The standard catalogue of a gas; one value per cell, signs as in the coordinator's exchange.
 const GAS: &str = "\
+owned cell 1 u64 item
 start void_fraction 1 1 item
 start drag_coefficient 1 kg/s item
 start drag_source 3 N item
@@ -154,6 +160,22 @@ impl Catalogue {
             "particles" => PARTICLES.parse(),
             _ => Err(WireError::Role { role: role.into() }),
         }
+    }
+
+    /// That of a gas of so many species (0: a single gas): the standard one with the composition, species by
+    /// species within each cell, and a balance of each species after the momentum's.
+    pub fn gas(species: usize) -> Result<Self, WireError> {
+        let mut gas = Self::standard("gas")?;
+        if species > 0 {
+            for field in &mut gas.fields {
+                if field.name == "balances" {
+                    field.components += 7 * species;
+                }
+            }
+            gas.fields
+                .push(format!("state composition {species} 1 item").parse()?);
+        }
+        Ok(gas)
     }
 
     /// The fields, in the order of the columns.
@@ -251,6 +273,16 @@ mod tests {
             35
         );
         assert_eq!(gas.words(Record::Start, 12), Some(16 + 16 + 40 + 16 + 16));
+    }
+
+    #[test]
+    fn species_add_a_column_of_mass_fractions_and_a_balance_each() {
+        let gas = Catalogue::gas(3).unwrap();
+        let length = |name| gas.column(Record::State, name, 12).unwrap().1.len();
+        assert_eq!(length("composition"), 36);
+        assert_eq!(length("balances"), 35 + 21);
+        let single = Catalogue::standard("gas").unwrap();
+        assert_eq!(Catalogue::gas(0).unwrap(), single);
     }
 
     #[test]

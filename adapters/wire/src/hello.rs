@@ -20,7 +20,7 @@ pub struct Hello {
     pub case_hash: String,
     /// Hash of the mesh, or of the initial particles.
     pub mesh_hash: String,
-    /// Cells or particles on this rank.
+    /// Cells or particles of all ranks.
     pub count: u64,
     /// Ranks of the solver.
     pub ranks: u32,
@@ -173,7 +173,7 @@ mod tests {
                 h.mesh_hash = "0c".into()
             }),
             ("is 12 here, but 13", |h| h.count = 13),
-            ("void_fraction", |h| {
+            ("owned cell 1 u64 item", |h| {
                 h.catalogue = Catalogue::standard("particles").unwrap()
             }),
         ];
@@ -203,10 +203,10 @@ mod tests {
 
     #[test]
     fn another_protocol_version_is_refused() {
-        let text = hello().to_text().replace("protocol 1", "protocol 2");
+        let text = hello().to_text().replace("protocol 2", "protocol 3");
         let error = Hello::from_text(&text).unwrap_err().to_string();
         assert!(
-            error.contains("protocol version is 1 here, but 2"),
+            error.contains("protocol version is 2 here, but 3"),
             "{error}"
         );
     }

@@ -4,9 +4,11 @@
 //! out by the [`Catalogue`] that the handshake fixed, or a text. The coordinator asks, the solver
 //! answers; only `Commit` has no answer.
 
+pub mod carried;
 pub mod catalogue;
 pub mod hello;
 pub mod link;
+pub mod process;
 pub mod record;
 pub mod run;
 pub mod shared_memory;
@@ -14,13 +16,16 @@ pub mod transport;
 
 #[allow(unsafe_code)]
 mod c_abi;
+mod watch;
 #[allow(unsafe_code)]
 mod words;
 
+pub use carried::{Carried, Carrier, Message};
 pub use catalogue::{Catalogue, Field, Record};
 pub use hello::Hello;
 pub use link::Link;
+pub use process::Process;
 pub use record::{Header, Kind};
-pub use run::{LinkAddress, Run};
+pub use run::{LinkAddress, Means, Run};
 pub use shared_memory::SharedMemory;
-pub use transport::{Transport, WireError};
+pub use transport::{Network, Transport, WireError};

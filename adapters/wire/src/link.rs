@@ -4,9 +4,13 @@ use std::time::{Duration, Instant};
 
 use crate::catalogue::{Catalogue, Record};
 use crate::hello::Hello;
+use crate::process::Process;
 use crate::record::{Header, Kind, MAGIC, VERSION};
 use crate::transport::{Transport, WireError};
 use crate::words;
+
+/// How long a process that fails may take to say so.
+const LAST_WORD: Duration = Duration::from_secs(2);
 
 /// One end of one rank's link.
 pub struct Link {
@@ -14,6 +18,8 @@ pub struct Link {
     run: u64,
     rank: u32,
     catalogue: Catalogue,
+    /// Who is at the other end, once it has introduced itself.
+    peer: Option<Process>,
     /// Header of the reserved message, and which of its columns were asked for.
     reserved: Option<(Header, Vec<bool>)>,
 }
@@ -26,6 +32,7 @@ impl Link {
             run,
             rank,
             catalogue: Catalogue::default(),
+            peer: None,
             reserved: None,
         }
     }
@@ -35,9 +42,14 @@ impl Link {
         self.rank
     }
 
+    /// The process at the other end, as it introduced itself.
+    pub fn peer(&self) -> Option<&Process> {
+        self.peer.as_ref()
+    }
+
     /// Solver's side of the handshake: introduces itself, waits, compares.
     pub fn greet(&mut self, ours: &Hello, patience: Duration) -> Result<Hello, WireError> {
-        self.send_text(Header::of(Kind::Hello), &ours.to_text())?;
+        self.send_text(Header::of(Kind::Hello), &introduction(ours))?;
         let begun = Instant::now();
         loop {
             let left = patience.saturating_sub(begun.elapsed());
@@ -60,9 +72,10 @@ impl Link {
     /// Coordinator's side of the handshake, once a message arrived: compares, answers, and gives the
     /// solver's introduction. A mismatch is told to the solver too.
     pub fn answer_greeting(&mut self, ours: &Hello) -> Result<Hello, WireError> {
+        self.peer = self.text().ok().and_then(Process::in_text);
         let greeting = self.read_greeting(ours);
         match &greeting {
-            Ok(_) => self.send_text(Header::of(Kind::Hello), &ours.to_text())?,
+            Ok(_) => self.send_text(Header::of(Kind::Hello), &introduction(ours))?,
             Err(error) => self.send_text(Header::of(Kind::Failed), &error.to_string())?,
         }
         self.catalogue = ours.catalogue.clone();
@@ -99,6 +112,12 @@ impl Link {
         let payload = self.transport.loan(header, text.len().div_ceil(8))?;
         words::bytes_mut(payload)[..text.len()].copy_from_slice(text.as_bytes());
         self.transport.send()
+    }
+
+    /// Tells the other end why this process ends, and stays until it has heard, 2 s at most.
+    pub fn send_last_word(&mut self, header: Header, text: &str) -> Result<(), WireError> {
+        self.send_text(header, text)?;
+        self.transport.settle(LAST_WORD)
     }
 
     /// Reserves a message with columns for `count` items; the header's kind decides which.
@@ -257,6 +276,11 @@ impl Link {
             }
         }
     }
+}
+
+/// What an end says of itself: the solver, and its process.
+fn introduction(ours: &Hello) -> String {
+    ours.to_text() + &Process::own().line()
 }
 
 const NOTHING: WireError = WireError::Order {

@@ -5,7 +5,7 @@ use iceoryx2::prelude::ZeroCopySend;
 /// Marks a header of this wire: "calcine" and a one.
 pub const MAGIC: u64 = u64::from_le_bytes(*b"calcine\x01");
 /// Version of the protocol; both ends must have the same.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// What a message is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +29,9 @@ pub enum Kind {
     Failed = 8,
     /// The run ends; asked by the coordinator, answered by the solver.
     Bye = 9,
+    /// Which cells of the whole mesh the rank of a gas has, in the order of all its columns; sent
+    /// once, after the handshake (columns).
+    Owned = 10,
     /// Particles that go and come between two windows (text, see the host's `change`).
     Change = 11,
     /// The change is made; the state after it (columns).
@@ -37,7 +40,7 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Kind; 11] = [
+    pub const ALL: [Kind; 12] = [
         Kind::Hello,
         Kind::State,
         Kind::Start,
@@ -47,6 +50,7 @@ impl Kind {
         Kind::Checkpointed,
         Kind::Failed,
         Kind::Bye,
+        Kind::Owned,
         Kind::Change,
         Kind::Changed,
     ];
@@ -97,7 +101,60 @@ const _: () = assert!(align_of::<Header>() == 8);
 const _: () = assert!(std::mem::offset_of!(Header, window) == 32);
 const _: () = assert!(std::mem::offset_of!(Header, count) == 80);
 
+/// Words of 8 bytes in a header.
+pub const HEADER_WORDS: usize = size_of::<Header>() / 8;
+
+/// Two numbers in one word, the first in the lower half.
+fn word(low: u32, high: u32) -> u64 {
+    u64::from(low) | u64::from(high) << 32
+}
+
+fn halves(word: u64) -> (u32, u32) {
+    (word as u32, (word >> 32) as u32)
+}
+
 impl Header {
+    /// The header as words, for a transport that moves nothing else.
+    pub fn to_words(&self) -> [u64; HEADER_WORDS] {
+        [
+            self.magic,
+            word(self.version, self.kind),
+            self.run,
+            word(self.rank, self.attempt),
+            self.window,
+            self.start_motion.cast_unsigned(),
+            self.start_process.cast_unsigned(),
+            self.span_motion.cast_unsigned(),
+            self.span_process.cast_unsigned(),
+            self.storage_span.cast_unsigned(),
+            self.count,
+            self.bytes,
+        ]
+    }
+
+    /// Reads what [`Header::to_words`] gave, from the first words of a message.
+    pub fn from_words(words: &[u64]) -> Option<Self> {
+        let words: &[u64; HEADER_WORDS] = words.first_chunk()?;
+        let (version, kind) = halves(words[1]);
+        let (rank, attempt) = halves(words[3]);
+        Some(Self {
+            magic: words[0],
+            version,
+            kind,
+            run: words[2],
+            rank,
+            attempt,
+            window: words[4],
+            start_motion: words[5].cast_signed(),
+            start_process: words[6].cast_signed(),
+            span_motion: words[7].cast_signed(),
+            span_process: words[8].cast_signed(),
+            storage_span: words[9].cast_signed(),
+            count: words[10],
+            bytes: words[11],
+        })
+    }
+
     /// A header of a kind, everything else zero; a link fills in run, rank and sizes.
     pub fn of(kind: Kind) -> Self {
         Self {
@@ -121,5 +178,30 @@ impl Header {
     /// The kind, if the number is one.
     pub fn kind(&self) -> Option<Kind> {
         Kind::from_number(self.kind)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_header_survives_its_words() {
+        let header = Header {
+            run: 3,
+            rank: 4,
+            attempt: 5,
+            window: 6,
+            start_motion: -7,
+            start_process: 8,
+            span_motion: 9,
+            span_process: 10,
+            storage_span: 11,
+            count: 12,
+            bytes: 13,
+            ..Header::of(Kind::Finished)
+        };
+        assert_eq!(Header::from_words(&header.to_words()), Some(header));
+        assert_eq!(Header::from_words(&[0; 11]), None);
     }
 }

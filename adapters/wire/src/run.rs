@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use rustix::fs::{FlockOperation, flock};
 
+use crate::process::machine;
 use crate::transport::WireError;
 
 /// The variable that tells a solver which link to open.
@@ -16,10 +17,25 @@ pub const VARIABLE: &str = "CALCINE_LINK";
 /// Where Linux keeps shared memory.
 const MEMORY: &str = "/dev/shm";
 const NAME: &str = "calcine-";
+/// Begins the address of a link over MPI.
+const MPI: &str = "mpi@";
 /// A socket's path ends at 108 bytes (unix(7)); the wire appends the prefix and about 46 more.
 const LONGEST: usize = 60;
 
 static SERIAL: AtomicU32 = AtomicU32::new(0);
+
+/// What carries a link's messages.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Means {
+    /// Shared memory of this machine.
+    #[default]
+    SharedMemory,
+    /// MPI, from a coordinator on this machine.
+    Mpi {
+        /// The coordinator's boot and process-id namespace.
+        machine: String,
+    },
+}
 
 /// Where a run keeps its files: what both ends of a link must agree on.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,13 +46,35 @@ pub struct LinkAddress {
     pub role: String,
     /// Directory of the wire's sockets and service files.
     pub root: PathBuf,
+    /// What carries the messages.
+    pub means: Means,
 }
 
 impl LinkAddress {
+    /// The same address for ranks that MPI spawns.
+    pub fn over_mpi(self) -> Self {
+        Self {
+            means: Means::Mpi { machine: machine() },
+            ..self
+        }
+    }
+
+    /// True where the coordinator is on this machine, so that its process id means something.
+    pub fn is_here(&self) -> bool {
+        match &self.means {
+            Means::SharedMemory => true,
+            Means::Mpi { machine: theirs } => *theirs == machine(),
+        }
+    }
+
     /// The text that the launcher puts into [`VARIABLE`].
     pub fn to_text(&self) -> String {
         let root = self.root.display();
-        format!("1 {} {} {root}", self.name, self.role)
+        let means = match &self.means {
+            Means::SharedMemory => "1".into(),
+            Means::Mpi { machine } => format!("{MPI}{machine}"),
+        };
+        format!("{means} {} {} {root}", self.name, self.role)
     }
 
     /// Reads what [`LinkAddress::to_text`] wrote.
@@ -51,9 +89,14 @@ impl LinkAddress {
                 .filter(|part| !part.is_empty())
                 .ok_or_else(refuse)
         };
-        if next()? != "1" {
-            return Err(refuse());
-        }
+        let first = next()?;
+        let means = match first.strip_prefix(MPI) {
+            Some(machine) => Means::Mpi {
+                machine: machine.into(),
+            },
+            None if first == "1" => Means::SharedMemory,
+            None => return Err(refuse()),
+        };
         let (name, role, root) = (
             next()?.to_owned(),
             next()?.to_owned(),
@@ -64,7 +107,12 @@ impl LinkAddress {
         if !own(&name) || root.file_name().and_then(|last| last.to_str()) != Some(&name) {
             return Err(refuse());
         }
-        Ok(Self { name, role, root })
+        Ok(Self {
+            name,
+            role,
+            root,
+            means,
+        })
     }
 
     /// The address in this process' environment.
@@ -86,6 +134,18 @@ impl LinkAddress {
     pub fn number(&self) -> u64 {
         let mix = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
         self.name.bytes().fold(0xcbf2_9ce4_8422_2325, mix)
+    }
+
+    /// Makes the folder where Open MPI keeps the shared memory between a solver's ranks. Its own
+    /// names would say neither whose it is nor whether it is still in use.
+    pub fn make_mpi_memory(&self) -> Result<PathBuf, WireError> {
+        let path = Path::new(MEMORY).join(format!("{}_mpi-{}", self.name, self.role));
+        match DirBuilder::new().mode(0o700).create(&path) {
+            Err(source) if source.kind() != ErrorKind::AlreadyExists => {
+                Err(WireError::File { path, source })
+            }
+            _ => Ok(path),
+        }
     }
 
     /// Removes every file of the run.
@@ -150,6 +210,7 @@ impl Run {
             name: self.name.clone(),
             role: role.into(),
             root: self.root.clone(),
+            means: Means::SharedMemory,
         }
     }
 }
@@ -239,7 +300,13 @@ fn remove_files(name: &str, root: &Path) {
             .file_name()
             .to_str()
             .is_some_and(|name| name.starts_with(&prefix));
-        if own && let Err(error) = fs::remove_file(entry.path()) {
+        let folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
+        let removed = match (own, folder) {
+            (false, _) => Ok(()),
+            (true, false) => fs::remove_file(entry.path()),
+            (true, true) => fs::remove_dir_all(entry.path()),
+        };
+        if let Err(error) = removed {
             tell(&entry.path(), error);
         }
     }
@@ -265,6 +332,11 @@ mod tests {
         let run = Run::create().unwrap();
         let address = run.address("gas");
         assert_eq!(LinkAddress::from_text(&address.to_text()).unwrap(), address);
+        let mpi = address.clone().over_mpi();
+        assert_eq!(LinkAddress::from_text(&mpi.to_text()).unwrap(), mpi);
+        assert!(mpi.is_here());
+        let far = mpi.to_text().replace("mpi@", "mpi@elsewhere-");
+        assert!(!LinkAddress::from_text(&far).unwrap().is_here());
         assert_eq!(address.coordinator().unwrap().0, std::process::id());
     }
 
@@ -274,6 +346,8 @@ mod tests {
         let address = run.address("gas");
         assert_eq!(files_of(&address.name), 1);
         assert!(address.root.is_dir());
+        fs::write(address.make_mpi_memory().unwrap().join("segment"), b"x").unwrap();
+        assert_eq!(files_of(&address.name), 2);
         drop(run);
         assert_eq!(files_of(&address.name), 0);
         assert!(!address.root.exists());

@@ -1,23 +1,21 @@
 //! The shared-memory transport: iceoryx2, one pair of publish-subscribe services and one pair of event
 //! services per link, in a configuration that is private to the run.
 
-use std::os::fd::OwnedFd;
 use std::os::unix::ffi::OsStrExt;
 use std::time::{Duration, Instant};
 
 use iceoryx2::port::BackpressureAction;
-use iceoryx2::port::listener::Listener;
+use iceoryx2::port::listener::{Listener, ListenerWaitError};
 use iceoryx2::port::notifier::Notifier;
 use iceoryx2::port::publisher::Publisher;
 use iceoryx2::port::subscriber::Subscriber;
 use iceoryx2::prelude::*;
 use iceoryx2::sample::Sample;
-use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use rustix::process::{Pid, PidfdFlags, Signal, getpid, kill_process, pidfd_open};
 
 use crate::record::Header;
-use crate::run::{self, LinkAddress};
+use crate::run::LinkAddress;
 use crate::transport::{Transport, WireError};
+use crate::watch::Watch;
 use crate::words::{self, Loan};
 
 type Ipc = ipc_threadsafe::Service;
@@ -30,8 +28,6 @@ const SLOTS: u64 = BUFFER as u64 + 3;
 const FULL_FOR: Duration = Duration::from_millis(500);
 /// How long a solver waits before it looks at the coordinator again.
 const LOOK: Duration = Duration::from_millis(50);
-/// How long after the coordinator's death a solver may take to end by itself.
-const GRACE: Duration = Duration::from_millis(400);
 
 /// Which end of a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,13 +36,6 @@ pub enum End {
     Coordinator,
     /// Answers, and watches the coordinator's life.
     Solver,
-}
-
-/// The process at the other end, as a solver sees it.
-#[derive(Debug)]
-struct Peer {
-    pid: u32,
-    pidfd: Option<OwnedFd>,
 }
 
 /// Ports of one end; dropped in this order, the node last.
@@ -65,7 +54,7 @@ struct Ports {
 pub struct SharedMemory {
     ports: Option<Ports>,
     address: LinkAddress,
-    peer: Option<Peer>,
+    peer: Option<Watch>,
 }
 
 /// An error of the layer below as ours; its errors are plain enums that only print.
@@ -82,7 +71,7 @@ impl SharedMemory {
         set_log_level(LogLevel::Fatal);
         let peer = match end {
             End::Coordinator => None,
-            End::Solver => Some(watch(address)?),
+            End::Solver => Some(Watch::begin(address)?),
         };
         let prefix = format!("{}_", address.name);
         let mut config = Config::default();
@@ -105,7 +94,7 @@ impl SharedMemory {
     }
 
     fn ports(&mut self) -> Result<&mut Ports, WireError> {
-        let pid = self.peer.as_ref().map_or(0, |peer| peer.pid);
+        let pid = self.peer.as_ref().map_or(0, Watch::pid);
         self.ports.as_mut().ok_or(WireError::PeerDead { pid })
     }
 
@@ -118,52 +107,8 @@ impl SharedMemory {
 
     fn dead_peer(&self) -> Option<u32> {
         let peer = self.peer.as_ref()?;
-        let Some(pidfd) = &peer.pidfd else {
-            return Some(peer.pid);
-        };
-        let now = Timespec {
-            tv_sec: 0,
-            tv_nsec: 0,
-        };
-        let mut fds = [PollFd::new(pidfd, PollFlags::IN)];
-        matches!(poll(&mut fds, Some(&now)), Ok(ready) if ready > 0).then_some(peer.pid)
+        peer.is_dead().then_some(peer.pid())
     }
-}
-
-/// A solver that computes does not look at its link. A thread of its own ends it when the coordinator
-/// has died and the solver did not end by itself meanwhile.
-fn end_with(address: &LinkAddress, pid: u32, pidfd: &OwnedFd) -> Result<(), WireError> {
-    let pidfd = pidfd
-        .try_clone()
-        .map_err(failed("watching the coordinator"))?;
-    let address = address.clone();
-    let watch = move || {
-        let mut fds = [PollFd::new(&pidfd, PollFlags::IN)];
-        while !matches!(poll(&mut fds, None), Ok(ready) if ready > 0) {}
-        std::thread::sleep(GRACE);
-        eprintln!("{}", WireError::PeerDead { pid });
-        address.remove_files();
-        // No handler of an exit may hold the process up: MPI's would wait for other ranks.
-        let _ = kill_process(getpid(), Signal::KILL);
-    };
-    std::thread::Builder::new()
-        .name("calcine-watch".into())
-        .spawn(watch)
-        .map_err(failed("watching the coordinator"))?;
-    Ok(())
-}
-
-/// Begins to watch the coordinator; without a pidfd it is already dead.
-fn watch(address: &LinkAddress) -> Result<Peer, WireError> {
-    let (pid, since) = address.coordinator()?;
-    let raw = i32::try_from(pid).ok().and_then(Pid::from_raw);
-    let pidfd = raw.and_then(|raw| pidfd_open(raw, PidfdFlags::empty()).ok());
-    // The number may belong to a later process by now.
-    let pidfd = pidfd.filter(|_| run::started(pid) == Some(since));
-    if let Some(pidfd) = &pidfd {
-        end_with(address, pid, pidfd)?;
-    }
-    Ok(Peer { pid, pidfd })
 }
 
 impl Ports {
@@ -316,10 +261,11 @@ impl Transport for SharedMemory {
             if left.is_zero() {
                 return Ok(false);
             }
-            ports
-                .listener
-                .timed_wait(|_| {}, left.min(LOOK))
-                .map_err(failed("waiting for a message"))?;
+            match ports.listener.timed_wait(|_| {}, left.min(LOOK)) {
+                // A signal, such as Ctrl-C, is dealt with elsewhere; the wait goes on.
+                Ok(_) | Err(ListenerWaitError::InterruptSignal) => {}
+                Err(error) => return Err(failed("waiting for a message")(error)),
+            }
         }
     }
 

@@ -1,11 +1,13 @@
 //! What every transport does, and how it fails.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use thiserror::Error;
 
 use crate::record::Header;
+use crate::run::LinkAddress;
 
 /// Moves messages between the two ends of a link. At most one message is reserved and at most one is
 /// held as received at a time; both stay in place, nothing is copied.
@@ -23,8 +25,31 @@ pub trait Transport {
     /// Drops what was received before and waits at most `patience`; true where a message arrived.
     fn receive(&mut self, patience: Duration) -> Result<bool, WireError>;
 
+    /// Waits at most `patience` until what was sent needs this process no more. What lies in shared
+    /// memory never does.
+    fn settle(&mut self, _patience: Duration) -> Result<(), WireError> {
+        Ok(())
+    }
+
     /// The message received last, in place.
     fn received(&self) -> Option<(&Header, &[u64])>;
+}
+
+/// Starts solvers and connects with them in one: the ranks come up in a world of their own.
+pub trait Network: Send + Sync {
+    /// The address that a role's ranks are given.
+    fn address(&self, role: &str) -> LinkAddress;
+
+    /// Starts a command line on a number of ranks and gives the coordinator's ends, by rank.
+    fn spawn(
+        &self,
+        line: &[OsString],
+        ranks: u32,
+        patience: Duration,
+    ) -> Result<Vec<Box<dyn Transport + Send>>, WireError>;
+
+    /// A solver has said goodbye: its world ends in an orderly way.
+    fn goodbye(&self);
 }
 
 /// What can go wrong on a wire.
@@ -85,7 +110,7 @@ pub enum WireError {
         what: &'static str,
     },
     /// A line that is no field of a catalogue.
-    #[error("`{line}` is no field; write `start|state name components unit item|rank`")]
+    #[error("`{line}` is no field; write `start|state|owned name components unit item|rank`")]
     Catalogue {
         /// The line.
         line: String,
@@ -134,6 +159,30 @@ pub enum WireError {
         doing: &'static str,
         /// The layer's own words.
         detail: String,
+    },
+    /// The coordinator cannot be watched.
+    #[error("coordinator (pid {pid}) cannot be watched: {cause}")]
+    Watch {
+        /// Its process id.
+        pid: u32,
+        /// Why.
+        cause: std::io::Error,
+    },
+    /// MPI refused.
+    #[error("MPI: {doing} failed with code {code}")]
+    Mpi {
+        /// What was tried.
+        doing: &'static str,
+        /// The error code of the MPI library.
+        code: i32,
+    },
+    /// A solver's ranks did not come up.
+    #[error("{ranks} ranks did not start MPI within {seconds} s")]
+    NotSpawned {
+        /// How many were asked for.
+        ranks: u32,
+        /// How long was waited, in s.
+        seconds: f64,
     },
     /// Nobody, or a full buffer, at the other end.
     #[error("a message was not delivered: {receivers} of 1 receivers took it")]

@@ -7,6 +7,28 @@ use iceoryx2::sample_mut_uninit::SampleMutUninit;
 
 use crate::record::Header;
 
+/// Words in a line of memory: 64 bytes, the alignment of columns.
+pub const LINE: usize = 8;
+
+/// A line of memory.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(64))]
+pub struct Line([u64; LINE]);
+
+const _: () = assert!(size_of::<Line>() == 8 * LINE);
+
+/// Lines as words.
+pub fn of_lines(lines: &[Line]) -> &[u64] {
+    // SAFETY: a line is exactly eight words without padding, and its alignment exceeds theirs.
+    unsafe { std::slice::from_raw_parts(lines.as_ptr().cast(), LINE * lines.len()) }
+}
+
+/// Lines as words, to be written.
+pub fn of_lines_mut(lines: &mut [Line]) -> &mut [u64] {
+    // SAFETY: as above; every bit pattern is a word.
+    unsafe { std::slice::from_raw_parts_mut(lines.as_mut_ptr().cast(), LINE * lines.len()) }
+}
+
 /// A reserved message of the shared-memory transport.
 pub type Loan = SampleMutUninit<Service, [std::mem::MaybeUninit<u64>], Header>;
 type Filled = SampleMut<Service, [u64], Header>;

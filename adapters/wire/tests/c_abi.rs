@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use calcine_wire::run::VARIABLE;
 use calcine_wire::shared_memory::End;
 use calcine_wire::{
-    Catalogue, Header, Hello, Kind, Link, LinkAddress, Run, SharedMemory, WireError,
+    Catalogue, Header, Hello, Kind, Link, LinkAddress, Means, Run, SharedMemory, WireError,
 };
 
 /// The directory of the test's own binaries' parent, where the static library lies.
@@ -211,6 +211,7 @@ fn orphan(program: &Path, mesh: &str, greeted: bool) -> (String, Option<i32>, Du
         name: name.clone(),
         role: "gas".into(),
         root,
+        means: Means::SharedMemory,
     };
     let (mut child, mut link) = join(program, mesh, &address);
     receive(&mut link).unwrap();

@@ -1,21 +1,13 @@
-//! What every transport must do, written once. A transport joins by giving two connected ends.
+//! Shared memory keeps the laws of every transport.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use std::time::{Duration, Instant};
+#[macro_use]
+mod laws;
 
 use calcine_wire::shared_memory::End;
-use calcine_wire::{Catalogue, Header, Hello, Kind, Link, Run, SharedMemory, Transport, WireError};
-
-const SOON: Duration = Duration::from_secs(5);
-
-/// Two connected ends, and what keeps them alive.
-struct Ends {
-    coordinator: Box<dyn Transport + Send>,
-    solver: Box<dyn Transport + Send>,
-    number: u64,
-    _run: Run,
-}
+use calcine_wire::{Run, SharedMemory};
+use laws::Ends;
 
 fn shared_memory() -> Ends {
     let run = Run::create().unwrap();
@@ -25,137 +17,8 @@ fn shared_memory() -> Ends {
         coordinator: open(End::Coordinator),
         solver: open(End::Solver),
         number: address.number(),
-        _run: run,
+        run: Some(run),
     }
 }
 
-fn hello(name: &str) -> Hello {
-    Hello {
-        role: "gas".into(),
-        name: name.into(),
-        version: "1".into(),
-        case_hash: "c".into(),
-        mesh_hash: "m".into(),
-        count: 4,
-        ranks: 1,
-        catalogue: Catalogue::standard("gas").unwrap(),
-    }
-}
-
-/// Two links after their handshake.
-fn connected(ends: Ends) -> (Link, Link, Run) {
-    let mut coordinator = Link::new(ends.coordinator, ends.number, 0);
-    let mut solver = Link::new(ends.solver, ends.number, 0);
-    let solver = std::thread::spawn(move || {
-        solver.greet(&hello("solver"), SOON).unwrap();
-        solver
-    });
-    coordinator.receive(SOON).unwrap().unwrap();
-    let theirs = coordinator.answer_greeting(&hello("coordinator")).unwrap();
-    assert_eq!(theirs.name, "solver");
-    (coordinator, solver.join().unwrap(), ends._run)
-}
-
-fn a_message_arrives_with_its_header_and_aligned_words(mut ends: Ends) {
-    for words in [0usize, 1, 100, 1 << 20, 3] {
-        let header = Header {
-            window: words as u64,
-            ..Header::of(Kind::Start)
-        };
-        let payload = ends.coordinator.loan(header, words).unwrap();
-        for (index, word) in payload.iter_mut().enumerate() {
-            *word = index as u64;
-        }
-        ends.coordinator.send().unwrap();
-        assert!(ends.solver.receive(SOON).unwrap());
-        let (received, payload) = ends.solver.received().unwrap();
-        assert_eq!(received.window, words as u64);
-        assert!(payload.len() >= words);
-        assert!((0..words).all(|index| payload[index] == index as u64));
-        assert_eq!(payload.as_ptr() as usize % 64, 0);
-    }
-}
-
-fn nothing_arrives_within_the_patience_and_no_earlier(mut ends: Ends) {
-    let begun = Instant::now();
-    assert!(!ends.solver.receive(Duration::from_millis(120)).unwrap());
-    assert!(begun.elapsed() >= Duration::from_millis(120));
-    assert!(!ends.coordinator.receive(Duration::ZERO).unwrap());
-}
-
-fn a_commit_and_the_next_start_may_wait_together_in_order(ends: Ends) {
-    let (mut coordinator, mut solver, _run) = connected(ends);
-    coordinator.send_plain(Header::of(Kind::Commit)).unwrap();
-    coordinator
-        .send_text(Header::of(Kind::Checkpoint), "/x")
-        .unwrap();
-    let first = solver.receive(SOON).unwrap().unwrap();
-    let second = solver.receive(SOON).unwrap().unwrap();
-    assert_eq!(first.kind(), Some(Kind::Commit));
-    assert_eq!(second.kind(), Some(Kind::Checkpoint));
-    assert_eq!(solver.text().unwrap(), "/x");
-}
-
-fn a_full_buffer_fails_instead_of_hanging(mut ends: Ends) {
-    let begun = Instant::now();
-    let mut sent = 0;
-    while begun.elapsed() < SOON {
-        ends.coordinator.loan(Header::of(Kind::Commit), 0).unwrap();
-        match ends.coordinator.send() {
-            Ok(()) => sent += 1,
-            Err(_) => break,
-        }
-    }
-    assert!(sent >= 2 && begun.elapsed() < SOON, "{sent} messages");
-}
-
-fn a_message_with_an_unfilled_column_stays(ends: Ends) {
-    let (mut coordinator, mut solver, _run) = connected(ends);
-    coordinator.loan(Header::of(Kind::Start), 4).unwrap();
-    coordinator.column_mut("void_fraction").unwrap().fill(1.0);
-    let error = coordinator.send().unwrap_err();
-    assert!(error.to_string().contains("drag_coefficient"), "{error}");
-    assert!(solver.receive(Duration::from_millis(20)).unwrap().is_none());
-}
-
-fn a_message_of_another_run_is_refused(ends: Ends) {
-    let (mut coordinator, mut solver) = (ends.coordinator, Link::new(ends.solver, 1, 0));
-    coordinator.loan(Header::of(Kind::Commit), 0).unwrap();
-    coordinator.send().unwrap();
-    let error = solver.receive(SOON).unwrap_err();
-    assert!(
-        matches!(error, WireError::Foreign { what: "run", .. }),
-        "{error}"
-    );
-}
-
-fn a_failure_arrives_as_an_error_with_its_words(ends: Ends) {
-    let (mut coordinator, mut solver, _run) = connected(ends);
-    solver
-        .send_text(Header::of(Kind::Failed), "ε fell to 0.05")
-        .unwrap();
-    let error = coordinator.receive(SOON).unwrap_err();
-    assert_eq!(error.to_string(), "ε fell to 0.05");
-}
-
-/// Each law as a test of each transport.
-macro_rules! conformance {
-    ($transport:ident: $($law:ident),+ $(,)?) => {
-        mod $transport {
-            $(#[test]
-            fn $law() {
-                super::$law(super::$transport());
-            })+
-        }
-    };
-}
-
-conformance!(shared_memory:
-    a_message_arrives_with_its_header_and_aligned_words,
-    nothing_arrives_within_the_patience_and_no_earlier,
-    a_commit_and_the_next_start_may_wait_together_in_order,
-    a_full_buffer_fails_instead_of_hanging,
-    a_message_with_an_unfilled_column_stays,
-    a_message_of_another_run_is_refused,
-    a_failure_arrives_as_an_error_with_its_words,
-);
+conformance!(shared_memory);

@@ -2,6 +2,7 @@
 #![warn(missing_docs)]
 
 pub mod conduction;
+pub mod contact;
 pub mod drag;
 pub mod gas;
 pub mod gas_model;

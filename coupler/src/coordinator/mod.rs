@@ -52,6 +52,8 @@ pub struct Plan {
     pub exchange_tolerance: f64,
     /// Attempts per window at most.
     pub exchange_attempts: u32,
+    /// False for a gas that cannot go back to the start of a window: then there is one attempt at each.
+    pub repeats: bool,
     /// Hash of the case, compared on resume.
     pub case_hash: String,
     /// Where checkpoints go.

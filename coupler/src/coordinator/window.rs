@@ -94,10 +94,10 @@ impl Run<'_> {
 
     /// How often the laws are evaluated in the coming window: once, on the gas of the window
     /// before. The first window of a run has none before it (its gas may be at rest, and does not
-    /// know the bed yet), so it is repeated with the laws evaluated on what came out.
+    /// know the bed yet), so it is repeated with the laws evaluated on what came out, by a gas that can.
     fn evaluations(&self) -> u32 {
         const IN_FIRST_WINDOW: u32 = 4;
-        if self.windows == 0 {
+        if self.windows == 0 && self.plan.repeats {
             IN_FIRST_WINDOW
         } else {
             1

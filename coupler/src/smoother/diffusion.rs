@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::graph::Graph;
 use super::parallel;
 use super::scratch::{Kept, Scratch};
+use super::sparse::Sparse;
 
 /// Diffusion over a length ℓ: F = (I − τ L V⁻¹)ᵐ with mτ = ℓ², L the Laplacian of the conductances
 /// and V the cell volumes. It approaches the heat kernel of variance 2ℓ² per axis, as the implicit
@@ -14,8 +15,8 @@ use super::scratch::{Kept, Scratch};
 pub(super) struct Diffusion {
     graph: Arc<Graph>,
     steps: u32,
-    /// τ in m².
-    step: f64,
+    /// τ V⁻¹ times the conductances: what a step of Fᵀ takes of each neighbour's difference.
+    shares: Arc<Sparse>,
 }
 
 impl Diffusion {
@@ -34,39 +35,48 @@ impl Diffusion {
         if needed > f64::from(Self::MOST_STEPS) {
             return Err(needed);
         }
+        let step = length * length / needed;
+        let shares = Sparse::build(graph.cells(), 6, |cell, row| {
+            for (neighbour, conductance) in graph.conductance.row(cell) {
+                row.push(neighbour as u32, step * conductance / graph.volume[cell]);
+            }
+        });
         Ok(Self {
             graph,
             steps: needed as u32,
-            step: length * length / needed,
+            shares: Arc::new(shares.padded()),
         })
     }
 
-    /// F applied to amounts.
+    /// F applied to amounts: F = V Fᵀ V⁻¹.
     pub fn apply<T: Kept>(&self, amounts: &mut [T], scratch: &Scratch) {
-        let Self { graph, step, .. } = self;
-        self.repeat(amounts, scratch, |old, cell| {
-            graph.inflow(cell, |c| old[c] * (1.0 / graph.volume[c])) * *step
+        let volume = &self.graph.volume;
+        parallel::update(amounts, |cell, value| {
+            *value = *value * (1.0 / volume[cell])
         });
+        self.apply_transposed(amounts, scratch);
+        parallel::update(amounts, |cell, value| *value = *value * volume[cell]);
     }
 
     /// Fᵀ applied to fields.
     pub fn apply_transposed<T: Kept>(&self, field: &mut [T], scratch: &Scratch) {
-        let Self { graph, step, .. } = self;
-        self.repeat(field, scratch, |old, cell| {
-            graph.inflow(cell, |c| old[c]) * (step / graph.volume[cell])
-        });
-    }
-
-    fn repeat<T: Kept>(
-        &self,
-        values: &mut [T],
-        scratch: &Scratch,
-        change: impl Fn(&[T], usize) -> T + Sync,
-    ) {
-        scratch.with(values.len(), |old: &mut [T]| {
+        let shares = &self.shares;
+        scratch.with(field.len(), |other: &mut [T]| {
+            let (mut from, mut to) = (&mut *field, other);
             for _ in 0..self.steps {
-                old.copy_from_slice(values);
-                parallel::update(values, |cell, value| *value += change(old, cell));
+                let old = &*from;
+                parallel::fill(to, |cell| {
+                    let own = old[cell];
+                    let mut sum = own;
+                    for (neighbour, share) in shares.row(cell) {
+                        sum += (old[neighbour] - own) * share;
+                    }
+                    sum
+                });
+                std::mem::swap(&mut from, &mut to);
+            }
+            if self.steps % 2 == 1 {
+                to.copy_from_slice(from);
             }
         });
     }

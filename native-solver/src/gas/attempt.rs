@@ -42,12 +42,6 @@ impl Frame<'_> {
     pub fn species(&self) -> usize {
         self.properties.species().len()
     }
-
-    /// Mass fractions of a cell at the start of the window.
-    #[inline]
-    pub fn composition(&self, cell: usize) -> &[f64] {
-        self.old.composition_of(cell, self.species())
-    }
 }
 
 /// Material properties of each cell at its temperature and composition.

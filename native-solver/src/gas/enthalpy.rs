@@ -19,7 +19,9 @@ use super::state::State;
 use crate::numerics::convection::beyond_upwind;
 use crate::numerics::krylov::{Krylov, Target};
 use crate::numerics::matrix::Matrix;
-use crate::numerics::operators::{conductance, displacement, face_values, gradient, interpolate};
+use crate::numerics::operators::{
+    conductance, displacement, face_values, follow, gradient, interpolate,
+};
 use crate::numerics::parallel::{fill, sum, sums, update};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
@@ -95,7 +97,7 @@ fn imposed(frame: &Frame<'_>, index: usize) -> f64 {
 
 /// Thermal conductance of a face in W/K; zero where no heat is conducted.
 #[inline]
-fn conduction(frame: &Frame<'_>, material: &Material, index: usize) -> f64 {
+fn conduction(frame: &Frame<'_>, material: &Material, now: &State, index: usize) -> f64 {
     let face = &frame.grid.faces[index];
     if index < frame.grid.internal {
         return conductance(face, interpolate(face, &material.conductivity));
@@ -105,7 +107,7 @@ fn conduction(frame: &Frame<'_>, material: &Material, index: usize) -> f64 {
         Value::Inlet { gas, .. } => conductance(face, pores * gas.conductivity),
         Value::Wall { heat, .. } => match heat {
             Heat::Temperature(temperature) => {
-                let composition = frame.composition(face.owner);
+                let composition = now.composition_of(face.owner, frame.species());
                 let conductivity = frame.properties.conductivity(temperature, composition);
                 conductance(face, pores * conductivity)
             }
@@ -146,12 +148,14 @@ impl Enthalpy {
     }
 
     /// Assembles the equation; `carried` is the enthalpy that species carry out of the owner of each face in W
-    /// beyond the upwind enthalpy (empty for a single gas).
+    /// beyond the upwind enthalpy (empty for a single gas). Of what is
+    /// explicit a share follows the fields.
     pub fn assemble(
         &mut self,
         frame: &Frame<'_>,
         material: &Material,
         carried: &[f64],
+        share: f64,
         now: &State,
     ) {
         let grid = frame.grid;
@@ -161,9 +165,9 @@ impl Enthalpy {
             now.temperature[cell] - now.enthalpy[cell] / heat_capacity[cell]
         });
         fill(&mut self.conduction, |index| {
-            conduction(frame, material, index)
+            conduction(frame, material, now, index)
         });
-        self.update_explicit(frame, carried, now);
+        self.update_explicit(frame, carried, share, now);
         let (conduction, heat_capacity) = (&self.conduction, &self.heat_capacity);
         self.matrix.assemble(|cell, diagonal, neighbours| {
             let own = heat_capacity[cell];
@@ -212,7 +216,7 @@ impl Enthalpy {
         });
     }
 
-    fn update_explicit(&mut self, frame: &Frame<'_>, species: &[f64], now: &State) {
+    fn update_explicit(&mut self, frame: &Frame<'_>, species: &[f64], share: f64, now: &State) {
         let grid = frame.grid;
         let second = frame.convection == Convection::VanLeer && species.is_empty();
         if second {
@@ -221,9 +225,10 @@ impl Enthalpy {
                 Value::Wall {
                     heat: Heat::Temperature(temperature),
                     ..
-                } => frame
-                    .properties
-                    .enthalpy(temperature, frame.composition(grid.faces[index].owner)),
+                } => frame.properties.enthalpy(
+                    temperature,
+                    now.composition_of(grid.faces[index].owner, frame.species()),
+                ),
                 Value::Wall { .. } | Value::Outlet { .. } => inner,
             };
             let gradients = &mut self.gradients[0];
@@ -247,7 +252,7 @@ impl Enthalpy {
         }
         let [carried, conducted] = &self.gradients;
         let conduction = &self.conduction;
-        fill(&mut self.explicit, |index| {
+        let explicit = |index: usize| {
             let mut out = species.get(index).copied().unwrap_or(0.0);
             let flux = now.flux[index];
             if second && index < grid.internal && flux != 0.0 {
@@ -257,6 +262,9 @@ impl Enthalpy {
                 out += conduction[index] * displacement(grid, &grid.faces[index], conducted);
             }
             out
+        };
+        update(&mut self.explicit, |index, last| {
+            follow(last, explicit(index), share)
         });
     }
 

@@ -39,9 +39,26 @@ pub enum NativeError {
         /// What is allowed.
         rule: &'static str,
     },
-    /// Particles that move, which the native particles cannot do yet.
-    #[error("native particles stay where they are; set `motion = \"frozen\"` or choose LIGGGHTS")]
-    Moving,
+    /// A particle that left the space in which particles may be.
+    #[error(
+        "particle {id} left its bounds at ({}, {}, {}) m with a velocity of ({}, {}, {}) m/s; a hole in \
+         the walls or a time step that is too long lets particles out",
+        place[0], place[1], place[2], velocity[0], velocity[1], velocity[2]
+    )]
+    OutOfBounds {
+        /// Its id.
+        id: u64,
+        /// Its centre in m.
+        place: [f64; 3],
+        /// Its velocity in m/s.
+        velocity: [f64; 3],
+    },
+    /// A particle that is not there, or no longer.
+    #[error("particle {id} cannot be taken out: there is none, or it was named twice")]
+    NoParticle {
+        /// Its id.
+        id: u64,
+    },
     /// Lists of unequal length.
     #[error("{field} has {found} values for {expected} {of}")]
     Length {

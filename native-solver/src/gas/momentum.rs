@@ -19,7 +19,7 @@ use crate::numerics::convection::vector_beyond_upwind;
 use crate::numerics::grid::{Face, Grid};
 use crate::numerics::krylov::{Krylov, Target};
 use crate::numerics::matrix::Matrix;
-use crate::numerics::operators::{conductance, interpolate};
+use crate::numerics::operators::{conductance, follow, interpolate};
 use crate::numerics::parallel::{fill, sums, update};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
@@ -66,7 +66,7 @@ pub fn given_velocity(frame: &Frame<'_>, index: usize) -> Option<Vec3> {
 
 /// Viscous conductance of a face in kg/s, and on the boundary only where the velocity is given.
 #[inline]
-fn viscous(frame: &Frame<'_>, material: &Material, index: usize) -> f64 {
+fn viscous(frame: &Frame<'_>, material: &Material, now: &State, index: usize) -> f64 {
     let face = &frame.grid.faces[index];
     if index < frame.grid.internal {
         return conductance(face, interpolate(face, &material.viscosity));
@@ -78,7 +78,7 @@ fn viscous(frame: &Frame<'_>, material: &Material, index: usize) -> f64 {
             sticks: Some(_),
             heat: Heat::Temperature(temperature),
         } => {
-            let composition = frame.composition(face.owner);
+            let composition = now.composition_of(face.owner, frame.species());
             let viscosity = frame.properties.viscosity(temperature, composition);
             conductance(face, pores * viscosity)
         }
@@ -112,11 +112,14 @@ impl Momentum {
     }
 
     /// Assembles A and b for the fluxes and properties at hand.
-    pub fn assemble(&mut self, frame: &Frame<'_>, material: &Material, now: &State) {
+    /// Of what is explicit a share follows the fields.
+    pub fn assemble(&mut self, frame: &Frame<'_>, material: &Material, share: f64, now: &State) {
         let grid = frame.grid;
-        fill(&mut self.viscous, |index| viscous(frame, material, index));
+        fill(&mut self.viscous, |index| {
+            viscous(frame, material, now, index)
+        });
         self.update_gradients(frame, &now.velocity);
-        self.update_explicit(frame, material, now);
+        self.update_explicit(frame, material, share, now);
         let viscous = &self.viscous;
         let inertia = |cell: usize| frame.old.mass[cell] / frame.motion_span;
         self.matrix.assemble(|cell, diagonal, neighbours| {
@@ -277,11 +280,11 @@ impl Momentum {
         self.scratch = last;
     }
 
-    fn update_explicit(&mut self, frame: &Frame<'_>, material: &Material, now: &State) {
+    fn update_explicit(&mut self, frame: &Frame<'_>, material: &Material, share: f64, now: &State) {
         let grid = frame.grid;
         let (gradients, viscous) = (&self.gradients, &self.viscous);
         let second = frame.convection == Convection::VanLeer;
-        fill(&mut self.explicit, |index| {
+        let explicit = |index: usize| {
             let face = &grid.faces[index];
             if index >= grid.internal {
                 let own = &gradients[face.owner];
@@ -309,6 +312,9 @@ impl Momentum {
                 + transposed(other, &face.normal)
                     * ((1.0 - weight) * material.viscosity[face.neighbour]);
             out - face.area * stress
+        };
+        update(&mut self.explicit, |index, last| {
+            follow(last, explicit(index), share)
         });
     }
 }

@@ -21,6 +21,10 @@ use crate::numerics::parallel::largest;
 /// long as the outer loop goes on. After it they are, so that energy and species close whatever it did.
 const SCALARS: f64 = 1e-2;
 
+/// From this outer iteration on, what limiters leave to the last iterate follows it half way only: their
+/// switching may otherwise lead from one iterate to another and back for ever.
+const FOLLOWED: u32 = 8;
+
 /// When the solve of a scalar ends: where its residual is below either.
 #[derive(Clone, Copy, Debug)]
 pub struct Goal {
@@ -44,6 +48,8 @@ pub struct Equations {
     /// Properties at the last temperature.
     pub material: Material,
     krylov: Krylov,
+    /// How far what is taken explicitly from the last iterate follows it, as a share.
+    share: f64,
 }
 
 impl Equations {
@@ -57,6 +63,7 @@ impl Equations {
             species: Species::new(matrix),
             material: Material::default(),
             krylov: Krylov::default(),
+            share: 1.0,
         }
     }
 
@@ -76,10 +83,14 @@ impl Equations {
             self.enthalpy.begin();
             self.species.begin(frame);
         }
+        self.share = 1.0;
         self.assess(frame, now);
         for outer in 1..=controls.outer_iterations.max(1) {
             convergence.linear_iterations += self.iterate(frame, controls, now);
             convergence.outer_iterations = outer;
+            if outer >= FOLLOWED {
+                self.share = 0.5;
+            }
             // Early iterates may be no state of a gas (after a start from rest a cell may give more than it
             // holds), as long as they are numbers; the last one must be one.
             if let Some(words) = guard::nonsense(now, &frame.grid.centre) {
@@ -104,13 +115,14 @@ impl Equations {
     fn assess(&mut self, frame: &Frame<'_>, now: &mut State) -> f64 {
         let material = &mut self.material;
         material.update(frame, now);
-        self.momentum.assemble(frame, material, now);
+        self.momentum.assemble(frame, material, self.share, now);
         let carried = &self.species.carried;
-        self.enthalpy.assemble(frame, material, carried, now);
+        self.enthalpy
+            .assemble(frame, material, carried, self.share, now);
         let momentum = self.momentum.residual(frame, now);
         let continuity = pressure::residual(frame, material, now);
         let enthalpy = self.enthalpy.residual(now);
-        let species = self.species.residual(frame, material, now);
+        let species = self.species.residual(frame, material, self.share, now);
         momentum.max(continuity).max(enthalpy).max(species)
     }
 
@@ -135,9 +147,12 @@ impl Equations {
     fn scalars(&mut self, frame: &Frame<'_>, absolute: f64, relative: f64, now: &mut State) -> u32 {
         let (krylov, material) = (&mut self.krylov, &self.material);
         let goal = Goal { absolute, relative };
-        let iterations = self.species.solve(frame, material, krylov, goal, now);
+        let iterations = self
+            .species
+            .solve(frame, material, krylov, goal, self.share, now);
         let carried = &self.species.carried;
-        self.enthalpy.assemble(frame, material, carried, now);
+        self.enthalpy
+            .assemble(frame, material, carried, self.share, now);
         iterations + self.enthalpy.solve(frame, krylov, goal, now)
     }
 

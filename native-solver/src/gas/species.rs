@@ -17,7 +17,9 @@ use super::state::State;
 use crate::numerics::convection::{beyond_upwind, limited, limiter};
 use crate::numerics::krylov::{Krylov, Target};
 use crate::numerics::matrix::Matrix;
-use crate::numerics::operators::{conductance, displacement, face_values, gradient, interpolate};
+use crate::numerics::operators::{
+    conductance, displacement, face_values, follow, gradient, interpolate,
+};
 use crate::numerics::parallel::{fill, sums, update};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
@@ -103,6 +105,7 @@ impl Species {
         material: &Material,
         krylov: &mut Krylov,
         goal: Goal,
+        share: f64,
         now: &mut State,
     ) -> u32 {
         let species = frame.species();
@@ -110,7 +113,7 @@ impl Species {
             return 0;
         }
         self.assemble(frame, material, now);
-        self.update_explicit(frame, now);
+        self.update_explicit(frame, share, now);
         self.preconditioner.update(&self.matrix);
         let mut iterations = 0;
         for k in 0..species - 1 {
@@ -146,12 +149,18 @@ impl Species {
 
     /// Largest change of a mass fraction that the equations at hand still ask for: their residual
     /// relative to what the cells hold and what flows through them.
-    pub fn residual(&mut self, frame: &Frame<'_>, material: &Material, now: &State) -> f64 {
+    pub fn residual(
+        &mut self,
+        frame: &Frame<'_>,
+        material: &Material,
+        share: f64,
+        now: &State,
+    ) -> f64 {
         if frame.species() == 0 {
             return 0.0;
         }
         self.assemble(frame, material, now);
-        self.update_explicit(frame, now);
+        self.update_explicit(frame, share, now);
         let mut worst: f64 = 0.0;
         for k in 0..frame.species() - 1 {
             self.fill_source(frame, now, k);
@@ -196,7 +205,7 @@ impl Species {
         });
     }
 
-    fn update_explicit(&mut self, frame: &Frame<'_>, now: &State) {
+    fn update_explicit(&mut self, frame: &Frame<'_>, share: f64, now: &State) {
         let grid = frame.grid;
         let second = frame.convection == Convection::VanLeer;
         if second || !grid.orthogonal {
@@ -211,13 +220,16 @@ impl Species {
             }
         }
         let (fractions, gradients) = (&self.fractions, &self.gradients);
-        fill(&mut self.limiters, |index| {
+        let limiting = |index: usize| {
             if !second || index >= grid.internal {
                 return 0.0;
             }
             let one =
                 |k: usize| limiter(grid, index, now.flux[index], &fractions[k], &gradients[k]);
             (0..fractions.len()).map(one).fold(2.0, f64::min)
+        };
+        update(&mut self.limiters, |index, last| {
+            follow(last, limiting(index), share)
         });
         let (limiters, diffusion) = (&self.limiters, &self.diffusion);
         for (k, explicit) in self.explicit.iter_mut().enumerate() {

@@ -1,6 +1,8 @@
 //! Operators on cell values: interpolation, divergence, gradient, and the diffusion of a scalar,
 //! with corrections where the line between two centres is not normal to their face.
 
+use std::ops::{Add, Mul, Sub};
+
 use calcine_coupler::physics::Vec3;
 
 use super::grid::{Face, Grid};
@@ -71,6 +73,19 @@ pub fn displacement(grid: &Grid, face: &Face, gradients: &[Vec3]) -> f64 {
         sum += face.neighbour_skew.dot(&gradients[face.neighbour]);
     }
     sum
+}
+
+/// Moves a value towards a new one by a share; with all of it what was there leaves no trace.
+#[inline]
+pub fn follow<T>(value: &mut T, new: T, share: f64)
+where
+    T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>,
+{
+    *value = if share == 1.0 {
+        new
+    } else {
+        *value + (new - *value) * share
+    };
 }
 
 /// Conductance of a face, coefficient · area / distance.

@@ -1,27 +1,31 @@
-//! The native particles: spheres that stay where they are. Their support takes up the impulse of
-//! the gas.
+//! The native particles: spheres that stay where they are, or that move by the discrete element solver.
+
+mod check;
+pub mod dem;
+mod state;
 
 use std::f64::consts::PI;
 use std::path::Path;
 
-use calcine_coupler::checkpoint::StateFile;
 use calcine_coupler::error::{FailureKind, PartError};
-use calcine_coupler::motion::Change;
+use calcine_coupler::motion::{Change, Contacts, Motion};
 use calcine_coupler::part::{
     About, Part, ParticleEvent, ParticleFields, ParticlePush, ParticleReceived, Particles,
 };
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::supervisor::Supervisor;
-use calcine_coupler::time::Window;
+use calcine_coupler::time::{Ticks, Window};
 
 pub use crate::gas::NativeError;
-use crate::gas::{flat, vectors};
+use check::{check, length};
+use dem::energy::Energy;
+use dem::{Carried, CarriedWall, Engine, Newcomer, Stray};
 
-/// Name of the state file in a checkpoint's folder.
-const STATE: &str = "particles.state";
+/// Steps between two looks at the user's interrupts.
+const SLICE: i64 = 200;
 
-/// A frozen bed.
+/// A bed: frozen, or in motion.
 #[derive(Debug)]
 pub struct NativeParticles {
     about: About,
@@ -34,6 +38,11 @@ pub struct NativeParticles {
     mass: Vec<f64>,
     started: Option<Window>,
     impulse: Vec<Vec3>,
+    events: Vec<ParticleEvent>,
+    /// The solver of moving particles.
+    engine: Option<Box<Engine>>,
+    /// Steps of the run so far.
+    steps: i64,
 }
 
 impl NativeParticles {
@@ -42,7 +51,7 @@ impl NativeParticles {
         check(setup)?;
         let count = setup.id.len();
         let spheres = setup.radius.iter().zip(&setup.density);
-        Ok(Self {
+        let mut bed = Self {
             about: About {
                 name: "native particles".into(),
                 version: env!("CARGO_PKG_VERSION").into(),
@@ -55,51 +64,217 @@ impl NativeParticles {
             angular_velocity: vec![Vec3::zeros(); count],
             radius: setup.radius.clone(),
             mass: spheres
-                .map(|(radius, density)| 4.0 / 3.0 * PI * radius.powi(3) * density)
+                .map(|(&radius, &density)| mass(radius, density))
                 .collect(),
             started: None,
             impulse: vec![Vec3::zeros(); count],
-        })
+            events: Vec::new(),
+            engine: None,
+            steps: 0,
+        };
+        if let Motion::Free(contacts) = &setup.motion {
+            if !setup.velocity.is_empty() {
+                bed.velocity.clone_from(&setup.velocity);
+            }
+            bed.engine = Some(Box::new(Engine::new(Contacts::clone(contacts))));
+            bed.hand_over((Vec::new(), Vec::new()))
+                .map_err(|stray| bed.outside(stray))?;
+        }
+        Ok(bed)
     }
 
-    /// Takes up the state that a checkpoint left in a folder.
-    pub fn restore(&mut self, directory: &Path) -> Result<(), NativeError> {
-        let file = StateFile::read(&directory.join(STATE))?;
-        let count = self.id.len();
-        let id = file.u64s("id")?;
-        if id.len() != count {
-            return Err(length("the state's list of ids", id.len(), count));
+    /// The solver of moving particles; nothing for a frozen bed.
+    pub fn engine(&self) -> Option<&Engine> {
+        self.engine.as_deref()
+    }
+
+    /// Counts energies from now on, at some cost, or no longer.
+    pub fn count_energy(&mut self, on: bool) {
+        if let Some(engine) = &mut self.engine {
+            engine.count_energy(on);
         }
-        self.id.copy_from_slice(id);
-        self.population = file
-            .u64s("population")?
-            .iter()
-            .map(|&population| population as u32)
-            .collect();
-        self.position = vectors(file.f64s_of("position", 3 * count)?);
-        self.velocity = vectors(file.f64s_of("velocity", 3 * count)?);
-        self.angular_velocity = vectors(file.f64s_of("angular_velocity", 3 * count)?);
-        self.radius = file.f64s_of("radius", count)?.to_vec();
-        self.mass = file.f64s_of("mass", count)?.to_vec();
+    }
+
+    /// Energies of a moving bed now, as far as they are counted.
+    pub fn energy(&self) -> Energy {
+        self.engine
+            .as_ref()
+            .map(|engine| engine.energy())
+            .unwrap_or_default()
+    }
+
+    /// Gives all particles to the solver, with the memories of their contacts.
+    fn hand_over(&mut self, memories: (Vec<Carried>, Vec<CarriedWall>)) -> Result<(), Stray> {
+        let Some(engine) = &mut self.engine else {
+            return Ok(());
+        };
+        let contacts = engine.contacts();
+        let particle = |row: usize| {
+            let population = self.population[row] as usize;
+            Newcomer {
+                centre: self.position[row],
+                velocity: self.velocity[row],
+                spin: self.angular_velocity[row],
+                radius: self.radius[row],
+                mass: self.mass[row],
+                material: contacts.material_of[population] as u32,
+                held: contacts.held[population],
+            }
+        };
+        let particles: Vec<Newcomer> = (0..self.id.len()).map(particle).collect();
+        engine.load(&particles, memories, self.steps)?;
+        self.read();
         Ok(())
     }
 
-    fn state(&self) -> StateFile {
-        let population: Vec<u64> = self.population.iter().map(|&p| u64::from(p)).collect();
-        let mut file = StateFile::new();
-        file.set_u64s("id", &self.id);
-        file.set_u64s("population", &population);
-        file.set_f64s("position", &flat(&self.position));
-        file.set_f64s("velocity", &flat(&self.velocity));
-        file.set_f64s("angular_velocity", &flat(&self.angular_velocity));
-        file.set_f64s("radius", &self.radius);
-        file.set_f64s("mass", &self.mass);
-        file
+    /// Takes over what the solver has reached.
+    fn read(&mut self) {
+        if let Some(engine) = &self.engine {
+            engine.read(
+                &mut self.position,
+                &mut self.velocity,
+                &mut self.angular_velocity,
+            );
+        }
+    }
+
+    /// The error of a particle that left the bounds.
+    fn outside(&self, stray: Stray) -> NativeError {
+        NativeError::OutOfBounds {
+            id: self.id[stray.row as usize],
+            place: stray.centre.into(),
+            velocity: stray.velocity.into(),
+        }
+    }
+
+    fn advance(&mut self, window: &Window, supervisor: &Supervisor) -> Result<(), PartError> {
+        let end = window.start.motion.count() + window.span.motion.count();
+        let (mut done, end) = (
+            self.nearest(window.start.motion),
+            self.nearest(Ticks::new(end)),
+        );
+        while done < end {
+            let steps = (end - done).min(SLICE);
+            let Some(engine) = &mut self.engine else {
+                return Ok(());
+            };
+            if let Err(stray) = engine.advance(done, steps) {
+                let error = self.outside(stray);
+                return Err(self
+                    .failure(FailureKind::Diverged, error.to_string())
+                    .in_window(window)
+                    .caused_by(error));
+            }
+            done += steps;
+            if supervisor.interrupts().count() >= 2 {
+                return Err(self
+                    .failure(FailureKind::Interrupted, "interrupted")
+                    .in_window(window));
+            }
+        }
+        self.steps = end;
+        self.read();
+        Ok(())
+    }
+
+    /// The step nearest to a motion time; windows are whole steps between those of their ends, so that
+    /// rounding never adds up.
+    fn nearest(&self, time: Ticks) -> i64 {
+        let step = self
+            .engine
+            .as_ref()
+            .map_or(1.0, |engine| engine.contacts().step);
+        (time.count() as f64 / (step * Ticks::PER_SECOND)).round() as i64
     }
 
     fn failure(&self, kind: FailureKind, message: impl Into<String>) -> PartError {
         PartError::new(self.about.name.clone(), kind, message)
     }
+
+    fn refused(&self, error: NativeError) -> PartError {
+        self.failure(FailureKind::Protocol, error.to_string())
+            .caused_by(error)
+    }
+
+    /// Takes particles out and puts new ones in; the others keep the memories of their contacts.
+    fn exchange(&mut self, change: &Change) -> Result<(), NativeError> {
+        let Some(engine) = &mut self.engine else {
+            return Ok(());
+        };
+        let (mut pairs, mut walls) = engine.memories();
+        let populations = engine
+            .contacts()
+            .material_of
+            .len()
+            .min(engine.contacts().held.len());
+        let events = check::change(change, &self.id, populations)?;
+        self.events.clear();
+        let mut keep = vec![true; self.id.len()];
+        for &row in &events {
+            keep[row] = false;
+            self.events.push(ParticleEvent {
+                id: self.id[row],
+                inserted: false,
+                mass: self.mass[row],
+                momentum: self.mass[row] * self.velocity[row],
+            });
+        }
+        let mut kept = 0;
+        let renumber: Vec<Option<u32>> = keep
+            .iter()
+            .map(|&keep| {
+                let row = keep.then_some(kept);
+                kept += u32::from(keep);
+                row
+            })
+            .collect();
+        retain(&mut self.id, &keep);
+        retain(&mut self.population, &keep);
+        retain(&mut self.position, &keep);
+        retain(&mut self.velocity, &keep);
+        retain(&mut self.angular_velocity, &keep);
+        retain(&mut self.radius, &keep);
+        retain(&mut self.mass, &keep);
+        // Ids that come are above all others: rows of those that stay only close up.
+        pairs.retain_mut(|one| {
+            let rows = one.rows.map(|row| renumber[row as usize]);
+            one.rows = rows.map(Option::unwrap_or_default);
+            rows.iter().all(Option::is_some)
+        });
+        walls.retain_mut(|one| {
+            let row = renumber[one.row as usize];
+            one.row = row.unwrap_or_default();
+            row.is_some()
+        });
+        for new in &change.insert {
+            let mass = mass(new.radius, new.density);
+            self.id.push(new.id);
+            self.population.push(new.population);
+            self.position.push(new.position);
+            self.velocity.push(new.velocity);
+            self.angular_velocity.push(Vec3::zeros());
+            self.radius.push(new.radius);
+            self.mass.push(mass);
+            self.events.push(ParticleEvent {
+                id: new.id,
+                inserted: true,
+                mass,
+                momentum: mass * new.velocity,
+            });
+        }
+        self.impulse = vec![Vec3::zeros(); self.id.len()];
+        self.hand_over((pairs, walls))
+            .map_err(|stray| self.outside(stray))
+    }
+}
+
+fn mass(radius: f64, density: f64) -> f64 {
+    4.0 / 3.0 * PI * radius.powi(3) * density
+}
+
+fn retain<T>(values: &mut Vec<T>, keep: &[bool]) {
+    let mut keep = keep.iter();
+    values.retain(|_| keep.next().copied().unwrap_or(true));
 }
 
 impl Part for NativeParticles {
@@ -116,9 +291,7 @@ impl Part for NativeParticles {
             part.failure(FailureKind::Io, error.to_string())
                 .caused_by(error)
         };
-        self.state()
-            .write(&directory.join(STATE))
-            .map_err(|error| failed(self, error.into()))?;
+        self.write(directory).map_err(|error| failed(self, error))?;
         self.restore(directory).map_err(|error| failed(self, error))
     }
 
@@ -140,18 +313,22 @@ impl Particles for NativeParticles {
         }
     }
 
+    /// Particles that came and went in the last change, until the next window starts.
     fn events(&self) -> &[ParticleEvent] {
-        &[]
+        &self.events
     }
 
     fn change(&mut self, _supervisor: &Supervisor, change: &Change) -> Result<(), PartError> {
         if change.is_empty() {
             return Ok(());
         }
-        Err(self.failure(
-            FailureKind::Protocol,
-            "a frozen bed takes no particles in or out",
-        ))
+        if self.engine.is_none() {
+            return Err(self.failure(
+                FailureKind::Protocol,
+                "a frozen bed takes no particles in or out",
+            ));
+        }
+        self.exchange(change).map_err(|error| self.refused(error))
     }
 
     fn start(&mut self, window: &Window, push: &ParticlePush) -> Result<(), PartError> {
@@ -165,62 +342,26 @@ impl Particles for NativeParticles {
         for (impulse, force) in self.impulse.iter_mut().zip(&push.force) {
             *impulse = force * span;
         }
+        if let Some(engine) = &mut self.engine {
+            engine.push(&push.force);
+        }
+        self.events.clear();
         self.started = Some(*window);
         Ok(())
     }
 
     fn finish(
         &mut self,
-        _supervisor: &Supervisor,
+        supervisor: &Supervisor,
         received: &mut ParticleReceived,
     ) -> Result<(), PartError> {
-        if self.started.take().is_none() {
+        let Some(window) = self.started.take() else {
             return Err(self.failure(FailureKind::Protocol, "finished without a start"));
+        };
+        if self.engine.is_some() {
+            self.advance(&window, supervisor)?;
         }
         received.impulse.clone_from(&self.impulse);
         Ok(())
     }
-}
-
-fn length(field: &'static str, found: usize, expected: usize) -> NativeError {
-    NativeError::Length {
-        field,
-        found,
-        expected,
-        of: "particles",
-    }
-}
-
-fn check(setup: &ParticleSetup) -> Result<(), NativeError> {
-    let count = setup.id.len();
-    for (field, found) in [
-        ("the list of populations", setup.population.len()),
-        ("the list of positions", setup.position.len()),
-        ("the list of radii", setup.radius.len()),
-        ("the list of densities", setup.density.len()),
-    ] {
-        if found != count {
-            return Err(length(field, found, count));
-        }
-    }
-    if !setup.motion.is_frozen() && count > 0 {
-        return Err(NativeError::Moving);
-    }
-    for i in 0..count {
-        for (field, value, unit) in [
-            ("the radius", setup.radius[i], "m"),
-            ("the density", setup.density[i], "kg/m^3"),
-        ] {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(NativeError::Value {
-                    field,
-                    place: format!("particle {}", setup.id[i]),
-                    value,
-                    unit,
-                    rule: "positive",
-                });
-            }
-        }
-    }
-    Ok(())
 }

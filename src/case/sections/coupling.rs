@@ -3,9 +3,13 @@
 use std::path::Path;
 use std::time::Duration;
 
+use calcine_adapters::openfoam::stock::{Solver, refusal};
+use calcine_coupler::setup::GasSetup;
+use calcine_coupler::time::GasStorage;
+
 use super::existing;
 use super::zone::zones;
-use crate::case::model::{Coupling, External, Mapping};
+use crate::case::model::{Coupling, External, Mapping, Time};
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
 
@@ -76,23 +80,48 @@ fn fraction(table: &Reader<'_>, key: &str) -> Option<f64> {
     None
 }
 
+/// A stock solver does less than calcineGasFoam: what this case asks of it in vain.
+pub(super) fn check_stock(root: &Reader<'_>, openfoam: &External, gas: &GasSetup, time: &Time) {
+    if !openfoam.solver.is_stock() {
+        return;
+    }
+    let Some(section) = root.table("openfoam") else {
+        return;
+    };
+    let name = openfoam.solver.name();
+    let other = "let calcineGasFoam do it: leave `openfoam.solver` out";
+    let splits = time.acceleration.largest() > 1.0;
+    if splits && time.storage == GasStorage::Process {
+        let rule = format!(
+            "names {name}, which stores over its own time step: with `time.acceleration` above 1 it \
+             cannot do `process` storage"
+        );
+        let help = "write `gas_storage = \"accelerated\"`, or leave `openfoam.solver` out";
+        section.fail("solver", rule, help);
+    }
+    if let Some(why) = refusal(gas, splits) {
+        section.fail("solver", format!("names {name}, but {why}"), other);
+    }
+}
+
 /// `[openfoam]` or `[liggghts]`.
 pub(super) fn external(root: &Reader<'_>, key: &str, folder: &Path) -> External {
     let mut external = External {
         template: None,
+        start: None,
+        solver: Solver::default(),
         ranks: 1,
     };
     if let Some(section) = root.table(key) {
         external.template = existing(&section, "template", folder);
+        if key == "openfoam" {
+            external.start = existing(&section, "start", folder);
+            let solvers = [Solver::CalcineGasFoam, Solver::BuoyantPimpleFoam];
+            let solvers = solvers.map(|solver| (solver.name(), solver));
+            external.solver = section.choice("solver", &solvers).unwrap_or_default();
+        }
         if let Some(ranks) = section.whole("ranks", 1..=100_000) {
-            if ranks > 1 {
-                section.fail(
-                    "ranks",
-                    format!("is {ranks}; more than one rank is not supported yet"),
-                    "write 1, or leave it out",
-                );
-            }
-            external.ranks = usize::try_from(ranks).unwrap_or(1);
+            external.ranks = u32::try_from(ranks).unwrap_or(1);
         }
         section.finish();
     }

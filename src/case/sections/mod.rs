@@ -66,6 +66,9 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     let output = output::output(root);
     let probes = probes::probes(root);
     let quantities = quantities::quantities(root, mesh.as_ref(), particles.as_deref(), &probes);
+    if let (Some((gas, _)), Some((time, _))) = (&gas, &time) {
+        coupling::check_stock(root, &openfoam, gas, time);
+    }
     if let (Some((time, _)), Some(particles)) = (&time, &particles) {
         motion::fits(root, motion.as_ref(), time, particles);
         if let Some(motion) = &motion {

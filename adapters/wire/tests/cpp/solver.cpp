@@ -44,7 +44,7 @@ static void state(calcine_kind kind, double heat)
 
 int main(int count, char** words)
 {
-    need(calcine_link_open(0, &wire));
+    need(calcine_link_open(0, nullptr, &wire));
     const char* mesh = count > 1 ? words[1] : "mesh";
     calcine_hello hello = {"gas", "test", "1", "case", mesh, nullptr, 3, 1};
     if (std::strcmp(mesh, "busy") == 0) {

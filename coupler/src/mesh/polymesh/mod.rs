@@ -1,6 +1,7 @@
 //! OpenFOAM's polyMesh folders: `points`, `faces`, `owner`, `neighbour`, `boundary`, as
 //! OpenFOAM 1912 reads and writes them (its User Guide, chapter "Mesh generation and conversion").
 
+mod field;
 mod read;
 mod tokens;
 mod write;
@@ -9,8 +10,9 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+pub use field::internal_field;
 pub use read::read;
-pub use write::write;
+pub use write::{write, write_with};
 
 use super::MeshError;
 

@@ -11,6 +11,15 @@ use crate::mesh::Mesh;
 /// there. Coordinates are written with as many digits (at most 17) as read back to the same bits;
 /// every patch gets the type `patch`.
 pub fn write(mesh: &Mesh, dir: &Path) -> Result<(), PolyMeshError> {
+    write_with(mesh, dir, |_| "patch")
+}
+
+/// The same with a type for each patch by its name, for example `wall`.
+pub fn write_with(
+    mesh: &Mesh,
+    dir: &Path,
+    kind: impl Fn(&str) -> &'static str,
+) -> Result<(), PolyMeshError> {
     fs::create_dir_all(dir).map_err(|cause| PolyMeshError::Io {
         file: dir.to_path_buf(),
         cause,
@@ -32,7 +41,7 @@ pub fn write(mesh: &Mesh, dir: &Path) -> Result<(), PolyMeshError> {
             Some(&note),
             labels(mesh.neighbour()),
         ),
-        ("boundary", "polyBoundaryMesh", None, boundary(mesh)),
+        ("boundary", "polyBoundaryMesh", None, boundary(mesh, kind)),
     ];
     for (name, class, note, body) in files {
         let file = dir.join(name);
@@ -80,14 +89,17 @@ fn labels(list: &[u32]) -> String {
     text + ")\n"
 }
 
-fn boundary(mesh: &Mesh) -> String {
+fn boundary(mesh: &Mesh, kind: impl Fn(&str) -> &'static str) -> String {
     let mut text = format!("{}\n(\n", mesh.patches().len());
     for patch in mesh.patches() {
         let _ = writeln!(
             text,
-            "    {}\n    {{\n        type            patch;\n        nFaces          {};\n        \
+            "    {}\n    {{\n        type            {};\n        nFaces          {};\n        \
              startFace       {};\n    }}",
-            patch.name, patch.count, patch.start
+            patch.name,
+            kind(&patch.name),
+            patch.count,
+            patch.start
         );
     }
     text + ")\n"

@@ -1,0 +1,244 @@
+//! The calls of MPI. Everything unsafe is here.
+//!
+//! MPI's own waits spin and never end where the other process has died, so none is used: messages are
+//! posted and tested, looked for and taken, and whoever waits sleeps in between. Errors are returned
+//! codes; rsmpi's safe calls drop those.
+
+use std::collections::VecDeque;
+use std::ffi::{CString, OsString, c_char, c_int};
+use std::os::unix::ffi::OsStrExt;
+use std::path::Path;
+use std::ptr;
+
+use calcine_wire::{Carrier, Message, WireError};
+use mpi::ffi;
+
+/// Tag of messages from the coordinator to a rank.
+const DOWN: c_int = 1;
+/// Tag of messages from a rank to the coordinator.
+const UP: c_int = 2;
+
+/// An MPI result as ours.
+fn checked(doing: &'static str, code: c_int) -> Result<(), WireError> {
+    if code == 0 {
+        return Ok(());
+    }
+    Err(WireError::Mpi { doing, code })
+}
+
+fn length(words: usize) -> Result<c_int, WireError> {
+    c_int::try_from(words).map_err(|_| WireError::Order {
+        what: "a message of 2^31 words and more does not go over MPI; use more ranks",
+    })
+}
+
+/// Sets variables that Open MPI reads when it starts, unless the user has set them: its files go where
+/// the run's go, and more ranks than processors are no error. To be called before any thread starts.
+pub fn place_files(root: &Path, memory: &Path) {
+    let set = |name: &str, value: &std::ffi::OsStr| {
+        if std::env::var_os(name).is_none() {
+            // SAFETY: called by `main` before there is another thread.
+            unsafe { std::env::set_var(name, value) };
+        }
+    };
+    set("OMPI_MCA_orte_tmpdir_base", root.as_os_str());
+    set("OMPI_MCA_btl_vader_backing_directory", memory.as_os_str());
+    set("OMPI_MCA_rmaps_base_oversubscribe", "1".as_ref());
+    set("OMPI_MCA_mpi_yield_when_idle", "1".as_ref());
+    // Each world would bind its ranks to the same processors.
+    set("OMPI_MCA_hwloc_base_binding_policy", "none".as_ref());
+    // Between processes of one machine that are not of one world Open MPI uses TCP.
+    let elsewhere = [
+        "OMPI_MCA_orte_default_hostfile",
+        "SLURM_JOB_ID",
+        "OMPI_COMM_WORLD_SIZE",
+    ];
+    if elsewhere
+        .iter()
+        .all(|name| std::env::var_os(name).is_none())
+    {
+        set("OMPI_MCA_btl_tcp_if_include", "lo".as_ref());
+    }
+}
+
+unsafe extern "C" {
+    fn _exit(code: c_int) -> !;
+}
+
+/// Ends this process without what MPI would do then, which waits for the dead.
+pub fn end_at_once(code: u8) -> ! {
+    // SAFETY: takes any code.
+    unsafe { _exit(code.into()) }
+}
+
+/// A communicator with ranks that were spawned, or one within this process.
+#[derive(Clone, Copy)]
+pub struct World {
+    comm: ffi::MPI_Comm,
+}
+
+// SAFETY: MPI is started for calls from any thread, and a communicator's handle is an address.
+unsafe impl Send for World {}
+
+impl World {
+    /// Spawns a command line on a number of ranks; returns once they have started MPI, if ever.
+    pub fn spawn(line: &[OsString], ranks: u32) -> Result<Self, WireError> {
+        let text = |word: &OsString| CString::new(word.as_bytes()).unwrap_or_default();
+        let words: Vec<CString> = line.iter().map(text).collect();
+        let Some((program, arguments)) = words.split_first() else {
+            return Err(WireError::Order {
+                what: "there is no program to spawn",
+            });
+        };
+        let mut pointers: Vec<*mut c_char> = arguments
+            .iter()
+            .map(|word| word.as_ptr().cast_mut())
+            .chain([ptr::null_mut()])
+            .collect();
+        let mut codes = vec![0; ranks as usize];
+        // SAFETY: texts and lists live during the call, the list of words ends with NULL, and there is
+        // a code for each rank; MPI does not write into the words.
+        let comm = unsafe {
+            let mut comm = ffi::RSMPI_COMM_NULL;
+            let code = ffi::MPI_Comm_set_errhandler(ffi::RSMPI_COMM_SELF, ffi::RSMPI_ERRORS_RETURN);
+            checked("setting up", code)?;
+            let code = ffi::MPI_Comm_spawn(
+                program.as_ptr(),
+                pointers.as_mut_ptr(),
+                length(ranks as usize)?,
+                ffi::RSMPI_INFO_NULL,
+                0,
+                ffi::RSMPI_COMM_SELF,
+                &mut comm,
+                codes.as_mut_ptr(),
+            );
+            checked("spawning", code)?;
+            let code = ffi::MPI_Comm_set_errhandler(comm, ffi::RSMPI_ERRORS_RETURN);
+            checked("setting up", code)?;
+            comm
+        };
+        Ok(Self { comm })
+    }
+
+    /// A communicator of this process with itself, for both ends in one process.
+    pub fn alone() -> Result<Self, WireError> {
+        // SAFETY: a place of the right type; every process may duplicate its own communicator.
+        unsafe {
+            let mut comm = ffi::RSMPI_COMM_NULL;
+            checked(
+                "setting up",
+                ffi::MPI_Comm_dup(ffi::RSMPI_COMM_SELF, &mut comm),
+            )?;
+            let code = ffi::MPI_Comm_set_errhandler(comm, ffi::RSMPI_ERRORS_RETURN);
+            checked("setting up", code)?;
+            Ok(Self { comm })
+        }
+    }
+
+    /// The coordinator's place opposite a rank.
+    pub fn of_rank(self, rank: u32) -> Place {
+        Place {
+            comm: self.comm,
+            rank: c_int::try_from(rank).unwrap_or(c_int::MAX),
+            send: DOWN,
+            receive: UP,
+            posted: VecDeque::new(),
+        }
+    }
+
+    /// A rank's place opposite the coordinator.
+    pub fn of_coordinator(self) -> Place {
+        Place {
+            comm: self.comm,
+            rank: 0,
+            send: UP,
+            receive: DOWN,
+            posted: VecDeque::new(),
+        }
+    }
+}
+
+/// One end of a connection.
+pub struct Place {
+    comm: ffi::MPI_Comm,
+    rank: c_int,
+    send: c_int,
+    receive: c_int,
+    /// What the other end has not taken, in order.
+    posted: VecDeque<(ffi::MPI_Request, Message)>,
+}
+
+// SAFETY: as for `World`; a request is used by its place only.
+unsafe impl Send for Place {}
+
+impl Carrier for Place {
+    fn post(&mut self, message: Message) -> Result<(), WireError> {
+        let words = message.words();
+        let (start, count) = (words.as_ptr().cast(), length(words.len())?);
+        // SAFETY: the words live, and do not move, until the request has ended: both stay in `posted`.
+        let request = unsafe {
+            let mut request = ffi::RSMPI_REQUEST_NULL;
+            // Synchronous: it ends when the message is being taken, so that nothing piles up unseen.
+            let code = ffi::MPI_Issend(
+                start,
+                count,
+                ffi::RSMPI_UINT64_T,
+                self.rank,
+                self.send,
+                self.comm,
+                &mut request,
+            );
+            checked("sending", code)?;
+            request
+        };
+        self.posted.push_back((request, message));
+        Ok(())
+    }
+
+    fn pending(&mut self) -> Result<usize, WireError> {
+        while let Some((request, _)) = self.posted.front_mut() {
+            let mut done = 0;
+            // SAFETY: a request that has not ended, and a place of the right type.
+            let code = unsafe { ffi::MPI_Test(request, &mut done, ffi::RSMPI_STATUS_IGNORE) };
+            checked("sending", code)?;
+            if done == 0 {
+                break;
+            }
+            self.posted.pop_front();
+        }
+        Ok(self.posted.len())
+    }
+
+    fn arrived(&mut self) -> Result<Option<usize>, WireError> {
+        let (mut there, mut count) = (0, 0);
+        // SAFETY: places of the right types; the status is read once MPI has filled it in.
+        unsafe {
+            let mut status: ffi::MPI_Status = std::mem::zeroed();
+            let code = ffi::MPI_Iprobe(self.rank, self.receive, self.comm, &mut there, &mut status);
+            checked("looking for a message", code)?;
+            if there == 0 {
+                return Ok(None);
+            }
+            let code = ffi::MPI_Get_count(&status, ffi::RSMPI_UINT64_T, &mut count);
+            checked("looking for a message", code)?;
+        }
+        Ok(Some(count.unsigned_abs() as usize))
+    }
+
+    fn take(&mut self, words: &mut [u64]) -> Result<(), WireError> {
+        let (start, count) = (words.as_mut_ptr().cast(), length(words.len())?);
+        // SAFETY: room for as many words as are asked for.
+        let code = unsafe {
+            ffi::MPI_Recv(
+                start,
+                count,
+                ffi::RSMPI_UINT64_T,
+                self.rank,
+                self.receive,
+                self.comm,
+                ffi::RSMPI_STATUS_IGNORE,
+            )
+        };
+        checked("receiving", code)
+    }
+}

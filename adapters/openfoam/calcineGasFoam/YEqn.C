@@ -1,0 +1,236 @@
+// Species, as mass fractions Y_k, with exactly the fluxes and masses of continuity, per cell:
+//
+//   (m Y - m_old Y_old)/dtau + sum phi_f Y_f - sum (eps mu)_f/Sc grad(Y).S = 0
+//
+// All species diffuse alike, so that Fick's fluxes sum to zero. Y_f as div(phi,Yi) of fvSchemes says, beyond
+// upwind explicitly and with the smallest limiter of all species, so that the fractions go on summing to
+// one; the last species is what the others leave.
+//
+// Enthalpy follows species: at a face it is that of the temperature and the fractions there, each limited on
+// its own, and what diffuses carries its own enthalpy, so that gases that mix at one temperature stay there.
+#include "gas.H"
+#include "convection.H"
+#include "limitedSurfaceInterpolationScheme.H"
+#include "fvm.H"
+#include "fvc.H"
+
+Foam::tmp<Foam::surfaceScalarField> Foam::calcine::gas::speciesLimiter() const
+{
+    tmp<surfaceScalarField> least;
+    for (const volScalarField& Y : species_->Y())
+    {
+        ITstream& scheme = mesh_.divScheme("div(phi,Yi)");
+        const word kind(scheme);
+        if (kind != "Gauss")
+        {
+            FatalErrorInFunction
+                << "div(phi,Yi) of fvSchemes is of the kind " << kind
+                << "; write `Gauss` and a limited scheme" << exit(FatalError);
+        }
+        tmp<surfaceScalarField> one
+        (
+            limitedSurfaceInterpolationScheme<scalar>::New(mesh_, phi_, scheme)().limiter(Y)
+        );
+        least = least.valid() ? min(least, one) : one;
+    }
+    return least;
+}
+
+
+Foam::scalar Foam::calcine::gas::solveSpecies(report& result)
+{
+    if (!species_)
+    {
+        return 0;
+    }
+    PtrList<volScalarField>& Y = species_->Y();
+    const label last = Y.size() - 1;
+    const scalar span = window_.storageSpan;
+    const label internal = mesh_.nInternalFaces();
+    const surfaceScalarField diffusion("speciesDiffusion", fvc::interpolate(diffusivity()));
+    // Of the linear value, what the limited one has more than the upwind one, as a mass flux.
+    const upwind<scalar> up(mesh_, phi_);
+    const surfaceScalarField limitedFlux(phi_*speciesLimiter());
+    const scalarField inertia(committed_.mass/span), out(outflow());
+
+    scalar residual = 0;
+    PtrList<surfaceScalarField> beyond(Y.size()), diffused(Y.size());
+    speciesFlow_.setSize(Y.size());
+    speciesFlow_[last] = SubField<scalar>(flux_, flux_.size() - internal, internal);
+    forAll(Y, k)
+    {
+        beyond.set
+        (
+            k,
+            new surfaceScalarField(limitedFlux*(fvc::interpolate(Y[k]) - up.interpolate(Y[k])))
+        );
+        for (surfaceScalarField::Patch& patch : beyond[k].boundaryFieldRef())
+        {
+            if (!patch.coupled())
+            {
+                patch == Zero;
+            }
+        }
+    }
+    for (label k = 0; k < last; ++k)
+    {
+        const scalarField& old = committed_.composition[k];
+        const fvScalarMatrix laplacian(fvm::laplacian(diffusion, Y[k]));
+        const fv::gaussConvectionScheme<scalar> convection
+        (
+            mesh_, phi_, tmp<surfaceInterpolationScheme<scalar>>(new upwind<scalar>(mesh_, phi_))
+        );
+        fvScalarMatrix matrix(convection.fvmDiv(phi_, Y[k]) - laplacian);
+        matrix.diag() += inertia - out;
+        matrix.source() += inertia*old - outOf(beyond[k]);
+
+        scalar moving = gSumMag(mass_*Y[k].primitiveField() - committed_.mass*old)/span;
+        for (const fvsPatchScalarField& flux : phi_.boundaryField())
+        {
+            moving += flux.coupled() ? 0 : gSumMag(flux);
+        }
+        const solved solution = speciesSolver_->solve
+        (
+            matrix, scalarField(matrix.source()), linearTolerance_*moving, Y[k]
+        );
+        result.linearIterations += solution.iterations;
+        residual = max(residual, solution.initial/gSumMag(matrix.diag()));
+
+        diffused.set(k, (-laplacian.flux()).ptr());
+        speciesFlow_[k].setSize(flux_.size() - internal);
+        forAll(mesh_.boundary(), patchi)
+        {
+            const fvPatch& patch = mesh_.boundary()[patchi];
+            forAll(patch, i)
+            {
+                const label facei = patch.start() + i - internal;
+                const scalar flow =
+                    matrix.internalCoeffs()[patchi][i]*Y[k][patch.faceCells()[i]]
+                  - matrix.boundaryCoeffs()[patchi][i];
+                speciesFlow_[k][facei] = flow;
+                speciesFlow_[last][facei] -= flow;
+            }
+        }
+    }
+
+    Y[last].primitiveFieldRef() = 1;
+    diffused.set(last, new surfaceScalarField(0*diffusion*mesh_.magSf()*mesh_.deltaCoeffs()));
+    for (label k = 0; k < last; ++k)
+    {
+        Y[last].primitiveFieldRef() -= Y[k].primitiveField();
+        diffused[last] -= diffused[k];
+    }
+    Y[last].correctBoundaryConditions();
+    carryEnthalpy(limitedFlux, diffused);
+    return residual;
+}
+
+
+void Foam::calcine::gas::carryEnthalpy
+(
+    const surfaceScalarField& limitedFlux,
+    const PtrList<surfaceScalarField>& diffused
+)
+{
+    const PtrList<volScalarField>& Y = species_->Y();
+    const gasMixture& mixture = species_->mixture();
+    const volScalarField& T = thermo_->T();
+    const upwind<scalar> up(mesh_, phi_);
+    ITstream& scheme = mesh_.divScheme("div(phi,h)");
+    const word kind(scheme);
+    const surfaceScalarField before(up.interpolate(T)), middle(fvc::interpolate(T));
+    const surfaceScalarField limited
+    (
+        surfaceInterpolationScheme<scalar>::New(mesh_, phi_, scheme)().interpolate(T)
+    );
+
+    carried_.reset
+    (
+        new surfaceScalarField
+        (
+            IOobject("carried", mesh_.time().timeName(), mesh_),
+            mesh_,
+            dimensionedScalar(dimPower, Zero)
+        )
+    );
+    const auto add =
+        [&](label k, const auto& flow, const auto& flux, const auto& more, const auto& fraction,
+            const auto& Tmiddle, const auto& Tbefore, const auto& Tlimited, auto& carried)
+        {
+            forAll(carried, i)
+            {
+                carried[i] += flow[i]*mixture[k].enthalpy(Tmiddle[i]);
+                if (flux[i] != 0)
+                {
+                    carried[i] +=
+                        (flux[i]*fraction[i] + more[i])*mixture[k].enthalpy(Tlimited[i])
+                      - flux[i]*fraction[i]*mixture[k].enthalpy(Tbefore[i]);
+                }
+            }
+        };
+    forAll(Y, k)
+    {
+        const surfaceScalarField fraction(up.interpolate(Y[k]));
+        const surfaceScalarField more(limitedFlux*(fvc::interpolate(Y[k]) - fraction));
+        add
+        (
+            k, diffused[k], phi_, more, fraction, middle, before, limited,
+            carried_->primitiveFieldRef()
+        );
+        forAll(T.boundaryField(), patchi)
+        {
+            // Convection at the boundary is upwind.
+            const bool coupled = T.boundaryField()[patchi].coupled();
+            const scalarField none(T.boundaryField()[patchi].size(), Zero);
+            add
+            (
+                k,
+                diffused[k].boundaryField()[patchi],
+                coupled ? static_cast<const scalarField&>(phi_.boundaryField()[patchi]) : none,
+                more.boundaryField()[patchi],
+                fraction.boundaryField()[patchi],
+                middle.boundaryField()[patchi],
+                before.boundaryField()[patchi],
+                limited.boundaryField()[patchi],
+                carried_->boundaryFieldRef()[patchi]
+            );
+        }
+    }
+
+    // The iterate of the enthalpy is that of the temperature at hand and the new fractions.
+    thermo_->he().primitiveFieldRef() = thermo_->he(modelPressure_, T)().primitiveField();
+    thermo_->he().correctBoundaryConditions();
+}
+
+
+void Foam::calcine::gas::balanceSpecies(report& result) const
+{
+    result.species.clear();
+    if (!species_)
+    {
+        return;
+    }
+    const PtrList<volScalarField>& Y = species_->Y();
+    result.species.setSize(Y.size());
+    forAll(Y, k)
+    {
+        balance& own = result.species[k];
+        const scalarField stored
+        (
+            mass_*Y[k].primitiveField() - committed_.mass*committed_.composition[k]
+        );
+        own.stored = gSum(stored);
+        own.storedMagnitude = gSumMag(stored);
+        for (const fvPatch& patch : mesh_.boundary())
+        {
+            if (patch.coupled())
+            {
+                continue;
+            }
+            const label start = patch.start() - mesh_.nInternalFaces();
+            const SubField<scalar> flow(speciesFlow_[k], patch.size(), start);
+            own.boundary -= window_.storageSpan*gSum(flow);
+            own.boundaryMagnitude += window_.storageSpan*gSumMag(flow);
+        }
+    }
+}

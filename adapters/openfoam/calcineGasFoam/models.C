@@ -1,0 +1,247 @@
+#include "models.H"
+#include "IFstream.H"
+#include "OFstream.H"
+#include "OSspecific.H"
+
+namespace
+{
+
+const char* const lastWord = "complete";
+
+bool given(const Foam::fvMesh& mesh, const Foam::word& name)
+{
+    return Foam::isFile(mesh.time().path()/mesh.time().constant()/name)
+        || Foam::isFile(mesh.time().globalPath()/mesh.time().constant()/name);
+}
+
+} // End anonymous namespace
+
+
+Foam::calcine::models::models
+(
+    fvMesh& mesh,
+    const volVectorField& U,
+    const surfaceScalarField& phi,
+    fluidThermo& thermo
+)
+:
+    mesh_(mesh),
+    density_(IOobject("epsRho", mesh.time().timeName(), mesh), 1*thermo.rho()),
+    schmidt_(0.7)
+{
+    if (given(mesh, turbulenceModel::propertiesName))
+    {
+        const IOdictionary properties
+        (
+            IOobject
+            (
+                turbulenceModel::propertiesName, mesh.time().constant(), mesh,
+                IOobject::MUST_READ, IOobject::NO_WRITE, false
+            )
+        );
+        if (properties.get<word>("simulationType") != "laminar")
+        {
+            schmidt_ = properties.lookupOrDefault<scalar>("Sct", schmidt_);
+            turbulence_ = compressible::turbulenceModel::New(density_, U, phi, thermo);
+            turbulence_->validate();
+        }
+    }
+    if (given(mesh, "radiationProperties"))
+    {
+        radiation_ = radiation::radiationModel::New(thermo.T());
+    }
+    for (const auto* field : mesh.lookupClass<volSymmTensorField>())
+    {
+        if (any() && field->writeOpt() == IOobject::AUTO_WRITE)
+        {
+            FatalErrorInFunction
+                << "the turbulence model keeps the tensor field " << field->name()
+                << ", which a checkpoint of calcineGasFoam does not hold; choose a model of "
+                << "scalar fields" << exit(FatalError);
+        }
+    }
+    store();
+}
+
+
+Foam::HashTable<Foam::volScalarField*> Foam::calcine::models::fields() const
+{
+    HashTable<volScalarField*> result;
+    if (!any())
+    {
+        return result;
+    }
+    for (volScalarField* field : mesh_.lookupClass<volScalarField>())
+    {
+        // What OpenFOAM would write with a time, but for the gas' own.
+        const bool own = field->name() == "T" || field->name() == "p";
+        if (!own && field->writeOpt() == IOobject::AUTO_WRITE)
+        {
+            result.insert(field->name(), field);
+        }
+    }
+    return result;
+}
+
+
+void Foam::calcine::models::store()
+{
+    const HashTable<volScalarField*> all(fields());
+    for (const word& name : all.sortedToc())
+    {
+        const volScalarField& field = *all[name];
+        List<scalarField>& kept = committed_(name);
+        kept.setSize(1 + field.boundaryField().size());
+        kept[0] = field.primitiveField();
+        forAll(field.boundaryField(), patchi)
+        {
+            kept[1 + patchi] = field.boundaryField()[patchi];
+        }
+    }
+}
+
+
+Foam::tmp<Foam::volScalarField> Foam::calcine::models::eddyViscosity() const
+{
+    return turbulence_->mut();
+}
+
+
+Foam::tmp<Foam::volScalarField> Foam::calcine::models::eddyDiffusivity() const
+{
+    return turbulence_->alphat();
+}
+
+
+void Foam::calcine::models::radiativeHeat
+(
+    const scalarField& T,
+    scalarField& coefficient,
+    scalarField& source
+) const
+{
+    // Ru - Rp T^4, by its tangent.
+    const tmp<volScalarField> Rp(radiation_->Rp());
+    const tmp<volScalarField::Internal> Ru(radiation_->Ru());
+    coefficient = 4*Rp().primitiveField()*pow3(T);
+    source = Ru().field() + 3*Rp().primitiveField()*pow4(T);
+}
+
+
+void Foam::calcine::models::setDensity(const scalarField& density)
+{
+    density_.primitiveFieldRef() = density;
+    density_.correctBoundaryConditions();
+    // Its patches are calculated ones.
+    forAll(density_.boundaryField(), patchi)
+    {
+        fvPatchScalarField& patch = density_.boundaryFieldRef()[patchi];
+        if (!patch.coupled())
+        {
+            patch == patch.patchInternalField();
+        }
+    }
+}
+
+
+void Foam::calcine::models::begin()
+{
+    const HashTable<volScalarField*> all(fields());
+    forAllConstIters(committed_, kept)
+    {
+        if (!all.found(kept.key()))
+        {
+            continue;
+        }
+        volScalarField& field = *all[kept.key()];
+        field.primitiveFieldRef() = kept.val()[0];
+        forAll(field.boundaryField(), patchi)
+        {
+            field.boundaryFieldRef()[patchi] == kept.val()[1 + patchi];
+        }
+    }
+    if (radiates())
+    {
+        radiation_->correct();
+    }
+}
+
+
+void Foam::calcine::models::advance(scalar motionSpan, const scalarField& density)
+{
+    if (turbulent())
+    {
+        Time& time = const_cast<Time&>(mesh_.time());
+        time.setDeltaT(motionSpan, false);
+        ++time;
+        setDensity(density);
+        turbulence_->correct();
+    }
+    store();
+}
+
+
+Foam::fileName Foam::calcine::models::file(const fileName& directory)
+{
+    const fileName name(directory/"calcineModels");
+    return Pstream::parRun() ? fileName(name + "." + Foam::name(Pstream::myProcNo())) : name;
+}
+
+
+void Foam::calcine::models::write(const fileName& directory) const
+{
+    if (!any())
+    {
+        return;
+    }
+    OFstream out(file(directory), IOstream::BINARY);
+    out << committed_.size() << nl;
+    for (const word& name : committed_.sortedToc())
+    {
+        out << name << nl << committed_[name].size() << nl;
+        for (const scalarField& values : committed_[name])
+        {
+            out << values << nl;
+        }
+    }
+    out << word(lastWord) << endl;
+    if (!out.good())
+    {
+        FatalErrorInFunction
+            << "the state of the models could not be written to " << out.name() << exit(FatalError);
+    }
+}
+
+
+void Foam::calcine::models::read(const fileName& directory)
+{
+    if (!any())
+    {
+        return;
+    }
+    IFstream in(file(directory), IOstream::BINARY);
+    if (!in.good())
+    {
+        FatalErrorInFunction
+            << in.name() << ", the state of turbulence and radiation, is missing: the checkpoint is "
+            << "of a run without these models, or of another number of ranks" << exit(FatalError);
+    }
+    committed_.clear();
+    const label count = readLabel(in);
+    for (label i = 0; i < count; ++i)
+    {
+        const word name(in);
+        List<scalarField>& kept = committed_(name);
+        kept.setSize(readLabel(in));
+        for (scalarField& values : kept)
+        {
+            in >> values;
+        }
+    }
+    if (word(in) != lastWord)
+    {
+        FatalErrorInFunction << in.name() << " is cut short" << exit(FatalError);
+    }
+    begin();
+    // Old values are those of the time step before, which begins anew.
+}

@@ -1,0 +1,267 @@
+//! Setups that the native particles cannot take.
+
+use calcine_coupler::motion::{Change, ContactForce, Contacts, Motion, Wall, WallShape};
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::ParticleSetup;
+
+use crate::gas::NativeError;
+
+/// Checks a setup.
+pub fn check(setup: &ParticleSetup) -> Result<(), NativeError> {
+    let count = setup.id.len();
+    for (field, found) in [
+        ("the list of populations", setup.population.len()),
+        ("the list of positions", setup.position.len()),
+        ("the list of radii", setup.radius.len()),
+        ("the list of densities", setup.density.len()),
+    ] {
+        if found != count {
+            return Err(length(field, found, count));
+        }
+    }
+    if !setup.velocity.is_empty() && setup.velocity.len() != count {
+        return Err(length(
+            "the list of velocities",
+            setup.velocity.len(),
+            count,
+        ));
+    }
+    for i in 0..count {
+        let place = || format!("particle {}", setup.id[i]);
+        positive("the radius", setup.radius[i], "m", place)?;
+        positive("the density", setup.density[i], "kg/m^3", place)?;
+    }
+    match &setup.motion {
+        Motion::Frozen => Ok(()),
+        Motion::Free(contacts) => contact(contacts, &setup.population),
+    }
+}
+
+/// A list of a wrong length.
+pub fn length(field: &'static str, found: usize, expected: usize) -> NativeError {
+    NativeError::Length {
+        field,
+        found,
+        expected,
+        of: "particles",
+    }
+}
+
+fn contact(contacts: &Contacts, population: &[u32]) -> Result<(), NativeError> {
+    let motion = || "the motion of particles".to_owned();
+    positive("the time step", contacts.step, "s", motion)?;
+    let (low, high) = contacts.bounds;
+    for axis in 0..3 {
+        positive(
+            "the extent of the bounds",
+            high[axis] - low[axis],
+            "m",
+            motion,
+        )?;
+    }
+    if let ContactForce::Linear {
+        characteristic_speed: speed,
+    } = contacts.law.force
+    {
+        positive("the characteristic speed", speed, "m/s", motion)?;
+    }
+    let materials = contacts.materials.len();
+    for (k, material) in contacts.materials.iter().enumerate() {
+        let place = || format!("material {k}");
+        positive("Young's modulus", material.young, "Pa", place)?;
+        let rule = |value: f64| value > -1.0 && value < 0.5;
+        within(
+            "Poisson's ratio",
+            material.poisson,
+            "",
+            place,
+            "between -1 and 0.5",
+            rule,
+        )?;
+    }
+    if contacts.pairs.len() != materials * materials {
+        return Err(NativeError::Length {
+            field: "the table of pairs of materials",
+            found: contacts.pairs.len(),
+            expected: materials * materials,
+            of: "pairs",
+        });
+    }
+    for (k, pair) in contacts.pairs.iter().enumerate() {
+        let place = || format!("materials {} and {}", k / materials, k % materials);
+        let rule = |value: f64| value > 0.0 && value <= 1.0;
+        within(
+            "the restitution",
+            pair.restitution,
+            "",
+            place,
+            "above 0 and at most 1",
+            rule,
+        )?;
+        for (field, value, unit) in [
+            ("the friction", pair.friction, ""),
+            ("the rolling friction", pair.rolling_friction, ""),
+            ("the rolling damping", pair.rolling_damping, ""),
+            ("the cohesion energy density", pair.cohesion_energy, "J/m^3"),
+        ] {
+            within(field, value, unit, place, "0 or more", |value| value >= 0.0)?;
+        }
+        if *pair != contacts.pairs[k % materials * materials + k / materials] {
+            return Err(NativeError::Value {
+                field: "the restitution",
+                place: place(),
+                value: pair.restitution,
+                unit: "",
+                rule: "given, like all of the pair, for both orders alike",
+            });
+        }
+    }
+    let populations = population
+        .iter()
+        .map(|&p| p as usize + 1)
+        .max()
+        .unwrap_or(0);
+    for (field, found) in [
+        (
+            "the list of populations' materials",
+            contacts.material_of.len(),
+        ),
+        ("the list of held populations", contacts.held.len()),
+    ] {
+        if found < populations {
+            return Err(NativeError::Length {
+                field,
+                found,
+                expected: populations,
+                of: "populations",
+            });
+        }
+    }
+    let mut used = contacts.material_of.iter().copied();
+    if let Some(index) = used.find(|&index| index >= materials) {
+        return Err(no_material("a population".into(), index));
+    }
+    contacts
+        .walls
+        .iter()
+        .try_for_each(|one| wall(one, materials))
+}
+
+fn wall(wall: &Wall, materials: usize) -> Result<(), NativeError> {
+    let place = || format!("wall `{}`", wall.name);
+    if wall.material >= materials {
+        return Err(no_material(place(), wall.material));
+    }
+    let unit = |field, vector: &Vec3| {
+        let rule = |length: f64| (length - 1.0).abs() < 1e-6;
+        within(field, vector.norm(), "", place, "1", rule)
+    };
+    match &wall.shape {
+        WallShape::Plane { normal, .. } => unit("the length of the normal", normal),
+        WallShape::Cylinder { axis, radius, .. } => {
+            positive("the radius", *radius, "m", place)?;
+            unit("the length of the axis' direction", axis)
+        }
+        WallShape::Cone { ends, radii } => {
+            positive("the length", (ends[1] - ends[0]).norm(), "m", place)?;
+            for radius in radii {
+                within("the radius", *radius, "m", place, "0 or more", |value| {
+                    value >= 0.0
+                })?;
+            }
+            positive("the larger radius", radii[0].max(radii[1]), "m", place)
+        }
+        WallShape::Mesh { triangles } => {
+            triangles.iter().enumerate().try_for_each(|(k, [a, b, c])| {
+                let place = || format!("triangle {k} of wall `{}`", wall.name);
+                positive(
+                    "the area",
+                    0.5 * (b - a).cross(&(c - a)).norm(),
+                    "m^2",
+                    place,
+                )
+            })
+        }
+    }
+}
+
+fn no_material(place: String, index: usize) -> NativeError {
+    NativeError::Value {
+        field: "the index of the material",
+        place,
+        value: index as f64,
+        unit: "",
+        rule: "that of a material in the list",
+    }
+}
+
+fn positive(
+    field: &'static str,
+    value: f64,
+    unit: &'static str,
+    place: impl Fn() -> String,
+) -> Result<(), NativeError> {
+    within(field, value, unit, place, "positive", |value| value > 0.0)
+}
+
+fn within(
+    field: &'static str,
+    value: f64,
+    unit: &'static str,
+    place: impl Fn() -> String,
+    rule: &'static str,
+    allowed: impl Fn(f64) -> bool,
+) -> Result<(), NativeError> {
+    if value.is_finite() && allowed(value) {
+        return Ok(());
+    }
+    Err(NativeError::Value {
+        field,
+        place: place(),
+        value,
+        unit,
+        rule,
+    })
+}
+
+/// Checks a change of particles; returns the rows of those that go, ascending.
+pub fn change(change: &Change, id: &[u64], populations: usize) -> Result<Vec<usize>, NativeError> {
+    let mut rows = Vec::with_capacity(change.remove.len());
+    for &gone in &change.remove {
+        rows.push(
+            id.binary_search(&gone)
+                .map_err(|_| NativeError::NoParticle { id: gone })?,
+        );
+    }
+    rows.sort_unstable();
+    if let Some(twice) = rows.windows(2).find(|pair| pair[0] == pair[1]) {
+        return Err(NativeError::NoParticle { id: id[twice[0]] });
+    }
+    let mut last = id.last().copied().unwrap_or(0);
+    for new in &change.insert {
+        let place = || format!("new particle {}", new.id);
+        if new.id <= last {
+            return Err(NativeError::Value {
+                field: "the id",
+                place: place(),
+                value: new.id as f64,
+                unit: "",
+                rule: "above all ids before it",
+            });
+        }
+        last = new.id;
+        positive("the radius", new.radius, "m", place)?;
+        positive("the density", new.density, "kg/m^3", place)?;
+        let rule = |value: f64| value < populations as f64;
+        let known = "that of a population with a material";
+        within(
+            "the population",
+            f64::from(new.population),
+            "",
+            place,
+            known,
+            rule,
+        )?;
+    }
+    Ok(rows)
+}

@@ -1,0 +1,298 @@
+//! A block of neighbouring particles with the contacts that it owns.
+
+use calcine_coupler::motion::Rolling;
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::contact::{Area, ContactLaw};
+
+use super::contact::{History, Meeting, evaluate};
+use super::energy::Budget;
+use super::lanes;
+use super::rules::Rules;
+use super::sphere::{Load, Moves, Place, Spheres};
+use super::walls::WallBody;
+use super::walls::group::WallContacts;
+
+/// Particles per block; fixed, so that sums do not depend on the number of threads.
+pub const SIZE: usize = 2048;
+
+/// Pairs that may touch, with their memory. Arrays that a run does not need are empty.
+#[derive(Clone, Debug, Default)]
+pub struct Candidates {
+    /// Indices of the two spheres; the first is of the block.
+    pub pair: Vec<[u32; 2]>,
+    /// Tangential springs.
+    pub history: Vec<History>,
+    /// Torques of rolling springs in N m.
+    pub rolling: Vec<Vec3>,
+    /// What the law prepared.
+    pub prepared: Vec<f64>,
+}
+
+impl Candidates {
+    /// Forgets all; keeps the memory.
+    pub fn clear(&mut self) {
+        self.pair.clear();
+        self.history.clear();
+        self.rolling.clear();
+        self.prepared.clear();
+    }
+}
+
+/// A block.
+#[derive(Clone, Debug, Default)]
+pub struct Block {
+    /// Index of its first particle.
+    pub begin: usize,
+    /// Pairs within the block.
+    pub inner: Candidates,
+    /// Pairs with a sphere of another block.
+    pub cross: Candidates,
+    /// Contacts with walls.
+    pub walls: WallContacts,
+    /// Loads on its particles.
+    pub load: Vec<Load>,
+    /// Loads from other blocks: block, slot, particle.
+    pub incoming: Vec<[u32; 3]>,
+    /// Candidates that touch, of the list at hand.
+    pub touching: Vec<u32>,
+    /// Energies of its contacts.
+    pub budget: Budget,
+}
+
+/// What an evaluation of all forces shares.
+pub struct Scene<'a, L> {
+    /// The contact law.
+    pub law: &'a L,
+    /// Constants and options.
+    pub rules: &'a Rules,
+    /// The particles.
+    pub spheres: &'a Spheres,
+    /// The walls where they are now.
+    pub walls: &'a [WallBody],
+    /// Time in s over which memories are brought up to date.
+    pub step: f64,
+    /// Number of this evaluation.
+    pub stamp: u64,
+}
+
+impl Block {
+    /// Forces of all contacts that the block owns; those on other blocks' particles go to `outgoing`.
+    pub fn evaluate<L: ContactLaw, const BUDGET: bool>(
+        &mut self,
+        scene: &Scene<'_, L>,
+        outgoing: &mut [Load],
+    ) {
+        let held = std::mem::take(&mut self.budget.elastic_tangential);
+        self.budget.elastic_normal = 0.0;
+        self.load.fill(Load::default());
+        self.walls
+            .evaluate::<L, BUDGET>(scene, self.begin, &mut self.load, &mut self.budget);
+        let Self {
+            begin,
+            inner,
+            cross,
+            load,
+            touching,
+            budget,
+            ..
+        } = self;
+        let begin = *begin;
+        outgoing.fill(Load::default());
+        // Counting energies, rolling, cohesion and looks without a step go one by one.
+        let plain = !BUDGET
+            && !L::FORGETS_ON_SLIP
+            && !scene.rules.cohesion
+            && scene.rules.rolling == Rolling::None
+            && scene.step > 0.0;
+        if plain {
+            pulp::Arch::new().dispatch(Plain {
+                scene,
+                begin,
+                lists: [inner, cross],
+                touching,
+                load,
+                outgoing,
+            });
+            return;
+        }
+        let found = touching_of(&inner.pair, &scene.spheres.place, touching);
+        pairs::<L, BUDGET>(
+            scene,
+            inner,
+            &touching[..found],
+            budget,
+            |[i, j], one, other, _| {
+                load[i - begin].add(&one);
+                load[j - begin].add(&other);
+            },
+        );
+        let found = touching_of(&cross.pair, &scene.spheres.place, touching);
+        pairs::<L, BUDGET>(
+            scene,
+            cross,
+            &touching[..found],
+            budget,
+            |[i, _], one, other, slot| {
+                load[i - begin].add(&one);
+                outgoing[slot] = other;
+            },
+        );
+        budget.lost_tangential += held - budget.elastic_tangential;
+    }
+
+    /// Takes up the loads that other blocks left for this one's particles.
+    pub fn take_up(&mut self, outgoing: &[Vec<Load>]) {
+        for &[block, slot, particle] in &self.incoming {
+            self.load[particle as usize].add(&outgoing[block as usize][slot as usize]);
+        }
+    }
+}
+
+/// The work of a block where its contacts are plain, compiled for each set of vector instructions.
+struct Plain<'a, 'b, L> {
+    scene: &'a Scene<'b, L>,
+    begin: usize,
+    lists: [&'a mut Candidates; 2],
+    touching: &'a mut [u32],
+    load: &'a mut [Load],
+    outgoing: &'a mut [Load],
+}
+
+impl<L: ContactLaw> pulp::WithSimd for Plain<'_, '_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self {
+            scene,
+            begin,
+            lists: [inner, cross],
+            touching,
+            load,
+            outgoing,
+        } = self;
+        let found = touching_of(&inner.pair, &scene.spheres.place, touching);
+        lanes::pairs(
+            scene,
+            inner,
+            &touching[..found],
+            #[inline(always)]
+            |[i, j], one, other, _| {
+                load[i - begin].add(&one);
+                load[j - begin].add(&other);
+            },
+        );
+        let found = touching_of(&cross.pair, &scene.spheres.place, touching);
+        lanes::pairs(
+            scene,
+            cross,
+            &touching[..found],
+            #[inline(always)]
+            |[i, _], one, other, slot| {
+                load[i - begin].add(&one);
+                outgoing[slot] = other;
+            },
+        );
+    }
+}
+
+/// Lists the candidates that touch, without a branch that could be guessed wrong; returns their number.
+#[inline(always)]
+fn touching_of(pairs: &[[u32; 2]], place: &[Place], touching: &mut [u32]) -> usize {
+    let mut found = 0;
+    for (k, &[i, j]) in pairs.iter().enumerate() {
+        let (a, b) = (&place[i as usize], &place[j as usize]);
+        let reach = a.radius + b.radius;
+        let apart = (a.centre - b.centre).norm_squared();
+        touching[found] = k as u32;
+        found += usize::from(apart < reach * reach);
+    }
+    found
+}
+
+#[inline(always)]
+fn pairs<L: ContactLaw, const BUDGET: bool>(
+    scene: &Scene<'_, L>,
+    candidates: &mut Candidates,
+    touching: &[u32],
+    budget: &mut Budget,
+    mut sink: impl FnMut([usize; 2], Load, Load, usize),
+) {
+    let spheres = scene.spheres;
+    let mut unused = Vec3::zeros();
+    for &k in touching {
+        let k = k as usize;
+        let [i, j] = candidates.pair[k].map(|index| index as usize);
+        let (a, b) = (&spheres.place[i], &spheres.place[j]);
+        let (va, vb) = (&spheres.moves[i], &spheres.moves[j]);
+        let history = &mut candidates.history[k];
+        if history.stamp + 1 != scene.stamp {
+            history.shift = Vec3::zeros();
+            if let Some(torque) = candidates.rolling.get_mut(k) {
+                *torque = Vec3::zeros();
+            }
+        }
+        history.stamp = scene.stamp;
+        let (meeting, arms) = meet(scene.rules, a, b, va, vb);
+        let pair = scene.rules.pair(spheres.material[i], spheres.material[j]);
+        let prepared = candidates.prepared.get(k).copied().unwrap_or(0.0);
+        let torque = candidates.rolling.get_mut(k).unwrap_or(&mut unused);
+        let outcome = evaluate::<L, BUDGET>(
+            scene.law,
+            scene.rules,
+            (pair, prepared),
+            &meeting,
+            &mut history.shift,
+            torque,
+            scene.step,
+            budget,
+        );
+        let one = Load {
+            force: outcome.force,
+            torque: outcome.rolling - arms[0] * outcome.twist,
+        };
+        let other = Load {
+            force: -outcome.force,
+            torque: -outcome.rolling - arms[1] * outcome.twist,
+        };
+        sink([i, j], one, other, k);
+    }
+}
+
+/// Two spheres that overlap, and their arms: from each centre to the middle of the overlap.
+#[inline(always)]
+fn meet(rules: &Rules, a: &Place, b: &Place, va: &Moves, vb: &Moves) -> (Meeting, [f64; 2]) {
+    let between = a.centre - b.centre;
+    let distance = between.norm();
+    let sum = a.radius + b.radius;
+    let overlap = sum - distance;
+    let arms = [a.radius - 0.5 * overlap, b.radius - 0.5 * overlap];
+    // R* = r₁r₂/(r₁ + r₂) and m* = 1/(1/m₁ + 1/m₂) by one division.
+    let inverse = va.inverse_mass + vb.inverse_mass;
+    let share = 1.0 / (sum * inverse);
+    let radius = a.radius * b.radius * inverse * share;
+    let moment = |place: &Place, moves: &Moves| moves.inverse_mass / (place.radius * place.radius);
+    let meeting = Meeting {
+        normal: between * (1.0 / distance),
+        overlap,
+        radius,
+        mass: sum * share,
+        velocity: va.velocity - vb.velocity,
+        turning: arms[0] * va.spin + arms[1] * vb.spin,
+        rotation: va.spin - vb.spin,
+        rolling_radius: radius,
+        inertia: match rules.rolling {
+            Rolling::ElasticPlastic => 1.4 / (moment(a, va) + moment(b, vb)),
+            _ => 0.0,
+        },
+        area: if rules.cohesion {
+            Area::of_spheres(a.radius, b.radius, distance)
+        } else {
+            Area {
+                area: 0.0,
+                integral: 0.0,
+            }
+        },
+    };
+    (meeting, arms)
+}

@@ -1,0 +1,155 @@
+//! The memory of contacts, apart from the order of particles: carried over when candidates are found
+//! anew, and kept in checkpoints.
+
+use calcine_coupler::physics::Vec3;
+
+use super::block::Block;
+use super::contact::History;
+use super::sphere::Spheres;
+use super::walls::group::Slot;
+
+/// The memory of a contact of two particles.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Carried {
+    /// Rows of the particles among ascending ids, the smaller first.
+    pub rows: [u32; 2],
+    /// Elongation of the tangential spring in m, on the first.
+    pub shift: Vec3,
+    /// Torque of the rolling spring in N m, on the first.
+    pub rolling: Vec3,
+}
+
+/// The memory of a contact with a wall.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CarriedWall {
+    /// Row of the particle among ascending ids.
+    pub row: u32,
+    /// Index of the wall.
+    pub wall: u32,
+    /// Where it touched, in the wall's own frame.
+    pub point: Vec3,
+    /// Elongation of the tangential spring in m.
+    pub shift: Vec3,
+    /// Torque of the rolling spring in N m.
+    pub rolling: Vec3,
+}
+
+/// All memories, in order of their rows.
+#[derive(Clone, Debug, Default)]
+pub struct Carry {
+    /// Of pairs.
+    pub pairs: Vec<Carried>,
+    /// Of walls.
+    pub walls: Vec<CarriedWall>,
+    pair_of: Vec<u32>,
+    wall_of: Vec<u32>,
+}
+
+impl Carry {
+    /// Memories given.
+    pub fn of(pairs: Vec<Carried>, walls: Vec<CarriedWall>) -> Self {
+        Self {
+            pairs,
+            walls,
+            ..Self::default()
+        }
+    }
+
+    /// Takes the memories of all contacts that touched in evaluation `stamp`.
+    pub fn collect(&mut self, blocks: &[Block], spheres: &Spheres, stamp: u64) {
+        self.pairs.clear();
+        self.walls.clear();
+        for block in blocks {
+            for candidates in [&block.inner, &block.cross] {
+                for (k, history) in candidates.history.iter().enumerate() {
+                    if history.stamp == stamp {
+                        let [i, j] = candidates.pair[k].map(|index| spheres.row[index as usize]);
+                        let rolling = candidates.rolling.get(k).copied().unwrap_or_default();
+                        let sign = if i < j { 1.0 } else { -1.0 };
+                        self.pairs.push(Carried {
+                            rows: [i.min(j), i.max(j)],
+                            shift: sign * history.shift,
+                            rolling: sign * rolling,
+                        });
+                    }
+                }
+            }
+            for group in &block.walls.groups {
+                let slots =
+                    &block.walls.slots[group.slots.start as usize..group.slots.end as usize];
+                for slot in slots.iter().filter(|slot| slot.stamp == stamp) {
+                    self.walls.push(CarriedWall {
+                        row: spheres.row[block.begin + group.particle as usize],
+                        wall: group.wall,
+                        point: slot.point,
+                        shift: slot.shift,
+                        rolling: slot.rolling,
+                    });
+                }
+            }
+        }
+    }
+
+    /// Sorts the memories, so that they can be found by row.
+    pub fn sort(&mut self, rows: usize) {
+        self.pairs.sort_unstable_by_key(|carried| carried.rows);
+        // Contacts of one sphere with one mesh keep their order.
+        self.walls
+            .sort_by_key(|carried| (carried.row, carried.wall));
+        index(
+            &mut self.pair_of,
+            rows,
+            self.pairs.iter().map(|one| one.rows[0]),
+        );
+        index(
+            &mut self.wall_of,
+            rows,
+            self.walls.iter().map(|one| one.row),
+        );
+    }
+
+    /// The memory of a pair of rows, as the first of them sees it.
+    #[inline]
+    pub fn pair(&self, first: u32, second: u32) -> Option<(Vec3, Vec3)> {
+        let (low, high) = (first.min(second), first.max(second));
+        let of = self.pair_of[low as usize] as usize..self.pair_of[low as usize + 1] as usize;
+        let found = self.pairs[of].iter().find(|one| one.rows[1] == high)?;
+        let sign = if first < second { 1.0 } else { -1.0 };
+        Some((sign * found.shift, sign * found.rolling))
+    }
+
+    /// Puts the memories of a row and wall into the slots of their group.
+    pub fn fill(&self, row: u32, wall: u32, slots: &mut [Slot], stamp: u64) {
+        let of = self.wall_of[row as usize] as usize..self.wall_of[row as usize + 1] as usize;
+        let found = self.walls[of].iter().filter(|one| one.wall == wall);
+        for (slot, one) in slots.iter_mut().zip(found) {
+            *slot = Slot {
+                point: one.point,
+                shift: one.shift,
+                rolling: one.rolling,
+                stamp,
+            };
+        }
+    }
+
+    /// A pair's memory as a candidate begins with it.
+    #[inline]
+    pub fn history(&self, first: u32, second: u32, stamp: u64) -> (History, Vec3) {
+        match self.pair(first, second) {
+            Some((shift, rolling)) => (History { shift, stamp }, rolling),
+            None => (History::default(), Vec3::zeros()),
+        }
+    }
+}
+
+/// Where the entries of each row begin among sorted rows.
+fn index(begin: &mut Vec<u32>, rows: usize, sorted: impl Iterator<Item = u32>) {
+    begin.clear();
+    begin.resize(rows + 1, 0);
+    for row in sorted {
+        begin[row as usize + 1] += 1;
+    }
+    for row in 0..rows {
+        begin[row + 1] += begin[row];
+    }
+}

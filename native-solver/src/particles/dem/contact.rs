@@ -1,0 +1,137 @@
+//! The force of one contact, of two spheres or of a sphere and a wall.
+
+use calcine_coupler::motion::Rolling;
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::contact::{
+    Area, ContactLaw, PairConstants, RollingSpring, constant_torque, elastic_plastic, friction,
+    sjkr,
+};
+
+use super::energy::Budget;
+use super::rules::Rules;
+
+/// The memory of a contact.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(32))]
+pub struct History {
+    /// Elongation of the tangential spring in m.
+    pub shift: Vec3,
+    /// The evaluation in which it touched last; one that did not touch in the last one is new.
+    pub stamp: u64,
+}
+
+/// Two surfaces that overlap.
+pub struct Meeting {
+    /// Unit normal from the other body to the sphere.
+    pub normal: Vec3,
+    /// Overlap δ in m.
+    pub overlap: f64,
+    /// Effective radius in m.
+    pub radius: f64,
+    /// Effective mass in kg.
+    pub mass: f64,
+    /// Velocity of the sphere's centre against the other body in m/s.
+    pub velocity: Vec3,
+    /// Arm times angular velocity, summed over both bodies, in m/s.
+    pub turning: Vec3,
+    /// Rotation against the other body in rad/s.
+    pub rotation: Vec3,
+    /// Radius that the constant rolling torque takes, in m.
+    pub rolling_radius: f64,
+    /// 7/5 of the reduced moment m R² in kg m²; read with a rolling spring only.
+    pub inertia: f64,
+    /// Contact area; read with cohesion only.
+    pub area: Area,
+}
+
+/// What the contact does to the sphere; the other body gets the opposite.
+pub struct Outcome {
+    /// Force in N.
+    pub force: Vec3,
+    /// n × F_t in N; the torque of each body is −arm times this.
+    pub twist: Vec3,
+    /// Torque of rolling on the sphere in N m.
+    pub rolling: Vec3,
+}
+
+/// Evaluates a contact and brings its memory up to date over a step in s.
+#[inline(always)]
+#[allow(clippy::too_many_arguments)]
+pub fn evaluate<L: ContactLaw, const BUDGET: bool>(
+    law: &L,
+    rules: &Rules,
+    (pair, prepared): (&PairConstants, f64),
+    meeting: &Meeting,
+    shift: &mut Vec3,
+    torque: &mut Vec3,
+    step: f64,
+    budget: &mut Budget,
+) -> Outcome {
+    let normal = meeting.normal;
+    let springs = law.springs(
+        pair,
+        prepared,
+        meeting.overlap,
+        meeting.radius,
+        meeting.mass,
+    );
+    let approach = meeting.velocity.dot(&normal);
+    let mut push = springs.elastic - springs.normal_damping * approach;
+    if !rules.attractive && push < 0.0 {
+        push = 0.0;
+    }
+    let damped = push;
+    let mut stored = springs.energy;
+    if rules.cohesion {
+        let (pull, energy) = sjkr(pair, meeting.area);
+        push += pull;
+        stored += energy;
+    }
+    let slip = meeting.velocity - approach * normal - meeting.turning.cross(&normal);
+    let mut moved = *shift + slip * step;
+    moved -= moved.dot(&normal) * normal;
+    let limit = pair.friction * push.abs();
+    let mut tangential = friction::<L>(moved, slip, &springs, limit);
+    *shift = tangential.shift;
+    // An evaluation that only looks must not take a contact that slides for one that sticks: rounding
+    // decides which, and the dashpot is not limited.
+    if step == 0.0 {
+        let force = tangential.force.norm();
+        if force > limit {
+            tangential.force *= limit / force;
+        }
+    }
+    let rolling = match rules.rolling {
+        Rolling::None => Vec3::zeros(),
+        Rolling::ConstantTorque => constant_torque(
+            pair,
+            springs.elastic,
+            meeting.rolling_radius,
+            meeting.rotation,
+            normal,
+        ),
+        Rolling::ElasticPlastic => {
+            let spring = RollingSpring {
+                force: push,
+                stiffness: springs.elastic / meeting.overlap,
+                radius: meeting.radius,
+                inertia: meeting.inertia,
+            };
+            let across = meeting.rotation - meeting.rotation.dot(&normal) * normal;
+            elastic_plastic(pair, &spring, torque, across, step)
+        }
+    };
+    if BUDGET {
+        budget.elastic_normal += stored;
+        budget.elastic_tangential += 0.5 * springs.tangential_stiffness * shift.norm_squared();
+        budget.lost_normal += (springs.elastic - damped) * approach * step;
+        // The block takes off what its springs hold more than before.
+        budget.lost_tangential -= tangential.force.dot(&slip) * step;
+        budget.lost_rolling -= rolling.dot(&meeting.rotation) * step;
+    }
+    Outcome {
+        force: push * normal + tangential.force,
+        twist: normal.cross(&tangential.force),
+        rolling,
+    }
+}

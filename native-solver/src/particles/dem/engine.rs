@@ -1,0 +1,461 @@
+//! The solver: steps of velocity Verlet, and when to find candidates anew.
+
+use calcine_coupler::motion::{ContactForce, Contacts};
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::contact::{ContactLaw, HertzMindlin, Linear, SpringSliderDashpot};
+use rayon::prelude::*;
+
+use super::block::{Block, SIZE, Scene};
+use super::carry::{Carried, CarriedWall, Carry};
+use super::energy::{Budget, Energy};
+use super::motion::{self, Kick};
+use super::rebuild::{Search, Task};
+use super::rules::Rules;
+use super::sphere::{Load, Moves, Place, Spheres};
+use super::walls::WallBody;
+
+/// Skin at the start, in radii of the smallest sphere.
+const SKIN: f64 = 0.2;
+/// Least and largest skin, in radii of the smallest sphere.
+const SKINS: [f64; 2] = [0.04, 1.0];
+/// Between so many steps per search the skin is right: below, it grows; above, it shrinks.
+const STEPS: [u64; 2] = [15, 60];
+/// After so many steps without a search the skin is too wide in any case.
+const IDLE: u64 = 500;
+
+/// A block with its share of places, motions and pushes.
+type Portion<'a> = (
+    ((&'a mut Block, &'a mut [Place]), &'a mut [Moves]),
+    &'a [Vec3],
+);
+
+/// A particle as it comes into the solver.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Newcomer {
+    /// Centre in m.
+    pub centre: Vec3,
+    /// Velocity in m/s.
+    pub velocity: Vec3,
+    /// Angular velocity in rad/s.
+    pub spin: Vec3,
+    /// Radius in m.
+    pub radius: f64,
+    /// Mass in kg.
+    pub mass: f64,
+    /// Index of its material.
+    pub material: u32,
+    /// True where it is held.
+    pub held: bool,
+}
+
+/// A particle out of bounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stray {
+    /// Its row among ascending ids.
+    pub row: u32,
+    /// Its centre in m.
+    pub centre: Vec3,
+    /// Its velocity in m/s.
+    pub velocity: Vec3,
+}
+
+/// Particles in motion.
+#[derive(Clone, Debug)]
+pub struct Engine {
+    contacts: Contacts,
+    rules: Rules,
+    walls: Vec<WallBody>,
+    spheres: Spheres,
+    blocks: Vec<Block>,
+    outgoing: Vec<Vec<Load>>,
+    search: Search,
+    smallest: f64,
+    skin: f64,
+    /// How far any particle may have gone since the last search, in m.
+    gone: f64,
+    /// How far any wall may have.
+    wall_gone: f64,
+    /// Steps since the last search.
+    age: u64,
+    /// Evaluations of all forces so far.
+    stamp: u64,
+    searches: u64,
+    counting: bool,
+}
+
+impl Engine {
+    /// A solver without particles.
+    pub fn new(contacts: Contacts) -> Self {
+        Self {
+            rules: Rules::new(&contacts),
+            walls: contacts
+                .walls
+                .iter()
+                .map(|wall| WallBody::new(wall, contacts.bounds))
+                .collect(),
+            spheres: Spheres::default(),
+            blocks: Vec::new(),
+            outgoing: Vec::new(),
+            search: Search::default(),
+            smallest: 0.0,
+            skin: 0.0,
+            gone: 0.0,
+            wall_gone: 0.0,
+            age: 0,
+            stamp: 1,
+            searches: 0,
+            counting: false,
+            contacts,
+        }
+    }
+
+    /// What it was made of.
+    pub fn contacts(&self) -> &Contacts {
+        &self.contacts
+    }
+
+    /// Takes particles by rows of ascending ids, with the memories of their contacts, after so many steps
+    /// of the run, and evaluates their forces without bringing the memories up to date.
+    pub fn load(
+        &mut self,
+        particles: &[Newcomer],
+        memories: (Vec<Carried>, Vec<CarriedWall>),
+        steps: i64,
+    ) -> Result<(), Stray> {
+        let spheres = &mut self.spheres;
+        *spheres = Spheres::default();
+        for (row, particle) in particles.iter().enumerate() {
+            let inverse = if particle.held {
+                0.0
+            } else {
+                1.0 / particle.mass
+            };
+            spheres.place.push(Place {
+                centre: particle.centre,
+                radius: particle.radius,
+            });
+            spheres.moves.push(Moves {
+                velocity: if particle.held {
+                    Vec3::zeros()
+                } else {
+                    particle.velocity
+                },
+                inverse_mass: inverse,
+                spin: if particle.held {
+                    Vec3::zeros()
+                } else {
+                    particle.spin
+                },
+                inverse_inertia: 2.5 * inverse / (particle.radius * particle.radius),
+            });
+            spheres.material.push(particle.material);
+            spheres.push.push(Vec3::zeros());
+            spheres.row.push(row as u32);
+        }
+        let radii = particles.iter().map(|particle| particle.radius);
+        self.smallest = radii.fold(f64::INFINITY, f64::min);
+        self.skin = SKIN * self.smallest;
+        self.stamp = 1;
+        for block in &mut self.blocks {
+            block.budget = Budget::default();
+        }
+        if particles.is_empty() {
+            self.blocks.clear();
+            return Ok(());
+        }
+        self.check()?;
+        self.pose(steps);
+        self.search.carry = Carry::of(memories.0, memories.1);
+        self.find();
+        self.evaluate(0.0);
+        self.take_up();
+        Ok(())
+    }
+
+    /// The memories of all contacts, in order of their rows.
+    pub fn memories(&mut self) -> (Vec<Carried>, Vec<CarriedWall>) {
+        let carry = &mut self.search.carry;
+        carry.collect(&self.blocks, &self.spheres, self.stamp);
+        carry.sort(self.spheres.len());
+        (carry.pairs.clone(), carry.walls.clone())
+    }
+
+    /// Sets the force of the gas on each particle, by rows, in N.
+    pub fn push(&mut self, force: &[Vec3]) {
+        for (push, &row) in self.spheres.push.iter_mut().zip(&self.spheres.row) {
+            *push = force[row as usize];
+        }
+    }
+
+    /// Copies centres, velocities and angular velocities out, by rows.
+    pub fn read(&self, centre: &mut [Vec3], velocity: &mut [Vec3], spin: &mut [Vec3]) {
+        let spheres = &self.spheres;
+        for ((place, moves), &row) in spheres.place.iter().zip(&spheres.moves).zip(&spheres.row) {
+            centre[row as usize] = place.centre;
+            velocity[row as usize] = moves.velocity;
+            spin[row as usize] = moves.spin;
+        }
+    }
+
+    /// Counts energies from now on, at some cost, or no longer.
+    pub fn count_energy(&mut self, on: bool) {
+        self.counting = on;
+        for block in &mut self.blocks {
+            block.budget = Budget::default();
+        }
+    }
+
+    /// Energies now; those of contacts and works only while they are counted, and elastic ones from the
+    /// first step on.
+    pub fn energy(&self) -> Energy {
+        let mut energy = Energy::default();
+        for (place, moves) in self.spheres.place.iter().zip(&self.spheres.moves) {
+            if moves.inverse_mass > 0.0 {
+                let mass = 1.0 / moves.inverse_mass;
+                let inertia = 0.4 * mass * place.radius * place.radius;
+                energy.kinetic += 0.5 * mass * moves.velocity.norm_squared();
+                energy.rotational += 0.5 * inertia * moves.spin.norm_squared();
+                energy.momentum += mass * moves.velocity;
+            }
+        }
+        for block in &self.blocks {
+            energy.contacts.add(&block.budget);
+        }
+        energy
+    }
+
+    /// Searches for candidates so far, and candidates now.
+    pub fn effort(&self) -> (u64, usize) {
+        let candidates = |block: &Block| block.inner.pair.len() + block.cross.pair.len();
+        (self.searches, self.blocks.iter().map(candidates).sum())
+    }
+
+    /// Takes `steps` steps after the `done` first of the run. Velocities are whole after the last one.
+    pub fn advance(&mut self, done: i64, steps: i64) -> Result<(), Stray> {
+        if self.spheres.len() == 0 || steps <= 0 {
+            return Ok(());
+        }
+        let step = self.contacts.step;
+        for k in 0..steps {
+            let fastest = self.drift(if k == 0 { 1 } else { 2 });
+            self.pose(done + k + 1);
+            self.gone += fastest * step;
+            self.wall_gone += step * self.walls.iter().map(|wall| wall.speed).fold(0.0, f64::max);
+            self.age += 1;
+            let near = self.gone + self.gone.max(self.wall_gone);
+            let idle = self.age >= IDLE && self.skin > SKINS[0] * self.smallest;
+            // A speed that is not a number is no speed here; the check of places finds it out.
+            if near >= self.skin || idle {
+                self.check()?;
+                self.adapt();
+                let carry = &mut self.search.carry;
+                carry.collect(&self.blocks, &self.spheres, self.stamp);
+                self.find();
+            }
+            self.evaluate(step);
+        }
+        self.take_up();
+        self.close();
+        self.check()
+    }
+
+    /// Every particle must be within the bounds.
+    fn check(&self) -> Result<(), Stray> {
+        let (low, high) = self.contacts.bounds;
+        for (k, place) in self.spheres.place.iter().enumerate() {
+            let centre = place.centre;
+            if !(0..3).all(|axis| centre[axis] >= low[axis] && centre[axis] <= high[axis]) {
+                return Err(Stray {
+                    row: self.spheres.row[k],
+                    centre,
+                    velocity: self.spheres.moves[k].velocity,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// A wider skin means fewer searches, a thinner one fewer candidates.
+    fn adapt(&mut self) {
+        let factor = if self.age < STEPS[0] {
+            1.3
+        } else if self.age >= IDLE {
+            0.5
+        } else if self.age > STEPS[1] {
+            0.8
+        } else {
+            1.0
+        };
+        self.skin = (factor * self.skin).clamp(SKINS[0] * self.smallest, SKINS[1] * self.smallest);
+    }
+
+    fn pose(&mut self, steps: i64) {
+        let time = steps as f64 * self.contacts.step;
+        for wall in &mut self.walls {
+            wall.pose(time);
+        }
+    }
+
+    /// True where more than one thread is worth waking.
+    fn parallel(&self) -> bool {
+        self.spheres.len() > SIZE && rayon::current_num_threads() > 1
+    }
+
+    fn kick(&self, times: u32) -> Kick {
+        Kick {
+            half: 0.5 * self.contacts.step,
+            times,
+            gravity: self.contacts.gravity,
+        }
+    }
+
+    /// Kicks and moves all particles; returns their largest speed in m/s. The loads of the step before are
+    /// taken up first where this is not the first step of a window.
+    fn drift(&mut self, times: u32) -> f64 {
+        let (parallel, counting) = (self.parallel(), self.counting);
+        let kick = self.kick(times);
+        let (outgoing, spheres) = (&self.outgoing, &mut self.spheres);
+        let work = |(((block, place), moves), push): Portion<'_>| {
+            if times > 1 {
+                block.take_up(outgoing);
+            }
+            if counting {
+                motion::drift::<true>(block, &kick, place, moves, push)
+            } else {
+                motion::drift::<false>(block, &kick, place, moves, push)
+            }
+        };
+        let fastest = if parallel {
+            self.blocks
+                .par_iter_mut()
+                .zip(spheres.place.par_chunks_mut(SIZE))
+                .zip(spheres.moves.par_chunks_mut(SIZE))
+                .zip(spheres.push.par_chunks(SIZE))
+                .map(work)
+                .reduce(|| 0.0, f64::max)
+        } else {
+            self.blocks
+                .iter_mut()
+                .zip(spheres.place.chunks_mut(SIZE))
+                .zip(spheres.moves.chunks_mut(SIZE))
+                .zip(spheres.push.chunks(SIZE))
+                .map(work)
+                .fold(0.0, f64::max)
+        };
+        fastest.sqrt()
+    }
+
+    fn close(&mut self) {
+        let kick = self.kick(1);
+        let chunks = self.spheres.moves.chunks_mut(SIZE);
+        for ((block, moves), push) in self
+            .blocks
+            .iter()
+            .zip(chunks)
+            .zip(self.spheres.push.chunks(SIZE))
+        {
+            motion::close(block, &kick, moves, push);
+        }
+    }
+
+    fn take_up(&mut self) {
+        for block in &mut self.blocks {
+            block.take_up(&self.outgoing);
+        }
+    }
+
+    /// Finds candidates anew; the memories are in `search.carry`.
+    fn find(&mut self) {
+        match self.contacts.law.force {
+            ContactForce::HertzMindlin => self.find_with(&HertzMindlin, false),
+            ContactForce::SpringSliderDashpot => self.find_with(&SpringSliderDashpot, false),
+            ContactForce::Linear {
+                characteristic_speed,
+            } => self.find_with(
+                &Linear {
+                    speed: characteristic_speed,
+                },
+                true,
+            ),
+        }
+    }
+
+    fn find_with<L: ContactLaw>(&mut self, law: &L, prepares: bool) {
+        let parallel = self.parallel();
+        let task = Task {
+            law,
+            prepares,
+            rules: &self.rules,
+            walls: &self.walls,
+            bounds: self.contacts.bounds,
+            skin: self.skin,
+            stamp: self.stamp,
+        };
+        self.search.run(
+            &task,
+            &mut self.spheres,
+            &mut self.blocks,
+            &mut self.outgoing,
+            parallel,
+        );
+        (self.gone, self.wall_gone, self.age) = (0.0, 0.0, 0);
+        self.searches += 1;
+    }
+
+    /// Forces of all contacts; memories are brought up to date over a time in s.
+    fn evaluate(&mut self, step: f64) {
+        self.stamp += 1;
+        match (self.contacts.law.force, self.counting) {
+            (ContactForce::HertzMindlin, false) => {
+                self.evaluate_with::<_, false>(&HertzMindlin, step)
+            }
+            (ContactForce::HertzMindlin, true) => {
+                self.evaluate_with::<_, true>(&HertzMindlin, step)
+            }
+            (ContactForce::SpringSliderDashpot, false) => {
+                self.evaluate_with::<_, false>(&SpringSliderDashpot, step);
+            }
+            (ContactForce::SpringSliderDashpot, true) => {
+                self.evaluate_with::<_, true>(&SpringSliderDashpot, step);
+            }
+            (
+                ContactForce::Linear {
+                    characteristic_speed: speed,
+                },
+                false,
+            ) => self.evaluate_with::<_, false>(&Linear { speed }, step),
+            (
+                ContactForce::Linear {
+                    characteristic_speed: speed,
+                },
+                true,
+            ) => self.evaluate_with::<_, true>(&Linear { speed }, step),
+        }
+    }
+
+    fn evaluate_with<L: ContactLaw, const BUDGET: bool>(&mut self, law: &L, step: f64) {
+        let parallel = self.parallel();
+        let scene = Scene {
+            law,
+            rules: &self.rules,
+            spheres: &self.spheres,
+            walls: &self.walls,
+            step,
+            stamp: self.stamp,
+        };
+        let work = |(block, outgoing): (&mut Block, &mut Vec<Load>)| {
+            block.evaluate::<L, BUDGET>(&scene, outgoing);
+        };
+        if parallel {
+            self.blocks
+                .par_iter_mut()
+                .zip(&mut self.outgoing)
+                .for_each(work);
+        } else {
+            self.blocks
+                .iter_mut()
+                .zip(&mut self.outgoing)
+                .for_each(work);
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! The discrete element solver: spheres that move under gravity, contacts and pushes.
+//!
+//! Particles are sorted along a space-filling curve and cut into blocks of a fixed size. A block owns
+//! the candidates (pairs that may touch) of its particles; the force on a particle of another block is
+//! kept aside and taken up by that block in a fixed order, so that sums do not depend on the number of
+//! threads.
+
+mod block;
+mod carry;
+mod contact;
+pub mod energy;
+mod engine;
+mod grid;
+mod lanes;
+mod motion;
+mod rebuild;
+mod rules;
+mod sphere;
+pub mod step;
+mod walls;
+
+pub use carry::{Carried, CarriedWall};
+pub use engine::{Engine, Newcomer, Stray};

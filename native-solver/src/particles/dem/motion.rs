@@ -1,0 +1,64 @@
+//! Velocity Verlet, with rotation.
+
+use calcine_coupler::physics::Vec3;
+
+use super::block::Block;
+use super::sphere::{Moves, Place};
+
+/// What a kick needs.
+#[derive(Clone, Copy, Debug)]
+pub struct Kick {
+    /// Half a step in s.
+    pub half: f64,
+    /// Number of half kicks: the last of one step and the first of the next are done together.
+    pub times: u32,
+    /// Gravity in m/s².
+    pub gravity: Vec3,
+}
+
+/// Kicks the particles of a block.
+#[inline(always)]
+fn kick(kick: &Kick, moves: &mut Moves, force: Vec3, torque: Vec3) {
+    // A held particle has no inverse mass: no gravity either.
+    let gravity = if moves.inverse_mass > 0.0 {
+        kick.gravity
+    } else {
+        Vec3::zeros()
+    };
+    let change = (force * moves.inverse_mass + gravity) * kick.half;
+    let turn = torque * (moves.inverse_inertia * kick.half);
+    for _ in 0..kick.times {
+        moves.velocity += change;
+        moves.spin += turn;
+    }
+}
+
+/// Kicks and moves the particles of a block; returns the square of their largest speed in m²/s².
+pub fn drift<const BUDGET: bool>(
+    block: &mut Block,
+    now: &Kick,
+    place: &mut [Place],
+    moves: &mut [Moves],
+    push: &[Vec3],
+) -> f64 {
+    let step = 2.0 * now.half;
+    let mut fastest = 0.0f64;
+    for (((load, place), moves), push) in block.load.iter().zip(place).zip(moves).zip(push) {
+        kick(now, moves, load.force + push, load.torque);
+        place.centre += moves.velocity * step;
+        fastest = fastest.max(moves.velocity.norm_squared());
+        if BUDGET && moves.inverse_mass > 0.0 {
+            let way = moves.velocity * step;
+            block.budget.gravity_work += now.gravity.dot(&way) / moves.inverse_mass;
+            block.budget.push_work += push.dot(&way);
+        }
+    }
+    fastest
+}
+
+/// The last half kick of a window.
+pub fn close(block: &Block, now: &Kick, moves: &mut [Moves], push: &[Vec3]) {
+    for ((load, moves), push) in block.load.iter().zip(moves).zip(push) {
+        kick(now, moves, load.force + push, load.torque);
+    }
+}

@@ -1,0 +1,271 @@
+//! Finding candidates anew: sort the particles, fill the cells, list the pairs and walls that are near.
+
+use calcine_coupler::motion::WallShape;
+use calcine_coupler::physics::contact::{ContactLaw, PairConstants};
+use rayon::prelude::*;
+
+use super::block::{Block, Candidates, SIZE};
+use super::carry::Carry;
+use super::grid::{self, Around, Grid};
+use super::rules::Rules;
+use super::sphere::{Load, Spheres};
+use super::walls::WallBody;
+use super::walls::{shape, triangle};
+use calcine_coupler::motion::Rolling;
+use calcine_coupler::physics::Vec3;
+
+/// Scratch memory of the search.
+#[derive(Clone, Debug, Default)]
+pub struct Search {
+    /// Cells.
+    pub grid: Grid,
+    /// Memories of contacts on their way from the old candidates to the new.
+    pub carry: Carry,
+    keys: Vec<(u64, u32, u32)>,
+    order: Vec<u32>,
+    spare: Spheres,
+    /// Triangles near particles: particle, wall, triangle.
+    triangles: Vec<[u32; 3]>,
+}
+
+/// What the search is told.
+pub struct Task<'a, L> {
+    /// The law, which may prepare values.
+    pub law: &'a L,
+    /// True where it does.
+    pub prepares: bool,
+    /// Constants and options.
+    pub rules: &'a Rules,
+    /// The walls where they are now.
+    pub walls: &'a [WallBody],
+    /// Bounds in m.
+    pub bounds: (Vec3, Vec3),
+    /// Surfaces nearer than this are candidates, in m.
+    pub skin: f64,
+    /// The evaluation in which carried contacts touched.
+    pub stamp: u64,
+}
+
+impl Search {
+    /// Sorts the particles and lists all candidates, with the memories in `carry`.
+    pub fn run<L: ContactLaw>(
+        &mut self,
+        task: &Task<'_, L>,
+        spheres: &mut Spheres,
+        blocks: &mut Vec<Block>,
+        outgoing: &mut Vec<Vec<Load>>,
+        parallel: bool,
+    ) {
+        self.sort(task, spheres);
+        self.carry.sort(spheres.len());
+        self.grid.fill(&spheres.place, task.bounds, task.skin);
+        self.near_triangles(task, spheres);
+        blocks.resize_with(spheres.len().div_ceil(SIZE), Block::default);
+        outgoing.resize_with(blocks.len(), Vec::new);
+        let list = |(k, (block, outgoing)): (usize, (&mut Block, &mut Vec<Load>))| {
+            block.begin = k * SIZE;
+            let end = spheres.len().min(block.begin + SIZE);
+            block.load.clear();
+            block.load.resize(end - block.begin, Load::default());
+            self.pairs(task, spheres, block, end);
+            self.walls(task, spheres, block, end);
+            let most = block.inner.pair.len().max(block.cross.pair.len());
+            block.touching.clear();
+            // One more: the place after the last that touches is written to.
+            block.touching.resize(most + 1, 0);
+            outgoing.clear();
+            outgoing.resize(block.cross.pair.len(), Load::default());
+        };
+        if parallel {
+            blocks
+                .par_iter_mut()
+                .zip(outgoing)
+                .enumerate()
+                .for_each(list);
+        } else {
+            blocks.iter_mut().zip(outgoing).enumerate().for_each(list);
+        }
+        deliver(blocks);
+    }
+
+    fn sort<L>(&mut self, task: &Task<'_, L>, spheres: &mut Spheres) {
+        let smallest = spheres.place.iter().map(|place| place.radius);
+        let size = 2.0 * smallest.fold(f64::INFINITY, f64::min) + task.skin;
+        self.keys.clear();
+        for (i, place) in spheres.place.iter().enumerate() {
+            let key = grid::curve(task.bounds.0, size, place.centre);
+            self.keys.push((key, spheres.row[i], i as u32));
+        }
+        self.keys.sort_unstable();
+        self.order.clear();
+        self.order.extend(self.keys.iter().map(|key| key.2));
+        spheres.reorder(&self.order, &mut self.spare);
+    }
+
+    fn pairs<L: ContactLaw>(
+        &self,
+        task: &Task<'_, L>,
+        spheres: &Spheres,
+        block: &mut Block,
+        end: usize,
+    ) {
+        block.inner.clear();
+        block.cross.clear();
+        let mut memory = vec![Around::default(); self.grid.levels()];
+        for i in block.begin..end {
+            let place = spheres.place[i];
+            let own = self.grid.level(i);
+            for (level, memory) in memory.iter_mut().enumerate().skip(own) {
+                for j in self.grid.around(level, place.centre, memory) {
+                    let other = j as usize;
+                    if level == own && other <= i {
+                        continue;
+                    }
+                    let cut = place.radius + spheres.place[other].radius + task.skin;
+                    let apart = (spheres.place[other].centre - place.centre).norm_squared();
+                    let held =
+                        spheres.moves[i].inverse_mass + spheres.moves[other].inverse_mass == 0.0;
+                    if apart < cut * cut && !held {
+                        let inner = (block.begin..end).contains(&other);
+                        let list = if inner {
+                            &mut block.inner
+                        } else {
+                            &mut block.cross
+                        };
+                        self.add(task, spheres, list, i, other);
+                    }
+                }
+            }
+        }
+    }
+
+    #[inline]
+    fn add<L: ContactLaw>(
+        &self,
+        task: &Task<'_, L>,
+        spheres: &Spheres,
+        list: &mut Candidates,
+        i: usize,
+        j: usize,
+    ) {
+        let (history, rolling) = self
+            .carry
+            .history(spheres.row[i], spheres.row[j], task.stamp);
+        list.pair.push([i as u32, j as u32]);
+        list.history.push(history);
+        if task.rules.rolling == Rolling::ElasticPlastic {
+            list.rolling.push(rolling);
+        }
+        if task.prepares {
+            let pair = task.rules.pair(spheres.material[i], spheres.material[j]);
+            let [a, b] = [i, j].map(|k| spheres.place[k].radius);
+            let mass = 1.0 / (spheres.moves[i].inverse_mass + spheres.moves[j].inverse_mass);
+            list.prepared
+                .push(task.law.prepare(pair, a * b / (a + b), mass));
+        }
+    }
+
+    fn walls<L: ContactLaw>(
+        &self,
+        task: &Task<'_, L>,
+        spheres: &Spheres,
+        block: &mut Block,
+        end: usize,
+    ) {
+        block.walls.clear();
+        let first = self
+            .triangles
+            .partition_point(|near| (near[0] as usize) < block.begin);
+        let mut near = &self.triangles[first..];
+        for i in block.begin..end {
+            let place = &spheres.place[i];
+            if spheres.moves[i].inverse_mass == 0.0 {
+                continue;
+            }
+            for (index, wall) in task.walls.iter().enumerate() {
+                let groups = block.walls.groups.len();
+                let (particle, wall_index) = ((i - block.begin) as u32, index as u32);
+                if let WallShape::Mesh { .. } = wall.shape {
+                    let skip =
+                        near.partition_point(|one| [one[0], one[1]] < [i as u32, wall_index]);
+                    near = &near[skip..];
+                    let count =
+                        near.partition_point(|one| [one[0], one[1]] <= [i as u32, wall_index]);
+                    let triangles = near[..count].iter().map(|one| one[2]);
+                    block.walls.add(particle, wall_index, triangles, true);
+                } else if shape::nearest(&wall.shape, wall.own(place.centre))
+                    .is_some_and(|near| near.distance < place.radius + task.skin)
+                {
+                    block
+                        .walls
+                        .add(particle, wall_index, std::iter::empty(), false);
+                }
+                if block.walls.groups.len() > groups {
+                    self.begin_wall(task, spheres, block, i, wall);
+                }
+            }
+        }
+    }
+
+    /// Memories and prepared value of the group added last.
+    fn begin_wall<L: ContactLaw>(
+        &self,
+        task: &Task<'_, L>,
+        spheres: &Spheres,
+        block: &mut Block,
+        i: usize,
+        wall: &WallBody,
+    ) {
+        let Some(group) = block.walls.groups.last() else {
+            return;
+        };
+        let slots = &mut block.walls.slots[group.slots.start as usize..group.slots.end as usize];
+        self.carry
+            .fill(spheres.row[i], group.wall, slots, task.stamp);
+        if task.prepares {
+            let pair: &PairConstants = task.rules.pair(spheres.material[i], wall.material);
+            let mass = 1.0 / spheres.moves[i].inverse_mass;
+            let value = task.law.prepare(pair, spheres.place[i].radius, mass);
+            block.walls.prepared.push(value);
+        }
+    }
+
+    /// Lists the triangles near each particle, in the order of particles, walls and triangles.
+    fn near_triangles<L>(&mut self, task: &Task<'_, L>, spheres: &Spheres) {
+        self.triangles.clear();
+        for (index, wall) in task.walls.iter().enumerate() {
+            let WallShape::Mesh { triangles } = &wall.shape else {
+                continue;
+            };
+            for (k, corners) in triangles.iter().enumerate() {
+                let [a, b, c] = corners.map(|corner| wall.placed(corner));
+                let span = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
+                let list = &mut self.triangles;
+                self.grid.within(span, task.skin, |sphere| {
+                    let place = &spheres.place[sphere as usize];
+                    let reach = place.radius + task.skin;
+                    let (point, _) = triangle::nearest(place.centre, &[a, b, c]);
+                    if (place.centre - point).norm_squared() < reach * reach {
+                        list.push([sphere, index as u32, k as u32]);
+                    }
+                });
+            }
+        }
+        self.triangles.sort_unstable();
+    }
+}
+
+/// Tells each block which loads of others are for its particles, in the order of blocks and slots.
+fn deliver(blocks: &mut [Block]) {
+    for block in blocks.iter_mut() {
+        block.incoming.clear();
+    }
+    for source in 0..blocks.len() {
+        for slot in 0..blocks[source].cross.pair.len() {
+            let particle = blocks[source].cross.pair[slot][1] as usize;
+            let target = &mut blocks[particle / SIZE];
+            let own = (particle % SIZE) as u32;
+            target.incoming.push([source as u32, slot as u32, own]);
+        }
+    }
+}

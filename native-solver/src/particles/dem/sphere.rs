@@ -1,0 +1,81 @@
+//! The particles as the solver holds them, in the order of space.
+
+use calcine_coupler::physics::Vec3;
+
+/// Where a sphere is; one load for the search of contacts.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(32))]
+pub struct Place {
+    /// Centre in m.
+    pub centre: Vec3,
+    /// Radius in m.
+    pub radius: f64,
+}
+
+/// How a sphere moves; one cache line.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(64))]
+pub struct Moves {
+    /// Velocity in m/s.
+    pub velocity: Vec3,
+    /// 1/m in 1/kg; 0 for one that is held.
+    pub inverse_mass: f64,
+    /// Angular velocity in rad/s.
+    pub spin: Vec3,
+    /// 1/I in 1/(kg m²); 0 for one that is held.
+    pub inverse_inertia: f64,
+}
+
+/// Force and torque of all contacts of a sphere.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Load {
+    /// Force in N.
+    pub force: Vec3,
+    /// Torque in N m.
+    pub torque: Vec3,
+}
+
+impl Load {
+    /// Adds another load.
+    #[inline(always)]
+    pub fn add(&mut self, other: &Load) {
+        self.force += other.force;
+        self.torque += other.torque;
+    }
+}
+
+/// All spheres; `row` is the place of a sphere among ascending ids.
+#[derive(Clone, Debug, Default)]
+pub struct Spheres {
+    /// Places.
+    pub place: Vec<Place>,
+    /// Motions.
+    pub moves: Vec<Moves>,
+    /// Materials.
+    pub material: Vec<u32>,
+    /// Force of the gas in N.
+    pub push: Vec<Vec3>,
+    /// Rows in ascending id.
+    pub row: Vec<u32>,
+}
+
+impl Spheres {
+    /// Their number.
+    pub fn len(&self) -> usize {
+        self.place.len()
+    }
+
+    /// Brings all arrays into an order: element k is what was at `order[k]`.
+    pub fn reorder(&mut self, order: &[u32], spare: &mut Spheres) {
+        fn gather<T: Copy>(from: &mut Vec<T>, order: &[u32], spare: &mut Vec<T>) {
+            spare.clear();
+            spare.extend(order.iter().map(|&old| from[old as usize]));
+            std::mem::swap(from, spare);
+        }
+        gather(&mut self.place, order, &mut spare.place);
+        gather(&mut self.moves, order, &mut spare.moves);
+        gather(&mut self.material, order, &mut spare.material);
+        gather(&mut self.push, order, &mut spare.push);
+        gather(&mut self.row, order, &mut spare.row);
+    }
+}

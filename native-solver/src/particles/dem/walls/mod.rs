@@ -1,0 +1,136 @@
+//! Walls: where they are, how they move, which point of them is nearest to a sphere.
+
+pub mod group;
+pub mod shape;
+pub mod triangle;
+
+use calcine_coupler::motion::{Wall, WallMotion, WallShape};
+use calcine_coupler::physics::Vec3;
+use nalgebra::{Matrix3, Rotation3};
+
+/// A wall in its own frame, which is that of the start of the run, and the frame's pose now.
+#[derive(Clone, Debug)]
+pub struct WallBody {
+    /// Shape at the start.
+    pub shape: WallShape,
+    /// Index of its material.
+    pub material: u32,
+    motion: WallMotion,
+    turn: Matrix3<f64>,
+    shift: Vec3,
+    /// Largest speed in m/s at which its surface comes nearer to a place within the bounds.
+    pub speed: f64,
+}
+
+impl WallBody {
+    /// A wall at the start of the run, within the bounds of the particles.
+    pub fn new(wall: &Wall, bounds: (Vec3, Vec3)) -> Self {
+        Self {
+            shape: wall.shape.clone(),
+            material: wall.material as u32,
+            motion: wall.motion,
+            turn: Matrix3::identity(),
+            shift: Vec3::zeros(),
+            speed: speed(wall, bounds),
+        }
+    }
+
+    /// Moves it to where it is at a motion time in s.
+    pub fn pose(&mut self, time: f64) {
+        match self.motion {
+            WallMotion::Still => {}
+            WallMotion::Translating(velocity) => self.shift = velocity * time,
+            WallMotion::Rotating {
+                point,
+                angular_velocity,
+            } => {
+                self.turn = *Rotation3::new(angular_velocity * time).matrix();
+                self.shift = point - self.turn * point;
+            }
+        }
+    }
+
+    /// A place in the wall's own frame.
+    #[inline]
+    pub fn own(&self, place: Vec3) -> Vec3 {
+        match self.motion {
+            WallMotion::Still => place,
+            WallMotion::Translating(_) => place - self.shift,
+            WallMotion::Rotating { .. } => self.turn.tr_mul(&(place - self.shift)),
+        }
+    }
+
+    /// Where a place of the wall's own frame is now.
+    #[inline]
+    pub fn placed(&self, own: Vec3) -> Vec3 {
+        self.turn * own + self.shift
+    }
+
+    /// A direction of the wall's own frame as seen from outside.
+    #[inline]
+    pub fn outside(&self, direction: Vec3) -> Vec3 {
+        match self.motion {
+            WallMotion::Rotating { .. } => self.turn * direction,
+            _ => direction,
+        }
+    }
+
+    /// Velocity in m/s of its surface at a place.
+    #[inline]
+    pub fn velocity(&self, place: Vec3) -> Vec3 {
+        match self.motion {
+            WallMotion::Still => Vec3::zeros(),
+            WallMotion::Translating(velocity) => velocity,
+            WallMotion::Rotating {
+                point,
+                angular_velocity,
+            } => angular_velocity.cross(&(place - point)),
+        }
+    }
+
+    /// Angular velocity in rad/s.
+    #[inline]
+    pub fn spin(&self) -> Vec3 {
+        match self.motion {
+            WallMotion::Rotating {
+                angular_velocity, ..
+            } => angular_velocity,
+            _ => Vec3::zeros(),
+        }
+    }
+}
+
+/// The largest speed of the surface where particles can be; zero for one that turns within itself.
+fn speed(wall: &Wall, (low, high): (Vec3, Vec3)) -> f64 {
+    match wall.motion {
+        WallMotion::Still => 0.0,
+        WallMotion::Translating(velocity) => velocity.norm(),
+        WallMotion::Rotating {
+            point,
+            angular_velocity,
+        } => {
+            let axial = |axis: Vec3, on_axis: Vec3| {
+                axis.cross(&angular_velocity).norm() <= 1e-12 * angular_velocity.norm()
+                    && axis.cross(&(on_axis - point)).norm() <= 1e-12 * (high - low).norm()
+            };
+            let within_itself = match &wall.shape {
+                WallShape::Cylinder {
+                    point: on_axis,
+                    axis,
+                    ..
+                } => axial(*axis, *on_axis),
+                WallShape::Cone { ends, .. } => axial((ends[1] - ends[0]).normalize(), ends[0]),
+                WallShape::Plane { normal, .. } => {
+                    normal.cross(&angular_velocity).norm() <= 1e-12 * angular_velocity.norm()
+                }
+                WallShape::Mesh { .. } => false,
+            };
+            if within_itself {
+                return 0.0;
+            }
+            // The farthest corner of the bounds from the point bounds the distance from the axis.
+            let far = (low - point).abs().sup(&(high - point).abs());
+            angular_velocity.norm() * far.norm()
+        }
+    }
+}

@@ -1,0 +1,375 @@
+//! Many spheres: conservation, packing, resumption, threads, coming and going.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod grains;
+
+use std::f64::consts::PI;
+
+use calcine_coupler::motion::{
+    Change, Cohesion, ContactForce, Contacts, Rolling, WallMotion, WallShape,
+};
+use calcine_coupler::part::{Part, Particles};
+use calcine_coupler::physics::Vec3;
+use grains::*;
+
+#[test]
+fn a_frictionless_elastic_box_keeps_its_energy() {
+    let mut contacts = contacts(2e-6);
+    contacts.pairs[0].restitution = 1.0;
+    contacts.pairs[0].friction = 0.0;
+    contacts.walls = cuboid(Vec3::zeros(), Vec3::repeat(0.03));
+    let mut bed = Bed::new(contacts, &loose([10, 10, 10], 3e-3, 1e-3, 1.0));
+    bed.particles.count_energy(true);
+    bed.run(1);
+    let before = bed.particles.energy();
+    bed.run(9999);
+    let after = bed.particles.energy();
+    let drift = after.stored() / before.stored() - 1.0;
+    assert!(drift.abs() < 1e-4, "{drift}");
+    assert_eq!(after.lost(), 0.0);
+    assert_eq!(after.rotational, 0.0);
+    let (searches, _) = bed.particles.engine().unwrap().effort();
+    assert!((10..2000).contains(&searches), "{searches}");
+}
+
+#[test]
+fn a_cloud_keeps_its_momentum_to_round_off() {
+    let mut contacts = contacts(5e-6);
+    contacts.pairs[0].restitution = 0.7;
+    // A cloud that falls in on itself.
+    let mut spheres = loose([8, 8, 8], 3e-3, 1.2e-3, 0.3);
+    for sphere in &mut spheres {
+        sphere.velocity += (Vec3::repeat(0.012) - sphere.position) * 80.0 + Vec3::x();
+    }
+    let mut bed = Bed::new(contacts, &spheres);
+    let before = bed.particles.energy();
+    bed.run(3000);
+    let after = bed.particles.energy();
+    assert!(after.kinetic < 0.9 * before.kinetic);
+    let drift = (after.momentum - before.momentum).norm() / before.momentum.norm();
+    assert!(drift < 1e-12, "{drift}");
+}
+
+/// A cylinder of ten diameters across.
+fn cylinder(step: f64, radius: f64) -> Contacts {
+    let mut contacts = contacts(step);
+    contacts.gravity = Vec3::z() * -9.81;
+    contacts.materials[0].young = 5e6;
+    contacts.walls = vec![
+        plane(Vec3::zeros(), Vec3::z()),
+        wall(WallShape::Cylinder {
+            point: Vec3::zeros(),
+            axis: Vec3::z(),
+            radius,
+        }),
+    ];
+    contacts
+}
+
+#[test]
+fn spheres_settle_in_a_cylinder_to_the_void_fraction_of_a_random_bed() {
+    let radius = 2e-3;
+    let contacts = cylinder(4e-5, 0.02);
+    let mut spheres = loose([8, 8, 30], 4.8e-3, radius, 0.2);
+    for sphere in &mut spheres {
+        sphere.position -= Vec3::new(0.0192, 0.0192, 0.0);
+    }
+    spheres.retain(|sphere| sphere.position.xy().norm() < 0.0175);
+    for (k, sphere) in spheres.iter_mut().enumerate() {
+        sphere.id = k as u64 + 1;
+    }
+    let count = spheres.len();
+    let mut bed = Bed::new(contacts, &spheres);
+    bed.particles.count_energy(true);
+    bed.run(12_000);
+    let energy = bed.particles.energy();
+    assert!(energy.kinetic < 1e-4 * energy.work(), "{energy:?}");
+    let fields = bed.particles.fields();
+    // Volume within a core: a diameter from the wall, two above the floor and below the top.
+    let mut heights: Vec<f64> = fields.position.iter().map(|place| place.z).collect();
+    heights.sort_by(f64::total_cmp);
+    let (low, high, core) = (
+        4.0 * radius,
+        heights[count - 40] - 4.0 * radius,
+        0.02 - 2.0 * radius,
+    );
+    let mut next = scatter(3);
+    let points = 40_000;
+    let mut inside = 0;
+    for _ in 0..points {
+        let (angle, out) = (2.0 * PI * next(), core * next().sqrt());
+        let point = Vec3::new(
+            out * angle.cos(),
+            out * angle.sin(),
+            low + (high - low) * next(),
+        );
+        let near = |place: &Vec3| (place - point).norm_squared() < radius * radius;
+        inside += u32::from(fields.position.iter().any(near));
+    }
+    let void = 1.0 - f64::from(inside) / f64::from(points);
+    assert!(
+        (0.38..0.42).contains(&void),
+        "{void}, {count} spheres up to {high} m"
+    );
+}
+
+#[test]
+fn counting_energies_changes_no_bit_of_the_motion() {
+    for force in [
+        ContactForce::HertzMindlin,
+        ContactForce::Linear {
+            characteristic_speed: 1.0,
+        },
+    ] {
+        let run = |count: bool| {
+            let mut contacts = cylinder(2e-5, 0.02);
+            contacts.law.force = force;
+            let mut spheres = loose([5, 5, 20], 4.5e-3, 2e-3, 1.0);
+            let mut next = scatter(11);
+            for sphere in &mut spheres {
+                sphere.position -= Vec3::new(0.01125, 0.01125, 0.0);
+                sphere.radius *= 0.5 + 0.5 * next();
+            }
+            let mut bed = Bed::new(contacts, &spheres);
+            bed.particles.count_energy(count);
+            bed.run(3000);
+            bed.bits()
+        };
+        assert_eq!(run(false), run(true));
+    }
+}
+
+/// What becomes of the energy of a shower of rough, damped spheres on a rising floor.
+#[test]
+fn the_energy_budget_closes_with_the_order_of_the_step() {
+    let error = |step: f64, steps: u64| {
+        let mut contacts = cylinder(step, 0.02);
+        contacts.law.rolling = Rolling::ElasticPlastic;
+        contacts.pairs[0].rolling_friction = 0.1;
+        contacts.walls[0].motion = WallMotion::Translating(Vec3::z() * 0.2);
+        let mut spheres = loose([4, 4, 4], 4.5e-3, 2e-3, 1.0);
+        for sphere in &mut spheres {
+            sphere.position -= Vec3::new(0.009, 0.009, 0.0);
+        }
+        let mut bed = Bed::new(contacts, &spheres);
+        bed.particles.count_energy(true);
+        let before = bed.particles.energy();
+        bed.run(steps);
+        let after = bed.particles.energy();
+        assert!(after.lost() > 0.5 * before.stored());
+        (after.balance() - before.balance()) / after.lost()
+    };
+    let (coarse, fine) = (error(4e-6, 10_000), error(1e-6, 40_000));
+    assert!(coarse.abs() < 0.04, "{coarse}");
+    assert!(fine.abs() < 0.4 * coarse.abs(), "{coarse} {fine}");
+}
+
+/// A few thousand spheres of all sizes in a turning drum, with every law's memory.
+fn drum(rolling: Rolling, force: ContactForce) -> Bed {
+    let mut contacts = cylinder(2e-5, 0.02);
+    contacts.law.rolling = rolling;
+    contacts.law.force = force;
+    contacts.law.cohesion = Cohesion::Sjkr;
+    contacts.pairs[0].rolling_friction = 0.1;
+    contacts.pairs[0].rolling_damping = 0.3;
+    contacts.pairs[0].cohesion_energy = 2e3;
+    contacts.gravity = Vec3::new(-9.81, 0.0, -3.0);
+    contacts.walls[1].motion = WallMotion::Rotating {
+        point: Vec3::zeros(),
+        angular_velocity: Vec3::z() * 20.0,
+    };
+    let mut spheres = loose([10, 10, 26], 2.6e-3, 1.1e-3, 0.5);
+    let mut next = scatter(5);
+    for sphere in &mut spheres {
+        sphere.position -= Vec3::new(0.013, 0.013, -1e-3);
+        sphere.radius *= 0.2 + 0.8 * next();
+    }
+    Bed::new(contacts, &spheres)
+}
+
+#[test]
+fn one_and_two_threads_give_the_same_bits() {
+    let run = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| {
+            let mut bed = drum(Rolling::ElasticPlastic, ContactForce::HertzMindlin);
+            bed.run(1500);
+            bed.bits()
+        })
+    };
+    assert_eq!(run(1), run(2));
+}
+
+#[test]
+fn windows_of_any_length_give_the_same_bits() {
+    let mut long = drum(Rolling::ConstantTorque, ContactForce::HertzMindlin);
+    let mut short = drum(Rolling::ConstantTorque, ContactForce::HertzMindlin);
+    long.run(600);
+    for _ in 0..200 {
+        short.run(3);
+    }
+    assert_eq!(long.bits(), short.bits());
+}
+
+#[test]
+fn a_resumed_bed_takes_the_same_path_with_every_law() {
+    let folder = tempfile::tempdir().unwrap();
+    let linear = ContactForce::Linear {
+        characteristic_speed: 1.0,
+    };
+    for (rolling, force) in [
+        (Rolling::ElasticPlastic, ContactForce::HertzMindlin),
+        (Rolling::ConstantTorque, ContactForce::SpringSliderDashpot),
+        (Rolling::None, linear),
+    ] {
+        let mut through = drum(rolling, force);
+        through.run(1000);
+        through.particles.checkpoint(folder.path()).unwrap();
+        let mut resumed = drum(rolling, force);
+        resumed.particles.restore(folder.path()).unwrap();
+        resumed.clocks = through.clocks;
+        assert_eq!(resumed.bits(), through.bits());
+        for _ in 0..3 {
+            through.run(100);
+            resumed.run(100);
+            assert_eq!(resumed.bits(), through.bits());
+        }
+    }
+}
+
+#[test]
+fn a_checkpoint_keeps_the_springs_of_resting_contacts() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut contacts = contacts(1e-6);
+    contacts.walls = vec![plane(Vec3::zeros(), Vec3::z())];
+    // On an incline that friction holds.
+    contacts.gravity = Vec3::new(0.2 * 9.81, 0.0, -9.81);
+    let mut bed = Bed::new(
+        contacts,
+        &[sphere(1, Vec3::z() * 1e-3, Vec3::zeros(), 1e-3)],
+    );
+    bed.run(200);
+    let before = bed.velocity(0);
+    bed.run(1);
+    let step = bed.velocity(0) - before;
+    bed.particles.checkpoint(folder.path()).unwrap();
+    let before = bed.velocity(0);
+    bed.run(1);
+    // Without its spring it would feel the full slope.
+    assert!(((bed.velocity(0) - before) - step).norm() < 0.1 * step.norm());
+}
+
+#[test]
+fn particles_come_and_go_and_the_others_do_not_notice() {
+    let mut contacts = contacts(1e-5);
+    contacts.walls = vec![plane(Vec3::zeros(), Vec3::z())];
+    contacts.gravity = Vec3::z() * -9.81;
+    let at = |id, x: f64| sphere(id, Vec3::new(x, 0.0, 9.9e-4), Vec3::x() * 0.1, 1e-3);
+    let spheres = [at(1, 0.0), at(2, 0.01), at(5, 0.02)];
+    let mut alone = Bed::new(contacts.clone(), &[at(1, 0.0)]);
+    let mut bed = Bed::new(contacts, &spheres);
+    alone.run(300);
+    bed.run(300);
+    let change = Change {
+        remove: vec![5, 2],
+        insert: vec![at(6, 0.03), at(9, 0.04)],
+    };
+    bed.change(&change).unwrap();
+    let fields = bed.particles.fields();
+    assert_eq!(fields.id, [1, 6, 9]);
+    assert_eq!(fields.position[1], Vec3::new(0.03, 0.0, 9.9e-4));
+    let events = bed.particles.events();
+    let told: Vec<_> = events
+        .iter()
+        .map(|event| (event.id, event.inserted))
+        .collect();
+    assert_eq!(told, [(2, false), (5, false), (6, true), (9, true)]);
+    assert!((events[2].momentum.x / (0.1 * fields.mass[1]) - 1.0).abs() < 1e-15);
+    alone.run(300);
+    bed.run(300);
+    assert!((bed.place(0) - alone.place(0)).norm() < 1e-9);
+    assert!(bed.particles.events().is_empty());
+    for wrong in [
+        Change {
+            remove: vec![7],
+            insert: vec![],
+        },
+        Change {
+            remove: vec![],
+            insert: vec![at(4, 0.0)],
+        },
+    ] {
+        assert!(bed.change(&wrong).is_err());
+        assert_eq!(bed.particles.fields().id, [1, 6, 9]);
+    }
+}
+
+#[test]
+fn a_held_population_stays_and_carries_the_others() {
+    let mut contacts = contacts(1e-5);
+    contacts.gravity = Vec3::z() * -9.81;
+    let mut below = sphere(1, Vec3::zeros(), Vec3::x(), 1e-3);
+    below.population = 1;
+    let above = sphere(2, Vec3::z() * 2e-3, Vec3::zeros(), 1e-3);
+    let mut bed = Bed::new(contacts, &[below, above]);
+    bed.push.force[0] = Vec3::x();
+    bed.run(20_000);
+    assert_eq!(bed.place(0), Vec3::zeros());
+    assert_eq!(bed.velocity(0), Vec3::zeros());
+    assert!((bed.received.impulse[0].x / 0.2 - 1.0).abs() < 1e-12);
+    let weight = bed.particles.fields().mass[1] * 9.81;
+    let stiffness = 4.0 / 3.0 * (1e7 / 1.875) * 5e-4f64.sqrt();
+    let rest = 2e-3 - (weight / stiffness).powf(2.0 / 3.0);
+    assert!(
+        (bed.place(1).z - rest).abs() < 1e-5 * (2e-3 - rest),
+        "{}",
+        bed.place(1).z
+    );
+}
+
+#[test]
+fn a_sphere_that_leaves_its_bounds_is_named_with_place_and_velocity() {
+    let at = |id, speed: f64| sphere(id, Vec3::x() * (0.1 * id as f64), Vec3::z() * speed, 1e-3);
+    let mut bed = Bed::new(contacts(1e-3), &[at(3, 0.1), at(8, 30.0)]);
+    let text = bed.try_run(100).unwrap_err().to_string();
+    assert!(
+        text.contains("particle 8 left its bounds at (0.8, 0, 1."),
+        "{text}"
+    );
+    assert!(text.contains("velocity of (0, 0, 30) m/s"), "{text}");
+    let outside = sphere(4, Vec3::x() * 2.0, Vec3::zeros(), 1e-3);
+    let text = Bed::try_new(contacts(1e-3), &[outside])
+        .err()
+        .unwrap()
+        .to_string();
+    assert!(text.contains("particle 4 left its bounds"), "{text}");
+}
+
+#[test]
+fn setups_without_meaning_are_refused_with_their_place() {
+    let refused = |contacts: Contacts| {
+        let sphere = sphere(1, Vec3::zeros(), Vec3::zeros(), 1e-3);
+        Bed::try_new(contacts, &[sphere]).err().unwrap().to_string()
+    };
+    let mut wrong = contacts(0.0);
+    assert!(refused(wrong.clone()).contains("the time step of the motion of particles is 0 s"));
+    wrong.step = 1e-5;
+    wrong.pairs[0].restitution = 0.0;
+    let text = refused(wrong.clone());
+    assert!(
+        text.contains("the restitution of materials 0 and 0 is 0"),
+        "{text}"
+    );
+    wrong.pairs[0].restitution = 0.5;
+    wrong.walls = vec![plane(Vec3::zeros(), Vec3::z() * 2.0)];
+    let text = refused(wrong.clone());
+    assert!(
+        text.contains("the length of the normal of wall `wall` is 2"),
+        "{text}"
+    );
+    wrong.walls[0].material = 3;
+    assert!(refused(wrong).contains("the index of the material of wall `wall` is 3"));
+}

@@ -1,0 +1,199 @@
+//! How external solvers are started: ranks, launchers, by hand.
+
+use std::sync::Arc;
+
+use calcine_adapters::launch::{Launcher, Spawner};
+use calcine_wire::Network;
+use clap::{Args, ValueEnum};
+
+use super::Failure;
+use crate::assembly::{GasBackend, Pairing, ParticleBackend, Start, Starts};
+use crate::exit;
+
+/// What carries messages between Calcine and external solvers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum Transport {
+    /// Memory of this machine.
+    #[default]
+    SharedMemory,
+    /// MPI, also between machines; the program `calcine-mpi` takes over.
+    Mpi,
+}
+
+impl Transport {
+    /// The name as users write it.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Transport::SharedMemory => "shared-memory",
+            Transport::Mpi => "mpi",
+        }
+    }
+}
+
+/// Options of external solvers.
+#[derive(Clone, Debug, Default, Args)]
+pub(super) struct Parallel {
+    /// MPI ranks of OpenFOAM [default: as the case says, or 1].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    ranks_gas: Option<u16>,
+    /// MPI ranks of LIGGGHTS [default: as the case says, or 1].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    ranks_particles: Option<u16>,
+    /// What carries messages between Calcine and external solvers.
+    #[arg(long, value_enum, default_value_t)]
+    transport: Transport,
+    /// Starts OpenFOAM's ranks instead of `mpirun`, for example "srun -n 16"; state as many with
+    /// `--ranks-gas`.
+    #[arg(long, value_name = "WORDS", value_parser = Launcher::parse)]
+    launch_gas: Option<Launcher>,
+    /// Starts LIGGGHTS' ranks instead of `mpirun`; state as many with `--ranks-particles`.
+    #[arg(long, value_name = "WORDS", value_parser = Launcher::parse)]
+    launch_particles: Option<Launcher>,
+    /// Says what to start by hand, for debuggers and queues, and waits for it; messages go through
+    /// shared memory.
+    #[arg(long, conflicts_with_all = ["launch_gas", "launch_particles"])]
+    attach: bool,
+}
+
+impl Parallel {
+    /// What carries the messages of a pairing's solvers.
+    pub(super) fn transport(&self) -> Transport {
+        self.transport
+    }
+
+    /// What was asked for; an option for a solver that does not take part is refused.
+    pub(super) fn starts(
+        &self,
+        pairing: Pairing,
+        case: &Starts,
+        network: Option<&Arc<dyn Network>>,
+    ) -> Result<Starts, Failure> {
+        let gas = pairing.gas == GasBackend::Openfoam;
+        let particles = pairing.particles == ParticleBackend::Liggghts;
+        for (option, given, taken, remedy) in [
+            (
+                "--ranks-gas",
+                self.ranks_gas.is_some(),
+                gas,
+                "--gas openfoam",
+            ),
+            (
+                "--launch-gas",
+                self.launch_gas.is_some(),
+                gas,
+                "--gas openfoam",
+            ),
+            (
+                "--ranks-particles",
+                self.ranks_particles.is_some(),
+                particles,
+                "--particles liggghts",
+            ),
+            (
+                "--launch-particles",
+                self.launch_particles.is_some(),
+                particles,
+                "--particles liggghts",
+            ),
+            (
+                "--attach",
+                self.attach,
+                gas || particles,
+                "--gas openfoam or --particles liggghts",
+            ),
+        ] {
+            if given && !taken {
+                let message = format!(
+                    "`{option}` is for an external solver: add `{remedy}`, or leave it out \
+                     (native solvers use threads, `--threads`)"
+                );
+                return Err(Failure::new(exit::CASE, message));
+            }
+        }
+        let own = self.launch_gas.is_some() || self.launch_particles.is_some() || self.attach;
+        let network = network.filter(|_| self.transport == Transport::Mpi);
+        if own && self.transport == Transport::Mpi {
+            let message = "over MPI Calcine spawns the ranks itself, where MPI's own settings say; \
+                           leave out --launch-gas, --launch-particles and --attach, or take \
+                           --transport shared-memory";
+            return Err(Failure::new(exit::CASE, message));
+        }
+        let start = |ranks: Option<u16>, case: &Start, launcher: &Option<Launcher>| Start {
+            ranks: ranks.map_or(case.ranks, u32::from),
+            launcher: match (launcher, network) {
+                (Some(launcher), _) => launcher.clone(),
+                (None, Some(network)) => Launcher::Network(Spawner(Arc::clone(network))),
+                (None, None) if self.attach => Launcher::Hand,
+                (None, None) => Launcher::Mpirun,
+            },
+        };
+        Ok(Starts {
+            gas: start(self.ranks_gas, &case.gas, &self.launch_gas),
+            particles: start(
+                self.ranks_particles,
+                &case.particles,
+                &self.launch_particles,
+            ),
+        })
+    }
+}
+
+/// The options that a run was started with, as a user would type them to go on.
+pub(super) fn flags(starts: &Starts) -> String {
+    let mut text = String::new();
+    for (name, start) in [("gas", &starts.gas), ("particles", &starts.particles)] {
+        if start.ranks > 1 {
+            text.push_str(&format!(" --ranks-{name} {}", start.ranks));
+        }
+        if let Launcher::Own(words) = &start.launcher {
+            text.push_str(&format!(" --launch-{name} \"{}\"", words.join(" ")));
+        }
+    }
+    let both = [&starts.gas, &starts.particles];
+    if both.iter().any(|start| start.launcher == Launcher::Hand) {
+        text.push_str(" --attach");
+    }
+    let spawned = |start: &&&Start| matches!(start.launcher, Launcher::Network(_));
+    if both.iter().any(|start| spawned(&start)) {
+        text.push_str(" --transport mpi");
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Debug, Parser)]
+    struct Line {
+        #[command(flatten)]
+        parallel: Parallel,
+    }
+
+    fn starts(words: &[&str], pairing: &str) -> Result<Starts, String> {
+        let words = ["calcine"].iter().chain(words);
+        let line = Line::try_parse_from(words).map_err(|error| error.to_string())?;
+        let pairing = Pairing::parse(pairing).unwrap();
+        line.parallel
+            .starts(pairing, &Starts::default(), None)
+            .map_err(|failure| failure.message)
+    }
+
+    #[test]
+    fn ranks_and_launchers_are_read_and_told_again() {
+        let words = ["--ranks-gas", "16", "--launch-gas", "srun -n 16"];
+        let read = starts(&words, "openfoam+native").unwrap();
+        assert_eq!(read.gas.ranks, 16);
+        assert_eq!(flags(&read), " --ranks-gas 16 --launch-gas \"srun -n 16\"");
+        assert_eq!(flags(&starts(&[], "native+native").unwrap()), "");
+    }
+
+    #[test]
+    fn an_option_for_a_solver_that_does_not_take_part_is_refused() {
+        let error = starts(&["--ranks-gas", "2"], "native+liggghts").unwrap_err();
+        assert!(error.contains("add `--gas openfoam`"), "{error}");
+        assert!(starts(&["--attach"], "native+native").is_err());
+        assert!(starts(&["--ranks-gas", "0"], "openfoam+native").is_err());
+    }
+}

@@ -1,0 +1,212 @@
+//! Faults of runs on several ranks and over MPI: each kind of process is killed or stopped; the message
+//! names it, everything ends, nothing stays behind. And the ways to start ranks.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout
+)]
+
+#[path = "support/processes.rs"]
+mod processes;
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+use processes::{
+    alive, case, command_line, descendants, kill, leftovers, signal, start_with, wait_for_windows,
+    wait_until,
+};
+use rustix::process::Signal;
+
+const RANKS: [&str; 4] = ["--ranks-gas", "2", "--ranks-particles", "2"];
+
+/// Waits until a run has ended; its exit code and what it said.
+fn end_of(run: &mut Child) -> (i32, String, Duration) {
+    let taken = wait_until(Duration::from_secs(30), || {
+        run.try_wait().unwrap().is_some()
+    });
+    if run.try_wait().unwrap().is_none() {
+        run.kill().unwrap();
+    }
+    let code = run.wait().unwrap().code().unwrap_or(-1);
+    let mut text = String::new();
+    let mut said = run.stderr.take().unwrap();
+    said.read_to_string(&mut text).unwrap();
+    (code, text, taken)
+}
+
+/// No process of a run lives, and none of its files is there.
+fn assert_nothing_left(coordinator: u32, peers: &[u32]) {
+    wait_until(Duration::from_secs(5), || {
+        !peers.iter().any(|&pid| alive(pid)) && leftovers(coordinator).is_empty()
+    });
+    for &pid in peers {
+        assert!(!alive(pid), "{pid} is still there: {}", command_line(pid));
+    }
+    assert_eq!(leftovers(coordinator), Vec::<String>::new());
+}
+
+/// Sends a signal to the last process whose command line begins with a word that ends so.
+fn strike(words: &[&str], victim: &str, blow: Signal) -> (u32, i32, String) {
+    let directory = tempfile::tempdir().unwrap();
+    let out = directory.path().join("run");
+    let mut run = start_with(&out, words);
+    let coordinator = run.id();
+    wait_for_windows(&mut run, &out);
+    let peers = descendants(coordinator);
+    let is_victim = |pid: &&u32| {
+        let line = command_line(**pid);
+        line.split(' ')
+            .next()
+            .is_some_and(|word| word.ends_with(victim))
+    };
+    let found = *peers
+        .iter()
+        .rfind(is_victim)
+        .unwrap_or_else(|| panic!("no process `{victim}` among {peers:?}"));
+    signal(found, blow);
+    let (code, text, taken) = end_of(&mut run);
+    println!("{victim}: ended {taken:?} after the blow; message:\n{text}");
+    assert_nothing_left(coordinator, &peers);
+    (found, code, text)
+}
+
+fn assert_named(pid: u32, code: i32, text: &str, words: &[&str]) {
+    assert_eq!(code, 4, "{text}");
+    for word in words {
+        assert!(text.contains(word), "`{word}` is missing in: {text}");
+    }
+    assert!(text.contains(&format!("pid {pid}")), "{pid}: {text}");
+    assert!(text.contains("the end of its log"), "{text}");
+}
+
+#[test]
+fn a_killed_rank_of_openfoam_is_named() {
+    let (pid, code, text) = strike(&RANKS, "calcineGasFoam", Signal::KILL);
+    assert_named(pid, code, &text, &["OpenFOAM (gas, rank", "died"]);
+}
+
+#[test]
+fn a_killed_mpirun_is_named_and_its_ranks_and_their_memory_go_with_it() {
+    let (pid, code, text) = strike(&RANKS, "mpirun", Signal::KILL);
+    assert_named(pid, code, &text, &["launcher)", "SIGKILL"]);
+}
+
+#[test]
+fn a_stopped_rank_is_silent_and_says_for_how_long() {
+    let deadline = ["--set", "coupling.deadline=2 s"];
+    let words = [&RANKS[..], &deadline].concat();
+    let (_, code, text) = strike(&words, "calcine-liggghts", Signal::STOP);
+    assert_eq!(code, 4, "{text}");
+    assert!(text.contains("LIGGGHTS"), "{text}");
+    assert!(text.contains("silent for 2 s"), "{text}");
+}
+
+#[test]
+fn over_mpi_a_killed_rank_is_named() {
+    let words = [&RANKS[..], &["--transport", "mpi"]].concat();
+    let (pid, code, text) = strike(&words, "calcineGasFoam", Signal::KILL);
+    assert_named(pid, code, &text, &["OpenFOAM (gas, rank", "died"]);
+}
+
+#[test]
+fn a_killed_coordinator_leaves_no_rank_and_no_file_by_either_transport() {
+    for transport in ["shared-memory", "mpi"] {
+        let directory = tempfile::tempdir().unwrap();
+        let out = directory.path().join("run");
+        let words = [&RANKS[..], &["--transport", transport]].concat();
+        let mut run = start_with(&out, &words);
+        let coordinator = run.id();
+        wait_for_windows(&mut run, &out);
+        let peers = descendants(coordinator);
+        assert!(peers.len() >= 5, "{peers:?}");
+        kill(coordinator);
+        run.wait().unwrap();
+        let taken = wait_until(Duration::from_secs(20), || {
+            !peers.iter().any(|&pid| alive(pid))
+        });
+        println!("{transport}: all ended {taken:?} after the kill of the coordinator");
+        assert!(taken < Duration::from_secs(5), "{taken:?}");
+        assert_nothing_left(coordinator, &peers);
+    }
+}
+
+/// A short run; its series.
+fn series(out: &Path, words: &[&str]) -> String {
+    let outcome = Command::new(env!("CARGO_BIN_EXE_calcine"))
+        .arg("run")
+        .arg(case())
+        .args(["--gas", "openfoam", "--particles", "liggghts", "--quiet"])
+        .args(["--set", "time.acceleration=50", "--set", "time.end=2 s"])
+        .args(words)
+        .arg("--out")
+        .arg(out)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&outcome.stderr);
+    assert!(outcome.status.success(), "{words:?}: {said}");
+    fs::read_to_string(out.join("series.csv")).unwrap()
+}
+
+/// Shared memory and MPI move the same columns: nothing may depend on which.
+#[test]
+fn both_transports_and_a_launcher_of_one_s_own_give_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |name: &str, more: &[&str]| {
+        let words = [&RANKS[..], more].concat();
+        series(&folder.path().join(name), &words)
+    };
+    let shared = run("shared", &[]);
+    assert!(shared.lines().count() > 2, "{shared}");
+    assert_eq!(run("mpi", &["--transport", "mpi"]), shared);
+    let own = "env CALCINE_TEST=1 mpirun --allow-run-as-root --bind-to none -n 2";
+    assert_eq!(run("launched", &["--launch-gas", own]), shared);
+}
+
+#[test]
+fn what_attach_prints_can_be_started_by_hand() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let mut run = Command::new(env!("CARGO_BIN_EXE_calcine"))
+        .arg("run")
+        .arg(case())
+        .args([
+            "--gas",
+            "openfoam",
+            "--attach",
+            "--ranks-gas",
+            "2",
+            "--quiet",
+        ])
+        .args(["--set", "time.acceleration=50", "--set", "time.end=1 s"])
+        .arg("--out")
+        .arg(&out)
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut said = BufReader::new(run.stderr.take().unwrap());
+    let mut line = String::new();
+    while !line.trim_start().starts_with("(cd ") {
+        line.clear();
+        assert!(
+            said.read_line(&mut line).unwrap() > 0,
+            "it ended without a line to start"
+        );
+    }
+    let mut by_hand = Command::new("sh")
+        .args(["-c", line.trim()])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut rest = String::new();
+    said.read_to_string(&mut rest).unwrap();
+    assert!(run.wait().unwrap().success(), "{rest}");
+    assert!(by_hand.wait().unwrap().success());
+}

@@ -1,0 +1,81 @@
+//! A stock solver of OpenFOAM with Calcine's fvOption beside calcineGasFoam, and what it refuses.
+
+#![allow(clippy::unwrap_used)]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use calcine::results::Summary;
+use calcine::results::read::Series;
+
+fn run(out: &Path, settings: &[&str]) -> Output {
+    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/heated-column.toml");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
+    command.arg("run").arg(case);
+    command
+        .args(["--gas", "openfoam", "--quiet", "--out"])
+        .arg(out);
+    for setting in settings {
+        command.args(["--set", setting]);
+    }
+    command.output().unwrap()
+}
+
+fn done(output: &Output) {
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{text}");
+}
+
+const STOCK: &str = "openfoam.solver=buoyantPimpleFoam";
+
+#[test]
+fn a_stock_solver_heats_the_bed_as_calcine_gas_foam_does_and_starts_from_its_checkpoint() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = |name: &str| directory.path().join(name);
+    let (own, stock, again) = (folder("own"), folder("stock"), folder("again"));
+    let real = ["time.acceleration=1", "time.end=0.5 s"];
+    done(&run(&own, &real));
+    done(&run(&stock, &[&real[..], &[STOCK]].concat()));
+    let last = |out: &Path, name: &str| *Series::read(out).unwrap().column(name).last().unwrap();
+    let rise = |out: &Path| last(out, "particles.temperature_mean") - 300.0;
+    // Its gas takes longer to warm: it fills the cells, where the bed leaves 48 % (stock-solvers.md).
+    let share = rise(&stock) / rise(&own);
+    assert!((0.9..1.1).contains(&share), "{share}");
+    let drop = |out: &Path| last(out, "quantities.pressure_drop");
+    // 3.4 % lower after 3 s (stock-solvers.md).
+    let share = drop(&stock) / drop(&own);
+    assert!((0.94..1.02).contains(&share), "{share}");
+    let summary = Summary::read(&stock).unwrap();
+    let error = |name: &str| summary.ledger.lines[name].relative_error;
+    // To the tolerances of its fvSolution.
+    assert!(error("mass") < 1e-8 && error("energy") < 1e-6);
+    assert!(error("energy_exchange") < 1e-12 && error("momentum") < 1e-12);
+    // What it leaves is a time directory of OpenFOAM.
+    let fields = stock.join("checkpoint/gas");
+    let start = format!("openfoam.start={}", fields.display());
+    done(&run(
+        &again,
+        &["time.acceleration=1", "time.end=10 ms", STOCK, &start],
+    ));
+    let first = Series::read(&again).unwrap().column("gas.temperature_max")[0];
+    assert!((first - last(&stock, "gas.temperature_max")).abs() < 1e-9);
+}
+
+#[test]
+fn a_stock_solver_at_another_clock_is_refused_unless_its_storage_is_accelerated() {
+    let directory = tempfile::tempdir().unwrap();
+    let output = run(&directory.path().join("process"), &[STOCK]);
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{text}");
+    assert!(text.contains("cannot do `process` storage"), "{text}");
+    let out = directory.path().join("accelerated");
+    done(&run(
+        &out,
+        &[
+            STOCK,
+            "time.gas_storage=accelerated",
+            "time.end=10 s",
+            "gas.patch.bottom.inlet.temperature=400 K",
+        ],
+    ));
+}
