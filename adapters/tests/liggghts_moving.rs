@@ -6,6 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use calcine_adapters::launch::Launcher;
 use calcine_adapters::liggghts::inputs::Inputs;
 use calcine_adapters::liggghts::{LiggghtsLaunch, LiggghtsParticles};
 use calcine_coupler::error::PartError;
@@ -115,6 +116,7 @@ impl Bench {
                 ranks: 1,
             },
             case_hash: "moving".into(),
+            launcher: Launcher::Mpirun,
             folder: self.folder.path().join(name),
             log: self.folder.path().join(format!("{name}.log")),
             resume,

@@ -157,6 +157,7 @@ fn attempts(
     let coefficients = Coefficients {
         drag: vec![1e-3, 2e-3],
         conductance: vec![conductance; 2],
+        held_back: Vec::new(),
     };
     let mut exchange = Exchange::default();
     exchange.conductance.resize(2, 0.0);
@@ -242,4 +243,32 @@ fn a_stiff_particle_relaxes_without_overshoot() {
     for &temperature in thin.temperature().iter().chain(&gas.temperature) {
         assert!((290.0..410.0).contains(&temperature), "{temperature}");
     }
+}
+
+#[test]
+fn stiff_drag_relaxes_a_free_particle_and_leaves_a_held_one_its_full_drag() {
+    use calcine_coupler::closures::Inertia;
+    let (mass, drag, span) = (1e-6, 1e-3, 1e-2);
+    // One is free under its weight alone, one lies on others that take up its drag, one is frozen.
+    let wind = Vec3::new(0.0, 0.0, 0.4);
+    let weight = Vec3::new(0.0, 0.0, -9.81e-6);
+    let held = -drag * wind;
+    let mut coefficients = Coefficients {
+        drag: vec![drag; 3],
+        conductance: vec![0.0; 3],
+        held_back: Vec::new(),
+    };
+    coefficients.relax(&Inertia {
+        mass: &[mass; 3],
+        free: &[true, true, false],
+        other: &[weight, held, weight],
+        span,
+        acceleration: 1.0,
+    });
+    // m dv/dt = K (u - v) + F from rest: v(t) = (u + F/K)(1 - exp(-K t/m)), here after ten of its times.
+    let exact = (wind + weight / drag) * (1.0 - (-10.0f64).exp());
+    let velocity = (coefficients.drag_at(0, wind) + weight) * span / mass;
+    assert!((velocity - exact).norm() < 1e-12, "{velocity} {exact}");
+    assert!((coefficients.drag_at(1, wind) - drag * wind).norm() < 1e-18);
+    assert!((coefficients.drag_at(2, wind) - drag * wind).norm() < 1e-18);
 }

@@ -198,8 +198,8 @@ fn parts(mesh: &MeshSpec) -> Vec<(String, &'static str, WallShape)> {
             let names = ["x-", "x+", "y-", "y+", "z-", "z+"];
             let side = |index: usize| {
                 let mut inward = Vec3::zeros();
-                inward[index / 2] = if index % 2 == 0 { 1.0 } else { -1.0 };
-                let corner = if index % 2 == 0 {
+                inward[index / 2] = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
+                let corner = if index.is_multiple_of(2) {
                     *origin
                 } else {
                     origin + size
