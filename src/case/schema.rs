@@ -167,6 +167,8 @@ impl Node {
             "whole number" => json!({"type": "integer", "minimum": 0}),
             "two whole numbers" => tuple(2, json!({"type": "integer", "minimum": 1})),
             "three whole numbers" => tuple(3, json!({"type": "integer", "minimum": 1})),
+            "true or false" => json!({"type": "boolean"}),
+            "three numbers" => direction(),
             "number" | "plain number" | "as the field measured" => plain(),
             "number, or list" => either(plain(), list(tuple(3, plain()))),
             "list of pairs" => pairs(quantity(1), plain()),
@@ -207,6 +209,12 @@ fn pairs(first: Value, second: Value) -> Value {
 fn plain() -> Value {
     let pattern = format!(r"^\s*{NUMBER}(?:{})?\s*$", unit());
     json!({"type": ["number", "string"], "pattern": pattern})
+}
+
+/// Three numbers in one text.
+fn direction() -> Value {
+    let pattern = format!(r"^\s*{NUMBER}\s+{NUMBER}\s+{NUMBER}\s*$");
+    json!({"type": "string", "pattern": pattern})
 }
 
 /// So many numbers and a unit that the reader knows. The dimension is left to `calcine check`.

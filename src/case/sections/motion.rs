@@ -164,17 +164,16 @@ pub(super) fn need_properties(root: &Reader<'_>, meeting: &Meeting<'_>) {
     }
     for &index in &all {
         let material = &materials[index];
-        let table = root
-            .table("materials")
-            .and_then(|tables| tables.table(&material.name));
-        let Some(table) = table else { continue };
+        let Some(tables) = root.table("materials") else {
+            continue;
+        };
         for (key, there, example) in [
             ("young", material.young.is_some(), "\"50 MPa\""),
             ("poisson", material.poisson.is_some(), "0.22"),
         ] {
             if !there {
                 let rule = format!("has no `{key}`, which contacts of free particles need");
-                table.fail_whole(&rule, &format!("add {key} = {example}"));
+                tables.fail(&material.name, &rule, format!("add {key} = {example}"));
             }
         }
     }
