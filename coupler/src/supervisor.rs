@@ -104,8 +104,8 @@ impl Supervisor {
         };
         let mut message = format!("died: {}", ending(&peer.pidfd));
         for other in dead {
-            message.push_str("; so did ");
-            message.push_str(&label(&other.name, other.pid));
+            let (who, how) = (label(&other.name, other.pid), ending(&other.pidfd));
+            message.push_str(&format!("; so did {who}: {how}"));
         }
         let who = label(&peer.name, peer.pid);
         let mut error = PartError::new(who, FailureKind::Died, message)
