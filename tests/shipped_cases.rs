@@ -86,9 +86,11 @@ fn every_shipped_case_runs_natively_and_with_both_solvers_between_its_sources() 
                 case.display()
             );
             let (coldest, hottest) = sources(&case);
-            // With species the enthalpy is not linear in temperature: what the outer loop leaves, 1e-6 of
-            // a heat content from 0 K, may show.
-            let slack = if has_species(&case) { 6e-4 } else { 1e-6 };
+            // With species the enthalpy is not linear in temperature, and under a moving bed limited fluxes
+            // change from window to window: what the outer loop leaves, 1e-6 of a heat content from 0 K, may
+            // show.
+            let loose = has_species(&case) || moves(&case);
+            let slack = if loose { 6e-4 } else { 1e-6 };
             let series = Series::read(&out).unwrap();
             for name in ["gas.temperature_min", "particles.temperature_min"] {
                 let least = series.column(name).iter().copied().fold(f64::MAX, f64::min);
