@@ -1,4 +1,5 @@
-//! Agreement of the native particles and LIGGGHTS' on a bed that moves, with feed and discharge.
+//! Agreement of the native particles and LIGGGHTS' on a bed that moves, with feed and discharge, and of
+//! LIGGGHTS on one rank and two, between which particles wander.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::fs;
@@ -35,4 +36,37 @@ fn a_moving_bed_is_heated_alike_by_native_particles_and_by_liggghts() {
         let most = quantity["largest"]["difference"].as_f64().unwrap();
         assert!(most < 0.5, "{name}: {most} K");
     }
+}
+
+#[test]
+fn a_moving_bed_is_heated_alike_on_one_rank_of_liggghts_and_on_two() {
+    let directory = tempfile::tempdir().unwrap();
+    let [one, two] = ["1", "2"].map(|ranks| {
+        let out = directory.path().join(ranks);
+        let output = Command::new(env!("CARGO_BIN_EXE_calcine"))
+            .arg("run")
+            .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/moving-bed.toml"))
+            .args(["--particles", "liggghts", "--ranks-particles", ranks])
+            .args(["--set", "time.end=20 s", "--quiet", "--out"])
+            .arg(&out)
+            .output()
+            .unwrap();
+        let text = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{text}");
+        let text = fs::read_to_string(out.join("summary.json")).unwrap();
+        serde_json::from_str::<Value>(&text).unwrap()
+    });
+    for summary in [&one, &two] {
+        for line in ["mass", "energy", "momentum", "particle_mass"] {
+            let error = summary["ledger"][line]["relative_error"].as_f64().unwrap();
+            assert!(error < 1e-10, "{line}: {error}");
+        }
+    }
+    assert_eq!(one["particles"], two["particles"]);
+    let mean = |of: &Value| {
+        of["quantities"]["mean_temperature"]["value"]
+            .as_f64()
+            .unwrap()
+    };
+    assert!((mean(&one) - mean(&two)).abs() < 0.5);
 }

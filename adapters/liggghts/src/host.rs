@@ -203,10 +203,31 @@ impl Host {
                 .command(&format!("run {steps} pre no post no"));
         }
         self.look()?;
-        // Of a free particle the steps add up to it; of a held one its support takes it up.
-        let span = header.span_motion as f64 / TICKS;
-        let impulse: Vec<f64> = force.iter().flatten().map(|force| force * span).collect();
+        let impulse = self.impulse(&force, &header, steps)?;
         self.answer(header.answer(Kind::Finished), &impulse)
+    }
+
+    /// Impulse in N s that the pushed forces gave each particle that is here now, in the order of the state: of
+    /// free ones what their steps add up to (the pushed forces go with them from rank to rank), of held ones
+    /// what their support takes up.
+    fn impulse(
+        &mut self,
+        force: &[[f64; 3]],
+        header: &Header,
+        steps: i64,
+    ) -> Result<Vec<f64>, HostError> {
+        let step = self
+            .liggghts
+            .step()
+            .ok_or(HostError::Missing { name: "dt" })?;
+        let Some(pushed) = self.liggghts.fix_vectors_mut(PUSH) else {
+            let span = header.span_motion as f64 / TICKS;
+            return Ok(force.iter().flatten().map(|force| force * span).collect());
+        };
+        let acted = steps as f64 * step;
+        let rows = self.state.place.iter();
+        let here = rows.flat_map(|&place| &pushed[3 * place..3 * place + 3]);
+        Ok(here.map(|force| force * acted).collect())
     }
 
     /// Has the forces act from the first half step on, and over the window's steps so much that their
