@@ -98,6 +98,21 @@ impl Launcher {
 }
 
 impl Program {
+    /// The same program by a name without blanks: OpenFOAM refuses a name of its own program that has one
+    /// anywhere in its path. Where there are some, by a link in its folder.
+    pub fn without_blanks(mut self) -> std::io::Result<Self> {
+        let blank = |path: &Path| path.to_string_lossy().contains(char::is_whitespace);
+        if let (true, Some(name)) = (blank(&self.path), self.path.file_name()) {
+            let link = std::path::absolute(self.directory.join(name))?;
+            match fs::remove_file(&link) {
+                Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(error),
+                _ => std::os::unix::fs::symlink(std::path::absolute(&self.path)?, &link)?,
+            }
+            self.path = link;
+        }
+        Ok(self)
+    }
+
     /// The command for a number of ranks.
     fn command(&self, launcher: &Launcher, ranks: u32) -> Command {
         let words = launcher.words(ranks);

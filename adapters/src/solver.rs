@@ -216,7 +216,12 @@ impl Peer {
 impl ExternalSolver {
     /// Starts the solver, shakes hands with every rank, and waits for the state it starts from:
     /// afterwards each link holds a `State`.
-    pub fn launch(launch: Launch, supervisor: &mut Supervisor) -> Result<Self, PartError> {
+    pub fn launch(mut launch: Launch, supervisor: &mut Supervisor) -> Result<Self, PartError> {
+        let program = std::mem::take(&mut launch.program);
+        launch.program = program.without_blanks().map_err(|error| {
+            let message = "its program cannot be linked in its folder";
+            PartError::new(&launch.name, FailureKind::NotStarted, message).caused_by(error)
+        })?;
         let unopened = |error: WireError| {
             let message = "its link cannot be opened";
             PartError::new(&launch.name, FailureKind::NotStarted, message).caused_by(error)
