@@ -2,8 +2,9 @@
 //! damped, oblique and spinning ones of a sphere on a plane and of two spheres.
 //!
 //! What is exact: Hertz' depth, force and duration; the restitution; the impulse μ (1 + e) m* V of a contact
-//! that slides all the time; a contact that sticks to a linear spring. In between, the laws' own equations in
-//! the contact's two unknowns are integrated apart (`apart` below).
+//! that slides all the time, where nothing damps it (the law's tangential dashpot is not limited by friction: at
+//! e = 0.5 it adds up to a tenth); a contact that sticks to a linear spring. In between, the equations of one
+//! contact are integrated apart (`apart` below).
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod grains;
@@ -105,7 +106,7 @@ impl Impact {
         (15.0 * mass * self.normal.powi(2) / (16.0 * young * radius.sqrt())).powf(0.4)
     }
 
-    /// The impulse in N s that friction has exchanged where the contact slides from first to last.
+    /// The impulse in N s that friction exchanges where the contact slides from first to last.
     fn sliding_impulse(&self) -> f64 {
         self.friction * (1.0 + self.restitution) * self.effective().1 * self.normal
     }
@@ -126,7 +127,7 @@ impl Impact {
     /// The native solver after the impact, with the slip as a velocity along x of the first sphere or as its
     /// rotation; speeds and rotations of both spheres.
     fn native(&self, spins: bool) -> Vec<(Vec3, Vec3)> {
-        let steps = 2000.0;
+        let steps = 10_000.0;
         let contacts = self.contacts(steps);
         let along = if spins { 0.0 } else { self.slip };
         let mut first = sphere(1, Vec3::z() * self.radius, Vec3::zeros(), self.radius);
@@ -169,18 +170,22 @@ impl Impact {
     }
 }
 
-/// What an impact exchanges, integrated apart: arms are radii and the normal stays where it is, so that overlap
-/// δ and slip s are the only unknowns: m* δ'' = −F_n, s' = F_t (1/m* + 5/2/m*), as R²/I = 5/2/m for each sphere.
-/// Leapfrog in 40 000 steps; the laws in their papers' letters (requirements COR-12).
-fn apart(impact: &Impact) -> f64 {
+/// What an impact exchanges, integrated apart, with the line of centres where it stays: the overlap, the velocity
+/// along the surface and both rotations, m* δ'' = −F_n, m* v' = −F_t, I ω' = a F_t with the arms a = R − δ/2.
+/// Leapfrog in 40 000 steps; the laws in their papers' letters (requirements COR-12). Gives the tangential
+/// impulse in N s and what of it turns the first sphere: the angular impulse over its radius.
+fn apart(impact: &Impact) -> [f64; 2] {
     let (radius, mass) = impact.effective();
     let [young, shear] = impact.material.moduli();
     let log = impact.restitution.ln();
     let beta = -log / (log * log + PI * PI).sqrt();
     let damping = |stiffness: f64| 2.0 * (5.0f64 / 6.0).sqrt() * beta * (stiffness * mass).sqrt();
     let step = impact.duration() / 40_000.0;
-    let (mut overlap, mut speed, mut slip) = (0.0f64, impact.normal, impact.slip);
-    let (mut spring, mut impulse) = (0.0f64, 0.0);
+    let inertia = |radius: f64| 0.4 * impact.material.mass(radius) * radius * radius;
+    let spheres = [Some(impact.radius), impact.other].map(|one| one.map(|r| (r, inertia(r))));
+    let (mut overlap, mut speed) = (0.0f64, impact.normal);
+    let (mut along, mut spins) = (impact.slip, [0.0; 2]);
+    let (mut spring, mut impulses) = (0.0f64, [0.0; 2]);
     for _ in 0..160_000 {
         overlap += 0.5 * step * speed;
         if overlap < 0.0 {
@@ -190,6 +195,8 @@ fn apart(impact: &Impact) -> f64 {
         let tangential_stiffness = 8.0 * shear * (radius * overlap).sqrt();
         let elastic = 4.0 / 3.0 * young * radius.sqrt() * overlap.powf(1.5);
         let push = elastic + damping(normal_stiffness) * speed;
+        let arms = spheres.map(|one| one.map_or(0.0, |(radius, _)| radius - 0.5 * overlap));
+        let slip = along - arms[0] * spins[0] - arms[1] * spins[1];
         spring += step * slip;
         let most = impact.friction * push.abs();
         let mut force = tangential_stiffness * spring;
@@ -200,11 +207,15 @@ fn apart(impact: &Impact) -> f64 {
             force += damping(tangential_stiffness) * slip;
         }
         speed -= step * push / mass;
-        slip -= step * force * 3.5 / mass;
-        impulse += step * force;
+        along -= step * force / mass;
+        for ((spin, arm), one) in spins.iter_mut().zip(arms).zip(spheres) {
+            *spin += one.map_or(0.0, |(_, inertia)| step * arm * force / inertia);
+        }
+        impulses[0] += step * force;
+        impulses[1] += step * force * arms[0] / impact.radius;
         overlap += 0.5 * step * speed;
     }
-    impulse
+    impulses
 }
 
 const ON_PLANE: Impact = Impact {
@@ -266,9 +277,8 @@ fn elastic_normal_impacts_follow_hertz_force_over_overlap_and_time() {
             bed.run(1);
             // The mean force of a step against the mean of Hertz' at its ends: both of second order.
             let force = mass * (bed.velocity(0).z - before) / step;
-            let hertz = |overlap: f64| {
-                4.0 / 3.0 * young * radius_star.sqrt() * overlap.max(0.0).powf(1.5)
-            };
+            let hertz =
+                |overlap: f64| 4.0 / 3.0 * young * radius_star.sqrt() * overlap.max(0.0).powf(1.5);
             worst = worst.max((force - 0.5 * (hertz(ahead) + hertz(overlap(&bed)))).abs());
             deepest = deepest.max(overlap(&bed));
             strongest = strongest.max(force);
@@ -302,14 +312,21 @@ fn every_restitution_comes_out_of_a_normal_impact() {
 /// Salman 2001 measured it (doi 10.1016/S0032-5910(01)00283-2).
 #[test]
 fn oblique_impacts_at_a_constant_speed_stick_slip_and_slide_as_the_angle_grows() {
-    for degrees in [2.0f64, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 85.0] {
+    for degrees in [
+        2.0f64, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 85.0,
+    ] {
         let angle = degrees.to_radians();
         let impact = Impact {
             normal: 3.9 * angle.cos(),
             slip: 3.9 * angle.sin(),
             ..ON_PLANE
         };
-        compare(&impact, degrees, &[false], 3.5 * 0.092 * 1.98 < 0.9 * angle.tan());
+        compare(
+            &impact,
+            degrees,
+            false,
+            3.5 * 0.092 * 1.98 < 0.9 * angle.tan(),
+        );
     }
 }
 
@@ -327,7 +344,7 @@ fn oblique_impacts_at_a_constant_normal_speed_stick_slip_and_slide_as_the_slip_g
                 slip: 5.0 * ratio,
                 ..ON_PLANE
             };
-            compare(&impact, ratio, &[false], ratio > 2.4);
+            compare(&impact, ratio, false, ratio > 2.4);
         }
     }
 }
@@ -336,17 +353,17 @@ fn oblique_impacts_at_a_constant_normal_speed_stick_slip_and_slide_as_the_slip_g
 #[test]
 fn a_spinning_sphere_is_thrown_aside_by_the_plane() {
     for spin in [0.175, 0.5, 1.0, 2.0, 4.0, 6.0, 10.0, 21.0] {
-        for material in [STEEL, ALUMINIUM_ALLOY] {
+        for (material, restitution) in [(STEEL, 1.0), (ALUMINIUM_ALLOY, 1.0), (STEEL, 0.5)] {
             let impact = Impact {
                 material,
                 radius: 0.1,
-                restitution: 0.5,
+                restitution,
                 friction: 0.4,
                 normal: 0.2,
                 slip: 0.1 * spin,
                 ..ON_PLANE
             };
-            compare(&impact, spin, &[true], spin > 5.0);
+            compare(&impact, spin, true, restitution == 1.0 && spin > 8.0);
         }
     }
 }
@@ -354,19 +371,19 @@ fn a_spinning_sphere_is_thrown_aside_by_the_plane() {
 /// Tests 7 and 8: two spheres of one size, and of two, one of which spins.
 #[test]
 fn a_spinning_sphere_turns_the_one_that_it_meets() {
-    for other in [0.1, 0.5] {
+    for (other, restitution) in [(0.1, 1.0), (0.5, 1.0), (0.1, 0.5), (0.5, 0.5)] {
         for spin in [0.175, 1.0, 4.0, 10.0, 20.0] {
             let impact = Impact {
                 material: ALUMINIUM_ALLOY,
                 radius: 0.1,
                 other: Some(other),
-                restitution: 0.5,
+                restitution,
                 friction: 0.4,
                 normal: 0.4,
                 slip: 0.1 * spin,
                 ..ON_PLANE
             };
-            compare(&impact, spin, &[true], spin > 10.0);
+            compare(&impact, spin, true, restitution == 1.0 && spin > 15.0);
             let after = impact.native(true);
             let [one, two] = [0.1, other].map(|radius| ALUMINIUM_ALLOY.mass(radius));
             let momentum = one * after[0].0 + two * after[1].0;
@@ -376,7 +393,8 @@ fn a_spinning_sphere_turns_the_one_that_it_meets() {
             // Equal and opposite impulses at both radii: the second turns the same way round.
             let turned = 0.4 * two * other * after[1].1.y;
             let pushed = two * after[1].0.x;
-            assert!((turned / pushed - 1.0).abs() < 1e-3, "{turned} {pushed}");
+            let off = (turned - pushed) / impact.sliding_impulse();
+            assert!(off.abs() < 1e-3, "{turned} {pushed}");
         }
     }
 }
@@ -400,9 +418,7 @@ fn two_spheres_that_mesh_like_gears_keep_their_rotation() {
     };
     let spheres = [at(1, 0.1), at(2, -0.1)];
     let bed = Bed::new(impact.contacts(2000.0), &spheres);
-    let mut bed = bed
-        .spun(0, Vec3::y() * 7.0)
-        .spun(1, Vec3::y() * -7.0);
+    let mut bed = bed.spun(0, Vec3::y() * 7.0).spun(1, Vec3::y() * -7.0);
     bed.run(6000);
     assert!((bed.velocity(0).z / 0.1 - 1.0).abs() < 2e-3);
     for (row, spin) in [(0, 7.0), (1, -7.0)] {
@@ -420,6 +436,11 @@ fn a_contact_that_sticks_to_a_linear_spring_leaves_with_the_slip_of_the_closed_f
             restitution: 1.0,
             friction: 1e7,
             slip,
+            // So stiff that the arms are radii.
+            material: Material {
+                young: 1e17,
+                ..ALUMINIUM_OXIDE
+            },
             force: ContactForce::Linear {
                 characteristic_speed: 3.9,
             },
@@ -432,17 +453,19 @@ fn a_contact_that_sticks_to_a_linear_spring_leaves_with_the_slip_of_the_closed_f
     }
 }
 
-/// The impulse against the separate integration, and against rigid sliding where the contact slides all the time.
-fn compare(impact: &Impact, at: f64, ways: &[bool], slides: bool) {
+/// The impulses against the separate integration, and that against rigid sliding where the contact slides all the
+/// time; slip is a velocity or a rotation.
+fn compare(impact: &Impact, at: f64, spins: bool, slides: bool) {
     let scale = impact.sliding_impulse();
     let expected = apart(impact);
     if slides {
-        assert!((expected / scale - 1.0).abs() < 2e-3, "{at}: {expected} {scale}");
+        assert!(
+            (expected[0] / scale - 1.0).abs() < 3e-3,
+            "{at}: {expected:?} {scale}"
+        );
     }
-    for &spins in ways {
-        for found in impact.native_impulse(spins) {
-            let off = (found - expected) / scale;
-            assert!(off.abs() < 4e-3, "{at}, {spins}: {found} {expected} {scale}");
-        }
+    for (found, expected) in impact.native_impulse(spins).into_iter().zip(expected) {
+        let off = (found - expected) / scale;
+        assert!(off.abs() < 1e-3, "{at}, {spins}: {off}");
     }
 }

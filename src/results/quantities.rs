@@ -115,9 +115,13 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &Moment<'_>, sites: &[Site])
             .checked_sub(1)
             .and_then(|place| of_particles(moment, field).get(place).copied())
             .unwrap_or(f64::NAN),
-        Measure::SurfaceAngle { point, axis, down } => {
-            surface_angle(moment.particles.position, moment.particles.mass, point, axis, down)
-        }
+        Measure::SurfaceAngle { point, axis, down } => surface_angle(
+            moment.particles.position,
+            moment.particles.mass,
+            point,
+            axis,
+            down,
+        ),
     }
 }
 
@@ -137,11 +141,16 @@ fn of_particles(moment: &Moment<'_>, field: &str) -> Vec<f64> {
 
 /// By how many rad the centre of mass has turned about an axis from straight below; NaN without particles.
 fn surface_angle(position: &[Vec3], mass: &[f64], point: &Vec3, axis: &Vec3, down: &Vec3) -> f64 {
-    let moment: Vec3 = position.iter().zip(mass).map(|(x, m)| *m * (x - point)).sum();
+    let moment: Vec3 = position
+        .iter()
+        .zip(mass)
+        .map(|(x, m)| *m * (x - point))
+        .sum();
     if position.is_empty() {
         return f64::NAN;
     }
-    axis.dot(&down.cross(&moment)).atan2(down.dot(&moment) - axis.dot(down) * axis.dot(&moment))
+    axis.dot(&down.cross(&moment))
+        .atan2(down.dot(&moment) - axis.dot(down) * axis.dot(&moment))
 }
 
 fn site<'s>(sites: &'s [Site], name: &str) -> Option<&'s Site> {
@@ -307,9 +316,8 @@ mod tests {
         // A heap below the axis at (1, 2, 3), turned about −y by 0.4 rad, and moved along the axis.
         let point = Vec3::new(1.0, 2.0, 3.0);
         let (sine, cosine) = 0.4f64.sin_cos();
-        let places = [(-0.1, -0.5), (0.1, -0.5), (0.3, -0.2), (-0.3, -0.2)].map(|(x, z)| {
-            point + Vec3::new(x * cosine - z * sine, 7.0, x * sine + z * cosine)
-        });
+        let places = [(-0.1, -0.5), (0.1, -0.5), (0.3, -0.2), (-0.3, -0.2)]
+            .map(|(x, z)| point + Vec3::new(x * cosine - z * sine, 7.0, x * sine + z * cosine));
         let angle = |axis: Vec3, down: Vec3| {
             surface_angle(&places, &[1.0, 1.0, 3.0, 3.0], &point, &axis, &down)
         };

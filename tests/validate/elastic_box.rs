@@ -33,7 +33,10 @@ pub fn run() {
         let after = bed.particles.energy();
         let drift = after.stored() / before.stored() - 1.0;
         let kinetic = after.kinetic / before.kinetic - 1.0;
-        println!("  | {:>6} | {drift:>10.2e} | {kinetic:>11.2e} |", look * STEPS[0]);
+        println!(
+            "  | {:>6} | {drift:>10.2e} | {kinetic:>11.2e} |",
+            look * STEPS[0]
+        );
         worst = worst.max(drift.abs());
         assert_eq!(after.lost(), 0.0);
         assert_eq!(after.rotational, 0.0);
@@ -90,7 +93,11 @@ fn walls() -> Vec<Wall> {
             name: format!("side {k}"),
             material: 0,
             shape: WallShape::Plane {
-                point: if k.is_multiple_of(2) { Vec3::zeros() } else { far },
+                point: if k.is_multiple_of(2) {
+                    Vec3::zeros()
+                } else {
+                    far
+                },
                 normal,
             },
             motion: WallMotion::Still,
@@ -172,7 +179,9 @@ impl Bed {
         };
         self.particles.start(&window, &self.push).unwrap();
         let mut received = ParticleReceived::default();
-        self.particles.finish(&self.supervisor, &mut received).unwrap();
+        self.particles
+            .finish(&self.supervisor, &mut received)
+            .unwrap();
         self.start = self.start.checked_add(span).unwrap();
     }
 }

@@ -33,7 +33,11 @@ pub fn run() {
             .collect();
         let (rate, _) = line(&points);
         let constant = rate / (bulk() * 9.81f64.sqrt() * (hole - 1.4 * BEAD).powf(2.5));
-        println!("  | {:>9.2} | {:>8.1} | {constant:>14.3} |", hole / BEAD, 1e3 * rate);
+        println!(
+            "  | {:>9.2} | {:>8.1} | {constant:>14.3} |",
+            hole / BEAD,
+            1e3 * rate
+        );
         rates.push(constant);
         roots.push((hole, rate.powf(0.4)));
     }

@@ -31,9 +31,15 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     let names: Vec<&String> = words.iter().filter(|word| *word != MARK).collect();
-    if let Some(unknown) = names.iter().find(|name| ALL.iter().all(|one| one.0 != **name)) {
+    if let Some(unknown) = names
+        .iter()
+        .find(|name| ALL.iter().all(|one| one.0 != **name))
+    {
         let known: Vec<&str> = ALL.iter().map(|one| one.0).collect();
-        println!("there is no validation {unknown}; there are {}", known.join(", "));
+        println!(
+            "there is no validation {unknown}; there are {}",
+            known.join(", ")
+        );
         return ExitCode::from(2);
     }
     for (name, run) in ALL {
@@ -51,7 +57,12 @@ fn main() -> ExitCode {
 fn run(case: &Path, folder: &Path, name: &str, set: &[String]) -> (PathBuf, Series) {
     let out = folder.join(name);
     let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
-    command.arg("run").arg(case).arg("--quiet").arg("--out").arg(&out);
+    command
+        .arg("run")
+        .arg(case)
+        .arg("--quiet")
+        .arg("--out")
+        .arg(&out);
     for setting in set {
         command.args(["--set", setting]);
     }
@@ -74,7 +85,10 @@ fn line(points: &[(f64, f64)]) -> (f64, f64) {
         points.iter().map(|point| point.0).sum::<f64>() / count,
         points.iter().map(|point| point.1).sum::<f64>() / count,
     ];
-    let over: f64 = points.iter().map(|point| (point.0 - x) * (point.1 - y)).sum();
+    let over: f64 = points
+        .iter()
+        .map(|point| (point.0 - x) * (point.1 - y))
+        .sum();
     let under: f64 = points.iter().map(|point| (point.0 - x).powi(2)).sum();
     (over / under, y - over / under * x)
 }

@@ -26,7 +26,10 @@ pub fn run() {
         println!("  | {friction:>8} | {mean:>16.1} | {least:.1} to {most:.1} |");
         angles.push(mean);
     }
-    assert!(angles.windows(2).all(|pair| pair[1] > pair[0] + 0.3), "{angles:?}");
+    assert!(
+        angles.windows(2).all(|pair| pair[1] > pair[0] + 0.3),
+        "{angles:?}"
+    );
     // A bed slides as a whole where its contacts cannot hold it, and no free surface of spheres is steeper than this.
     assert!(angles[0] > 4.0 && angles[4] < 40.0, "{angles:?}");
 }

@@ -29,7 +29,10 @@ pub fn run() {
     heights.sort_by(f64::total_cmp);
     // Away from the bottom and the top, which order the layers beside them.
     let band = [2.5 * BEAD, heights[heights.len() * 95 / 100] - 2.0 * BEAD];
-    println!("  {} beads, {speed:.1e} m/s, heights of {band:.4?} m", centres.len());
+    println!(
+        "  {} beads, {speed:.1e} m/s, heights of {band:.4?} m",
+        centres.len()
+    );
     assert!(speed < 1e-2, "{speed} m/s");
 
     let steps = 100;
@@ -54,15 +57,27 @@ pub fn run() {
     assert!((0.37..0.43).contains(&bulk), "{bulk}");
     let lows: Vec<_> = extremes.iter().filter(|one| one.2).collect();
     let (place, value, _) = *lows[0];
-    assert!((0.4..0.65).contains(&place) && (0.18..0.28).contains(&value), "{place} {value}");
-    let highs: Vec<_> = extremes.iter().filter(|one| !one.2 && one.0 > 0.3).collect();
-    assert!((0.8..1.15).contains(&highs[0].0) && highs[0].1 > 0.45, "{:?}", highs[0]);
+    assert!(
+        (0.4..0.65).contains(&place) && (0.18..0.28).contains(&value),
+        "{place} {value}"
+    );
+    let highs: Vec<_> = extremes
+        .iter()
+        .filter(|one| !one.2 && one.0 > 0.3)
+        .collect();
+    assert!(
+        (0.8..1.15).contains(&highs[0].0) && highs[0].1 > 0.45,
+        "{:?}",
+        highs[0]
+    );
     // The second and third minimum follow at the distance of layers, ever shallower.
     let period = 0.5 * (lows[2].0 - lows[0].0);
     println!("  period {period:.2} diameters");
     assert!((0.8..1.0).contains(&period), "{period}");
     assert!(lows[1].1 > lows[0].1 && lows[2].1 > lows[1].1);
-    let far = (0..profile.len()).filter(|&k| at(k) > 5.0).map(|k| (profile[k] - bulk).abs());
+    let far = (0..profile.len())
+        .filter(|&k| at(k) > 5.0)
+        .map(|k| (profile[k] - bulk).abs());
     assert!(far.fold(0.0, f64::max) < 0.06);
 }
 

@@ -216,7 +216,10 @@ mod tests {
         let given = task("fuzz", "--minutes 1 polymesh");
         assert_eq!(read(&words("fuzz --minutes 1 polymesh")), given);
         assert_eq!(read(&words("torture")), task("torture", "--kills 50"));
-        assert_eq!(read(&words("validate hopper")), task("validate", "--validate hopper"));
+        assert_eq!(
+            read(&words("validate hopper")),
+            task("validate", "--validate hopper")
+        );
     }
 
     #[test]

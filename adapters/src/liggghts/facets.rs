@@ -7,9 +7,9 @@ use calcine_coupler::motion::{Contacts, Wall, WallMotion, WallShape};
 use calcine_coupler::physics::Vec3;
 
 /// Largest distance of a facet from the round surface, in radii of the smallest sphere.
-pub const DEVIATION: f64 = 1e-3;
+pub const DEVIATION: f64 = 2e-4;
 /// Most and fewest sides of a round wall.
-const SIDES: [f64; 2] = [12.0, 720.0];
+const SIDES: [f64; 2] = [180.0, 1440.0];
 /// A facet is at most so many times as long as it is wide; LIGGGHTS refuses slivers.
 const SLENDER: f64 = 20.0;
 /// How far beyond the domain's faces walls reach, as a share of its diagonal.
@@ -144,14 +144,28 @@ fn area([a, b, c]: &[Vec3; 3]) -> f64 {
     0.5 * (b - a).cross(&(c - a)).norm()
 }
 
+/// Sides of a round wall of a radius in m: the sagitta of a chord, R (1 − cos(π/n)), is shared by inside and outside.
+fn sides(radius: f64, smallest: f64) -> usize {
+    let sagitta = (2.0 * DEVIATION * smallest / radius).min(1.0);
+    let sides = (PI / (1.0 - sagitta).acos()).ceil();
+    sides.clamp(SIDES[0], SIDES[1]) as usize
+}
+
+/// By how many degrees neighbouring facets of a round wall are turned against each other; none for flat ones.
+pub fn bend(wall: &Wall, smallest: f64) -> Option<f64> {
+    let radius = match &wall.shape {
+        WallShape::Cylinder { radius, .. } => *radius,
+        WallShape::Cone { radii, .. } => radii[0].max(radii[1]),
+        WallShape::Plane { .. } | WallShape::Mesh { .. } => return None,
+    };
+    Some(360.0 / sides(radius, smallest) as f64)
+}
+
 /// A frustum of so many sides that no facet is farther from the round surface than it may be; half of each is
 /// inside, half outside.
 fn frustum(ends: [Vec3; 2], radii: [f64; 2], smallest: f64) -> Vec<[Vec3; 3]> {
     let widest = radii[0].max(radii[1]);
-    // The sagitta of a chord, R (1 − cos(π/n)), is shared by both sides.
-    let sagitta = (2.0 * DEVIATION * smallest / widest).min(1.0);
-    let sides = (PI / (1.0 - sagitta).acos()).ceil();
-    let sides = sides.clamp(SIDES[0], SIDES[1]) as usize;
+    let sides = sides(widest, smallest);
     let outward = 2.0 / (1.0 + (PI / sides as f64).cos());
     let axis = ends[1] - ends[0];
     let [u, v] = across(&axis.normalize());
@@ -216,12 +230,20 @@ mod tests {
         let plane = wall(WallShape::Plane { point, normal }, WallMotion::Still);
         let triangles = of(&plane, &contacts(), 1e-3);
         let on_it = triangles.iter().flatten();
-        assert!(on_it.map(|at| (at - point).dot(&normal).abs()).fold(0.0, f64::max) < 1e-15);
+        assert!(
+            on_it
+                .map(|at| (at - point).dot(&normal).abs())
+                .fold(0.0, f64::max)
+                < 1e-15
+        );
         // It runs across the width at 45 degrees: √2 times the section's area, margins included.
         let margin = MARGIN * (0.01f64 + 0.04 + 0.09).sqrt();
         let sides = (0.1 + 2.0 * margin) * (0.2 + 2.0 * margin);
         let found: f64 = triangles.iter().map(area).sum();
-        assert!((found / (2f64.sqrt() * sides) - 1.0).abs() < 1e-12, "{found}");
+        assert!(
+            (found / (2f64.sqrt() * sides) - 1.0).abs() < 1e-12,
+            "{found}"
+        );
     }
 
     #[test]
@@ -234,14 +256,25 @@ mod tests {
         let length = (ends[1] - ends[0]).norm();
         let mut worst = [0.0f64; 2];
         for [a, b, c] in &triangles {
-            for at in [*a, *b, *c, (a + b) / 2.0, (b + c) / 2.0, (a + c) / 2.0, (a + b + c) / 3.0] {
+            for at in [
+                *a,
+                *b,
+                *c,
+                (a + b) / 2.0,
+                (b + c) / 2.0,
+                (a + c) / 2.0,
+                (a + b + c) / 3.0,
+            ] {
                 let height = (at - ends[0]).dot(&axis);
                 let out = (at - ends[0] - height * axis).norm();
                 let off = out - (0.01 + 0.03 * height / length);
                 worst = [worst[0].max(off), worst[1].max(-off)];
             }
         }
-        assert!(worst.iter().all(|off| (0.2e-6..1.001e-6).contains(off)), "{worst:?}");
+        assert!(
+            worst.iter().all(|off| (0.04e-6..0.2001e-6).contains(off)),
+            "{worst:?}"
+        );
         // The lateral area of a frustum is π (r₁ + r₂) s.
         let found: f64 = triangles.iter().map(area).sum();
         let wanted = PI * 0.05 * length.hypot(0.03);

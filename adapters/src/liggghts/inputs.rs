@@ -92,7 +92,7 @@ impl Inputs<'_> {
         let skin = share * self.setup.radius.iter().copied().fold(0.0, f64::max);
         let (template, contacts) = match &self.setup.motion {
             Motion::Frozen => (FROZEN_BED, String::new()),
-            Motion::Free(contacts) => (MOVING_BED, moving::commands(contacts)),
+            Motion::Free(contacts) => (MOVING_BED, moving::commands(contacts, self.smallest())),
         };
         // Bins as large as particles would be without number in a large box with few of them.
         let volume = (upper - lower).product();

@@ -61,8 +61,8 @@ pub fn refusal(contacts: &Contacts) -> Option<String> {
     None
 }
 
-/// The commands after the particles are read.
-pub fn commands(contacts: &Contacts) -> String {
+/// The commands after the particles are read, for spheres of this radius in m at least.
+pub fn commands(contacts: &Contacts, smallest: f64) -> String {
     let mut text = String::new();
     properties(&mut text, contacts);
     let model = model(contacts);
@@ -80,7 +80,7 @@ pub fn commands(contacts: &Contacts) -> String {
             "fix calcine_gravity calcine_free gravity {gravity:e} vector {x:e} {y:e} {z:e}"
         );
     }
-    walls(&mut text, contacts, &model);
+    walls(&mut text, contacts, &model, smallest);
     text.push_str(
         "fix calcine_push all property/atom calcine_push vector yes no no 0. 0. 0.\n\
          variable calcine_x atom f_calcine_push[1]\n\
@@ -258,7 +258,7 @@ fn primitive(shape: &WallShape) -> Option<String> {
     }
 }
 
-fn walls(text: &mut String, contacts: &Contacts, model: &str) {
+fn walls(text: &mut String, contacts: &Contacts, model: &str, smallest: f64) {
     let mut meshes = Vec::new();
     for (index, wall) in contacts.walls.iter().enumerate() {
         let kind = contacts.material_of.len() + wall.material + 1;
@@ -276,8 +276,12 @@ fn walls(text: &mut String, contacts: &Contacts, model: &str) {
             text,
             "fix calcine_mesh_{index} all mesh/surface file {} type {kind}{}{}",
             file(index),
-            if stays { surface(wall.motion) } else { String::new() },
-            curvature(wall)
+            if stays {
+                surface(wall.motion)
+            } else {
+                String::new()
+            },
+            curvature(wall, smallest)
         );
         if !stays {
             moving_mesh(text, index, wall.motion);
@@ -297,11 +301,10 @@ fn walls(text: &mut String, contacts: &Contacts, model: &str) {
 
 /// Facets of a round wall are one surface: a sphere touches them once, and its springs go along. (Without being
 /// told, LIGGGHTS takes an angle above 0.26 degrees for an edge.)
-fn curvature(wall: &Wall) -> &'static str {
-    match wall.shape {
-        WallShape::Cylinder { .. } | WallShape::Cone { .. } => " curvature 35",
-        WallShape::Plane { .. } | WallShape::Mesh { .. } => "",
-    }
+fn curvature(wall: &Wall, smallest: f64) -> String {
+    facets::bend(wall, smallest).map_or_else(String::new, |bend| {
+        format!(" curvature {:e} curvature_tolerant yes", 1.25 * bend)
+    })
 }
 
 /// The speed of a surface that moves within itself: its triangles stay.

@@ -289,7 +289,11 @@ fn surface_angle(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'s
     let down = known.gravity?.try_normalize(0.0);
     if down.is_none_or(|down| down.cross(&axis).norm() < 1e-3) {
         let help = "state `gas.gravity` across the axis; it says what is below";
-        reader.fail("surface_angle", "has an axis that gravity does not cross", help);
+        reader.fail(
+            "surface_angle",
+            "has an axis that gravity does not cross",
+            help,
+        );
     }
     let down = down?;
     Some((Measure::SurfaceAngle { point, axis, down }, "angle"))
