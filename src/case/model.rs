@@ -411,6 +411,8 @@ pub struct Quantity {
     pub unit: &'static str,
     /// Largest difference between pairings.
     pub agree: Option<Band>,
+    /// Process time in s over which values are averaged before pairings are compared; 0: not at all.
+    pub agree_over: f64,
     /// Expected value.
     pub expect: Option<Expect>,
 }
