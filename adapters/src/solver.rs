@@ -60,6 +60,8 @@ pub struct ExternalSolver {
     /// By rank: the cells of the whole mesh that it has; empty for particles.
     owned: Arc<[Vec<usize>]>,
     deadline: Duration,
+    /// Processor time of the ranks of this machine when they were ready.
+    used_at_start: Duration,
 }
 
 /// The header of a request in a window; times as the wire has them.
@@ -278,8 +280,10 @@ impl ExternalSolver {
             hello: launch.hello,
             owned: Arc::default(),
             deadline: launch.deadline,
+            used_at_start: Duration::ZERO,
         };
         solver.shake_hands(supervisor)?;
+        solver.used_at_start = solver.used();
         Ok(solver)
     }
 
@@ -357,6 +361,17 @@ impl ExternalSolver {
     /// Process ids of the ranks, as they introduced themselves.
     pub fn rank_pids(&self) -> &[u32] {
         &self.peer.ranks
+    }
+
+    /// Processor time of the ranks of this machine, all threads, since they were ready.
+    pub fn processor_time(&self) -> Duration {
+        self.used().saturating_sub(self.used_at_start)
+    }
+
+    fn used(&self) -> Duration {
+        let ranks = self.links.iter().filter_map(Link::peer);
+        let local = ranks.filter(|process| process.is_here());
+        local.map(|process| process.processor_time()).sum()
     }
 
     /// Links, one per rank, each with the message that was waited for last.

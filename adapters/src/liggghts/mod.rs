@@ -290,6 +290,10 @@ impl Part for LiggghtsParticles {
             .map_err(|error| unusable(directory, error))
     }
 
+    fn processor_time(&self) -> Duration {
+        self.solver.processor_time()
+    }
+
     fn finish_run(&mut self, _supervisor: &Supervisor) -> Result<(), PartError> {
         self.solver.goodbye()
     }

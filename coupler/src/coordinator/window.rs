@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
+use rustix::time::{ClockId, clock_gettime};
 
 use super::{Mapped, Run, RunError};
 use crate::contacts::touching;
@@ -22,6 +23,20 @@ fn timed<T>(account: &mut Duration, stage: impl FnOnce() -> T) -> T {
     let begun = Instant::now();
     let value = stage();
     *account += begun.elapsed();
+    value
+}
+
+/// Processor time that all threads of this process have used.
+fn processor() -> Duration {
+    let time = clock_gettime(ClockId::ProcessCPUTime);
+    Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec as u32)
+}
+
+/// Adds what a stage takes to its accounts of wall time and of processor time.
+fn metered<T>(wall: &mut Duration, used: &mut Duration, stage: impl FnOnce() -> T) -> T {
+    let before = processor();
+    let value = timed(wall, stage);
+    *used += processor().saturating_sub(before);
     value
 }
 
@@ -187,7 +202,8 @@ impl Run<'_> {
             timed(&mut timing.exchange, || {
                 work.exchange.linearise(&setting, &self.parts.gas.fields());
             });
-            self.convergence = timed(&mut timing.gas, || {
+            let accounts = (&mut timing.gas, &mut timing.gas_processor);
+            self.convergence = metered(accounts.0, accounts.1, || {
                 self.parts
                     .gas
                     .start(window, &mapped.bed, &work.exchange.cells)?;
@@ -234,11 +250,13 @@ impl Run<'_> {
             &mut work.pressure_force,
             &mut work.push,
         );
-        self.parts.particles.start(window, &work.push)?;
-        self.parts
-            .particles
-            .finish(supervisor, &mut work.particle_received)?;
-        self.timing.particles += begun.elapsed();
+        let (particles, timing) = (&mut self.parts.particles, &mut self.timing);
+        timing.exchange += begun.elapsed();
+        let accounts = (&mut timing.particles, &mut timing.particles_processor);
+        metered(accounts.0, accounts.1, || {
+            particles.start(window, &work.push)?;
+            particles.finish(supervisor, &mut work.particle_received)
+        })?;
         Ok(())
     }
 
