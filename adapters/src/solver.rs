@@ -77,7 +77,7 @@ pub fn header(kind: Kind, window: &Window) -> Header {
     }
 }
 
-/// Opens the coordinator's end of every rank's link.
+/// Opens the coordinator's end of every rank's link, which the ranks wait for.
 fn open_links(run: &Run, hello: &Hello) -> Result<Vec<Link>, WireError> {
     let address = run.address(&hello.role);
     (0..hello.ranks)
@@ -256,7 +256,7 @@ impl ExternalSolver {
             run = None;
         } else {
             let own = Run::create().map_err(unopened)?;
-            links = open_links(&own, &launch.hello).map_err(unopened)?;
+            // The processes first: whatever happens to this one from here on, they remove the run's files.
             processes = Processes::start(
                 &launch.name,
                 &launch.program,
@@ -265,6 +265,7 @@ impl ExternalSolver {
                 &own.address(&launch.hello.role),
                 &launch.log,
             )?;
+            links = open_links(&own, &launch.hello).map_err(unopened)?;
             run = Some(own);
         }
         let peer = Peer::new(&launch, processes.pid(), supervisor)?;

@@ -2,6 +2,7 @@
 
 pub mod inputs;
 pub mod moving;
+pub mod template;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

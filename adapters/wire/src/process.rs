@@ -47,7 +47,7 @@ impl Process {
         let threads = threads.into_iter().flatten().flatten();
         let used = threads.filter_map(|thread| {
             let text = fs::read_to_string(thread.path().join("schedstat")).ok()?;
-            text.split_ascii_whitespace().next()?.parse().ok()
+            text.split_ascii_whitespace().next()?.parse::<u64>().ok()
         });
         Duration::from_nanos(used.sum())
     }

@@ -70,13 +70,13 @@ fn failed<E: std::fmt::Debug>(doing: &'static str) -> impl FnOnce(E) -> WireErro
 }
 
 impl SharedMemory {
-    /// Opens one end of a rank's link. The coordinator opens its end before the solver starts.
+    /// Opens one end of a rank's link, whoever comes first.
     pub fn open(address: &LinkAddress, rank: u32, end: End) -> Result<Self, WireError> {
         set_log_level(LogLevel::Fatal);
         check_room(MARGIN)?;
         let peer = match end {
             End::Coordinator => None,
-            End::Solver => Some(Watch::begin(address)?),
+            End::Solver => Some(Watch::living(address)?),
         };
         let prefix = format!("{}_", address.name);
         let mut config = Config::default();
@@ -225,6 +225,22 @@ impl Ports {
         }
         Ok(())
     }
+
+    fn send(&mut self) -> Result<(), WireError> {
+        let loan = self.loan.take().ok_or(WireError::Order {
+            what: "there is no reserved message to send",
+        })?;
+        let receivers = words::filled(loan)
+            .send()
+            .map_err(failed("sending a message"))?;
+        if receivers != 1 {
+            return Err(WireError::NotDelivered { receivers });
+        }
+        self.notifier
+            .notify()
+            .map_err(failed("waking the other end"))?;
+        Ok(())
+    }
 }
 
 /// Bytes of shared memory that are free.
@@ -262,21 +278,12 @@ impl Transport for SharedMemory {
     }
 
     fn send(&mut self) -> Result<(), WireError> {
-        let ports = self.ports()?;
-        let loan = ports.loan.take().ok_or(WireError::Order {
-            what: "there is no reserved message to send",
-        })?;
-        let receivers = words::filled(loan)
-            .send()
-            .map_err(failed("sending a message"))?;
-        if receivers != 1 {
-            return Err(WireError::NotDelivered { receivers });
+        let sent = self.ports().and_then(Ports::send);
+        match (sent, self.dead_peer()) {
+            // Nobody else may be left to remove the files.
+            (Err(_), Some(pid)) => Err(self.bury(pid)),
+            (sent, _) => sent,
         }
-        ports
-            .notifier
-            .notify()
-            .map_err(failed("waking the other end"))?;
-        Ok(())
     }
 
     fn receive(&mut self, patience: Duration) -> Result<bool, WireError> {
