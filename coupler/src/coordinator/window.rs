@@ -181,40 +181,39 @@ impl Run<'_> {
         let acceleration = window.acceleration();
         let span = window.span.process.seconds();
         let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
+        let begun = Instant::now();
+        let exchange = &mut work.exchange;
+        let gas = self.parts.gas.fields();
+        let setting = Setting {
+            operator: &mapped.operator,
+            particles: self.parts.particles.fields(),
+            coefficients: &work.coefficients,
+            acceleration,
+        };
+        exchange.begin(&setting, &gas);
+        timing.exchange += begun.elapsed();
         loop {
             if self.parts.interior.conducts() {
-                let seen = &mut work.seen.temperature;
-                mapped
-                    .operator
-                    .sample(self.parts.gas.fields().temperature, seen);
                 timed(&mut timing.interior, || {
-                    let conductance = &work.coefficients.conductance;
+                    let (conductance, seen) =
+                        (&work.coefficients.conductance, exchange.seen_temperature());
                     self.parts.interior.conduct(conductance, seen, span);
                 });
             }
-            let setting = Setting {
-                operator: &mapped.operator,
-                particles: self.parts.particles.fields(),
-                temperature: self.parts.interior.start_temperature(),
-                coefficients: &work.coefficients,
-                acceleration,
-            };
             timed(&mut timing.exchange, || {
-                work.exchange.linearise(&setting, &self.parts.gas.fields());
+                exchange.linearise(&setting, self.parts.interior.start_temperature());
             });
             let accounts = (&mut timing.gas, &mut timing.gas_processor);
             self.convergence = metered(accounts.0, accounts.1, || {
-                self.parts
-                    .gas
-                    .start(window, &mapped.bed, &work.exchange.cells)?;
+                self.parts.gas.start(window, &mapped.bed, &exchange.cells)?;
                 self.parts.gas.finish(supervisor, &mut work.received)
             })?;
             let misplaced = timed(&mut timing.exchange, || {
-                work.exchange
-                    .credit(&setting, &self.parts.gas.fields(), &work.received)
+                let start = self.parts.interior.start_temperature();
+                exchange.credit_heat(&setting, start, &self.parts.gas.fields(), &work.received)
             });
             timed(&mut timing.interior, || {
-                self.parts.interior.advance(&work.exchange.heat, span)
+                self.parts.interior.advance(&exchange.heat, span)
             });
             window.attempt += 1;
             let attempts = window.attempt - first_attempt;
@@ -234,6 +233,9 @@ impl Run<'_> {
                     misplaced,
                     settled,
                 };
+                timed(&mut timing.exchange, || {
+                    exchange.credit_drag(&setting, &self.parts.gas.fields(), &work.received);
+                });
                 return Ok(());
             }
         }
