@@ -175,7 +175,7 @@ fn a_hopper_runs_out_at_the_rate_of_beverloo() {
     let [a, b] = [narrow / beverloo(0.022), wide / beverloo(0.030)];
     println!("{narrow} and {wide} kg/s: {a} and {b} of Beverloo");
     for ratio in [a, b] {
-        assert!((0.85..1.15).contains(&ratio), "{ratio}");
+        assert!((0.75..1.1).contains(&ratio), "{ratio}");
     }
-    assert!((a / b - 1.0).abs() < 0.12, "{a} {b}");
+    assert!((a / b - 1.0).abs() < 0.15, "{a} {b}");
 }

@@ -61,16 +61,53 @@ pub fn refusal(contacts: &Contacts) -> Option<String> {
     None
 }
 
+<<<<<<< HEAD
 /// The commands after the particles are read, for spheres of this radius in m at least.
 pub fn commands(contacts: &Contacts, smallest: f64) -> String {
+=======
+fn wall_refusal(wall: &Wall) -> Option<String> {
+    let name = &wall.name;
+    let along = |direction: &Vec3| direction.iter().any(|value| value.abs() == 1.0);
+    let moves = wall.motion != WallMotion::Still;
+    let what = match &wall.shape {
+        WallShape::Mesh { .. } => return None,
+        WallShape::Cone { .. } => "is a cone",
+        WallShape::Plane { .. } | WallShape::Cylinder { .. } if moves => {
+            "is a plane or a cylinder that moves"
+        }
+        WallShape::Plane { normal, .. } if !along(normal) => "is a plane across the axes",
+        WallShape::Cylinder { axis, .. } if axis.z.abs() != 1.0 => {
+            "is a cylinder that is not upright"
+        }
+        WallShape::Plane { .. } | WallShape::Cylinder { .. } => return None,
+    };
+    Some(format!(
+        "wall \"{name}\" {what}, which it does not have; give its triangles: walls.stl = \"{name}.stl\""
+    ))
+}
+
+/// The commands after the particles are read.
+pub fn commands(contacts: &Contacts) -> String {
+    laws(contacts)
+        + &groups(contacts)
+        + &gravity(contacts)
+        + &walls(contacts)
+        + &push()
+        + &motion(contacts)
+}
+
+/// Materials and the contact law.
+pub fn laws(contacts: &Contacts) -> String {
+>>>>>>> main
     let mut text = String::new();
     properties(&mut text, contacts);
-    let model = model(contacts);
     let _ = writeln!(
         text,
-        "pair_style gran {model}{}\npair_coeff * *",
+        "pair_style gran {}{}\npair_coeff * *",
+        model(contacts),
         settings(contacts)
     );
+<<<<<<< HEAD
     groups(&mut text, contacts);
     let gravity = contacts.gravity.norm();
     if gravity > 0.0 {
@@ -92,7 +129,39 @@ pub fn commands(contacts: &Contacts, smallest: f64) -> String {
         text.push_str("fix calcine_hold calcine_held freeze\n");
     }
     text.push_str("fix calcine_move calcine_free nve/sphere\n");
+=======
+>>>>>>> main
     text
+}
+
+/// Gravity on all that is free.
+pub fn gravity(contacts: &Contacts) -> String {
+    let gravity = contacts.gravity.norm();
+    if gravity == 0.0 {
+        return String::new();
+    }
+    let [x, y, z] = (contacts.gravity / gravity).into();
+    format!("fix calcine_gravity calcine_free gravity {gravity:e} vector {x:e} {y:e} {z:e}\n")
+}
+
+/// The force of the gas, which the host writes into the fix `calcine_push`.
+pub fn push() -> String {
+    "fix calcine_push all property/atom calcine_push vector yes no no 0. 0. 0.\n\
+     variable calcine_x atom f_calcine_push[1]\n\
+     variable calcine_y atom f_calcine_push[2]\n\
+     variable calcine_z atom f_calcine_push[3]\n\
+     fix calcine_add calcine_free addforce v_calcine_x v_calcine_y v_calcine_z\n"
+        .into()
+}
+
+/// What is held stays, what is free moves.
+pub fn motion(contacts: &Contacts) -> String {
+    let held = if contacts.held.contains(&true) {
+        "fix calcine_hold calcine_held freeze\n"
+    } else {
+        ""
+    };
+    format!("{held}fix calcine_move calcine_free nve/sphere\n")
 }
 
 /// The material of each atom type.
@@ -186,7 +255,9 @@ fn settings(contacts: &Contacts) -> &'static str {
     }
 }
 
-fn groups(text: &mut String, contacts: &Contacts) {
+/// Groups of what is free and of what is held, by atom types.
+pub fn groups(contacts: &Contacts) -> String {
+    let mut text = String::new();
     for (group, held) in [("calcine_free", false), ("calcine_held", true)] {
         let of = contacts.held.iter().enumerate();
         let types: Vec<String> = of
@@ -197,6 +268,7 @@ fn groups(text: &mut String, contacts: &Contacts) {
             let _ = writeln!(text, "group {group} type {}", types.join(" "));
         }
     }
+    text
 }
 
 /// Name of a wall's file of triangles.
@@ -233,6 +305,7 @@ fn stl(name: &str, triangles: &[[Vec3; 3]]) -> String {
     text
 }
 
+<<<<<<< HEAD
 /// LIGGGHTS' name of a wall that it has itself, with its parameters: those of a cylinder are the radius and the
 /// place of its axis, in the cyclic order of the coordinates.
 fn primitive(shape: &WallShape) -> Option<String> {
@@ -272,6 +345,34 @@ fn walls(text: &mut String, contacts: &Contacts, model: &str, smallest: f64) {
             continue;
         }
         let stays = facets::within_itself(wall);
+=======
+/// Walls, with the contact law of the particles.
+pub fn walls(contacts: &Contacts) -> String {
+    let (mut text, model) = (String::new(), model(contacts));
+    let mut meshes = Vec::new();
+    for (index, wall) in contacts.walls.iter().enumerate() {
+        let kind = contacts.material_of.len() + wall.material + 1;
+        let primitive = match &wall.shape {
+            WallShape::Plane { point, normal } => {
+                let axis = normal.iamax();
+                format!("{}plane {:e}", ["x", "y", "z"][axis], point[axis])
+            }
+            WallShape::Cylinder { point, radius, .. } => {
+                format!("zcylinder {radius:e} {:e} {:e}", point.x, point.y)
+            }
+            WallShape::Cone { .. } => continue, // refused before
+            WallShape::Mesh { .. } => {
+                let _ = writeln!(
+                    text,
+                    "fix calcine_mesh_{index} all mesh/surface file {} type {kind}",
+                    file(index)
+                );
+                moving_mesh(&mut text, index, wall.motion);
+                meshes.push(format!("calcine_mesh_{index}"));
+                continue;
+            }
+        };
+>>>>>>> main
         let _ = writeln!(
             text,
             "fix calcine_mesh_{index} all mesh/surface file {} type {kind}{}{}",
@@ -297,6 +398,7 @@ fn walls(text: &mut String, contacts: &Contacts, model: &str, smallest: f64) {
             settings(contacts)
         );
     }
+    text
 }
 
 /// Facets of a round wall are one surface: a sphere touches them once, and its springs go along. (Without being
