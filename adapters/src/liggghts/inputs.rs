@@ -9,12 +9,8 @@ use calcine_coupler::motion::Motion;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 
-<<<<<<< HEAD
-use super::{facets, moving};
-=======
-use super::moving;
 use super::template::{Template, Values};
->>>>>>> main
+use super::{facets, moving};
 
 /// Name of the script.
 pub const SCRIPT: &str = "in.liggghts";
@@ -98,13 +94,6 @@ impl Inputs<'_> {
         let moves = !self.setup.motion.is_frozen();
         let share = if moves { 0.4 } else { 0.1 };
         let skin = share * self.setup.radius.iter().copied().fold(0.0, f64::max);
-<<<<<<< HEAD
-        let (template, contacts) = match &self.setup.motion {
-            Motion::Frozen => (FROZEN_BED, String::new()),
-            Motion::Free(contacts) => (MOVING_BED, moving::commands(contacts, self.smallest())),
-        };
-=======
->>>>>>> main
         // Bins as large as particles would be without number in a large box with few of them.
         let volume = (upper - lower).product();
         let room = (volume / (4.0 * self.setup.id.len() as f64)).cbrt();
@@ -116,6 +105,7 @@ impl Inputs<'_> {
                 skin,
                 bins,
                 corners: (lower, upper),
+                smallest: self.smallest(),
             };
             return own.script(contacts, &values).map_err(|error| {
                 let message = "the script of `liggghts.template` does not go with the case";
@@ -124,7 +114,7 @@ impl Inputs<'_> {
         }
         let (template, contacts) = match &self.setup.motion {
             Motion::Frozen => (FROZEN_BED, String::new()),
-            Motion::Free(contacts) => (MOVING_BED, moving::commands(contacts)),
+            Motion::Free(contacts) => (MOVING_BED, moving::commands(contacts, self.smallest())),
         };
         let script = template
             .replace("{bins}", &format!("{bins:e}"))

@@ -61,44 +61,18 @@ pub fn refusal(contacts: &Contacts) -> Option<String> {
     None
 }
 
-<<<<<<< HEAD
 /// The commands after the particles are read, for spheres of this radius in m at least.
 pub fn commands(contacts: &Contacts, smallest: f64) -> String {
-=======
-fn wall_refusal(wall: &Wall) -> Option<String> {
-    let name = &wall.name;
-    let along = |direction: &Vec3| direction.iter().any(|value| value.abs() == 1.0);
-    let moves = wall.motion != WallMotion::Still;
-    let what = match &wall.shape {
-        WallShape::Mesh { .. } => return None,
-        WallShape::Cone { .. } => "is a cone",
-        WallShape::Plane { .. } | WallShape::Cylinder { .. } if moves => {
-            "is a plane or a cylinder that moves"
-        }
-        WallShape::Plane { normal, .. } if !along(normal) => "is a plane across the axes",
-        WallShape::Cylinder { axis, .. } if axis.z.abs() != 1.0 => {
-            "is a cylinder that is not upright"
-        }
-        WallShape::Plane { .. } | WallShape::Cylinder { .. } => return None,
-    };
-    Some(format!(
-        "wall \"{name}\" {what}, which it does not have; give its triangles: walls.stl = \"{name}.stl\""
-    ))
-}
-
-/// The commands after the particles are read.
-pub fn commands(contacts: &Contacts) -> String {
     laws(contacts)
         + &groups(contacts)
         + &gravity(contacts)
-        + &walls(contacts)
+        + &walls(contacts, smallest)
         + &push()
         + &motion(contacts)
 }
 
 /// Materials and the contact law.
 pub fn laws(contacts: &Contacts) -> String {
->>>>>>> main
     let mut text = String::new();
     properties(&mut text, contacts);
     let _ = writeln!(
@@ -107,30 +81,6 @@ pub fn laws(contacts: &Contacts) -> String {
         model(contacts),
         settings(contacts)
     );
-<<<<<<< HEAD
-    groups(&mut text, contacts);
-    let gravity = contacts.gravity.norm();
-    if gravity > 0.0 {
-        let [x, y, z] = (contacts.gravity / gravity).into();
-        let _ = writeln!(
-            text,
-            "fix calcine_gravity calcine_free gravity {gravity:e} vector {x:e} {y:e} {z:e}"
-        );
-    }
-    walls(&mut text, contacts, &model, smallest);
-    text.push_str(
-        "fix calcine_push all property/atom calcine_push vector yes no no 0. 0. 0.\n\
-         variable calcine_x atom f_calcine_push[1]\n\
-         variable calcine_y atom f_calcine_push[2]\n\
-         variable calcine_z atom f_calcine_push[3]\n\
-         fix calcine_add calcine_free addforce v_calcine_x v_calcine_y v_calcine_z\n",
-    );
-    if contacts.held.contains(&true) {
-        text.push_str("fix calcine_hold calcine_held freeze\n");
-    }
-    text.push_str("fix calcine_move calcine_free nve/sphere\n");
-=======
->>>>>>> main
     text
 }
 
@@ -305,7 +255,6 @@ fn stl(name: &str, triangles: &[[Vec3; 3]]) -> String {
     text
 }
 
-<<<<<<< HEAD
 /// LIGGGHTS' name of a wall that it has itself, with its parameters: those of a cylinder are the radius and the
 /// place of its axis, in the cyclic order of the coordinates.
 fn primitive(shape: &WallShape) -> Option<String> {
@@ -331,7 +280,9 @@ fn primitive(shape: &WallShape) -> Option<String> {
     }
 }
 
-fn walls(text: &mut String, contacts: &Contacts, model: &str, smallest: f64) {
+/// Walls, with the contact law of the particles, for spheres of this radius in m at least.
+pub fn walls(contacts: &Contacts, smallest: f64) -> String {
+    let (mut text, model) = (String::new(), model(contacts));
     let mut meshes = Vec::new();
     for (index, wall) in contacts.walls.iter().enumerate() {
         let kind = contacts.material_of.len() + wall.material + 1;
@@ -345,34 +296,6 @@ fn walls(text: &mut String, contacts: &Contacts, model: &str, smallest: f64) {
             continue;
         }
         let stays = facets::within_itself(wall);
-=======
-/// Walls, with the contact law of the particles.
-pub fn walls(contacts: &Contacts) -> String {
-    let (mut text, model) = (String::new(), model(contacts));
-    let mut meshes = Vec::new();
-    for (index, wall) in contacts.walls.iter().enumerate() {
-        let kind = contacts.material_of.len() + wall.material + 1;
-        let primitive = match &wall.shape {
-            WallShape::Plane { point, normal } => {
-                let axis = normal.iamax();
-                format!("{}plane {:e}", ["x", "y", "z"][axis], point[axis])
-            }
-            WallShape::Cylinder { point, radius, .. } => {
-                format!("zcylinder {radius:e} {:e} {:e}", point.x, point.y)
-            }
-            WallShape::Cone { .. } => continue, // refused before
-            WallShape::Mesh { .. } => {
-                let _ = writeln!(
-                    text,
-                    "fix calcine_mesh_{index} all mesh/surface file {} type {kind}",
-                    file(index)
-                );
-                moving_mesh(&mut text, index, wall.motion);
-                meshes.push(format!("calcine_mesh_{index}"));
-                continue;
-            }
-        };
->>>>>>> main
         let _ = writeln!(
             text,
             "fix calcine_mesh_{index} all mesh/surface file {} type {kind}{}{}",
@@ -385,7 +308,7 @@ pub fn walls(contacts: &Contacts) -> String {
             curvature(wall, smallest)
         );
         if !stays {
-            moving_mesh(text, index, wall.motion);
+            moving_mesh(&mut text, index, wall.motion);
         }
         meshes.push(format!("calcine_mesh_{index}"));
     }
