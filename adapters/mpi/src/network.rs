@@ -3,7 +3,8 @@
 use std::ffi::OsString;
 use std::fs;
 use std::process;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
@@ -11,7 +12,7 @@ use calcine_wire::{Carried, LinkAddress, Network, Run, Transport, WireError};
 use mpi::Threading;
 use mpi::environment::Universe;
 
-use crate::carrier::{World, end_at_once, place_files};
+use crate::carrier::{World, at_exit, end_at_once, place_files};
 
 /// MPI in this process, and the worlds that it has spawned.
 pub struct MpiNetwork {
@@ -20,12 +21,47 @@ pub struct MpiNetwork {
     worlds: AtomicU32,
 }
 
+/// Where this run's files are, and whether this process comes to its end by itself.
+static FILES: OnceLock<LinkAddress> = OnceLock::new();
+/// As many threads as may call `exit` at once.
+const THREADS: usize = 4;
+static ENDS: AtomicBool = AtomicBool::new(false);
+
+/// Open MPI ends its process by `exit` where its own daemon has died, from any thread and from several at once:
+/// the first has to say so and to clean up, the others wait for it here.
+extern "C" fn ended_by_mpi() {
+    static TAKEN: AtomicBool = AtomicBool::new(false);
+    let Some(files) = FILES.get().filter(|_| !ENDS.load(Ordering::SeqCst)) else {
+        return;
+    };
+    if TAKEN.swap(true, Ordering::SeqCst) {
+        std::thread::sleep(Duration::from_secs(5));
+        return;
+    }
+    eprintln!(
+        "MPI has ended this run: its daemon (orted) died, or MPI could not be started; see the logs of \
+         the solvers in the folder `log` of the results. `--resume` goes on from the last checkpoint"
+    );
+    files.remove_files();
+    end_at_once(calcine::exit::PEER);
+}
+
 impl MpiNetwork {
+    /// Starts MPI in a process that MPI may end: then it says so, and its files go.
+    pub fn start_guarded() -> Result<(Self, Universe), WireError> {
+        for _ in 0..THREADS {
+            at_exit(ended_by_mpi);
+        }
+        Self::start()
+    }
+
     /// Starts MPI, before any thread is started. The universe ends with [`end`].
     pub fn start() -> Result<(Self, Universe), WireError> {
         let run = Run::create()?;
         let address = run.address("mpi");
         place_files(&address.root, &address.make_mpi_memory()?);
+        // A second run of this process, as in tests, keeps the first one's.
+        let _ = FILES.set(address);
         let started = mpi::initialize_with_threading(Threading::Multiple);
         let (universe, threading) = started.ok_or(WireError::Order {
             what: "MPI was started before",
@@ -86,6 +122,7 @@ impl Network for MpiNetwork {
 /// Ends this process: MPI first, where nothing died. After a death MPI waits for the dead, so that its
 /// daemon is ended instead.
 pub fn end(quiet: bool, universe: Universe, code: u8) -> ! {
+    ENDS.store(true, Ordering::SeqCst);
     if quiet {
         drop(universe);
     } else {
