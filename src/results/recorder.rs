@@ -15,8 +15,8 @@ use super::series::{self, Row, TRACKED_PARTICLES, Table};
 use super::status::{Status, Watch};
 use super::store::Store;
 use super::summary::{
-    Backends, CaseName, Ledger, LedgerLine, ProcessorTimes, Provenance, Solver, Solvers, Summary, Verdict,
-    WallTimes,
+    Backends, CaseName, Ledger, LedgerLine, ProcessorTimes, Provenance, Solver, Solvers, Summary,
+    Verdict, WallTimes,
 };
 use super::vtk::{self, Cells};
 use super::{CASE, ResultsError, STORE, SUMMARY, files, snapshot};
