@@ -325,14 +325,14 @@ pub fn write_inputs(
     }
     if pairing.particles == ParticleBackend::Liggghts {
         let target = folder.join("liggghts");
-        liggghts_inputs(prepared, starts.particles.ranks).write(&target)?;
+        liggghts_inputs(case, prepared, starts.particles.ranks).write(&target)?;
         written.push(target);
     }
     Ok(written)
 }
 
 /// What LIGGGHTS is told of the particles, in the box of the mesh's points.
-fn liggghts_inputs(prepared: &Prepared, ranks: u32) -> Inputs<'_> {
+fn liggghts_inputs<'a>(case: &Case, prepared: &'a Prepared, ranks: u32) -> Inputs<'a> {
     let points = &prepared.mesh.topology().points;
     let bounds = points.iter().fold(
         (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)),
@@ -346,6 +346,7 @@ fn liggghts_inputs(prepared: &Prepared, ranks: u32) -> Inputs<'_> {
             Motion::Free(contacts) => contacts.step,
         },
         ranks,
+        wall_impulse: case.liggghts.wall_impulse,
     }
 }
 
@@ -411,7 +412,7 @@ impl Assembly<'_> {
             }
             ParticleBackend::Liggghts => {
                 let start = &self.settings.starts.particles;
-                let inputs = liggghts_inputs(self.prepared, start.ranks);
+                let inputs = liggghts_inputs(self.case, self.prepared, start.ranks);
                 let launch = LiggghtsLaunch {
                     inputs,
                     launcher: start.launcher.clone(),
@@ -556,6 +557,7 @@ fn closures(case: &Case) -> Closures {
     Closures {
         gas: case.gas.properties.clone(),
         drag: laws::drag(case.laws.drag),
+        momentum: case.gas.momentum,
         heat_transfer: laws::heat_transfer(case.laws.heat_transfer),
     }
 }

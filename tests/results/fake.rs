@@ -72,6 +72,7 @@ pub fn case() -> Case {
         gas: gas_setup(),
         particles: vec![],
         laws: Laws {
+            momentum: Default::default(),
             drag: DragLaw::ErgunWenYu,
             conduction: ConductionLaw::None,
             heat_transfer: HeatLaw::Gunn,
@@ -162,6 +163,7 @@ fn gas_setup() -> GasSetup {
         pressure: 101_325.0,
         velocity: Vec3::zeros(),
         gravity: Vec3::new(0.0, 0.0, -9.81),
+        momentum: Default::default(),
         patches: vec![],
         controls: GasControls {
             convection: Convection::Upwind,
@@ -343,6 +345,7 @@ impl World {
             },
             particle_temperature: &self.temperature,
             particle_heat: &self.heat,
+            felt: Default::default(),
             placement: &SETTLED,
             ledger: &self.ledger,
             convergence: &self.convergence,

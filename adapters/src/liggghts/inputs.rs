@@ -32,6 +32,8 @@ pub struct Inputs<'a> {
     pub step: f64,
     /// Number of ranks, side by side along the longer horizontal side.
     pub ranks: u32,
+    /// Whether the impulse of walls is counted, step by step.
+    pub wall_impulse: bool,
 }
 
 impl Inputs<'_> {
@@ -92,7 +94,10 @@ impl Inputs<'_> {
         let skin = share * self.setup.radius.iter().copied().fold(0.0, f64::max);
         let (template, contacts) = match &self.setup.motion {
             Motion::Frozen => (FROZEN_BED, String::new()),
-            Motion::Free(contacts) => (MOVING_BED, moving::commands(contacts)),
+            Motion::Free(contacts) => {
+                let counted = self.wall_impulse;
+                (MOVING_BED, moving::commands(contacts, counted))
+            }
         };
         // Bins as large as particles would be without number in a large box with few of them.
         let volume = (upper - lower).product();
@@ -197,6 +202,7 @@ mod tests {
             bounds: (Vec3::zeros(), Vec3::new(0.01, 0.01, 0.3)),
             step: 1e-4,
             ranks: 1,
+            wall_impulse: false,
         }
     }
 

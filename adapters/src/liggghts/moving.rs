@@ -80,8 +80,9 @@ fn wall_refusal(wall: &Wall) -> Option<String> {
     ))
 }
 
-/// The commands after the particles are read.
-pub fn commands(contacts: &Contacts) -> String {
+/// The commands after the particles are read; forces of walls are kept by particle where they are to be
+/// counted, which they are not with held particles, whose own forces LIGGGHTS does not keep.
+pub fn commands(contacts: &Contacts, count_walls: bool) -> String {
     let mut text = String::new();
     properties(&mut text, contacts);
     let model = model(contacts);
@@ -99,7 +100,8 @@ pub fn commands(contacts: &Contacts) -> String {
             "fix calcine_gravity calcine_free gravity {gravity:e} vector {x:e} {y:e} {z:e}"
         );
     }
-    walls(&mut text, contacts, &model);
+    let counted = count_walls && !contacts.held.contains(&true);
+    walls(&mut text, contacts, &model, counted);
     text.push_str(
         "fix calcine_push all property/atom calcine_push vector yes no no 0. 0. 0.\n\
          variable calcine_x atom f_calcine_push[1]\n\
@@ -252,7 +254,11 @@ fn stl(name: &str, triangles: &[[Vec3; 3]]) -> String {
     text
 }
 
-fn walls(text: &mut String, contacts: &Contacts, model: &str) {
+fn walls(text: &mut String, contacts: &Contacts, model: &str, counted: bool) {
+    let end = match counted {
+        true => format!(" store_force yes{}", settings(contacts)),
+        false => settings(contacts).to_owned(),
+    };
     let mut meshes = Vec::new();
     for (index, wall) in contacts.walls.iter().enumerate() {
         let kind = contacts.material_of.len() + wall.material + 1;
@@ -278,8 +284,7 @@ fn walls(text: &mut String, contacts: &Contacts, model: &str) {
         };
         let _ = writeln!(
             text,
-            "fix calcine_wall_{index} all wall/gran {model} primitive type {kind} {primitive}{}",
-            settings(contacts)
+            "fix calcine_wall_{index} all wall/gran {model} primitive type {kind} {primitive}{end}"
         );
     }
     if !meshes.is_empty() {
@@ -288,7 +293,7 @@ fn walls(text: &mut String, contacts: &Contacts, model: &str) {
             "fix calcine_meshes all wall/gran {model} mesh n_meshes {} meshes {}{}",
             meshes.len(),
             meshes.join(" "),
-            settings(contacts)
+            end
         );
     }
 }

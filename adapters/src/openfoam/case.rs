@@ -328,6 +328,7 @@ mod tests {
             pressure: 101_325.0,
             velocity: Vec3::zeros(),
             gravity: Vec3::zeros(),
+            momentum: Default::default(),
             patches: patches.map(|(name, patch)| (name.to_owned(), patch)).into(),
             controls: GasControls {
                 outer_iterations: 3,

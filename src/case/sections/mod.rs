@@ -67,7 +67,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     let probes = probes::probes(root);
     let quantities = quantities::quantities(root, mesh.as_ref(), particles.as_deref(), &probes);
     if let (Some((gas, _)), Some((time, _))) = (&gas, &time) {
-        coupling::check_stock(root, &openfoam, gas, time);
+        coupling::check_stock(root, &openfoam, gas, time, laws.as_ref());
     }
     if let (Some((time, _)), Some(particles)) = (&time, &particles) {
         motion::fits(root, motion.as_ref(), time, particles);
@@ -83,7 +83,9 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         }
     }
     let (time, _) = time?;
-    let (gas, gas_held) = gas?;
+    let (mut gas, gas_held) = gas?;
+    let laws = laws?;
+    gas.momentum = laws.momentum;
     Some(Case {
         name: path
             .file_stem()
@@ -103,7 +105,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         particles: particles?,
         feeds,
         outlets,
-        laws: laws?,
+        laws,
         coupling: coupling?,
         openfoam,
         liggghts,
