@@ -456,6 +456,17 @@ pub enum Measure {
         /// Which one.
         number: usize,
     },
+    /// Angle in rad of the bed's surface in a drum: by which the centre of mass of all particles has turned
+    /// about an axis from straight below it. A surface that is flat stands across the line from the axis to the
+    /// centre of mass, so that this is its slope.
+    SurfaceAngle {
+        /// A point of the axis in m.
+        point: Vec3,
+        /// Unit vector along the axis.
+        axis: Vec3,
+        /// Unit vector along gravity.
+        down: Vec3,
+    },
 }
 
 /// Where a statistic of the gas is taken.

@@ -36,7 +36,8 @@ usage: cargo xtask TASK
   fuzz [--minutes N]      fuzz what reads users' files, ten minutes each unless told
         [--seed S] [case|polymesh]
   torture [--kills N]     kill -9 at random moments, resume, compare every bit (50 unless told)
-        [--seed S]";
+        [--seed S]
+  validate [NAME …]       long validations, all unless named: elastic-box, hopper, repose, voids";
 
 /// Exit code of a wrong command line, as `calcine` has it.
 const USAGE_CODE: u8 = 2;
@@ -109,6 +110,10 @@ fn read(words: &[OsString]) -> Option<Task> {
         }
         "fuzz" => program("fuzz", ["--minutes", "10"], rest),
         "torture" => program("torture", ["--kills", "50"], rest),
+        "validate" => Some(Task::Program {
+            name: "validate",
+            words: [&[OsString::from("--validate")], rest].concat(),
+        }),
         "install" => install(rest),
         _ => None,
     }
@@ -211,6 +216,10 @@ mod tests {
         let given = task("fuzz", "--minutes 1 polymesh");
         assert_eq!(read(&words("fuzz --minutes 1 polymesh")), given);
         assert_eq!(read(&words("torture")), task("torture", "--kills 50"));
+        assert_eq!(
+            read(&words("validate hopper")),
+            task("validate", "--validate hopper")
+        );
     }
 
     #[test]

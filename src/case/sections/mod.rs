@@ -65,7 +65,9 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     }
     let output = output::output(root);
     let probes = probes::probes(root);
-    let quantities = quantities::quantities(root, mesh.as_ref(), particles.as_deref(), &probes);
+    let gravity = gas.as_ref().map(|(gas, _)| gas.gravity);
+    let quantities =
+        quantities::quantities(root, mesh.as_ref(), particles.as_deref(), &probes, gravity);
     if let (Some((gas, _)), Some((time, _))) = (&gas, &time) {
         coupling::check_stock(root, &openfoam, gas, time, laws.as_ref());
     }

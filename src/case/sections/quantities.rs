@@ -1,6 +1,9 @@
 //! `[[quantities]]`.
 
+use calcine_coupler::physics::Vec3;
+
 use super::patches;
+use super::walls::direction;
 use crate::case::model::{
     Band, Expect, GasPlace, Measure, MeshSpec, ParticlePlace, Place, Population, Probe, Quantity,
     Statistic,
@@ -13,11 +16,13 @@ pub(super) fn quantities(
     mesh: Option<&MeshSpec>,
     populations: Option<&[Population]>,
     probes: &[Probe],
+    gravity: Option<Vec3>,
 ) -> Vec<Quantity> {
     let known = Known {
         mesh,
         populations,
         probes,
+        gravity,
     };
     let mut made: Vec<Quantity> = Vec::new();
     for table in &root.tables("quantities") {
@@ -56,6 +61,7 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
         "speed" => (Dimension::VELOCITY, "m/s"),
         "void_fraction" => (Dimension::NONE, "1"),
         "height" => (Dimension::LENGTH, "m"),
+        "angle" => (Dimension::NONE, "rad"),
         _ => (Dimension::TEMPERATURE, "K"),
     };
     let agree = if agree {
@@ -113,6 +119,8 @@ struct Known<'a> {
     mesh: Option<&'a MeshSpec>,
     populations: Option<&'a [Population]>,
     probes: &'a [Probe],
+    /// In m/s²; none where the gas could not be read.
+    gravity: Option<Vec3>,
 }
 
 /// Fields whose difference between patches can be asked for.
@@ -134,16 +142,23 @@ const PARTICLES: [(&str, &str); 3] = [
 
 /// The measure and the field that it is of.
 fn measure(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
-    let kinds = ["difference", "gas", "particles", "particle"];
+    let kinds = [
+        "difference",
+        "gas",
+        "particles",
+        "particle",
+        "surface_angle",
+    ];
     let given: Vec<&str> = kinds.into_iter().filter(|kind| reader.has(kind)).collect();
     match given[..] {
         ["difference"] => difference_of(reader, known),
         ["gas"] => gas(reader, known),
         ["particles"] => particles(reader, known),
         ["particle"] => particle(reader, known),
+        ["surface_angle"] => surface_angle(reader, known),
         _ => {
             reader.fail_whole(
-                "needs exactly one of difference, gas, particles and particle",
+                "needs exactly one of difference, gas, particles, particle and surface_angle",
                 "for example { particles = \"temperature\", statistic = \"mean\" }",
             );
             None
@@ -263,6 +278,25 @@ fn particle(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static
         },
         field,
     ))
+}
+
+fn surface_angle(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
+    let table = reader.table("surface_angle")?;
+    let point = table.required_vector("point", Dimension::LENGTH);
+    let axis = direction(&table, "axis");
+    table.finish();
+    let (point, axis) = (Vec3::from(point?), axis?);
+    let down = known.gravity?.try_normalize(0.0);
+    if down.is_none_or(|down| down.cross(&axis).norm() < 1e-3) {
+        let help = "state `gas.gravity` across the axis; it says what is below";
+        reader.fail(
+            "surface_angle",
+            "has an axis that gravity does not cross",
+            help,
+        );
+    }
+    let down = down?;
+    Some((Measure::SurfaceAngle { point, axis, down }, "angle"))
 }
 
 /// The statistic; on a probe the mean, where none is named: it may be a single point.
