@@ -416,6 +416,8 @@ pub struct Quantity {
     pub unit: &'static str,
     /// Largest difference between pairings.
     pub agree: Option<Band>,
+    /// Process time in s from which `agree` holds.
+    pub agree_from: f64,
     /// Expected value.
     pub expect: Option<Expect>,
 }

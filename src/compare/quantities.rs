@@ -33,9 +33,10 @@ pub struct QuantityDifference {
     pub span: f64,
     /// The allowed difference in words, if the case states one.
     pub band: Option<String>,
-    /// The largest multiple of the allowed difference over all times; 1 and below is inside.
+    /// The largest multiple of the allowed difference over the times that the band is for; 1 and below is
+    /// inside.
     pub multiple: Option<f64>,
-    /// Whether the band holds at all times.
+    /// Whether the band holds at all those times.
     pub verdict: Agreement,
 }
 
@@ -72,7 +73,8 @@ fn difference(quantity: &Quantity, sources: &[Source]) -> QuantityDifference {
         if exceeds(end.difference, largest.difference) {
             largest = end;
         }
-        if let (Some(band), Some(so_far)) = (quantity.agree, multiple.as_mut()) {
+        let due = time >= quantity.agree_from;
+        if let (true, Some(band), Some(so_far)) = (due, quantity.agree, multiple.as_mut()) {
             let allowed = allowance(band, 0.5 * (low + high));
             let here = if end.difference == 0.0 {
                 0.0
@@ -92,7 +94,13 @@ fn difference(quantity: &Quantity, sources: &[Source]) -> QuantityDifference {
         largest,
         end,
         span: all.1 - all.0,
-        band: quantity.agree.map(|band| words(band, quantity.unit)),
+        band: quantity.agree.map(|band| {
+            let band = words(band, quantity.unit);
+            match quantity.agree_from {
+                0.0 => band,
+                from => format!("{band} from {from} s on"),
+            }
+        }),
         multiple,
         verdict: Agreement::of(multiple),
     }

@@ -37,6 +37,7 @@ pub fn case() -> Case {
         measure,
         unit,
         agree: Some(Band::Relative(0.01)),
+        agree_from: 0.0,
         expect,
     };
     Case {
