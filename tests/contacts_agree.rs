@@ -148,6 +148,7 @@ fn liggghts(
             step: STEP,
             ranks: 1,
             wall_impulse: false,
+            template: None,
         },
         case_hash: "contacts".into(),
         launcher: Launcher::Mpirun,

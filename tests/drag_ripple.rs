@@ -153,7 +153,10 @@ fn the_force_on_a_bead_that_crosses_ten_cells_ripples_least_by_overlap() {
         ["0 mm", "1 mm", "2 mm"].map(|length| ripple(directory.path(), mapping, length))
     });
     // Without F, with that of the default (half a diameter), with one diameter.
-    for (way, most) in [(&overlap, [0.06, 0.04, 0.02]), (&divided, [0.1, 0.06, 0.02])] {
+    for (way, most) in [
+        (&overlap, [0.06, 0.04, 0.02]),
+        (&divided, [0.1, 0.06, 0.02]),
+    ] {
         for (found, most) in way.iter().zip(most) {
             assert!(found.force < most, "{} {most}", found.force);
             assert!(found.speed < 0.01, "{}", found.speed);

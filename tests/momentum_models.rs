@@ -67,10 +67,7 @@ measure = {{ difference = "pressure", patches = ["bottom", "top"] }}
 }
 
 fn run(directory: &Path, name: &str, text: &str, arguments: &[&str]) -> PathBuf {
-    let (file, out) = (
-        directory.join(format!("{name}.toml")),
-        directory.join(name),
-    );
+    let (file, out) = (directory.join(format!("{name}.toml")), directory.join(name));
     fs::write(&file, text).unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_calcine"))
         .arg("run")
@@ -105,8 +102,15 @@ fn every_particle_of_a_uniform_bed_is_pushed_alike_by_both_models() {
         let (pushed_a, pushed_b) = (forces(&a), forces(&b));
         // What holds up their volume of water, and drag: half as much.
         let volume = PI / 6.0 * DIAMETER.powi(3);
-        assert!(pushed_a.iter().all(|force| *force > 1.3 * volume * 998.0 * 9.81));
-        let apart = pushed_a.iter().zip(&pushed_b).map(|(a, b)| (a / b - 1.0).abs());
+        assert!(
+            pushed_a
+                .iter()
+                .all(|force| *force > 1.3 * volume * 998.0 * 9.81)
+        );
+        let apart = pushed_a
+            .iter()
+            .zip(&pushed_b)
+            .map(|(a, b)| (a / b - 1.0).abs());
         let worst = apart.fold(0.0, f64::max);
         let drop = |out: &Path| {
             let series = Series::read(out).unwrap();
@@ -135,7 +139,11 @@ fn a_bead_sinks_at_the_same_speed_by_both_models() {
         let model = format!("laws.drag.model={model}");
         let arguments = ["--set", "gas.held=false", "--set", &model];
         let out = run(directory.path(), model.trim(), &text, &arguments);
-        *Series::read(&out).unwrap().column("quantities.speed").last().unwrap()
+        *Series::read(&out)
+            .unwrap()
+            .column("quantities.speed")
+            .last()
+            .unwrap()
     };
     let (a, b) = (speed("a"), speed("b"));
     println!("terminal speed by A {a} m/s, by B {b} m/s");

@@ -108,6 +108,12 @@ fn a_moving_bed_is_the_same_at_any_pace() {
     for folder in [&slow, &fast] {
         closed(folder, 1e-10);
     }
+    // Fifty times faster is fifty times nearer to collisions; less, where settling makes most of it.
+    let [slow, fast] = [&slow, &fast].map(|folder| Summary::read(folder).unwrap().pace.unwrap());
+    println!("inertial numbers {slow:?} {fast:?}");
+    assert!(slow.inertial_number_mean < 0.01, "{slow:?}");
+    assert!(fast.inertial_number_mean > 3.0 * slow.inertial_number_mean);
+    assert!(slow.warning().is_none() && fast.warning().is_some());
 }
 
 #[test]

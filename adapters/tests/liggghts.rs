@@ -82,6 +82,7 @@ impl Bench {
                 step: FROZEN_STEP,
                 ranks,
                 wall_impulse: false,
+                template: None,
             },
             launcher: Launcher::Mpirun,
             case_hash: "abc".into(),

@@ -363,10 +363,7 @@ fn provenance(summary: &Summary) -> String {
             figure(pace.inertial_number_largest, 3)
         );
         let words = pace.warning().unwrap_or_else(|| "quasi-static".into());
-        rows.push((
-            "inertial number",
-            format!("{numbers}: {}", escape(&words)),
-        ));
+        rows.push(("inertial number", format!("{numbers}: {}", escape(&words))));
     }
     let mut from = summary.from.as_ref();
     while let Some(run) = from {

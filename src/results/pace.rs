@@ -93,3 +93,24 @@ impl Pace {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mean_and_largest_are_over_the_rows_and_a_fast_bed_is_warned_of() {
+        let mut pace = Pace::default();
+        for number in [1e-3, 4e-3, 1e-3] {
+            pace.add(number);
+        }
+        assert!((pace.inertial_number_mean - 2e-3).abs() < 1e-15);
+        assert_eq!((pace.rows, pace.inertial_number_largest), (3, 4e-3));
+        assert!(pace.warning().is_none());
+        pace.add(0.5);
+        assert!(pace.warning().unwrap().contains("`time.acceleration`"));
+        // Where nothing presses the bed together there is no end of it.
+        pace.add(f64::INFINITY);
+        assert!(pace.warning().is_some());
+    }
+}

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::pace::Pace;
 use super::quantities::Captured;
-use super::summary::{ConvergenceSummary, Provenance, Summary, Verdict, WallTimes};
+use super::summary::{ConvergenceSummary, ProcessorTimes, Provenance, Summary, Verdict, WallTimes};
 use super::{ResultsError, SERIES, STORE, SUMMARY, files};
 
 /// Name of the counters in a checkpoint directory.
@@ -44,6 +44,9 @@ pub(super) struct Counters {
     pub pace: Pace,
     /// Wall times so far.
     pub wall: WallTimes,
+    /// Processor times so far.
+    #[serde(default)]
+    pub processor: ProcessorTimes,
 }
 
 /// Name of a snapshot's gas file.

@@ -104,7 +104,10 @@ fn centres(out: &Path, time: f64) -> Vec<Vec3> {
     let nearest = all.iter().min_by(|a, b| at(a).total_cmp(&at(b))).unwrap();
     let centres = nearest.dataset("particles/position").unwrap();
     let centres = centres.read_raw::<f64>().unwrap();
-    centres.chunks_exact(3).map(Vec3::from_column_slice).collect()
+    centres
+        .chunks_exact(3)
+        .map(Vec3::from_column_slice)
+        .collect()
 }
 
 /// Looks at the results of a run of the case with settings: flows that fluidise it, then packed ones, from
@@ -151,7 +154,9 @@ pub fn examine(case: &Path, set: &[String], out: &Path, moving: &[Hold], packed:
         let centres = centres(out, hold.to);
         let radii = vec![0.5 * DIAMETER; centres.len()];
         let solids = vec![volume; centres.len()];
-        let weights = Mapper::new(mesh).fill(Method::Overlap, &centres, &radii).unwrap();
+        let weights = Mapper::new(mesh)
+            .fill(Method::Overlap, &centres, &radii)
+            .unwrap();
         let operator = smoother.operator(weights, &solids).unwrap();
         let (measured, law) = (mean(hold), drop_by_particles(&operator, hold.speed));
         let top = 2.0 * centres.iter().map(|centre| centre.z).sum::<f64>() / count;

@@ -31,6 +31,8 @@ const PUSH: &str = "calcine_push";
 /// What a wall's line of the script has where its forces are to be counted; LIGGGHTS keeps them by particle
 /// in a fix named after the wall's.
 const COUNTED: (&str, &str) = (" store_force yes", "force_");
+/// What makes a line of the script a wall's.
+const WALL: &str = " wall/gran ";
 /// What is sent where walls' impulses are not counted.
 const UNCOUNTED: [f64; 3] = [f64::NAN; 3];
 /// LIGGGHTS' own log, in the script's folder; it ends where the windows begin.
@@ -365,10 +367,13 @@ impl Host {
             })?;
         }
         self.walls.clear();
+        let mut uncounted = false;
         for line in self.script()?.lines() {
             let id = line.split_ascii_whitespace().nth(1);
-            if let (true, Some(id)) = (line.contains(COUNTED.0), id) {
-                self.walls.push(format!("{}{id}", COUNTED.1));
+            match (line.contains(WALL), line.contains(COUNTED.0), id) {
+                (true, true, Some(id)) => self.walls.push(format!("{}{id}", COUNTED.1)),
+                (true, _, _) => uncounted = true,
+                (false, _, _) => {}
             }
             let reads = line.split_ascii_whitespace().next() == Some("read_data");
             if reads && restart.is_some() {
@@ -376,6 +381,9 @@ impl Host {
             } else {
                 self.liggghts.command(line);
             }
+        }
+        if uncounted {
+            self.walls.clear(); // of a script of the user's: a part of the walls is no balance
         }
         self.liggghts.command("run 0");
         // Each window would add its lines to the log.
@@ -425,12 +433,7 @@ impl Host {
         self.reply(header, &none, [0.0; 4])
     }
 
-    fn reply(
-        &self,
-        header: Header,
-        impulse: &[f64],
-        support: [f64; 4],
-    ) -> Result<(), HostError> {
+    fn reply(&self, header: Header, impulse: &[f64], support: [f64; 4]) -> Result<(), HostError> {
         on_link(|link| self.state.send(link, header, impulse, support))
     }
 

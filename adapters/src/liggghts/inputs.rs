@@ -9,6 +9,8 @@ use calcine_coupler::motion::Motion;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 
+use super::moving::WallForm;
+use super::template::{Template, Values};
 use super::{facets, moving};
 
 /// Name of the script.
@@ -34,6 +36,8 @@ pub struct Inputs<'a> {
     pub ranks: u32,
     /// Whether the impulse of walls is counted, step by step.
     pub wall_impulse: bool,
+    /// The user's own script in place of the generated one; of a bed that moves only.
+    pub template: Option<&'a Template>,
 }
 
 impl Inputs<'_> {
@@ -41,7 +45,7 @@ impl Inputs<'_> {
     pub fn write(&self, folder: &Path) -> Result<[PathBuf; 2], PartError> {
         self.check()?;
         let files = [
-            (folder.join(SCRIPT), self.script()),
+            (folder.join(SCRIPT), self.script()?),
             (folder.join(DATA), self.data()),
         ];
         let meshes = match &self.setup.motion {
@@ -81,7 +85,8 @@ impl Inputs<'_> {
         Ok(())
     }
 
-    fn script(&self) -> String {
+    /// The script; an error where a script of the user's own does not go with the case.
+    pub fn script(&self) -> Result<String, PartError> {
         let (lower, upper) = self.corners();
         let along_x = upper.x - lower.x >= upper.y - lower.y;
         let grid = if along_x {
@@ -92,24 +97,35 @@ impl Inputs<'_> {
         let moves = !self.setup.motion.is_frozen();
         let share = if moves { 0.4 } else { 0.1 };
         let skin = share * self.setup.radius.iter().copied().fold(0.0, f64::max);
-        let (template, contacts) = match &self.setup.motion {
-            Motion::Frozen => (FROZEN_BED, String::new()),
-            Motion::Free(contacts) => {
-                let counted = self.wall_impulse;
-                let commands = moving::commands(contacts, self.smallest(), counted);
-                (MOVING_BED, commands)
-            }
-        };
         // Bins as large as particles would be without number in a large box with few of them.
         let volume = (upper - lower).product();
         let room = (volume / (4.0 * self.setup.id.len() as f64)).cbrt();
         let bins = room.max(self.setup.radius.iter().copied().fold(0.0, f64::max) + 0.5 * skin);
-        template
+        if let (Some(own), Motion::Free(contacts)) = (self.template, &self.setup.motion) {
+            let values = Values {
+                step: self.step,
+                processors: grid,
+                skin,
+                bins,
+                corners: (lower, upper),
+                walls: self.form(),
+            };
+            return own.script(contacts, &values).map_err(|error| {
+                let message = "the script of `liggghts.template` does not go with the case";
+                PartError::new(WHO, FailureKind::NotStarted, message).caused_by(error)
+            });
+        }
+        let (template, contacts) = match &self.setup.motion {
+            Motion::Frozen => (FROZEN_BED, String::new()),
+            Motion::Free(contacts) => (MOVING_BED, moving::commands(contacts, self.form())),
+        };
+        let script = template
             .replace("{bins}", &format!("{bins:e}"))
             .replace("{contacts}", &contacts)
             .replace("{processors}", &grid)
             .replace("{skin}", &format!("{skin:e}"))
-            .replace("{step}", &format!("{:e}", self.step))
+            .replace("{step}", &format!("{:e}", self.step));
+        Ok(script)
     }
 
     fn data(&self) -> String {
@@ -151,6 +167,14 @@ impl Inputs<'_> {
             let _ = writeln!(text, "{id} {x:e} {y:e} {z:e} 0 0 0");
         }
         text
+    }
+
+    /// How walls are told.
+    fn form(&self) -> WallForm {
+        WallForm {
+            smallest: self.smallest(),
+            counted: self.wall_impulse,
+        }
     }
 
     /// Radius of the smallest sphere in m.
@@ -211,6 +235,7 @@ mod tests {
             step: 1e-4,
             ranks: 1,
             wall_impulse: false,
+            template: None,
         }
     }
 
@@ -227,7 +252,7 @@ mod tests {
     #[test]
     fn the_script_has_no_gap_left_and_reads_the_data_file() {
         let setup = setup();
-        let script = inputs(&setup).script();
+        let script = inputs(&setup).script().unwrap();
         let commands: Vec<&str> = script
             .lines()
             .filter(|line| !line.starts_with('#'))

@@ -61,41 +61,67 @@ pub fn refusal(contacts: &Contacts) -> Option<String> {
     None
 }
 
-/// The commands after the particles are read, for spheres of this radius in m at least; forces of walls are
-/// kept by particle where they are to be counted, which they are not with held particles, whose own forces
-/// LIGGGHTS does not keep.
-pub fn commands(contacts: &Contacts, smallest: f64, count_walls: bool) -> String {
+/// How walls are told.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WallForm {
+    /// Radius of the smallest sphere in m, by which round walls are cut into facets.
+    pub smallest: f64,
+    /// Whether forces of walls are kept by particle, to be counted; they are not with held particles, whose own
+    /// forces LIGGGHTS does not keep.
+    pub counted: bool,
+}
+
+/// The commands after the particles are read.
+pub fn commands(contacts: &Contacts, form: WallForm) -> String {
+    laws(contacts)
+        + &groups(contacts)
+        + &gravity(contacts)
+        + &walls(contacts, form)
+        + &push()
+        + &motion(contacts)
+}
+
+/// Materials and the contact law.
+pub fn laws(contacts: &Contacts) -> String {
     let mut text = String::new();
     properties(&mut text, contacts);
-    let model = model(contacts);
     let _ = writeln!(
         text,
-        "pair_style gran {model}{}\npair_coeff * *",
+        "pair_style gran {}{}\npair_coeff * *",
+        model(contacts),
         settings(contacts)
     );
-    groups(&mut text, contacts);
-    let gravity = contacts.gravity.norm();
-    if gravity > 0.0 {
-        let [x, y, z] = (contacts.gravity / gravity).into();
-        let _ = writeln!(
-            text,
-            "fix calcine_gravity calcine_free gravity {gravity:e} vector {x:e} {y:e} {z:e}"
-        );
-    }
-    let counted = count_walls && !contacts.held.contains(&true);
-    walls(&mut text, contacts, &model, smallest, counted);
-    text.push_str(
-        "fix calcine_push all property/atom calcine_push vector yes no no 0. 0. 0.\n\
-         variable calcine_x atom f_calcine_push[1]\n\
-         variable calcine_y atom f_calcine_push[2]\n\
-         variable calcine_z atom f_calcine_push[3]\n\
-         fix calcine_add calcine_free addforce v_calcine_x v_calcine_y v_calcine_z\n",
-    );
-    if contacts.held.contains(&true) {
-        text.push_str("fix calcine_hold calcine_held freeze\n");
-    }
-    text.push_str("fix calcine_move calcine_free nve/sphere\n");
     text
+}
+
+/// Gravity on all that is free.
+pub fn gravity(contacts: &Contacts) -> String {
+    let gravity = contacts.gravity.norm();
+    if gravity == 0.0 {
+        return String::new();
+    }
+    let [x, y, z] = (contacts.gravity / gravity).into();
+    format!("fix calcine_gravity calcine_free gravity {gravity:e} vector {x:e} {y:e} {z:e}\n")
+}
+
+/// The force of the gas, which the host writes into the fix `calcine_push`.
+pub fn push() -> String {
+    "fix calcine_push all property/atom calcine_push vector yes no no 0. 0. 0.\n\
+     variable calcine_x atom f_calcine_push[1]\n\
+     variable calcine_y atom f_calcine_push[2]\n\
+     variable calcine_z atom f_calcine_push[3]\n\
+     fix calcine_add calcine_free addforce v_calcine_x v_calcine_y v_calcine_z\n"
+        .into()
+}
+
+/// What is held stays, what is free moves.
+pub fn motion(contacts: &Contacts) -> String {
+    let held = if contacts.held.contains(&true) {
+        "fix calcine_hold calcine_held freeze\n"
+    } else {
+        ""
+    };
+    format!("{held}fix calcine_move calcine_free nve/sphere\n")
 }
 
 /// The material of each atom type.
@@ -189,7 +215,9 @@ fn settings(contacts: &Contacts) -> &'static str {
     }
 }
 
-fn groups(text: &mut String, contacts: &Contacts) {
+/// Groups of what is free and of what is held, by atom types.
+pub fn groups(contacts: &Contacts) -> String {
+    let mut text = String::new();
     for (group, held) in [("calcine_free", false), ("calcine_held", true)] {
         let of = contacts.held.iter().enumerate();
         let types: Vec<String> = of
@@ -200,6 +228,7 @@ fn groups(text: &mut String, contacts: &Contacts) {
             let _ = writeln!(text, "group {group} type {}", types.join(" "));
         }
     }
+    text
 }
 
 /// Name of a wall's file of triangles.
@@ -261,8 +290,10 @@ fn primitive(shape: &WallShape) -> Option<String> {
     }
 }
 
-fn walls(text: &mut String, contacts: &Contacts, model: &str, smallest: f64, counted: bool) {
-    let end = match counted {
+/// Walls, with the contact law of the particles.
+pub fn walls(contacts: &Contacts, form: WallForm) -> String {
+    let (mut text, model) = (String::new(), model(contacts));
+    let end = match form.counted && !contacts.held.contains(&true) {
         true => format!(" store_force yes{}", settings(contacts)),
         false => settings(contacts).to_owned(),
     };
@@ -287,10 +318,10 @@ fn walls(text: &mut String, contacts: &Contacts, model: &str, smallest: f64, cou
             } else {
                 String::new()
             },
-            curvature(wall, smallest)
+            curvature(wall, form.smallest)
         );
         if !stays {
-            moving_mesh(text, index, wall.motion);
+            moving_mesh(&mut text, index, wall.motion);
         }
         meshes.push(format!("calcine_mesh_{index}"));
     }
@@ -303,6 +334,7 @@ fn walls(text: &mut String, contacts: &Contacts, model: &str, smallest: f64, cou
             end
         );
     }
+    text
 }
 
 /// Facets of a round wall are one surface: a sphere touches them once, and its springs go along. (Without being

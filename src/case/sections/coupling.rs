@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
+use calcine_adapters::liggghts::template::Template;
 use calcine_adapters::openfoam::stock::{Solver, refusal};
 use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::setup::GasSetup;
@@ -10,7 +11,7 @@ use calcine_coupler::time::GasStorage;
 
 use super::existing;
 use super::zone::zones;
-use crate::case::model::{Coupling, External, Laws, Mapping, Time};
+use crate::case::model::{Coupling, External, Laws, Mapping, Motion, Population, Time};
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
 
@@ -113,8 +114,24 @@ pub(super) fn check_stock(
         let help = "leave `laws.drag.model` out, or leave `openfoam.solver` out";
         section.fail("solver", rule, help);
     }
-    if let Some(why) = refusal(gas, splits) {
+    if let Some(why) = refusal(openfoam.solver, gas, splits) {
         section.fail("solver", format!("names {name}, but {why}"), other);
+    }
+}
+
+/// A script of the user's own is for particles that move, and must let Calcine drive it.
+pub(super) fn check_script(root: &Reader<'_>, liggghts: &External, particles: &[Population]) {
+    let (Some(path), Some(section)) = (&liggghts.template, root.table("liggghts")) else {
+        return;
+    };
+    if particles.iter().all(|one| one.motion == Motion::Frozen) {
+        let rule = "names a script, but no population moves";
+        let help = "leave it out: a bed that is held needs no script, or write motion = \"free\"";
+        section.fail("template", rule, help);
+    }
+    if let Err(error) = Template::read(path, Vec::new(), Vec::new()) {
+        let (rule, help) = error.parts();
+        section.fail("template", format!("cannot be used: {rule}"), &help);
     }
 }
 
@@ -131,8 +148,7 @@ pub(super) fn external(root: &Reader<'_>, key: &str, folder: &Path) -> External 
         external.template = existing(&section, "template", folder);
         if key == "openfoam" {
             external.start = existing(&section, "start", folder);
-            let solvers = [Solver::CalcineGasFoam, Solver::BuoyantPimpleFoam];
-            let solvers = solvers.map(|solver| (solver.name(), solver));
+            let solvers = Solver::ALL.map(|solver| (solver.name(), solver));
             external.solver = section.choice("solver", &solvers).unwrap_or_default();
         } else {
             external.wall_impulse = section.truth("wall_impulse").unwrap_or(false);
