@@ -327,6 +327,7 @@ const KEYS: &[Key] = &[
     key("quantities.measure.surface_angle.axis", "three numbers", Required, "Direction of the axis; angles count as rotations about it do.", "\"0 1 0\""),
     key("quantities.agree", "band", Default("not compared"), "Largest difference between pairings: a share, or in the unit of the quantity.", "\"1 %\""),
     key("quantities.agree_from", "time, s", Default("the start"), "Process time from which `agree` holds: before it the quantity may depend on how single particles collide.", "\"0.3 s\""),
+    key("quantities.agree_over", "time, s", Default("values as they are"), "Process time over which recorded values are averaged before pairings are compared; for what fluctuates. With `agree`.", "\"1 s\""),
     key("quantities.expect", "table", Default("none"), "Expected value.", "{ at = \"10 min\", value = \"180 Pa\", within = \"5 %\" }"),
     key("quantities.expect.at", "time, s", Default("the end"), "Process time at which it holds.", "\"10 min\""),
     key("quantities.expect.value", "as the field measured", Required, "The value.", "\"180 Pa\""),

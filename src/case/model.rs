@@ -418,6 +418,8 @@ pub struct Quantity {
     pub agree: Option<Band>,
     /// Process time in s from which `agree` holds.
     pub agree_from: f64,
+    /// Process time in s over which values are averaged before pairings are compared; 0: not at all.
+    pub agree_over: f64,
     /// Expected value.
     pub expect: Option<Expect>,
 }

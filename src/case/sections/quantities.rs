@@ -56,6 +56,11 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
         let help = "add agree = \"1 %\", or remove it";
         table.fail("agree_from", "stands without `agree`", help);
     }
+    let over = table.positive("agree_over", Dimension::TIME);
+    if over.is_some() && !agree {
+        let help = "add agree = \"5 %\", or remove it";
+        table.fail("agree_over", "stands without `agree`", help);
+    }
     let Some((measure, field)) = measure else {
         table.finish();
         return None;
@@ -95,6 +100,7 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
         unit,
         agree,
         agree_from: from.unwrap_or(0.0),
+        agree_over: over.unwrap_or(0.0),
         expect,
     })
 }
