@@ -10,6 +10,7 @@ use calcine_physics::local::LocalGas;
 use calcine_physics::numbers::VoidFraction;
 use thiserror::Error;
 
+use crate::momentum_model::MomentumModel;
 use crate::part::{Bed, GasFields, ParticleFields};
 use crate::smoother::Operator;
 
@@ -20,6 +21,8 @@ pub struct Closures {
     pub gas: GasModel,
     /// Drag on a particle.
     pub drag: Box<dyn Drag>,
+    /// How the momentum is shared, which says what of the drag law's coefficient acts.
+    pub momentum: MomentumModel,
     /// Heat transfer between gas and particle.
     pub heat_transfer: Box<dyn HeatTransfer>,
 }
@@ -106,10 +109,12 @@ impl Seen {
 /// Coefficients per particle, fixed over the window.
 #[derive(Clone, Debug, Default)]
 pub struct Coefficients {
-    /// Drag coefficient K_A in kg/s (requirements DRG-1).
+    /// Drag coefficient in kg/s: K_A by model A, K_A/ε by model B (requirements DRG-1).
     pub drag: Vec<f64>,
     /// Heat conductance h A in W/K.
     pub conductance: Vec<f64>,
+    /// Magnitude of the slip u − v/AF in m/s by which they were evaluated.
+    pub slip: Vec<f64>,
     /// Share of the other forces in N that drag holds back within the window (requirements
     /// DRG-2, see [`Coefficients::relax`]); zero, or empty, where particles are held.
     pub held_back: Vec<Vec3>,
@@ -181,6 +186,7 @@ impl Closures {
         let species = self.gas.species().len();
         coefficients.drag.resize(count, 0.0);
         coefficients.conductance.resize(count, 0.0);
+        coefficients.slip.resize(count, 0.0);
         for p in 0..count {
             let id = particles.id[p];
             let temperature = seen.temperature[p];
@@ -221,8 +227,9 @@ impl Closures {
                     });
                 }
             }
-            coefficients.drag[p] = drag;
+            coefficients.drag[p] = self.momentum.coefficient(drag, seen.void_fraction[p]);
             coefficients.conductance[p] = conductance;
+            coefficients.slip[p] = local.slip;
         }
         Ok(())
     }

@@ -69,7 +69,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     let quantities =
         quantities::quantities(root, mesh.as_ref(), particles.as_deref(), &probes, gravity);
     if let (Some((gas, _)), Some((time, _))) = (&gas, &time) {
-        coupling::check_stock(root, &openfoam, gas, time);
+        coupling::check_stock(root, &openfoam, gas, time, laws.as_ref());
     }
     if let Some(particles) = &particles {
         coupling::check_script(root, &liggghts, particles);
@@ -88,7 +88,9 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         }
     }
     let (time, _) = time?;
-    let (gas, gas_held) = gas?;
+    let (mut gas, gas_held) = gas?;
+    let laws = laws?;
+    gas.momentum = laws.momentum;
     Some(Case {
         name: path
             .file_stem()
@@ -108,7 +110,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         particles: particles?,
         feeds,
         outlets,
-        laws: laws?,
+        laws,
         coupling: coupling?,
         openfoam,
         liggghts,
