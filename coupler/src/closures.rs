@@ -110,6 +110,8 @@ pub struct Coefficients {
     pub drag: Vec<f64>,
     /// Heat conductance h A in W/K.
     pub conductance: Vec<f64>,
+    /// Conductivity of the gas in W/m/K.
+    pub gas_conductivity: Vec<f64>,
     /// Share of the other forces in N that drag holds back within the window (requirements
     /// DRG-2, see [`Coefficients::relax`]); zero, or empty, where particles are held.
     pub held_back: Vec<Vec3>,
@@ -181,6 +183,7 @@ impl Closures {
         let species = self.gas.species().len();
         coefficients.drag.resize(count, 0.0);
         coefficients.conductance.resize(count, 0.0);
+        coefficients.gas_conductivity.resize(count, 0.0);
         for p in 0..count {
             let id = particles.id[p];
             let temperature = seen.temperature[p];
@@ -223,6 +226,7 @@ impl Closures {
             }
             coefficients.drag[p] = drag;
             coefficients.conductance[p] = conductance;
+            coefficients.gas_conductivity[p] = local.conductivity;
         }
         Ok(())
     }

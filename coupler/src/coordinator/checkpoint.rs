@@ -128,6 +128,9 @@ impl Run<'_> {
             observer.checkpoint(&self.moment(None), &fresh)?;
         }
         self.plan.checkpoint.publish()?;
+        // A resumed run finds its views at the checkpoint's places.
+        self.paths.forget();
+        self.find_contacts();
         self.timing.output += begun.elapsed();
         Ok(())
     }
@@ -237,6 +240,8 @@ impl Run<'_> {
                 process: Ticks::new(process.cast_signed()),
             };
         }
+        self.paths.forget();
+        self.find_contacts();
         Ok(())
     }
 }

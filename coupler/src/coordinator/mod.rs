@@ -26,6 +26,7 @@ use crate::mesh::Mesh;
 use crate::observer::{Moment, Observer, ObserverError, Timing};
 use crate::packing::PackingError;
 use crate::part::{Bed, CellReceived, Convergence, Gas, ParticlePush, ParticleReceived, Particles};
+use crate::paths::{Paths, PathsSetup};
 use crate::smoother::{Operator, Smoother, SmootherError};
 use crate::supervisor::Supervisor;
 use crate::time::{Acceleration, Clocks, GasStorage, Ticks, TimeError};
@@ -64,8 +65,10 @@ pub struct Plan {
     pub gravity: Vec3,
     /// Feeds and outlets.
     pub traffic: Traffic,
-    /// Material and conductivity in W/m/K of each population, for what feeds bring in.
-    pub substance: Vec<(usize, f64)>,
+    /// Material of each population, for what feeds bring in.
+    pub substance: Vec<usize>,
+    /// Heat between particles and to walls.
+    pub paths: PathsSetup,
 }
 
 /// How a run ended without an error.
@@ -169,6 +172,7 @@ pub struct Run<'m> {
     convergence: Convergence,
     placement: Placement,
     work: Workspace,
+    paths: Paths,
 }
 
 impl<'m> Run<'m> {
@@ -190,7 +194,9 @@ impl<'m> Run<'m> {
             .heat
             .resize(parts.particles.fields().len(), 0.0);
         work.begin(&parts.particles.fields(), &plan.free, plan.gravity);
+        let paths = Paths::new(plan.paths.clone());
         let mut run = Self {
+            paths,
             plan,
             mesh,
             mapper,

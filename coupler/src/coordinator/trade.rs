@@ -46,16 +46,15 @@ impl Run<'_> {
             .map(|(row, &temperature)| {
                 let population = fields.population[row] as usize;
                 let substance = self.plan.substance.get(population);
-                let (material, conductivity) = substance.copied().unwrap_or_default();
                 Newcomer {
                     mass: fields.mass[row],
-                    material,
-                    conductivity,
+                    material: substance.copied().unwrap_or_default(),
                     temperature,
                 }
             })
             .collect();
         self.parts.interior.change(&trade.rows, &newcomers);
+        self.paths.forget();
         let brought_before = came.mass;
         for row in first..fields.len() {
             let enthalpy = self.parts.interior.enthalpy(row);

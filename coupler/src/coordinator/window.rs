@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 use std::time::{Duration, Instant};
 
+use calcine_interior::Beside;
 use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
 
 use super::{Mapped, Run, RunError};
-use crate::contacts::touching;
 use crate::exchange::{Placement, Setting};
 use crate::ledger::Ledger;
 use crate::mapping::{Mapper, Method};
@@ -120,12 +120,15 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Tells the interior which particles touch, where that matters.
+    /// Tells the interior what particles touch and see, where that matters.
     pub(super) fn find_contacts(&mut self) {
         if self.parts.interior.conducts() {
             let begun = Instant::now();
-            let touches = touching(&self.parts.particles.fields());
-            self.parts.interior.touch(&touches);
+            let time = self.clocks.process.seconds();
+            let interior = &mut self.parts.interior;
+            let particles = self.parts.particles.fields();
+            self.paths
+                .meet(&particles, time, |meeting| interior.meet(meeting));
             self.timing.interior += begun.elapsed();
         }
     }
@@ -165,6 +168,7 @@ impl Run<'_> {
         let first_attempt = window.attempt;
         let acceleration = window.acceleration();
         let span = window.span.process.seconds();
+        let end = window.start.process.seconds() + span;
         let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
         loop {
             if self.parts.interior.conducts() {
@@ -172,9 +176,14 @@ impl Run<'_> {
                 mapped
                     .operator
                     .sample(self.parts.gas.fields().temperature, seen);
+                let beside = Beside {
+                    conductance: &work.coefficients.conductance,
+                    temperature: seen,
+                    gas_conductivity: &work.coefficients.gas_conductivity,
+                    reservoirs: self.paths.reservoirs(end),
+                };
                 timed(&mut timing.interior, || {
-                    let conductance = &work.coefficients.conductance;
-                    self.parts.interior.conduct(conductance, seen, span);
+                    self.parts.interior.conduct(&beside, span);
                 });
             }
             let setting = Setting {
@@ -329,15 +338,19 @@ fn book_energy(
 ) {
     let gas = &received.energy;
     let (stored, stored_magnitude) = interior.stored_change();
+    let reservoirs = interior.reservoir_heat();
+    let walls: f64 = reservoirs.iter().sum::<f64>() * process;
+    let walls_magnitude: f64 = reservoirs.iter().map(|q| q.abs()).sum::<f64>() * process;
     let to_gas: f64 = received.heat.iter().sum::<f64>() * process;
     let to_particles: f64 = heat.iter().sum::<f64>() * process;
     let exchanged = process
         * (received.heat.iter().map(|q| q.abs()).sum::<f64>()
             + heat.iter().map(|q| q.abs()).sum::<f64>());
     ledger.energy.book(
-        scale * (gas.stored - gas.boundary - gas.source) + stored,
+        scale * (gas.stored - gas.boundary - gas.source) + stored - walls,
         scale * (gas.stored_magnitude + gas.boundary_magnitude + gas.source_magnitude)
             + stored_magnitude
+            + walls_magnitude
             + exchanged,
     );
     ledger

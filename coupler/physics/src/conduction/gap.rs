@@ -25,17 +25,19 @@ impl Gap {
         self.distance + sagitta(self.radius[0], r) + sagitta(self.radius[1], r)
     }
 
-    /// Integral over r in m from `from` to `to` of 2 π r f(r), in s with r² = from² + (to² − from²) s²,
-    /// which crowds the points where gaps are narrow.
-    pub(super) fn ring(&self, from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
-        let area = std::f64::consts::PI * (to * to - from * from);
-        if area <= 0.0 {
+    /// Integral over r in m from `from` to `to` of 2 π r f(r). The integrand is nearly 1/(w₀ + r²/(2R*)) with
+    /// a width w₀ in m, positive or `from` is; in ln(r² + 2 R* w₀) that is a constant.
+    pub(super) fn ring(&self, from: f64, to: f64, width: f64, f: impl Fn(f64) -> f64) -> f64 {
+        let shift = 2.0 * super::reduced(self.radius) * width;
+        if to <= from {
             return 0.0;
         }
-        area * gauss(0.0, 1.0, |s| {
-            let r = (from * from + (to * to - from * from) * s * s).sqrt();
-            2.0 * s * f(r)
-        })
+        let ends = [from, to].map(|r| (r * r + shift).ln());
+        let inner = |z: f64| {
+            let square = z.exp();
+            square * f((square - shift).max(0.0).sqrt())
+        };
+        std::f64::consts::PI * gauss(ends[0], ends[1], inner)
     }
 }
 
@@ -91,13 +93,13 @@ mod tests {
             conductivity: [1.0; 2],
             gas_conductivity: 1.0,
         };
-        let area = gap.ring(0.5, 1.5, |_| 1.0);
+        let area = gap.ring(0.5, 1.5, 0.1, |_| 1.0);
         assert!((area / (2.0 * std::f64::consts::PI) - 1.0).abs() < 1e-14);
         // ∫ 2πr/w dr with r² = R² − u²: 2π ∫ u du/(h + R − u), by parts with u from √(4 − 2.25) to 2.
         let (low, high, top): (f64, f64, f64) = (1.75_f64.sqrt(), 2.0, 2.1);
         let exact =
             2.0 * std::f64::consts::PI * (top * ((top - low) / (top - high)).ln() - (high - low));
-        let made = gap.ring(0.0, 1.5, |r| 1.0 / gap.width(r));
+        let made = gap.ring(0.0, 1.5, 0.1, |r| 1.0 / gap.width(r));
         assert!((made / exact - 1.0).abs() < 1e-9, "{made} {exact}");
     }
 }

@@ -66,7 +66,7 @@ impl GasGap for RongHorio {
             from
         };
         let inner = std::f64::consts::PI * (split * split - from * from) / self.least_width;
-        let outer = gap.ring(split, to, |r| 1.0 / gap.width(r));
+        let outer = gap.ring(split, to, gap.distance.max(0.0), |r| 1.0 / gap.width(r));
         gap.gas_conductivity * (inner + outer)
     }
 }

@@ -1,10 +1,12 @@
 //! Radiation between particles, and what the gas does to it.
 
+mod distance;
 mod gas;
 mod sphere;
 
+pub use distance::{visibility, wall_visibility};
 pub use gas::{GasRadiation, TransparentGas};
-pub use sphere::{element_to_sphere, sphere_to_sphere};
+pub use sphere::{SphereTable, element_to_sphere, sphere_to_sphere};
 
 /// Stefan and Boltzmann's constant σ in W/m²/K⁴ (CODATA 2018, exact digits cut).
 pub const STEFAN_BOLTZMANN: f64 = 5.670_374_419e-8;

@@ -1,0 +1,362 @@
+//! Who sees whom: view factors between particles, to walls and to the surroundings, with what stands in
+//! between (requirements COR-11, THP-5).
+//!
+//! Rays leave each particle by a quasi-random sequence over its surface and the cosine law. For a pair the
+//! view factor with nothing between is known (COR-11); rays only say what share of it is left. With n the rays
+//! of i whose line meets j, and m those that meet j first,
+//!
+//! A F_ij = A_i F(COR-11) (m_ij + m_ji)/(n_ij + n_ji),
+//!
+//! so that an open view has no error of sampling at all, and both directions are one number: reciprocity is
+//! exact. Walls without a temperature of their own, and the share of a grey wall's radiation that it does not
+//! absorb, reflect as mirrors do: a bed between adiabatic walls goes on in its image. Last, all is scaled,
+//! symmetrically, until what each particle sees adds up to its surface ([`balance`]).
+
+mod balance;
+mod trace;
+mod tree;
+mod wall;
+
+use std::f64::consts::PI;
+
+use calcine_interior::Views;
+use calcine_physics::Vec3;
+use calcine_physics::radiation::{SphereTable, sphere_to_sphere, visibility, wall_visibility};
+use rayon::prelude::*;
+
+use crate::contacts::pairs_around;
+use trace::{Grid, meets};
+pub use wall::{Hit, Surface};
+
+/// How views are found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sight {
+    /// By rays.
+    Rays {
+        /// Rays a particle.
+        rays: usize,
+        /// Particles see each other up to this distance of centres, in largest diameters.
+        range: f64,
+    },
+    /// By the mean share of an open view that is left over a distance in random beds.
+    Distance {
+        /// Particles see each other up to this distance of centres, in largest diameters.
+        range: f64,
+    },
+}
+
+/// A wall, as radiation meets it.
+#[derive(Clone, Debug)]
+pub struct Mirror {
+    /// Its shape.
+    pub surface: Surface,
+    /// The reservoir that it is and its emissivity; `None` for a wall that reflects everything.
+    pub absorbs: Option<(usize, f64)>,
+}
+
+/// Particles and what is around them.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'a> {
+    /// Radii in m.
+    pub radii: &'a [f64],
+    /// Centres in m.
+    pub centres: &'a [Vec3],
+    /// Walls.
+    pub walls: &'a [Mirror],
+    /// Number of the reservoirs that are walls.
+    pub reservoirs: usize,
+    /// The reservoir that is beyond; `None`: nothing leaves.
+    pub beyond: Option<usize>,
+}
+
+/// What one particle's rays meet.
+#[derive(Debug, Default)]
+struct Rays {
+    /// Other particle, rays whose line meets it, rays that meet it first.
+    direct: Vec<(u32, u32, u32)>,
+    /// Other particle and rays that come to it from mirrors, as shares of all.
+    mirrored: Vec<(u32, f64)>,
+    /// Share of all rays that each reservoir takes.
+    reservoirs: Vec<f64>,
+}
+
+/// A ray's share of radiation below which a mirror takes the rest.
+const FAINT: f64 = 1e-6;
+/// Reflections at most.
+const REFLECTIONS: usize = 1000;
+
+/// View factors of all particles.
+pub fn views(scene: &Scene<'_>, sight: Sight) -> Views {
+    let count = scene.centres.len();
+    let surface: Vec<f64> = scene.radii.iter().map(|r| 4.0 * PI * r * r).collect();
+    let largest = scene.radii.iter().copied().fold(0.0, f64::max);
+    let (Sight::Rays { range, .. } | Sight::Distance { range }) = sight;
+    let reach = 2.0 * largest * range;
+    let mut near: Vec<Vec<u32>> = vec![Vec::new(); count];
+    let pairs = pairs_around(scene.radii, scene.centres, reach);
+    for &[a, b] in &pairs {
+        near[a as usize].push(b);
+        near[b as usize].push(a);
+    }
+    let open = Open::new(scene.radii);
+    let mut made = Views {
+        surface,
+        ..Views::default()
+    };
+    match sight {
+        Sight::Rays { rays, .. } => {
+            let grid = Grid::new(scene.radii, scene.centres);
+            near.par_iter_mut().for_each(|list| list.sort_unstable());
+            let seen: Vec<Rays> = (0..count)
+                .into_par_iter()
+                .map(|p| look(scene, &grid, p, &near[p], rays, reach))
+                .collect();
+            collect(scene, &open, &seen, &mut made);
+        }
+        Sight::Distance { .. } => by_distance(scene, &open, &pairs, reach, &mut made),
+    }
+    balance::balance(&mut made);
+    made
+}
+
+/// Open views of pairs, from a table where all radii are equal.
+struct Open {
+    table: Option<SphereTable>,
+}
+
+impl Open {
+    fn new(radii: &[f64]) -> Self {
+        let equal = radii.windows(2).all(|pair| pair[0] == pair[1]);
+        Self {
+            table: equal.then(SphereTable::new),
+        }
+    }
+
+    /// Exchange area in m² of two particles with nothing between.
+    fn area(&self, scene: &Scene<'_>, a: usize, b: usize) -> f64 {
+        let (first, second) = (scene.radii[a], scene.radii[b]);
+        let distance = (scene.centres[b] - scene.centres[a]).norm();
+        let factor = match &self.table {
+            Some(table) => table.at(distance / first),
+            None => sphere_to_sphere(first, second, distance),
+        };
+        4.0 * PI * first * first * factor
+    }
+}
+
+/// The rays of one particle.
+fn look(
+    scene: &Scene<'_>,
+    grid: &Grid<'_>,
+    p: usize,
+    near: &[u32],
+    rays: usize,
+    reach: f64,
+) -> Rays {
+    let (radius, centre) = (scene.radii[p], scene.centres[p]);
+    let around: Vec<(Vec3, f64)> = near
+        .iter()
+        .map(|&q| (scene.centres[q as usize] - centre, scene.radii[q as usize]))
+        .collect();
+    let mut direct: Vec<(u32, u32, u32)> = near.iter().map(|&q| (q, 0, 0)).collect();
+    let slots = scene.reservoirs.max(scene.beyond.map_or(0, |k| k + 1));
+    let mut seen = Rays {
+        reservoirs: vec![0.0; slots],
+        ..Rays::default()
+    };
+    let share = 1.0 / rays as f64;
+    let mut points = Sequence::new(p);
+    for _ in 0..rays {
+        let (normal, way) = points.next();
+        let start = radius * normal;
+        let mut first = (f64::INFINITY, usize::MAX);
+        for (k, (towards, other)) in around.iter().enumerate() {
+            if let Some(distance) = meets(towards - start, *other, way) {
+                direct[k].1 += 1;
+                if distance < first.0 {
+                    first = (distance, k);
+                }
+            }
+        }
+        let origin = centre + start;
+        let wall = nearest_wall(scene, origin, way);
+        match wall {
+            Some((_, hit)) if hit.distance < first.0 => {}
+            _ if first.1 != usize::MAX => {
+                direct[first.1].2 += 1;
+                continue;
+            }
+            _ => {}
+        }
+        follow(scene, grid, (p, origin, way), reach, share, &mut seen);
+    }
+    seen.mirrored.sort_by_key(|one| one.0);
+    seen.mirrored.dedup_by(|next, kept| {
+        let same = next.0 == kept.0;
+        if same {
+            kept.1 += next.1;
+        }
+        same
+    });
+    seen.direct = direct;
+    seen
+}
+
+/// Follows a ray that meets no particle near its start: on to what it meets, by way of mirrors.
+fn follow(
+    scene: &Scene<'_>,
+    grid: &Grid<'_>,
+    (p, mut origin, mut way): (usize, Vec3, Vec3),
+    reach: f64,
+    mut share: f64,
+    seen: &mut Rays,
+) {
+    let mut but = Some(p);
+    let mut travelled = 0.0;
+    for _ in 0..REFLECTIONS {
+        let wall = nearest_wall(scene, origin, way);
+        let until = wall.map_or(f64::INFINITY, |(_, hit)| hit.distance);
+        if let Some((distance, q)) = grid.first(origin, way, until, but) {
+            // What lies farther than the range is left out, and made up for by the balance.
+            if q != p && travelled + distance <= reach {
+                seen.mirrored.push((q as u32, share));
+            }
+            return;
+        }
+        let Some((mirror, hit)) = wall else {
+            if let Some(slot) = scene.beyond.and_then(|k| seen.reservoirs.get_mut(k)) {
+                *slot += share;
+            }
+            return;
+        };
+        if let Some((reservoir, emissivity)) = mirror.absorbs {
+            let rest = share * (1.0 - emissivity);
+            let kept = if rest < FAINT { 0.0 } else { rest };
+            seen.reservoirs[reservoir] += share - kept;
+            share = kept;
+            if share == 0.0 {
+                return;
+            }
+        }
+        travelled += hit.distance;
+        origin += hit.distance * way;
+        way -= 2.0 * way.dot(&hit.normal) * hit.normal;
+        but = None;
+    }
+}
+
+fn nearest_wall<'w>(scene: &Scene<'w>, origin: Vec3, way: Vec3) -> Option<(&'w Mirror, Hit)> {
+    let hits = scene
+        .walls
+        .iter()
+        .filter_map(|wall| Some((wall, wall.surface.hit(origin, way)?)));
+    hits.min_by(|a, b| a.1.distance.total_cmp(&b.1.distance))
+}
+
+/// Both directions of each pair become one exchange area.
+fn collect(scene: &Scene<'_>, open: &Open, seen: &[Rays], made: &mut Views) {
+    let surface = &made.surface;
+    let mut pairs: Vec<([u32; 2], f64)> = Vec::new();
+    for (p, rays) in seen.iter().enumerate() {
+        for &(q, crossing, first) in rays.direct.iter().filter(|one| one.0 as usize > p) {
+            let other = &seen[q as usize].direct;
+            let back = other.binary_search_by_key(&(p as u32), |one| one.0);
+            let (n, m) = back.map_or((0, 0), |k| (other[k].1, other[k].2));
+            if first + m > 0 {
+                let left = f64::from(first + m) / f64::from(crossing + n);
+                let area = left * open.area(scene, p, q as usize);
+                pairs.push(([p as u32, q], area));
+            }
+        }
+        for &(q, share) in &rays.mirrored {
+            let (a, b) = (p.min(q as usize), p.max(q as usize));
+            pairs.push(([a as u32, b as u32], 0.5 * share * surface[p]));
+        }
+        let takes = rays.reservoirs.iter().enumerate();
+        let taken = takes.filter(|(_, share)| **share > 0.0);
+        made.reservoirs
+            .extend(taken.map(|(k, share)| ([p, k], share * surface[p])));
+    }
+    pairs.sort_by_key(|one| one.0);
+    pairs.dedup_by(|next, kept| {
+        let same = next.0 == kept.0;
+        if same {
+            kept.1 += next.1;
+        }
+        same
+    });
+    let wide = |[a, b]: [u32; 2]| [a as usize, b as usize];
+    made.pairs = pairs
+        .into_iter()
+        .map(|(ends, area)| (wide(ends), area))
+        .collect();
+}
+
+/// Views by the distance alone; walls within reach take what a plane at their distance would.
+fn by_distance(scene: &Scene<'_>, open: &Open, pairs: &[[u32; 2]], reach: f64, made: &mut Views) {
+    let pair = |&[a, b]: &[u32; 2]| {
+        let (a, b) = (a as usize, b as usize);
+        let mean = 0.5 * (scene.radii[a] + scene.radii[b]);
+        let distance = (scene.centres[b] - scene.centres[a]).norm();
+        ([a, b], open.area(scene, a, b) * visibility(distance / mean))
+    };
+    made.pairs = pairs.par_iter().map(pair).collect();
+    for (p, centre) in scene.centres.iter().enumerate() {
+        for wall in scene.walls {
+            let Some((reservoir, emissivity)) = wall.absorbs else {
+                continue;
+            };
+            let distance = wall.surface.distance(*centre, reach);
+            if distance <= reach {
+                let left = wall_visibility(distance / scene.radii[p]);
+                let area = 0.5 * emissivity * left * made.surface[p];
+                made.reservoirs.push(([p, reservoir], area));
+            }
+        }
+    }
+}
+
+/// Points of a sphere and directions from there, evenly spread in all four dimensions: the additive
+/// recurrence of Roberts (2018, "The unreasonable effectiveness of quasirandom sequences") with powers of the
+/// root of x⁵ = x + 1, shifted for each particle.
+struct Sequence {
+    place: [f64; 4],
+}
+
+const STEPS: [f64; 4] = [
+    0.856_674_883_854_502_9,
+    0.733_891_856_627_125_6,
+    0.628_706_721_040_004_8,
+    0.538_597_256_766_614_4,
+];
+
+impl Sequence {
+    fn new(particle: usize) -> Self {
+        let mut random = crate::packing::random::SplitMix64(particle as u64);
+        Self {
+            place: [0; 4].map(|_: u8| random.unit()),
+        }
+    }
+
+    /// A unit normal of the sphere, and a unit vector by the cosine law about it.
+    fn next(&mut self) -> (Vec3, Vec3) {
+        for (place, step) in self.place.iter_mut().zip(STEPS) {
+            *place = (*place + step).fract();
+        }
+        let [height, turn, out, spin] = self.place;
+        let z = 1.0 - 2.0 * height;
+        let across = (1.0 - z * z).max(0.0).sqrt();
+        let (sine, cosine) = (2.0 * PI * turn).sin_cos();
+        let normal = Vec3::new(across * cosine, across * sine, z);
+        // Tangents along the meridian and the circle of latitude.
+        let along = Vec3::new(-sine, cosine, 0.0);
+        let up = Vec3::new(-z * cosine, -z * sine, across);
+        let (b, a) = (2.0 * PI * spin).sin_cos();
+        let tilt = out.sqrt();
+        let way = (1.0 - out).max(0.0).sqrt() * normal + tilt * (a * along + b * up);
+        (normal, way)
+    }
+}
+
+#[cfg(test)]
+mod tests;

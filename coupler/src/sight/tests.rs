@@ -1,0 +1,238 @@
+use super::*;
+use crate::motion::WallShape;
+use crate::packing::{Fill, RandomSpec, Sizes, random_in_box};
+
+fn plane(point: Vec3, normal: Vec3, absorbs: Option<(usize, f64)>) -> Mirror {
+    Mirror {
+        surface: Surface::new(&WallShape::Plane { point, normal }),
+        absorbs,
+    }
+}
+
+fn rows(views: &Views) -> Vec<f64> {
+    let mut row = vec![0.0; views.surface.len()];
+    for &([a, b], area) in &views.pairs {
+        row[a] += area / views.surface[a];
+        row[b] += area / views.surface[b];
+    }
+    for &([p, _], area) in &views.reservoirs {
+        row[p] += area / views.surface[p];
+    }
+    row
+}
+
+/// View factor of a pair.
+fn factor(views: &Views, a: usize, b: usize) -> f64 {
+    let found = views.pairs.iter().find(|pair| pair.0 == [a, b]);
+    found.map_or(0.0, |pair| pair.1 / views.surface[a])
+}
+
+const RAYS: Sight = Sight::Rays {
+    rays: 20_000,
+    range: 3.0,
+};
+
+#[test]
+fn two_spheres_in_the_open_see_each_other_as_tabulated_and_the_rest_is_beyond() {
+    // Requirements COR-11.
+    for (s, tabulated) in [
+        (2.0, 0.075_587),
+        (2.5, 0.044_119),
+        (4.0, 0.016_156),
+        (6.0, 0.007_044),
+    ] {
+        let centres = [Vec3::zeros(), Vec3::new(0.3, -0.5, 0.8).normalize() * s];
+        let scene = Scene {
+            radii: &[1.0; 2],
+            centres: &centres,
+            walls: &[],
+            reservoirs: 0,
+            beyond: Some(0),
+        };
+        let views = views(&scene, RAYS);
+        let made = factor(&views, 0, 1);
+        assert!((made - tabulated).abs() < 1e-3, "{s}: {made}");
+        for row in rows(&views) {
+            assert!((row - 1.0).abs() < 1e-12, "{row}");
+        }
+    }
+}
+
+#[test]
+fn a_sphere_between_two_others_hides_them_from_each_other() {
+    // In a row, touching: the outer ones see of each other what passes the middle one's edge. The shadow of
+    // an equal sphere half way is whole: every line between the outer two that misses it would have to leave
+    // their common cylinder.
+    let centres = [0.0, 2.0, 4.0].map(|x| Vec3::new(x, 0.0, 0.0));
+    let scene = Scene {
+        radii: &[1.0; 3],
+        centres: &centres,
+        walls: &[],
+        reservoirs: 0,
+        beyond: Some(0),
+    };
+    let hidden = views(&scene, RAYS);
+    assert_eq!(factor(&hidden, 0, 2), 0.0);
+    // A small one hides no more than its own share.
+    let radii = [1.0, 0.2, 1.0];
+    let partly = views(
+        &Scene {
+            radii: &radii,
+            ..scene
+        },
+        RAYS,
+    );
+    let open = sphere_to_sphere(1.0, 1.0, 4.0);
+    let left = factor(&partly, 0, 2) / open;
+    assert!((0.85..0.99).contains(&left), "{left}");
+}
+
+#[test]
+fn a_sphere_over_a_floor_sees_the_half_of_it_and_the_half_of_the_sky() {
+    let floor = plane(Vec3::zeros(), Vec3::z(), Some((0, 1.0)));
+    let scene = Scene {
+        radii: &[1.0],
+        centres: &[Vec3::new(0.0, 0.0, 3.0)],
+        walls: std::slice::from_ref(&floor),
+        reservoirs: 1,
+        beyond: Some(1),
+    };
+    let made = views(&scene, RAYS);
+    // An endless plane takes half of all directions, whatever the distance.
+    let share =
+        |k: usize| made.reservoirs.iter().find(|one| one.0[1] == k).unwrap().1 / made.surface[0];
+    assert!((share(0) - 0.5).abs() < 1e-3 && (share(1) - 0.5).abs() < 1e-3);
+}
+
+#[test]
+fn a_mirror_shows_the_bed_again() {
+    // A sphere between a mirror and a black wall: all it sends to the mirror comes back to itself or goes to
+    // the wall. Its own image at 2 h takes F(COR-11), which it does not see as another.
+    let walls = [
+        plane(Vec3::zeros(), Vec3::z(), None),
+        plane(Vec3::new(0.0, 0.0, 5.0), -Vec3::z(), Some((0, 1.0))),
+    ];
+    let centres = [Vec3::new(0.0, 0.0, 1.5), Vec3::new(3.0, 0.0, 1.5)];
+    let scene = Scene {
+        radii: &[1.0; 2],
+        centres: &centres,
+        walls: &walls,
+        reservoirs: 1,
+        beyond: None,
+    };
+    let grid = Grid::new(scene.radii, scene.centres);
+    let seen = look(&scene, &grid, 0, &[1], 200_000, 100.0);
+    let mirrored: f64 = seen.mirrored.iter().map(|one| one.1).sum();
+    let image = sphere_to_sphere(1.0, 1.0, (9.0_f64 + 9.0).sqrt());
+    assert!((mirrored - image).abs() < 1e-3, "{mirrored} {image}");
+    let own = 1.0 - mirrored - seen.reservoirs[0] - f64::from(seen.direct[0].2) / 200_000.0;
+    let itself = sphere_to_sphere(1.0, 1.0, 3.0);
+    assert!((own - itself).abs() < 1e-3, "{own} {itself}");
+    // A grey wall takes its share, and mirrors the rest.
+    let grey = [
+        walls[0].clone(),
+        plane(Vec3::new(0.0, 0.0, 5.0), -Vec3::z(), Some((0, 0.3))),
+    ];
+    let views = views(
+        &Scene {
+            walls: &grey,
+            ..scene
+        },
+        RAYS,
+    );
+    assert!(rows(&views).iter().all(|row| (row - 1.0).abs() < 1e-12));
+}
+
+/// Spheres of 10 mm in a box of six black walls.
+fn bed() -> (Vec<Vec3>, Vec<Mirror>) {
+    let size = Vec3::new(0.15, 0.15, 0.15);
+    let spec = RandomSpec {
+        sizes: Sizes::Equal(0.01),
+        fill: Fill::Height(size.z),
+        solid_fraction: 0.56,
+        seed: 3,
+        size_seed: 1,
+    };
+    let packing = random_in_box(Vec3::zeros(), [size.x, size.y], &spec).unwrap();
+    let mut walls = Vec::new();
+    for axis in 0..3 {
+        let mut normal = Vec3::zeros();
+        normal[axis] = 1.0;
+        walls.push(plane(Vec3::zeros(), normal, Some((2 * axis, 1.0))));
+        walls.push(plane(size, -normal, Some((2 * axis + 1, 1.0))));
+    }
+    (packing.centres, walls)
+}
+
+#[test]
+fn measure() {
+    let (centres, walls) = bed();
+    let radii = vec![5e-3; centres.len()];
+    let scene = Scene {
+        radii: &radii,
+        centres: &centres,
+        walls: &walls,
+        reservoirs: 6,
+        beyond: None,
+    };
+    let begun = std::time::Instant::now();
+    let made = views(
+        &scene,
+        Sight::Rays {
+            rays: 1024,
+            range: 4.0,
+        },
+    );
+    println!("{} spheres {:?}", centres.len(), begun.elapsed());
+    let mut bins = vec![(0.0, 0.0, 0.0); 60];
+    for p in pairs_around(&radii, &centres, 0.04) {
+        let (a, b) = (p[0] as usize, p[1] as usize);
+        let inner = |c: Vec3| (0..3).all(|k| c[k] > 0.02 && c[k] < 0.13);
+        if !inner(centres[a]) {
+            continue;
+        }
+        let s = (centres[b] - centres[a]).norm() / 5e-3;
+        let k = ((s - 2.0) / 0.1).max(0.0) as usize;
+        let open = sphere_to_sphere(1.0, 1.0, s);
+        bins[k].0 += factor(&made, a, b) / open;
+        bins[k].1 += 1.0;
+        bins[k].2 += factor(&made, a, b);
+    }
+    for (k, b) in bins.iter().enumerate() {
+        if b.1 > 0.0 {
+            println!("{:.2} {:.4} n {}", 2.05 + 0.1 * k as f64, b.0 / b.1, b.1);
+        }
+    }
+    let mut walls_seen = vec![(0.0, 0.0); 40];
+    for (p, c) in centres.iter().enumerate() {
+        for axis in 2..3 {
+            for (k, d) in [(2 * axis, c[axis]), (2 * axis + 1, 0.15 - c[axis])] {
+                if c.x < 0.015 || c.x > 0.135 || c.y < 0.015 || c.y > 0.135 {
+                    continue;
+                }
+                let share: f64 = made
+                    .reservoirs
+                    .iter()
+                    .filter(|r| r.0 == [p, k])
+                    .map(|r| r.1)
+                    .sum::<f64>()
+                    / made.surface[p];
+                let bin = (d / 5e-3 / 0.25) as usize;
+                if bin < 40 {
+                    walls_seen[bin].0 += share / 0.5;
+                    walls_seen[bin].1 += 1.0;
+                }
+            }
+        }
+    }
+    for (k, b) in walls_seen.iter().enumerate() {
+        if b.1 > 0.0 {
+            println!(
+                "wall {:.3} {:.4} n {}",
+                0.125 + 0.25 * k as f64,
+                b.0 / b.1,
+                b.1
+            );
+        }
+    }
+}
