@@ -7,8 +7,9 @@
 //!
 //! A F_ij = A_i F(COR-11) (m_ij + m_ji)/(n_ij + n_ji),
 //!
-//! so that an open view has no error of sampling at all, and both directions are one number: reciprocity is
-//! exact. Walls without a temperature of their own, and the share of a grey wall's radiation that it does not
+//! so that an open view has no error of sampling at all. So near pairs are found; those farther than three
+//! radii, whose factors are small, get the mean of the shares of rays of both. Either way both directions are
+//! one number: reciprocity is exact. Walls without a temperature of their own, and the share of a grey wall's radiation that it does not
 //! absorb, reflect as mirrors do: a bed between adiabatic walls goes on in its image. Last, all is scaled,
 //! symmetrically, until what each particle sees adds up to its surface ([`balance`]).
 
@@ -72,14 +73,16 @@ pub struct Scene<'a> {
 /// What one particle's rays meet.
 #[derive(Debug, Default)]
 struct Rays {
-    /// Other particle, rays whose line meets it, rays that meet it first.
+    /// Near particle, rays whose line meets it, rays that meet it first.
     direct: Vec<(u32, u32, u32)>,
-    /// Other particle and rays that come to it from mirrors, as shares of all.
-    mirrored: Vec<(u32, f64)>,
+    /// Other particle, and rays that come to it from afar or by mirrors, as shares of all.
+    others: Vec<(u32, f64)>,
     /// Share of all rays that each reservoir takes.
     reservoirs: Vec<f64>,
 }
 
+/// Distance of centres over the largest radius up to which pairs count as near.
+const NEAR: f64 = 3.0;
 /// A ray's share of radiation below which a mirror takes the rest.
 const FAINT: f64 = 1e-6;
 /// Reflections at most.
@@ -92,12 +95,6 @@ pub fn views(scene: &Scene<'_>, sight: Sight) -> Views {
     let largest = scene.radii.iter().copied().fold(0.0, f64::max);
     let (Sight::Rays { range, .. } | Sight::Distance { range }) = sight;
     let reach = 2.0 * largest * range;
-    let mut near: Vec<Vec<u32>> = vec![Vec::new(); count];
-    let pairs = pairs_around(scene.radii, scene.centres, reach);
-    for &[a, b] in &pairs {
-        near[a as usize].push(b);
-        near[b as usize].push(a);
-    }
     let open = Open::new(scene.radii);
     let mut made = Views {
         surface,
@@ -106,6 +103,11 @@ pub fn views(scene: &Scene<'_>, sight: Sight) -> Views {
     match sight {
         Sight::Rays { rays, .. } => {
             let grid = Grid::new(scene.radii, scene.centres);
+            let mut near: Vec<Vec<u32>> = vec![Vec::new(); count];
+            for [a, b] in pairs_around(scene.radii, scene.centres, reach.min(NEAR * largest)) {
+                near[a as usize].push(b);
+                near[b as usize].push(a);
+            }
             near.par_iter_mut().for_each(|list| list.sort_unstable());
             let seen: Vec<Rays> = (0..count)
                 .into_par_iter()
@@ -113,7 +115,7 @@ pub fn views(scene: &Scene<'_>, sight: Sight) -> Views {
                 .collect();
             collect(scene, &open, &seen, &mut made);
         }
-        Sight::Distance { .. } => by_distance(scene, &open, &pairs, reach, &mut made),
+        Sight::Distance { .. } => by_distance(scene, &open, reach, &mut made),
     }
     balance::balance(&mut made);
     made
@@ -169,29 +171,21 @@ fn look(
     for _ in 0..rays {
         let (normal, way) = points.next();
         let start = radius * normal;
-        let mut first = (f64::INFINITY, usize::MAX);
-        for (k, (towards, other)) in around.iter().enumerate() {
-            if let Some(distance) = meets(towards - start, *other, way) {
-                direct[k].1 += 1;
-                if distance < first.0 {
-                    first = (distance, k);
-                }
-            }
+        for ((towards, other), counted) in around.iter().zip(&mut direct) {
+            counted.1 += u32::from(meets(towards - start, *other, way).is_some());
         }
-        let origin = centre + start;
-        let wall = nearest_wall(scene, origin, way);
-        match wall {
-            Some((_, hit)) if hit.distance < first.0 => {}
-            _ if first.1 != usize::MAX => {
-                direct[first.1].2 += 1;
-                continue;
-            }
-            _ => {}
-        }
-        follow(scene, grid, (p, origin, way), reach, share, &mut seen);
+        follow(
+            scene,
+            grid,
+            (p, centre + start, way),
+            reach,
+            share,
+            &mut direct,
+            &mut seen,
+        );
     }
-    seen.mirrored.sort_by_key(|one| one.0);
-    seen.mirrored.dedup_by(|next, kept| {
+    seen.others.sort_by_key(|one| one.0);
+    seen.others.dedup_by(|next, kept| {
         let same = next.0 == kept.0;
         if same {
             kept.1 += next.1;
@@ -202,13 +196,18 @@ fn look(
     seen
 }
 
-/// Follows a ray that meets no particle near its start: on to what it meets, by way of mirrors.
+/// Follows a ray to what it meets, by way of mirrors.
+#[allow(
+    clippy::too_many_arguments,
+    reason = "the two lists that a ray adds to"
+)]
 fn follow(
     scene: &Scene<'_>,
     grid: &Grid<'_>,
     (p, mut origin, mut way): (usize, Vec3, Vec3),
     reach: f64,
     mut share: f64,
+    direct: &mut [(u32, u32, u32)],
     seen: &mut Rays,
 ) {
     let mut but = Some(p);
@@ -217,9 +216,14 @@ fn follow(
         let wall = nearest_wall(scene, origin, way);
         let until = wall.map_or(f64::INFINITY, |(_, hit)| hit.distance);
         if let Some((distance, q)) = grid.first(origin, way, until, but) {
-            // What lies farther than the range is left out, and made up for by the balance.
-            if q != p && travelled + distance <= reach {
-                seen.mirrored.push((q as u32, share));
+            let near = direct.binary_search_by_key(&(q as u32), |one| one.0);
+            match near {
+                Ok(k) if but.is_some() => direct[k].2 += 1,
+                // What lies farther than the range is left out, and made up for by the balance.
+                _ if q != p && travelled + distance <= reach => {
+                    seen.others.push((q as u32, share));
+                }
+                _ => {}
             }
             return;
         }
@@ -268,7 +272,7 @@ fn collect(scene: &Scene<'_>, open: &Open, seen: &[Rays], made: &mut Views) {
                 pairs.push(([p as u32, q], area));
             }
         }
-        for &(q, share) in &rays.mirrored {
+        for &(q, share) in &rays.others {
             let (a, b) = (p.min(q as usize), p.max(q as usize));
             pairs.push(([a as u32, b as u32], 0.5 * share * surface[p]));
         }
@@ -293,7 +297,8 @@ fn collect(scene: &Scene<'_>, open: &Open, seen: &[Rays], made: &mut Views) {
 }
 
 /// Views by the distance alone; walls within reach take what a plane at their distance would.
-fn by_distance(scene: &Scene<'_>, open: &Open, pairs: &[[u32; 2]], reach: f64, made: &mut Views) {
+fn by_distance(scene: &Scene<'_>, open: &Open, reach: f64, made: &mut Views) {
+    let pairs = pairs_around(scene.radii, scene.centres, reach);
     let pair = |&[a, b]: &[u32; 2]| {
         let (a, b) = (a as usize, b as usize);
         let mean = 0.5 * (scene.radii[a] + scene.radii[b]);

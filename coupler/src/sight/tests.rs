@@ -73,7 +73,7 @@ fn a_sphere_between_two_others_hides_them_from_each_other() {
     };
     let hidden = views(&scene, RAYS);
     assert_eq!(factor(&hidden, 0, 2), 0.0);
-    // A small one hides no more than its own share.
+    // A small one leaves 0.865 of the open view, by plain Monte Carlo apart from Calcine (1.5e6 rays).
     let radii = [1.0, 0.2, 1.0];
     let partly = views(
         &Scene {
@@ -84,7 +84,7 @@ fn a_sphere_between_two_others_hides_them_from_each_other() {
     );
     let open = sphere_to_sphere(1.0, 1.0, 4.0);
     let left = factor(&partly, 0, 2) / open;
-    assert!((0.85..0.99).contains(&left), "{left}");
+    assert!((left - 0.865).abs() < 0.03, "{left}");
 }
 
 #[test]
@@ -122,7 +122,7 @@ fn a_mirror_shows_the_bed_again() {
     };
     let grid = Grid::new(scene.radii, scene.centres);
     let seen = look(&scene, &grid, 0, &[1], 200_000, 100.0);
-    let mirrored: f64 = seen.mirrored.iter().map(|one| one.1).sum();
+    let mirrored: f64 = seen.others.iter().map(|one| one.1).sum();
     let image = sphere_to_sphere(1.0, 1.0, (9.0_f64 + 9.0).sqrt());
     assert!((mirrored - image).abs() < 1e-3, "{mirrored} {image}");
     let own = 1.0 - mirrored - seen.reservoirs[0] - f64::from(seen.direct[0].2) / 200_000.0;
@@ -145,7 +145,7 @@ fn a_mirror_shows_the_bed_again() {
 
 /// Spheres of 10 mm in a box of six black walls.
 fn bed() -> (Vec<Vec3>, Vec<Mirror>) {
-    let size = Vec3::new(0.15, 0.15, 0.15);
+    let size = Vec3::new(0.07, 0.07, 0.1);
     let spec = RandomSpec {
         sizes: Sizes::Equal(0.01),
         fill: Fill::Height(size.z),
@@ -164,8 +164,10 @@ fn bed() -> (Vec<Vec3>, Vec<Mirror>) {
     (packing.centres, walls)
 }
 
+const SHARES: Sight = Sight::Distance { range: 4.0 };
+
 #[test]
-fn measure() {
+fn in_a_closed_bed_rows_sum_to_one_and_pairs_of_the_middle_see_what_the_fit_says() {
     let (centres, walls) = bed();
     let radii = vec![5e-3; centres.len()];
     let scene = Scene {
@@ -175,64 +177,52 @@ fn measure() {
         reservoirs: 6,
         beyond: None,
     };
-    let begun = std::time::Instant::now();
-    let made = views(
-        &scene,
-        Sight::Rays {
-            rays: 1024,
-            range: 4.0,
-        },
-    );
-    println!("{} spheres {:?}", centres.len(), begun.elapsed());
-    let mut bins = vec![(0.0, 0.0, 0.0); 60];
-    for p in pairs_around(&radii, &centres, 0.04) {
-        let (a, b) = (p[0] as usize, p[1] as usize);
-        let inner = |c: Vec3| (0..3).all(|k| c[k] > 0.02 && c[k] < 0.13);
-        if !inner(centres[a]) {
-            continue;
-        }
-        let s = (centres[b] - centres[a]).norm() / 5e-3;
-        let k = ((s - 2.0) / 0.1).max(0.0) as usize;
-        let open = sphere_to_sphere(1.0, 1.0, s);
-        bins[k].0 += factor(&made, a, b) / open;
-        bins[k].1 += 1.0;
-        bins[k].2 += factor(&made, a, b);
-    }
-    for (k, b) in bins.iter().enumerate() {
-        if b.1 > 0.0 {
-            println!("{:.2} {:.4} n {}", 2.05 + 0.1 * k as f64, b.0 / b.1, b.1);
+    let rays = Sight::Rays {
+        rays: 512,
+        range: 4.0,
+    };
+    let (traced, fitted) = (views(&scene, rays), views(&scene, SHARES));
+    for views in [&traced, &fitted] {
+        for row in rows(views) {
+            assert!((row - 1.0).abs() < 1e-12, "{row}");
         }
     }
-    let mut walls_seen = vec![(0.0, 0.0); 40];
-    for (p, c) in centres.iter().enumerate() {
-        for axis in 2..3 {
-            for (k, d) in [(2 * axis, c[axis]), (2 * axis + 1, 0.15 - c[axis])] {
-                if c.x < 0.015 || c.x > 0.135 || c.y < 0.015 || c.y > 0.135 {
-                    continue;
-                }
-                let share: f64 = made
-                    .reservoirs
-                    .iter()
-                    .filter(|r| r.0 == [p, k])
-                    .map(|r| r.1)
-                    .sum::<f64>()
-                    / made.surface[p];
-                let bin = (d / 5e-3 / 0.25) as usize;
-                if bin < 40 {
-                    walls_seen[bin].0 += share / 0.5;
-                    walls_seen[bin].1 += 1.0;
-                }
-            }
-        }
-    }
-    for (k, b) in walls_seen.iter().enumerate() {
-        if b.1 > 0.0 {
-            println!(
-                "wall {:.3} {:.4} n {}",
-                0.125 + 0.25 * k as f64,
-                b.0 / b.1,
-                b.1
-            );
-        }
-    }
+    // How far radiation goes: Σ F s² of a particle in the middle, which sets the bed's conductivity.
+    let inner = |c: &Vec3| (0..3).all(|k| (0.025..[0.045, 0.045, 0.075][k]).contains(&c[k]));
+    let moment = |views: &Views| {
+        let of = |&([a, b], area): &([usize; 2], f64)| {
+            let ends =
+                f64::from(u8::from(inner(&centres[a]))) + f64::from(u8::from(inner(&centres[b])));
+            ends * area * (centres[b] - centres[a]).norm_squared()
+        };
+        views.pairs.iter().map(of).sum::<f64>()
+    };
+    let ratio = moment(&fitted) / moment(&traced);
+    // The fit is of a larger bed, which is looser in its middle.
+    assert!((ratio - 1.0).abs() < 0.12, "{ratio}");
+}
+
+#[test]
+fn views_do_not_depend_on_the_number_of_threads() {
+    let (centres, walls) = bed();
+    let radii = vec![5e-3; centres.len()];
+    let scene = Scene {
+        radii: &radii,
+        centres: &centres,
+        walls: &walls,
+        reservoirs: 6,
+        beyond: None,
+    };
+    let rays = Sight::Rays {
+        rays: 64,
+        range: 3.0,
+    };
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| views(&scene, rays))
+    };
+    assert_eq!(on(1), on(3));
 }
