@@ -51,6 +51,10 @@ pub struct Moment<'a> {
     pub particle_temperature: &'a [f64],
     /// Mean heat flow into each particle over the window in W.
     pub particle_heat: &'a [f64],
+    /// Names of walls and surroundings that give heat to the particles.
+    pub reservoirs: &'a [String],
+    /// Mean heat from each of these into the particles over the window in W; empty where there is none.
+    pub reservoir_heat: &'a [f64],
     /// The ledger so far.
     pub ledger: &'a Ledger,
     /// Convergence of the gas in the window.

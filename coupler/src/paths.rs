@@ -9,9 +9,14 @@ use crate::part::ParticleFields;
 use crate::setup::Schedule;
 use crate::sight::{Mirror, Scene, Sight, Surface, views};
 
+/// Name of the surroundings among the reservoirs.
+pub const SURROUNDINGS: &str = "surroundings";
+
 /// A wall that particles exchange heat with, or that reflects their radiation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeatWall {
+    /// Its name.
+    pub name: String,
     /// Its shape.
     pub shape: WallShape,
     /// Its temperature in K over process time in s; `None` for an adiabatic wall, which is a mirror.
@@ -41,6 +46,7 @@ pub struct PathsSetup {
 pub struct Paths {
     setup: PathsSetup,
     mirrors: Vec<Mirror>,
+    names: Vec<String>,
     /// Process time in s at which views were found last.
     seen_at: Option<f64>,
     /// Temperatures of the reservoirs in K.
@@ -51,6 +57,8 @@ impl Paths {
     /// Walls that have a temperature are the first reservoirs, in their order; the surroundings are the last.
     pub fn new(setup: PathsSetup) -> Self {
         let mut reservoirs = 0..;
+        let warm = setup.walls.iter().filter(|wall| wall.temperature.is_some());
+        let beyond = setup.surroundings.as_ref();
         let mirror = |wall: &HeatWall| Mirror {
             surface: Surface::new(&wall.shape),
             absorbs: wall
@@ -61,10 +69,19 @@ impl Paths {
         };
         Self {
             mirrors: setup.walls.iter().map(mirror).collect(),
+            names: warm
+                .map(|wall| wall.name.clone())
+                .chain(beyond.map(|_| SURROUNDINGS.to_owned()))
+                .collect(),
             seen_at: None,
             kelvin: Vec::new(),
             setup,
         }
+    }
+
+    /// Names of the reservoirs.
+    pub fn names(&self) -> &[String] {
+        &self.names
     }
 
     /// Forgets the views: the next call of [`Paths::meet`] finds them anew.

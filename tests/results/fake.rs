@@ -344,6 +344,8 @@ impl World {
             particle_temperature: &self.temperature,
             particle_heat: &self.heat,
             placement: &SETTLED,
+            reservoirs: &[],
+            reservoir_heat: &[],
             ledger: &self.ledger,
             convergence: &self.convergence,
             timing: &self.timing,

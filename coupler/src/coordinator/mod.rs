@@ -154,6 +154,8 @@ struct Workspace {
     /// All but drag that acted on each particle in the last window, in N.
     other: Vec<Vec3>,
     free: Vec<bool>,
+    /// Heat of the last window from walls and surroundings into the particles in W.
+    reservoir_heat: Vec<f64>,
 }
 
 /// A run: the parts, the laws, the state of the loop.
@@ -297,6 +299,8 @@ impl<'m> Run<'m> {
             particles: self.parts.particles.fields(),
             particle_temperature: self.parts.interior.temperature(),
             particle_heat: &self.work.exchange.heat,
+            reservoirs: self.paths.names(),
+            reservoir_heat: &self.work.reservoir_heat,
             ledger: &self.ledger,
             convergence: &self.convergence,
             placement: &self.placement,

@@ -256,6 +256,9 @@ impl Run<'_> {
         self.parts.gas.commit()?;
         self.parts.particles.commit()?;
         self.note_forces(window);
+        self.work.reservoir_heat.clear();
+        let heat = self.parts.interior.reservoir_heat();
+        self.work.reservoir_heat.extend_from_slice(heat);
         self.parts.interior.commit();
         self.clocks = window.end()?;
         self.windows += 1;

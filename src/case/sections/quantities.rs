@@ -1,27 +1,20 @@
 //! `[[quantities]]`.
 
+use calcine_coupler::motion::Wall;
+use calcine_coupler::setup::Schedule;
+
 use super::patches;
 use crate::case::model::{
     Band, Expect, GasPlace, Measure, MeshSpec, ParticlePlace, Place, Population, Probe, Quantity,
-    Statistic,
+    SURROUNDINGS, Statistic, belongs,
 };
 use crate::case::table::Reader;
 use crate::case::units::{Dimension, difference};
 
-pub(super) fn quantities(
-    root: &Reader<'_>,
-    mesh: Option<&MeshSpec>,
-    populations: Option<&[Population]>,
-    probes: &[Probe],
-) -> Vec<Quantity> {
-    let known = Known {
-        mesh,
-        populations,
-        probes,
-    };
+pub(super) fn quantities(root: &Reader<'_>, known: &Known<'_>) -> Vec<Quantity> {
     let mut made: Vec<Quantity> = Vec::new();
     for table in &root.tables("quantities") {
-        let Some(quantity) = quantity(table, &known) else {
+        let Some(quantity) = quantity(table, known) else {
             continue;
         };
         if made.iter().any(|other| other.name == quantity.name) {
@@ -56,6 +49,7 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
         "speed" => (Dimension::VELOCITY, "m/s"),
         "void_fraction" => (Dimension::NONE, "1"),
         "height" => (Dimension::LENGTH, "m"),
+        "wall_heat" => (Dimension::POWER, "W"),
         _ => (Dimension::TEMPERATURE, "K"),
     };
     let agree = if agree {
@@ -109,10 +103,15 @@ fn band(table: &Reader<'_>, key: &str, dimension: Dimension) -> Option<Band> {
 }
 
 /// What a measure may name.
-struct Known<'a> {
-    mesh: Option<&'a MeshSpec>,
-    populations: Option<&'a [Population]>,
-    probes: &'a [Probe],
+pub(super) struct Known<'a> {
+    /// The mesh, for its patches.
+    pub mesh: Option<&'a MeshSpec>,
+    /// Populations.
+    pub populations: Option<&'a [Population]>,
+    /// Probes.
+    pub probes: &'a [Probe],
+    /// Walls, with the temperatures of those that have one.
+    pub walls: &'a [(Wall, Option<Schedule>)],
 }
 
 /// Fields whose difference between patches can be asked for.
@@ -134,16 +133,17 @@ const PARTICLES: [(&str, &str); 3] = [
 
 /// The measure and the field that it is of.
 fn measure(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
-    let kinds = ["difference", "gas", "particles", "particle"];
+    let kinds = ["difference", "gas", "particles", "particle", "wall_heat"];
     let given: Vec<&str> = kinds.into_iter().filter(|kind| reader.has(kind)).collect();
     match given[..] {
         ["difference"] => difference_of(reader, known),
         ["gas"] => gas(reader, known),
         ["particles"] => particles(reader, known),
         ["particle"] => particle(reader, known),
+        ["wall_heat"] => wall_heat(reader, known),
         _ => {
             reader.fail_whole(
-                "needs exactly one of difference, gas, particles and particle",
+                "needs exactly one of difference, gas, particles, particle and wall_heat",
                 "for example { particles = \"temperature\", statistic = \"mean\" }",
             );
             None
@@ -263,6 +263,22 @@ fn particle(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static
         },
         field,
     ))
+}
+
+/// Heat from a wall of a temperature, or from all parts of one of several shapes.
+fn wall_heat(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
+    let name = reader.text("wall_heat")?;
+    let warm = known.walls.iter().filter(|(_, kelvin)| kelvin.is_some());
+    let names: Vec<&str> = warm.map(|(wall, _)| wall.name.as_str()).collect();
+    if name != SURROUNDINGS && !names.iter().any(|own| belongs(own, name)) {
+        let help = match names[..] {
+            [] => "give a wall of [[walls]] a temperature".into(),
+            _ => format!("walls of a temperature are {}", names.join(", ")),
+        };
+        let rule = format!("is \"{name}\", which is no wall of a temperature");
+        reader.fail("wall_heat", rule, help);
+    }
+    Some((Measure::WallHeat { wall: name.into() }, "wall_heat"))
 }
 
 /// The statistic; on a probe the mean, where none is named: it may be a single point.
