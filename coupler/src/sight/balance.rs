@@ -37,6 +37,9 @@ pub fn balance(views: &mut Views) {
     for ([p, _], area) in &mut views.reservoirs {
         *area *= factor[*p];
     }
+    for (area, factor) in views.own.iter_mut().zip(&factor) {
+        *area *= factor * factor;
+    }
     // What is left above a surface is cut, on both sides of a pair alike.
     sums(views, &vec![1.0; count], &mut row);
     let cut: Vec<f64> = row
@@ -55,11 +58,16 @@ pub fn balance(views: &mut Views) {
     for ([p, _], area) in &mut views.reservoirs {
         *area *= cut[*p];
     }
+    for (area, cut) in views.own.iter_mut().zip(&cut) {
+        *area *= cut;
+    }
 }
 
 /// Row sums in m² with factors.
 fn sums(views: &Views, factor: &[f64], row: &mut [f64]) {
-    row.fill(0.0);
+    for ((sum, own), factor) in row.iter_mut().zip(&views.own).zip(factor) {
+        *sum = factor * factor * own;
+    }
     for &([a, b], area) in &views.pairs {
         let scaled = factor[a] * factor[b] * area;
         row[a] += scaled;
@@ -85,6 +93,7 @@ mod tests {
                 ([0, 3], 0.3),
             ],
             reservoirs: vec![([3, 0], 0.6), ([1, 0], 0.3)],
+            own: vec![0.1, 0.0, 0.0, 0.0],
             surface: vec![1.0, 1.5, 1.2, 1.0],
         };
         balance(&mut views);
@@ -101,6 +110,7 @@ mod tests {
         let mut views = Views {
             pairs: vec![([0, 1], 0.1), ([1, 2], 0.1)],
             reservoirs: Vec::new(),
+            own: vec![0.0; 3],
             surface: vec![1.0; 3],
         };
         balance(&mut views);

@@ -77,6 +77,8 @@ struct Rays {
     direct: Vec<(u32, u32, u32)>,
     /// Other particle, and rays that come to it from afar or by mirrors, as shares of all.
     others: Vec<(u32, f64)>,
+    /// Share of all rays that come back by mirrors.
+    own: f64,
     /// Share of all rays that each reservoir takes.
     reservoirs: Vec<f64>,
 }
@@ -97,6 +99,7 @@ pub fn views(scene: &Scene<'_>, sight: Sight) -> Views {
     let reach = 2.0 * largest * range;
     let open = Open::new(scene.radii);
     let mut made = Views {
+        own: vec![0.0; count],
         surface,
         ..Views::default()
     };
@@ -220,9 +223,8 @@ fn follow(
             match near {
                 Ok(k) if but.is_some() => direct[k].2 += 1,
                 // What lies farther than the range is left out, and made up for by the balance.
-                _ if q != p && travelled + distance <= reach => {
-                    seen.others.push((q as u32, share));
-                }
+                _ if q == p => seen.own += share,
+                _ if travelled + distance <= reach => seen.others.push((q as u32, share)),
                 _ => {}
             }
             return;
@@ -272,6 +274,7 @@ fn collect(scene: &Scene<'_>, open: &Open, seen: &[Rays], made: &mut Views) {
                 pairs.push(([p as u32, q], area));
             }
         }
+        made.own[p] = rays.own * surface[p];
         for &(q, share) in &rays.others {
             let (a, b) = (p.min(q as usize), p.max(q as usize));
             pairs.push(([a as u32, b as u32], 0.5 * share * surface[p]));

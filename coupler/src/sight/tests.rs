@@ -10,7 +10,8 @@ fn plane(point: Vec3, normal: Vec3, absorbs: Option<(usize, f64)>) -> Mirror {
 }
 
 fn rows(views: &Views) -> Vec<f64> {
-    let mut row = vec![0.0; views.surface.len()];
+    let shares = views.own.iter().zip(&views.surface);
+    let mut row: Vec<f64> = shares.map(|(own, surface)| own / surface).collect();
     for &([a, b], area) in &views.pairs {
         row[a] += area / views.surface[a];
         row[b] += area / views.surface[b];
@@ -125,6 +126,7 @@ fn a_mirror_shows_the_bed_again() {
     let mirrored: f64 = seen.others.iter().map(|one| one.1).sum();
     let image = sphere_to_sphere(1.0, 1.0, (9.0_f64 + 9.0).sqrt());
     assert!((mirrored - image).abs() < 1e-3, "{mirrored} {image}");
+    assert!(seen.own > 0.0);
     let own = 1.0 - mirrored - seen.reservoirs[0] - f64::from(seen.direct[0].2) / 200_000.0;
     let itself = sphere_to_sphere(1.0, 1.0, 3.0);
     assert!((own - itself).abs() < 1e-3, "{own} {itself}");

@@ -31,6 +31,8 @@ pub struct Views {
     pub pairs: Vec<([usize; 2], f64)>,
     /// Particle and reservoir.
     pub reservoirs: Vec<([usize; 2], f64)>,
+    /// What each particle sees of itself, by way of mirrors, in m²; exchanges nothing.
+    pub own: Vec<f64>,
     /// Surface of each particle in m².
     pub surface: Vec<f64>,
 }
