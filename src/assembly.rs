@@ -569,6 +569,11 @@ fn paths(case: &Case, prepared: &Prepared) -> PathsSetup {
                 emissivity: emissivity(wall.material),
             })
             .collect(),
+        emissivity: case
+            .particles
+            .iter()
+            .map(|one| emissivity(one.material))
+            .collect(),
         gap: laws.reach(largest),
         sight: radiation.map(|one| one.sight),
         surroundings: radiation.and_then(|one| one.surroundings.clone()),

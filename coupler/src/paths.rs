@@ -30,6 +30,8 @@ pub struct HeatWall {
 pub struct PathsSetup {
     /// Walls.
     pub walls: Vec<HeatWall>,
+    /// Emissivity of each population.
+    pub emissivity: Vec<f64>,
     /// The widest gap in m between particles of these radii in m, and to walls, that conducts, over the largest
     /// radius in m.
     pub gap: f64,
@@ -122,9 +124,12 @@ impl Paths {
             .is_none_or(|at| time - at >= self.setup.refresh * (1.0 - 1e-9));
         let found: Option<Views> = self.setup.sight.filter(|_| due).map(|sight| {
             let reservoirs = self.mirrors.iter().filter(|m| m.absorbs.is_some()).count();
+            let own = |k: &u32| self.setup.emissivity.get(*k as usize).copied();
+            let emissivity = particles.population.iter().map(|k| own(k).unwrap_or(1.0));
             let scene = Scene {
                 radii,
                 centres,
+                emissivity: &emissivity.collect::<Vec<f64>>(),
                 walls: &self.mirrors,
                 reservoirs,
                 beyond: self.setup.surroundings.as_ref().map(|_| reservoirs),

@@ -93,6 +93,7 @@ mod tests {
                 ([0, 3], 0.3),
             ],
             reservoirs: vec![([3, 0], 0.6), ([1, 0], 0.3)],
+            radiosity: false,
             own: vec![0.1, 0.0, 0.0, 0.0],
             surface: vec![1.0, 1.5, 1.2, 1.0],
         };
@@ -110,6 +111,7 @@ mod tests {
         let mut views = Views {
             pairs: vec![([0, 1], 0.1), ([1, 2], 0.1)],
             reservoirs: Vec::new(),
+            radiosity: false,
             own: vec![0.0; 3],
             surface: vec![1.0; 3],
         };

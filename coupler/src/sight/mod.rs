@@ -9,9 +9,14 @@
 //!
 //! so that an open view has no error of sampling at all. So near pairs are found; those farther than three
 //! radii, whose factors are small, get the mean of the shares of rays of both. Either way both directions are
-//! one number: reciprocity is exact. Walls without a temperature of their own, and the share of a grey wall's radiation that it does not
-//! absorb, reflect as mirrors do: a bed between adiabatic walls goes on in its image. Last, all is scaled,
-//! symmetrically, until what each particle sees adds up to its surface ([`balance`]).
+//! one number: reciprocity is exact.
+//!
+//! What a grey particle does not absorb it reflects where it was hit, by the cosine law, and the ray goes on:
+//! areas are of what one emits and the other absorbs after any number of reflections. (With one radiosity for
+//! the whole of a sphere grey beds would be as good as black ones: what comes in at the front would go on from
+//! the back.) Walls without a temperature, and the share of a grey wall's radiation that it does not absorb,
+//! reflect as mirrors do: a bed between adiabatic walls goes on in its image. Last, all is scaled,
+//! symmetrically, until what each particle emits arrives somewhere ([`balance`]).
 
 mod balance;
 mod trace;
@@ -26,6 +31,7 @@ use calcine_physics::radiation::{SphereTable, sphere_to_sphere, visibility, wall
 use rayon::prelude::*;
 
 use crate::contacts::pairs_around;
+use crate::packing::random::SplitMix64;
 use trace::{Grid, meets};
 pub use wall::{Hit, Surface};
 
@@ -62,6 +68,8 @@ pub struct Scene<'a> {
     pub radii: &'a [f64],
     /// Centres in m.
     pub centres: &'a [Vec3],
+    /// Emissivities.
+    pub emissivity: &'a [f64],
     /// Walls.
     pub walls: &'a [Mirror],
     /// Number of the reservoirs that are walls.
@@ -75,9 +83,9 @@ pub struct Scene<'a> {
 struct Rays {
     /// Near particle, rays whose line meets it, rays that meet it first.
     direct: Vec<(u32, u32, u32)>,
-    /// Other particle, and rays that come to it from afar or by mirrors, as shares of all.
+    /// Other particle, and what it absorbs from afar or after reflections, as shares of all.
     others: Vec<(u32, f64)>,
-    /// Share of all rays that come back by mirrors.
+    /// Share of all rays that come back.
     own: f64,
     /// Share of all rays that each reservoir takes.
     reservoirs: Vec<f64>,
@@ -85,21 +93,26 @@ struct Rays {
 
 /// Distance of centres over the largest radius up to which pairs count as near.
 const NEAR: f64 = 3.0;
-/// A ray's share of radiation below which a mirror takes the rest.
-const FAINT: f64 = 1e-6;
+/// The share of a ray below which what it meets takes the rest.
+const FAINT: f64 = 1e-4;
 /// Reflections at most.
 const REFLECTIONS: usize = 1000;
 
 /// View factors of all particles.
 pub fn views(scene: &Scene<'_>, sight: Sight) -> Views {
     let count = scene.centres.len();
-    let surface: Vec<f64> = scene.radii.iter().map(|r| 4.0 * PI * r * r).collect();
+    let whole = scene.radii.iter().map(|r| 4.0 * PI * r * r);
+    let surface: Vec<f64> = match sight {
+        Sight::Rays { .. } => whole.zip(scene.emissivity).map(|(a, e)| a * e).collect(),
+        Sight::Distance { .. } => whole.collect(),
+    };
     let largest = scene.radii.iter().copied().fold(0.0, f64::max);
     let (Sight::Rays { range, .. } | Sight::Distance { range }) = sight;
     let reach = 2.0 * largest * range;
     let open = Open::new(scene.radii);
     let mut made = Views {
         own: vec![0.0; count],
+        radiosity: matches!(sight, Sight::Distance { .. }),
         surface,
         ..Views::default()
     };
@@ -171,21 +184,20 @@ fn look(
     };
     let share = 1.0 / rays as f64;
     let mut points = Sequence::new(p);
+    let mut random = SplitMix64(p as u64 ^ 0x5bd1_e995);
     for _ in 0..rays {
         let (normal, way) = points.next();
         let start = radius * normal;
         for ((towards, other), counted) in around.iter().zip(&mut direct) {
             counted.1 += u32::from(meets(towards - start, *other, way).is_some());
         }
-        follow(
-            scene,
-            grid,
-            (p, centre + start, way),
-            reach,
+        let ray = Ray {
+            from: p,
+            origin: centre + start,
+            way,
             share,
-            &mut direct,
-            &mut seen,
-        );
+        };
+        follow(scene, grid, ray, reach, &mut random, &mut direct, &mut seen);
     }
     seen.others.sort_by_key(|one| one.0);
     seen.others.dedup_by(|next, kept| {
@@ -199,56 +211,83 @@ fn look(
     seen
 }
 
-/// Follows a ray to what it meets, by way of mirrors.
-#[allow(
-    clippy::too_many_arguments,
-    reason = "the two lists that a ray adds to"
-)]
+/// A ray on its way.
+struct Ray {
+    /// The particle that it leaves.
+    from: usize,
+    origin: Vec3,
+    way: Vec3,
+    /// Its share of what the particle emits.
+    share: f64,
+}
+
+/// Follows a ray to where it is absorbed, by way of mirrors and grey surfaces.
 fn follow(
     scene: &Scene<'_>,
     grid: &Grid<'_>,
-    (p, mut origin, mut way): (usize, Vec3, Vec3),
+    mut ray: Ray,
     reach: f64,
-    mut share: f64,
+    random: &mut SplitMix64,
     direct: &mut [(u32, u32, u32)],
     seen: &mut Rays,
 ) {
-    let mut but = Some(p);
+    let (from, faint) = (ray.from, FAINT * ray.share);
+    let (mut but, mut first) = (Some(from), true);
     let mut travelled = 0.0;
     for _ in 0..REFLECTIONS {
-        let wall = nearest_wall(scene, origin, way);
+        let wall = nearest_wall(scene, ray.origin, ray.way);
         let until = wall.map_or(f64::INFINITY, |(_, hit)| hit.distance);
-        if let Some((distance, q)) = grid.first(origin, way, until, but) {
+        if let Some((distance, q)) = grid.first(ray.origin, ray.way, until, but) {
+            travelled += distance;
+            let rest = ray.share * (1.0 - scene.emissivity[q]);
+            let kept = if rest < faint { 0.0 } else { rest };
+            let absorbed = ray.share - kept;
             let near = direct.binary_search_by_key(&(q as u32), |one| one.0);
             match near {
-                Ok(k) if but.is_some() => direct[k].2 += 1,
+                Ok(k) if first => direct[k].2 += 1,
+                _ if q == from => seen.own += absorbed,
+                _ if travelled <= reach => seen.others.push((q as u32, absorbed)),
                 // What lies farther than the range is left out, and made up for by the balance.
-                _ if q == p => seen.own += share,
-                _ if travelled + distance <= reach => seen.others.push((q as u32, share)),
-                _ => {}
+                _ => return,
             }
-            return;
+            if kept == 0.0 {
+                return;
+            }
+            ray.share = kept;
+            ray.origin += distance * ray.way;
+            let normal = (ray.origin - scene.centres[q]) / scene.radii[q];
+            ray.way = lambert(normal, random);
+            (but, first) = (Some(q), false);
+            continue;
         }
         let Some((mirror, hit)) = wall else {
             if let Some(slot) = scene.beyond.and_then(|k| seen.reservoirs.get_mut(k)) {
-                *slot += share;
+                *slot += ray.share;
             }
             return;
         };
         if let Some((reservoir, emissivity)) = mirror.absorbs {
-            let rest = share * (1.0 - emissivity);
-            let kept = if rest < FAINT { 0.0 } else { rest };
-            seen.reservoirs[reservoir] += share - kept;
-            share = kept;
-            if share == 0.0 {
+            let rest = ray.share * (1.0 - emissivity);
+            let kept = if rest < faint { 0.0 } else { rest };
+            seen.reservoirs[reservoir] += ray.share - kept;
+            ray.share = kept;
+            if kept == 0.0 {
                 return;
             }
         }
         travelled += hit.distance;
-        origin += hit.distance * way;
-        way -= 2.0 * way.dot(&hit.normal) * hit.normal;
-        but = None;
+        ray.origin += hit.distance * ray.way;
+        ray.way -= 2.0 * ray.way.dot(&hit.normal) * hit.normal;
+        (but, first) = (None, false);
     }
+}
+
+/// A direction by the cosine law about a normal: the normal and a random unit vector.
+fn lambert(normal: Vec3, random: &mut SplitMix64) -> Vec3 {
+    let (z, turn) = (2.0 * random.unit() - 1.0, 2.0 * PI * random.unit());
+    let across = (1.0 - z * z).max(0.0).sqrt();
+    let sum = normal + Vec3::new(across * turn.cos(), across * turn.sin(), z);
+    sum.try_normalize(1e-9).unwrap_or(normal)
 }
 
 fn nearest_wall<'w>(scene: &Scene<'w>, origin: Vec3, way: Vec3) -> Option<(&'w Mirror, Hit)> {
@@ -270,7 +309,8 @@ fn collect(scene: &Scene<'_>, open: &Open, seen: &[Rays], made: &mut Views) {
             let (n, m) = back.map_or((0, 0), |k| (other[k].1, other[k].2));
             if first + m > 0 {
                 let left = f64::from(first + m) / f64::from(crossing + n);
-                let area = left * open.area(scene, p, q as usize);
+                let black = left * open.area(scene, p, q as usize);
+                let area = black * scene.emissivity[p] * scene.emissivity[q as usize];
                 pairs.push(([p as u32, q], area));
             }
         }
@@ -340,7 +380,7 @@ const STEPS: [f64; 4] = [
 
 impl Sequence {
     fn new(particle: usize) -> Self {
-        let mut random = crate::packing::random::SplitMix64(particle as u64);
+        let mut random = SplitMix64(particle as u64);
         Self {
             place: [0; 4].map(|_: u8| random.unit()),
         }

@@ -46,6 +46,7 @@ fn two_spheres_in_the_open_see_each_other_as_tabulated_and_the_rest_is_beyond() 
         let scene = Scene {
             radii: &[1.0; 2],
             centres: &centres,
+            emissivity: &[1.0; 1000],
             walls: &[],
             reservoirs: 0,
             beyond: Some(0),
@@ -68,6 +69,7 @@ fn a_sphere_between_two_others_hides_them_from_each_other() {
     let scene = Scene {
         radii: &[1.0; 3],
         centres: &centres,
+        emissivity: &[1.0; 1000],
         walls: &[],
         reservoirs: 0,
         beyond: Some(0),
@@ -94,6 +96,7 @@ fn a_sphere_over_a_floor_sees_the_half_of_it_and_the_half_of_the_sky() {
     let scene = Scene {
         radii: &[1.0],
         centres: &[Vec3::new(0.0, 0.0, 3.0)],
+        emissivity: &[1.0; 1000],
         walls: std::slice::from_ref(&floor),
         reservoirs: 1,
         beyond: Some(1),
@@ -117,6 +120,7 @@ fn a_mirror_shows_the_bed_again() {
     let scene = Scene {
         radii: &[1.0; 2],
         centres: &centres,
+        emissivity: &[1.0; 1000],
         walls: &walls,
         reservoirs: 1,
         beyond: None,
@@ -175,6 +179,7 @@ fn in_a_closed_bed_rows_sum_to_one_and_pairs_of_the_middle_see_what_the_fit_says
     let scene = Scene {
         radii: &radii,
         centres: &centres,
+        emissivity: &[1.0; 1000],
         walls: &walls,
         reservoirs: 6,
         beyond: None,
@@ -211,6 +216,7 @@ fn views_do_not_depend_on_the_number_of_threads() {
     let scene = Scene {
         radii: &radii,
         centres: &centres,
+        emissivity: &[1.0; 1000],
         walls: &walls,
         reservoirs: 6,
         beyond: None,
@@ -227,4 +233,27 @@ fn views_do_not_depend_on_the_number_of_threads() {
         pool.install(|| views(&scene, rays))
     };
     assert_eq!(on(1), on(3));
+}
+
+#[test]
+fn grey_spheres_exchange_what_is_left_after_reflections() {
+    // Two spheres in the open: e₁ e₂ F, and of second order what goes to and fro.
+    let centres = [Vec3::zeros(), Vec3::new(2.5, 0.0, 0.0)];
+    let grey = Scene {
+        radii: &[1.0; 2],
+        centres: &centres,
+        emissivity: &[0.5, 0.8],
+        walls: &[],
+        reservoirs: 0,
+        beyond: Some(0),
+    };
+    let made = views(&grey, RAYS);
+    let area = made.pairs[0].1 / (4.0 * PI);
+    assert!((area / (0.4 * 0.044_119) - 1.0).abs() < 0.02, "{area}");
+    // Each row sums to the emissivity.
+    assert!((made.surface[0] / (2.0 * PI) - 1.0).abs() < 1e-14);
+    assert!(rows(&made).iter().all(|row| (row - 1.0).abs() < 1e-12));
+    // Of what the second reflects, 0.5 · 0.2 F, less than a half comes back; the first absorbs a half of that.
+    let own = made.own[0] / (4.0 * PI);
+    assert!(own > 0.0 && own < 0.25 * 0.5 * 0.2 * 0.044_119, "{own}");
 }

@@ -31,9 +31,12 @@ pub struct Views {
     pub pairs: Vec<([usize; 2], f64)>,
     /// Particle and reservoir.
     pub reservoirs: Vec<([usize; 2], f64)>,
-    /// What each particle sees of itself, by way of mirrors, in m²; exchanges nothing.
+    /// What each particle sees of itself, by reflection, in m²; exchanges nothing.
     pub own: Vec<f64>,
-    /// Surface of each particle in m².
+    /// True where areas are those of black surfaces, and grey ones need a radiosity each; false where they
+    /// already are of what is emitted and absorbed.
+    pub radiosity: bool,
+    /// What the areas of each particle sum to in m²: its surface, or that times its emissivity.
     pub surface: Vec<f64>,
 }
 

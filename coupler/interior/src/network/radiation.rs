@@ -18,7 +18,7 @@ impl Radiation {
     pub fn new(views: &Views, emissivity: Vec<f64>) -> Self {
         Self {
             views: views.clone(),
-            grey: emissivity.iter().any(|e| *e < 1.0),
+            grey: views.radiosity && emissivity.iter().any(|e| *e < 1.0),
             emissivity,
         }
     }

@@ -102,6 +102,7 @@ fn enclosure(emissivity: [f64; 3]) -> Network {
         views: Some(&Views {
             pairs: vec![([0, 1], 1.0), ([0, 2], 1.0)],
             reservoirs: Vec::new(),
+            radiosity: true,
             own: vec![0.0; 3],
             surface: vec![2.0, 1.0, 1.0],
         }),
@@ -146,6 +147,7 @@ fn grey_surfaces_exchange_through_resistances_in_series() {
         views: Some(&Views {
             pairs: vec![([0, 1], 2.0)],
             reservoirs: Vec::new(),
+            radiosity: true,
             own: vec![0.0; 2],
             surface: vec![2.0, 5.0],
         }),
@@ -216,6 +218,7 @@ fn an_implicit_step_of_radiation_solves_its_own_equation() {
             views: Some(&Views {
                 pairs: Vec::new(),
                 reservoirs: vec![([0, 0], 1.0)],
+                radiosity: true,
                 own: vec![0.0; 1],
                 surface: vec![1.0],
             }),
