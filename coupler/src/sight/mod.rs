@@ -28,6 +28,7 @@ use std::f64::consts::PI;
 use calcine_interior::Views;
 use calcine_physics::Vec3;
 use calcine_physics::radiation::{SphereTable, sphere_to_sphere, visibility, wall_visibility};
+use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 use crate::contacts::pairs_around;
@@ -233,12 +234,13 @@ fn follow(
 ) {
     let (from, faint) = (ray.from, FAINT * ray.share);
     let (mut but, mut first) = (Some(from), true);
-    let mut travelled = 0.0;
+    // How far the ray has come, in a space in which mirrors are windows.
+    let (mut away, mut unfold) = (Vec3::zeros(), Matrix3::identity());
     for _ in 0..REFLECTIONS {
         let wall = nearest_wall(scene, ray.origin, ray.way);
         let until = wall.map_or(f64::INFINITY, |(_, hit)| hit.distance);
         if let Some((distance, q)) = grid.first(ray.origin, ray.way, until, but) {
-            travelled += distance;
+            away += distance * (unfold * ray.way);
             let rest = ray.share * (1.0 - scene.emissivity[q]);
             let kept = if rest < faint { 0.0 } else { rest };
             let absorbed = ray.share - kept;
@@ -246,7 +248,7 @@ fn follow(
             match near {
                 Ok(k) if first => direct[k].2 += 1,
                 _ if q == from => seen.own += absorbed,
-                _ if travelled <= reach => seen.others.push((q as u32, absorbed)),
+                _ if away.norm() <= reach => seen.others.push((q as u32, absorbed)),
                 // What lies farther than the range is left out, and made up for by the balance.
                 _ => return,
             }
@@ -275,7 +277,8 @@ fn follow(
                 return;
             }
         }
-        travelled += hit.distance;
+        away += hit.distance * (unfold * ray.way);
+        unfold -= 2.0 * (unfold * hit.normal) * hit.normal.transpose();
         ray.origin += hit.distance * ray.way;
         ray.way -= 2.0 * ray.way.dot(&hit.normal) * hit.normal;
         (but, first) = (None, false);
