@@ -73,7 +73,12 @@ pub fn case() -> Case {
         particles: vec![],
         laws: Laws {
             drag: DragLaw::ErgunWenYu,
-            conduction: ConductionLaw::None,
+            conduction: Conduction {
+                law: ConductionLaw::None,
+                area: Area::Overlap,
+                gap: Gap::None,
+            },
+            radiation: None,
             heat_transfer: HeatLaw::Gunn,
         },
         coupling: Coupling {
