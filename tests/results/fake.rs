@@ -37,6 +37,7 @@ pub fn case() -> Case {
         measure,
         unit,
         agree: Some(Band::Relative(0.01)),
+        agree_over: 0.0,
         expect,
     };
     Case {
@@ -65,6 +66,7 @@ pub fn case() -> Case {
         materials: vec![],
         contacts: vec![],
         walls: vec![],
+        wall_temperatures: vec![],
         motion: None,
         feeds: vec![],
         outlets: vec![],

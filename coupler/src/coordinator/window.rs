@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use calcine_interior::Beside;
 use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
+use rustix::time::{ClockId, clock_gettime};
 
 use super::{Mapped, Run, RunError};
 use crate::exchange::{Placement, Setting};
@@ -22,6 +23,20 @@ fn timed<T>(account: &mut Duration, stage: impl FnOnce() -> T) -> T {
     let begun = Instant::now();
     let value = stage();
     *account += begun.elapsed();
+    value
+}
+
+/// Processor time that all threads of this process have used.
+fn processor() -> Duration {
+    let time = clock_gettime(ClockId::ProcessCPUTime);
+    Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec as u32)
+}
+
+/// Adds what a stage takes to its accounts of wall time and of processor time.
+fn metered<T>(wall: &mut Duration, used: &mut Duration, stage: impl FnOnce() -> T) -> T {
+    let before = processor();
+    let value = timed(wall, stage);
+    *used += processor().saturating_sub(before);
     value
 }
 
@@ -170,15 +185,22 @@ impl Run<'_> {
         let span = window.span.process.seconds();
         let end = window.start.process.seconds() + span;
         let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
+        let begun = Instant::now();
+        let exchange = &mut work.exchange;
+        let gas = self.parts.gas.fields();
+        let setting = Setting {
+            operator: &mapped.operator,
+            particles: self.parts.particles.fields(),
+            coefficients: &work.coefficients,
+            acceleration,
+        };
+        exchange.begin(&setting, &gas);
+        timing.exchange += begun.elapsed();
         loop {
             if self.parts.interior.conducts() {
-                let seen = &mut work.seen.temperature;
-                mapped
-                    .operator
-                    .sample(self.parts.gas.fields().temperature, seen);
                 let beside = Beside {
                     conductance: &work.coefficients.conductance,
-                    temperature: seen,
+                    temperature: exchange.seen_temperature(),
                     gas_conductivity: &work.coefficients.gas_conductivity,
                     reservoirs: self.paths.reservoirs(end),
                 };
@@ -186,28 +208,20 @@ impl Run<'_> {
                     self.parts.interior.conduct(&beside, span);
                 });
             }
-            let setting = Setting {
-                operator: &mapped.operator,
-                particles: self.parts.particles.fields(),
-                temperature: self.parts.interior.start_temperature(),
-                coefficients: &work.coefficients,
-                acceleration,
-            };
             timed(&mut timing.exchange, || {
-                work.exchange.linearise(&setting, &self.parts.gas.fields());
+                exchange.linearise(&setting, self.parts.interior.start_temperature());
             });
-            self.convergence = timed(&mut timing.gas, || {
-                self.parts
-                    .gas
-                    .start(window, &mapped.bed, &work.exchange.cells)?;
+            let accounts = (&mut timing.gas, &mut timing.gas_processor);
+            self.convergence = metered(accounts.0, accounts.1, || {
+                self.parts.gas.start(window, &mapped.bed, &exchange.cells)?;
                 self.parts.gas.finish(supervisor, &mut work.received)
             })?;
             let misplaced = timed(&mut timing.exchange, || {
-                work.exchange
-                    .credit(&setting, &self.parts.gas.fields(), &work.received)
+                let start = self.parts.interior.start_temperature();
+                exchange.credit_heat(&setting, start, &self.parts.gas.fields(), &work.received)
             });
             timed(&mut timing.interior, || {
-                self.parts.interior.advance(&work.exchange.heat, span)
+                self.parts.interior.advance(&exchange.heat, span)
             });
             window.attempt += 1;
             let attempts = window.attempt - first_attempt;
@@ -227,6 +241,9 @@ impl Run<'_> {
                     misplaced,
                     settled,
                 };
+                timed(&mut timing.exchange, || {
+                    exchange.credit_drag(&setting, &self.parts.gas.fields(), &work.received);
+                });
                 return Ok(());
             }
         }
@@ -243,11 +260,13 @@ impl Run<'_> {
             &mut work.pressure_force,
             &mut work.push,
         );
-        self.parts.particles.start(window, &work.push)?;
-        self.parts
-            .particles
-            .finish(supervisor, &mut work.particle_received)?;
-        self.timing.particles += begun.elapsed();
+        let (particles, timing) = (&mut self.parts.particles, &mut self.timing);
+        timing.exchange += begun.elapsed();
+        let accounts = (&mut timing.particles, &mut timing.particles_processor);
+        metered(accounts.0, accounts.1, || {
+            particles.start(window, &work.push)?;
+            particles.finish(supervisor, &mut work.particle_received)
+        })?;
         Ok(())
     }
 

@@ -71,11 +71,15 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         populations: particles.as_deref(),
         probes: &probes,
         walls: &walls,
+        gravity: gas.as_ref().map(|(gas, _)| gas.gravity),
     };
     let quantities = quantities::quantities(root, &known);
     let (walls, wall_temperatures): (Vec<_>, Vec<_>) = walls.into_iter().unzip();
     if let (Some((gas, _)), Some((time, _))) = (&gas, &time) {
         coupling::check_stock(root, &openfoam, gas, time);
+    }
+    if let Some(particles) = &particles {
+        coupling::check_script(root, &liggghts, particles);
     }
     if let (Some((time, _)), Some(particles)) = (&time, &particles) {
         motion::fits(root, motion.as_ref(), time, particles);

@@ -1,9 +1,11 @@
 //! `[[quantities]]`.
 
 use calcine_coupler::motion::Wall;
+use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::Schedule;
 
 use super::patches;
+use super::walls::direction;
 use crate::case::model::{
     Band, Expect, GasPlace, Measure, MeshSpec, ParticlePlace, Place, Population, Probe, Quantity,
     SURROUNDINGS, Statistic, belongs,
@@ -39,6 +41,11 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
     });
     // Keys are read even where the measure could not be, so that they are not called unknown.
     let (agree, expected) = (table.has("agree"), table.table("expect"));
+    let over = table.positive("agree_over", Dimension::TIME);
+    if over.is_some() && !agree {
+        let help = "add agree = \"5 %\", or remove it";
+        table.fail("agree_over", "stands without `agree`", help);
+    }
     let Some((measure, field)) = measure else {
         table.finish();
         return None;
@@ -50,6 +57,7 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
         "void_fraction" => (Dimension::NONE, "1"),
         "height" => (Dimension::LENGTH, "m"),
         "wall_heat" => (Dimension::POWER, "W"),
+        "angle" => (Dimension::NONE, "rad"),
         _ => (Dimension::TEMPERATURE, "K"),
     };
     let agree = if agree {
@@ -77,6 +85,7 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
         measure,
         unit,
         agree,
+        agree_over: over.unwrap_or(0.0),
         expect,
     })
 }
@@ -112,6 +121,8 @@ pub(super) struct Known<'a> {
     pub probes: &'a [Probe],
     /// Walls, with the temperatures of those that have one.
     pub walls: &'a [(Wall, Option<Schedule>)],
+    /// Gravity in m/s²; none where the gas could not be read.
+    pub gravity: Option<Vec3>,
 }
 
 /// Fields whose difference between patches can be asked for.
@@ -133,7 +144,14 @@ const PARTICLES: [(&str, &str); 3] = [
 
 /// The measure and the field that it is of.
 fn measure(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
-    let kinds = ["difference", "gas", "particles", "particle", "wall_heat"];
+    let kinds = [
+        "difference",
+        "gas",
+        "particles",
+        "particle",
+        "wall_heat",
+        "surface_angle",
+    ];
     let given: Vec<&str> = kinds.into_iter().filter(|kind| reader.has(kind)).collect();
     match given[..] {
         ["difference"] => difference_of(reader, known),
@@ -141,9 +159,10 @@ fn measure(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static 
         ["particles"] => particles(reader, known),
         ["particle"] => particle(reader, known),
         ["wall_heat"] => wall_heat(reader, known),
+        ["surface_angle"] => surface_angle(reader, known),
         _ => {
             reader.fail_whole(
-                "needs exactly one of difference, gas, particles, particle and wall_heat",
+                "needs exactly one of difference, gas, particles, particle, wall_heat and surface_angle",
                 "for example { particles = \"temperature\", statistic = \"mean\" }",
             );
             None
@@ -279,6 +298,25 @@ fn wall_heat(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'stati
         reader.fail("wall_heat", rule, help);
     }
     Some((Measure::WallHeat { wall: name.into() }, "wall_heat"))
+}
+
+fn surface_angle(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
+    let table = reader.table("surface_angle")?;
+    let point = table.required_vector("point", Dimension::LENGTH);
+    let axis = direction(&table, "axis");
+    table.finish();
+    let (point, axis) = (Vec3::from(point?), axis?);
+    let down = known.gravity?.try_normalize(0.0);
+    if down.is_none_or(|down| down.cross(&axis).norm() < 1e-3) {
+        let help = "state `gas.gravity` across the axis; it says what is below";
+        reader.fail(
+            "surface_angle",
+            "has an axis that gravity does not cross",
+            help,
+        );
+    }
+    let down = down?;
+    Some((Measure::SurfaceAngle { point, axis, down }, "angle"))
 }
 
 /// The statistic; on a probe the mean, where none is named: it may be a single point.
