@@ -67,6 +67,7 @@ pub fn case() -> Case {
         materials: vec![],
         contacts: vec![],
         walls: vec![],
+        wall_temperatures: vec![],
         motion: None,
         feeds: vec![],
         outlets: vec![],
@@ -76,7 +77,12 @@ pub fn case() -> Case {
         laws: Laws {
             momentum: Default::default(),
             drag: DragLaw::ErgunWenYu,
-            conduction: ConductionLaw::None,
+            conduction: Conduction {
+                law: ConductionLaw::None,
+                area: Area::Overlap,
+                gap: Gap::None,
+            },
+            radiation: None,
             heat_transfer: HeatLaw::Gunn,
         },
         coupling: Coupling {
@@ -349,6 +355,8 @@ impl World {
             particle_heat: &self.heat,
             felt: Default::default(),
             placement: &SETTLED,
+            reservoirs: &[],
+            reservoir_heat: &[],
             ledger: &self.ledger,
             convergence: &self.convergence,
             timing: &self.timing,

@@ -3,12 +3,12 @@
 use std::f64::consts::PI;
 use std::time::{Duration, Instant};
 
+use calcine_interior::Beside;
 use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
 use rustix::time::{ClockId, clock_gettime};
 
 use super::{Mapped, Run, RunError};
-use crate::contacts::touching;
 use crate::exchange::{Placement, Setting};
 use crate::ledger::Ledger;
 use crate::mapping::{Mapper, Method};
@@ -135,12 +135,15 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Tells the interior which particles touch, where that matters.
+    /// Tells the interior what particles touch and see, where that matters.
     pub(super) fn find_contacts(&mut self) {
         if self.parts.interior.conducts() {
             let begun = Instant::now();
-            let touches = touching(&self.parts.particles.fields());
-            self.parts.interior.touch(&touches);
+            let time = self.clocks.process.seconds();
+            let interior = &mut self.parts.interior;
+            let particles = self.parts.particles.fields();
+            self.paths
+                .meet(&particles, time, |meeting| interior.meet(meeting));
             self.timing.interior += begun.elapsed();
         }
     }
@@ -180,6 +183,7 @@ impl Run<'_> {
         let first_attempt = window.attempt;
         let acceleration = window.acceleration();
         let span = window.span.process.seconds();
+        let end = window.start.process.seconds() + span;
         let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
         let begun = Instant::now();
         let exchange = &mut work.exchange;
@@ -194,10 +198,14 @@ impl Run<'_> {
         timing.exchange += begun.elapsed();
         loop {
             if self.parts.interior.conducts() {
+                let beside = Beside {
+                    conductance: &work.coefficients.conductance,
+                    temperature: exchange.seen_temperature(),
+                    gas_conductivity: &work.coefficients.gas_conductivity,
+                    reservoirs: self.paths.reservoirs(end),
+                };
                 timed(&mut timing.interior, || {
-                    let (conductance, seen) =
-                        (&work.coefficients.conductance, exchange.seen_temperature());
-                    self.parts.interior.conduct(conductance, seen, span);
+                    self.parts.interior.conduct(&beside, span);
                 });
             }
             timed(&mut timing.exchange, || {
@@ -268,6 +276,9 @@ impl Run<'_> {
         self.parts.gas.commit()?;
         self.parts.particles.commit()?;
         self.note_forces(window);
+        self.work.reservoir_heat.clear();
+        let heat = self.parts.interior.reservoir_heat();
+        self.work.reservoir_heat.extend_from_slice(heat);
         self.parts.interior.commit();
         self.clocks = window.end()?;
         self.windows += 1;
@@ -350,15 +361,19 @@ fn book_energy(
 ) {
     let gas = &received.energy;
     let (stored, stored_magnitude) = interior.stored_change();
+    let reservoirs = interior.reservoir_heat();
+    let walls: f64 = reservoirs.iter().sum::<f64>() * process;
+    let walls_magnitude: f64 = reservoirs.iter().map(|q| q.abs()).sum::<f64>() * process;
     let to_gas: f64 = received.heat.iter().sum::<f64>() * process;
     let to_particles: f64 = heat.iter().sum::<f64>() * process;
     let exchanged = process
         * (received.heat.iter().map(|q| q.abs()).sum::<f64>()
             + heat.iter().map(|q| q.abs()).sum::<f64>());
     ledger.energy.book(
-        scale * (gas.stored - gas.boundary - gas.source) + stored,
+        scale * (gas.stored - gas.boundary - gas.source) + stored - walls,
         scale * (gas.stored_magnitude + gas.boundary_magnitude + gas.source_magnitude)
             + stored_magnitude
+            + walls_magnitude
             + exchanged,
     );
     ledger

@@ -4,6 +4,7 @@ mod composition;
 mod coupling;
 mod gas;
 mod gas_patch;
+mod heat;
 mod laws;
 mod mesh;
 mod motion;
@@ -61,13 +62,19 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     let openfoam = coupling::external(root, "openfoam", folder);
     let liggghts = coupling::external(root, "liggghts", folder);
     if let (Some(laws), Some(particles)) = (&laws, &particles) {
-        particles::need_conductivities(root, laws, &materials, particles);
+        heat::need_properties(root, laws, &materials, particles, &walls);
     }
     let output = output::output(root);
     let probes = probes::probes(root);
-    let gravity = gas.as_ref().map(|(gas, _)| gas.gravity);
-    let quantities =
-        quantities::quantities(root, mesh.as_ref(), particles.as_deref(), &probes, gravity);
+    let known = quantities::Known {
+        mesh: mesh.as_ref(),
+        populations: particles.as_deref(),
+        probes: &probes,
+        walls: &walls,
+        gravity: gas.as_ref().map(|(gas, _)| gas.gravity),
+    };
+    let quantities = quantities::quantities(root, &known);
+    let (walls, wall_temperatures): (Vec<_>, Vec<_>) = walls.into_iter().unzip();
     if let (Some((gas, _)), Some((time, _))) = (&gas, &time) {
         coupling::check_stock(root, &openfoam, gas, time, laws.as_ref());
     }
@@ -104,6 +111,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         materials,
         contacts,
         walls,
+        wall_temperatures,
         motion,
         gas,
         gas_held,

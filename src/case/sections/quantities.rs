@@ -1,32 +1,22 @@
 //! `[[quantities]]`.
 
+use calcine_coupler::motion::Wall;
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::Schedule;
 
 use super::patches;
 use super::walls::direction;
 use crate::case::model::{
     Band, Expect, GasPlace, Measure, MeshSpec, ParticlePlace, Place, Population, Probe, Quantity,
-    Statistic,
+    SURROUNDINGS, Statistic, belongs,
 };
 use crate::case::table::Reader;
 use crate::case::units::{Dimension, difference};
 
-pub(super) fn quantities(
-    root: &Reader<'_>,
-    mesh: Option<&MeshSpec>,
-    populations: Option<&[Population]>,
-    probes: &[Probe],
-    gravity: Option<Vec3>,
-) -> Vec<Quantity> {
-    let known = Known {
-        mesh,
-        populations,
-        probes,
-        gravity,
-    };
+pub(super) fn quantities(root: &Reader<'_>, known: &Known<'_>) -> Vec<Quantity> {
     let mut made: Vec<Quantity> = Vec::new();
     for table in &root.tables("quantities") {
-        let Some(quantity) = quantity(table, &known) else {
+        let Some(quantity) = quantity(table, known) else {
             continue;
         };
         if made.iter().any(|other| other.name == quantity.name) {
@@ -71,6 +61,7 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
         "speed" => (Dimension::VELOCITY, "m/s"),
         "void_fraction" => (Dimension::NONE, "1"),
         "height" => (Dimension::LENGTH, "m"),
+        "wall_heat" => (Dimension::POWER, "W"),
         "angle" => (Dimension::NONE, "rad"),
         _ => (Dimension::TEMPERATURE, "K"),
     };
@@ -127,12 +118,17 @@ fn band(table: &Reader<'_>, key: &str, dimension: Dimension) -> Option<Band> {
 }
 
 /// What a measure may name.
-struct Known<'a> {
-    mesh: Option<&'a MeshSpec>,
-    populations: Option<&'a [Population]>,
-    probes: &'a [Probe],
-    /// In m/s²; none where the gas could not be read.
-    gravity: Option<Vec3>,
+pub(super) struct Known<'a> {
+    /// The mesh, for its patches.
+    pub mesh: Option<&'a MeshSpec>,
+    /// Populations.
+    pub populations: Option<&'a [Population]>,
+    /// Probes.
+    pub probes: &'a [Probe],
+    /// Walls, with the temperatures of those that have one.
+    pub walls: &'a [(Wall, Option<Schedule>)],
+    /// Gravity in m/s²; none where the gas could not be read.
+    pub gravity: Option<Vec3>,
 }
 
 /// Fields whose difference between patches can be asked for.
@@ -159,6 +155,7 @@ fn measure(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static 
         "gas",
         "particles",
         "particle",
+        "wall_heat",
         "surface_angle",
     ];
     let given: Vec<&str> = kinds.into_iter().filter(|kind| reader.has(kind)).collect();
@@ -167,10 +164,11 @@ fn measure(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static 
         ["gas"] => gas(reader, known),
         ["particles"] => particles(reader, known),
         ["particle"] => particle(reader, known),
+        ["wall_heat"] => wall_heat(reader, known),
         ["surface_angle"] => surface_angle(reader, known),
         _ => {
             reader.fail_whole(
-                "needs exactly one of difference, gas, particles, particle and surface_angle",
+                "needs exactly one of difference, gas, particles, particle, wall_heat and surface_angle",
                 "for example { particles = \"temperature\", statistic = \"mean\" }",
             );
             None
@@ -290,6 +288,22 @@ fn particle(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static
         },
         field,
     ))
+}
+
+/// Heat from a wall of a temperature, or from all parts of one of several shapes.
+fn wall_heat(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
+    let name = reader.text("wall_heat")?;
+    let warm = known.walls.iter().filter(|(_, kelvin)| kelvin.is_some());
+    let names: Vec<&str> = warm.map(|(wall, _)| wall.name.as_str()).collect();
+    if name != SURROUNDINGS && !names.iter().any(|own| belongs(own, name)) {
+        let help = match names[..] {
+            [] => "give a wall of [[walls]] a temperature".into(),
+            _ => format!("walls of a temperature are {}", names.join(", ")),
+        };
+        let rule = format!("is \"{name}\", which is no wall of a temperature");
+        reader.fail("wall_heat", rule, help);
+    }
+    Some((Measure::WallHeat { wall: name.into() }, "wall_heat"))
 }
 
 fn surface_angle(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
