@@ -11,7 +11,9 @@ pub mod local;
 pub mod mass_transfer;
 pub mod numbers;
 pub mod pressure_drop;
+pub mod reaction;
 pub mod solid;
+pub mod solids;
 pub mod thermo;
 
 /// A vector in space.
