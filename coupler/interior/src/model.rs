@@ -1,6 +1,7 @@
 //! The trait behind which particles are thermally thin or resolved along the radius.
 
 use crate::network::Touch;
+use crate::reacting::Reacting;
 
 /// A particle that comes in.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +23,16 @@ pub trait ParticleModel: Send {
 
     /// Surface temperature of each particle in K at the last commit.
     fn committed_temperature(&self) -> &[f64];
+
+    /// The particles as ones that react; `None` where none does.
+    fn reacting(&mut self) -> Option<&mut Reacting> {
+        None
+    }
+
+    /// The same to look at.
+    fn reactions(&self) -> Option<&Reacting> {
+        None
+    }
 
     /// True where particles conduct heat to each other, so that `touch` and `conduct` matter.
     fn conducts(&self) -> bool;
