@@ -12,13 +12,16 @@ use calcine_coupler::closures::Closures;
 use calcine_coupler::coordinator::{CheckpointPaths, Origin, Parts, Plan, Run, RunError};
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::held::HeldGas;
-use calcine_coupler::interior::{Network, Thin};
+use calcine_coupler::interior::reacting::{Chemistry, LayersError, Rate};
+use calcine_coupler::interior::{Network, ParticleModel, Reacting, Thin};
 use calcine_coupler::mapping::{Mapper, Method};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::motion::Motion;
 use calcine_coupler::part::{Gas, ParticleFields, Particles};
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::gas_model::GasModel;
+use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::smoother::{Settings as Smoothing, Smoother};
 use calcine_coupler::supervisor::Supervisor;
@@ -140,6 +143,9 @@ pub enum AssemblyError {
     /// The particles cannot be placed.
     #[error("particles: {0}")]
     Particles(#[from] PlaceError),
+    /// Reactions that make no shrinking core.
+    #[error("reactions: {0}")]
+    Layers(#[from] LayersError),
     /// A native solver refuses the case or a checkpoint.
     #[error(transparent)]
     Native(#[from] NativeError),
@@ -275,7 +281,7 @@ pub fn assemble<'m>(
     };
     let gas = assembly.gas(supervisor)?;
     let particles = assembly.particles(supervisor)?;
-    let interior = Box::new(interior(case, prepared, &particles.fields()));
+    let interior = interior(case, prepared, &particles.fields())?;
     let parts = Parts {
         gas,
         particles,
@@ -557,12 +563,17 @@ fn closures(case: &Case) -> Closures {
         gas: case.gas.properties.clone(),
         drag: laws::drag(case.laws.drag),
         heat_transfer: laws::heat_transfer(case.laws.heat_transfer),
+        mass_transfer: laws::heat_transfer(case.laws.mass_transfer),
     }
 }
 
 /// The interior of the particles that the run starts with; those of a checkpoint may be others than
 /// those of the case, and get their temperatures from it.
-fn interior(case: &Case, prepared: &Prepared, particles: &ParticleFields<'_>) -> Thin {
+fn interior(
+    case: &Case,
+    prepared: &Prepared,
+    particles: &ParticleFields<'_>,
+) -> Result<Box<dyn ParticleModel>, AssemblyError> {
     let all = 0..particles.id.len();
     let start = prepared.temperature.iter().copied();
     let density = |p: usize| {
@@ -575,17 +586,76 @@ fn interior(case: &Case, prepared: &Prepared, particles: &ParticleFields<'_>) ->
         let conductivity = |p: usize| case.materials[material(p)].conductivity.unwrap_or(0.0);
         Network::new(law, all.clone().map(conductivity).collect())
     });
-    Thin::new(
-        all.clone().map(|p| density(p) * volume(p)).collect(),
-        all.clone().map(material).collect(),
-        case.materials
-            .iter()
-            .map(|m| m.heat_capacity.clone())
-            .collect(),
-        start
-            .chain(std::iter::repeat(case.gas.temperature))
-            .take(all.len())
-            .collect(),
+    let masses: Vec<f64> = all.clone().map(|p| density(p) * volume(p)).collect();
+    let materials: Vec<usize> = all.clone().map(material).collect();
+    let temperature = start
+        .chain(std::iter::repeat(case.gas.temperature))
+        .take(all.len())
+        .collect();
+    if case.chemistry.reactions.is_empty() {
+        let laws = case.materials.iter().map(|m| m.heat_capacity.clone());
+        let made = Thin::new(masses, materials, laws.collect(), temperature, network);
+        return Ok(Box::new(made));
+    }
+    let (chemistry, compositions) = chemistry(case)?;
+    Ok(Box::new(Reacting::new(
+        chemistry,
+        &compositions,
+        &masses,
+        materials,
+        temperature,
         network,
-    )
+    )))
+}
+
+/// The reactions of a case, and what each material is made of: its solids, or one that does not react.
+pub fn chemistry(case: &Case) -> Result<(Chemistry, Vec<Vec<f64>>), AssemblyError> {
+    let mut solids = case.chemistry.solids.clone();
+    let mut compositions = Vec::new();
+    for material in &case.materials {
+        compositions.push(match &material.composition {
+            Some(fractions) => fractions.clone(),
+            None => {
+                let law = material.heat_capacity.clone();
+                solids.push(SolidSpecies::inert(&material.name, law));
+                let mut own = vec![0.0; solids.len()];
+                own[solids.len() - 1] = 1.0;
+                own
+            }
+        });
+    }
+    // Solids that no material holds and no reaction makes are left out.
+    let reactions = &case.chemistry.reactions;
+    let used: Vec<bool> = (0..solids.len())
+        .map(|s| {
+            let held = |own: &Vec<f64>| own.get(s).is_some_and(|y| *y > 0.0);
+            let turned = reactions.iter().flat_map(|one| &one.solids);
+            compositions.iter().any(held) || turned.into_iter().any(|part| part.0 == s)
+        })
+        .collect();
+    let place = |s: usize| used[..s].iter().filter(|used| **used).count();
+    let compositions = compositions.iter().map(|own| {
+        let kept = (0..solids.len()).filter(|s| used[*s]);
+        kept.map(|s| own.get(s).copied().unwrap_or(0.0)).collect()
+    });
+    let compositions = compositions.collect();
+    let mut reactions = reactions.clone();
+    for reaction in &mut reactions {
+        for part in &mut reaction.solids {
+            part.0 = place(part.0);
+        }
+        if let Rate::Power(law) = &mut reaction.rate {
+            law.solids.retain(|part| used[part.0]);
+            for part in &mut law.solids {
+                part.0 = place(part.0);
+            }
+        }
+    }
+    let kept = solids.into_iter().zip(&used).filter(|(_, used)| **used);
+    let solids = kept.map(|(solid, _)| solid).collect();
+    let gas = match &case.gas.properties {
+        GasModel::Mixture(mixture) => Some(mixture.clone()),
+        GasModel::Perfect(_) | GasModel::Constant(_) => None,
+    };
+    Ok((Chemistry::new(solids, gas, reactions)?, compositions))
 }

@@ -143,14 +143,17 @@ impl Exchange {
     /// Gives each particle what the gas reports, and returns how far the attempt is from the
     /// exact coupling of the cells that a particle spans: the misplaced heat, as a share of all
     /// heat that was exchanged.
+    ///
+    /// Of the heat that the gas received, `carried` in W came with gas that particles set free and take.
     pub fn credit(
         &mut self,
         setting: &Setting<'_>,
         gas: &GasFields<'_>,
         received: &CellReceived,
+        carried: &[f64],
     ) -> f64 {
         self.credit_drag(setting, gas, received);
-        self.credit_heat(setting, gas, received)
+        self.credit_heat(setting, gas, received, carried)
     }
 
     fn credit_heat(
@@ -158,6 +161,7 @@ impl Exchange {
         setting: &Setting<'_>,
         gas: &GasFields<'_>,
         received: &CellReceived,
+        carried: &[f64],
     ) -> f64 {
         let Setting {
             operator,
@@ -169,8 +173,9 @@ impl Exchange {
         // δ_c/H_c, what the gas reports beyond R_c
         for c in 0..operator.cells() {
             let coefficient = exchange.heat_coefficient[c];
-            let beyond =
-                received.heat[c] - (exchange.heat_source[c] - coefficient * gas.temperature[c]);
+            let apart = carried.get(c).copied().unwrap_or(0.0);
+            let own = exchange.heat_source[c] - coefficient * gas.temperature[c];
+            let beyond = received.heat[c] - apart - own;
             self.cell_scalar[c] = if coefficient > 0.0 {
                 beyond / coefficient
             } else {

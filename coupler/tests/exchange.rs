@@ -175,7 +175,7 @@ fn attempts(
         };
         exchange.linearise(&setting, &gas.fields());
         gas.attempt(&exchange, span, beyond, &mut received);
-        let share = exchange.credit(&setting, &gas.fields(), &received);
+        let share = exchange.credit(&setting, &gas.fields(), &received, &[]);
         thin.advance(&exchange.heat, span);
         shares.push(share);
     }

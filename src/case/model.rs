@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use calcine_adapters::openfoam::stock::Solver;
+use calcine_coupler::interior::reacting::Reaction;
 use calcine_coupler::mesh::grading::Stretch;
 use calcine_coupler::mesh::refine::Refinement;
 use calcine_coupler::mesh::zone::Zone;
@@ -12,6 +13,7 @@ use calcine_coupler::packing::Sizes;
 use calcine_coupler::packing::regular::Lattice;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::solid::HeatCapacity;
+use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::setup::GasSetup;
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
 use calcine_coupler::traffic::Outlet;
@@ -35,6 +37,8 @@ pub struct Case {
     pub mesh: MeshSpec,
     /// Materials, in the order of the file.
     pub materials: Vec<Material>,
+    /// Solids that materials are made of, and what reacts.
+    pub chemistry: ReactionSpec,
     /// Contact properties of pairs of materials.
     pub contacts: Vec<Contact>,
     /// Walls that particles touch.
@@ -125,6 +129,22 @@ pub enum MeshSpec {
     PolyMesh(PathBuf),
 }
 
+/// Solids and reactions of particles.
+#[derive(Clone, Debug, Default)]
+pub struct ReactionSpec {
+    /// Solids.
+    pub solids: Vec<SolidSpecies>,
+    /// Reactions.
+    pub reactions: Vec<Reaction>,
+}
+
+impl ReactionSpec {
+    /// True where some reaction exchanges gas.
+    pub fn exchanges(&self) -> bool {
+        self.reactions.iter().any(|one| !one.gases.is_empty())
+    }
+}
+
 /// A solid material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
@@ -132,8 +152,10 @@ pub struct Material {
     pub name: String,
     /// Density in kg/m³.
     pub density: f64,
-    /// Specific heat capacity over temperature.
+    /// Specific heat capacity over temperature; of a material with a composition that of its solids.
     pub heat_capacity: HeatCapacity,
+    /// Mass fractions of the case's solids; `None` where it is not said what it is made of.
+    pub composition: Option<Vec<f64>>,
     /// Thermal conductivity in W/m/K.
     pub conductivity: Option<f64>,
     /// Young's modulus in Pa.
@@ -278,6 +300,8 @@ pub struct Laws {
     pub heat_transfer: HeatLaw,
     /// Heat conduction between particles.
     pub conduction: ConductionLaw,
+    /// Mass transfer between gas and particles that react.
+    pub mass_transfer: HeatLaw,
 }
 
 /// Conduction laws.

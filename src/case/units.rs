@@ -45,6 +45,9 @@ dimensions! {
     HEAT_TRANSFER = [0, 1, -3, -1, 0], "a heat transfer coefficient", "10 W/m^2/K";
     ANGULAR_VELOCITY = [0, 0, -1, 0, 0], "an angular velocity", "3 rad/s";
     MOLAR_MASS = [0, 1, 0, 0, -1], "a molar mass", "28.96 g/mol";
+    MOLAR_ENERGY = [2, 1, -2, 0, -1], "a molar energy", "70 kJ/mol";
+    MOLAR_ENTROPY = [2, 1, -2, -1, -1], "a molar entropy", "57.6 J/mol/K";
+    DIFFUSIVITY = [2, 0, -1, 0, 0], "a diffusivity", "1e-5 m^2/s";
 }
 
 impl fmt::Display for Dimension {

@@ -268,6 +268,18 @@ Foam::scalarField Foam::calcine::gas::outflow() const
 }
 
 
+Foam::scalarField Foam::calcine::gas::massSource() const
+{
+    scalarField sum(mesh_.nCells(), Zero);
+    forAll(given_.speciesSource, k)
+    {
+        const scalarField& Y = species_->Y()[k].primitiveField();
+        sum += given_.speciesSource[k] - given_.speciesCoefficient[k]*Y;
+    }
+    return sum;
+}
+
+
 Foam::scalarField Foam::calcine::gas::density() const
 {
     return thermo_->rho()().primitiveField();
@@ -289,7 +301,8 @@ void Foam::calcine::gas::updateBasePressure()
     {
         return;
     }
-    const scalar held = gSum(committed_.mass) - window_.storageSpan*boundaryOutflow();
+    const scalar held = gSum(committed_.mass)
+      + window_.storageSpan*(gSum(massSource()) - boundaryOutflow());
     modelPressure_ == dimensionedScalar("p", dimPressure, held/atOnePascal);
     thermo_->correct();
 }
@@ -308,8 +321,8 @@ Foam::scalar Foam::calcine::gas::boundaryOutflow() const
 
 Foam::scalarField Foam::calcine::gas::wantedOutflow(const scalarField& density) const
 {
-    return
-        (committed_.mass - given_.voidFraction*density*mesh_.cellVolumes())/window_.storageSpan;
+    return massSource()
+      + (committed_.mass - given_.voidFraction*density*mesh_.cellVolumes())/window_.storageSpan;
 }
 
 
@@ -395,7 +408,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
         {
             correctPressure(rho, result);
         }
-        mass_ = committed_.mass - window_.storageSpan*outflow();
+        mass_ = committed_.mass - window_.storageSpan*(outflow() - massSource());
         setFlux();
         result.residual = max(result.residual, solveSpecies(result));
         result.residual = max(result.residual, solveEnthalpy(result));

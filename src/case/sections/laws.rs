@@ -27,6 +27,10 @@ pub(super) fn read(root: &Reader<'_>) -> Option<Laws> {
         ("none", HeatLaw::None),
     ];
     let heat_transfer = law(&section, "heat_transfer", &heats);
+    let mass_transfer = match section.has("mass_transfer") {
+        true => law(&section, "mass_transfer", &heats),
+        false => Some(HeatLaw::None),
+    };
     let conductions = [
         ("batchelor-obrien", ConductionLaw::BatchelorObrien),
         ("lens", ConductionLaw::Lens),
@@ -41,6 +45,7 @@ pub(super) fn read(root: &Reader<'_>) -> Option<Laws> {
         drag: drag?,
         heat_transfer: heat_transfer?,
         conduction: conduction?,
+        mass_transfer: mass_transfer?,
     })
 }
 

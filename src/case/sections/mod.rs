@@ -12,7 +12,9 @@ mod particles;
 mod place;
 mod probes;
 mod quantities;
+mod reactions;
 mod sizes;
+mod solids;
 mod time;
 mod traffic;
 mod walls;
@@ -20,7 +22,7 @@ mod zone;
 
 use std::path::{Path, PathBuf};
 
-use super::model::{Case, MeshSpec};
+use super::model::{Case, MeshSpec, ReactionSpec};
 use super::table::Reader;
 
 /// Version of the format that this reader knows.
@@ -44,7 +46,8 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     let folder = path.parent().unwrap_or(Path::new("."));
     let time = time::read(root);
     let mesh = mesh::read(root, folder);
-    let materials = particles::materials(root);
+    let solids = solids::solids(root);
+    let materials = particles::materials(root, &solids);
     let contacts = particles::contacts(root, &materials);
     let gas = gas::read(
         root,
@@ -62,6 +65,11 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     let liggghts = coupling::external(root, "liggghts", folder);
     if let (Some(laws), Some(particles)) = (&laws, &particles) {
         particles::need_conductivities(root, laws, &materials, particles);
+    }
+    let reactions = reactions::reactions(root, &solids, gas.as_ref().map(|(gas, _)| gas));
+    let chemistry = ReactionSpec { solids, reactions };
+    if let (Some(laws), Some(particles)) = (&laws, &particles) {
+        reactions::fits(root, &chemistry, laws, particles, openfoam.solver);
     }
     let output = output::output(root);
     let probes = probes::probes(root);
@@ -95,6 +103,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         time,
         mesh: mesh?,
         materials,
+        chemistry,
         contacts,
         walls,
         motion,
