@@ -12,7 +12,7 @@ use calcine_coupler::closures::Closures;
 use calcine_coupler::coordinator::{CheckpointPaths, Origin, Parts, Plan, Run, RunError};
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::held::HeldGas;
-use calcine_coupler::interior::reacting::{Chemistry, LayersError, Rate};
+use calcine_coupler::interior::reacting::{Chemistry, LayersError};
 use calcine_coupler::interior::{Network, ParticleModel, Reacting, Thin};
 use calcine_coupler::mapping::{Mapper, Method};
 use calcine_coupler::mesh::Mesh;
@@ -21,7 +21,6 @@ use calcine_coupler::motion::Motion;
 use calcine_coupler::part::{Gas, ParticleFields, Particles};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas_model::GasModel;
-use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::smoother::{Settings as Smoothing, Smoother};
 use calcine_coupler::supervisor::Supervisor;
@@ -31,7 +30,7 @@ use calcine_native::particles::NativeParticles;
 use clap::ValueEnum;
 use thiserror::Error;
 
-use crate::case::model::{Case, Mapping};
+use crate::case::model::{Case, Mapping, ReactionSpec};
 use crate::case::sizes::{self, TooLarge};
 use crate::case::{MeshingError, PlaceError, Placed, contacts, mesh, particles};
 use crate::laws;
@@ -597,10 +596,9 @@ fn interior(
         let made = Thin::new(masses, materials, laws.collect(), temperature, network);
         return Ok(Box::new(made));
     }
-    let (chemistry, compositions) = chemistry(case)?;
     Ok(Box::new(Reacting::new(
-        chemistry,
-        &compositions,
+        chemistry(case)?,
+        &case.chemistry.compositions,
         &masses,
         materials,
         temperature,
@@ -608,54 +606,14 @@ fn interior(
     )))
 }
 
-/// The reactions of a case, and what each material is made of: its solids, or one that does not react.
-pub fn chemistry(case: &Case) -> Result<(Chemistry, Vec<Vec<f64>>), AssemblyError> {
-    let mut solids = case.chemistry.solids.clone();
-    let mut compositions = Vec::new();
-    for material in &case.materials {
-        compositions.push(match &material.composition {
-            Some(fractions) => fractions.clone(),
-            None => {
-                let law = material.heat_capacity.clone();
-                solids.push(SolidSpecies::inert(&material.name, law));
-                let mut own = vec![0.0; solids.len()];
-                own[solids.len() - 1] = 1.0;
-                own
-            }
-        });
-    }
-    // Solids that no material holds and no reaction makes are left out.
-    let reactions = &case.chemistry.reactions;
-    let used: Vec<bool> = (0..solids.len())
-        .map(|s| {
-            let held = |own: &Vec<f64>| own.get(s).is_some_and(|y| *y > 0.0);
-            let turned = reactions.iter().flat_map(|one| &one.solids);
-            compositions.iter().any(held) || turned.into_iter().any(|part| part.0 == s)
-        })
-        .collect();
-    let place = |s: usize| used[..s].iter().filter(|used| **used).count();
-    let compositions = compositions.iter().map(|own| {
-        let kept = (0..solids.len()).filter(|s| used[*s]);
-        kept.map(|s| own.get(s).copied().unwrap_or(0.0)).collect()
-    });
-    let compositions = compositions.collect();
-    let mut reactions = reactions.clone();
-    for reaction in &mut reactions {
-        for part in &mut reaction.solids {
-            part.0 = place(part.0);
-        }
-        if let Rate::Power(law) = &mut reaction.rate {
-            law.solids.retain(|part| used[part.0]);
-            for part in &mut law.solids {
-                part.0 = place(part.0);
-            }
-        }
-    }
-    let kept = solids.into_iter().zip(&used).filter(|(_, used)| **used);
-    let solids = kept.map(|(solid, _)| solid).collect();
+/// The reactions of a case.
+pub fn chemistry(case: &Case) -> Result<Chemistry, AssemblyError> {
     let gas = match &case.gas.properties {
         GasModel::Mixture(mixture) => Some(mixture.clone()),
         GasModel::Perfect(_) | GasModel::Constant(_) => None,
     };
-    Ok((Chemistry::new(solids, gas, reactions)?, compositions))
+    let ReactionSpec {
+        solids, reactions, ..
+    } = case.chemistry.clone();
+    Ok(Chemistry::new(solids, gas, reactions)?)
 }

@@ -129,13 +129,15 @@ pub enum MeshSpec {
     PolyMesh(PathBuf),
 }
 
-/// Solids and reactions of particles.
+/// Solids and reactions of particles; empty where nothing reacts.
 #[derive(Clone, Debug, Default)]
 pub struct ReactionSpec {
     /// Solids.
     pub solids: Vec<SolidSpecies>,
     /// Reactions.
     pub reactions: Vec<Reaction>,
+    /// Mass fractions of the solids in each material.
+    pub compositions: Vec<Vec<f64>>,
 }
 
 impl ReactionSpec {
@@ -154,7 +156,7 @@ pub struct Material {
     pub density: f64,
     /// Specific heat capacity over temperature; of a material with a composition that of its solids.
     pub heat_capacity: HeatCapacity,
-    /// Mass fractions of the case's solids; `None` where it is not said what it is made of.
+    /// Mass fractions of all solids that there are; `None` where it is not said what it is made of.
     pub composition: Option<Vec<f64>>,
     /// Thermal conductivity in W/m/K.
     pub conductivity: Option<f64>,
@@ -407,7 +409,7 @@ pub struct Output {
     pub series_every: Option<Ticks>,
     /// Gas fields of the snapshots: temperature, velocity, pressure, density, void_fraction.
     pub gas: Vec<String>,
-    /// Particle fields of the snapshots: temperature, velocity, heat.
+    /// Particle fields of the snapshots: temperature, velocity, heat, mass, solids.
     pub particles: Vec<String>,
 }
 
@@ -431,6 +433,8 @@ pub struct Quantity {
     pub name: String,
     /// How it is measured.
     pub measure: Measure,
+    /// Which species of the gas, or solid, where the measure is of a mass fraction.
+    pub column: Option<usize>,
     /// Unit as printed.
     pub unit: &'static str,
     /// Largest difference between pairings.

@@ -33,6 +33,7 @@ const SETTLED: Placement = Placement {
 /// A case of 20 s at AF 50 in windows of 10 ms, with rows each 0.7 s and snapshots each 5 s.
 pub fn case() -> Case {
     let quantity = |name: &str, unit, measure, expect| Quantity {
+        column: None,
         name: name.into(),
         measure,
         unit,
@@ -343,6 +344,8 @@ impl World {
             },
             particle_temperature: &self.temperature,
             particle_heat: &self.heat,
+            particle_mass: &self.mass,
+            solid_fractions: &[],
             placement: &SETTLED,
             ledger: &self.ledger,
             convergence: &self.convergence,

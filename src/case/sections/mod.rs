@@ -4,6 +4,7 @@ mod composition;
 mod coupling;
 mod gas;
 mod gas_patch;
+mod inventory;
 mod laws;
 mod mesh;
 mod motion;
@@ -22,7 +23,7 @@ mod zone;
 
 use std::path::{Path, PathBuf};
 
-use super::model::{Case, MeshSpec, ReactionSpec};
+use super::model::{Case, MeshSpec};
 use super::table::Reader;
 
 /// Version of the format that this reader knows.
@@ -67,13 +68,23 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         particles::need_conductivities(root, laws, &materials, particles);
     }
     let reactions = reactions::reactions(root, &solids, gas.as_ref().map(|(gas, _)| gas));
-    let chemistry = ReactionSpec { solids, reactions };
+    let chemistry = inventory::inventory(solids, reactions, &materials);
     if let (Some(laws), Some(particles)) = (&laws, &particles) {
         reactions::fits(root, &chemistry, laws, particles, openfoam.solver);
     }
     let output = output::output(root);
     let probes = probes::probes(root);
-    let quantities = quantities::quantities(root, mesh.as_ref(), particles.as_deref(), &probes);
+    let quantities = {
+        let species = gas.as_ref().map(|(gas, _)| gas.properties.species());
+        let known = quantities::Known {
+            mesh: mesh.as_ref(),
+            populations: particles.as_deref(),
+            probes: &probes,
+            species: species.unwrap_or_default(),
+            solids: &chemistry.solids,
+        };
+        quantities::quantities(root, &known)
+    };
     if let (Some((gas, _)), Some((time, _))) = (&gas, &time) {
         coupling::check_stock(root, &openfoam, gas, time);
     }

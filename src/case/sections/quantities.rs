@@ -5,23 +5,15 @@ use crate::case::model::{
     Band, Expect, GasPlace, Measure, MeshSpec, ParticlePlace, Place, Population, Probe, Quantity,
     Statistic,
 };
+use calcine_coupler::physics::solids::SolidSpecies;
+
 use crate::case::table::Reader;
 use crate::case::units::{Dimension, difference};
 
-pub(super) fn quantities(
-    root: &Reader<'_>,
-    mesh: Option<&MeshSpec>,
-    populations: Option<&[Population]>,
-    probes: &[Probe],
-) -> Vec<Quantity> {
-    let known = Known {
-        mesh,
-        populations,
-        probes,
-    };
+pub(super) fn quantities(root: &Reader<'_>, known: &Known<'_>) -> Vec<Quantity> {
     let mut made: Vec<Quantity> = Vec::new();
     for table in &root.tables("quantities") {
-        let Some(quantity) = quantity(table, &known) else {
+        let Some(quantity) = quantity(table, known) else {
             continue;
         };
         if made.iter().any(|other| other.name == quantity.name) {
@@ -41,12 +33,16 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
     let example = "measure = { difference = \"pressure\", patches = [\"bottom\", \"top\"] }";
     let measure = table.required_table("measure", example).and_then(|reader| {
         let measure = measure(&reader, known);
+        let of = reader.text("of");
+        let column = measure
+            .as_ref()
+            .and_then(|(measure, field)| column(&reader, measure, field, of, known));
         reader.finish();
-        measure
+        measure.map(|measure| (measure, column))
     });
     // Keys are read even where the measure could not be, so that they are not called unknown.
     let (agree, expected) = (table.has("agree"), table.table("expect"));
-    let Some((measure, field)) = measure else {
+    let Some(((measure, field), column)) = measure else {
         table.finish();
         return None;
     };
@@ -56,6 +52,8 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
         "speed" => (Dimension::VELOCITY, "m/s"),
         "void_fraction" => (Dimension::NONE, "1"),
         "height" => (Dimension::LENGTH, "m"),
+        "mass" => (Dimension::MASS, "kg"),
+        "mass_fraction" => (Dimension::NONE, "1"),
         _ => (Dimension::TEMPERATURE, "K"),
     };
     let agree = if agree {
@@ -81,6 +79,7 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
     Some(Quantity {
         name: name?.into(),
         measure,
+        column,
         unit,
         agree,
         expect,
@@ -109,27 +108,68 @@ fn band(table: &Reader<'_>, key: &str, dimension: Dimension) -> Option<Band> {
 }
 
 /// What a measure may name.
-struct Known<'a> {
-    mesh: Option<&'a MeshSpec>,
-    populations: Option<&'a [Population]>,
-    probes: &'a [Probe],
+pub(super) struct Known<'a> {
+    pub mesh: Option<&'a MeshSpec>,
+    pub populations: Option<&'a [Population]>,
+    pub probes: &'a [Probe],
+    pub species: &'a [String],
+    pub solids: &'a [SolidSpecies],
+}
+
+/// The species or solid whose mass fraction is measured.
+fn column(
+    reader: &Reader<'_>,
+    measure: &Measure,
+    field: &str,
+    of: Option<&str>,
+    known: &Known<'_>,
+) -> Option<usize> {
+    if field != "mass_fraction" {
+        if of.is_some() {
+            let help = "remove it: only a mass_fraction is of a species";
+            reader.fail("of", "does not go with this measure", help);
+        }
+        return None;
+    }
+    let Some(name) = of else {
+        reader.missing("of", "\"CO2\"");
+        return None;
+    };
+    let solids: Vec<&str> = known.solids.iter().map(SolidSpecies::name).collect();
+    let gases: Vec<&str> = known.species.iter().map(String::as_str).collect();
+    let names = match measure {
+        Measure::Gas { .. } => gases,
+        _ => solids,
+    };
+    let found = names.iter().position(|other| *other == name);
+    if found.is_none() {
+        let help = match names[..] {
+            [] => "there are none here".into(),
+            _ => format!("there are {}", names.join(", ")),
+        };
+        reader.fail("of", format!("is \"{name}\""), help);
+    }
+    found
 }
 
 /// Fields whose difference between patches can be asked for.
 const DIFFERENCES: [(&str, &str); 2] = [("pressure", "pressure"), ("temperature", "temperature")];
 /// Fields of the gas.
-const GAS: [(&str, &str); 5] = [
+const GAS: [(&str, &str); 6] = [
     ("temperature", "temperature"),
     ("pressure", "pressure"),
     ("density", "density"),
     ("speed", "speed"),
     ("void_fraction", "void_fraction"),
+    ("mass_fraction", "mass_fraction"),
 ];
 /// Fields of particles.
-const PARTICLES: [(&str, &str); 3] = [
+const PARTICLES: [(&str, &str); 5] = [
     ("temperature", "temperature"),
     ("speed", "speed"),
     ("height", "height"),
+    ("mass", "mass"),
+    ("mass_fraction", "mass_fraction"),
 ];
 
 /// The measure and the field that it is of.
