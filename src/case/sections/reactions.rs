@@ -128,6 +128,8 @@ fn reaction(table: &Reader<'_>, known: &Known<'_>) -> Option<Reaction> {
         Some(false) => power_rate(table, known, equation.as_ref()),
         None => None,
     };
+    // Known, even where the equation could not be read.
+    table.has("equilibrium");
     let equilibrium = equation
         .as_ref()
         .and_then(|(equation, parts)| equilibrium(table, equation, parts, known));

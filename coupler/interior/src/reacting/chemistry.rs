@@ -353,92 +353,44 @@ impl Chemistry {
                 };
                 let back = reaction.equilibrium.inverse(temperature);
                 let forward = rate_constant.at(temperature);
-                let standard = STANDARD_PRESSURE / around.pressure * all_gas;
+                // Forwards it goes as far as its solid is there, backwards as far as its layer is.
+                let (own, layer) = (there.of(layers.solids[k]), there.of(layers.solids[k + 1]));
                 (interface.rate_constant, interface.equilibrium) = match path.product {
-                    // k (c − c'/K) = k (1 + 1/K) (c − c*) with c + c' the same everywhere
-                    Some(_) => (forward * (1.0 + back), both * back / (1.0 + back)),
+                    // k (s c − s' c'/K) with c + c' the same everywhere
+                    Some(_) => {
+                        let together = own + layer * back;
+                        let at_rest = if together > 0.0 {
+                            both * layer * back / together
+                        } else {
+                            0.0
+                        };
+                        (forward * together, at_rest)
+                    }
                     None => {
                         let moles = moles(reaction, path.key);
+                        let standard = STANDARD_PRESSURE / around.pressure * all_gas;
                         let power = (-1.0 / moles) * back.ln();
                         let at_rest = if back > 0.0 {
                             standard * power.exp()
                         } else {
                             0.0
                         };
-                        (forward, at_rest)
+                        let forwards = (bulk - at_rest) * moles <= 0.0;
+                        (forward * if forwards { own } else { layer }, at_rest)
                     }
                 };
             }
-            self.take(
-                layers,
+            take(
                 path,
                 &mut interfaces[..count],
-                bulk,
+                (bulk, all_gas),
                 around,
-                there,
-                all_gas,
-                out,
+                |index, one| {
+                    let moles = moles(&self.reactions[index], path.key);
+                    out.rate[index] = -one[0] / moles;
+                    out.slope[index] = -one[1] / moles;
+                },
             );
-        }
-    }
-
-    /// Solves for the flows of one gas; an interface whose reaction would use what is not there rests.
-    #[allow(clippy::too_many_arguments, reason = "the pieces of one loop")]
-    fn take(
-        &self,
-        layers: &Layers,
-        path: &super::layers::Path,
-        interfaces: &mut [Interface],
-        bulk: f64,
-        around: &Around<'_>,
-        there: &Presence<'_>,
-        all_gas: f64,
-        out: &mut Rates,
-    ) {
-        let count = interfaces.len();
-        let mut flow = [0.0; MOST_INTERFACES];
-        let film = around.film[path.key];
-        // The direction of each reaction decides which solid must be there; a second pass takes those that
-        // lack it out, and what they would have taken goes to the others.
-        for pass in 0..3 {
-            shrinking_core::flows(around.radius, film, bulk, interfaces, &mut flow[..count]);
-            if pass == 2 {
-                break;
-            }
-            let mut all_there = true;
-            for (k, interface) in interfaces.iter_mut().enumerate() {
-                let Some(index) = path.reactions[k] else {
-                    continue;
-                };
-                let moles = moles(&self.reactions[index], path.key);
-                let needed = if -flow[k] / moles >= 0.0 { k } else { k + 1 };
-                let share = there.of(layers.solids[needed]);
-                if pass == 0 && share < 1.0 {
-                    interface.rate_constant *= share;
-                    all_there = false;
-                }
-            }
-            if all_there {
-                break;
-            }
-        }
-        let mut slope = [0.0; MOST_INTERFACES];
-        for interface in interfaces.iter_mut() {
-            interface.equilibrium = 0.0;
-        }
-        shrinking_core::flows(
-            around.radius,
-            film,
-            all_gas,
-            interfaces,
-            &mut slope[..count],
-        );
-        for k in 0..count {
-            if let Some(index) = path.reactions[k] {
-                let moles = moles(&self.reactions[index], path.key);
-                out.rate[index] = -flow[k] / moles;
-                out.slope[index] = -slope[k] / moles;
-            }
         }
     }
 
@@ -446,6 +398,36 @@ impl Chemistry {
     pub fn mass(&self, amounts: &[f64]) -> f64 {
         let parts = self.solids.iter().zip(amounts);
         parts.map(|(solid, n)| solid.molar_mass() * n).sum()
+    }
+}
+
+/// Flow of a gas into each interface in mol/s, and how it changes with the gas' mole fraction, told to `tell` with
+/// the reaction there.
+fn take(
+    path: &super::layers::Path,
+    interfaces: &mut [Interface],
+    (bulk, all_gas): (f64, f64),
+    around: &Around<'_>,
+    mut tell: impl FnMut(usize, [f64; 2]),
+) {
+    let count = interfaces.len();
+    let (mut flow, mut slope) = ([0.0; MOST_INTERFACES], [0.0; MOST_INTERFACES]);
+    let film = around.film[path.key];
+    shrinking_core::flows(around.radius, film, bulk, interfaces, &mut flow[..count]);
+    for interface in interfaces.iter_mut() {
+        interface.equilibrium = 0.0;
+    }
+    shrinking_core::flows(
+        around.radius,
+        film,
+        all_gas,
+        interfaces,
+        &mut slope[..count],
+    );
+    for (k, reaction) in path.reactions.iter().enumerate() {
+        if let Some(index) = reaction {
+            tell(*index, [flow[k], slope[k]]);
+        }
     }
 }
 
