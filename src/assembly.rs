@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use calcine_adapters::launch::Launcher;
 use calcine_adapters::liggghts::inputs::Inputs;
+use calcine_adapters::liggghts::template::Template;
 use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch, LiggghtsParticles};
 use calcine_adapters::openfoam::case::OpenfoamCase;
 use calcine_adapters::openfoam::{LIBRARY, OpenfoamGas, OpenfoamLaunch};
@@ -330,14 +331,41 @@ pub fn write_inputs(
     }
     if pairing.particles == ParticleBackend::Liggghts {
         let target = folder.join("liggghts");
-        liggghts_inputs(prepared, starts.particles.ranks).write(&target)?;
+        let template = own_script(case)?;
+        let inputs = liggghts_inputs(prepared, template.as_ref(), starts.particles.ranks);
+        inputs.write(&target)?;
         written.push(target);
     }
     Ok(written)
 }
 
+/// The user's own script of the particles, where the case names one.
+fn own_script(case: &Case) -> Result<Option<Template>, PartError> {
+    let Some(path) = &case.liggghts.template else {
+        return Ok(None);
+    };
+    let populations = case.particles.iter().map(|one| one.name.clone()).collect();
+    let materials = case.materials.iter().map(|one| one.name.clone()).collect();
+    let read = Template::read(path, populations, materials);
+    read.map(Some).map_err(|error| {
+        let message = format!("the script {} cannot be used", path.display());
+        PartError::new("LIGGGHTS (particles)", FailureKind::NotStarted, message).caused_by(error)
+    })
+}
+
+/// What LIGGGHTS would not take of the user's own script, for `calcine check`.
+pub fn check_own_script(case: &Case, prepared: &Prepared) -> Result<(), PartError> {
+    let template = own_script(case)?;
+    let inputs = liggghts_inputs(prepared, template.as_ref(), case.liggghts.ranks.max(1));
+    inputs.script().map(|_| ())
+}
+
 /// What LIGGGHTS is told of the particles, in the box of the mesh's points.
-fn liggghts_inputs(prepared: &Prepared, ranks: u32) -> Inputs<'_> {
+fn liggghts_inputs<'a>(
+    prepared: &'a Prepared,
+    template: Option<&'a Template>,
+    ranks: u32,
+) -> Inputs<'a> {
     let points = &prepared.mesh.topology().points;
     let bounds = points.iter().fold(
         (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)),
@@ -351,6 +379,7 @@ fn liggghts_inputs(prepared: &Prepared, ranks: u32) -> Inputs<'_> {
             Motion::Free(contacts) => contacts.step,
         },
         ranks,
+        template,
     }
 }
 
@@ -416,7 +445,8 @@ impl Assembly<'_> {
             }
             ParticleBackend::Liggghts => {
                 let start = &self.settings.starts.particles;
-                let inputs = liggghts_inputs(self.prepared, start.ranks);
+                let template = own_script(self.case)?;
+                let inputs = liggghts_inputs(self.prepared, template.as_ref(), start.ranks);
                 let launch = LiggghtsLaunch {
                     inputs,
                     launcher: start.launcher.clone(),

@@ -224,3 +224,88 @@ fn every_key_of_the_shipped_and_good_cases_is_documented() {
         );
     }
 }
+
+/// Replaces the value at `place` (keys, and indices of lists as numbers) by one of a wrong kind:
+/// tables and lists of tables by `true`, anything else by a table.
+fn spoil(item: &mut toml::Value, place: &[String]) {
+    if let [step, rest @ ..] = place {
+        let inner = match item {
+            toml::Value::Table(table) => table.get_mut(step).unwrap(),
+            toml::Value::Array(list) => &mut list[step.parse::<usize>().unwrap()],
+            _ => panic!("{step} of a value"),
+        };
+        return spoil(inner, rest);
+    }
+    let holds_tables = match &*item {
+        toml::Value::Array(list) => list.first().is_some_and(toml::Value::is_table),
+        value => value.is_table(),
+    };
+    *item = if holds_tables {
+        toml::Value::Boolean(true)
+    } else {
+        toml::Value::Table([("nonsense".to_owned(), toml::Value::Integer(1))].into_iter().collect())
+    };
+}
+
+/// Each place of a value in a case with its documented key, `NAME` for a name that users choose.
+fn places(
+    value: &toml::Value,
+    place: &mut Vec<String>,
+    key: &str,
+    found: &mut Vec<(String, Vec<String>)>,
+) {
+    match value {
+        toml::Value::Table(table) => {
+            for (name, inner) in table {
+                let chosen = ["materials", "gas.patch"].contains(&key);
+                let below = match (key, chosen) {
+                    (_, true) => format!("{key}.NAME"),
+                    ("", _) => name.clone(),
+                    _ => format!("{key}.{name}"),
+                };
+                place.push(name.clone());
+                found.push((below.clone(), place.clone()));
+                places(inner, place, &below, found);
+                place.pop();
+            }
+        }
+        toml::Value::Array(list) => {
+            for (index, inner) in list.iter().enumerate() {
+                place.push(index.to_string());
+                places(inner, place, key, found);
+                place.pop();
+            }
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn every_documented_key_occurs_in_a_good_case_and_refuses_a_value_of_a_wrong_kind() {
+    let mut missing: std::collections::BTreeSet<&str> =
+        calcine::case::keys::keys().iter().map(|key| key.key).collect();
+    for path in [files("tests/inputs/good"), files("cases")].concat() {
+        let case: toml::Value = toml::Value::Table(fs::read_to_string(&path).unwrap().parse().unwrap());
+        let mut found = Vec::new();
+        places(&case, &mut Vec::new(), "", &mut found);
+        for (key, place) in found {
+            if !missing.remove(key.as_str()) {
+                continue;
+            }
+            let mut spoilt = case.clone();
+            spoil(&mut spoilt, &place);
+            let text = toml::to_string(&spoilt).unwrap();
+            let Err(errors) = parse(&path, &text, &[]) else {
+                panic!("{}: `{key}` took a value of a wrong kind", path.display());
+            };
+            let last = place.last().unwrap();
+            let lines: Vec<&str> = text.lines().collect();
+            let named = errors.problems().iter().any(|problem| {
+                problem.message.contains(last.as_str())
+                    || lines.get(problem.line - 1).is_some_and(|line| line.contains(last.as_str()))
+            });
+            assert!(named, "{}: `{key}`:\n{text}\n{}", path.display(), errors.render());
+        }
+    }
+    assert!(missing.is_empty(), "in no good case: {missing:#?}");
+}

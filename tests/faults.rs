@@ -1,5 +1,5 @@
-//! Faults: each process of a coupled run is killed in the middle of a window; the message names
-//! it, everything ends, nothing stays behind, and the next run is clean.
+//! Faults: each process of a coupled run is killed as it starts, in the middle of a window and in output; the
+//! message names it, everything ends, nothing stays behind, and the next run is clean.
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
@@ -8,29 +8,82 @@ mod processes;
 
 use std::fs;
 use std::io::Read;
-use std::process::Command;
+use std::path::Path;
+use std::process::{Child, Command};
 use std::time::Duration;
 
 use processes::{
-    alive, case, command_line, descendants, kill, leftovers, start, wait_for_windows, wait_until,
+    alive, belonging, case, command_line, descendants, kill, leftovers, start, start_with,
+    wait_for_windows, wait_until,
 };
 
+/// Within which everything must have ended.
+const LIMIT: Duration = Duration::from_secs(5);
+/// After which a run counts as hanging.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Where a run stands when a process of it is killed.
+#[derive(Clone, Copy, Debug)]
+enum Moment {
+    /// The process has just been started.
+    Handshake,
+    /// Windows are being committed.
+    Window,
+    /// A checkpoint is being written.
+    Output,
+}
+
+/// Starts a run and waits for the moment; gives its descendants and the first whose command line has a mark.
+fn come_to(moment: Moment, mark: &str, out: &Path) -> (Child, Vec<u32>, u32) {
+    let often = [
+        "--set",
+        "output.every=0.01 s",
+        "--set",
+        "time.checkpoint.every=0.01 s",
+    ];
+    let words: &[&str] = match moment {
+        Moment::Output => &often,
+        _ => &[],
+    };
+    let mut run = start_with(out, words);
+    let coordinator = run.id();
+    if !matches!(moment, Moment::Handshake) {
+        wait_for_windows(&mut run, out);
+    }
+    if matches!(moment, Moment::Output) {
+        wait_until(PATIENCE, || out.join("checkpoint.part").exists());
+    }
+    let mut found = None;
+    wait_until(PATIENCE, || {
+        let peers = descendants(coordinator);
+        let victim = peers.iter().copied().find(|&pid| command_line(pid).contains(mark));
+        found = victim.map(|victim| (peers, victim));
+        found.is_some() || run.try_wait().unwrap().is_some()
+    });
+    let (peers, victim) = found.unwrap_or_else(|| panic!("no process `{mark}`"));
+    (run, peers, victim)
+}
+
+/// Nothing of a run is there within 5 s.
+fn assert_all_gone(coordinator: u32, peers: &[u32]) {
+    wait_until(LIMIT, || {
+        !peers.iter().any(|&pid| alive(pid)) && leftovers(coordinator).is_empty()
+    });
+    for &pid in peers {
+        assert!(!alive(pid), "{pid} is still there: {}", command_line(pid));
+    }
+    assert_eq!(belonging(coordinator), Vec::<u32>::new());
+    assert_eq!(leftovers(coordinator), Vec::<String>::new());
+}
+
 /// Kills the first descendant whose command line contains `mark`, and returns the message.
-fn kill_peer(mark: &str) -> (String, Duration, i32) {
+fn kill_peer(moment: Moment, mark: &str) -> (String, Duration, i32) {
     let directory = tempfile::tempdir().unwrap();
     let out = directory.path().join("run");
-    let mut run = start(&out);
+    let (mut run, peers, victim) = come_to(moment, mark, &out);
     let coordinator = run.id();
-    wait_for_windows(&mut run, &out);
-    let peers = descendants(coordinator);
-    let victim = *peers
-        .iter()
-        .find(|&&pid| command_line(pid).contains(mark))
-        .unwrap_or_else(|| panic!("no process `{mark}` among {peers:?}"));
     kill(victim);
-    let taken = wait_until(Duration::from_secs(20), || {
-        run.try_wait().unwrap().is_some()
-    });
+    let taken = wait_until(PATIENCE, || run.try_wait().unwrap().is_some());
     let code = run.wait().unwrap().code().unwrap_or(-1);
     let mut text = String::new();
     run.stderr
@@ -38,44 +91,57 @@ fn kill_peer(mark: &str) -> (String, Duration, i32) {
         .unwrap()
         .read_to_string(&mut text)
         .unwrap();
+    println!("{moment:?}: ended {taken:?} after the kill; message:\n{text}");
     assert!(
         text.contains(&format!("pid {victim}")),
         "the message does not name pid {victim}: {text}"
     );
-    wait_until(Duration::from_secs(5), || {
-        !peers.iter().any(|&pid| alive(pid))
-    });
-    for pid in peers {
-        assert!(
-            !alive(pid),
-            "process {pid} is still there: {}",
-            command_line(pid)
-        );
-    }
-    assert_eq!(leftovers(coordinator), Vec::<String>::new());
+    assert!(taken < LIMIT, "{taken:?}");
+    assert_eq!(code, 4);
+    assert_all_gone(coordinator, &peers);
     (text, taken, code)
 }
 
-#[test]
-fn a_killed_openfoam_is_named_with_its_log_and_everything_ends() {
-    let (text, taken, code) = kill_peer("calcineGasFoam");
-    println!("ended {taken:?} after the kill; message:\n{text}");
-    assert!(text.contains("OpenFOAM"), "{text}");
-    assert!(text.contains("SIGKILL"), "{text}");
-    assert!(text.contains("the end of its log"), "{text}");
-    assert!(taken < Duration::from_secs(5), "{taken:?}");
-    assert_eq!(code, 4);
+/// Kills it in a window and in output, where it has written a log, and as it starts.
+fn killed_at_every_moment(mark: &str, name: &str) {
+    for moment in [Moment::Handshake, Moment::Window, Moment::Output] {
+        let (text, ..) = kill_peer(moment, mark);
+        assert!(text.contains(name), "{text}");
+        assert!(text.contains("SIGKILL"), "{text}");
+        // One that is killed at once may have written nothing.
+        let begun = !matches!(moment, Moment::Handshake);
+        assert!(!begun || text.contains("the end of its log"), "{text}");
+    }
 }
 
 #[test]
-fn a_killed_liggghts_is_named_with_its_log_and_everything_ends() {
-    let (text, taken, code) = kill_peer("calcine-liggghts");
-    println!("ended {taken:?} after the kill; message:\n{text}");
-    assert!(text.contains("LIGGGHTS"), "{text}");
-    assert!(text.contains("SIGKILL"), "{text}");
-    assert!(text.contains("the end of its log"), "{text}");
-    assert!(taken < Duration::from_secs(5), "{taken:?}");
-    assert_eq!(code, 4);
+fn openfoam_killed_in_handshake_window_or_output_is_named_with_its_log_and_everything_ends() {
+    killed_at_every_moment("calcineGasFoam", "OpenFOAM");
+}
+
+#[test]
+fn liggghts_killed_in_handshake_window_or_output_is_named_with_its_log_and_everything_ends() {
+    killed_at_every_moment("calcine-liggghts", "LIGGGHTS");
+}
+
+#[test]
+fn when_the_coordinator_is_killed_in_handshake_or_output_nothing_stays_behind() {
+    for (moment, mark) in [
+        (Moment::Handshake, "calcineGasFoam"),
+        (Moment::Handshake, "calcine-liggghts"),
+        (Moment::Output, "calcineGasFoam"),
+    ] {
+        let directory = tempfile::tempdir().unwrap();
+        let out = directory.path().join("run");
+        let (mut run, peers, _) = come_to(moment, mark, &out);
+        let coordinator = run.id();
+        kill(coordinator);
+        run.wait().unwrap();
+        let taken = wait_until(PATIENCE, || !peers.iter().any(|&pid| alive(pid)));
+        println!("{moment:?}: the solvers had ended {taken:?} after the kill of the coordinator");
+        assert!(taken < LIMIT, "{taken:?}");
+        assert_all_gone(coordinator, &peers);
+    }
 }
 
 #[test]

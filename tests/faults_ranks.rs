@@ -210,3 +210,66 @@ fn what_attach_prints_can_be_started_by_hand() {
     assert!(run.wait().unwrap().success(), "{rest}");
     assert!(by_hand.wait().unwrap().success());
 }
+
+/// The script for one node in docs/parallel.md, as it stands there but for its numbers, with a stand-in
+/// for srun that hands its tasks to mpirun: this machine has no SLURM.
+#[test]
+fn the_script_for_a_queue_in_the_docs_runs_and_resumes_with_a_stand_in_for_srun() {
+    use std::os::unix::fs::PermissionsExt;
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/parallel.md");
+    let docs = fs::read_to_string(docs).unwrap();
+    let blocks = docs.split("```sh\n").skip(1);
+    let mut blocks = blocks.filter_map(|block| block.split("```").next());
+    let script = blocks
+        .find(|block| block.contains("--launch-gas \"srun --overlap"))
+        .unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let bin = folder.path().join("bin");
+    fs::create_dir(&bin).unwrap();
+    let program = |name: &str, text: &str| {
+        fs::write(bin.join(name), text).unwrap();
+        fs::set_permissions(bin.join(name), fs::Permissions::from_mode(0o755)).unwrap();
+    };
+    program(
+        "srun",
+        "#!/bin/sh\n[ \"$1\" = --overlap ] && [ \"$2\" = -n ] || exit 9\nranks=$3; shift 3\n\
+         echo \"$ranks\" >> \"$STARTED\"\n\
+         exec mpirun --allow-run-as-root --oversubscribe --bind-to none -n \"$ranks\" \"$@\"\n",
+    );
+    let calcine = env!("CARGO_BIN_EXE_calcine");
+    program(
+        "calcine",
+        &format!("#!/bin/sh\nexec \"{calcine}\" \"$@\"\n"),
+    );
+    // A row a window, and an end that is far away.
+    let words = "--quiet --set time.acceleration=1 --set 'output.series_every=1 ms'";
+    let case = format!("'{}' {words}", case().display());
+    let script = script
+        .replace("CASE", &case)
+        .replace("-gas 12", "-gas 2")
+        .replace("-n 12", "-n 2")
+        .replace("-particles 4", "-particles 2")
+        .replace("-n 4", "-n 2")
+        .replace("23h30m", "3s");
+    program("job", &script);
+    let out = folder.path().join("results/bed");
+    let rows = || fs::read_to_string(out.join("series.csv")).map_or(0, |text| text.lines().count());
+    // As sbatch does it: the script as a program, in the folder that it was handed in.
+    let job = || {
+        let path = format!("{}:{}", bin.display(), std::env::var("PATH").unwrap());
+        let outcome = Command::new(bin.join("job"))
+            .current_dir(folder.path())
+            .env("PATH", path)
+            .env("STARTED", folder.path().join("started"))
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&outcome.stderr).into_owned();
+        assert_eq!(outcome.status.code(), Some(75), "{said}");
+        rows()
+    };
+    let first = job();
+    assert!(first > 1);
+    assert!(job() > first);
+    let started = fs::read_to_string(folder.path().join("started")).unwrap();
+    assert_eq!(started, "2\n".repeat(4));
+}

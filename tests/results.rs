@@ -75,6 +75,8 @@ fn the_summary_has_the_stable_names_of_the_design() {
         "/windows".into(),
         "/particles".into(),
         "/cells".into(),
+        "/processor_time_s/gas".into(),
+        "/processor_time_s/particles".into(),
         "/ledger/elements".into(),
     ];
     names.extend(
@@ -191,6 +193,8 @@ fn after_a_kill_and_a_resume_all_files_are_those_of_the_uninterrupted_run() {
     let mut twice = Summary::read(&out).unwrap();
     once.wall_time_s = Default::default();
     twice.wall_time_s = Default::default();
+    once.processor_time_s = Default::default();
+    twice.processor_time_s = Default::default();
     assert_eq!(once, twice);
     #[cfg(feature = "hdf5")]
     assert_eq!(datasets(&whole), datasets(&out));

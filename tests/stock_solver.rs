@@ -1,6 +1,6 @@
 //! A stock solver of OpenFOAM with Calcine's fvOption beside calcineGasFoam, and what it refuses.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -59,6 +59,52 @@ fn a_stock_solver_heats_the_bed_as_calcine_gas_foam_does_and_starts_from_its_che
     ));
     let first = Series::read(&again).unwrap().column("gas.temperature_max")[0];
     assert!((first - last(&stock, "gas.temperature_max")).abs() < 1e-9);
+}
+
+/// The two without gravity, over the first tenth of a second, beside calcineGasFoam and each other.
+#[test]
+fn solvers_without_gravity_heat_the_bed_as_the_others_do() {
+    let directory = tempfile::tempdir().unwrap();
+    let real = ["time.acceleration=1", "time.end=0.1 s"];
+    let last = |name: &str, column: &str| {
+        let series = Series::read(&directory.path().join(name)).unwrap();
+        *series.column(column).last().unwrap()
+    };
+    let figures = |name: &str| {
+        let solver = format!("openfoam.solver={name}");
+        let out = directory.path().join(name);
+        done(&run(&out, &[&real[..], &[&solver]].concat()));
+        let summary = Summary::read(&out).unwrap();
+        let error = |line: &str| summary.ledger.lines[line].relative_error;
+        println!(
+            "{name}: {:?}, ledger {:.1e} {:.1e} {:.1e}",
+            [
+                last(name, "particles.temperature_mean"),
+                last(name, "quantities.pressure_drop")
+            ],
+            error("mass"),
+            error("energy"),
+            error("gas_momentum")
+        );
+        if name != "calcineGasFoam" {
+            assert!(error("mass") < 1e-7 && error("energy") < 1e-5);
+            assert!(error("energy_exchange") < 1e-12 && error("momentum") < 1e-12);
+        }
+        (
+            last(name, "particles.temperature_mean") - 300.0,
+            last(name, "quantities.pressure_drop"),
+        )
+    };
+    let own = figures("calcineGasFoam");
+    let buoyant = figures("buoyantPimpleFoam");
+    let others = ["rhoPimpleFoam", "reactingFoam"].map(figures);
+    for (rise, drop) in others {
+        // As in the test above, to calcineGasFoam; the three stock solvers solve the same equations.
+        assert!((0.9..1.1).contains(&(rise / own.0)), "{rise} {}", own.0);
+        assert!((0.94..1.02).contains(&(drop / own.1)), "{drop} {}", own.1);
+        assert!((rise / buoyant.0 - 1.0).abs() < 0.01, "{rise} {}", buoyant.0);
+        assert!((drop / buoyant.1 - 1.0).abs() < 0.01, "{drop} {}", buoyant.1);
+    }
 }
 
 #[test]

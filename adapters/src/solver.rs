@@ -60,6 +60,8 @@ pub struct ExternalSolver {
     /// By rank: the cells of the whole mesh that it has; empty for particles.
     owned: Arc<[Vec<usize>]>,
     deadline: Duration,
+    /// Processor time of the ranks of this machine when they were ready.
+    used_at_start: Duration,
 }
 
 /// The header of a request in a window; times as the wire has them.
@@ -75,7 +77,7 @@ pub fn header(kind: Kind, window: &Window) -> Header {
     }
 }
 
-/// Opens the coordinator's end of every rank's link.
+/// Opens the coordinator's end of every rank's link, which the ranks wait for.
 fn open_links(run: &Run, hello: &Hello) -> Result<Vec<Link>, WireError> {
     let address = run.address(&hello.role);
     (0..hello.ranks)
@@ -254,7 +256,7 @@ impl ExternalSolver {
             run = None;
         } else {
             let own = Run::create().map_err(unopened)?;
-            links = open_links(&own, &launch.hello).map_err(unopened)?;
+            // The processes first: whatever happens to this one from here on, they remove the run's files.
             processes = Processes::start(
                 &launch.name,
                 &launch.program,
@@ -263,6 +265,7 @@ impl ExternalSolver {
                 &own.address(&launch.hello.role),
                 &launch.log,
             )?;
+            links = open_links(&own, &launch.hello).map_err(unopened)?;
             run = Some(own);
         }
         let peer = Peer::new(&launch, processes.pid(), supervisor)?;
@@ -278,8 +281,10 @@ impl ExternalSolver {
             hello: launch.hello,
             owned: Arc::default(),
             deadline: launch.deadline,
+            used_at_start: Duration::ZERO,
         };
         solver.shake_hands(supervisor)?;
+        solver.used_at_start = solver.used();
         Ok(solver)
     }
 
@@ -357,6 +362,17 @@ impl ExternalSolver {
     /// Process ids of the ranks, as they introduced themselves.
     pub fn rank_pids(&self) -> &[u32] {
         &self.peer.ranks
+    }
+
+    /// Processor time of the ranks of this machine, all threads, since they were ready.
+    pub fn processor_time(&self) -> Duration {
+        self.used().saturating_sub(self.used_at_start)
+    }
+
+    fn used(&self) -> Duration {
+        let ranks = self.links.iter().filter_map(Link::peer);
+        let local = ranks.filter(|process| process.is_here());
+        local.map(|process| process.processor_time()).sum()
     }
 
     /// Links, one per rank, each with the message that was waited for last.

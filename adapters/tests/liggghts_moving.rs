@@ -114,6 +114,7 @@ impl Bench {
                 bounds: (Vec3::zeros(), Vec3::repeat(BOX)),
                 step: STEP,
                 ranks: 1,
+                template: None,
             },
             case_hash: "moving".into(),
             launcher: Launcher::Mpirun,

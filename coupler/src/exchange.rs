@@ -52,8 +52,6 @@ pub struct Setting<'a> {
     pub operator: &'a Operator,
     /// The particles at the start of the window.
     pub particles: ParticleFields<'a>,
-    /// Particle temperatures in K from which the exchange starts.
-    pub temperature: &'a [f64],
     /// Coefficients of drag and heat.
     pub coefficients: &'a Coefficients,
     /// The acceleration factor.
@@ -103,127 +101,110 @@ impl Exchange {
         self.iterate.tie.resize(cells, 0.0);
     }
 
-    /// Fills what the gas is told, linearised about its present fields.
-    pub fn linearise(&mut self, setting: &Setting<'_>, gas: &GasFields<'_>) {
-        let Setting {
-            operator,
-            particles,
-            temperature,
-            coefficients,
-            acceleration,
-        } = setting;
-        let (cells, count) = (operator.cells(), operator.particles());
-        self.resize(cells, count);
+    /// Begins the attempts with one set of laws: looks at the gas and spreads the drag, which no
+    /// attempt changes.
+    pub fn begin(&mut self, setting: &Setting<'_>, gas: &GasFields<'_>) {
+        let operator = setting.operator;
+        self.resize(operator.cells(), operator.particles());
         self.iterate.temperature.clear();
         self.iterate.temperature.extend_from_slice(gas.temperature);
         operator.sample(gas.temperature, &mut self.iterate.seen_temperature);
 
-        // K_p, g_p and the source side by side: three components cost little more than one.
-        for p in 0..count {
-            let own = self.conductance[p];
-            let tie = tie(coefficients.conductance[p], own);
-            let source = own * temperature[p] + tie * self.iterate.seen_temperature[p];
-            self.vector[p] = Vec3::new(own, tie, source);
-        }
-        operator.spread_vectors(&self.vector, &mut self.cell_vector);
-        for c in 0..cells {
-            let [own, tie, source] = self.cell_vector[c].into();
-            self.cells.heat_coefficient[c] = own;
-            self.iterate.tie[c] = tie;
-            self.cells.heat_source[c] = source - tie * gas.temperature[c];
-        }
-
+        let coefficients = setting.coefficients;
         operator.spread(&coefficients.drag, &mut self.cells.drag_coefficient);
-        for p in 0..count {
-            self.vector[p] = coefficients.drag_source(p, particles.velocity[p], *acceleration);
+        for (p, source) in self.vector.iter_mut().enumerate() {
+            let velocity = setting.particles.velocity[p];
+            *source = coefficients.drag_source(p, velocity, setting.acceleration);
         }
         operator.spread_vectors(&self.vector, &mut self.cells.drag_source);
     }
 
-    /// Gives each particle what the gas reports, and returns how far the attempt is from the
-    /// exact coupling of the cells that a particle spans: the misplaced heat, as a share of all
-    /// heat that was exchanged.
-    ///
-    /// Of the heat that the gas received, `carried` in W came with gas that particles set free and take.
-    pub fn credit(
-        &mut self,
-        setting: &Setting<'_>,
-        gas: &GasFields<'_>,
-        received: &CellReceived,
-        carried: &[f64],
-    ) -> f64 {
-        self.credit_drag(setting, gas, received);
-        self.credit_heat(setting, gas, received, carried)
+    /// The gas temperature that each particle sees at the last iterate in K.
+    pub fn seen_temperature(&self) -> &[f64] {
+        &self.iterate.seen_temperature
     }
 
-    fn credit_heat(
+    /// Fills what the gas is told of heat, linearised about the last iterate. The exchange starts
+    /// from these particle temperatures in K.
+    pub fn linearise(&mut self, setting: &Setting<'_>, temperature: &[f64]) {
+        let (operator, iterate) = (setting.operator, &mut self.iterate);
+        // K_p, g_p and the source side by side: three components cost little more than one.
+        for p in 0..operator.particles() {
+            let own = self.conductance[p];
+            let tie = tie(setting.coefficients.conductance[p], own);
+            let source = own * temperature[p] + tie * iterate.seen_temperature[p];
+            self.vector[p] = Vec3::new(own, tie, source);
+        }
+        operator.spread_vectors(&self.vector, &mut self.cell_vector);
+        for c in 0..operator.cells() {
+            let [own, tie, source] = self.cell_vector[c].into();
+            self.cells.heat_coefficient[c] = own;
+            iterate.tie[c] = tie;
+            self.cells.heat_source[c] = source - tie * iterate.temperature[c];
+        }
+    }
+
+    /// Gives each particle the heat that the gas reports, takes the gas as the next iterate, and
+    /// returns how far the attempt is from the exact coupling of the cells that a particle spans:
+    /// the misplaced heat, as a share of all heat that was exchanged. The particle temperatures are
+    /// those of `linearise`. Of the heat that the gas received, `carried` in W came with gas that particles
+    /// set free and take.
+    pub fn credit_heat(
         &mut self,
         setting: &Setting<'_>,
+        temperature: &[f64],
         gas: &GasFields<'_>,
         received: &CellReceived,
         carried: &[f64],
     ) -> f64 {
-        let Setting {
-            operator,
-            temperature,
-            coefficients,
-            ..
-        } = setting;
+        let (operator, coefficients) = (setting.operator, setting.coefficients);
         let exchange = &self.cells;
-        // δ_c/H_c, what the gas reports beyond R_c
+        // T_c − δ_c/H_c, with δ_c what the gas reports beyond R_c, and T_c side by side.
         for c in 0..operator.cells() {
-            let coefficient = exchange.heat_coefficient[c];
+            let (own, coefficient) = (gas.temperature[c], exchange.heat_coefficient[c]);
             let apart = carried.get(c).copied().unwrap_or(0.0);
-            let own = exchange.heat_source[c] - coefficient * gas.temperature[c];
-            let beyond = received.heat[c] - apart - own;
-            self.cell_scalar[c] = if coefficient > 0.0 {
-                beyond / coefficient
-            } else {
-                0.0
-            };
+            let told = exchange.heat_source[c] - coefficient * own;
+            let beyond = received.heat[c] - apart - told;
+            let credited = own - ratio(beyond, coefficient);
+            self.cell_vector[c] = Vec3::new(credited, own, 0.0);
         }
-        operator.sample(&self.cell_scalar, &mut self.heat);
-        operator.sample(gas.temperature, &mut self.scalar);
+        operator.sample_vectors(&self.cell_vector, &mut self.vector);
         for p in 0..operator.particles() {
-            let (seen, beyond) = (self.scalar[p], self.heat[p]);
-            self.heat[p] = self.conductance[p] * (seen - temperature[p] - beyond);
-            self.scalar[p] = tie(coefficients.conductance[p], self.conductance[p])
-                * (seen - self.iterate.seen_temperature[p]);
+            let [credited, seen, _] = self.vector[p].into();
+            let own = self.conductance[p];
+            self.heat[p] = own * (credited - temperature[p]);
+            let before = std::mem::replace(&mut self.iterate.seen_temperature[p], seen);
+            self.scalar[p] = tie(coefficients.conductance[p], own) * (seen - before);
         }
         operator.spread(&self.scalar, &mut self.cell_scalar);
         let (mut misplaced, mut exchanged) = (0.0, 0.0);
         for c in 0..operator.cells() {
-            let change = gas.temperature[c] - self.iterate.temperature[c];
+            let before = std::mem::replace(&mut self.iterate.temperature[c], gas.temperature[c]);
+            let change = gas.temperature[c] - before;
             misplaced += (self.iterate.tie[c] * change - self.cell_scalar[c]).abs();
             exchanged += received.heat[c].abs();
         }
         share(misplaced, exchanged)
     }
 
-    fn credit_drag(&mut self, setting: &Setting<'_>, gas: &GasFields<'_>, received: &CellReceived) {
-        let Setting {
-            operator,
-            particles,
-            coefficients,
-            acceleration,
-            ..
-        } = setting;
+    /// Gives each particle the drag that the gas reports.
+    pub fn credit_drag(
+        &mut self,
+        setting: &Setting<'_>,
+        gas: &GasFields<'_>,
+        received: &CellReceived,
+    ) {
         let exchange = &self.cells;
-        for c in 0..operator.cells() {
-            let coefficient = exchange.drag_coefficient[c];
-            let beyond =
-                received.drag[c] - (exchange.drag_source[c] - coefficient * gas.velocity[c]);
-            self.cell_vector[c] = if coefficient > 0.0 {
-                beyond / coefficient
-            } else {
-                Vec3::zeros()
-            };
+        for c in 0..setting.operator.cells() {
+            let (own, coefficient) = (gas.velocity[c], exchange.drag_coefficient[c]);
+            let beyond = received.drag[c] - (exchange.drag_source[c] - coefficient * own);
+            self.cell_vector[c] = own - beyond.map(|beyond| ratio(beyond, coefficient));
         }
-        operator.sample_vectors(&self.cell_vector, &mut self.drag);
-        operator.sample_vectors(gas.velocity, &mut self.vector);
-        for p in 0..operator.particles() {
-            let slip = self.vector[p] - particles.velocity[p] / *acceleration;
-            self.drag[p] = coefficients.drag_at(p, slip - self.drag[p]);
+        let operator = setting.operator;
+        operator.sample_vectors(&self.cell_vector, &mut self.vector);
+        for (p, drag) in self.drag.iter_mut().enumerate() {
+            let slip = self.vector[p] - setting.particles.velocity[p] / setting.acceleration;
+            *drag = setting.coefficients.drag_at(p, slip);
         }
     }
 
@@ -255,6 +236,15 @@ impl Exchange {
 /// g_p: how strongly a particle draws its cells together, from h A and K_p, in W/K.
 fn tie(conductance: f64, eliminated: f64) -> f64 {
     (conductance - eliminated).min(0.5 * eliminated)
+}
+
+/// What a cell took beyond what it was told, over its coefficient.
+fn ratio(beyond: f64, coefficient: f64) -> f64 {
+    if coefficient > 0.0 {
+        beyond / coefficient
+    } else {
+        0.0
+    }
 }
 
 fn share(part: f64, whole: f64) -> f64 {

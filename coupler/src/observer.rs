@@ -11,7 +11,7 @@ use crate::mesh::Mesh;
 use crate::part::{About, Bed, Convergence, GasFields, ParticleFields};
 use crate::time::{Clocks, Window};
 
-/// Wall time spent in each stage since this process began the run.
+/// Wall time spent in each stage since this process began the run, and processor time of the two solvers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Timing {
     /// Waiting for the gas.
@@ -28,6 +28,14 @@ pub struct Timing {
     pub exchange: Duration,
     /// Observers and checkpoints.
     pub output: Duration,
+    /// Processor time of the gas: of this process while it waits for the gas.
+    pub gas_processor: Duration,
+    /// The same, of processes of the gas' own; up to date at checkpoints and at the end.
+    pub gas_processes: Duration,
+    /// Processor time of this process while it waits for the particles.
+    pub particles_processor: Duration,
+    /// The same, of processes of the particles' own; up to date at checkpoints and at the end.
+    pub particles_processes: Duration,
 }
 
 /// The state of the run after a commit.

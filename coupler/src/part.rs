@@ -4,6 +4,7 @@
 //! a coefficient is "per cell" in W/K, not "per volume".
 
 use std::path::Path;
+use std::time::Duration;
 
 use calcine_physics::Vec3;
 
@@ -35,6 +36,12 @@ pub trait Part {
     /// Writes the committed state into `directory`, then re-initialises from what it wrote, so
     /// that an uninterrupted run takes the same path as a resumed one.
     fn checkpoint(&mut self, directory: &Path) -> Result<(), PartError>;
+
+    /// Processor time that processes of its own have used since they were ready; zero for a part that works in
+    /// the coordinator's.
+    fn processor_time(&self) -> Duration {
+        Duration::ZERO
+    }
 
     /// Ends the part in an orderly way; what it started is gone afterwards.
     fn finish_run(&mut self, supervisor: &Supervisor) -> Result<(), PartError>;

@@ -169,13 +169,14 @@ fn attempts(
         let setting = Setting {
             operator: &bench.operator,
             particles: bench.fields(),
-            temperature: &temperature,
             coefficients: &coefficients,
             acceleration: 3.0,
         };
-        exchange.linearise(&setting, &gas.fields());
+        exchange.begin(&setting, &gas.fields());
+        exchange.linearise(&setting, &temperature);
         gas.attempt(&exchange, span, beyond, &mut received);
-        let share = exchange.credit(&setting, &gas.fields(), &received, &[]);
+        let share = exchange.credit_heat(&setting, &temperature, &gas.fields(), &received, &[]);
+        exchange.credit_drag(&setting, &gas.fields(), &received);
         thin.advance(&exchange.heat, span);
         shares.push(share);
     }

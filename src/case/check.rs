@@ -94,10 +94,11 @@ fn honoured(text: &mut String, case: &Case) {
                 "every key but `openfoam.template`: what only the template states is left out"
             }
             "LIGGGHTS" if case.liggghts.template.is_some() => {
-                "every key but `liggghts.template`: it is not used yet"
+                "every key; contacts, walls and integration are those of `liggghts.template`, which restricts \
+                 the case to these particles where they differ from the case's"
             }
             "native particles" if case.liggghts.template.is_some() => {
-                "every key but `liggghts.template`"
+                "every key but `liggghts.template`: what only the script states is left out"
             }
             _ => "every key",
         };

@@ -6,7 +6,8 @@ use clap::Args;
 
 use crate::case::contacts;
 
-use super::{Failure, read_and_prepare, say};
+use super::{Failure, chain, read_and_prepare, say};
+use crate::assembly::check_own_script;
 use crate::exit;
 
 /// Checks a case: all its errors at once, or both clocks, sizes and what each backend honours.
@@ -31,6 +32,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     ));
     if let Some(text) = contacts::report(&case, &prepared.mesh, &prepared.particles) {
         say(text);
+    }
+    if let Err(error) = check_own_script(&case, &prepared) {
+        say(format_args!("    not with LIGGGHTS: {}", chain(&error)));
     }
     Ok(exit::OK)
 }

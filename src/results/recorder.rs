@@ -15,8 +15,8 @@ use super::series::{self, Row, TRACKED_PARTICLES, Table};
 use super::status::{Status, Watch};
 use super::store::Store;
 use super::summary::{
-    Backends, CaseName, Ledger, LedgerLine, Provenance, Solver, Solvers, Summary, Verdict,
-    WallTimes,
+    Backends, CaseName, Ledger, LedgerLine, ProcessorTimes, Provenance, Solver, Solvers, Summary,
+    Verdict, WallTimes,
 };
 use super::vtk::{self, Cells};
 use super::{CASE, ResultsError, STORE, SUMMARY, files, snapshot};
@@ -57,6 +57,8 @@ pub struct Recorder {
     counters: Counters,
     /// Wall times of the processes before this one.
     before: WallTimes,
+    /// Their processor times.
+    processor_before: ProcessorTimes,
     watch: Watch,
     open: Option<Open>,
     summary: Option<Summary>,
@@ -95,6 +97,7 @@ impl Recorder {
             directory: out.to_owned(),
             resumed: resume.is_some(),
             before: counters.wall,
+            processor_before: counters.processor,
             counters,
             watch: Watch::new(out, 0.0),
             open: None,
@@ -184,6 +187,7 @@ impl Recorder {
         self.flush()?;
         let mut counters = self.counters.clone();
         counters.wall = self.wall(moment.timing);
+        counters.processor = self.processor(moment.timing);
         resume::save(&self.directory, directory, &counters)?;
         self.summarise(moment, Verdict::Running)
     }
@@ -306,6 +310,16 @@ impl Recorder {
         }
     }
 
+    fn processor(&self, timing: &Timing) -> ProcessorTimes {
+        let before = &self.processor_before;
+        let gas = timing.gas_processor + timing.gas_processes;
+        let particles = timing.particles_processor + timing.particles_processes;
+        ProcessorTimes {
+            gas: before.gas + gas.as_secs_f64(),
+            particles: before.particles + particles.as_secs_f64(),
+        }
+    }
+
     fn status(&self, moment: &Moment<'_>, verdict: Verdict) -> Status {
         let (now, end) = (moment.clocks.process, self.case.time.end);
         Status {
@@ -372,6 +386,7 @@ impl Recorder {
                     .collect(),
             },
             wall_time_s: self.wall(moment.timing),
+            processor_time_s: self.processor(moment.timing),
             quantities: captured.results(case, over),
             convergence: self.counters.convergence,
         };

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::quantities::Captured;
-use super::summary::{ConvergenceSummary, Provenance, Summary, Verdict, WallTimes};
+use super::summary::{ConvergenceSummary, ProcessorTimes, Provenance, Summary, Verdict, WallTimes};
 use super::{ResultsError, SERIES, STORE, SUMMARY, files};
 
 /// Name of the counters in a checkpoint directory.
@@ -40,6 +40,9 @@ pub(super) struct Counters {
     pub convergence: ConvergenceSummary,
     /// Wall times so far.
     pub wall: WallTimes,
+    /// Processor times so far.
+    #[serde(default)]
+    pub processor: ProcessorTimes,
 }
 
 /// Name of a snapshot's gas file.

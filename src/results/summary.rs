@@ -76,6 +76,9 @@ pub struct Summary {
     pub ledger: Ledger,
     /// Wall times by stage in s, over all processes of the run.
     pub wall_time_s: WallTimes,
+    /// Processor time of the two solvers in s, over all processes of the run.
+    #[serde(default)]
+    pub processor_time_s: ProcessorTimes,
     /// Quantities of interest by name.
     pub quantities: BTreeMap<String, QuantityResult>,
     /// Convergence of the gas, over the run.
@@ -203,6 +206,16 @@ impl WallTimes {
             ("output", self.output),
         ]
     }
+}
+
+/// Processor times in s: of this process while it waits for a solver, and of the solver's own processes on this
+/// machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ProcessorTimes {
+    /// The gas.
+    pub gas: f64,
+    /// The particles.
+    pub particles: f64,
 }
 
 /// A quantity at the end of the run, or at the process time at which a value is expected.

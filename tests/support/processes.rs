@@ -92,6 +92,18 @@ pub fn leftovers(pid: u32) -> Vec<String> {
     names.filter(|name| name.contains(&mark)).collect()
 }
 
+/// Living processes that have the run of this coordinator in their environment.
+pub fn belonging(pid: u32) -> Vec<u32> {
+    let mark = format!("calcine-{pid}-");
+    let entries = fs::read_dir("/proc").unwrap().flatten();
+    let numbers = entries.filter_map(|entry| entry.file_name().to_string_lossy().parse().ok());
+    let marked = |&other: &u32| {
+        let text = fs::read(format!("/proc/{other}/environ")).unwrap_or_default();
+        other != pid && String::from_utf8_lossy(&text).contains(&mark) && alive(other)
+    };
+    numbers.filter(marked).collect()
+}
+
 /// Waits until windows are being committed.
 pub fn wait_for_windows(run: &mut Child, out: &Path) {
     let begun = Instant::now();

@@ -1,22 +1,22 @@
 //! `cargo xtask bench`: the benchmarks of every package, then one table of what they measured,
-//! taken from Criterion's own files, and what a window of the heated bed costs by phase.
+//! taken from Criterion's own files, and what whole runs cost.
 
-use std::env;
 use std::ffi::OsString;
 use std::fs;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 use std::time::SystemTime;
 
 use crate::json::Json;
 use crate::packages::{self, Needs};
-use crate::steps::{Outcome, Stop, loud_step, quietly, say, step, visibly};
+use crate::runs;
+use crate::steps::{Outcome, Stop, loud_step, say, visibly};
 use crate::table::{Table, short};
+use crate::tasks;
 use crate::workspace::{Profile, Workspace};
 
 /// Packages that may have benchmarks, by their folders.
-const FOLDERS: [&str; 7] = [
+const FOLDERS: [&str; 8] = [
     ".",
     "coupler",
     "coupler/physics",
@@ -24,21 +24,7 @@ const FOLDERS: [&str; 7] = [
     "native-solver",
     "adapters",
     "adapters/wire",
-];
-
-/// Cells across and along the heated bed of the phases' runs (10 k, 100 k, 1 M in all), and windows.
-const SIZES: [[u32; 3]; 3] = [[18, 42, 5], [38, 92, 2], [84, 190, 1]];
-
-/// Phases in the order of a window, as `wall_time_s` in summary.json names them. The first two
-/// happen once in a run of a frozen bed, and in each window where particles move.
-const PHASES: [&str; 7] = [
-    "mapping",
-    "smoother",
-    "exchange",
-    "gas",
-    "interior",
-    "particles",
-    "output",
+    "adapters/mpi",
 ];
 
 /// What to measure.
@@ -46,6 +32,8 @@ const PHASES: [&str; 7] = [
 pub struct Choice {
     /// Only the table of what was measured last.
     pub table_only: bool,
+    /// Without OpenFOAM, LIGGGHTS and MPI.
+    pub native: bool,
     /// Words for `cargo bench`, for example the beginning of a benchmark's name.
     pub words: Vec<OsString>,
 }
@@ -56,15 +44,22 @@ pub fn run(workspace: &Workspace, choice: &Choice) -> Outcome<()> {
     if choice.table_only {
         return print(&table(&measurements(&workspace.target, None)));
     }
-    packages::install(Needs::NATIVE, &workspace.logs)?;
+    let needs = if choice.native {
+        Needs::NATIVE
+    } else {
+        Needs {
+            tests: false,
+            ..Needs::ALL
+        }
+    };
+    packages::install(needs, &workspace.logs)?;
     let everything = choice.words.is_empty();
     if everything {
-        let mut build = workspace.cargo("build");
-        build.args(["--release", "-p", "calcine"]);
-        loud_step("build Calcine", || visibly(&mut build))?;
+        tasks::build_parts(workspace, needs, Profile::Release)?;
     }
     for folder in FOLDERS {
-        if !workspace.root.join(folder).join("benches").is_dir() {
+        let absent = !workspace.root.join(folder).join("benches").is_dir();
+        if absent || folder == "adapters/mpi" && choice.native {
             continue;
         }
         let manifest = workspace.root.join(folder).join("Cargo.toml");
@@ -75,12 +70,14 @@ pub fn run(workspace: &Workspace, choice: &Choice) -> Outcome<()> {
             .args(&choice.words);
         loud_step(&format!("benchmarks in {folder}"), || visibly(&mut command))?;
     }
-    let phases = everything.then(|| phases(workspace));
+    // Before the table, so that it is not parted by what runs say.
+    let tables = if everything {
+        runs::tables(workspace, choice.native)
+    } else {
+        Ok(Vec::new())
+    };
     print(&table(&measurements(&workspace.target, Some(begun))))?;
-    match phases {
-        Some(phases) => print(&phases?),
-        None => Ok(()),
-    }
+    tables?.iter().try_for_each(print)
 }
 
 fn print(table: &Table) -> Outcome<()> {
@@ -102,8 +99,10 @@ struct Measurement {
     time: f64,
     /// Standard error of it in s.
     error: f64,
-    /// What one iteration works through: cells, particles.
+    /// What one iteration works through: cells, particles, bytes.
     elements: Option<f64>,
+    /// True where these are bytes.
+    bytes: bool,
 }
 
 impl Measurement {
@@ -119,7 +118,10 @@ impl Measurement {
             value: text("value_str"),
             time: median("point_estimate")?,
             error: median("standard_error")?,
-            elements: about.number(&["throughput", "Elements"]),
+            elements: about
+                .number(&["throughput", "Elements"])
+                .or_else(|| about.number(&["throughput", "Bytes"])),
+            bytes: about.number(&["throughput", "Bytes"]).is_some(),
         })
     }
 
@@ -194,11 +196,7 @@ fn table(measurements: &[Measurement]) -> Table {
             one.value.clone(),
             format!("{}s", short(one.time)),
             format!("{:.0} %", 100.0 * one.error / one.time),
-            counted(
-                short(one.elements.unwrap_or(0.0) / one.time)
-                    .trim_end()
-                    .to_owned(),
-            ),
+            counted(rate(one)),
             counted(format!("{}s", short(one.each()))),
             counted(format!("{:.2}", one.each() / first.each())),
         ]);
@@ -206,87 +204,14 @@ fn table(measurements: &[Measurement]) -> Table {
     table
 }
 
-/// Runs of the shipped heated bed on meshes of growing size: the cost of a window by phase.
-fn phases(workspace: &Workspace) -> Outcome<Table> {
-    let log = crate::steps::new_log(&workspace.logs, "bench-phases")?;
-    let mut table = Table::new([
-        "cost per window by phase",
-        "cells",
-        "particles",
-        "wall time",
-        "per cell",
-        "share",
-    ]);
-    let large = env::var_os("CALCINE_BENCH_LARGE").is_some();
-    for size in &SIZES[..SIZES.len() - usize::from(!large)] {
-        let [across, along, _] = size;
-        let out = workspace
-            .target
-            .join(format!("xtask/heated-bed-{across}-{along}"));
-        let _ = fs::remove_dir_all(&out);
-        let mut command = heated_bed(workspace, &out, *size);
-        step(
-            &format!("heated bed, {across} cells across, {along} along"),
-            || quietly(&mut command, &log),
-        )?;
-        let path = out.join("summary.json");
-        let text = fs::read_to_string(&path).map_err(|cause| Stop::io(&path, &cause))?;
-        let rows = phase_rows(&text);
-        let rows = rows.ok_or_else(|| Stop(format!("{}: not a summary", path.display())))?;
-        rows.into_iter().for_each(|row| table.add(row));
+/// Elements per second.
+fn rate(one: &Measurement) -> String {
+    let rate = short(one.elements.unwrap_or(0.0) / one.time);
+    if one.bytes {
+        format!("{rate}B")
+    } else {
+        rate.trim_end().to_owned()
     }
-    Ok(table)
-}
-
-fn heated_bed(workspace: &Workspace, out: &Path, [across, along, windows]: [u32; 3]) -> Command {
-    let program = workspace
-        .target
-        .join(Profile::Release.folder())
-        .join("calcine");
-    let case: PathBuf = workspace.root.join("cases/heated-bed.toml");
-    let mut command = Command::new(program);
-    command
-        .arg("run")
-        .arg(case)
-        .args(["--quiet", "--out"])
-        .arg(out);
-    let settings = [
-        format!("mesh.cylinder.cells=[{across}, {along}]"),
-        "time.acceleration=200".into(),
-        "time.motion_window=2 ms".into(),
-        // 0.4 s of process time each.
-        format!("time.end={} ms", 400 * windows),
-    ];
-    for setting in settings {
-        command.args(["--set", &setting]);
-    }
-    command
-}
-
-/// Rows of one run, from its summary, as a bed of moving particles would pay for each window.
-fn phase_rows(summary: &str) -> Option<Vec<[String; 6]>> {
-    let summary = Json::read(summary)?;
-    let number = |key: &str| summary.number(&[key]);
-    let (cells, windows) = (number("cells")?, number("windows")?);
-    let wall = |phase: &str| summary.number(&["wall_time_s", phase]);
-    let mut times = Vec::new();
-    for phase in PHASES {
-        let once = PHASES[..2].contains(&phase);
-        times.push((phase, wall(phase)? / if once { 1.0 } else { windows }));
-    }
-    let sum: f64 = times.iter().map(|(_, time)| time).sum();
-    times.push(("all phases", sum));
-    let row = |(phase, time): (&str, f64)| {
-        [
-            phase.to_owned(),
-            format!("{cells}"),
-            format!("{}", number("particles").unwrap_or(0.0)),
-            format!("{}s", short(time)),
-            format!("{}s", short(time / cells)),
-            format!("{:.1} %", 100.0 * time / sum),
-        ]
-    };
-    Some(times.into_iter().map(row).collect())
 }
 
 #[cfg(test)]
@@ -340,21 +265,5 @@ mod tests {
             "",
         ];
         assert_eq!(lines[3], wanted);
-    }
-
-    #[test]
-    fn phases_are_shares_of_a_window() {
-        let summary = r#"{"cells": 1000, "particles": 70, "windows": 4, "wall_time_s": {"total": 9,
-            "gas": 3.0, "particles": 0, "interior": 0, "mapping": 0.5, "smoother": 0,
-            "exchange": 1.0, "output": 0}}"#;
-        let rows = phase_rows(summary).unwrap();
-        let mapping = ["mapping", "1000", "70", "500 ms", "500 µs", "33.3 %"];
-        assert_eq!(rows[0], mapping);
-        assert_eq!(rows[3], ["gas", "1000", "70", "750 ms", "750 µs", "50.0 %"]);
-        assert_eq!(
-            rows[7],
-            ["all phases", "1000", "70", "1.50 s", "1.50 ms", "100.0 %"]
-        );
-        assert_eq!(phase_rows("{}"), None);
     }
 }

@@ -6,6 +6,7 @@ mod bench;
 mod headers;
 mod json;
 mod packages;
+mod runs;
 mod sources;
 mod steps;
 mod table;
@@ -32,11 +33,14 @@ usage: cargo xtask TASK
   install --prefix DIR    build, then copy to DIR/bin and DIR/libexec/calcine
         [--native]        without the adapters for OpenFOAM and LIGGGHTS
   bench …                 run the benchmarks and print one table; words go to `cargo bench`
+        [--native]        without OpenFOAM, LIGGGHTS and MPI
         [--table]         the table of what was measured last
   fuzz [--minutes N]      fuzz what reads users' files, ten minutes each unless told
         [--seed S] [case|polymesh]
   torture [--kills N]     kill -9 at random moments, resume, compare every bit (50 unless told)
-        [--seed S]";
+        [--seed S]
+  faults [--kills N]      kill or stop random processes of coupled runs at random moments (500
+        [--seed S]        unless told): each is named, and everything ends and is cleaned up";
 
 /// Exit code of a wrong command line, as `calcine` has it.
 const USAGE_CODE: u8 = 2;
@@ -79,6 +83,7 @@ enum Task {
     /// A test program of its own, with its words.
     Program {
         name: &'static str,
+        needs: Needs,
         words: Vec<OsString>,
     },
     Install {
@@ -101,26 +106,34 @@ fn read(words: &[OsString]) -> Option<Task> {
             })
         }
         "bench" => {
-            let table_only = rest.first().is_some_and(|word| word == "--table");
+            let first = |name: &str| rest.first().is_some_and(|word| word == name);
+            let (table_only, native) = (first("--table"), first("--native"));
             Some(Task::Bench(bench::Choice {
                 table_only,
-                words: rest[usize::from(table_only)..].to_vec(),
+                native,
+                words: rest[usize::from(table_only || native)..].to_vec(),
             }))
         }
-        "fuzz" => program("fuzz", ["--minutes", "10"], rest),
-        "torture" => program("torture", ["--kills", "50"], rest),
+        "fuzz" => program("fuzz", Needs::NATIVE, ["--minutes", "10"], rest),
+        "torture" => program("torture", Needs::NATIVE, ["--kills", "50"], rest),
+        "faults" => program("faults_random", Needs::ALL, ["--kills", "500"], rest),
         "install" => install(rest),
         _ => None,
     }
 }
 
 /// A test program; unless the words hold its option, with the option's usual value.
-fn program(name: &'static str, usual: [&str; 2], words: &[OsString]) -> Option<Task> {
+fn program(
+    name: &'static str,
+    needs: Needs,
+    usual: [&str; 2],
+    words: &[OsString],
+) -> Option<Task> {
     let mut words = words.to_vec();
     if !words.iter().any(|word| word == usual[0]) {
         words.extend(usual.map(OsString::from));
     }
-    Some(Task::Program { name, words })
+    Some(Task::Program { name, needs, words })
 }
 
 fn set_up(words: &[OsString]) -> Option<Task> {
@@ -164,7 +177,7 @@ fn perform(task: Task) -> Outcome<()> {
         Task::Calcine(words) => tasks::run(&workspace, &words),
         Task::Test { native, words } => tasks::test(&workspace, native, &words),
         Task::Bench(choice) => bench::run(&workspace, &choice),
-        Task::Program { name, words } => tasks::program(&workspace, name, &words),
+        Task::Program { name, needs, words } => tasks::program(&workspace, name, needs, &words),
         Task::Install { prefix, needs } => tasks::install(&workspace, &prefix, needs),
     }
 }
@@ -203,14 +216,18 @@ mod tests {
 
     #[test]
     fn fuzzing_and_torture_have_their_usual_length_unless_told() {
-        let task = |name, line: &str| {
+        let task = |name, needs, line: &str| {
             let words = words(line);
-            Some(Task::Program { name, words })
+            Some(Task::Program { name, needs, words })
         };
-        assert_eq!(read(&words("fuzz case")), task("fuzz", "case --minutes 10"));
-        let given = task("fuzz", "--minutes 1 polymesh");
+        let fuzz = |line| task("fuzz", Needs::NATIVE, line);
+        assert_eq!(read(&words("fuzz case")), fuzz("case --minutes 10"));
+        let given = fuzz("--minutes 1 polymesh");
         assert_eq!(read(&words("fuzz --minutes 1 polymesh")), given);
-        assert_eq!(read(&words("torture")), task("torture", "--kills 50"));
+        let torture = task("torture", Needs::NATIVE, "--kills 50");
+        assert_eq!(read(&words("torture")), torture);
+        let faults = task("faults_random", Needs::ALL, "--kills 500");
+        assert_eq!(read(&words("faults")), faults);
     }
 
     #[test]

@@ -60,8 +60,17 @@ pub fn test(workspace: &Workspace, native: bool, words: &[OsString]) -> Outcome<
 }
 
 /// Runs one of the test programs of the package `calcine` that have words of their own.
-pub fn program(workspace: &Workspace, name: &str, words: &[OsString]) -> Outcome<()> {
-    packages::install(Needs::NATIVE, &workspace.logs)?;
+pub fn program(
+    workspace: &Workspace,
+    name: &str,
+    needs: Needs,
+    words: &[OsString],
+) -> Outcome<()> {
+    packages::install(needs, &workspace.logs)?;
+    if needs.openfoam || needs.liggghts {
+        let _lock = workspace.lock()?;
+        build_parts(workspace, needs, Profile::Dev)?;
+    }
     let mut command = workspace.cargo("test");
     command.args(["-p", "calcine", "--test", name, "--"]);
     loud_step(name, || visibly(command.args(words)))
@@ -97,7 +106,7 @@ pub fn install(workspace: &Workspace, prefix: &Path, needs: Needs) -> Outcome<()
 }
 
 /// One call of Cargo for all packages, so that shared dependencies are built once, then the C++.
-fn build_parts(workspace: &Workspace, needs: Needs, profile: Profile) -> Outcome<()> {
+pub fn build_parts(workspace: &Workspace, needs: Needs, profile: Profile) -> Outcome<()> {
     let adapter = needs
         .openfoam
         .then(|| OpenfoamAdapter::new(workspace))

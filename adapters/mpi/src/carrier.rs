@@ -11,6 +11,7 @@ use std::path::Path;
 use std::ptr;
 
 use calcine_wire::{Carrier, Message, WireError};
+use mpi::environment::Universe;
 use mpi::ffi;
 
 /// Tag of messages from the coordinator to a rank.
@@ -71,6 +72,13 @@ pub fn end_at_once(code: u8) -> ! {
     unsafe { _exit(code.into()) }
 }
 
+/// Ends MPI in a process that MPI has spawned; rsmpi would part from the parent a second time.
+pub fn finalize(universe: Universe) {
+    std::mem::forget(universe);
+    // SAFETY: MPI was started, and ends once: the universe that would end it again is gone.
+    unsafe { ffi::MPI_Finalize() };
+}
+
 /// A communicator with ranks that were spawned, or one within this process.
 #[derive(Clone, Copy)]
 pub struct World {
@@ -129,6 +137,23 @@ impl World {
                 "setting up",
                 ffi::MPI_Comm_dup(ffi::RSMPI_COMM_SELF, &mut comm),
             )?;
+            let code = ffi::MPI_Comm_set_errhandler(comm, ffi::RSMPI_ERRORS_RETURN);
+            checked("setting up", code)?;
+            Ok(Self { comm })
+        }
+    }
+
+    /// The coordinator that spawned this process by MPI.
+    pub fn parent() -> Result<Self, WireError> {
+        // SAFETY: a place of the right type.
+        unsafe {
+            let mut comm = ffi::RSMPI_COMM_NULL;
+            checked("finding the parent", ffi::MPI_Comm_get_parent(&mut comm))?;
+            if comm == ffi::RSMPI_COMM_NULL {
+                return Err(WireError::Order {
+                    what: "no coordinator has spawned this process by MPI",
+                });
+            }
             let code = ffi::MPI_Comm_set_errhandler(comm, ffi::RSMPI_ERRORS_RETURN);
             checked("setting up", code)?;
             Ok(Self { comm })

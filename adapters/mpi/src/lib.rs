@@ -5,5 +5,5 @@
 mod carrier;
 mod network;
 
-pub use carrier::{Place, World, place_files};
+pub use carrier::{Place, World, finalize, place_files};
 pub use network::{MpiNetwork, end};

@@ -10,6 +10,7 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 
 use super::moving;
+use super::template::{Template, Values};
 
 /// Name of the script.
 pub const SCRIPT: &str = "in.liggghts";
@@ -32,6 +33,8 @@ pub struct Inputs<'a> {
     pub step: f64,
     /// Number of ranks, side by side along the longer horizontal side.
     pub ranks: u32,
+    /// The user's own script in place of the generated one; of a bed that moves only.
+    pub template: Option<&'a Template>,
 }
 
 impl Inputs<'_> {
@@ -39,7 +42,7 @@ impl Inputs<'_> {
     pub fn write(&self, folder: &Path) -> Result<[PathBuf; 2], PartError> {
         self.check()?;
         let files = [
-            (folder.join(SCRIPT), self.script()),
+            (folder.join(SCRIPT), self.script()?),
             (folder.join(DATA), self.data()),
         ];
         let meshes = match &self.setup.motion {
@@ -79,7 +82,8 @@ impl Inputs<'_> {
         Ok(())
     }
 
-    fn script(&self) -> String {
+    /// The script; an error where a script of the user's own does not go with the case.
+    pub fn script(&self) -> Result<String, PartError> {
         let (lower, upper) = self.corners();
         let along_x = upper.x - lower.x >= upper.y - lower.y;
         let grid = if along_x {
@@ -90,20 +94,34 @@ impl Inputs<'_> {
         let moves = !self.setup.motion.is_frozen();
         let share = if moves { 0.4 } else { 0.1 };
         let skin = share * self.setup.radius.iter().copied().fold(0.0, f64::max);
-        let (template, contacts) = match &self.setup.motion {
-            Motion::Frozen => (FROZEN_BED, String::new()),
-            Motion::Free(contacts) => (MOVING_BED, moving::commands(contacts)),
-        };
         // Bins as large as particles would be without number in a large box with few of them.
         let volume = (upper - lower).product();
         let room = (volume / (4.0 * self.setup.id.len() as f64)).cbrt();
         let bins = room.max(self.setup.radius.iter().copied().fold(0.0, f64::max) + 0.5 * skin);
-        template
+        if let (Some(own), Motion::Free(contacts)) = (self.template, &self.setup.motion) {
+            let values = Values {
+                step: self.step,
+                processors: grid,
+                skin,
+                bins,
+                corners: (lower, upper),
+            };
+            return own.script(contacts, &values).map_err(|error| {
+                let message = "the script of `liggghts.template` does not go with the case";
+                PartError::new(WHO, FailureKind::NotStarted, message).caused_by(error)
+            });
+        }
+        let (template, contacts) = match &self.setup.motion {
+            Motion::Frozen => (FROZEN_BED, String::new()),
+            Motion::Free(contacts) => (MOVING_BED, moving::commands(contacts)),
+        };
+        let script = template
             .replace("{bins}", &format!("{bins:e}"))
             .replace("{contacts}", &contacts)
             .replace("{processors}", &grid)
             .replace("{skin}", &format!("{skin:e}"))
-            .replace("{step}", &format!("{:e}", self.step))
+            .replace("{step}", &format!("{:e}", self.step));
+        Ok(script)
     }
 
     fn data(&self) -> String {
@@ -197,6 +215,7 @@ mod tests {
             bounds: (Vec3::zeros(), Vec3::new(0.01, 0.01, 0.3)),
             step: 1e-4,
             ranks: 1,
+            template: None,
         }
     }
 
@@ -213,7 +232,7 @@ mod tests {
     #[test]
     fn the_script_has_no_gap_left_and_reads_the_data_file() {
         let setup = setup();
-        let script = inputs(&setup).script();
+        let script = inputs(&setup).script().unwrap();
         let commands: Vec<&str> = script
             .lines()
             .filter(|line| !line.starts_with('#'))

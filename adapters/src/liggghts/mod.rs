@@ -2,6 +2,7 @@
 
 pub mod inputs;
 pub mod moving;
+pub mod template;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -288,6 +289,10 @@ impl Part for LiggghtsParticles {
         state
             .write(&directory.join(IDENTITY))
             .map_err(|error| unusable(directory, error))
+    }
+
+    fn processor_time(&self) -> Duration {
+        self.solver.processor_time()
     }
 
     fn finish_run(&mut self, _supervisor: &Supervisor) -> Result<(), PartError> {

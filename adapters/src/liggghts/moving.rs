@@ -82,36 +82,55 @@ fn wall_refusal(wall: &Wall) -> Option<String> {
 
 /// The commands after the particles are read.
 pub fn commands(contacts: &Contacts) -> String {
+    laws(contacts)
+        + &groups(contacts)
+        + &gravity(contacts)
+        + &walls(contacts)
+        + &push()
+        + &motion(contacts)
+}
+
+/// Materials and the contact law.
+pub fn laws(contacts: &Contacts) -> String {
     let mut text = String::new();
     properties(&mut text, contacts);
-    let model = model(contacts);
     let _ = writeln!(
         text,
-        "pair_style gran {model}{}\npair_coeff * *",
+        "pair_style gran {}{}\npair_coeff * *",
+        model(contacts),
         settings(contacts)
     );
-    groups(&mut text, contacts);
-    let gravity = contacts.gravity.norm();
-    if gravity > 0.0 {
-        let [x, y, z] = (contacts.gravity / gravity).into();
-        let _ = writeln!(
-            text,
-            "fix calcine_gravity calcine_free gravity {gravity:e} vector {x:e} {y:e} {z:e}"
-        );
-    }
-    walls(&mut text, contacts, &model);
-    text.push_str(
-        "fix calcine_push all property/atom calcine_push vector yes no no 0. 0. 0.\n\
-         variable calcine_x atom f_calcine_push[1]\n\
-         variable calcine_y atom f_calcine_push[2]\n\
-         variable calcine_z atom f_calcine_push[3]\n\
-         fix calcine_add calcine_free addforce v_calcine_x v_calcine_y v_calcine_z\n",
-    );
-    if contacts.held.contains(&true) {
-        text.push_str("fix calcine_hold calcine_held freeze\n");
-    }
-    text.push_str("fix calcine_move calcine_free nve/sphere\n");
     text
+}
+
+/// Gravity on all that is free.
+pub fn gravity(contacts: &Contacts) -> String {
+    let gravity = contacts.gravity.norm();
+    if gravity == 0.0 {
+        return String::new();
+    }
+    let [x, y, z] = (contacts.gravity / gravity).into();
+    format!("fix calcine_gravity calcine_free gravity {gravity:e} vector {x:e} {y:e} {z:e}\n")
+}
+
+/// The force of the gas, which the host writes into the fix `calcine_push`.
+pub fn push() -> String {
+    "fix calcine_push all property/atom calcine_push vector yes no no 0. 0. 0.\n\
+     variable calcine_x atom f_calcine_push[1]\n\
+     variable calcine_y atom f_calcine_push[2]\n\
+     variable calcine_z atom f_calcine_push[3]\n\
+     fix calcine_add calcine_free addforce v_calcine_x v_calcine_y v_calcine_z\n"
+        .into()
+}
+
+/// What is held stays, what is free moves.
+pub fn motion(contacts: &Contacts) -> String {
+    let held = if contacts.held.contains(&true) {
+        "fix calcine_hold calcine_held freeze\n"
+    } else {
+        ""
+    };
+    format!("{held}fix calcine_move calcine_free nve/sphere\n")
 }
 
 /// The material of each atom type.
@@ -205,7 +224,9 @@ fn settings(contacts: &Contacts) -> &'static str {
     }
 }
 
-fn groups(text: &mut String, contacts: &Contacts) {
+/// Groups of what is free and of what is held, by atom types.
+pub fn groups(contacts: &Contacts) -> String {
+    let mut text = String::new();
     for (group, held) in [("calcine_free", false), ("calcine_held", true)] {
         let of = contacts.held.iter().enumerate();
         let types: Vec<String> = of
@@ -216,6 +237,7 @@ fn groups(text: &mut String, contacts: &Contacts) {
             let _ = writeln!(text, "group {group} type {}", types.join(" "));
         }
     }
+    text
 }
 
 /// Name of a wall's file of triangles.
@@ -252,7 +274,9 @@ fn stl(name: &str, triangles: &[[Vec3; 3]]) -> String {
     text
 }
 
-fn walls(text: &mut String, contacts: &Contacts, model: &str) {
+/// Walls, with the contact law of the particles.
+pub fn walls(contacts: &Contacts) -> String {
+    let (mut text, model) = (String::new(), model(contacts));
     let mut meshes = Vec::new();
     for (index, wall) in contacts.walls.iter().enumerate() {
         let kind = contacts.material_of.len() + wall.material + 1;
@@ -271,7 +295,7 @@ fn walls(text: &mut String, contacts: &Contacts, model: &str) {
                     "fix calcine_mesh_{index} all mesh/surface file {} type {kind}",
                     file(index)
                 );
-                moving_mesh(text, index, wall.motion);
+                moving_mesh(&mut text, index, wall.motion);
                 meshes.push(format!("calcine_mesh_{index}"));
                 continue;
             }
@@ -291,6 +315,7 @@ fn walls(text: &mut String, contacts: &Contacts, model: &str) {
             settings(contacts)
         );
     }
+    text
 }
 
 fn moving_mesh(text: &mut String, index: usize, motion: WallMotion) {

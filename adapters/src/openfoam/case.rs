@@ -13,30 +13,6 @@ use super::start::Start;
 use super::stock::{self, Solver};
 use super::{NAME, decompose, dictionaries, species};
 
-/// Schemes and linear solvers where no template brings its own.
-const DEFAULTS: [(&str, &str); 2] = [
-    (
-        "system/fvSchemes",
-        include_str!("../../../of-cases/default/system/fvSchemes"),
-    ),
-    (
-        "system/fvSolution",
-        include_str!("../../../of-cases/default/system/fvSolution"),
-    ),
-];
-
-/// The same for a stock solver.
-const STOCK_DEFAULTS: [(&str, &str); 2] = [
-    (
-        "system/fvSchemes",
-        include_str!("../../../of-cases/buoyantPimpleFoam/system/fvSchemes"),
-    ),
-    (
-        "system/fvSolution",
-        include_str!("../../../of-cases/buoyantPimpleFoam/system/fvSolution"),
-    ),
-];
-
 /// What an OpenFOAM case is made from.
 #[derive(Clone, Copy, Debug)]
 pub struct OpenfoamCase<'a> {
@@ -69,12 +45,7 @@ impl OpenfoamCase<'_> {
         if let Some(template) = self.template {
             copy(template, folder)?;
         }
-        let defaults = if self.solver.is_stock() {
-            STOCK_DEFAULTS
-        } else {
-            DEFAULTS
-        };
-        for (name, text) in defaults {
+        for (name, text) in self.solver.defaults() {
             if self.template.is_none_or(|own| !own.join(name).is_file()) {
                 let text = dictionaries::schemes(text, self.setup.controls.convection);
                 put(&folder.join(name), &suited(&text, self.mesh))?;
@@ -139,7 +110,6 @@ impl OpenfoamCase<'_> {
         let library = self.library.to_string_lossy();
         let control = stock::control(self.solver, &include, &library);
         let options = stock::options(&self.beside(folder, "constant/fvOptions")?);
-        let [absolute, driving] = stock::pressures(setup);
         let velocity = start.applied("U", stock::velocity(setup));
         let temperature = start.applied("T", stock::temperature(setup));
         for (name, text) in [
@@ -147,10 +117,16 @@ impl OpenfoamCase<'_> {
             ("constant/fvOptions", options),
             ("0/U", velocity),
             ("0/T", temperature),
-            (absolute.0, start.applied("p", absolute.1)),
-            (driving.0, start.applied("p_rgh", driving.1)),
         ] {
             put(&folder.join(name), &text)?;
+        }
+        for (name, text) in stock::pressures(self.solver, setup) {
+            put(&folder.join("0").join(name), &start.applied(name, text))?;
+        }
+        if self.solver == Solver::ReactingFoam {
+            for (name, text) in stock::reacting(setup) {
+                put(&folder.join(name), &text)?;
+            }
         }
         let turbulence = folder.join("constant/turbulenceProperties");
         if !turbulence.is_file() {

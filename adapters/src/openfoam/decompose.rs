@@ -7,10 +7,11 @@ use std::ffi::OsString;
 use std::fs::{self, File};
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::time::Duration;
 
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::supervisor::log_end;
+use calcine_coupler::supervisor::{Supervisor, log_end};
 
 use super::NAME;
 
@@ -19,6 +20,8 @@ pub const DICTIONARY: &str = "system/decomposeParDict";
 /// The list of ranks by cell, in `constant/`.
 pub const DATA: &str = "cellDecomposition";
 const PROGRAM: &str = "decomposePar";
+/// Between two looks at it.
+const PAUSE: Duration = Duration::from_millis(5);
 
 /// The rank of each cell, by recursive bisection of the cells' centres across the longest side of what
 /// is to be divided: every rank gets its share to a few cells, in a piece that is as compact as that allows.
@@ -54,11 +57,12 @@ fn bisect(centres: &[Vec3], cells: &mut [usize], first: u32, ranks: u32, parts: 
     bisect(centres, upper, first + left, ranks - left, parts);
 }
 
-/// Has decomposePar make the folders of the ranks in a case.
+/// Has decomposePar make the folders of the ranks in a case; it may take as long as the supervisor lets it.
 pub fn run(
     folder: &Path,
     ranks: u32,
     environment: &[(OsString, OsString)],
+    supervisor: &Supervisor,
 ) -> Result<(), PartError> {
     let refuse = |message: String| PartError::new(NAME, FailureKind::NotStarted, message);
     let path = folder.join("log.decomposePar");
@@ -69,15 +73,28 @@ pub fn run(
     let (output, errors) = log().map_err(|error| {
         refuse(format!("{} cannot be written", path.display())).caused_by(error)
     })?;
-    let status = Command::new(PROGRAM)
+    let mut child = Command::new(PROGRAM)
         .arg("-force")
         .current_dir(folder)
         .envs(environment.iter().cloned())
         .stdin(Stdio::null())
         .stdout(output)
         .stderr(errors)
-        .status()
+        .spawn()
         .map_err(|error| refuse(format!("{PROGRAM} cannot be started")).caused_by(error))?;
+    let name = format!("OpenFOAM (gas, {PROGRAM}), pid {}", child.id());
+    let waited = supervisor.wait(&name, None, |slice| {
+        std::thread::sleep(slice.min(PAUSE));
+        child.try_wait().map_err(|error| {
+            refuse(format!("{PROGRAM} cannot be waited for")).caused_by(error)
+        })
+    });
+    let status = waited.map_err(|error| {
+        // One that has ended meanwhile is what is wanted.
+        let _ = child.kill();
+        let _ = child.wait();
+        error.with_log(log_end(&path))
+    })?;
     let made = fs::read_dir(folder).into_iter().flatten().flatten();
     let made = made.filter(|entry| {
         let name = entry.file_name();
@@ -87,11 +104,15 @@ pub fn run(
     if status.success() && made == ranks as usize {
         return Ok(());
     }
-    let message = format!(
-        "{PROGRAM} ended with {status} and {made} parts of the mesh for {ranks} ranks; a \
-         template's {DICTIONARY} must ask for as many"
-    );
-    Err(refuse(message).with_log(log_end(&path)))
+    let remedy = if status.success() {
+        format!("; a template's {DICTIONARY} must ask for as many")
+    } else {
+        String::new()
+    };
+    let message =
+        format!("ended with {status} and {made} parts of the mesh for {ranks} ranks{remedy}");
+    let error = PartError::new(name, FailureKind::NotStarted, message);
+    Err(error.with_log(log_end(&path)))
 }
 
 #[cfg(test)]

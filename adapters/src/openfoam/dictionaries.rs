@@ -70,11 +70,14 @@ pub fn labels(name: &str, values: &[u32]) -> String {
 /// transport, a fluid of constant properties, or a mixture of species.
 pub fn thermophysical(setup: &GasSetup, solver: Solver) -> String {
     // buoyantPimpleFoam asks for a model of the density.
-    let psi = if solver.is_stock() {
+    let psi = if solver == Solver::BuoyantPimpleFoam {
         "heRhoThermo"
     } else {
         "hePsiThermo"
     };
+    if let (Solver::ReactingFoam, GasModel::Perfect(gas)) = (solver, &setup.properties) {
+        return super::stock::one_species(&setup.mixture, gas);
+    }
     let (kinds, numbers) = match &setup.properties {
         GasModel::Perfect(gas) => (
             [psi, "sutherland", "perfectGas"],

@@ -38,6 +38,9 @@ pub const SOLVER: &str = "calcineGasFoam";
 pub const LIBRARY: &str = "libcalcineFoam.so";
 /// The variable that names another solver program.
 pub const SOLVER_VARIABLE: &str = "CALCINE_GASFOAM";
+/// How much longer than the deadline the division of a mesh may take, for each cell: twice what it was seen
+/// to take.
+const DIVIDING_PER_CELL: Duration = Duration::from_micros(60);
 /// Where Debian's OpenFOAM has its `etc`.
 const PROJECT: &str = "/usr/share/openfoam";
 
@@ -131,7 +134,10 @@ impl OpenfoamGas {
         case.write(&launch.folder)?;
         let mut arguments: Vec<OsString> = Vec::new();
         if launch.ranks > 1 {
-            decompose::run(&launch.folder, launch.ranks, &environment(&launch.folder))?;
+            let patience = launch.deadline + DIVIDING_PER_CELL * launch.mesh.cells() as u32;
+            let alone = Supervisor::new(patience, supervisor.interrupts().clone());
+            let variables = environment(&launch.folder);
+            decompose::run(&launch.folder, launch.ranks, &variables, &alone)?;
             arguments.push("-parallel".into());
         }
         for (option, folder) in given {
@@ -269,6 +275,10 @@ impl Part for OpenfoamGas {
     fn checkpoint(&mut self, directory: &Path) -> Result<(), PartError> {
         self.solver.checkpoint(directory)?;
         self.read_state(None)
+    }
+
+    fn processor_time(&self) -> Duration {
+        self.solver.processor_time()
     }
 
     fn finish_run(&mut self, supervisor: &Supervisor) -> Result<(), PartError> {

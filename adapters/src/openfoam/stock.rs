@@ -1,5 +1,6 @@
 //! Cases of a stock solver, which Calcine's fvOption `calcineSource` couples.
 
+use calcine_coupler::physics::gas::{GAS_CONSTANT, GasProperties};
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::{GasPatch, GasSetup, InletFlow, Schedule, WallHeat, WallVelocity};
 
@@ -13,6 +14,10 @@ pub enum Solver {
     CalcineGasFoam,
     /// Debian's transient solver of buoyant compressible flow, with Calcine's sources.
     BuoyantPimpleFoam,
+    /// The same without gravity.
+    RhoPimpleFoam,
+    /// Debian's transient solver of reacting flow without gravity, here of one gas that does not react.
+    ReactingFoam,
 }
 
 impl Solver {
@@ -21,7 +26,46 @@ impl Solver {
         match self {
             Self::CalcineGasFoam => super::SOLVER,
             Self::BuoyantPimpleFoam => "buoyantPimpleFoam",
+            Self::RhoPimpleFoam => "rhoPimpleFoam",
+            Self::ReactingFoam => "reactingFoam",
         }
+    }
+
+    /// All of them.
+    pub const ALL: [Self; 4] = [
+        Self::CalcineGasFoam,
+        Self::BuoyantPimpleFoam,
+        Self::RhoPimpleFoam,
+        Self::ReactingFoam,
+    ];
+
+    /// Schemes and linear solvers where no template brings its own.
+    pub fn defaults(self) -> [(&'static str, &'static str); 2] {
+        macro_rules! system {
+            ($folder:literal) => {
+                [
+                    (
+                        "system/fvSchemes",
+                        include_str!(concat!("../../../of-cases/", $folder, "/system/fvSchemes")),
+                    ),
+                    (
+                        "system/fvSolution",
+                        include_str!(concat!("../../../of-cases/", $folder, "/system/fvSolution")),
+                    ),
+                ]
+            };
+        }
+        match self {
+            Self::CalcineGasFoam => system!("default"),
+            Self::BuoyantPimpleFoam => system!("buoyantPimpleFoam"),
+            Self::RhoPimpleFoam => system!("rhoPimpleFoam"),
+            Self::ReactingFoam => system!("reactingFoam"),
+        }
+    }
+
+    /// True where gravity acts in it.
+    pub fn has_gravity(self) -> bool {
+        matches!(self, Self::CalcineGasFoam | Self::BuoyantPimpleFoam)
     }
 
     /// True for a program that is not Calcine's.
@@ -31,7 +75,13 @@ impl Solver {
 }
 
 /// What of a gas a stock solver cannot do, in words; `moving_clock`: process and motion time differ.
-pub fn refusal(setup: &GasSetup, moving_clock: bool) -> Option<String> {
+pub fn refusal(solver: Solver, setup: &GasSetup, moving_clock: bool) -> Option<String> {
+    if !solver.has_gravity() && setup.gravity.norm() > 0.0 {
+        return Some("it has no gravity (`gas.gravity`)".into());
+    }
+    if solver != Solver::BuoyantPimpleFoam && matches!(setup.properties, GasModel::Constant(_)) {
+        return Some("its gas has a density that follows the pressure (`gas.mixture`)".into());
+    }
     if matches!(setup.properties, GasModel::Mixture(_)) {
         return Some("it carries no species (`gas.species`)".into());
     }
@@ -114,6 +164,40 @@ pub fn laminar() -> String {
     header("dictionary", "turbulenceProperties") + "simulationType  laminar;\n"
 }
 
+/// Name of the one species of a gas that does not react.
+const SPECIES: &str = "gas";
+
+/// What reactingFoam reads beside the others: its one species, and that it does not react.
+pub fn reacting(setup: &GasSetup) -> [(&'static str, String); 2] {
+    let about = ("volScalarField", SPECIES, "[0 0 0 0 0 0 0]", "1");
+    let fraction = field(about, setup, |patch| match patch {
+        GasPatch::Inlet { .. } => fixed("1"),
+        _ => zero_gradient(),
+    });
+    let none = header("dictionary", "combustionProperties") + "combustionModel none;\n";
+    [("0/gas", fraction), ("constant/combustionProperties", none)]
+}
+
+/// `constant/thermophysicalProperties` of reactingFoam: an ideal gas of one species with a constant heat capacity
+/// (as a polynomial of one term; this solver has no Sutherland's law beside a constant) and Sutherland's law.
+pub fn one_species(name: &str, gas: &GasProperties) -> String {
+    let coefficient = gas.heat_capacity * gas.molar_mass / GAS_CONSTANT;
+    let polynomial = format!("({coefficient:e} 0 0 0 0 0 0)");
+    header("dictionary", "thermophysicalProperties")
+        + &format!(
+            "// {name}\nthermoType\n{{\n    type            hePsiThermo;\n    mixture         \
+             multiComponentMixture;\n    transport       sutherland;\n    thermo          janaf;\n    \
+             equationOfState perfectGas;\n    specie          specie;\n    energy          \
+             sensibleEnthalpy;\n}}\n\nspecies ({SPECIES});\ninertSpecie {SPECIES};\n\n{SPECIES}\n{{\n    \
+             specie {{ molWeight {:e}; }}\n    thermodynamics\n    {{\n        Tlow 1; Tcommon 1000; \
+             Thigh 10000;\n        lowCpCoeffs {polynomial};\n        highCpCoeffs {polynomial};\n    }}\n    \
+             transport {{ As {:e}; Ts {:e}; }}\n}}\n",
+            gas.molar_mass * 1e3,
+            gas.sutherland_coefficient,
+            gas.sutherland_temperature
+        )
+}
+
 /// `0/U`: superficial.
 pub fn velocity(setup: &GasSetup) -> String {
     let start = vector(setup.velocity);
@@ -162,10 +246,17 @@ pub fn temperature(setup: &GasSetup) -> String {
     })
 }
 
-/// `0/p` and `0/p_rgh`, absolute and without the hydrostatic part.
-pub fn pressures(setup: &GasSetup) -> [(&'static str, String); 2] {
+/// `0/p`, absolute, and, for a solver with gravity, `0/p_rgh` without the hydrostatic part.
+pub fn pressures(solver: Solver, setup: &GasSetup) -> Vec<(&'static str, String)> {
     let start = format!("{:e}", setup.pressure);
     let about = |name| ("volScalarField", name, "[1 -1 -2 0 0 0 0]", &*start);
+    if !solver.has_gravity() {
+        let absolute = field(about("p"), setup, |patch| match patch {
+            GasPatch::Outlet { pressure } => fixed(&format!("{:e}", pressure.at(0.0))),
+            _ => zero_gradient(),
+        });
+        return vec![("p", absolute)];
+    }
     let given = format!("\n        value           uniform {start};");
     let absolute = field(about("p"), setup, |_| {
         format!("type            calculated;{given}")
@@ -177,5 +268,5 @@ pub fn pressures(setup: &GasSetup) -> [(&'static str, String); 2] {
         ),
         _ => format!("type            fixedFluxPressure;{given}"),
     });
-    [("0/p", absolute), ("0/p_rgh", driving)]
+    vec![("p", absolute), ("p_rgh", driving)]
 }

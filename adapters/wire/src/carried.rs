@@ -92,7 +92,7 @@ impl<C: Carrier> Carried<C> {
     pub fn of_solver(carrier: C, address: &LinkAddress) -> Result<Self, WireError> {
         let mut end = Self::new(carrier);
         if address.is_here() {
-            end.coordinator = Some((Watch::begin(address)?, address.clone()));
+            end.coordinator = Some((Watch::living(address)?, address.clone()));
         }
         Ok(end)
     }

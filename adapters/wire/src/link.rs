@@ -12,6 +12,9 @@ use crate::words;
 /// How long a process that fails may take to say so.
 const LAST_WORD: Duration = Duration::from_secs(2);
 
+/// Between two tries to reach an end that is not there yet.
+const NOBODY_YET: Duration = Duration::from_millis(2);
+
 /// One end of one rank's link.
 pub struct Link {
     transport: Box<dyn Transport + Send>,
@@ -47,10 +50,18 @@ impl Link {
         self.peer.as_ref()
     }
 
-    /// Solver's side of the handshake: introduces itself, waits, compares.
+    /// Solver's side of the handshake: introduces itself as soon as the coordinator's end is there, waits,
+    /// compares.
     pub fn greet(&mut self, ours: &Hello, patience: Duration) -> Result<Hello, WireError> {
-        self.send_text(Header::of(Kind::Hello), &introduction(ours))?;
         let begun = Instant::now();
+        loop {
+            match self.send_text(Header::of(Kind::Hello), &introduction(ours)) {
+                Err(WireError::NotDelivered { receivers: 0 }) if begun.elapsed() < patience => {
+                    std::thread::sleep(NOBODY_YET);
+                }
+                sent => break sent?,
+            }
+        }
         loop {
             let left = patience.saturating_sub(begun.elapsed());
             if let Some(header) = self.receive(left)? {

@@ -3,6 +3,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::time::Duration;
 
 use crate::run::started;
 
@@ -37,6 +38,18 @@ impl Process {
     /// True where the id is one of this machine's, and still the same process.
     pub fn is_here(&self) -> bool {
         self.machine == machine() && started(self.pid) == Some(self.started)
+    }
+
+    /// Processor time that its threads have used so far (first number of /proc/PID/task/TID/schedstat, in ns);
+    /// zero where this machine does not tell.
+    pub fn processor_time(&self) -> Duration {
+        let threads = fs::read_dir(format!("/proc/{}/task", self.pid));
+        let threads = threads.into_iter().flatten().flatten();
+        let used = threads.filter_map(|thread| {
+            let text = fs::read_to_string(thread.path().join("schedstat")).ok()?;
+            text.split_ascii_whitespace().next()?.parse::<u64>().ok()
+        });
+        Duration::from_nanos(used.sum())
     }
 
     /// The line of an introduction.
@@ -87,6 +100,19 @@ mod tests {
         assert_eq!(Process::in_text(&own.line()), Some(own.clone()));
         assert!(own.is_here());
         assert_eq!(own.pid, std::process::id());
+    }
+
+    #[test]
+    fn the_processor_time_of_a_process_grows_as_it_works() {
+        let own = Process::own();
+        let before = own.processor_time();
+        let begun = std::time::Instant::now();
+        // Its own thread and, meanwhile, perhaps others.
+        while begun.elapsed() < Duration::from_millis(50) || own.processor_time() == before {
+            std::hint::black_box(());
+            assert!(begun.elapsed() < Duration::from_secs(20), "it stands still");
+        }
+        assert!(own.processor_time() > before);
     }
 
     #[test]

@@ -6,6 +6,7 @@ use std::io::ErrorKind;
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Duration;
 
 use rustix::fs::{FlockOperation, flock};
 
@@ -21,6 +22,10 @@ const NAME: &str = "calcine-";
 const MPI: &str = "mpi@";
 /// A socket's path ends at 108 bytes (unix(7)); the wire appends the prefix and about 46 more.
 const LONGEST: usize = 60;
+
+/// How often, and after what pause, a dead coordinator's files are looked for again.
+const TRIES: u32 = 5;
+const AGAIN: Duration = Duration::from_millis(10);
 
 static SERIAL: AtomicU32 = AtomicU32::new(0);
 
@@ -148,9 +153,23 @@ impl LinkAddress {
         }
     }
 
-    /// Removes every file of the run.
+    /// Removes every file of a dead coordinator: of this run, and of others that it began and for which there may
+    /// be no solver yet. What somebody else makes or removes meanwhile is looked for again.
     pub fn remove_files(&self) {
-        remove_files(&self.name, &self.root);
+        let scratch = self.root.parent().unwrap_or(Path::new("/tmp"));
+        let owner = owner_of(&self.name);
+        for _ in 0..TRIES {
+            let names = names_below(scratch);
+            let own = names.iter().filter(|name| owner_of(name) == owner);
+            let own: Vec<_> = own.collect();
+            if own.is_empty() {
+                return;
+            }
+            for name in own {
+                remove_files(name, &scratch.join(name));
+            }
+            std::thread::sleep(AGAIN);
+        }
     }
 }
 
@@ -268,6 +287,13 @@ fn lives(name: &str) -> bool {
 
 /// Removes the files of runs whose coordinator is dead, of this user only.
 fn remove_stale(scratch: &Path) {
+    for name in names_below(scratch).iter().filter(|name| !lives(name)) {
+        remove_files(name, &scratch.join(name));
+    }
+}
+
+/// Names of this user's runs that have files in shared memory or below the folder for scratch.
+fn names_below(scratch: &Path) -> Vec<String> {
     let user = rustix::process::geteuid().as_raw();
     let mut names = Vec::new();
     for directory in [Path::new(MEMORY), scratch] {
@@ -282,9 +308,7 @@ fn remove_stale(scratch: &Path) {
     }
     names.sort();
     names.dedup();
-    for name in names.iter().filter(|name| !lives(name)) {
-        remove_files(name, &scratch.join(name));
-    }
+    names
 }
 
 /// Removes a run's shared memory and its root; what cannot be removed is told on stderr.
@@ -364,6 +388,27 @@ mod tests {
         assert_eq!(files_of(&dead), 0);
         assert!(!std::env::temp_dir().join(&dead).exists());
         assert!(living.root.is_dir() && next.root.is_dir());
+    }
+
+    #[test]
+    fn a_solver_of_a_dead_coordinator_removes_the_files_of_all_its_runs() {
+        let scratch = tempfile::tempdir().unwrap();
+        let name = |serial: u32| format!("{NAME}1-1000000000000001-{serial}");
+        for serial in 0..2 {
+            fs::create_dir(scratch.path().join(name(serial))).unwrap();
+            fs::write(scratch.path().join(name(serial)).join("socket"), b"x").unwrap();
+            let file = format!("{}_alive", name(serial));
+            fs::write(Path::new(MEMORY).join(file), b"x").unwrap();
+        }
+        let other = format!("{NAME}1-1000000000000002-0");
+        fs::create_dir(scratch.path().join(&other)).unwrap();
+        let root = scratch.path().join(name(0)).display().to_string();
+        let address = LinkAddress::from_text(&format!("1 {} gas {root}", name(0))).unwrap();
+        address.remove_files();
+        assert_eq!(files_of(&name(0)) + files_of(&name(1)), 0);
+        let left: Vec<_> = fs::read_dir(scratch.path()).unwrap().flatten().collect();
+        assert_eq!(left.len(), 1);
+        assert_eq!(left[0].file_name().to_str(), Some(&*other));
     }
 
     #[test]

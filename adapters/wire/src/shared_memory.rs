@@ -24,6 +24,8 @@ type Ipc = ipc_threadsafe::Service;
 const BUFFER: usize = 2;
 /// Slots of a segment: waiting, read, being written, and one that iceoryx2 adds.
 const SLOTS: u64 = BUFFER as u64 + 3;
+/// Bytes of shared memory that must be free where an end is opened: its first segment and what iceoryx2 keeps.
+const MARGIN: u64 = 1 << 20;
 /// How long a full buffer may stay full before sending fails.
 const FULL_FOR: Duration = Duration::from_millis(500);
 /// How long a solver waits before it looks at the coordinator again.
@@ -42,6 +44,8 @@ pub enum End {
 struct Ports {
     loan: Option<Loan>,
     words: usize,
+    /// Where payloads lay and how many words of them are known to have memory behind them.
+    backed: Vec<(usize, usize)>,
     received: Option<Sample<Ipc, [u64], Header>>,
     publisher: Publisher<Ipc, [u64], Header>,
     subscriber: Subscriber<Ipc, [u64], Header>,
@@ -66,12 +70,13 @@ fn failed<E: std::fmt::Debug>(doing: &'static str) -> impl FnOnce(E) -> WireErro
 }
 
 impl SharedMemory {
-    /// Opens one end of a rank's link. The coordinator opens its end before the solver starts.
+    /// Opens one end of a rank's link, whoever comes first.
     pub fn open(address: &LinkAddress, rank: u32, end: End) -> Result<Self, WireError> {
         set_log_level(LogLevel::Fatal);
+        check_room(MARGIN)?;
         let peer = match end {
             End::Coordinator => None,
-            End::Solver => Some(Watch::begin(address)?),
+            End::Solver => Some(Watch::living(address)?),
         };
         let prefix = format!("{}_", address.name);
         let mut config = Config::default();
@@ -177,6 +182,7 @@ impl Ports {
         Ok(Self {
             loan: None,
             words: publisher.initial_max_slice_len(),
+            backed: Vec::new(),
             received: None,
             publisher,
             subscriber,
@@ -193,15 +199,62 @@ impl Ports {
             return Ok(());
         }
         let segment = words.checked_next_power_of_two().unwrap_or(usize::MAX);
-        let needed = (segment as u64).saturating_mul(8 * SLOTS);
-        let memory = rustix::fs::statvfs("/dev/shm").map_err(failed("measuring /dev/shm"))?;
-        let free = memory.f_bavail * memory.f_frsize;
-        if free < needed {
-            return Err(WireError::SharedMemoryFull { free, needed });
-        }
+        check_room((segment as u64).saturating_mul(8 * SLOTS))?;
         self.words = segment;
+        // A new segment has other places.
+        self.backed.clear();
         Ok(())
     }
+
+    /// Makes sure, once for each place and length, that a payload has memory behind it: other ranks may have
+    /// taken what was free when the room was checked.
+    fn back(&mut self, loan: &mut Loan) -> Result<(), WireError> {
+        let payload = loan.payload_mut();
+        let (place, words) = (payload.as_ptr() as usize, payload.len());
+        let known = self.backed.iter_mut().find(|known| known.0 == place);
+        if known.as_ref().is_some_and(|known| known.1 >= words) {
+            return Ok(());
+        }
+        words::back(payload).map_err(|_| WireError::SharedMemoryFull {
+            free: free_memory().unwrap_or(0),
+            needed: 8 * words as u64,
+        })?;
+        match known {
+            Some(known) => known.1 = words,
+            None => self.backed.push((place, words)),
+        }
+        Ok(())
+    }
+
+    fn send(&mut self) -> Result<(), WireError> {
+        let loan = self.loan.take().ok_or(WireError::Order {
+            what: "there is no reserved message to send",
+        })?;
+        let receivers = words::filled(loan)
+            .send()
+            .map_err(failed("sending a message"))?;
+        if receivers != 1 {
+            return Err(WireError::NotDelivered { receivers });
+        }
+        self.notifier
+            .notify()
+            .map_err(failed("waking the other end"))?;
+        Ok(())
+    }
+}
+
+/// Bytes of shared memory that are free.
+fn free_memory() -> Result<u64, WireError> {
+    let memory = rustix::fs::statvfs("/dev/shm").map_err(failed("measuring /dev/shm"))?;
+    Ok(memory.f_bavail * memory.f_frsize)
+}
+
+fn check_room(needed: u64) -> Result<(), WireError> {
+    let free = free_memory()?;
+    if free < needed {
+        return Err(WireError::SharedMemoryFull { free, needed });
+    }
+    Ok(())
 }
 
 impl Transport for SharedMemory {
@@ -215,6 +268,7 @@ impl Transport for SharedMemory {
             .loan_slice_uninit(words.max(1))
             .map_err(failed("reserving a message"))?;
         *loan.user_header_mut() = header;
+        ports.back(&mut loan)?;
         Ok(words::mapped(ports.loan.insert(loan).payload_mut()))
     }
 
@@ -224,21 +278,12 @@ impl Transport for SharedMemory {
     }
 
     fn send(&mut self) -> Result<(), WireError> {
-        let ports = self.ports()?;
-        let loan = ports.loan.take().ok_or(WireError::Order {
-            what: "there is no reserved message to send",
-        })?;
-        let receivers = words::filled(loan)
-            .send()
-            .map_err(failed("sending a message"))?;
-        if receivers != 1 {
-            return Err(WireError::NotDelivered { receivers });
+        let sent = self.ports().and_then(Ports::send);
+        match (sent, self.dead_peer()) {
+            // Nobody else may be left to remove the files.
+            (Err(_), Some(pid)) => Err(self.bury(pid)),
+            (sent, _) => sent,
         }
-        ports
-            .notifier
-            .notify()
-            .map_err(failed("waking the other end"))?;
-        Ok(())
     }
 
     fn receive(&mut self, patience: Duration) -> Result<bool, WireError> {

@@ -22,7 +22,7 @@ pub(crate) struct Watch {
 
 impl Watch {
     /// Begins to watch.
-    pub(crate) fn begin(address: &LinkAddress) -> Result<Self, WireError> {
+    fn begin(address: &LinkAddress) -> Result<Self, WireError> {
         let (pid, since) = address.coordinator()?;
         let raw = i32::try_from(pid).ok().and_then(Pid::from_raw);
         let pidfd = raw.and_then(|raw| pidfd_open(raw, PidfdFlags::empty()).ok());
@@ -32,6 +32,16 @@ impl Watch {
             end_with(address, pid, pidfd)?;
         }
         Ok(Self { pid, pidfd })
+    }
+
+    /// The same, of one that lives; the files of a dead one are removed.
+    pub(crate) fn living(address: &LinkAddress) -> Result<Self, WireError> {
+        let watch = Self::begin(address)?;
+        if watch.is_dead() {
+            address.remove_files();
+            return Err(WireError::PeerDead { pid: watch.pid });
+        }
+        Ok(watch)
     }
 
     /// Its process id.

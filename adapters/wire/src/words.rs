@@ -4,6 +4,7 @@
 use iceoryx2::prelude::ipc_threadsafe::Service;
 use iceoryx2::sample_mut::SampleMut;
 use iceoryx2::sample_mut_uninit::SampleMutUninit;
+use rustix::mm::{Advice, madvise};
 
 use crate::record::Header;
 
@@ -64,6 +65,23 @@ pub fn mapped(words: &mut [std::mem::MaybeUninit<u64>]) -> &mut [u64] {
     // SAFETY: the slice lies in a mapping shared with another process, whose every byte has a value;
     // every bit pattern is a u64; size and alignment are equal.
     unsafe { std::slice::from_raw_parts_mut(words.as_mut_ptr().cast(), words.len()) }
+}
+
+/// Has the kernel put memory behind words of a shared mapping: an error where there is none left, in place of the
+/// SIGBUS that writing would bring. A kernel before Linux 5.14 does not know how, and leaves it at that.
+pub fn back(words: &mut [std::mem::MaybeUninit<u64>]) -> rustix::io::Result<()> {
+    const PAGE: usize = 4096;
+    let start = words.as_mut_ptr() as usize;
+    let end = start + size_of_val(words);
+    let first = start - start % PAGE;
+    // SAFETY: only pages that hold some of the words, which are mapped; what they hold does not change.
+    let done = unsafe {
+        madvise(first as *mut _, end - first, Advice::LinuxPopulateWrite)
+    };
+    match done {
+        Err(rustix::io::Errno::INVAL) => Ok(()),
+        done => done,
+    }
 }
 
 /// A loan whose content counts as written.

@@ -124,6 +124,7 @@ impl Run<'_> {
         self.parts.gas.checkpoint(&gas)?;
         self.parts.particles.checkpoint(&particles)?;
         self.own_state().write(&fresh.join("coordinator.state"))?;
+        self.note_processors();
         for observer in observers.iter_mut() {
             observer.checkpoint(&self.moment(None), &fresh)?;
         }

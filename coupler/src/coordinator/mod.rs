@@ -272,6 +272,7 @@ impl<'m> Run<'m> {
                 return Ok(Ending::Checkpointed(directory));
             }
         }
+        self.note_processors();
         for observer in observers.iter_mut() {
             observer.finish(&self.moment(None))?;
         }
@@ -284,6 +285,12 @@ impl<'m> Run<'m> {
         let gas = self.parts.gas.finish_run(supervisor);
         let particles = self.parts.particles.finish_run(supervisor);
         gas.and(particles)
+    }
+
+    /// What the solvers' own processes have used so far.
+    fn note_processors(&mut self) {
+        self.timing.gas_processes = self.parts.gas.processor_time();
+        self.timing.particles_processes = self.parts.particles.processor_time();
     }
 
     /// True where a multiple of `checkpoint_every` lies in (start, now], or wall time is up.

@@ -7,6 +7,7 @@ use calcine_interior::Reacting;
 use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
 use calcine_physics::thermo::Element;
+use rustix::time::{ClockId, clock_gettime};
 
 use super::{Mapped, Run, RunError};
 use crate::contacts::touching;
@@ -24,6 +25,20 @@ pub(super) fn timed<T>(account: &mut Duration, stage: impl FnOnce() -> T) -> T {
     let begun = Instant::now();
     let value = stage();
     *account += begun.elapsed();
+    value
+}
+
+/// Processor time that all threads of this process have used.
+fn processor() -> Duration {
+    let time = clock_gettime(ClockId::ProcessCPUTime);
+    Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec as u32)
+}
+
+/// Adds what a stage takes to its accounts of wall time and of processor time.
+fn metered<T>(wall: &mut Duration, used: &mut Duration, stage: impl FnOnce() -> T) -> T {
+    let before = processor();
+    let value = timed(wall, stage);
+    *used += processor().saturating_sub(before);
     value
 }
 
@@ -168,6 +183,7 @@ impl Run<'_> {
     ) -> Result<(), RunError> {
         let first_attempt = window.attempt;
         let reacts = self.reacts();
+        self.begin_exchange(window);
         loop {
             self.look_at_particles(window)?;
             let mut misplaced = self.attempt(supervisor, window)?;
@@ -192,6 +208,7 @@ impl Run<'_> {
                 );
             }
             self.book_rates(window);
+            self.credit_drag(window);
             let (work, timing) = (&self.work, &mut self.timing);
             timed(&mut timing.interior, || {
                 let span = window.span.process.seconds();
@@ -206,17 +223,28 @@ impl Run<'_> {
         }
     }
 
+    /// Spreads what does not change between attempts.
+    fn begin_exchange(&mut self, window: &Window) {
+        let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
+        let setting = Setting {
+            operator: &mapped.operator,
+            particles: self.parts.particles.fields(),
+            coefficients: &work.coefficients,
+            acceleration: window.acceleration(),
+        };
+        timed(&mut timing.exchange, || {
+            work.exchange.begin(&setting, &self.parts.gas.fields());
+        });
+    }
+
     /// What the interior does over the window with the gas as it is: conduction, reactions.
     fn look_at_particles(&mut self, window: &Window) -> Result<(), RunError> {
         let span = window.span.process.seconds();
         if self.parts.interior.conducts() {
-            let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
-            let seen = &mut work.seen.temperature;
-            mapped
-                .operator
-                .sample(self.parts.gas.fields().temperature, seen);
+            let (work, timing) = (&self.work, &mut self.timing);
             timed(&mut timing.interior, || {
                 let conductance = &work.coefficients.conductance;
+                let seen = work.exchange.seen_temperature();
                 self.parts.interior.conduct(conductance, seen, span);
             });
         }
@@ -229,14 +257,15 @@ impl Run<'_> {
         let setting = Setting {
             operator: &mapped.operator,
             particles: self.parts.particles.fields(),
-            temperature: self.parts.interior.start_temperature(),
             coefficients: &work.coefficients,
             acceleration: window.acceleration(),
         };
+        let start = self.parts.interior.start_temperature();
         timed(&mut timing.exchange, || {
-            work.exchange.linearise(&setting, &self.parts.gas.fields());
+            work.exchange.linearise(&setting, start);
         });
-        self.convergence = timed(&mut timing.gas, || {
+        let accounts = (&mut timing.gas, &mut timing.gas_processor);
+        self.convergence = metered(accounts.0, accounts.1, || {
             self.parts
                 .gas
                 .start(window, &mapped.bed, &work.exchange.cells)?;
@@ -248,9 +277,25 @@ impl Run<'_> {
             let (turnover, told) = (&mut work.turnover, &work.exchange.cells.species);
             turnover.heat_of_cells(&gas, properties, told);
             let apart = &turnover.cell_heat;
-            work.exchange.credit(&setting, &gas, &work.received, apart)
+            work.exchange
+                .credit_heat(&setting, start, &gas, &work.received, apart)
         });
         Ok(misplaced)
+    }
+
+    /// Gives the particles their drag after the last attempt.
+    fn credit_drag(&mut self, window: &Window) {
+        let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
+        let setting = Setting {
+            operator: &mapped.operator,
+            particles: self.parts.particles.fields(),
+            coefficients: &work.coefficients,
+            acceleration: window.acceleration(),
+        };
+        timed(&mut timing.exchange, || {
+            let gas = self.parts.gas.fields();
+            work.exchange.credit_drag(&setting, &gas, &work.received);
+        });
     }
 
     fn move_particles(&mut self, supervisor: &Supervisor, window: &Window) -> Result<(), RunError> {
@@ -264,11 +309,13 @@ impl Run<'_> {
             &mut work.pressure_force,
             &mut work.push,
         );
-        self.parts.particles.start(window, &work.push)?;
-        self.parts
-            .particles
-            .finish(supervisor, &mut work.particle_received)?;
-        self.timing.particles += begun.elapsed();
+        let (particles, timing) = (&mut self.parts.particles, &mut self.timing);
+        timing.exchange += begun.elapsed();
+        let accounts = (&mut timing.particles, &mut timing.particles_processor);
+        metered(accounts.0, accounts.1, || {
+            particles.start(window, &work.push)?;
+            particles.finish(supervisor, &mut work.particle_received)
+        })?;
         Ok(())
     }
 

@@ -36,7 +36,8 @@ impl Operator {
         let mut fraction = vec![0.0; operator.cells()];
         operator.spread(solid_volume, &mut fraction);
         for (fraction, volume) in fraction.iter_mut().zip(cell_volume) {
-            *fraction /= volume;
+            // F keeps to zero within 1e-12 where nothing is.
+            *fraction = (*fraction / volume).max(0.0);
         }
         operator.solid_fraction = fraction;
         operator

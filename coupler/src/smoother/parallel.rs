@@ -23,6 +23,29 @@ pub fn update<T: Send>(values: &mut [T], change: impl Fn(usize, &mut T) + Sync) 
     blocks.for_each(|(index, values)| block(index * BLOCK, values));
 }
 
+/// Changes every element of two slices of one length side by side, given the index.
+#[inline]
+pub fn update_both<A: Send, B: Send>(
+    first: &mut [A],
+    second: &mut [B],
+    change: impl Fn(usize, &mut A, &mut B) + Sync,
+) {
+    let block = |start: usize, first: &mut [A], second: &mut [B]| {
+        for (offset, (first, second)) in first.iter_mut().zip(second).enumerate() {
+            change(start + offset, first, second);
+        }
+    };
+    if first.len() <= ALONE {
+        return block(0, first, second);
+    }
+    let blocks = first
+        .par_chunks_mut(BLOCK)
+        .zip(second.par_chunks_mut(BLOCK));
+    blocks
+        .enumerate()
+        .for_each(|(index, (first, second))| block(index * BLOCK, first, second));
+}
+
 /// Sets every element to a function of its index.
 #[inline]
 pub fn fill<T: Send>(values: &mut [T], value: impl Fn(usize) -> T + Sync) {

@@ -3,13 +3,14 @@
 use std::path::Path;
 use std::time::Duration;
 
+use calcine_adapters::liggghts::template::Template;
 use calcine_adapters::openfoam::stock::{Solver, refusal};
 use calcine_coupler::setup::GasSetup;
 use calcine_coupler::time::GasStorage;
 
 use super::existing;
 use super::zone::zones;
-use crate::case::model::{Coupling, External, Mapping, Time};
+use crate::case::model::{Coupling, External, Mapping, Motion, Population, Time};
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
 
@@ -99,8 +100,24 @@ pub(super) fn check_stock(root: &Reader<'_>, openfoam: &External, gas: &GasSetup
         let help = "write `gas_storage = \"accelerated\"`, or leave `openfoam.solver` out";
         section.fail("solver", rule, help);
     }
-    if let Some(why) = refusal(gas, splits) {
+    if let Some(why) = refusal(openfoam.solver, gas, splits) {
         section.fail("solver", format!("names {name}, but {why}"), other);
+    }
+}
+
+/// A script of the user's own is for particles that move, and must let Calcine drive it.
+pub(super) fn check_script(root: &Reader<'_>, liggghts: &External, particles: &[Population]) {
+    let (Some(path), Some(section)) = (&liggghts.template, root.table("liggghts")) else {
+        return;
+    };
+    if particles.iter().all(|one| one.motion == Motion::Frozen) {
+        let rule = "names a script, but no population moves";
+        let help = "leave it out: a bed that is held needs no script, or write motion = \"free\"";
+        section.fail("template", rule, help);
+    }
+    if let Err(error) = Template::read(path, Vec::new(), Vec::new()) {
+        let (rule, help) = error.parts();
+        section.fail("template", format!("cannot be used: {rule}"), &help);
     }
 }
 
@@ -116,8 +133,7 @@ pub(super) fn external(root: &Reader<'_>, key: &str, folder: &Path) -> External 
         external.template = existing(&section, "template", folder);
         if key == "openfoam" {
             external.start = existing(&section, "start", folder);
-            let solvers = [Solver::CalcineGasFoam, Solver::BuoyantPimpleFoam];
-            let solvers = solvers.map(|solver| (solver.name(), solver));
+            let solvers = Solver::ALL.map(|solver| (solver.name(), solver));
             external.solver = section.choice("solver", &solvers).unwrap_or_default();
         }
         if let Some(ranks) = section.whole("ranks", 1..=100_000) {

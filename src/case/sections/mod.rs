@@ -88,6 +88,9 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     if let (Some((gas, _)), Some((time, _))) = (&gas, &time) {
         coupling::check_stock(root, &openfoam, gas, time);
     }
+    if let Some(particles) = &particles {
+        coupling::check_script(root, &liggghts, particles);
+    }
     if let (Some((time, _)), Some(particles)) = (&time, &particles) {
         motion::fits(root, motion.as_ref(), time, particles);
         if let Some(motion) = &motion {

@@ -1,0 +1,512 @@
+//! A LIGGGHTS script of the user's own in place of the generated one: checked line by line, completed with
+//! the case's values as LIGGGHTS variables and with what Calcine needs to drive it.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use calcine_coupler::motion::Contacts;
+use calcine_coupler::physics::Vec3;
+use thiserror::Error;
+
+use super::inputs::DATA;
+use super::moving;
+
+/// Name of the script's variables of Calcine begin with this.
+const PREFIX: &str = "calcine_";
+/// Numbers of a script and of its case may differ by this share, as texts of few digits do.
+const SAME: f64 = 1e-9;
+
+/// What Calcine does itself, by the first words of commands that would do it too, and the remedy.
+const REFUSED: [(&[&str], &str, &str); 4] = [
+    (
+        &["run", "minimize", "rerun", "reset_timestep"],
+        "Calcine advances the particles and keeps the time",
+        "leave the line out: the script ends with the setup",
+    ),
+    (
+        &["clear", "jump", "label", "next", "quit"],
+        "the script is run line by line, and once more at every checkpoint",
+        "write each command once, without loops",
+    ),
+    (
+        &[
+            "create_box",
+            "create_atoms",
+            "delete_atoms",
+            "displace_atoms",
+            "read_restart",
+            "set",
+            "velocity",
+        ],
+        "the case file says which particles there are and where they start",
+        "place them by `particles.place`, and read them by `read_data ${calcine_data}`",
+    ),
+    (
+        &["include"],
+        "of included files only calcine.contacts, calcine.gravity, calcine.walls and calcine.motion are known",
+        "write the lines of other files into the script",
+    ),
+];
+
+/// A script that cannot be used, with the line and the remedy.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum TemplateError {
+    /// The file.
+    #[error("{} cannot be read: {cause}", path.display())]
+    File {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        cause: String,
+    },
+    /// A line that does not go with the case.
+    #[error("line {line}, `{text}`: {rule}; {remedy}")]
+    Line {
+        /// Its number.
+        line: usize,
+        /// As it stands there.
+        text: String,
+        /// What is wrong with it.
+        rule: String,
+        /// What to write.
+        remedy: String,
+    },
+    /// Something that every script needs.
+    #[error("there is no `{what}`; write `{remedy}`")]
+    Missing {
+        /// The command.
+        what: &'static str,
+        /// What to write.
+        remedy: &'static str,
+    },
+}
+
+impl TemplateError {
+    /// What is wrong, and the remedy.
+    pub fn parts(&self) -> (String, String) {
+        match self {
+            Self::File { .. } => (self.to_string(), "name a file that can be read".into()),
+            Self::Line {
+                line,
+                text,
+                rule,
+                remedy,
+            } => (format!("line {line}, `{text}`: {rule}"), remedy.clone()),
+            Self::Missing { what, remedy } => {
+                (format!("there is no `{what}`"), format!("write `{remedy}`"))
+            }
+        }
+    }
+}
+
+/// A script of the user's own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Template {
+    path: PathBuf,
+    commands: Vec<Command>,
+    populations: Vec<String>,
+    materials: Vec<String>,
+}
+
+/// One command, its continued lines joined.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Command {
+    line: usize,
+    text: String,
+}
+
+impl Command {
+    fn words(&self) -> Vec<&str> {
+        self.text.split_ascii_whitespace().collect()
+    }
+
+    fn refuse(&self, rule: impl Into<String>, remedy: impl Into<String>) -> TemplateError {
+        TemplateError::Line {
+            line: self.line,
+            text: self.text.trim().to_owned(),
+            rule: rule.into(),
+            remedy: remedy.into(),
+        }
+    }
+}
+
+/// What the case says beside its contacts, as the script's variables have it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Values {
+    /// Time step in s.
+    pub step: f64,
+    /// Grid of ranks, three numbers.
+    pub processors: String,
+    /// Skin of the neighbour list in m.
+    pub skin: f64,
+    /// Size of its bins in m.
+    pub bins: f64,
+    /// Corners of the box in m.
+    pub corners: (Vec3, Vec3),
+}
+
+impl Template {
+    /// Reads a script and checks what can be checked without the case's numbers. Populations and materials
+    /// by name, in the order of their atom types.
+    pub fn read(
+        path: &Path,
+        populations: Vec<String>,
+        materials: Vec<String>,
+    ) -> Result<Self, TemplateError> {
+        let text = fs::read_to_string(path).map_err(|cause| TemplateError::File {
+            path: path.to_owned(),
+            cause: cause.to_string(),
+        })?;
+        let commands = commands(&text);
+        check(&commands)?;
+        Ok(Self {
+            path: path.to_owned(),
+            commands,
+            populations,
+            materials,
+        })
+    }
+
+    /// The script as the host runs it; time step and gravity must be those of the case.
+    pub fn script(&self, contacts: &Contacts, values: &Values) -> Result<String, TemplateError> {
+        let variables = self.variables(contacts, values);
+        self.check_step(&variables, values.step)?;
+        self.check_gravity(&variables, contacts.gravity)?;
+        let mut text = format!(
+            "# Written by Calcine: its variables, then {}, then what Calcine drives it by.\n",
+            self.path.display()
+        );
+        for (name, value) in &variables {
+            let _ = writeln!(text, "variable {name} string \"{value}\"");
+        }
+        for command in &self.commands {
+            match command.words().as_slice() {
+                ["read_data", ..] => {
+                    let _ = writeln!(text, "read_data {DATA}");
+                    text += &moving::groups(contacts);
+                }
+                ["include", "calcine.contacts"] => text += &moving::laws(contacts),
+                ["include", "calcine.gravity"] => text += &moving::gravity(contacts),
+                ["include", "calcine.walls"] => text += &moving::walls(contacts),
+                ["include", "calcine.motion"] => text += &moving::motion(contacts),
+                _ => {
+                    text += &command.text;
+                    text.push('\n');
+                }
+            }
+        }
+        text += &moving::push();
+        text += "thermo 1000000\nthermo_modify lost ignore norm no\n";
+        Ok(text)
+    }
+
+    /// Names and values; texts, so that no digit is lost.
+    fn variables(&self, contacts: &Contacts, values: &Values) -> Vec<(String, String)> {
+        let mut all = Vec::new();
+        let mut add = |name: &str, value: String| all.push((format!("{PREFIX}{name}"), value));
+        add("data", DATA.into());
+        add("processors", values.processors.clone());
+        let (lower, upper) = values.corners;
+        let numbers = [
+            ("step", values.step),
+            ("skin", values.skin),
+            ("bins", values.bins),
+            ("gravity_x", contacts.gravity.x),
+            ("gravity_y", contacts.gravity.y),
+            ("gravity_z", contacts.gravity.z),
+            ("gravity", contacts.gravity.norm()),
+            ("lower_x", lower.x),
+            ("lower_y", lower.y),
+            ("lower_z", lower.z),
+            ("upper_x", upper.x),
+            ("upper_y", upper.y),
+            ("upper_z", upper.z),
+        ];
+        for (name, value) in numbers {
+            add(name, format!("{value:e}"));
+        }
+        add("types", moving::types(contacts).to_string());
+        for (index, name) in self.populations.iter().enumerate() {
+            add(&format!("type_{}", word(name)), (index + 1).to_string());
+        }
+        let first = self.populations.len() + 1;
+        for (index, (name, elastic)) in self.materials.iter().zip(&contacts.materials).enumerate() {
+            let name = word(name);
+            add(&format!("wall_{name}"), (first + index).to_string());
+            add(&format!("young_{name}"), format!("{:e}", elastic.young));
+            add(&format!("poisson_{name}"), format!("{:e}", elastic.poisson));
+        }
+        for (a, one) in self.materials.iter().enumerate() {
+            for (b, other) in self.materials.iter().enumerate() {
+                let (pair, names) = (
+                    contacts.pair(a, b),
+                    format!("{}_{}", word(one), word(other)),
+                );
+                add(
+                    &format!("restitution_{names}"),
+                    format!("{:e}", pair.restitution),
+                );
+                add(&format!("friction_{names}"), format!("{:e}", pair.friction));
+            }
+        }
+        all
+    }
+
+    fn check_step(&self, variables: &[(String, String)], step: f64) -> Result<(), TemplateError> {
+        for command in &self.commands {
+            if let ["timestep", value, ..] = command.words()[..] {
+                let found = number(value, variables);
+                if found.is_none_or(|found| (found / step - 1.0).abs() > SAME) {
+                    let rule = format!("the time step of the case is {step:e} s");
+                    let remedy = "write `timestep ${calcine_step}`, or state the script's as \
+                                  `motion.motion_step` in the case file";
+                    return Err(command.refuse(rule, remedy));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn check_gravity(
+        &self,
+        variables: &[(String, String)],
+        gravity: Vec3,
+    ) -> Result<(), TemplateError> {
+        let (mut sum, mut last) = (Vec3::zeros(), None);
+        for command in &self.commands {
+            let words = command.words();
+            match words[..] {
+                ["include", "calcine.gravity"] => sum += gravity,
+                ["fix", _, _, "gravity", strength, "vector", x, y, z] => {
+                    let read = |word| number(word, variables);
+                    let values = (read(strength), read(x), read(y), read(z));
+                    let (Some(strength), Some(x), Some(y), Some(z)) = values else {
+                        let rule = "Calcine cannot tell the numbers of this gravity";
+                        return Err(
+                            command.refuse(rule, "write numbers, or variables of Calcine's")
+                        );
+                    };
+                    let direction = Vec3::new(x, y, z).try_normalize(0.0);
+                    sum += strength * direction.unwrap_or_default();
+                }
+                ["fix", _, _, "gravity", ..] => {
+                    let rule = "Calcine compares gravity with the case's only in one form";
+                    let remedy = "write `fix NAME GROUP gravity STRENGTH vector X Y Z`";
+                    return Err(command.refuse(rule, remedy));
+                }
+                _ => continue,
+            }
+            last = Some(command);
+        }
+        if (sum - gravity).norm() <= SAME * gravity.norm() {
+            return Ok(());
+        }
+        let Some(command) = last else {
+            return Err(TemplateError::Missing {
+                what: "fix … gravity",
+                remedy: "include calcine.gravity",
+            });
+        };
+        let [x, y, z] = gravity.into();
+        let rule = format!("gravity of the case is ({x} {y} {z}) m/s² (`gas.gravity`)");
+        Err(command.refuse(rule, "write `include calcine.gravity`"))
+    }
+}
+
+/// A name as part of a variable's.
+fn word(name: &str) -> String {
+    let letter = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    name.chars().map(letter).collect()
+}
+
+/// A number, or what a variable of Calcine's stands for.
+fn number(word: &str, variables: &[(String, String)]) -> Option<f64> {
+    let named = word
+        .strip_prefix("${")
+        .and_then(|rest| rest.strip_suffix('}'));
+    let text = match named {
+        None => word,
+        Some(name) => variables.iter().find(|(own, _)| own == name)?.1.as_str(),
+    };
+    text.parse().ok()
+}
+
+/// Commands of a script: continued lines joined, comments and empty lines left out.
+fn commands(text: &str) -> Vec<Command> {
+    let mut all: Vec<Command> = Vec::new();
+    let mut continued = false;
+    for (line, content) in (1..).zip(text.lines()) {
+        let content = content.split('#').next().unwrap_or_default().trim_end();
+        let (content, goes_on) = match content.strip_suffix('&') {
+            Some(content) => (content, true),
+            None => (content, false),
+        };
+        match all.last_mut() {
+            Some(last) if continued => last.text += content,
+            _ if content.trim().is_empty() => {}
+            _ => all.push(Command {
+                line,
+                text: content.trim_start().to_owned(),
+            }),
+        }
+        continued = goes_on;
+    }
+    all
+}
+
+/// What holds for every script, whatever the case's numbers.
+fn check(commands: &[Command]) -> Result<(), TemplateError> {
+    let mut needed = [
+        ("units si", "units si", false),
+        ("atom_style granular", "atom_style granular", false),
+        ("read_data", "read_data ${calcine_data}", false),
+        ("timestep", "timestep ${calcine_step}", false),
+    ];
+    for command in commands {
+        let words = command.words();
+        match words[..] {
+            ["units", "si"] => needed[0].2 = true,
+            ["units", ..] => {
+                return Err(command.refuse("Calcine is SI throughout", "write `units si`"));
+            }
+            ["atom_style", "granular" | "sphere"] => needed[1].2 = true,
+            ["atom_style", ..] => {
+                let rule = "Calcine's particles are spheres";
+                return Err(command.refuse(rule, "write `atom_style granular`"));
+            }
+            ["read_data", _] if needed[2].2 => {
+                return Err(command.refuse("particles are read once", "leave the line out"));
+            }
+            ["read_data", "${calcine_data}" | DATA] => needed[2].2 = true,
+            ["read_data", ..] => {
+                let rule = "the case file says which particles there are";
+                return Err(command.refuse(rule, "write `read_data ${calcine_data}`"));
+            }
+            ["timestep", ..] => needed[3].2 = true,
+            [
+                "include",
+                "calcine.contacts" | "calcine.gravity" | "calcine.walls" | "calcine.motion",
+            ] => {}
+            ["fix", _, _, style, ..] if style.starts_with("insert/") => {
+                let rule = "particles come in as the case file says";
+                return Err(command.refuse(rule, "write a `[[feeds]]`"));
+            }
+            [first, ..] => {
+                let refused = REFUSED.iter().find(|(names, ..)| names.contains(&first));
+                if let Some((_, rule, remedy)) = refused {
+                    return Err(command.refuse(*rule, *remedy));
+                }
+            }
+            [] => {}
+        }
+    }
+    match needed.iter().find(|(.., found)| !found) {
+        Some(&(what, remedy, _)) => Err(TemplateError::Missing { what, remedy }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCRIPT: &str = "units si\natom_style granular\nread_data ${calcine_data} # beds\n\
+        timestep ${calcine_step}\n";
+
+    fn refused(more: &str) -> String {
+        check(&commands(&format!("{SCRIPT}{more}")))
+            .unwrap_err()
+            .to_string()
+    }
+
+    #[test]
+    fn what_calcine_does_itself_is_refused_with_the_line() {
+        assert_eq!(check(&commands(SCRIPT)), Ok(()));
+        for (more, part) in [
+            ("run 1000", "line 5, `run 1000`: Calcine advances"),
+            ("\n  clear", "line 6, `clear`"),
+            ("units cgs", "units si"),
+            ("atom_style sph", "spheres"),
+            ("create_atoms 1 single 0 0 0", "particles.place"),
+            ("read_data particles.data", "once"),
+            (
+                "fix ins all &\n insert/rate/region seed 1",
+                "line 5, `fix ins all  insert/rate/region",
+            ),
+            ("include other.in", "calcine.walls"),
+        ] {
+            assert!(refused(more).contains(part), "{}", refused(more));
+        }
+    }
+
+    #[test]
+    fn what_every_script_needs_is_named_with_its_line() {
+        for (left_out, part) in [
+            ("units si\n", "write `units si`"),
+            (
+                "read_data ${calcine_data} # beds\n",
+                "write `read_data ${calcine_data}`",
+            ),
+            (
+                "timestep ${calcine_step}\n",
+                "write `timestep ${calcine_step}`",
+            ),
+        ] {
+            let error = check(&commands(&SCRIPT.replace(left_out, ""))).unwrap_err();
+            assert!(error.to_string().contains(part), "{error}");
+        }
+    }
+
+    fn template(more: &str) -> Template {
+        Template {
+            path: "in.bed".into(),
+            commands: commands(&format!("{SCRIPT}{more}")),
+            populations: vec!["small beads".into()],
+            materials: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn time_step_and_gravity_are_those_of_the_case() {
+        let down = Vec3::new(0.0, 0.0, -9.81);
+        let variables = [("calcine_step".to_owned(), "1e-5".to_owned())];
+        assert_eq!(template("").check_step(&variables, 1e-5), Ok(()));
+        let other = template("timestep 2e-5").check_step(&variables, 1e-5);
+        assert!(
+            other
+                .unwrap_err()
+                .to_string()
+                .contains("motion.motion_step")
+        );
+        for fine in [
+            "include calcine.gravity",
+            "fix g all gravity 9.81 vector 0 0 -1",
+            "fix g all gravity 9.81 vector 0 0 -2",
+        ] {
+            assert_eq!(
+                template(fine).check_gravity(&variables, down),
+                Ok(()),
+                "{fine}"
+            );
+        }
+        for (wrong, part) in [
+            ("", "include calcine.gravity"),
+            ("fix g all gravity 9.8 vector 0 0 -1", "(0 0 -9.81) m/s²"),
+            ("fix g all gravity 9.81 chute 24", "vector X Y Z"),
+            ("fix g all gravity v_g vector 0 0 -1", "numbers"),
+        ] {
+            let error = template(wrong).check_gravity(&variables, down).unwrap_err();
+            assert!(error.to_string().contains(part), "{error}");
+        }
+        assert_eq!(
+            template("").check_gravity(&variables, Vec3::zeros()),
+            Ok(())
+        );
+    }
+
+    #[test]
+    fn names_become_words_of_a_variable() {
+        assert_eq!(word("small beads-2"), "small_beads_2");
+    }
+}
