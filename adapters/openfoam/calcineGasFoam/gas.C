@@ -412,7 +412,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
         setFlux();
         result.residual = max(result.residual, solveSpecies(result));
         result.residual = max(result.residual, solveEnthalpy(result));
-        guard();
+        guard(true);
         result.outerIterations = outer;
         thermo_->correct();
         if (result.residual <= outerTolerance_)
@@ -421,6 +421,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
             break;
         }
     }
+    guard(false);
     finishReport(result);
 }
 
@@ -453,7 +454,7 @@ void Foam::calcine::gas::checkpoint(const fileName& directory)
 }
 
 
-void Foam::calcine::gas::guard() const
+void Foam::calcine::gas::guard(bool early) const
 {
     const scalarField& h = thermo_->he().primitiveField();
     forAll(mass_, celli)
@@ -461,7 +462,9 @@ void Foam::calcine::gas::guard() const
         const scalar T = temperatureBase_[celli] + h[celli]/heatCapacity_[celli];
         const scalar speed = mag(U_[celli]);
         // Each comparison is false for what is not a number.
-        if (T > 0 && T < 1e4 && speed < 1e4 && mag(p_[celli]) < GREAT && mass_[celli] > 0)
+        // An early iterate may give more gas than a cell holds; the last one must not.
+        const bool held = mass_[celli] > 0 || (early && mag(mass_[celli]) < GREAT);
+        if (T > 0 && T < 1e4 && speed < 1e4 && mag(p_[celli]) < GREAT && held)
         {
             continue;
         }
