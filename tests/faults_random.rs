@@ -90,10 +90,18 @@ fn main() -> ExitCode {
     }
     // And a run that nobody strikes.
     let out = results.path().join("last");
-    let mut last = start(&out, scratch.path(), KINDS[0], &["--set", "time.end=0.05 s"]);
+    let mut last = start(
+        &out,
+        scratch.path(),
+        KINDS[0],
+        &["--set", "time.end=0.05 s"],
+    );
     let clean = last.wait().unwrap().success();
     if !clean {
-        println!("the last run, which nothing struck, failed: {}", said(&mut last));
+        println!(
+            "the last run, which nothing struck, failed: {}",
+            said(&mut last)
+        );
     }
     println!("{tally}");
     if tally.failed == 0 && clean {
@@ -131,7 +139,10 @@ impl std::fmt::Display for Tally {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         for (victim, (times, longest)) in &self.victims {
             let longest = longest.as_secs_f64();
-            writeln!(f, "  {victim:40} {times:4} times, ended after {longest:.2} s at most")?;
+            writeln!(
+                f,
+                "  {victim:40} {times:4} times, ended after {longest:.2} s at most"
+            )?;
         }
         write!(f, "faults: {} failed", self.failed)
     }
@@ -164,7 +175,11 @@ fn start(out: &Path, scratch: &Path, kind: Kind, words: &[&str]) -> Child {
 
 fn said(run: &mut Child) -> String {
     let mut text = String::new();
-    run.stderr.take().unwrap().read_to_string(&mut text).unwrap();
+    run.stderr
+        .take()
+        .unwrap()
+        .read_to_string(&mut text)
+        .unwrap();
     text
 }
 
@@ -246,7 +261,13 @@ fn strike(out: &Path, scratch: &Path, kind: Kind, random: &mut Random) -> Story 
     let name = if victim == coordinator {
         "calcine".to_owned()
     } else {
-        line.split(' ').next().unwrap_or_default().rsplit('/').next().unwrap_or_default().to_owned()
+        line.split(' ')
+            .next()
+            .unwrap_or_default()
+            .rsplit('/')
+            .next()
+            .unwrap_or_default()
+            .to_owned()
     };
     let mut faults = Vec::new();
     if ended.is_none() {
@@ -260,7 +281,11 @@ fn strike(out: &Path, scratch: &Path, kind: Kind, random: &mut Random) -> Story 
             faults.push(format!("still there: {}", command_line(pid)));
         }
     }
-    faults.extend(litter(coordinator, scratch).into_iter().map(|name| format!("left: {name}")));
+    faults.extend(
+        litter(coordinator, scratch)
+            .into_iter()
+            .map(|name| format!("left: {name}")),
+    );
     if victim != coordinator {
         if code != Some(4) {
             faults.push(format!("exit code {code:?}"));
@@ -274,7 +299,11 @@ fn strike(out: &Path, scratch: &Path, kind: Kind, random: &mut Random) -> Story 
         }
         // One that is killed at once has not written any.
         let written = |name: &str| {
-            let mark = if name == "OpenFOAM" { "openfoam" } else { "liggghts" };
+            let mark = if name == "OpenFOAM" {
+                "openfoam"
+            } else {
+                "liggghts"
+            };
             let data = fs::metadata(out.join(format!("log/{mark}.log")));
             data.is_ok_and(|data| data.len() > 0)
         };

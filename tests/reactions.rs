@@ -32,7 +32,11 @@ fn closes(summary: &Summary) {
     }
     assert!(summary.ledger.elements.len() >= 3);
     for (element, line) in &summary.ledger.elements {
-        assert!(line.relative_error < 1e-11, "{element}: {}", line.relative_error);
+        assert!(
+            line.relative_error < 1e-11,
+            "{element}: {}",
+            line.relative_error
+        );
     }
 }
 
@@ -42,14 +46,22 @@ fn burning_lime_converges_with_its_windows_and_closes_elements_and_energy() {
     let lime = |step: &str| {
         let step = format!("time.process_step={step}");
         let out: PathBuf = folder.path().join(step.replace(['=', ' '], "-"));
-        let settings = ["time.end=640 s", "output.every=640 s", "output.series_every=640 s", &step];
+        let settings = [
+            "time.end=640 s",
+            "output.every=640 s",
+            "output.series_every=640 s",
+            &step,
+        ];
         let summary = run("cases/lime-burning.toml", &out, &settings);
         closes(&summary);
         value(&summary, "lime")
     };
     let [coarse, middle, fine] = ["80 s", "40 s", "20 s"].map(lime);
     let order = ((coarse - middle) / (middle - fine)).abs().log2();
-    assert!(fine > 0.04 && (fine / middle - 1.0).abs() < 0.02, "{coarse} {middle} {fine}");
+    assert!(
+        fine > 0.04 && (fine / middle - 1.0).abs() < 0.02,
+        "{coarse} {middle} {fine}"
+    );
     assert!(order > 0.7, "order {order}: {coarse} {middle} {fine}");
 }
 
@@ -70,7 +82,10 @@ fn iron_that_heats_itself_gains_the_mass_of_the_oxygen_it_takes() {
     // All pellets are alike in size, so that means of products are near the product of means.
     assert!((gained / bound - 1.0).abs() < 1e-4, "{gained} {bound}");
     let oxygen = of("outlet_oxygen");
-    assert!(oxygen[last] < oxygen[0], "the bed takes oxygen from the air");
+    assert!(
+        oxygen[last] < oxygen[0],
+        "the bed takes oxygen from the air"
+    );
     assert!(of("highest_temperature")[last] > 333.0);
 }
 
@@ -79,13 +94,21 @@ fn every_key_of_reactions_runs_and_closes() {
     let folder = tempfile::tempdir().unwrap();
     let summary = run("tests/inputs/good/reactions.toml", folder.path(), &[]);
     closes(&summary);
-    assert!(value(&summary, "oxide") > 0.05, "{}", value(&summary, "oxide"));
+    assert!(
+        value(&summary, "oxide") > 0.05,
+        "{}",
+        value(&summary, "oxide")
+    );
 }
 
 #[test]
 fn ore_is_reduced_step_by_step_and_its_oxygen_leaves_with_the_gas() {
     let folder = tempfile::tempdir().unwrap();
-    let summary = run("cases/ore-reduction.toml", folder.path(), &["time.end=100 s"]);
+    let summary = run(
+        "cases/ore-reduction.toml",
+        folder.path(),
+        &["time.end=100 s"],
+    );
     closes(&summary);
     assert!(summary.ledger.elements.contains_key("Fe"));
     assert!(value(&summary, "magnetite") > value(&summary, "wustite"));

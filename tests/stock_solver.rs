@@ -102,8 +102,16 @@ fn solvers_without_gravity_heat_the_bed_as_the_others_do() {
         // As in the test above, to calcineGasFoam; the three stock solvers solve the same equations.
         assert!((0.9..1.1).contains(&(rise / own.0)), "{rise} {}", own.0);
         assert!((0.94..1.02).contains(&(drop / own.1)), "{drop} {}", own.1);
-        assert!((rise / buoyant.0 - 1.0).abs() < 0.01, "{rise} {}", buoyant.0);
-        assert!((drop / buoyant.1 - 1.0).abs() < 0.01, "{drop} {}", buoyant.1);
+        assert!(
+            (rise / buoyant.0 - 1.0).abs() < 0.01,
+            "{rise} {}",
+            buoyant.0
+        );
+        assert!(
+            (drop / buoyant.1 - 1.0).abs() < 0.01,
+            "{drop} {}",
+            buoyant.1
+        );
     }
 }
 

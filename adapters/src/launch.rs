@@ -97,19 +97,28 @@ impl Launcher {
     }
 }
 
+/// The file by a name without blanks, which OpenFOAM's file names cannot have: where there are some, by a
+/// link in the folder.
+pub fn without_blanks(file: &Path, folder: &Path) -> std::io::Result<PathBuf> {
+    let (true, Some(name)) = (
+        file.to_string_lossy().contains(char::is_whitespace),
+        file.file_name(),
+    ) else {
+        return Ok(file.to_owned());
+    };
+    let link = std::path::absolute(folder.join(name))?;
+    match fs::remove_file(&link) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(error),
+        _ => std::os::unix::fs::symlink(std::path::absolute(file)?, &link)?,
+    }
+    Ok(link)
+}
+
 impl Program {
     /// The same program by a name without blanks: OpenFOAM refuses a name of its own program that has one
-    /// anywhere in its path. Where there are some, by a link in its folder.
+    /// anywhere in its path.
     pub fn without_blanks(mut self) -> std::io::Result<Self> {
-        let blank = |path: &Path| path.to_string_lossy().contains(char::is_whitespace);
-        if let (true, Some(name)) = (blank(&self.path), self.path.file_name()) {
-            let link = std::path::absolute(self.directory.join(name))?;
-            match fs::remove_file(&link) {
-                Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(error),
-                _ => std::os::unix::fs::symlink(std::path::absolute(&self.path)?, &link)?,
-            }
-            self.path = link;
-        }
+        self.path = without_blanks(&self.path, &self.directory)?;
         Ok(self)
     }
 

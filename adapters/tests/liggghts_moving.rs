@@ -405,12 +405,6 @@ fn what_it_does_not_have_is_refused_before_it_starts() {
     let mut forgetful = contacts(Vec3::zeros());
     forgetful.law.force = ContactForce::SpringSliderDashpot;
     assert!(refused(&mut bench, forgetful).contains("spring-slider-dashpot"));
-    let mut cone = contacts(Vec3::zeros());
-    cone.walls[0].shape = WallShape::Cone {
-        ends: [Vec3::zeros(), Vec3::z()],
-        radii: [0.1, 0.2],
-    };
-    assert!(refused(&mut bench, cone).contains("wall \"floor\" is a cone"));
     let mut soft = contacts(Vec3::zeros());
     soft.pairs[0].restitution = 0.01;
     assert!(refused(&mut bench, soft).contains("0.01"));

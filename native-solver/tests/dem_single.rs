@@ -28,14 +28,6 @@ fn floor(speed: f64, steps: f64, restitution: f64, friction: f64) -> Contacts {
     contacts
 }
 
-/// The same for a material a hundred thousand times as stiff: arms are radii, places do not change.
-fn stiff(mut contacts: Contacts) -> Contacts {
-    contacts.materials[0].young *= 1e5;
-    // A collision takes E^(−2/5) of the time.
-    contacts.step *= 1e-2;
-    contacts
-}
-
 /// Throws a sphere at the floor and returns the bed after twice the collision's time.
 fn thrown(contacts: Contacts, velocity: Vec3, steps: f64) -> Bed {
     let start = Vec3::z() * (RADIUS * (1.0 + 1e-9));
@@ -94,8 +86,7 @@ fn clipped_damping_gives_055_for_a_restitution_of_05() {
     assert!((found - 0.55).abs() < 5e-3, "{found}");
 }
 
-/// Chung and Ooi 2011 (doi 10.1007/s10035-011-0277-0), tests 1 and 2: force, overlap and duration of elastic
-/// impacts of two spheres and of a sphere on a plane are Hertz'.
+/// Of two spheres and of a sphere on a plane; more impacts in `dem_impacts.rs`.
 #[test]
 fn an_elastic_impact_has_the_depth_and_duration_of_hertz() {
     for pair in [true, false] {
@@ -132,75 +123,6 @@ fn an_elastic_impact_has_the_depth_and_duration_of_hertz() {
         assert!((deepest / depth - 1.0).abs() < 1e-5, "{deepest} {depth}");
         assert!((f64::from(steps) / 2000.0 - 1.0).abs() < 1.5e-3, "{steps}");
     }
-}
-
-/// Tests 4 to 8: where the contact slides all the time, the tangential impulse is μ (1 + e) m* V_n.
-#[test]
-fn an_oblique_impact_that_slides_loses_what_friction_takes() {
-    let (restitution, friction) = (0.98, 0.092);
-    for degrees in [5.0f64, 10.0, 20.0] {
-        // The angle from the normal must be large: here from the plane.
-        let angle = degrees.to_radians();
-        let (normal, along) = (3.9 * angle.sin(), 3.9 * angle.cos());
-        let contacts = stiff(floor(normal, 500.0, restitution, friction));
-        let bed = thrown(contacts, Vec3::new(along, 0.0, -normal), 1000.0);
-        let impulse = friction * (1.0 + restitution) * normal;
-        let (speed, spin) = (bed.velocity(0).x, bed.spin(0).y);
-        assert!(
-            ((along - speed) / impulse - 1.0).abs() < 5e-3,
-            "{degrees}: {speed}"
-        );
-        assert!(
-            (spin * RADIUS / (2.5 * impulse) - 1.0).abs() < 2e-2,
-            "{degrees}: {spin}"
-        );
-    }
-}
-
-#[test]
-fn a_spinning_sphere_is_thrown_aside_and_two_of_them_turn_each_other() {
-    let (restitution, friction) = (0.9, 0.1);
-    // A sphere on the plane that spins fast: test 6.
-    let contacts = stiff(floor(0.2, 500.0, restitution, friction));
-    let start = Vec3::z() * RADIUS;
-    let push = friction * (1.0 + restitution) * 0.2;
-    let mut bed = Bed::new(
-        contacts,
-        &[sphere(1, start, Vec3::new(1.0, 0.0, -0.2), RADIUS)],
-    );
-    bed.run(1000);
-    assert!(((1.0 - bed.velocity(0).x) / push - 1.0).abs() < 5e-3);
-    // Two spheres that slide past each other while they meet: tests 7 and 8, of unequal size.
-    let (first, second) = (RADIUS, 2.0 * RADIUS);
-    let reduced = mass(first) * mass(second) / (mass(first) + mass(second));
-    let mut contacts = stiff(floor(0.4, 500.0, restitution, friction));
-    contacts.walls.clear();
-    let mut bed = Bed::new(
-        contacts,
-        &[
-            sphere(1, Vec3::zeros(), Vec3::new(0.2, 1.0, 0.0), first),
-            sphere(
-                2,
-                Vec3::x() * (first + second),
-                Vec3::new(-0.2, 0.0, 0.0),
-                second,
-            ),
-        ],
-    );
-    bed.run(1500);
-    let impulse = friction * (1.0 + restitution) * reduced * 0.4;
-    let lost = (1.0 - bed.velocity(0).y) * mass(first);
-    assert!((lost / impulse - 1.0).abs() < 2e-2, "{lost} {impulse}");
-    for (row, radius) in [(0, first), (1, second)] {
-        let turned = bed.spin(row).z * 0.4 * mass(radius) * radius;
-        assert!(
-            (turned.abs() / impulse - 1.0).abs() < 3e-2,
-            "{row}: {turned}"
-        );
-    }
-    let momentum = mass(first) * bed.velocity(0) + mass(second) * bed.velocity(1);
-    let before = Vec3::new(0.2 * (mass(first) - mass(second)), mass(first), 0.0);
-    assert!((momentum - before).norm() < 1e-13 * before.norm());
 }
 
 #[test]

@@ -439,6 +439,8 @@ pub struct Quantity {
     pub unit: &'static str,
     /// Largest difference between pairings.
     pub agree: Option<Band>,
+    /// Process time in s over which values are averaged before pairings are compared; 0: not at all.
+    pub agree_over: f64,
     /// Expected value.
     pub expect: Option<Expect>,
 }
@@ -478,6 +480,17 @@ pub enum Measure {
         field: String,
         /// Which one.
         number: usize,
+    },
+    /// Angle in rad of the bed's surface in a drum: by which the centre of mass of all particles has turned
+    /// about an axis from straight below it. A surface that is flat stands across the line from the axis to the
+    /// centre of mass, so that this is its slope.
+    SurfaceAngle {
+        /// A point of the axis in m.
+        point: Vec3,
+        /// Unit vector along the axis.
+        axis: Vec3,
+        /// Unit vector along gravity.
+        down: Vec3,
     },
 }
 

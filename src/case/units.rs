@@ -122,6 +122,7 @@ const UNITS: &[(&str, f64, [i8; 5])] = &[
     ("mW", 1e-3, [2, 1, -3, 0, 0]),
     ("kW", 1e3, [2, 1, -3, 0, 0]),
     ("rad", 1.0, [0, 0, 0, 0, 0]),
+    ("deg", std::f64::consts::PI / 180.0, [0, 0, 0, 0, 0]),
     ("rpm", std::f64::consts::PI / 30.0, [0, 0, -1, 0, 0]),
     ("%", 1e-2, [0, 0, 0, 0, 0]),
 ];
@@ -273,6 +274,7 @@ mod tests {
         let (mass, dimension) = one("28.96 g/mol");
         assert!((mass - 0.02896).abs() < 1e-16);
         assert_eq!(dimension, Dimension::MOLAR_MASS);
+        assert_eq!(one("180 deg"), (std::f64::consts::PI, Dimension::NONE));
         assert_eq!(one("9.81 m/s^2").1, Dimension::ACCELERATION);
         assert_eq!(one("1e-3 m"), (1e-3, Dimension::LENGTH));
         assert_eq!(one("0.6"), (0.6, Dimension::NONE));

@@ -55,12 +55,21 @@ fn difference(quantity: &Quantity, sources: &[Source]) -> QuantityDifference {
     let mut end = largest;
     let mut end_values = Vec::new();
     let mut multiple = quantity.agree.map(|_| 0.0);
-    for time in common_times(sources) {
+    // Means over a time begin when it has passed; where a run is shorter, with its end.
+    let times = common_times(sources);
+    let first = quantity
+        .agree_over
+        .min(times.last().copied().unwrap_or(0.0));
+    for time in times
+        .into_iter()
+        .filter(|time| *time >= first * (1.0 - 1e-9))
+    {
         let values: Vec<f64> = sources
             .iter()
             .map(|source| {
                 let series = &source.series;
-                between(series.column("process_time"), series.column(&column), time)
+                let columns = (series.column("process_time"), series.column(&column));
+                value(columns, time, quantity.agree_over)
             })
             .collect();
         let (low, high) = extremes(&values);
@@ -96,6 +105,22 @@ fn difference(quantity: &Quantity, sources: &[Source]) -> QuantityDifference {
         multiple,
         verdict: Agreement::of(multiple),
     }
+}
+
+/// The value at a time, or the mean of all that were recorded in a time before it.
+fn value((times, values): (&[f64], &[f64]), time: f64, over: f64) -> f64 {
+    if over == 0.0 {
+        return between(times, values, time);
+    }
+    let slack = 1e-9 * time;
+    let within = |at: f64| at > time - over + slack && at <= time + slack;
+    let all: Vec<f64> = times
+        .iter()
+        .zip(values)
+        .filter(|(at, _)| within(**at))
+        .map(|(_, value)| *value)
+        .collect();
+    all.iter().sum::<f64>() / all.len() as f64
 }
 
 /// True where a difference is larger than the largest so far; one that is not a number (a run has
@@ -135,5 +160,19 @@ pub(super) fn words(band: Band, unit: &str) -> String {
     match band {
         Band::Relative(share) => format!("{} %", 100.0 * share),
         Band::Absolute(distance) => format!("{distance} {unit}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mean_is_over_what_was_recorded_in_the_time_before() {
+        let columns = (&[0.0, 0.1, 0.2, 0.3][..], &[9.0, 1.0, 2.0, 4.0][..]);
+        assert_eq!(value(columns, 0.3, 0.0), 4.0);
+        assert_eq!(value(columns, 0.3, 0.2), 3.0);
+        assert_eq!(value(columns, 0.2, 0.2), 1.5);
+        assert!((value(columns, 0.3, 0.3) - 7.0 / 3.0).abs() < 1e-15);
     }
 }

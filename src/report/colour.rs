@@ -64,11 +64,10 @@ impl Range {
         })
     }
 
-    /// An upright colour bar of a height in px with its values, at (x, y).
-    pub fn bar(&self, x: f64, y: f64, height: f64, label: &str) -> String {
-        let mut svg = String::from(
-            "<g><defs><linearGradient id=\"scale\" x1=\"0\" y1=\"1\" x2=\"0\" y2=\"0\">",
-        );
+    /// An upright colour bar of a height in px with its values, at (x, y); its name is unique on the page.
+    pub fn bar(&self, name: &str, x: f64, y: f64, height: f64, label: &str) -> String {
+        let mut svg =
+            format!("<g><defs><linearGradient id=\"{name}\" x1=\"0\" y1=\"1\" x2=\"0\" y2=\"0\">");
         for step in 0..=10 {
             let share = f64::from(step) / 10.0;
             let _ = write!(
@@ -80,7 +79,7 @@ impl Range {
         let _ = write!(
             svg,
             "</linearGradient></defs><rect x=\"{x}\" y=\"{y}\" width=\"14\" height=\"{height}\" \
-             rx=\"2\" fill=\"url(#scale)\"/>"
+             rx=\"2\" fill=\"url(#{name})\"/>"
         );
         for step in 0..=4 {
             let share = f64::from(step) / 4.0;

@@ -1,6 +1,7 @@
 //! The report of a run: one self-contained HTML page made from a result directory.
 
 pub(crate) mod colour;
+mod film;
 pub(crate) mod number;
 pub(crate) mod page;
 mod picture;
@@ -38,9 +39,15 @@ pub fn write(directory: &Path) -> Result<PathBuf, ResultsError> {
     page.section("Quantities of interest", "", &quantities(&summary));
     page.section(
         "Bed and gas",
-        "A cut through the middle, seen from the side: gas cells and particles in one colour scale.",
+        "A cut through the middle, seen from the side: gas cells and particles in one colour scale, that of \
+         particles' speeds where all have one temperature.",
         &picture::render(directory)?,
     );
+    let film = film::render(directory)?;
+    if !film.is_empty() {
+        let text = "The same cut, snapshot by snapshot.";
+        page.section("The bed in motion", text, &film);
+    }
     page.section("Over time", "", &plots(&summary, &series));
     let sampled = probes::render(directory)?;
     if !sampled.is_empty() {

@@ -4,10 +4,11 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::colour::Range;
+use super::film::Shade;
 use super::number::span;
 use super::section::{self, Circle, Polygon, Spot};
 use crate::results::ResultsError;
-use crate::results::read::{self, Array, Arrays};
+use crate::results::read::{self, Arrays};
 
 const HEIGHT: f64 = 460.0;
 const WIDEST: f64 = 1050.0;
@@ -74,23 +75,13 @@ fn extent(polygons: &[Polygon]) -> Option<(Spot, Spot)> {
     Some(([x.low, z.low], [x.high, z.high]))
 }
 
-fn temperature(arrays: &Arrays) -> &[f64] {
-    match arrays.get("temperature") {
-        Some(Array {
-            components: 1,
-            values,
-        }) => values,
-        _ => &[],
-    }
-}
-
 fn draw(views: &[View], low: Spot, high: Spot) -> String {
+    let shade = Shade::of(views.iter().map(|view| (&view.gas, &view.particles)));
     let values = views.iter().flat_map(|view| {
-        temperature(&view.gas)
-            .iter()
-            .chain(temperature(&view.particles))
+        let gas = shade.gas(&view.gas).iter().copied();
+        gas.chain(shade.particles(&view.particles))
     });
-    let range = Range::of(values.copied());
+    let range = Range::of(values);
     let (wide, tall) = (high[0] - low[0], high[1] - low[1]);
     let gap = 34.0;
     let room = (WIDEST - BAR) / views.len() as f64 - gap;
@@ -115,7 +106,7 @@ fn draw(views: &[View], low: Spot, high: Spot) -> String {
             _ => "var(--rule)".into(),
         };
         for polygon in &view.polygons {
-            let fill = colour(temperature(&view.gas), polygon.cell);
+            let fill = colour(shade.gas(&view.gas), polygon.cell);
             svg.push_str("<polygon points=\"");
             for corner in &polygon.corners {
                 let [x, y] = spot(*corner);
@@ -127,13 +118,14 @@ fn draw(views: &[View], low: Spot, high: Spot) -> String {
                 "\" fill=\"{fill}\" stroke=\"{fill}\" stroke-width=\".6\"/>"
             );
         }
+        let values = shade.particles(&view.particles);
         for circle in &view.circles {
             let [x, y] = spot(circle.centre);
             let _ = write!(
                 svg,
                 "<circle class=\"sphere\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{:.2}\" fill=\"{}\"/>",
                 circle.radius * scale,
-                colour(temperature(&view.particles), circle.particle)
+                colour(&values, circle.particle)
             );
         }
         let _ = write!(
@@ -147,7 +139,13 @@ fn draw(views: &[View], low: Spot, high: Spot) -> String {
     }
     if let Some(range) = range {
         let bar = tall.min(320.0);
-        svg.push_str(&range.bar(width - BAR + 26.0, TOP + (tall - bar) / 2.0, bar, "T in K"));
+        svg.push_str(&range.bar(
+            "scale",
+            width - BAR + 26.0,
+            TOP + (tall - bar) / 2.0,
+            bar,
+            shade.label(),
+        ));
     }
     svg.push_str("</svg></figure>");
     svg

@@ -121,6 +121,13 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &Moment<'_>, sites: &[Site])
                     .copied()
             })
             .unwrap_or(f64::NAN),
+        Measure::SurfaceAngle { point, axis, down } => surface_angle(
+            moment.particles.position,
+            moment.particles.mass,
+            point,
+            axis,
+            down,
+        ),
     }
 }
 
@@ -143,6 +150,20 @@ fn of_particles(moment: &Moment<'_>, (field, column): Field<'_>) -> Vec<f64> {
         }
         _ => moment.particle_temperature.to_vec(),
     }
+}
+
+/// By how many rad the centre of mass has turned about an axis from straight below; NaN without particles.
+fn surface_angle(position: &[Vec3], mass: &[f64], point: &Vec3, axis: &Vec3, down: &Vec3) -> f64 {
+    let moment: Vec3 = position
+        .iter()
+        .zip(mass)
+        .map(|(x, m)| *m * (x - point))
+        .sum();
+    if position.is_empty() {
+        return f64::NAN;
+    }
+    axis.dot(&down.cross(&moment))
+        .atan2(down.dot(&moment) - axis.dot(down) * axis.dot(&moment))
 }
 
 fn site<'s>(sites: &'s [Site], name: &str) -> Option<&'s Site> {
@@ -305,4 +326,27 @@ pub(super) fn overall<'a>(results: impl Iterator<Item = &'a QuantityResult>) -> 
             _ => Verdict::None,
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bed_that_has_turned_by_an_angle_has_a_surface_of_that_slope() {
+        // A heap below the axis at (1, 2, 3), turned about −y by 0.4 rad, and moved along the axis.
+        let point = Vec3::new(1.0, 2.0, 3.0);
+        let (sine, cosine) = 0.4f64.sin_cos();
+        let places = [(-0.1, -0.5), (0.1, -0.5), (0.3, -0.2), (-0.3, -0.2)]
+            .map(|(x, z)| point + Vec3::new(x * cosine - z * sine, 7.0, x * sine + z * cosine));
+        let angle = |axis: Vec3, down: Vec3| {
+            surface_angle(&places, &[1.0, 1.0, 3.0, 3.0], &point, &axis, &down)
+        };
+        assert!((angle(-Vec3::y(), -Vec3::z()) - 0.4).abs() < 1e-14);
+        assert!((angle(Vec3::y(), -Vec3::z()) + 0.4).abs() < 1e-14);
+        // What of gravity is along the axis does not matter.
+        let slanted = Vec3::new(0.0, 0.6, -0.8);
+        assert!((angle(-Vec3::y(), slanted) - 0.4).abs() < 1e-14);
+        assert!(surface_angle(&[], &[], &point, &Vec3::y(), &-Vec3::z()).is_nan());
+    }
 }

@@ -38,6 +38,7 @@ pub fn case() -> Case {
         measure,
         unit,
         agree: Some(Band::Relative(0.01)),
+        agree_over: 0.0,
         expect,
     };
     Case {

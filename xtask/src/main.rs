@@ -40,7 +40,8 @@ usage: cargo xtask TASK
   torture [--kills N]     kill -9 at random moments, resume, compare every bit (50 unless told)
         [--seed S]
   faults [--kills N]      kill or stop random processes of coupled runs at random moments (500
-        [--seed S]        unless told): each is named, and everything ends and is cleaned up";
+        [--seed S]        unless told): each is named, and everything ends and is cleaned up
+  validate [NAME …]       long validations, all unless named: elastic-box, hopper, repose, voids";
 
 /// Exit code of a wrong command line, as `calcine` has it.
 const USAGE_CODE: u8 = 2;
@@ -117,6 +118,11 @@ fn read(words: &[OsString]) -> Option<Task> {
         "fuzz" => program("fuzz", Needs::NATIVE, ["--minutes", "10"], rest),
         "torture" => program("torture", Needs::NATIVE, ["--kills", "50"], rest),
         "faults" => program("faults_random", Needs::ALL, ["--kills", "500"], rest),
+        "validate" => Some(Task::Program {
+            name: "validate",
+            needs: Needs::NATIVE,
+            words: [&[OsString::from("--validate")], rest].concat(),
+        }),
         "install" => install(rest),
         _ => None,
     }
@@ -228,6 +234,8 @@ mod tests {
         assert_eq!(read(&words("torture")), torture);
         let faults = task("faults_random", Needs::ALL, "--kills 500");
         assert_eq!(read(&words("faults")), faults);
+        let validate = task("validate", Needs::NATIVE, "--validate hopper");
+        assert_eq!(read(&words("validate hopper")), validate);
     }
 
     #[test]

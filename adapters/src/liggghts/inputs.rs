@@ -5,12 +5,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use calcine_coupler::error::{FailureKind, PartError};
-use calcine_coupler::motion::{Motion, WallShape};
+use calcine_coupler::motion::Motion;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 
-use super::moving;
 use super::template::{Template, Values};
+use super::{facets, moving};
 
 /// Name of the script.
 pub const SCRIPT: &str = "in.liggghts";
@@ -46,7 +46,7 @@ impl Inputs<'_> {
             (folder.join(DATA), self.data()),
         ];
         let meshes = match &self.setup.motion {
-            Motion::Free(contacts) => moving::meshes(contacts),
+            Motion::Free(contacts) => moving::meshes(contacts, self.smallest()),
             Motion::Frozen => Vec::new(),
         };
         fs::create_dir_all(folder).map_err(|error| unwritable(folder, error))?;
@@ -105,6 +105,7 @@ impl Inputs<'_> {
                 skin,
                 bins,
                 corners: (lower, upper),
+                smallest: self.smallest(),
             };
             return own.script(contacts, &values).map_err(|error| {
                 let message = "the script of `liggghts.template` does not go with the case";
@@ -113,7 +114,7 @@ impl Inputs<'_> {
         }
         let (template, contacts) = match &self.setup.motion {
             Motion::Frozen => (FROZEN_BED, String::new()),
-            Motion::Free(contacts) => (MOVING_BED, moving::commands(contacts)),
+            Motion::Free(contacts) => (MOVING_BED, moving::commands(contacts, self.smallest())),
         };
         let script = template
             .replace("{bins}", &format!("{bins:e}"))
@@ -165,6 +166,12 @@ impl Inputs<'_> {
         text
     }
 
+    /// Radius of the smallest sphere in m.
+    fn smallest(&self) -> f64 {
+        let radii = self.setup.radius.iter().copied();
+        radii.fold(f64::INFINITY, f64::min)
+    }
+
     /// Corners of a box around domain and spheres, with a margin that keeps particles off its faces.
     fn corners(&self) -> (Vec3, Vec3) {
         let (mut lower, mut upper) = self.bounds;
@@ -173,12 +180,13 @@ impl Inputs<'_> {
             upper = upper.sup(&centre.add_scalar(radius));
         }
         if let Motion::Free(contacts) = &self.setup.motion {
-            let triangles = contacts.walls.iter().filter_map(|wall| match &wall.shape {
-                WallShape::Mesh { triangles } => Some(triangles),
-                _ => None,
-            });
-            for corner in triangles.flatten().flatten() {
-                (lower, upper) = (lower.inf(corner), upper.sup(corner));
+            let walls = contacts.walls.iter();
+            let meshes = walls.filter(|wall| !facets::is_primitive(wall));
+            let smallest = self.smallest();
+            for corner in meshes.flat_map(|wall| facets::of(wall, contacts, smallest)) {
+                for at in corner {
+                    (lower, upper) = (lower.inf(&at), upper.sup(&at));
+                }
             }
         }
         let margin = 0.01 * (upper - lower);

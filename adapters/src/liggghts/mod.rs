@@ -1,5 +1,6 @@
 //! Particles in Debian's LIGGGHTS, run as a library by the host `calcine-liggghts`.
 
+mod facets;
 pub mod inputs;
 pub mod moving;
 pub mod template;

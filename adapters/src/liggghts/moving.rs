@@ -9,6 +9,8 @@ use calcine_coupler::motion::{
 };
 use calcine_coupler::physics::Vec3;
 
+use super::facets;
+
 /// LIGGGHTS refuses softer ones unless told that they are meant, and harder ones than the second.
 const USUAL_YOUNG: [f64; 2] = [5e6, 1e9];
 /// Restitution below which LIGGGHTS refuses a pair.
@@ -56,36 +58,15 @@ pub fn refusal(contacts: &Contacts) -> Option<String> {
             "it takes no restitution below {LEAST_RESTITUTION}; a pair of `contacts` has {low}"
         ));
     }
-    contacts.walls.iter().find_map(wall_refusal)
+    None
 }
 
-fn wall_refusal(wall: &Wall) -> Option<String> {
-    let name = &wall.name;
-    let along = |direction: &Vec3| direction.iter().any(|value| value.abs() == 1.0);
-    let moves = wall.motion != WallMotion::Still;
-    let what = match &wall.shape {
-        WallShape::Mesh { .. } => return None,
-        WallShape::Cone { .. } => "is a cone",
-        WallShape::Plane { .. } | WallShape::Cylinder { .. } if moves => {
-            "is a plane or a cylinder that moves"
-        }
-        WallShape::Plane { normal, .. } if !along(normal) => "is a plane across the axes",
-        WallShape::Cylinder { axis, .. } if axis.z.abs() != 1.0 => {
-            "is a cylinder that is not upright"
-        }
-        WallShape::Plane { .. } | WallShape::Cylinder { .. } => return None,
-    };
-    Some(format!(
-        "wall \"{name}\" {what}, which it does not have; give its triangles: walls.stl = \"{name}.stl\""
-    ))
-}
-
-/// The commands after the particles are read.
-pub fn commands(contacts: &Contacts) -> String {
+/// The commands after the particles are read, for spheres of this radius in m at least.
+pub fn commands(contacts: &Contacts, smallest: f64) -> String {
     laws(contacts)
         + &groups(contacts)
         + &gravity(contacts)
-        + &walls(contacts)
+        + &walls(contacts, smallest)
         + &push()
         + &motion(contacts)
 }
@@ -245,14 +226,14 @@ fn file(index: usize) -> String {
     format!("wall-{index}.stl")
 }
 
-/// Names and contents of the files of walls that are triangles.
-pub fn meshes(contacts: &Contacts) -> Vec<(String, String)> {
+/// Names and contents of the files of walls that are triangles, for spheres of this radius in m at least.
+pub fn meshes(contacts: &Contacts, smallest: f64) -> Vec<(String, String)> {
     let walls = contacts.walls.iter().enumerate();
-    let meshes = walls.filter_map(|(index, wall)| match &wall.shape {
-        WallShape::Mesh { triangles } => Some((file(index), stl(&wall.name, triangles))),
-        _ => None,
-    });
-    meshes.collect()
+    let meshes = walls.filter(|(_, wall)| !facets::is_primitive(wall));
+    let text = |wall: &Wall| stl(&wall.name, &facets::of(wall, contacts, smallest));
+    meshes
+        .map(|(index, wall)| (file(index), text(wall)))
+        .collect()
 }
 
 fn stl(name: &str, triangles: &[[Vec3; 3]]) -> String {
@@ -274,37 +255,62 @@ fn stl(name: &str, triangles: &[[Vec3; 3]]) -> String {
     text
 }
 
-/// Walls, with the contact law of the particles.
-pub fn walls(contacts: &Contacts) -> String {
+/// LIGGGHTS' name of a wall that it has itself, with its parameters: those of a cylinder are the radius and the
+/// place of its axis, in the cyclic order of the coordinates.
+fn primitive(shape: &WallShape) -> Option<String> {
+    const NAMES: [&str; 3] = ["x", "y", "z"];
+    match shape {
+        WallShape::Plane { point, normal } => {
+            let axis = normal.iamax();
+            Some(format!("{}plane {:e}", NAMES[axis], point[axis]))
+        }
+        WallShape::Cylinder {
+            point,
+            axis,
+            radius,
+        } => {
+            let along = axis.iamax();
+            let [first, second] = [1, 2].map(|next| point[(along + next) % 3]);
+            Some(format!(
+                "{}cylinder {radius:e} {first:e} {second:e}",
+                NAMES[along]
+            ))
+        }
+        WallShape::Cone { .. } | WallShape::Mesh { .. } => None,
+    }
+}
+
+/// Walls, with the contact law of the particles, for spheres of this radius in m at least.
+pub fn walls(contacts: &Contacts, smallest: f64) -> String {
     let (mut text, model) = (String::new(), model(contacts));
     let mut meshes = Vec::new();
     for (index, wall) in contacts.walls.iter().enumerate() {
         let kind = contacts.material_of.len() + wall.material + 1;
-        let primitive = match &wall.shape {
-            WallShape::Plane { point, normal } => {
-                let axis = normal.iamax();
-                format!("{}plane {:e}", ["x", "y", "z"][axis], point[axis])
-            }
-            WallShape::Cylinder { point, radius, .. } => {
-                format!("zcylinder {radius:e} {:e} {:e}", point.x, point.y)
-            }
-            WallShape::Cone { .. } => continue, // refused before
-            WallShape::Mesh { .. } => {
-                let _ = writeln!(
-                    text,
-                    "fix calcine_mesh_{index} all mesh/surface file {} type {kind}",
-                    file(index)
-                );
-                moving_mesh(&mut text, index, wall.motion);
-                meshes.push(format!("calcine_mesh_{index}"));
-                continue;
-            }
-        };
+        let own = facets::is_primitive(wall).then(|| primitive(&wall.shape));
+        if let Some(primitive) = own.flatten() {
+            let _ = writeln!(
+                text,
+                "fix calcine_wall_{index} all wall/gran {model} primitive type {kind} {primitive}{}",
+                settings(contacts)
+            );
+            continue;
+        }
+        let stays = facets::within_itself(wall);
         let _ = writeln!(
             text,
-            "fix calcine_wall_{index} all wall/gran {model} primitive type {kind} {primitive}{}",
-            settings(contacts)
+            "fix calcine_mesh_{index} all mesh/surface file {} type {kind}{}{}",
+            file(index),
+            if stays {
+                surface(wall.motion)
+            } else {
+                String::new()
+            },
+            curvature(wall, smallest)
         );
+        if !stays {
+            moving_mesh(&mut text, index, wall.motion);
+        }
+        meshes.push(format!("calcine_mesh_{index}"));
     }
     if !meshes.is_empty() {
         let _ = writeln!(
@@ -316,6 +322,36 @@ pub fn walls(contacts: &Contacts) -> String {
         );
     }
     text
+}
+
+/// Facets of a round wall are one surface: a sphere touches them once, and its springs go along. (Without being
+/// told, LIGGGHTS takes an angle above 0.26 degrees for an edge.)
+fn curvature(wall: &Wall, smallest: f64) -> String {
+    facets::bend(wall, smallest).map_or_else(String::new, |bend| {
+        format!(" curvature {:e} curvature_tolerant yes", 1.25 * bend)
+    })
+}
+
+/// The speed of a surface that moves within itself: its triangles stay.
+fn surface(motion: WallMotion) -> String {
+    match motion {
+        WallMotion::Still => String::new(),
+        WallMotion::Translating(v) => format!(" surface_vel {:e} {:e} {:e}", v.x, v.y, v.z),
+        WallMotion::Rotating {
+            point,
+            angular_velocity,
+        } => {
+            let speed = angular_velocity.norm();
+            if speed == 0.0 {
+                return String::new();
+            }
+            let axis = angular_velocity / speed;
+            format!(
+                " surface_ang_vel origin {:e} {:e} {:e} axis {:e} {:e} {:e} omega {speed:e}",
+                point.x, point.y, point.z, axis.x, axis.y, axis.z
+            )
+        }
+    }
 }
 
 fn moving_mesh(text: &mut String, index: usize, motion: WallMotion) {

@@ -12,6 +12,7 @@ use calcine_wire::Catalogue;
 use super::start::Start;
 use super::stock::{self, Solver};
 use super::{NAME, decompose, dictionaries, species};
+use crate::launch::without_blanks;
 
 /// What an OpenFOAM case is made from.
 #[derive(Clone, Copy, Debug)]
@@ -107,8 +108,11 @@ impl OpenfoamCase<'_> {
     fn write_stock(&self, folder: &Path, start: &Start) -> Result<(), PartError> {
         let setup = self.setup;
         let include = self.beside(folder, "system/controlDict")?;
-        let library = self.library.to_string_lossy();
-        let control = stock::control(self.solver, &include, &library);
+        let library = without_blanks(self.library, folder).map_err(|error| {
+            let message = "its library cannot be linked in its folder";
+            PartError::new(NAME, FailureKind::Io, message).caused_by(error)
+        })?;
+        let control = stock::control(self.solver, &include, &library.to_string_lossy());
         let options = stock::options(&self.beside(folder, "constant/fvOptions")?);
         let velocity = start.applied("U", stock::velocity(setup));
         let temperature = start.applied("T", stock::temperature(setup));

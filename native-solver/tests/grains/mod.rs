@@ -3,12 +3,13 @@
 
 use std::time::Duration;
 
+use calcine_coupler::checkpoint::StateFile;
 use calcine_coupler::error::PartError;
 use calcine_coupler::motion::{
     Change, Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, NewParticle, Pair,
     Rolling, Wall, WallMotion, WallShape,
 };
-use calcine_coupler::part::{ParticlePush, ParticleReceived, Particles};
+use calcine_coupler::part::{Part, ParticlePush, ParticleReceived, Particles};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::supervisor::{Interrupts, Supervisor};
@@ -109,6 +110,21 @@ impl Bed {
             step,
             supervisor: Supervisor::new(Duration::from_secs(60), Interrupts::default()),
         })
+    }
+
+    /// The bed with an angular velocity in rad/s of one of its spheres, through its state on disk: setups
+    /// know no rotation.
+    pub fn spun(mut self, row: usize, spin: Vec3) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        self.particles.checkpoint(folder.path()).unwrap();
+        let path = folder.path().join("particles.state");
+        let mut state = StateFile::read(&path).unwrap();
+        let mut spins = state.f64s("angular_velocity").unwrap().to_vec();
+        spins[3 * row..3 * row + 3].copy_from_slice(spin.as_slice());
+        state.set_f64s("angular_velocity", &spins);
+        state.write(&path).unwrap();
+        self.particles.restore(folder.path()).unwrap();
+        self
     }
 
     /// One window of so many steps.

@@ -82,6 +82,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
             probes: &probes,
             species: species.unwrap_or_default(),
             solids: &chemistry.solids,
+            gravity: gas.as_ref().map(|(gas, _)| gas.gravity),
         };
         quantities::quantities(root, &known)
     };

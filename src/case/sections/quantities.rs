@@ -1,6 +1,9 @@
 //! `[[quantities]]`.
 
+use calcine_coupler::physics::Vec3;
+
 use super::patches;
+use super::walls::direction;
 use crate::case::model::{
     Band, Expect, GasPlace, Measure, MeshSpec, ParticlePlace, Place, Population, Probe, Quantity,
     Statistic,
@@ -42,6 +45,11 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
     });
     // Keys are read even where the measure could not be, so that they are not called unknown.
     let (agree, expected) = (table.has("agree"), table.table("expect"));
+    let over = table.positive("agree_over", Dimension::TIME);
+    if over.is_some() && !agree {
+        let help = "add agree = \"5 %\", or remove it";
+        table.fail("agree_over", "stands without `agree`", help);
+    }
     let Some(((measure, field), column)) = measure else {
         table.finish();
         return None;
@@ -54,6 +62,7 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
         "height" => (Dimension::LENGTH, "m"),
         "mass" => (Dimension::MASS, "kg"),
         "mass_fraction" => (Dimension::NONE, "1"),
+        "angle" => (Dimension::NONE, "rad"),
         _ => (Dimension::TEMPERATURE, "K"),
     };
     let agree = if agree {
@@ -82,6 +91,7 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
         column,
         unit,
         agree,
+        agree_over: over.unwrap_or(0.0),
         expect,
     })
 }
@@ -114,6 +124,8 @@ pub(super) struct Known<'a> {
     pub probes: &'a [Probe],
     pub species: &'a [String],
     pub solids: &'a [SolidSpecies],
+    /// In m/s²; none where the gas could not be read.
+    pub gravity: Option<Vec3>,
 }
 
 /// The species or solid whose mass fraction is measured.
@@ -174,16 +186,23 @@ const PARTICLES: [(&str, &str); 5] = [
 
 /// The measure and the field that it is of.
 fn measure(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
-    let kinds = ["difference", "gas", "particles", "particle"];
+    let kinds = [
+        "difference",
+        "gas",
+        "particles",
+        "particle",
+        "surface_angle",
+    ];
     let given: Vec<&str> = kinds.into_iter().filter(|kind| reader.has(kind)).collect();
     match given[..] {
         ["difference"] => difference_of(reader, known),
         ["gas"] => gas(reader, known),
         ["particles"] => particles(reader, known),
         ["particle"] => particle(reader, known),
+        ["surface_angle"] => surface_angle(reader, known),
         _ => {
             reader.fail_whole(
-                "needs exactly one of difference, gas, particles and particle",
+                "needs exactly one of difference, gas, particles, particle and surface_angle",
                 "for example { particles = \"temperature\", statistic = \"mean\" }",
             );
             None
@@ -303,6 +322,25 @@ fn particle(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static
         },
         field,
     ))
+}
+
+fn surface_angle(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
+    let table = reader.table("surface_angle")?;
+    let point = table.required_vector("point", Dimension::LENGTH);
+    let axis = direction(&table, "axis");
+    table.finish();
+    let (point, axis) = (Vec3::from(point?), axis?);
+    let down = known.gravity?.try_normalize(0.0);
+    if down.is_none_or(|down| down.cross(&axis).norm() < 1e-3) {
+        let help = "state `gas.gravity` across the axis; it says what is below";
+        reader.fail(
+            "surface_angle",
+            "has an axis that gravity does not cross",
+            help,
+        );
+    }
+    let down = down?;
+    Some((Measure::SurfaceAngle { point, axis, down }, "angle"))
 }
 
 /// The statistic; on a probe the mean, where none is named: it may be a single point.

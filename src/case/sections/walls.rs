@@ -104,7 +104,7 @@ fn shapes(
 }
 
 /// A direction, made one long.
-fn direction(table: &Reader<'_>, key: &str) -> Option<Vec3> {
+pub(super) fn direction(table: &Reader<'_>, key: &str) -> Option<Vec3> {
     if !table.has(key) {
         table.missing(key, "\"0 0 1\"");
     }

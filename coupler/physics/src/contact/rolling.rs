@@ -7,7 +7,7 @@ use crate::Vec3;
 ///
 /// M = −μ_r R* F ω/|ω|, F the elastic normal force, ω the rotation against the other body.
 ///
-/// For a wall R* is the sphere's radius less half the overlap, as in LIGGGHTS.
+/// For a wall R* is the sphere's radius.
 ///
 /// Source: Zhou, Wright, Yang, Xu, Yu, Physica A 269 (1999) 536, doi 10.1016/S0378-4371(99)00183-1;
 /// model A of Ai, Chen, Rotter, Ooi 2011, doi 10.1016/j.powtec.2010.09.030.
@@ -30,7 +30,7 @@ pub fn constant_torque(
 /// What the rolling spring of a contact depends on beside the pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RollingSpring {
-    /// Normal force F_n in N, damping and cohesion included.
+    /// Normal force F_n in N, with damping but without cohesion, as in LIGGGHTS.
     pub force: f64,
     /// Secant stiffness k_n = F/δ of the normal spring in N/m.
     pub stiffness: f64,

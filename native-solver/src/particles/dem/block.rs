@@ -280,7 +280,6 @@ fn meet(rules: &Rules, a: &Place, b: &Place, va: &Moves, vb: &Moves) -> (Meeting
         velocity: va.velocity - vb.velocity,
         turning: arms[0] * va.spin + arms[1] * vb.spin,
         rotation: va.spin - vb.spin,
-        rolling_radius: radius,
         inertia: match rules.rolling {
             Rolling::ElasticPlastic => 1.4 / (moment(a, va) + moment(b, vb)),
             _ => 0.0,

@@ -36,8 +36,6 @@ pub struct Meeting {
     pub turning: Vec3,
     /// Rotation against the other body in rad/s.
     pub rotation: Vec3,
-    /// Radius that the constant rolling torque takes, in m.
-    pub rolling_radius: f64,
     /// 7/5 of the reduced moment m R² in kg m²; read with a rolling spring only.
     pub inertia: f64,
     /// Contact area; read with cohesion only.
@@ -76,11 +74,11 @@ pub fn evaluate<L: ContactLaw, const BUDGET: bool>(
         meeting.mass,
     );
     let approach = meeting.velocity.dot(&normal);
-    let mut push = springs.elastic - springs.normal_damping * approach;
-    if !rules.attractive && push < 0.0 {
-        push = 0.0;
+    let mut damped = springs.elastic - springs.normal_damping * approach;
+    if !rules.attractive && damped < 0.0 {
+        damped = 0.0;
     }
-    let damped = push;
+    let mut push = damped;
     let mut stored = springs.energy;
     if rules.cohesion {
         let (pull, energy) = sjkr(pair, meeting.area);
@@ -90,7 +88,8 @@ pub fn evaluate<L: ContactLaw, const BUDGET: bool>(
     let slip = meeting.velocity - approach * normal - meeting.turning.cross(&normal);
     let mut moved = *shift + slip * step;
     moved -= moved.dot(&normal) * normal;
-    let limit = pair.friction * push.abs();
+    // Friction is limited by the force without attraction.
+    let limit = pair.friction * damped.abs();
     let mut tangential = friction::<L>(moved, slip, &springs, limit);
     *shift = tangential.shift;
     // An evaluation that only looks must not take a contact that slides for one that sticks: rounding
@@ -106,13 +105,13 @@ pub fn evaluate<L: ContactLaw, const BUDGET: bool>(
         Rolling::ConstantTorque => constant_torque(
             pair,
             springs.elastic,
-            meeting.rolling_radius,
+            meeting.radius,
             meeting.rotation,
             normal,
         ),
         Rolling::ElasticPlastic => {
             let spring = RollingSpring {
-                force: push,
+                force: damped,
                 stiffness: springs.elastic / meeting.overlap,
                 radius: meeting.radius,
                 inertia: meeting.inertia,

@@ -240,7 +240,6 @@ fn contact<L: ContactLaw, const BUDGET: bool>(
         velocity: moves.velocity - surface,
         turning: arm * moves.spin,
         rotation: moves.spin - wall.spin(),
-        rolling_radius: arm,
         inertia: match scene.rules.rolling {
             Rolling::ElasticPlastic => 1.4 * radius * radius / moves.inverse_mass,
             _ => 0.0,

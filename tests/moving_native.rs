@@ -1,0 +1,181 @@
+//! Native particles through the program: a projectile with drag, a turning drum, a hopper; the drum with LIGGGHTS
+//! too, whose host `cargo xtask test` builds. Longer ones: `cargo xtask validate`.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::f64::consts::PI;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use calcine::results::read::Series;
+use serde_json::Value;
+
+fn case(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{name}.toml"))
+}
+
+/// The series of a native run with settings.
+fn run(name: &str, set: &[&str]) -> Series {
+    let out = tempfile::tempdir().unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
+    command.arg("run").arg(case(name)).arg("--quiet");
+    command.arg("--out").arg(out.path());
+    for setting in set {
+        command.args(["--set", setting]);
+    }
+    let output = command.output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{name}: {text}");
+    Series::read(out.path()).unwrap()
+}
+
+/// Velocity and height in m/s and m of a bead of 0.1 mm in air of 300 K that was thrown upwards and aside, by
+/// Runge's and Kutta's method: m v' = (m − ρV) g − 3πμd (1 + 0.15 Re^0.687) v (Schiller and Naumann).
+fn projectile(mut velocity: [f64; 2], mut height: f64, time: f64) -> ([f64; 2], f64) {
+    let (d, solid) = (1e-4f64, 2500.0);
+    let density = 101_325.0 * 0.028_96 / (8.314_462_618 * 300.0);
+    let viscosity = 1.716e-5 * (300.0f64 / 273.15).powf(1.5) * (273.15 + 110.4) / (300.0 + 110.4);
+    let mass = PI / 6.0 * d.powi(3) * solid;
+    let change = |v: [f64; 2]| {
+        let re = density * v[0].hypot(v[1]) * d / viscosity;
+        let drag = 3.0 * PI * viscosity * d * (1.0 + 0.15 * re.powf(0.687)) / mass;
+        [-drag * v[0], -drag * v[1] - 9.81 * (1.0 - density / solid)]
+    };
+    let steps = 20_000;
+    let step = time / f64::from(steps);
+    let ahead = |v: [f64; 2], k: [f64; 2], by: f64| [v[0] + by * k[0], v[1] + by * k[1]];
+    for _ in 0..steps {
+        let k1 = change(velocity);
+        let k2 = change(ahead(velocity, k1, 0.5 * step));
+        let k3 = change(ahead(velocity, k2, 0.5 * step));
+        let k4 = change(ahead(velocity, k3, step));
+        let mean = |i: usize| (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0;
+        let next = ahead(velocity, [mean(0), mean(1)], step);
+        height += step * (0.5 * (velocity[1] + next[1]));
+        velocity = next;
+    }
+    (velocity, height)
+}
+
+#[test]
+fn a_bead_that_is_thrown_follows_its_curve_through_still_air() {
+    let end = 0.2;
+    let error = |window: &str| {
+        let series = run(
+            "settling-sphere",
+            &[
+                "particles[0].velocity=0.12 0 0.5 m/s",
+                "particles[0].place.grid.first=4 10 150 mm",
+                "time.end=0.2 s",
+                "output.series_every=0.2 s",
+                window,
+            ],
+        );
+        let last = |name: &str| *series.column(name).last().unwrap();
+        let (velocity, height) = projectile([0.12, 0.5], 0.15, end);
+        let speed = velocity[0].hypot(velocity[1]);
+        let off = [
+            last("quantities.speed") / speed - 1.0,
+            (last("quantities.height") - height) / 0.02,
+        ];
+        println!("{window}: {off:?}");
+        off
+    };
+    let (coarse, fine) = (
+        error("time.motion_window=0.8 ms"),
+        error("time.motion_window=0.2 ms"),
+    );
+    for (coarse, fine) in coarse.into_iter().zip(fine) {
+        // Drag is of the window's start: first order in its length.
+        assert!(coarse.abs() < 8e-3 && fine.abs() < 2e-3, "{coarse} {fine}");
+    }
+}
+
+/// Mean of the drum's angle in degrees over its last second.
+fn slope(series: &Series) -> (f64, f64) {
+    let end = *series.column("process_time").last().unwrap();
+    let times = series.column("process_time").iter();
+    let all = times.zip(series.column("quantities.surface_angle"));
+    let late: Vec<f64> = all
+        .filter(|(time, _)| **time > end - 1.0)
+        .map(|(_, angle)| angle.to_degrees())
+        .collect();
+    let mean = late.iter().sum::<f64>() / late.len() as f64;
+    let widest = late.iter().map(|angle| (angle - mean).abs());
+    (mean, widest.fold(0.0, f64::max))
+}
+
+#[test]
+fn a_drum_carries_its_bed_the_higher_the_rougher_it_is() {
+    let (rough, swing) = slope(&run("rotating-drum", &["time.end=2 s"]));
+    let set = ["time.end=2 s", "contacts[0].friction=0.15"];
+    let (smooth, _) = slope(&run("rotating-drum", &set));
+    println!("friction 0.5: {rough} degrees, within {swing}; 0.15: {smooth} degrees");
+    assert!(
+        (30.0..40.0).contains(&rough) && swing < 6.0,
+        "{rough} {swing}"
+    );
+    assert!((10.0..rough - 5.0).contains(&smooth), "{smooth}");
+}
+
+#[test]
+fn a_drum_has_one_slope_in_native_particles_and_in_liggghts() {
+    let out = tempfile::tempdir().unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_calcine"))
+        .arg("compare")
+        .arg(case("rotating-drum"))
+        .args(["--pairings", "native+native,native+liggghts", "--quiet"])
+        .args(["--set", "time.end=2 s", "--out"])
+        .arg(out.path())
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    let text = fs::read_to_string(out.path().join("compare.json")).unwrap();
+    let comparison: Value = serde_json::from_str(&text).unwrap();
+    let all = comparison["quantities"].as_array().unwrap();
+    let angle = all
+        .iter()
+        .find(|one| one["name"] == "surface_angle")
+        .unwrap();
+    let most = angle["largest"]["difference"]
+        .as_f64()
+        .unwrap()
+        .to_degrees();
+    println!("largest difference of means over a second: {most} degrees");
+    assert!(most < 1.5, "{most} degrees");
+}
+
+/// Beverloo, Leniger and van de Velde 1961 (doi 10.1016/0009-2509(61)85030-6): W = 0.58 ρ_b √g (D − 1.4 d)^2.5.
+#[test]
+fn a_hopper_runs_out_at_the_rate_of_beverloo() {
+    let rate = |hole: f64, end: &str| {
+        let radius = format!("walls[1].cone.from_radius={:e} m", 0.5 * hole);
+        let series = run(
+            "hopper",
+            &[
+                &radius,
+                end,
+                // Two thirds as many beads, half as heavy a computation.
+                "particles[0].place.region.to=95 mm",
+            ],
+        );
+        let times = series.column("process_time");
+        let gone = series.column("ledger.particle_mass_throughput");
+        let at = |time: f64| {
+            let row = times.iter().position(|t| *t >= time - 1e-9).unwrap();
+            gone[row]
+        };
+        (at(0.3) - at(0.15)) / 0.15
+    };
+    let [narrow, wide] = [0.022, 0.030].map(|hole| rate(hole, "time.end=0.3 s"));
+    let beverloo =
+        |hole: f64| 0.58 * 0.58 * 2500.0 * 9.81f64.sqrt() * (hole - 1.4 * 0.004f64).powf(2.5);
+    let [a, b] = [narrow / beverloo(0.022), wide / beverloo(0.030)];
+    println!("{narrow} and {wide} kg/s: {a} and {b} of Beverloo");
+    for ratio in [a, b] {
+        assert!((0.75..1.1).contains(&ratio), "{ratio}");
+    }
+    assert!((a / b - 1.0).abs() < 0.15, "{a} {b}");
+}

@@ -1,0 +1,94 @@
+//! Long validations and verifications by name: `cargo xtask validate [NAME…]`, all unless named. Each prints what
+//! it found and fails where that is off. `cargo test` runs none of them: short relatives of each are among the
+//! other tests.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
+
+mod elastic_box;
+mod hopper;
+mod repose;
+mod voids;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+use std::time::Instant;
+
+use calcine::results::read::Series;
+
+/// What `cargo xtask validate` says before the names.
+const MARK: &str = "--validate";
+/// Every validation by its name.
+const ALL: [(&str, fn()); 4] = [
+    ("elastic-box", elastic_box::run),
+    ("hopper", hopper::run),
+    ("repose", repose::run),
+    ("voids", voids::run),
+];
+
+fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    if !words.iter().any(|word| word == MARK) {
+        return ExitCode::SUCCESS;
+    }
+    let names: Vec<&String> = words.iter().filter(|word| *word != MARK).collect();
+    if let Some(unknown) = names
+        .iter()
+        .find(|name| ALL.iter().all(|one| one.0 != **name))
+    {
+        let known: Vec<&str> = ALL.iter().map(|one| one.0).collect();
+        println!(
+            "there is no validation {unknown}; there are {}",
+            known.join(", ")
+        );
+        return ExitCode::from(2);
+    }
+    for (name, run) in ALL {
+        if names.is_empty() || names.iter().any(|one| *one == name) {
+            println!("{name}");
+            let begun = Instant::now();
+            run();
+            println!("  {:.0} s", begun.elapsed().as_secs_f64());
+        }
+    }
+    ExitCode::SUCCESS
+}
+
+/// Runs a case natively with settings, below a folder; gives its results' folder and its series.
+fn run(case: &Path, folder: &Path, name: &str, set: &[String]) -> (PathBuf, Series) {
+    let out = folder.join(name);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
+    command
+        .arg("run")
+        .arg(case)
+        .arg("--quiet")
+        .arg("--out")
+        .arg(&out);
+    for setting in set {
+        command.args(["--set", setting]);
+    }
+    let output = command.output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{}: {text}", case.display());
+    let series = Series::read(&out).unwrap();
+    (out, series)
+}
+
+/// A shipped case.
+fn shipped(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{name}.toml"))
+}
+
+/// Slope and value at zero of the straight line nearest to points.
+fn line(points: &[(f64, f64)]) -> (f64, f64) {
+    let count = points.len() as f64;
+    let [x, y] = [
+        points.iter().map(|point| point.0).sum::<f64>() / count,
+        points.iter().map(|point| point.1).sum::<f64>() / count,
+    ];
+    let over: f64 = points
+        .iter()
+        .map(|point| (point.0 - x) * (point.1 - y))
+        .sum();
+    let under: f64 = points.iter().map(|point| (point.0 - x).powi(2)).sum();
+    (over / under, y - over / under * x)
+}
