@@ -65,6 +65,7 @@ pub fn case() -> Case {
             patches: ["side", "side", "side", "side", "bottom", "top"].map(String::from),
         },
         materials: vec![],
+        chemistry: Default::default(),
         contacts: vec![],
         walls: vec![],
         motion: None,
@@ -77,6 +78,7 @@ pub fn case() -> Case {
             drag: DragLaw::ErgunWenYu,
             conduction: ConductionLaw::None,
             heat_transfer: HeatLaw::Gunn,
+            mass_transfer: HeatLaw::None,
         },
         coupling: Coupling {
             mapping: Mapping::Overlap,
