@@ -332,7 +332,7 @@ pub fn write_inputs(
     if pairing.particles == ParticleBackend::Liggghts {
         let target = folder.join("liggghts");
         let template = own_script(case)?;
-        let inputs = liggghts_inputs(prepared, template.as_ref(), starts.particles.ranks);
+        let inputs = liggghts_inputs(case, prepared, template.as_ref(), starts.particles.ranks);
         inputs.write(&target)?;
         written.push(target);
     }
@@ -356,12 +356,18 @@ fn own_script(case: &Case) -> Result<Option<Template>, PartError> {
 /// What LIGGGHTS would not take of the user's own script, for `calcine check`.
 pub fn check_own_script(case: &Case, prepared: &Prepared) -> Result<(), PartError> {
     let template = own_script(case)?;
-    let inputs = liggghts_inputs(prepared, template.as_ref(), case.liggghts.ranks.max(1));
+    let inputs = liggghts_inputs(
+        case,
+        prepared,
+        template.as_ref(),
+        case.liggghts.ranks.max(1),
+    );
     inputs.script().map(|_| ())
 }
 
 /// What LIGGGHTS is told of the particles, in the box of the mesh's points.
 fn liggghts_inputs<'a>(
+    case: &Case,
     prepared: &'a Prepared,
     template: Option<&'a Template>,
     ranks: u32,
@@ -379,6 +385,7 @@ fn liggghts_inputs<'a>(
             Motion::Free(contacts) => contacts.step,
         },
         ranks,
+        wall_impulse: case.liggghts.wall_impulse,
         template,
     }
 }
@@ -446,7 +453,8 @@ impl Assembly<'_> {
             ParticleBackend::Liggghts => {
                 let start = &self.settings.starts.particles;
                 let template = own_script(self.case)?;
-                let inputs = liggghts_inputs(self.prepared, template.as_ref(), start.ranks);
+                let inputs =
+                    liggghts_inputs(self.case, self.prepared, template.as_ref(), start.ranks);
                 let launch = LiggghtsLaunch {
                     inputs,
                     launcher: start.launcher.clone(),
@@ -591,6 +599,7 @@ fn closures(case: &Case) -> Closures {
     Closures {
         gas: case.gas.properties.clone(),
         drag: laws::drag(case.laws.drag),
+        momentum: case.gas.momentum,
         heat_transfer: laws::heat_transfer(case.laws.heat_transfer),
         mass_transfer: laws::heat_transfer(case.laws.mass_transfer),
     }

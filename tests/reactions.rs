@@ -58,11 +58,12 @@ fn burning_lime_converges_with_its_windows_and_closes_elements_and_energy() {
     };
     let [coarse, middle, fine] = ["80 s", "40 s", "20 s"].map(lime);
     let order = ((coarse - middle) / (middle - fine)).abs().log2();
+    // First order, as an implicit step of the gas and held gas about the particles are.
+    assert!(fine > 0.04 && (fine / middle - 1.0).abs() < 0.04);
     assert!(
-        fine > 0.04 && (fine / middle - 1.0).abs() < 0.02,
-        "{coarse} {middle} {fine}"
+        (order - 1.0).abs() < 0.15,
+        "{order}: {coarse} {middle} {fine}"
     );
-    assert!(order > 0.7, "order {order}: {coarse} {middle} {fine}");
 }
 
 #[test]

@@ -11,6 +11,7 @@ use calcine_physics::mass_transfer;
 use calcine_physics::numbers::VoidFraction;
 use thiserror::Error;
 
+use crate::momentum_model::MomentumModel;
 use crate::part::{Bed, GasFields, ParticleFields};
 use crate::smoother::Operator;
 
@@ -21,6 +22,8 @@ pub struct Closures {
     pub gas: GasModel,
     /// Drag on a particle.
     pub drag: Box<dyn Drag>,
+    /// How the momentum is shared, which says what of the drag law's coefficient acts.
+    pub momentum: MomentumModel,
     /// Heat transfer between gas and particle.
     pub heat_transfer: Box<dyn HeatTransfer>,
     /// Mass transfer between gas and particles that react, by the analogy with heat transfer; only asked for
@@ -113,10 +116,12 @@ pub struct Coefficients {
     /// Mass transfer coefficient of each species in m/s, species by species within each particle; empty where
     /// none reacts.
     pub film: Vec<f64>,
-    /// Drag coefficient K_A in kg/s (requirements DRG-1).
+    /// Drag coefficient in kg/s: K_A by model A, K_A/ε by model B (requirements DRG-1).
     pub drag: Vec<f64>,
     /// Heat conductance h A in W/K.
     pub conductance: Vec<f64>,
+    /// Magnitude of the slip u − v/AF in m/s by which they were evaluated.
+    pub slip: Vec<f64>,
     /// Share of the other forces in N that drag holds back within the window (requirements
     /// DRG-2, see [`Coefficients::relax`]); zero, or empty, where particles are held.
     pub held_back: Vec<Vec3>,
@@ -228,6 +233,7 @@ impl Closures {
         let species = self.gas.species().len();
         coefficients.drag.resize(count, 0.0);
         coefficients.conductance.resize(count, 0.0);
+        coefficients.slip.resize(count, 0.0);
         for p in 0..count {
             let id = particles.id[p];
             let temperature = seen.temperature[p];
@@ -268,8 +274,9 @@ impl Closures {
                     });
                 }
             }
-            coefficients.drag[p] = drag;
+            coefficients.drag[p] = self.momentum.coefficient(drag, seen.void_fraction[p]);
             coefficients.conductance[p] = conductance;
+            coefficients.slip[p] = local.slip;
         }
         Ok(())
     }

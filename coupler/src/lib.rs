@@ -10,6 +10,7 @@ pub mod held;
 pub mod ledger;
 pub mod mapping;
 pub mod mesh;
+pub mod momentum_model;
 pub mod motion;
 pub mod observer;
 pub mod packing;

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
+use calcine_physics::Vec3;
 use thiserror::Error;
 
 use crate::exchange::Placement;
@@ -38,6 +39,17 @@ pub struct Timing {
     pub particles_processes: Duration,
 }
 
+/// What each particle had of the gas in the last window, in the order of the particles.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Felt<'a> {
+    /// Force of the gas on each in N, constant over the window; zero before the first.
+    pub force: &'a [Vec3],
+    /// Void fraction that the laws saw.
+    pub void_fraction: &'a [f64],
+    /// Magnitude in m/s of the slip u − v/AF that the laws saw; zero before the first window.
+    pub slip: &'a [f64],
+}
+
 /// The state of the run after a commit.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment<'a> {
@@ -64,6 +76,8 @@ pub struct Moment<'a> {
     /// Mass fractions of the solids of particles that react, solid by solid within each particle; empty where
     /// none does.
     pub solid_fractions: &'a [f64],
+    /// What else the particles had of the gas.
+    pub felt: Felt<'a>,
     /// The ledger so far.
     pub ledger: &'a Ledger,
     /// Convergence of the gas in the window.

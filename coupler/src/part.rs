@@ -275,6 +275,11 @@ pub struct ParticleReceived {
     /// Impulse of the pushed force as applied over the motion span in N s; a frozen particle is
     /// held, and its support takes it up.
     pub impulse: Vec<Vec3>,
+    /// Motion time in s that the solver's steps cover, over which gravity acted.
+    pub acted: f64,
+    /// Impulse in N s that walls and held particles gave all free ones together; `None` where it is not
+    /// counted.
+    pub support: Option<Vec3>,
 }
 
 /// Positions, velocities, contacts.

@@ -8,6 +8,7 @@ use calcine_coupler::interior::reacting::Reaction;
 use calcine_coupler::mesh::grading::Stretch;
 use calcine_coupler::mesh::refine::Refinement;
 use calcine_coupler::mesh::zone::Zone;
+use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::motion::{ContactLaw, Wall};
 use calcine_coupler::packing::Sizes;
 use calcine_coupler::packing::regular::Lattice;
@@ -298,6 +299,8 @@ pub enum Place {
 pub struct Laws {
     /// Drag on a particle.
     pub drag: DragLaw,
+    /// How gas and particles share their momentum.
+    pub momentum: MomentumModel,
     /// Heat transfer between gas and particle.
     pub heat_transfer: HeatLaw,
     /// Heat conduction between particles.
@@ -396,6 +399,8 @@ pub struct External {
     pub start: Option<PathBuf>,
     /// Program of an OpenFOAM gas.
     pub solver: Solver,
+    /// Whether LIGGGHTS counts the impulse of walls.
+    pub wall_impulse: bool,
     /// MPI ranks, unless the command line states others.
     pub ranks: u32,
 }
@@ -439,6 +444,8 @@ pub struct Quantity {
     pub unit: &'static str,
     /// Largest difference between pairings.
     pub agree: Option<Band>,
+    /// Process time in s from which `agree` holds.
+    pub agree_from: f64,
     /// Process time in s over which values are averaged before pairings are compared; 0: not at all.
     pub agree_over: f64,
     /// Expected value.

@@ -172,6 +172,24 @@ pub(super) fn particles<'a>(
             Scalar(moment.particle_heat),
         ),
         field("mass", "kg", "particle mass", Scalar(moment.particle_mass)),
+        field(
+            "force",
+            "N",
+            "force of the gas on the particle over the last window",
+            Vector(moment.felt.force),
+        ),
+        field(
+            "void_fraction",
+            "1",
+            "void fraction by which the laws of the particle were evaluated",
+            Scalar(moment.felt.void_fraction),
+        ),
+        field(
+            "slip",
+            "m/s",
+            "speed of the gas relative to the particle by which its laws were evaluated",
+            Scalar(moment.felt.slip),
+        ),
     ];
     let count = bed.len();
     let mut fields = always.to_vec();

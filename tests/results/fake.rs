@@ -38,6 +38,7 @@ pub fn case() -> Case {
         measure,
         unit,
         agree: Some(Band::Relative(0.01)),
+        agree_from: 0.0,
         agree_over: 0.0,
         expect,
     };
@@ -75,6 +76,7 @@ pub fn case() -> Case {
         gas: gas_setup(),
         particles: vec![],
         laws: Laws {
+            momentum: Default::default(),
             drag: DragLaw::ErgunWenYu,
             conduction: ConductionLaw::None,
             heat_transfer: HeatLaw::Gunn,
@@ -166,6 +168,7 @@ fn gas_setup() -> GasSetup {
         pressure: 101_325.0,
         velocity: Vec3::zeros(),
         gravity: Vec3::new(0.0, 0.0, -9.81),
+        momentum: Default::default(),
         patches: vec![],
         controls: GasControls {
             convection: Convection::Upwind,
@@ -349,6 +352,7 @@ impl World {
             particle_heat: &self.heat,
             particle_mass: &self.mass,
             solid_fractions: &[],
+            felt: Default::default(),
             placement: &SETTLED,
             ledger: &self.ledger,
             convergence: &self.convergence,

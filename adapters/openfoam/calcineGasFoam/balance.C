@@ -85,12 +85,12 @@ void Foam::calcine::gas::balanceMomentum(report& result) const
 {
     const scalar span = window_.motionSpan;
     const vectorField& u = U_.primitiveField();
-    const scalarField pores(given_.voidFraction*mesh_.cellVolumes());
+    const scalarField share(pressureShare_*mesh_.cellVolumes());
     const vectorField stored(committed_.mass*(u - committed_.velocity));
     // Pressure, gravity, and u times the continuity residual, which the equation's form subtracts.
     const vectorField source
     (
-        pores*(density()*gravity_ - pressureGradient_) + u*outflow_
+        share*(density()*gravity_ - pressureGradient_) + u*outflow_
     );
     for (direction axis = 0; axis < 3; ++axis)
     {

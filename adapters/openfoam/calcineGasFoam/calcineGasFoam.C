@@ -281,16 +281,14 @@ void run(const argList& args, calcine::link& link)
     Info<< "End" << endl;
 }
 
-int fail(calcine::link& link, const std::string& text)
+[[noreturn]] void fail(calcine::link& link, const std::string& text)
 {
     Serr<< "calcineGasFoam failed: " << text.c_str() << endl;
     link.failed(text);
-    if (Pstream::parRun())
-    {
-        // The other ranks wait for this one somewhere: MPI cannot be ended in an orderly way.
-        std::_Exit(1);
-    }
-    return 1;
+    // Other ranks may wait for this one somewhere: MPI cannot be ended in an orderly way. And OpenFOAM's own end
+    // would say that all went well (exit code 0).
+    std::cout.flush();
+    std::_Exit(1);
 }
 
 // OpenFOAM's message on one line, with the file of an input error.
@@ -329,11 +327,11 @@ int main(int argc, char* argv[])
         {
             std::ostringstream place;
             place << " (" << what.ioFileName() << ", line " << what.ioStartLineNumber() << ")";
-            return fail(link, words(what, place.str()));
+            fail(link, words(what, place.str()));
         }
         catch (const error& what)
         {
-            return fail(link, words(what, ""));
+            fail(link, words(what, ""));
         }
         catch (const calcine::coordinatorGone&)
         {
@@ -341,7 +339,7 @@ int main(int argc, char* argv[])
         }
         catch (const std::exception& what)
         {
-            return fail(link, what.what());
+            fail(link, what.what());
         }
     }
     catch (const calcine::coordinatorGone& what)
@@ -352,5 +350,5 @@ int main(int argc, char* argv[])
     {
         Serr<< "calcineGasFoam cannot reach Calcine: " << what.what() << endl;
     }
-    return 2;
+    std::_Exit(2);
 }

@@ -113,6 +113,7 @@ Foam::calcine::gas::gas
     momentumSolver_(mesh, "U"),
     pressureSolver_(mesh, "p"),
     enthalpySolver_(mesh, "h"),
+    takesAllPressure_(properties.getOrDefault<word>("momentumModel", "a") == "b"),
     schmidt_(properties.lookupOrDefault<scalar>("schmidt", 1)),
     startVelocity_(U_.primitiveField())
 {
@@ -372,6 +373,11 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
     given_ = given;
     voidFraction_.primitiveFieldRef() = given_.voidFraction;
     voidFraction_.correctBoundaryConditions();
+    pressureShare_ = given_.voidFraction;
+    if (takesAllPressure_)
+    {
+        pressureShare_ = 1;
+    }
     restore();
     // Inlets of a given velocity carry gas of pRef, whatever the pressure of a closed domain is.
     modelPressure_ == dimensionedScalar("p", dimPressure, pRef_);

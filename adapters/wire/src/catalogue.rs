@@ -150,7 +150,8 @@ state velocity 3 m/s item
 state angular_velocity 3 rad/s item
 state radius 1 m item
 state mass 1 kg item
-state impulse 3 Ns item";
+state impulse 3 Ns item
+state support 4 s,Ns rank";
 
 impl Catalogue {
     /// The standard catalogue of a role, "gas" or "particles".

@@ -7,6 +7,7 @@ pub mod drag;
 pub mod gas;
 pub mod gas_model;
 pub mod heat_transfer;
+pub mod inertial_number;
 pub mod local;
 pub mod mass_transfer;
 pub mod numbers;

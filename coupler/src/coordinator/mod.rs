@@ -26,7 +26,7 @@ use crate::exchange::{Exchange, Placement};
 use crate::ledger::{Ledger, Line};
 use crate::mapping::{Mapper, MappingError, Method};
 use crate::mesh::Mesh;
-use crate::observer::{Moment, Observer, ObserverError, Timing};
+use crate::observer::{Felt, Moment, Observer, ObserverError, Timing};
 use crate::packing::PackingError;
 use crate::part::{Bed, CellReceived, Convergence, Gas, ParticlePush, ParticleReceived, Particles};
 use crate::smoother::{Operator, Smoother, SmootherError};
@@ -208,6 +208,9 @@ impl<'m> Run<'m> {
             .heat
             .resize(parts.particles.fields().len(), 0.0);
         work.begin(&parts.particles.fields(), &plan.free, plan.gravity);
+        let pores = &mut work.seen.void_fraction;
+        pores.resize(mapped.operator.particles(), 1.0);
+        mapped.operator.sample(&mapped.bed.void_fraction, pores);
         let mut run = Self {
             plan,
             mesh,
@@ -248,10 +251,12 @@ impl<'m> Run<'m> {
             observer.start(&self.moment(None))?;
         }
         let mut last_checkpoint = Instant::now();
+        let mut last = None;
         while self.clocks.process < self.plan.end {
             let window = self.next_window()?;
             self.trade(supervisor, &window)?;
             self.advance(supervisor, &window)?;
+            last = Some(window);
 
             let output = Instant::now();
             for observer in observers.iter_mut() {
@@ -274,7 +279,7 @@ impl<'m> Run<'m> {
         }
         self.note_processors();
         for observer in observers.iter_mut() {
-            observer.finish(&self.moment(None))?;
+            observer.finish(&self.moment(last.as_ref()))?;
         }
         self.checkpoint(&mut [])?;
         self.finish_parts(supervisor)?;
@@ -319,6 +324,11 @@ impl<'m> Run<'m> {
             particle_heat: &self.work.exchange.heat,
             particle_mass: &self.work.particle_mass,
             solid_fractions: &self.work.solid_fractions,
+            felt: Felt {
+                force: &self.work.push.force,
+                void_fraction: &self.work.seen.void_fraction,
+                slip: &self.work.coefficients.slip,
+            },
             ledger: &self.ledger,
             convergence: &self.convergence,
             placement: &self.placement,

@@ -306,6 +306,7 @@ impl Run<'_> {
             &self.mapped.operator,
             &self.parts.gas.fields(),
             &self.mapped.solid_volume,
+            (self.closures.momentum, self.plan.gravity),
             &mut work.pressure_force,
             &mut work.push,
         );

@@ -1,6 +1,6 @@
 //! Pressure and mass flux. A half cell between a centre and a face is a resistance in series with
-//! the next one: with the force F on the gas per void volume (everything but pressure), the
-//! mobility b = ρ ε² V/a of the cell and the distance d to the face, the superficial mass flux
+//! the next one: with the force F on the gas per χ V (everything but pressure; χ the share of ∇p that the
+//! gas takes, ε by model A), the mobility b = ρ ε χ V/a of the cell and the distance d to the face, the superficial mass flux
 //! per area G obeys
 //!
 //! p_f = p_P + d_P (F_P·n − G/b_P)  and  p_N = p_f + d_N (F_N·n − G/b_N),
@@ -70,7 +70,7 @@ impl Approximation {
 pub struct Pressure {
     matrix: Matrix,
     preconditioner: Approximation,
-    /// ρ ε² V/a of each cell in s.
+    /// ρ ε χ V/a of each cell in s.
     mobility: Vec<f64>,
     /// F of each cell in N/m³.
     force: Vec<Vec3>,
@@ -120,7 +120,7 @@ impl Pressure {
                 let held = old.mass[cell] / grid.volume[cell];
                 let difference =
                     old.flux[index] / face.area - held * old.velocity[cell].dot(&face.normal);
-                difference / (frame.motion_span * frame.void_fraction[cell])
+                difference / (frame.motion_span * frame.pressure_share[cell])
             };
             let neighbour = if index < grid.internal {
                 half(face.neighbour)
@@ -143,7 +143,7 @@ impl Pressure {
         let grid = frame.grid;
         fill(&mut self.mobility, |cell| {
             let pores = frame.void_fraction[cell];
-            material.density[cell] * pores * pores * grid.volume[cell]
+            material.density[cell] * pores * frame.pressure_share[cell] * grid.volume[cell]
                 / momentum.matrix.diagonal()[cell]
         });
         let mobility = &self.mobility;
@@ -192,7 +192,7 @@ impl Pressure {
         let velocity = &now.velocity;
         fill(&mut self.force, |cell| {
             momentum.without_pressure(cell, velocity)
-                / (frame.void_fraction[cell] * grid.volume[cell])
+                / (frame.pressure_share[cell] * grid.volume[cell])
         });
         self.update_drive(frame, &now.pressure_gradient);
 
@@ -307,8 +307,8 @@ impl Pressure {
         });
         let gradients = &now.pressure_gradient;
         fill(&mut now.velocity, |cell| {
-            let pores = frame.void_fraction[cell] * grid.volume[cell];
-            pores / momentum.matrix.diagonal()[cell] * (self.force[cell] - gradients[cell])
+            let share = frame.pressure_share[cell] * grid.volume[cell];
+            share / momentum.matrix.diagonal()[cell] * (self.force[cell] - gradients[cell])
         });
     }
 }

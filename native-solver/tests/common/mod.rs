@@ -149,6 +149,7 @@ pub fn setup(patches: &[(&str, GasPatch)]) -> GasSetup {
         pressure: ATMOSPHERE,
         velocity: Vec3::zeros(),
         gravity: Vec3::zeros(),
+        momentum: Default::default(),
         patches: patches
             .iter()
             .map(|(name, patch)| ((*name).to_owned(), patch.clone()))

@@ -87,7 +87,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         quantities::quantities(root, &known)
     };
     if let (Some((gas, _)), Some((time, _))) = (&gas, &time) {
-        coupling::check_stock(root, &openfoam, gas, time);
+        coupling::check_stock(root, &openfoam, gas, time, laws.as_ref());
     }
     if let Some(particles) = &particles {
         coupling::check_script(root, &liggghts, particles);
@@ -106,7 +106,9 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         }
     }
     let (time, _) = time?;
-    let (gas, gas_held) = gas?;
+    let (mut gas, gas_held) = gas?;
+    let laws = laws?;
+    gas.momentum = laws.momentum;
     Some(Case {
         name: path
             .file_stem()
@@ -127,7 +129,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         particles: particles?,
         feeds,
         outlets,
-        laws: laws?,
+        laws,
         coupling: coupling?,
         openfoam,
         liggghts,

@@ -45,6 +45,11 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
     });
     // Keys are read even where the measure could not be, so that they are not called unknown.
     let (agree, expected) = (table.has("agree"), table.table("expect"));
+    let from = table.quantity("agree_from", Dimension::TIME);
+    if !agree && table.has("agree_from") {
+        let help = "add agree = \"1 %\", or remove it";
+        table.fail("agree_from", "stands without `agree`", help);
+    }
     let over = table.positive("agree_over", Dimension::TIME);
     if over.is_some() && !agree {
         let help = "add agree = \"5 %\", or remove it";
@@ -91,6 +96,7 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
         column,
         unit,
         agree,
+        agree_from: from.unwrap_or(0.0),
         agree_over: over.unwrap_or(0.0),
         expect,
     })
