@@ -13,7 +13,8 @@ use calcine_coupler::closures::Closures;
 use calcine_coupler::coordinator::{CheckpointPaths, Origin, Parts, Plan, Run, RunError};
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::held::HeldGas;
-use calcine_coupler::interior::{Network, Thin};
+use calcine_coupler::interior::reacting::{Chemistry, LayersError};
+use calcine_coupler::interior::{Network, ParticleModel, Reacting, Thin};
 use calcine_coupler::mapping::{Mapper, Method};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::zone::Zone;
@@ -21,6 +22,7 @@ use calcine_coupler::motion::Motion;
 use calcine_coupler::part::{Gas, ParticleFields, Particles};
 use calcine_coupler::paths::{HeatWall, PathsSetup};
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::smoother::{Settings as Smoothing, Smoother};
 use calcine_coupler::supervisor::Supervisor;
@@ -30,7 +32,7 @@ use calcine_native::particles::NativeParticles;
 use clap::ValueEnum;
 use thiserror::Error;
 
-use crate::case::model::{Case, Mapping};
+use crate::case::model::{Case, Mapping, ReactionSpec};
 use crate::case::sizes::{self, TooLarge};
 use crate::case::{MeshingError, PlaceError, Placed, contacts, mesh, particles};
 use crate::laws;
@@ -142,6 +144,9 @@ pub enum AssemblyError {
     /// The particles cannot be placed.
     #[error("particles: {0}")]
     Particles(#[from] PlaceError),
+    /// Reactions that make no shrinking core.
+    #[error("reactions: {0}")]
+    Layers(#[from] LayersError),
     /// A native solver refuses the case or a checkpoint.
     #[error(transparent)]
     Native(#[from] NativeError),
@@ -277,7 +282,7 @@ pub fn assemble<'m>(
     };
     let gas = assembly.gas(supervisor)?;
     let particles = assembly.particles(supervisor)?;
-    let interior = Box::new(interior(case, prepared, &particles.fields()));
+    let interior = interior(case, prepared, &particles.fields())?;
     let parts = Parts {
         gas,
         particles,
@@ -625,12 +630,17 @@ fn closures(case: &Case) -> Closures {
         drag: laws::drag(case.laws.drag),
         momentum: case.gas.momentum,
         heat_transfer: laws::heat_transfer(case.laws.heat_transfer),
+        mass_transfer: laws::heat_transfer(case.laws.mass_transfer),
     }
 }
 
 /// The interior of the particles that the run starts with; those of a checkpoint may be others than
 /// those of the case, and get their temperatures from it.
-fn interior(case: &Case, prepared: &Prepared, particles: &ParticleFields<'_>) -> Thin {
+fn interior(
+    case: &Case,
+    prepared: &Prepared,
+    particles: &ParticleFields<'_>,
+) -> Result<Box<dyn ParticleModel>, AssemblyError> {
     let all = 0..particles.id.len();
     let start = prepared.temperature.iter().copied();
     let density = |p: usize| {
@@ -648,17 +658,35 @@ fn interior(case: &Case, prepared: &Prepared, particles: &ParticleFields<'_>) ->
             warm.map(|(wall, _)| wall.material).collect(),
         )
     });
-    Thin::new(
-        all.clone().map(|p| density(p) * volume(p)).collect(),
-        all.clone().map(material).collect(),
-        case.materials
-            .iter()
-            .map(|m| m.heat_capacity.clone())
-            .collect(),
-        start
-            .chain(std::iter::repeat(case.gas.temperature))
-            .take(all.len())
-            .collect(),
+    let masses: Vec<f64> = all.clone().map(|p| density(p) * volume(p)).collect();
+    let materials: Vec<usize> = all.clone().map(material).collect();
+    let temperature = start
+        .chain(std::iter::repeat(case.gas.temperature))
+        .take(all.len())
+        .collect();
+    if case.chemistry.reactions.is_empty() {
+        let laws = case.materials.iter().map(|m| m.heat_capacity.clone());
+        let made = Thin::new(masses, materials, laws.collect(), temperature, network);
+        return Ok(Box::new(made));
+    }
+    Ok(Box::new(Reacting::new(
+        chemistry(case)?,
+        &case.chemistry.compositions,
+        &masses,
+        materials,
+        temperature,
         network,
-    )
+    )))
+}
+
+/// The reactions of a case.
+pub fn chemistry(case: &Case) -> Result<Chemistry, AssemblyError> {
+    let gas = match &case.gas.properties {
+        GasModel::Mixture(mixture) => Some(mixture.clone()),
+        GasModel::Perfect(_) | GasModel::Constant(_) => None,
+    };
+    let ReactionSpec {
+        solids, reactions, ..
+    } = case.chemistry.clone();
+    Ok(Chemistry::new(solids, gas, reactions)?)
 }

@@ -33,6 +33,7 @@ const SETTLED: Placement = Placement {
 /// A case of 20 s at AF 50 in windows of 10 ms, with rows each 0.7 s and snapshots each 5 s.
 pub fn case() -> Case {
     let quantity = |name: &str, unit, measure, expect| Quantity {
+        column: None,
         name: name.into(),
         measure,
         unit,
@@ -65,6 +66,7 @@ pub fn case() -> Case {
             patches: ["side", "side", "side", "side", "bottom", "top"].map(String::from),
         },
         materials: vec![],
+        chemistry: Default::default(),
         contacts: vec![],
         walls: vec![],
         wall_temperatures: vec![],
@@ -84,6 +86,7 @@ pub fn case() -> Case {
             },
             radiation: None,
             heat_transfer: HeatLaw::Gunn,
+            mass_transfer: HeatLaw::None,
         },
         coupling: Coupling {
             mapping: Mapping::Overlap,
@@ -353,6 +356,8 @@ impl World {
             },
             particle_temperature: &self.temperature,
             particle_heat: &self.heat,
+            particle_mass: &self.mass,
+            solid_fractions: &[],
             felt: Default::default(),
             placement: &SETTLED,
             reservoirs: &[],

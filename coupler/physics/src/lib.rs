@@ -15,7 +15,9 @@ pub mod numbers;
 pub mod pressure_drop;
 pub mod quadrature;
 pub mod radiation;
+pub mod reaction;
 pub mod solid;
+pub mod solids;
 pub mod thermo;
 
 /// A vector in space.

@@ -17,6 +17,10 @@ pub(super) fn read(root: &Reader<'_>) -> Option<Laws> {
         ("none", HeatLaw::None),
     ];
     let heat_transfer = law(&section, "heat_transfer", &heats);
+    let mass_transfer = match section.has("mass_transfer") {
+        true => law(&section, "mass_transfer", &heats),
+        false => Some(HeatLaw::None),
+    };
     let conduction = heat::conduction(&section);
     let radiation = heat::radiation(&section);
     section.finish();
@@ -27,6 +31,7 @@ pub(super) fn read(root: &Reader<'_>) -> Option<Laws> {
         heat_transfer: heat_transfer?,
         conduction: conduction?,
         radiation: radiation?,
+        mass_transfer: mass_transfer?,
     })
 }
 
