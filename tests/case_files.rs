@@ -186,7 +186,7 @@ proptest! {
 /// Dotted keys of a table, without the names that users choose and the places in lists.
 fn keys(table: &toml::Table, place: &str, found: &mut Vec<String>) {
     for (key, value) in table {
-        let chosen = ["materials", "gas.patch"].contains(&place);
+        let chosen = ["materials", "solids", "gas.patch"].contains(&place);
         let below = match (place.is_empty(), chosen) {
             (_, true) => place.to_owned(),
             (true, _) => key.clone(),
@@ -243,7 +243,11 @@ fn spoil(item: &mut toml::Value, place: &[String]) {
     *item = if holds_tables {
         toml::Value::Boolean(true)
     } else {
-        toml::Value::Table([("nonsense".to_owned(), toml::Value::Integer(1))].into_iter().collect())
+        toml::Value::Table(
+            [("nonsense".to_owned(), toml::Value::Integer(1))]
+                .into_iter()
+                .collect(),
+        )
     };
 }
 
@@ -257,7 +261,7 @@ fn places(
     match value {
         toml::Value::Table(table) => {
             for (name, inner) in table {
-                let chosen = ["materials", "gas.patch"].contains(&key);
+                let chosen = ["materials", "solids", "gas.patch"].contains(&key);
                 let below = match (key, chosen) {
                     (_, true) => format!("{key}.NAME"),
                     ("", _) => name.clone(),
@@ -282,10 +286,13 @@ fn places(
 
 #[test]
 fn every_documented_key_occurs_in_a_good_case_and_refuses_a_value_of_a_wrong_kind() {
-    let mut missing: std::collections::BTreeSet<&str> =
-        calcine::case::keys::keys().iter().map(|key| key.key).collect();
+    let mut missing: std::collections::BTreeSet<&str> = calcine::case::keys::keys()
+        .iter()
+        .map(|key| key.key)
+        .collect();
     for path in [files("tests/inputs/good"), files("cases")].concat() {
-        let case: toml::Value = toml::Value::Table(fs::read_to_string(&path).unwrap().parse().unwrap());
+        let case: toml::Value =
+            toml::Value::Table(fs::read_to_string(&path).unwrap().parse().unwrap());
         let mut found = Vec::new();
         places(&case, &mut Vec::new(), "", &mut found);
         for (key, place) in found {
@@ -302,9 +309,16 @@ fn every_documented_key_occurs_in_a_good_case_and_refuses_a_value_of_a_wrong_kin
             let lines: Vec<&str> = text.lines().collect();
             let named = errors.problems().iter().any(|problem| {
                 problem.message.contains(last.as_str())
-                    || lines.get(problem.line - 1).is_some_and(|line| line.contains(last.as_str()))
+                    || lines
+                        .get(problem.line - 1)
+                        .is_some_and(|line| line.contains(last.as_str()))
             });
-            assert!(named, "{}: `{key}`:\n{text}\n{}", path.display(), errors.render());
+            assert!(
+                named,
+                "{}: `{key}`:\n{text}\n{}",
+                path.display(),
+                errors.render()
+            );
         }
     }
     assert!(missing.is_empty(), "in no good case: {missing:#?}");

@@ -56,7 +56,10 @@ fn come_to(moment: Moment, mark: &str, out: &Path) -> (Child, Vec<u32>, u32) {
     let mut found = None;
     wait_until(PATIENCE, || {
         let peers = descendants(coordinator);
-        let victim = peers.iter().copied().find(|&pid| command_line(pid).contains(mark));
+        let victim = peers
+            .iter()
+            .copied()
+            .find(|&pid| command_line(pid).contains(mark));
         found = victim.map(|victim| (peers, victim));
         found.is_some() || run.try_wait().unwrap().is_some()
     });

@@ -47,11 +47,7 @@ fn sizes() -> &'static [[u32; 3]] {
 }
 
 /// The summary of a run of a shipped case, its results below the target folder.
-fn summary(
-    workspace: &Workspace,
-    (case, name): (&str, &str),
-    words: &[String],
-) -> Outcome<Json> {
+fn summary(workspace: &Workspace, (case, name): (&str, &str), words: &[String]) -> Outcome<Json> {
     let log = crate::steps::new_log(&workspace.logs, "bench-runs")?;
     let out = workspace.target.join("xtask/bench").join(name);
     let _ = fs::remove_dir_all(&out);
@@ -169,7 +165,11 @@ fn between(workspace: &Workspace) -> Outcome<Table> {
     ];
     let mut words = set(&settings.map(str::to_owned));
     words.extend(["--gas", "openfoam", "--particles", "liggghts"].map(str::to_owned));
-    let run = summary(workspace, ("moving-bed.toml", "moving-bed-100k-50k"), &words)?;
+    let run = summary(
+        workspace,
+        ("moving-bed.toml", "moving-bed-100k-50k"),
+        &words,
+    )?;
     add_phases(&mut table, &run, false)?;
     Ok(table)
 }
@@ -237,7 +237,10 @@ fn gases(workspace: &Workspace) -> Outcome<Table> {
             let number = cores.to_string();
             let words = |words: &[&str]| words.iter().map(|&word| word.into()).collect::<Vec<_>>();
             let ranks = ["--gas", "openfoam", "--ranks-gas", &number];
-            let foam = run("openfoam", &words(&[&ranks[..], &["--threads", "1"]].concat()))?;
+            let foam = run(
+                "openfoam",
+                &words(&[&ranks[..], &["--threads", "1"]].concat()),
+            )?;
             let native = run("native", &words(&["--threads", &number]))?;
             for (name, gas) in [("calcineGasFoam", &foam), ("native", &native)] {
                 table.add(row(name, cores, gas, &foam));
@@ -277,7 +280,14 @@ mod tests {
         let mapping = ["mapping", "1000", "70", "500 ms", "500 µs", "33.3 %"];
         assert_eq!(rows[0], mapping);
         assert_eq!(rows[3], ["gas", "1000", "70", "750 ms", "750 µs", "50.0 %"]);
-        let between = ["mapping, smoother, exchange", "1000", "70", "750 ms", "750 µs", "50.0 %"];
+        let between = [
+            "mapping, smoother, exchange",
+            "1000",
+            "70",
+            "750 ms",
+            "750 µs",
+            "50.0 %",
+        ];
         assert_eq!(rows[7], between);
         assert_eq!(
             rows[8],
@@ -295,7 +305,9 @@ mod tests {
             processor: 12.0,
             ..gas
         };
-        let wanted = ["native", "1000", "2", "10.0", "1.33 k", "2.67 k", "2.00", "1.00"];
+        let wanted = [
+            "native", "1000", "2", "10.0", "1.33 k", "2.67 k", "2.00", "1.00",
+        ];
         assert_eq!(row("native", 2, &gas, &slower), wanted);
     }
 }

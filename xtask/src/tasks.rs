@@ -60,12 +60,7 @@ pub fn test(workspace: &Workspace, native: bool, words: &[OsString]) -> Outcome<
 }
 
 /// Runs one of the test programs of the package `calcine` that have words of their own.
-pub fn program(
-    workspace: &Workspace,
-    name: &str,
-    needs: Needs,
-    words: &[OsString],
-) -> Outcome<()> {
+pub fn program(workspace: &Workspace, name: &str, needs: Needs, words: &[OsString]) -> Outcome<()> {
     packages::install(needs, &workspace.logs)?;
     if needs.openfoam || needs.liggghts {
         let _lock = workspace.lock()?;

@@ -85,9 +85,9 @@ pub fn run(
     let name = format!("OpenFOAM (gas, {PROGRAM}), pid {}", child.id());
     let waited = supervisor.wait(&name, None, |slice| {
         std::thread::sleep(slice.min(PAUSE));
-        child.try_wait().map_err(|error| {
-            refuse(format!("{PROGRAM} cannot be waited for")).caused_by(error)
-        })
+        child
+            .try_wait()
+            .map_err(|error| refuse(format!("{PROGRAM} cannot be waited for")).caused_by(error))
     });
     let status = waited.map_err(|error| {
         // One that has ended meanwhile is what is wanted.

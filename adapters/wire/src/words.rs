@@ -75,9 +75,7 @@ pub fn back(words: &mut [std::mem::MaybeUninit<u64>]) -> rustix::io::Result<()> 
     let end = start + size_of_val(words);
     let first = start - start % PAGE;
     // SAFETY: only pages that hold some of the words, which are mapped; what they hold does not change.
-    let done = unsafe {
-        madvise(first as *mut _, end - first, Advice::LinuxPopulateWrite)
-    };
+    let done = unsafe { madvise(first as *mut _, end - first, Advice::LinuxPopulateWrite) };
     match done {
         Err(rustix::io::Errno::INVAL) => Ok(()),
         done => done,

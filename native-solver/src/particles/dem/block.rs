@@ -67,6 +67,11 @@ pub struct Block {
     pub touching: Vec<u32>,
     /// Energies of its contacts.
     pub budget: Budget,
+    /// Force of all walls on its particles in the last evaluation, in N.
+    pub wall_force: Vec3,
+    /// Impulse in N s that walls and held particles gave its free ones, and what of it others' free ones
+    /// got: sums over all blocks are of free particles.
+    pub support: Vec3,
 }
 
 /// What an evaluation of all forces shares.
@@ -97,6 +102,11 @@ impl Block {
         self.load.fill(Load::default());
         self.walls
             .evaluate::<L, BUDGET>(scene, self.begin, &mut self.load, &mut self.budget);
+        self.wall_force = if self.walls.groups.is_empty() {
+            Vec3::zeros()
+        } else {
+            self.load.iter().map(|load| load.force).sum()
+        };
         let Self {
             begin,
             inner,

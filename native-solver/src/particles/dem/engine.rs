@@ -160,6 +160,7 @@ impl Engine {
         self.stamp = 1;
         for block in &mut self.blocks {
             block.budget = Budget::default();
+            block.support = Vec3::zeros();
         }
         if particles.is_empty() {
             self.blocks.clear();
@@ -197,6 +198,12 @@ impl Engine {
             velocity[row as usize] = moves.velocity;
             spin[row as usize] = moves.spin;
         }
+    }
+
+    /// Impulse in N s that walls and held particles gave the free ones since this was asked last.
+    pub fn take_support(&mut self) -> Vec3 {
+        let blocks = self.blocks.iter_mut();
+        blocks.map(|block| std::mem::take(&mut block.support)).sum()
     }
 
     /// Counts energies from now on, at some cost, or no longer.
@@ -354,7 +361,7 @@ impl Engine {
         let chunks = self.spheres.moves.chunks_mut(size);
         for ((block, moves), push) in self
             .blocks
-            .iter()
+            .iter_mut()
             .zip(chunks)
             .zip(self.spheres.push.chunks(size))
         {
