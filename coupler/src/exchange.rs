@@ -129,10 +129,10 @@ impl Exchange {
     pub fn linearise(&mut self, setting: &Setting<'_>, temperature: &[f64]) {
         let (operator, iterate) = (setting.operator, &mut self.iterate);
         // K_p, g_p and the source side by side: three components cost little more than one.
-        for (p, start) in temperature.iter().enumerate().take(operator.particles()) {
+        for (p, kelvin) in temperature.iter().enumerate() {
             let own = self.conductance[p];
             let tie = tie(setting.coefficients.conductance[p], own);
-            let source = own * start + tie * iterate.seen_temperature[p];
+            let source = own * kelvin + tie * iterate.seen_temperature[p];
             self.vector[p] = Vec3::new(own, tie, source);
         }
         operator.spread_vectors(&self.vector, &mut self.cell_vector);
@@ -147,28 +147,32 @@ impl Exchange {
     /// Gives each particle the heat that the gas reports, takes the gas as the next iterate, and
     /// returns how far the attempt is from the exact coupling of the cells that a particle spans:
     /// the misplaced heat, as a share of all heat that was exchanged. The particle temperatures are
-    /// those of `linearise`.
+    /// those of `linearise`. Of the heat that the gas received, `carried` in W came with gas that particles
+    /// set free and take.
     pub fn credit_heat(
         &mut self,
         setting: &Setting<'_>,
         temperature: &[f64],
         gas: &GasFields<'_>,
         received: &CellReceived,
+        carried: &[f64],
     ) -> f64 {
         let (operator, coefficients) = (setting.operator, setting.coefficients);
         let exchange = &self.cells;
         // T_c − δ_c/H_c, with δ_c what the gas reports beyond R_c, and T_c side by side.
         for c in 0..operator.cells() {
             let (own, coefficient) = (gas.temperature[c], exchange.heat_coefficient[c]);
-            let beyond = received.heat[c] - (exchange.heat_source[c] - coefficient * own);
+            let apart = carried.get(c).copied().unwrap_or(0.0);
+            let told = exchange.heat_source[c] - coefficient * own;
+            let beyond = received.heat[c] - apart - told;
             let credited = own - ratio(beyond, coefficient);
             self.cell_vector[c] = Vec3::new(credited, own, 0.0);
         }
         operator.sample_vectors(&self.cell_vector, &mut self.vector);
-        for (p, start) in temperature.iter().enumerate().take(operator.particles()) {
+        for (p, kelvin) in temperature.iter().enumerate() {
             let [credited, seen, _] = self.vector[p].into();
             let own = self.conductance[p];
-            self.heat[p] = own * (credited - start);
+            self.heat[p] = own * (credited - kelvin);
             let before = std::mem::replace(&mut self.iterate.seen_temperature[p], seen);
             self.scalar[p] = tie(coefficients.conductance[p], own) * (seen - before);
         }

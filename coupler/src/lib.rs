@@ -15,11 +15,14 @@ pub mod motion;
 pub mod observer;
 pub mod packing;
 pub mod part;
+pub mod paths;
 pub mod setup;
+pub mod sight;
 pub mod smoother;
 pub mod supervisor;
 pub mod time;
 pub mod traffic;
+pub mod turnover;
 
 pub use calcine_interior as interior;
 pub use calcine_physics as physics;

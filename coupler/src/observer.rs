@@ -71,8 +71,17 @@ pub struct Moment<'a> {
     pub particle_temperature: &'a [f64],
     /// Mean heat flow into each particle over the window in W.
     pub particle_heat: &'a [f64],
+    /// Particle masses in kg, as their solids have it where they react.
+    pub particle_mass: &'a [f64],
+    /// Mass fractions of the solids of particles that react, solid by solid within each particle; empty where
+    /// none does.
+    pub solid_fractions: &'a [f64],
     /// What else the particles had of the gas.
     pub felt: Felt<'a>,
+    /// Names of walls and surroundings that give heat to the particles.
+    pub reservoirs: &'a [String],
+    /// Mean heat from each of these into the particles over the window in W; empty where there is none.
+    pub reservoir_heat: &'a [f64],
     /// The ledger so far.
     pub ledger: &'a Ledger,
     /// Convergence of the gas in the window.

@@ -33,6 +33,7 @@ const SETTLED: Placement = Placement {
 /// A case of 20 s at AF 50 in windows of 10 ms, with rows each 0.7 s and snapshots each 5 s.
 pub fn case() -> Case {
     let quantity = |name: &str, unit, measure, expect| Quantity {
+        column: None,
         name: name.into(),
         measure,
         unit,
@@ -65,8 +66,10 @@ pub fn case() -> Case {
             patches: ["side", "side", "side", "side", "bottom", "top"].map(String::from),
         },
         materials: vec![],
+        chemistry: Default::default(),
         contacts: vec![],
         walls: vec![],
+        wall_temperatures: vec![],
         motion: None,
         feeds: vec![],
         outlets: vec![],
@@ -76,8 +79,14 @@ pub fn case() -> Case {
         laws: Laws {
             momentum: Default::default(),
             drag: DragLaw::ErgunWenYu,
-            conduction: ConductionLaw::None,
+            conduction: Conduction {
+                law: ConductionLaw::None,
+                area: Area::Overlap,
+                gap: Gap::None,
+            },
+            radiation: None,
             heat_transfer: HeatLaw::Gunn,
+            mass_transfer: HeatLaw::None,
         },
         coupling: Coupling {
             mapping: Mapping::Overlap,
@@ -347,8 +356,12 @@ impl World {
             },
             particle_temperature: &self.temperature,
             particle_heat: &self.heat,
+            particle_mass: &self.mass,
+            solid_fractions: &[],
             felt: Default::default(),
             placement: &SETTLED,
+            reservoirs: &[],
+            reservoir_heat: &[],
             ledger: &self.ledger,
             convergence: &self.convergence,
             timing: &self.timing,

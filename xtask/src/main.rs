@@ -34,6 +34,7 @@ usage: cargo xtask TASK
         [--native]        without the adapters for OpenFOAM and LIGGGHTS
   bench …                 run the benchmarks and print one table; words go to `cargo bench`
         [--native]        without OpenFOAM, LIGGGHTS and MPI
+        [--runs]          whole runs only
         [--table]         the table of what was measured last
   fuzz [--minutes N]      fuzz what reads users' files, ten minutes each unless told
         [--seed S] [case|polymesh]
@@ -110,10 +111,12 @@ fn read(words: &[OsString]) -> Option<Task> {
         "bench" => {
             let first = |name: &str| rest.first().is_some_and(|word| word == name);
             let (table_only, native) = (first("--table"), first("--native"));
+            let runs_only = first("--runs");
             Some(Task::Bench(bench::Choice {
                 table_only,
                 native,
-                words: rest[usize::from(table_only || native)..].to_vec(),
+                runs_only,
+                words: rest[usize::from(table_only || native || runs_only)..].to_vec(),
             }))
         }
         "fuzz" => program("fuzz", Needs::NATIVE, ["--minutes", "10"], rest),

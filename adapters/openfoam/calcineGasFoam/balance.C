@@ -6,7 +6,7 @@ void Foam::calcine::gas::finishReport(report& result) const
 {
     // The temperature as the enthalpy equation took it, before the thermophysical model's.
     const scalarField T(temperatureBase_ + thermo_->he().primitiveField()/heatCapacity_);
-    result.heat = given_.heatSource - given_.heatCoefficient*T;
+    result.heat = heatGiven_ - heatSlope_*T;
     result.drag = given_.dragSource - given_.dragCoefficient*U_.primitiveField();
 
     const scalarField held(given_.voidFraction*density()*mesh_.cellVolumes());
@@ -21,6 +21,7 @@ void Foam::calcine::gas::finishReport(report& result) const
         (shared_.within(facei) ? circulating : passing) += shared_.share(facei)*mag(flux_[facei]);
     }
     reduce(circulating, sumOp<scalar>());
+    result.mass.exchange = window_.storageSpan*gSum(massSource());
     result.mass.boundary = -window_.storageSpan*boundaryOutflow();
     result.mass.boundaryMagnitude =
         window_.storageSpan*returnReduce(passing, sumOp<scalar>());

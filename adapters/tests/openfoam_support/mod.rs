@@ -109,6 +109,7 @@ pub fn exchange_of_nothing(cells: usize) -> CellExchange {
         drag_source: vec![Vec3::zeros(); cells],
         heat_coefficient: vec![0.0; cells],
         heat_source: vec![0.0; cells],
+        ..CellExchange::default()
     }
 }
 

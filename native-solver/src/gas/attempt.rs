@@ -45,6 +45,15 @@ impl Frame<'_> {
     pub fn species(&self) -> usize {
         self.properties.species().len()
     }
+
+    /// Mass that the gas of a cell gains from particles in kg/s.
+    pub fn mass_source(&self, now: &State, cell: usize) -> f64 {
+        let given = &self.exchange.species;
+        if given.is_none() {
+            return 0.0;
+        }
+        given.mass(cell, now.composition_of(cell, self.species()))
+    }
 }
 
 /// Material properties of each cell at its temperature and composition.
@@ -110,7 +119,8 @@ fn closed_pressure(frame: &Frame<'_>, now: &State) -> f64 {
             .properties
             .density(1.0, now.temperature[cell], composition);
         let pores = frame.void_fraction[cell] * grid.volume[cell];
-        [frame.old.mass[cell], pores * density]
+        let gained = frame.storage_span * frame.mass_source(now, cell);
+        [frame.old.mass[cell] + gained, pores * density]
     });
     let boundary = grid.faces.len() - grid.internal;
     let [outflow] = sums(boundary, |face| {

@@ -54,11 +54,16 @@ fn mass(frame: &Frame<'_>, now: &State) -> Balance {
     if magnitude == 0.0 {
         [magnitude] = sums(frame.grid.internal, |face| [now.flux[face].abs()]);
     }
+    let exchanged = match frame.exchange.species.is_none() {
+        true => 0.0,
+        false => sums(frame.grid.cells(), |cell| [frame.mass_source(now, cell)])[0],
+    };
     Balance {
         stored,
         stored_magnitude,
         boundary: inflow * frame.storage_span,
         boundary_magnitude: magnitude * frame.storage_span,
+        exchange: exchanged * frame.storage_span,
         ..Balance::default()
     }
 }

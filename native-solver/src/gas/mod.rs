@@ -149,6 +149,25 @@ impl NativeGas {
                 return Err(format!("the {field} has {found} values for {cells} cells"));
             }
         }
+        let species = &exchange.species;
+        let wanted = match species.is_none() {
+            true => 0,
+            false => cells * self.setup.properties.species().len(),
+        };
+        for (field, list) in [
+            ("source", &species.source),
+            ("coefficient", &species.coefficient),
+            ("taken", &species.taken),
+        ] {
+            let odd = list.iter().find(|value| !value.is_finite());
+            if list.len() != wanted || odd.is_some() {
+                return Err(format!(
+                    "the {field} of species has {} values of {wanted}, {} among them",
+                    list.len(),
+                    odd.copied().unwrap_or_default()
+                ));
+            }
+        }
         let place = |cell: usize| {
             let centre = self.grid.centre[cell];
             format!(

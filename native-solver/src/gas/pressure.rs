@@ -198,7 +198,7 @@ impl Pressure {
 
         let (drive, conductance) = (&self.drive, &self.conductance);
         fill(&mut self.source, |cell| {
-            let mut source = target(frame, material, cell) - outflow(grid, drive, cell);
+            let mut source = target(frame, material, now, cell) - outflow(grid, drive, cell);
             for link in grid.links(cell).iter().filter(|link| link.is_boundary()) {
                 let index = link.face as usize;
                 if let Value::Outlet { pressure } = frame.boundary.at(index) {
@@ -339,9 +339,9 @@ fn recovery(grid: &Grid) -> Vec<Matrix3<f64>> {
 
 /// The outflow that continuity asks of a cell in kg/s.
 #[inline]
-fn target(frame: &Frame<'_>, material: &Material, cell: usize) -> f64 {
+fn target(frame: &Frame<'_>, material: &Material, now: &State, cell: usize) -> f64 {
     let mass = frame.void_fraction[cell] * material.density[cell] * frame.grid.volume[cell];
-    (frame.old.mass[cell] - mass) / frame.storage_span
+    (frame.old.mass[cell] - mass) / frame.storage_span + frame.mass_source(now, cell)
 }
 
 /// Σ over cells of the mismatch of continuity, relative to what the cells hold and what flows
@@ -355,7 +355,7 @@ pub fn residual(frame: &Frame<'_>, material: &Material, now: &State) -> f64 {
             net += link.sign * flux;
             through += 0.5 * flux.abs();
         }
-        let error = (target(frame, material, cell) - net).abs();
+        let error = (target(frame, material, now, cell) - net).abs();
         [error, frame.old.mass[cell] / frame.storage_span + through]
     });
     error / terms
@@ -363,8 +363,10 @@ pub fn residual(frame: &Frame<'_>, material: &Material, now: &State) -> f64 {
 
 /// Continuity: what each cell holds after the window.
 pub fn advance_mass(frame: &Frame<'_>, now: &mut State) {
-    let flux = &now.flux;
-    fill(&mut now.mass, |cell| {
-        frame.old.mass[cell] - frame.storage_span * outflow(frame.grid, flux, cell)
+    let mut mass = std::mem::take(&mut now.mass);
+    fill(&mut mass, |cell| {
+        let net = outflow(frame.grid, &now.flux, cell) - frame.mass_source(now, cell);
+        frame.old.mass[cell] - frame.storage_span * net
     });
+    now.mass = mass;
 }

@@ -189,6 +189,7 @@ impl Driver {
                 drag_source: vec![Vec3::zeros(); cells],
                 heat_coefficient: vec![0.0; cells],
                 heat_source: vec![0.0; cells],
+                ..CellExchange::default()
             },
             received: CellReceived::default(),
             clocks: Clocks::default(),

@@ -14,13 +14,15 @@ const GAS: [&str; 6] = [
     "mass_fractions",
 ];
 /// Particle fields of the snapshots.
-const PARTICLES: [&str; 6] = [
+const PARTICLES: [&str; 8] = [
     "temperature",
     "velocity",
     "heat",
     "force",
     "void_fraction",
     "slip",
+    "mass",
+    "solids",
 ];
 
 pub(super) fn output(root: &Reader<'_>) -> Option<Output> {

@@ -12,8 +12,18 @@ use super::sphere::{Load, Moves, Place, Spheres};
 use super::walls::WallBody;
 use super::walls::group::WallContacts;
 
-/// Particles per block; fixed, so that sums do not depend on the number of threads.
-pub const SIZE: usize = 2048;
+/// Most and fewest particles per block.
+const SIZES: [usize; 2] = [256, 2048];
+/// Blocks wanted at least, so that threads find equal shares: five blocks on two threads are three for the one
+/// and two for the other.
+const BLOCKS: usize = 16;
+
+/// Particles per block of so many; it depends on nothing else, so that sums do not depend on the number of
+/// threads.
+pub fn size(count: usize) -> usize {
+    let share = count.div_ceil(BLOCKS).next_power_of_two();
+    share.clamp(SIZES[0], SIZES[1])
+}
 
 /// Pairs that may touch, with their memory. Arrays that a run does not need are empty.
 #[derive(Clone, Debug, Default)]
