@@ -89,12 +89,12 @@ fn a_moving_bed_is_the_same_at_any_pace() {
     let directory = tempfile::tempdir().unwrap();
     let (slow, fast) = (directory.path().join("1"), directory.path().join("50"));
     let set = [
-        "time.end=16 s",
+        "time.end=10 s",
         "time.acceleration=1",
         "time.motion_window=20 ms",
     ];
     run(&case("moving-bed"), &slow, &set);
-    run(&case("moving-bed"), &fast, &["time.end=16 s"]);
+    run(&case("moving-bed"), &fast, &["time.end=10 s"]);
     let [a, b] = [&slow, &fast].map(|folder| Series::read(folder).unwrap());
     let name = "quantities.mean_temperature";
     let (a, b) = (a.column(name), b.column(name));

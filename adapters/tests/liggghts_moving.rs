@@ -258,7 +258,9 @@ fn heap() -> ParticleSetup {
 #[test]
 fn a_heap_gains_what_gravity_the_floor_and_its_pushes_give() {
     let mut bench = Bench::new();
-    let setup = heap();
+    let mut all_free = contacts(Vec3::new(0.0, 0.0, -9.81));
+    all_free.held = vec![false, false];
+    let setup = setup_with(all_free, &heap());
     let mut particles = bench.launch(&setup, "a", None);
     let total = |particles: &LiggghtsParticles| -> Vec3 {
         let fields = particles.fields();
@@ -279,6 +281,12 @@ fn a_heap_gains_what_gravity_the_floor_and_its_pushes_give() {
     }
     // In the end the floor carries them.
     assert!(given > 0.5 * 40.0 * MASS * 9.81 * 2e-2, "{given}");
+
+    // What held particles give LIGGGHTS does not tell: then nothing is said.
+    let mut bench = Bench::new();
+    let mut particles = bench.launch(&heap(), "b", None);
+    bench.window(&mut particles, 1e-3, &push).unwrap();
+    assert_eq!(bench.support, None);
 }
 
 #[test]
