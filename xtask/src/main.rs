@@ -42,7 +42,8 @@ usage: cargo xtask TASK
         [--seed S]
   faults [--kills N]      kill or stop random processes of coupled runs at random moments (500
         [--seed S]        unless told): each is named, and everything ends and is cleaned up
-  validate [NAME …]       long validations, all unless named: elastic-box, hopper, repose, voids";
+  validate [NAME …]       long validations, all unless named: elastic-box, fluidised-bed, hopper,
+                          moving-bed, repose, voids";
 
 /// Exit code of a wrong command line, as `calcine` has it.
 const USAGE_CODE: u8 = 2;
@@ -123,7 +124,7 @@ fn read(words: &[OsString]) -> Option<Task> {
         "faults" => program("faults_random", Needs::ALL, ["--kills", "500"], rest),
         "validate" => Some(Task::Program {
             name: "validate",
-            needs: Needs::NATIVE,
+            needs: Needs::ALL,
             words: [&[OsString::from("--validate")], rest].concat(),
         }),
         "install" => install(rest),
@@ -232,7 +233,7 @@ mod tests {
         assert_eq!(read(&words("torture")), torture);
         let faults = task("faults_random", Needs::ALL, "--kills 500");
         assert_eq!(read(&words("faults")), faults);
-        let validate = task("validate", Needs::NATIVE, "--validate hopper");
+        let validate = task("validate", Needs::ALL, "--validate hopper");
         assert_eq!(read(&words("validate hopper")), validate);
     }
 

@@ -51,6 +51,25 @@ calcine::window windowOf(const calcine_header& header)
     return when;
 }
 
+// A column of species by species within each cell.
+void receiveSpecies(const calcine::link& link, const char* name, List<scalarField>& fields)
+{
+    scalarField flat(fields.size()*fields[0].size());
+    link.get(name, flat);
+    forAll(fields, k)
+    {
+        forAll(fields[k], celli)
+        {
+            fields[k][celli] = flat[celli*fields.size() + k];
+            if (!(mag(fields[k][celli]) < GREAT))
+            {
+                FatalErrorInFunction
+                    << name << " is no finite number" << exit(FatalError);
+            }
+        }
+    }
+}
+
 void receive
 (
     const calcine::link& link,
@@ -63,6 +82,13 @@ void receive
     link.get("drag_source", given.dragSource);
     link.get("heat_coefficient", given.heatCoefficient);
     link.get("heat_source", given.heatSource);
+    if (given.speciesSource.size())
+    {
+        receiveSpecies(link, "species_source", given.speciesSource);
+        receiveSpecies(link, "species_coefficient", given.speciesCoefficient);
+        receiveSpecies(link, "species_taken", given.speciesTaken);
+        link.get("species_heat", given.speciesHeat);
+    }
     forAll(given.voidFraction, celli)
     {
         const scalar pores = given.voidFraction[celli];
@@ -163,6 +189,16 @@ void serve
     given.dragSource.setSize(cells);
     given.heatCoefficient.setSize(cells);
     given.heatSource.setSize(cells);
+    const label species = gas.speciesNames().size();
+    for (auto* list : {&given.speciesSource, &given.speciesCoefficient, &given.speciesTaken})
+    {
+        list->setSize(species);
+        for (scalarField& one : *list)
+        {
+            one.setSize(cells);
+        }
+    }
+    given.speciesHeat.setSize(species ? cells : 0);
     calcine::report result;
 
     for (;;)

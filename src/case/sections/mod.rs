@@ -4,6 +4,8 @@ mod composition;
 mod coupling;
 mod gas;
 mod gas_patch;
+mod heat;
+mod inventory;
 mod laws;
 mod mesh;
 mod motion;
@@ -12,7 +14,9 @@ mod particles;
 mod place;
 mod probes;
 mod quantities;
+mod reactions;
 mod sizes;
+mod solids;
 mod time;
 mod traffic;
 mod walls;
@@ -44,7 +48,8 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     let folder = path.parent().unwrap_or(Path::new("."));
     let time = time::read(root);
     let mesh = mesh::read(root, folder);
-    let materials = particles::materials(root);
+    let solids = solids::solids(root);
+    let materials = particles::materials(root, &solids);
     let contacts = particles::contacts(root, &materials);
     let gas = gas::read(
         root,
@@ -61,15 +66,31 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     let openfoam = coupling::external(root, "openfoam", folder);
     let liggghts = coupling::external(root, "liggghts", folder);
     if let (Some(laws), Some(particles)) = (&laws, &particles) {
-        particles::need_conductivities(root, laws, &materials, particles);
+        heat::need_properties(root, laws, &materials, particles, &walls);
+    }
+    let reactions = reactions::reactions(root, &solids, gas.as_ref().map(|(gas, _)| gas));
+    let chemistry = inventory::inventory(solids, reactions, &materials);
+    if let (Some(laws), Some(particles)) = (&laws, &particles) {
+        reactions::fits(root, &chemistry, laws, particles, openfoam.solver);
     }
     let output = output::output(root);
     let probes = probes::probes(root);
-    let gravity = gas.as_ref().map(|(gas, _)| gas.gravity);
-    let quantities =
-        quantities::quantities(root, mesh.as_ref(), particles.as_deref(), &probes, gravity);
+    let quantities = {
+        let species = gas.as_ref().map(|(gas, _)| gas.properties.species());
+        let known = quantities::Known {
+            mesh: mesh.as_ref(),
+            populations: particles.as_deref(),
+            probes: &probes,
+            walls: &walls,
+            species: species.unwrap_or_default(),
+            solids: &chemistry.solids,
+            gravity: gas.as_ref().map(|(gas, _)| gas.gravity),
+        };
+        quantities::quantities(root, &known)
+    };
+    let (walls, wall_temperatures): (Vec<_>, Vec<_>) = walls.into_iter().unzip();
     if let (Some((gas, _)), Some((time, _))) = (&gas, &time) {
-        coupling::check_stock(root, &openfoam, gas, time);
+        coupling::check_stock(root, &openfoam, gas, time, laws.as_ref());
     }
     if let Some(particles) = &particles {
         coupling::check_script(root, &liggghts, particles);
@@ -88,7 +109,9 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         }
     }
     let (time, _) = time?;
-    let (gas, gas_held) = gas?;
+    let (mut gas, gas_held) = gas?;
+    let laws = laws?;
+    gas.momentum = laws.momentum;
     Some(Case {
         name: path
             .file_stem()
@@ -100,15 +123,17 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         time,
         mesh: mesh?,
         materials,
+        chemistry,
         contacts,
         walls,
+        wall_temperatures,
         motion,
         gas,
         gas_held,
         particles: particles?,
         feeds,
         outlets,
-        laws: laws?,
+        laws,
         coupling: coupling?,
         openfoam,
         liggghts,
