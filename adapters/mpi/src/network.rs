@@ -51,9 +51,10 @@ impl Drop for Guard {
     }
 }
 
-/// Between two looks at ranks that are starting, and how many looks make their end certain.
-const LOOK: Duration = Duration::from_millis(100);
-const CERTAIN: u32 = 3;
+/// Between two looks at ranks that are starting, short enough to see one that dies at once; and how many looks
+/// make its end certain.
+const LOOK: Duration = Duration::from_millis(10);
+const CERTAIN: u32 = 20;
 
 /// MPI in this process, and the worlds that it has spawned.
 pub struct MpiNetwork {
