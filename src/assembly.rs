@@ -13,7 +13,8 @@ use calcine_coupler::closures::Closures;
 use calcine_coupler::coordinator::{CheckpointPaths, Origin, Parts, Plan, Run, RunError};
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::held::HeldGas;
-use calcine_coupler::interior::{Network, Thin};
+use calcine_coupler::interior::reacting::{Chemistry, LayersError};
+use calcine_coupler::interior::{Network, ParticleModel, Reacting, Thin};
 use calcine_coupler::mapping::{Mapper, Method};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::zone::Zone;
@@ -21,6 +22,7 @@ use calcine_coupler::motion::Motion;
 use calcine_coupler::part::{Gas, ParticleFields, Particles};
 use calcine_coupler::paths::{HeatWall, PathsSetup};
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::smoother::{Settings as Smoothing, Smoother};
 use calcine_coupler::supervisor::Supervisor;
@@ -30,7 +32,7 @@ use calcine_native::particles::NativeParticles;
 use clap::ValueEnum;
 use thiserror::Error;
 
-use crate::case::model::{Case, Mapping};
+use crate::case::model::{Case, Mapping, ReactionSpec};
 use crate::case::sizes::{self, TooLarge};
 use crate::case::{MeshingError, PlaceError, Placed, contacts, mesh, particles};
 use crate::laws;
@@ -142,6 +144,9 @@ pub enum AssemblyError {
     /// The particles cannot be placed.
     #[error("particles: {0}")]
     Particles(#[from] PlaceError),
+    /// Reactions that make no shrinking core.
+    #[error("reactions: {0}")]
+    Layers(#[from] LayersError),
     /// A native solver refuses the case or a checkpoint.
     #[error(transparent)]
     Native(#[from] NativeError),
@@ -277,7 +282,7 @@ pub fn assemble<'m>(
     };
     let gas = assembly.gas(supervisor)?;
     let particles = assembly.particles(supervisor)?;
-    let interior = Box::new(interior(case, prepared, &particles.fields()));
+    let interior = interior(case, prepared, &particles.fields())?;
     let parts = Parts {
         gas,
         particles,
@@ -328,7 +333,7 @@ pub fn write_inputs(
     if pairing.particles == ParticleBackend::Liggghts {
         let target = folder.join("liggghts");
         let template = own_script(case)?;
-        let inputs = liggghts_inputs(prepared, template.as_ref(), starts.particles.ranks);
+        let inputs = liggghts_inputs(case, prepared, template.as_ref(), starts.particles.ranks);
         inputs.write(&target)?;
         written.push(target);
     }
@@ -352,12 +357,18 @@ fn own_script(case: &Case) -> Result<Option<Template>, PartError> {
 /// What LIGGGHTS would not take of the user's own script, for `calcine check`.
 pub fn check_own_script(case: &Case, prepared: &Prepared) -> Result<(), PartError> {
     let template = own_script(case)?;
-    let inputs = liggghts_inputs(prepared, template.as_ref(), case.liggghts.ranks.max(1));
+    let inputs = liggghts_inputs(
+        case,
+        prepared,
+        template.as_ref(),
+        case.liggghts.ranks.max(1),
+    );
     inputs.script().map(|_| ())
 }
 
 /// What LIGGGHTS is told of the particles, in the box of the mesh's points.
 fn liggghts_inputs<'a>(
+    case: &Case,
     prepared: &'a Prepared,
     template: Option<&'a Template>,
     ranks: u32,
@@ -375,6 +386,7 @@ fn liggghts_inputs<'a>(
             Motion::Free(contacts) => contacts.step,
         },
         ranks,
+        wall_impulse: case.liggghts.wall_impulse,
         template,
     }
 }
@@ -442,7 +454,8 @@ impl Assembly<'_> {
             ParticleBackend::Liggghts => {
                 let start = &self.settings.starts.particles;
                 let template = own_script(self.case)?;
-                let inputs = liggghts_inputs(self.prepared, template.as_ref(), start.ranks);
+                let inputs =
+                    liggghts_inputs(self.case, self.prepared, template.as_ref(), start.ranks);
                 let launch = LiggghtsLaunch {
                     inputs,
                     launcher: start.launcher.clone(),
@@ -615,13 +628,19 @@ fn closures(case: &Case) -> Closures {
     Closures {
         gas: case.gas.properties.clone(),
         drag: laws::drag(case.laws.drag),
+        momentum: case.gas.momentum,
         heat_transfer: laws::heat_transfer(case.laws.heat_transfer),
+        mass_transfer: laws::heat_transfer(case.laws.mass_transfer),
     }
 }
 
 /// The interior of the particles that the run starts with; those of a checkpoint may be others than
 /// those of the case, and get their temperatures from it.
-fn interior(case: &Case, prepared: &Prepared, particles: &ParticleFields<'_>) -> Thin {
+fn interior(
+    case: &Case,
+    prepared: &Prepared,
+    particles: &ParticleFields<'_>,
+) -> Result<Box<dyn ParticleModel>, AssemblyError> {
     let all = 0..particles.id.len();
     let start = prepared.temperature.iter().copied();
     let density = |p: usize| {
@@ -639,17 +658,35 @@ fn interior(case: &Case, prepared: &Prepared, particles: &ParticleFields<'_>) ->
             warm.map(|(wall, _)| wall.material).collect(),
         )
     });
-    Thin::new(
-        all.clone().map(|p| density(p) * volume(p)).collect(),
-        all.clone().map(material).collect(),
-        case.materials
-            .iter()
-            .map(|m| m.heat_capacity.clone())
-            .collect(),
-        start
-            .chain(std::iter::repeat(case.gas.temperature))
-            .take(all.len())
-            .collect(),
+    let masses: Vec<f64> = all.clone().map(|p| density(p) * volume(p)).collect();
+    let materials: Vec<usize> = all.clone().map(material).collect();
+    let temperature = start
+        .chain(std::iter::repeat(case.gas.temperature))
+        .take(all.len())
+        .collect();
+    if case.chemistry.reactions.is_empty() {
+        let laws = case.materials.iter().map(|m| m.heat_capacity.clone());
+        let made = Thin::new(masses, materials, laws.collect(), temperature, network);
+        return Ok(Box::new(made));
+    }
+    Ok(Box::new(Reacting::new(
+        chemistry(case)?,
+        &case.chemistry.compositions,
+        &masses,
+        materials,
+        temperature,
         network,
-    )
+    )))
+}
+
+/// The reactions of a case.
+pub fn chemistry(case: &Case) -> Result<Chemistry, AssemblyError> {
+    let gas = match &case.gas.properties {
+        GasModel::Mixture(mixture) => Some(mixture.clone()),
+        GasModel::Perfect(_) | GasModel::Constant(_) => None,
+    };
+    let ReactionSpec {
+        solids, reactions, ..
+    } = case.chemistry.clone();
+    Ok(Chemistry::new(solids, gas, reactions)?)
 }

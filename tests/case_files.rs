@@ -186,7 +186,7 @@ proptest! {
 /// Dotted keys of a table, without the names that users choose and the places in lists.
 fn keys(table: &toml::Table, place: &str, found: &mut Vec<String>) {
     for (key, value) in table {
-        let chosen = ["materials", "gas.patch"].contains(&place);
+        let chosen = ["materials", "solids", "gas.patch"].contains(&place);
         let below = match (place.is_empty(), chosen) {
             (_, true) => place.to_owned(),
             (true, _) => key.clone(),
@@ -261,7 +261,7 @@ fn places(
     match value {
         toml::Value::Table(table) => {
             for (name, inner) in table {
-                let chosen = ["materials", "gas.patch"].contains(&key);
+                let chosen = ["materials", "solids", "gas.patch"].contains(&key);
                 let below = match (key, chosen) {
                     (_, true) => format!("{key}.NAME"),
                     ("", _) => name.clone(),

@@ -147,6 +147,7 @@ fn liggghts(
             bounds: (Vec3::zeros(), Vec3::repeat(BOX)),
             step: STEP,
             ranks: 1,
+            wall_impulse: false,
             template: None,
         },
         case_hash: "contacts".into(),

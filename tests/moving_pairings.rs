@@ -57,9 +57,17 @@ fn a_moving_bed_is_heated_alike_on_one_rank_of_liggghts_and_on_two() {
         serde_json::from_str::<Value>(&text).unwrap()
     });
     for summary in [&one, &two] {
-        for line in ["mass", "energy", "momentum", "particle_mass"] {
+        for line in [
+            "mass",
+            "energy",
+            "momentum",
+            "particle_mass",
+            "particle_momentum",
+        ] {
             let error = summary["ledger"][line]["relative_error"].as_f64().unwrap();
             assert!(error < 1e-10, "{line}: {error}");
+            let moved = summary["ledger"][line]["throughput"].as_f64().unwrap();
+            assert!(moved > 0.0, "{line}");
         }
     }
     assert_eq!(one["particles"], two["particles"]);

@@ -31,6 +31,11 @@ fn moves(case: &Path) -> bool {
         .contains("motion = \"free\"")
 }
 
+/// Cases of hours, in steps of process time.
+fn steps(case: &Path) -> bool {
+    fs::read_to_string(case).unwrap().contains("process_step")
+}
+
 fn has_species(case: &Path) -> bool {
     fs::read_to_string(case).unwrap().contains("\nspecies = ")
 }
@@ -41,6 +46,10 @@ fn sources(case: &Path) -> (f64, f64) {
     match &*name {
         "purged-bed" => (300.0, 600.0),
         "packed-column" => (293.15, 313.15),
+        // Reactions heat and cool what they are in.
+        "ore-reduction" => (1050.0, 1250.0),
+        "lime-burning" => (1000.0, 1200.0),
+        "dri-self-heating" => (300.0, 340.0),
         _ => (300.0, 400.0),
     }
 }
@@ -52,6 +61,7 @@ fn every_shipped_case_runs_natively_and_with_both_solvers_between_its_sources() 
         for (gas, particles) in [("native", "native"), ("openfoam", "liggghts")] {
             let (particles, end) = match moves(&case) {
                 true => ("liggghts", "time.end=0.05 s"),
+                false if steps(&case) => (particles, "time.end=40 s"),
                 false => (particles, "time.end=8 s"),
             };
             let name = format!("{}-{gas}", case.file_stem().unwrap().to_string_lossy());

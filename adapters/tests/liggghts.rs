@@ -81,6 +81,7 @@ impl Bench {
                 bounds: (Vec3::zeros(), Vec3::new(0.01, 0.01, 0.12)),
                 step: FROZEN_STEP,
                 ranks,
+                wall_impulse: false,
                 template: None,
             },
             launcher: Launcher::Mpirun,

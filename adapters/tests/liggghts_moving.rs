@@ -81,6 +81,9 @@ struct Bench {
     supervisor: Supervisor,
     index: u64,
     start: Ticks,
+    /// Of the last window.
+    acted: f64,
+    support: Option<Vec3>,
 }
 
 impl Bench {
@@ -90,6 +93,8 @@ impl Bench {
             supervisor: Supervisor::new(Duration::from_secs(30), Interrupts::default()),
             index: 0,
             start: Ticks::ZERO,
+            acted: 0.0,
+            support: None,
         }
     }
 
@@ -114,6 +119,7 @@ impl Bench {
                 bounds: (Vec3::zeros(), Vec3::repeat(BOX)),
                 step: STEP,
                 ranks: 1,
+                wall_impulse: true,
                 template: None,
             },
             case_hash: "moving".into(),
@@ -156,6 +162,7 @@ impl Bench {
         let mut received = ParticleReceived::default();
         particles.finish(&self.supervisor, &mut received)?;
         particles.commit()?;
+        (self.acted, self.support) = (received.acted, received.support);
         self.index += 1;
         self.start = self.start.checked_add(span).unwrap();
         Ok(received.impulse)
@@ -246,6 +253,32 @@ fn heap() -> ParticleSetup {
         })
         .collect();
     setup(contacts(Vec3::new(0.0, 0.0, -9.81)), &spheres)
+}
+
+#[test]
+fn a_heap_gains_what_gravity_the_floor_and_its_pushes_give() {
+    let mut bench = Bench::new();
+    let setup = heap();
+    let mut particles = bench.launch(&setup, "a", None);
+    let total = |particles: &LiggghtsParticles| -> Vec3 {
+        let fields = particles.fields();
+        let pairs = fields.mass.iter().zip(fields.velocity);
+        pairs.map(|(mass, velocity)| *mass * velocity).sum()
+    };
+    let push: Vec<Vec3> = (0..40).map(|k| Vec3::x() * 1e-4 * f64::from(k)).collect();
+    let mut given = 0.0;
+    for span in [1e-3, 1.004e-3, 7.31e-3, 2e-2] {
+        let before = total(&particles);
+        let impulse = bench.window(&mut particles, span, &push).unwrap();
+        let support = bench.support.unwrap();
+        let weight = 40.0 * MASS * bench.acted * Vec3::new(0.0, 0.0, -9.81);
+        let pushed: Vec3 = impulse.iter().sum();
+        let left = total(&particles) - before - pushed - weight - support;
+        assert!(left.norm() < 1e-12 * weight.norm(), "{left} of {weight}");
+        given += support.z;
+    }
+    // In the end the floor carries them.
+    assert!(given > 0.5 * 40.0 * MASS * 9.81 * 2e-2, "{given}");
 }
 
 #[test]

@@ -7,9 +7,11 @@ use calcine_physics::drag::Drag;
 use calcine_physics::gas_model::GasModel;
 use calcine_physics::heat_transfer::HeatTransfer;
 use calcine_physics::local::LocalGas;
+use calcine_physics::mass_transfer;
 use calcine_physics::numbers::VoidFraction;
 use thiserror::Error;
 
+use crate::momentum_model::MomentumModel;
 use crate::part::{Bed, GasFields, ParticleFields};
 use crate::smoother::Operator;
 
@@ -20,8 +22,13 @@ pub struct Closures {
     pub gas: GasModel,
     /// Drag on a particle.
     pub drag: Box<dyn Drag>,
+    /// How the momentum is shared, which says what of the drag law's coefficient acts.
+    pub momentum: MomentumModel,
     /// Heat transfer between gas and particle.
     pub heat_transfer: Box<dyn HeatTransfer>,
+    /// Mass transfer between gas and particles that react, by the analogy with heat transfer; only asked for
+    /// where some do.
+    pub mass_transfer: Box<dyn HeatTransfer>,
 }
 
 /// A law that got a state it is not defined for.
@@ -106,10 +113,15 @@ impl Seen {
 /// Coefficients per particle, fixed over the window.
 #[derive(Clone, Debug, Default)]
 pub struct Coefficients {
-    /// Drag coefficient K_A in kg/s (requirements DRG-1).
+    /// Mass transfer coefficient of each species in m/s, species by species within each particle; empty where
+    /// none reacts.
+    pub film: Vec<f64>,
+    /// Drag coefficient in kg/s: K_A by model A, K_A/ε by model B (requirements DRG-1).
     pub drag: Vec<f64>,
     /// Heat conductance h A in W/K.
     pub conductance: Vec<f64>,
+    /// Magnitude of the slip u − v/AF in m/s by which they were evaluated.
+    pub slip: Vec<f64>,
     /// Conductivity of the gas in W/m/K.
     pub gas_conductivity: Vec<f64>,
     /// Share of the other forces in N that drag holds back within the window (requirements
@@ -171,6 +183,46 @@ impl Coefficients {
 }
 
 impl Closures {
+    /// Evaluates mass transfer at these pressures in Pa, for particles that react.
+    pub fn evaluate_films(
+        &self,
+        seen: &Seen,
+        particles: &ParticleFields<'_>,
+        pressure: &[f64],
+        acceleration: f64,
+        coefficients: &mut Coefficients,
+    ) {
+        let GasModel::Mixture(mixture) = &self.gas else {
+            coefficients.film.clear();
+            return;
+        };
+        let species = mixture.names().len();
+        let mut diffusivities = vec![0.0; species];
+        coefficients.film.resize(species * particles.len(), 0.0);
+        for p in 0..particles.len() {
+            let own = p * species..(p + 1) * species;
+            let composition = &seen.composition[own.clone()];
+            let temperature = seen.temperature[p];
+            let Ok(void_fraction) = VoidFraction::new(seen.void_fraction[p]) else {
+                continue;
+            };
+            let local = LocalGas {
+                void_fraction,
+                density: seen.density[p],
+                viscosity: self.gas.viscosity(temperature, composition),
+                conductivity: 0.0,
+                heat_capacity: self.gas.heat_capacity(temperature, composition),
+                slip: (seen.velocity[p] - particles.velocity[p] / acceleration).norm(),
+            };
+            mixture.diffusivities(pressure[p], temperature, composition, &mut diffusivities);
+            let diameter = 2.0 * particles.radius[p];
+            for (film, diffusivity) in coefficients.film[own].iter_mut().zip(&diffusivities) {
+                let law = &*self.mass_transfer;
+                *film = mass_transfer::coefficient(law, &local, *diffusivity, diameter);
+            }
+        }
+    }
+
     /// Evaluates all laws. Slip is u − v/AF (requirements TSM-7).
     pub fn evaluate(
         &self,
@@ -183,6 +235,7 @@ impl Closures {
         let species = self.gas.species().len();
         coefficients.drag.resize(count, 0.0);
         coefficients.conductance.resize(count, 0.0);
+        coefficients.slip.resize(count, 0.0);
         coefficients.gas_conductivity.resize(count, 0.0);
         for p in 0..count {
             let id = particles.id[p];
@@ -224,8 +277,9 @@ impl Closures {
                     });
                 }
             }
-            coefficients.drag[p] = drag;
+            coefficients.drag[p] = self.momentum.coefficient(drag, seen.void_fraction[p]);
             coefficients.conductance[p] = conductance;
+            coefficients.slip[p] = local.slip;
             coefficients.gas_conductivity[p] = local.conductivity;
         }
         Ok(())

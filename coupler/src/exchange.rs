@@ -23,14 +23,14 @@
 //! is given over a window, so that nothing ties its cells (for stiff drag K_A is what
 //! `Coefficients::relax` makes of it).
 //!
-//! Momentum is exchanged by model A (requirements DRG-1), here and in both gases: the gas carries
-//! −ε ∇p and the drag −Σ W K_A (u − v/AF), a particle −V_p Σ_c W_cp ∇p and the drag. Model B, in which
-//! the gas carries all of ∇p and a particle its weight less that of the gas it displaces, is not
-//! computed; its laws (K_A/ε) are converted where they are transcribed.
+//! Momentum is exchanged by model A or B (requirements DRG-1, [`crate::momentum_model`]): the coefficients
+//! here are those that the model makes of the laws' K_A, and `push` adds what else the gas does to a
+//! particle, −V_p Σ_c W_cp ∇p or the weight of what it displaces.
 
 use calcine_physics::Vec3;
 
 use crate::closures::Coefficients;
+use crate::momentum_model::MomentumModel;
 use crate::part::{CellExchange, CellReceived, GasFields, ParticleFields, ParticlePush};
 use crate::smoother::Operator;
 
@@ -147,20 +147,24 @@ impl Exchange {
     /// Gives each particle the heat that the gas reports, takes the gas as the next iterate, and
     /// returns how far the attempt is from the exact coupling of the cells that a particle spans:
     /// the misplaced heat, as a share of all heat that was exchanged. The particle temperatures are
-    /// those of `linearise`.
+    /// those of `linearise`. Of the heat that the gas received, `carried` in W came with gas that particles
+    /// set free and take.
     pub fn credit_heat(
         &mut self,
         setting: &Setting<'_>,
         temperature: &[f64],
         gas: &GasFields<'_>,
         received: &CellReceived,
+        carried: &[f64],
     ) -> f64 {
         let (operator, coefficients) = (setting.operator, setting.coefficients);
         let exchange = &self.cells;
         // T_c − δ_c/H_c, with δ_c what the gas reports beyond R_c, and T_c side by side.
         for c in 0..operator.cells() {
             let (own, coefficient) = (gas.temperature[c], exchange.heat_coefficient[c]);
-            let beyond = received.heat[c] - (exchange.heat_source[c] - coefficient * own);
+            let apart = carried.get(c).copied().unwrap_or(0.0);
+            let told = exchange.heat_source[c] - coefficient * own;
+            let beyond = received.heat[c] - apart - told;
             let credited = own - ratio(beyond, coefficient);
             self.cell_vector[c] = Vec3::new(credited, own, 0.0);
         }
@@ -204,20 +208,29 @@ impl Exchange {
         }
     }
 
-    /// The force pushed to the particles: drag and the pressure force −V_p Σ_c W_cp ∇p
-    /// (requirements DRG-1, model A). The pressure force alone goes to `pressure_force`.
+    /// The force pushed to the particles: drag, and the force of pressure or buoyancy as the model has it
+    /// (requirements DRG-1), which alone goes to `pressure_force`. Gravity in m/s².
     pub fn push(
         &self,
         operator: &Operator,
         gas: &GasFields<'_>,
         solid_volume: &[f64],
+        (model, gravity): (MomentumModel, Vec3),
         pressure_force: &mut Vec<Vec3>,
         push: &mut ParticlePush,
     ) {
         pressure_force.resize(operator.particles(), Vec3::zeros());
-        operator.sample_vectors(gas.pressure_gradient, pressure_force);
-        for (force, volume) in pressure_force.iter_mut().zip(solid_volume) {
-            *force *= -volume;
+        let weights: Vec<Vec3>;
+        let field = match model {
+            MomentumModel::A => gas.pressure_gradient,
+            MomentumModel::B => {
+                weights = gas.density.iter().map(|rho| *rho * gravity).collect();
+                &weights
+            }
+        };
+        operator.sample_vectors(field, pressure_force);
+        for (force, &volume) in pressure_force.iter_mut().zip(solid_volume) {
+            *force = model.pressure_force(volume, *force, *force);
         }
         push.force.clear();
         push.force.extend(

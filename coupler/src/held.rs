@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use calcine_physics::Vec3;
+use calcine_physics::gas_model::GasModel;
 
 use crate::error::PartError;
 use crate::mesh::Mesh;
@@ -22,6 +23,7 @@ pub struct HeldGas {
     about: About,
     mesh: Arc<Mesh>,
     superficial: Vec3,
+    properties: GasModel,
     temperature: Vec<f64>,
     pressure: Vec<f64>,
     density: Vec<f64>,
@@ -49,6 +51,7 @@ impl HeldGas {
                 ranks: 1,
             },
             superficial: setup.velocity,
+            properties: gas.clone(),
             temperature: vec![setup.temperature; cells],
             pressure: centres
                 .map(|centre| setup.pressure + weight.dot(&(centre - origin)))
@@ -126,6 +129,20 @@ impl Gas for HeldGas {
                 .zip(&self.temperature)
                 .map(|((source, coefficient), kelvin)| source - coefficient * kelvin),
         );
+        let species = self.composition.len() / self.mesh.cells().max(1);
+        let mut moved = vec![0.0; species];
+        if !told.species.is_none() {
+            for (cell, heat) in received.heat.iter_mut().enumerate() {
+                *heat += told.species.heat[cell];
+                for (k, moved) in moved.iter_mut().enumerate() {
+                    let at = cell * species + k;
+                    let enthalpy = self.properties.species_enthalpy(k, self.temperature[cell]);
+                    *heat -= told.species.taken[at] * enthalpy;
+                    *moved += told.species.source[at]
+                        - told.species.coefficient[at] * self.composition[at];
+                }
+            }
+        }
         let drags = told.drag_source.iter().zip(&told.drag_coefficient);
         received.drag.clear();
         received.drag.extend(
@@ -136,9 +153,8 @@ impl Gas for HeldGas {
         let span = self.storage.span(&self.window);
         let heat: f64 = received.heat.iter().sum::<f64>() * span;
         let force: Vec3 = received.drag.iter().sum::<Vec3>() * self.window.span.motion.seconds();
-        received.mass = Balance::default();
-        received.species =
-            vec![Balance::default(); self.composition.len() / self.mesh.cells().max(1)];
+        received.mass = reservoir(moved.iter().sum::<f64>() * span);
+        received.species = moved.iter().map(|flow| reservoir(flow * span)).collect();
         received.energy = reservoir(heat);
         received.momentum = [0, 1, 2].map(|axis| reservoir(force[axis]));
         Ok(Convergence {

@@ -86,6 +86,9 @@ pub struct Ledger {
     pub gas_momentum: Line,
     /// Particle mass in kg: what the particles hold against what feeds and outlets moved.
     pub particle_mass: Line,
+    /// Momentum of the particles that move, in N s: its change against what the gas, gravity, walls, held
+    /// particles, feeds and outlets gave, where the solver counts the impulse of walls.
+    pub particle_momentum: Line,
     /// What feeds brought and outlets took so far.
     pub traffic: [Moved; 2],
     /// Mass of each element of a gas mixture in kg, by its symbol.
@@ -94,7 +97,7 @@ pub struct Ledger {
 
 impl Ledger {
     /// Lines by their stable names, those of elements apart.
-    pub fn lines(&self) -> [(&'static str, &'static str, Line); 6] {
+    pub fn lines(&self) -> [(&'static str, &'static str, Line); 7] {
         [
             ("mass", "kg", self.mass),
             ("energy", "J", self.energy),
@@ -102,6 +105,7 @@ impl Ledger {
             ("momentum", "N s", self.momentum_exchange),
             ("gas_momentum", "N s", self.gas_momentum),
             ("particle_mass", "kg", self.particle_mass),
+            ("particle_momentum", "N s", self.particle_momentum),
         ]
     }
 
@@ -114,6 +118,7 @@ impl Ledger {
             &mut self.momentum_exchange,
             &mut self.gas_momentum,
             &mut self.particle_mass,
+            &mut self.particle_momentum,
         ];
         lines.extend(self.elements.iter_mut().map(|(_, line)| line));
         lines

@@ -10,6 +10,7 @@ pub mod held;
 pub mod ledger;
 pub mod mapping;
 pub mod mesh;
+pub mod momentum_model;
 pub mod motion;
 pub mod observer;
 pub mod packing;
@@ -21,6 +22,7 @@ pub mod smoother;
 pub mod supervisor;
 pub mod time;
 pub mod traffic;
+pub mod turnover;
 
 pub use calcine_interior as interior;
 pub use calcine_physics as physics;

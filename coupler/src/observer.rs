@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
+use calcine_physics::Vec3;
 use thiserror::Error;
 
 use crate::exchange::Placement;
@@ -38,6 +39,17 @@ pub struct Timing {
     pub particles_processes: Duration,
 }
 
+/// What each particle had of the gas in the last window, in the order of the particles.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Felt<'a> {
+    /// Force of the gas on each in N, constant over the window; zero before the first.
+    pub force: &'a [Vec3],
+    /// Void fraction that the laws saw.
+    pub void_fraction: &'a [f64],
+    /// Magnitude in m/s of the slip u − v/AF that the laws saw; zero before the first window.
+    pub slip: &'a [f64],
+}
+
 /// The state of the run after a commit.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment<'a> {
@@ -59,6 +71,13 @@ pub struct Moment<'a> {
     pub particle_temperature: &'a [f64],
     /// Mean heat flow into each particle over the window in W.
     pub particle_heat: &'a [f64],
+    /// Particle masses in kg, as their solids have it where they react.
+    pub particle_mass: &'a [f64],
+    /// Mass fractions of the solids of particles that react, solid by solid within each particle; empty where
+    /// none does.
+    pub solid_fractions: &'a [f64],
+    /// What else the particles had of the gas.
+    pub felt: Felt<'a>,
     /// Names of walls and surroundings that give heat to the particles.
     pub reservoirs: &'a [String],
     /// Mean heat from each of these into the particles over the window in W; empty where there is none.

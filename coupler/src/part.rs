@@ -86,6 +86,56 @@ pub struct CellExchange {
     pub heat_coefficient: Vec<f64>,
     /// Explicit part of the heat to the gas in W.
     pub heat_source: Vec<f64>,
+    /// Gas that particles set free and take up.
+    pub species: SpeciesExchange,
+}
+
+/// Gas that particles that react give and take, summed over each cell; all lists are empty where none
+/// does.
+///
+/// Mass of species k to the gas of cell c in kg/s: S_ck = `source` − `coefficient` · Y_ck; the gas of a cell
+/// gains Σ_k S_ck. It comes and goes with the velocity of the gas. Heat to the gas in W, beside that of
+/// [`CellExchange`]: `heat` − Σ_k `taken` h_k(T_c), with h_k the sensible enthalpy of a species.
+///
+/// The last species of a mixture is what the others leave, and has no coefficient.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SpeciesExchange {
+    /// Explicit part in kg/s, species by species within each cell.
+    pub source: Vec<f64>,
+    /// Coefficient of the mass fraction in kg/s, zero or above, likewise.
+    pub coefficient: Vec<f64>,
+    /// What leaves with the gas' own temperature in kg/s, likewise.
+    pub taken: Vec<f64>,
+    /// Sensible enthalpy in W that comes from the particles with their temperature, one value per cell.
+    pub heat: Vec<f64>,
+}
+
+impl SpeciesExchange {
+    /// True where no particle exchanges species.
+    pub fn is_none(&self) -> bool {
+        self.source.is_empty()
+    }
+
+    /// Empties it, or makes room for so many cells and species, all zero.
+    pub fn reset(&mut self, cells: usize, species: usize) {
+        for list in [&mut self.source, &mut self.coefficient, &mut self.taken] {
+            list.clear();
+            list.resize(cells * species, 0.0);
+        }
+        self.heat.clear();
+        self.heat.resize(if species == 0 { 0 } else { cells }, 0.0);
+    }
+
+    /// Mass that the gas of a cell gains in kg/s at its mass fractions.
+    pub fn mass(&self, cell: usize, fractions: &[f64]) -> f64 {
+        if self.is_none() {
+            return 0.0;
+        }
+        let first = cell * fractions.len();
+        let each = fractions.iter().enumerate();
+        each.map(|(k, y)| self.source[first + k] - self.coefficient[first + k] * y)
+            .sum()
+    }
 }
 
 /// One conserved quantity of the gas over a window, in kg, J or N s of the gas' storage span
@@ -113,7 +163,7 @@ pub struct Balance {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CellReceived {
     /// Mean heat flow into the gas of each cell over the window in W, as the solved enthalpy
-    /// equation took it.
+    /// equation took it; that of exchanged species included.
     pub heat: Vec<f64>,
     /// Mean drag on the gas of each cell over the window in N (pressure force excluded).
     pub drag: Vec<Vec3>,
@@ -225,6 +275,11 @@ pub struct ParticleReceived {
     /// Impulse of the pushed force as applied over the motion span in N s; a frozen particle is
     /// held, and its support takes it up.
     pub impulse: Vec<Vec3>,
+    /// Motion time in s that the solver's steps cover, over which gravity acted.
+    pub acted: f64,
+    /// Impulse in N s that walls and held particles gave all free ones together; `None` where it is not
+    /// counted.
+    pub support: Option<Vec3>,
 }
 
 /// Positions, velocities, contacts.

@@ -3,6 +3,7 @@
 use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
 
+use crate::momentum_model::MomentumModel;
 use crate::motion::Motion;
 use crate::time::GasStorage;
 
@@ -52,6 +53,8 @@ pub struct GasSetup {
     pub velocity: Vec3,
     /// Gravity in m/s².
     pub gravity: Vec3,
+    /// How gas and particles share their momentum.
+    pub momentum: MomentumModel,
     /// Boundary condition of each patch, in the order of the file; every patch of the mesh has one.
     pub patches: Vec<(String, GasPatch)>,
     /// Controls of the solver, honoured by native gas and calcineGasFoam alike.

@@ -111,6 +111,23 @@ fn spheres_settle_in_a_cylinder_to_the_void_fraction_of_a_random_bed() {
         (0.38..0.42).contains(&void),
         "{void}, {count} spheres up to {high} m"
     );
+    // Half a diameter from the wall the first layer leaves least (Benenati and Brosilow 1962, doi
+    // 10.1002/aic.690080319: 0.2 to 0.25 in wider beds), a whole one from it much; more: `cargo xtask validate`.
+    let mut at = |from_wall: f64| {
+        let out = 0.02 - from_wall * 2.0 * radius;
+        let free = (0..points).filter(|_| {
+            let (angle, height) = (2.0 * PI * next(), low + (high - low) * next());
+            let point = Vec3::new(out * angle.cos(), out * angle.sin(), height);
+            let near = |place: &Vec3| (place - point).norm_squared() < radius * radius;
+            !fields.position.iter().any(near)
+        });
+        free.count() as f64 / f64::from(points)
+    };
+    let (half, whole) = (at(0.55), at(0.98));
+    assert!(
+        (0.17..0.33).contains(&half) && whole > 0.42,
+        "{half} {whole}"
+    );
 }
 
 #[test]

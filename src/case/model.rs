@@ -4,9 +4,11 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use calcine_adapters::openfoam::stock::Solver;
+use calcine_coupler::interior::reacting::Reaction;
 use calcine_coupler::mesh::grading::Stretch;
 use calcine_coupler::mesh::refine::Refinement;
 use calcine_coupler::mesh::zone::Zone;
+use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::motion::{ContactLaw, Wall};
 use calcine_coupler::packing::Sizes;
 use calcine_coupler::packing::regular::Lattice;
@@ -14,6 +16,7 @@ pub use calcine_coupler::paths::SURROUNDINGS;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::conduction::Conductivity;
 use calcine_coupler::physics::solid::HeatCapacity;
+use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::setup::{GasSetup, Schedule};
 use calcine_coupler::sight::Sight;
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
@@ -38,6 +41,8 @@ pub struct Case {
     pub mesh: MeshSpec,
     /// Materials, in the order of the file.
     pub materials: Vec<Material>,
+    /// Solids that materials are made of, and what reacts.
+    pub chemistry: ReactionSpec,
     /// Contact properties of pairs of materials.
     pub contacts: Vec<Contact>,
     /// Walls that particles touch.
@@ -130,6 +135,24 @@ pub enum MeshSpec {
     PolyMesh(PathBuf),
 }
 
+/// Solids and reactions of particles; empty where nothing reacts.
+#[derive(Clone, Debug, Default)]
+pub struct ReactionSpec {
+    /// Solids.
+    pub solids: Vec<SolidSpecies>,
+    /// Reactions.
+    pub reactions: Vec<Reaction>,
+    /// Mass fractions of the solids in each material.
+    pub compositions: Vec<Vec<f64>>,
+}
+
+impl ReactionSpec {
+    /// True where some reaction exchanges gas.
+    pub fn exchanges(&self) -> bool {
+        self.reactions.iter().any(|one| !one.gases.is_empty())
+    }
+}
+
 /// A solid material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
@@ -137,8 +160,10 @@ pub struct Material {
     pub name: String,
     /// Density in kg/m³.
     pub density: f64,
-    /// Specific heat capacity over temperature.
+    /// Specific heat capacity over temperature; of a material with a composition that of its solids.
     pub heat_capacity: HeatCapacity,
+    /// Mass fractions of all solids that there are; `None` where it is not said what it is made of.
+    pub composition: Option<Vec<f64>>,
     /// Thermal conductivity over temperature.
     pub conductivity: Option<Conductivity>,
     /// Emissivity of its surface.
@@ -283,10 +308,14 @@ pub enum Place {
 pub struct Laws {
     /// Drag on a particle.
     pub drag: DragLaw,
+    /// How gas and particles share their momentum.
+    pub momentum: MomentumModel,
     /// Heat transfer between gas and particle.
     pub heat_transfer: HeatLaw,
     /// Heat conduction between particles.
     pub conduction: Conduction,
+    /// Mass transfer between gas and particles that react.
+    pub mass_transfer: HeatLaw,
     /// Radiation between particles; `None`: none.
     pub radiation: Option<Radiation>,
 }
@@ -455,6 +484,8 @@ pub struct External {
     pub start: Option<PathBuf>,
     /// Program of an OpenFOAM gas.
     pub solver: Solver,
+    /// Whether LIGGGHTS counts the impulse of walls.
+    pub wall_impulse: bool,
     /// MPI ranks, unless the command line states others.
     pub ranks: u32,
 }
@@ -468,7 +499,7 @@ pub struct Output {
     pub series_every: Option<Ticks>,
     /// Gas fields of the snapshots: temperature, velocity, pressure, density, void_fraction.
     pub gas: Vec<String>,
-    /// Particle fields of the snapshots: temperature, velocity, heat.
+    /// Particle fields of the snapshots: temperature, velocity, heat, mass, solids.
     pub particles: Vec<String>,
 }
 
@@ -492,10 +523,14 @@ pub struct Quantity {
     pub name: String,
     /// How it is measured.
     pub measure: Measure,
+    /// Which species of the gas, or solid, where the measure is of a mass fraction.
+    pub column: Option<usize>,
     /// Unit as printed.
     pub unit: &'static str,
     /// Largest difference between pairings.
     pub agree: Option<Band>,
+    /// Process time in s from which `agree` holds.
+    pub agree_from: f64,
     /// Process time in s over which values are averaged before pairings are compared; 0: not at all.
     pub agree_over: f64,
     /// Expected value.

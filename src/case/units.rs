@@ -47,6 +47,9 @@ dimensions! {
     FORCE = [1, 1, -2, 0, 0], "a force", "50 mN";
     POWER = [2, 1, -3, 0, 0], "a power", "10 W";
     MOLAR_MASS = [0, 1, 0, 0, -1], "a molar mass", "28.96 g/mol";
+    MOLAR_ENERGY = [2, 1, -2, 0, -1], "a molar energy", "70 kJ/mol";
+    MOLAR_ENTROPY = [2, 1, -2, -1, -1], "a molar entropy", "57.6 J/mol/K";
+    DIFFUSIVITY = [2, 0, -1, 0, 0], "a diffusivity", "1e-5 m^2/s";
 }
 
 impl fmt::Display for Dimension {

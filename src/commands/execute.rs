@@ -22,6 +22,7 @@ use crate::case::buoyancy;
 use crate::case::model::Case;
 use crate::exit;
 use crate::progress::Progress;
+use crate::results::pace::Pace;
 use crate::results::{self, Recorder, ResultsError, RunInfo, Summary, Verdict};
 
 /// A file that every run makes and holds locked while it lives.
@@ -248,6 +249,9 @@ fn closing(summary: &Summary) -> String {
             summary.windows,
             summary.convergence.largest_residual
         );
+    }
+    if let Some(words) = summary.pace.as_ref().and_then(Pace::warning) {
+        let _ = writeln!(text, "  warning: {words}");
     }
     text.trim_end().to_owned()
 }

@@ -316,10 +316,11 @@ fn add(
 fn unit(field: &str) -> &'static str {
     match field {
         "temperature" => "K",
-        "velocity" => "m/s",
+        "velocity" | "slip" => "m/s",
         "pressure" => "Pa",
         "density" => "kg/m^3",
         "heat" => "W",
+        "force" => "N",
         _ => "1",
     }
 }

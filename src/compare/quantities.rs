@@ -33,9 +33,10 @@ pub struct QuantityDifference {
     pub span: f64,
     /// The allowed difference in words, if the case states one.
     pub band: Option<String>,
-    /// The largest multiple of the allowed difference over all times; 1 and below is inside.
+    /// The largest multiple of the allowed difference over the times that the band is for; 1 and below is
+    /// inside.
     pub multiple: Option<f64>,
-    /// Whether the band holds at all times.
+    /// Whether the band holds at all those times.
     pub verdict: Agreement,
 }
 
@@ -54,7 +55,7 @@ fn difference(quantity: &Quantity, sources: &[Source]) -> QuantityDifference {
     };
     let mut end = largest;
     let mut end_values = Vec::new();
-    let mut multiple = quantity.agree.map(|_| 0.0);
+    let mut multiple = None;
     // Means over a time begin when it has passed; where a run is shorter, with its end.
     let times = common_times(sources);
     let first = quantity
@@ -81,7 +82,9 @@ fn difference(quantity: &Quantity, sources: &[Source]) -> QuantityDifference {
         if exceeds(end.difference, largest.difference) {
             largest = end;
         }
-        if let (Some(band), Some(so_far)) = (quantity.agree, multiple.as_mut()) {
+        let due = time >= quantity.agree_from;
+        if let (true, Some(band)) = (due, quantity.agree) {
+            let so_far = multiple.get_or_insert(0.0);
             let allowed = allowance(band, 0.5 * (low + high));
             let here = if end.difference == 0.0 {
                 0.0
@@ -101,7 +104,13 @@ fn difference(quantity: &Quantity, sources: &[Source]) -> QuantityDifference {
         largest,
         end,
         span: all.1 - all.0,
-        band: quantity.agree.map(|band| words(band, quantity.unit)),
+        band: quantity.agree.map(|band| {
+            let band = words(band, quantity.unit);
+            match quantity.agree_from {
+                0.0 => band,
+                from => format!("{band} from {from} s on"),
+            }
+        }),
         multiple,
         verdict: Agreement::of(multiple),
     }

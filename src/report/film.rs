@@ -44,7 +44,8 @@ impl Shade {
         }
         // Half a thousandth of a kelvin is what the gas solver's tolerance leaves.
         match Range::of(values.into_iter()) {
-            Some(range) if speeds && range.high - range.low < 5e-4 => Self::Speed,
+            Some(range) if range.high - range.low >= 5e-4 => Self::Temperature,
+            _ if speeds => Self::Speed,
             _ => Self::Temperature,
         }
     }
@@ -231,6 +232,8 @@ mod tests {
         let shade = Shade::of([(&cold, &bed)].into_iter());
         assert_eq!(shade, Shade::Speed);
         assert_eq!(shade.particles(&bed), [5.0, 1.0]);
+        let bare = arrays(&[("velocity", 3, &[1.0, 0.0, 0.0])]);
+        assert_eq!(Shade::of([(&bare, &bare)].into_iter()), Shade::Speed);
         assert!(shade.gas(&cold).is_empty());
         let warm = arrays(&[("temperature", 1, &[300.0, 301.0])]);
         assert_eq!(Shade::of([(&warm, &bed)].into_iter()), Shade::Temperature);

@@ -356,6 +356,15 @@ fn provenance(summary: &Summary) -> String {
         ("acceleration", schedule.join(", ")),
         ("Calcine", escape(&summary.calcine)),
     ];
+    if let Some(pace) = &summary.pace {
+        let numbers = format!(
+            "{} in the mean, {} at most",
+            figure(pace.inertial_number_mean, 3),
+            figure(pace.inertial_number_largest, 3)
+        );
+        let words = pace.warning().unwrap_or_else(|| "quasi-static".into());
+        rows.push(("inertial number", format!("{numbers}: {}", escape(&words))));
+    }
     let mut from = summary.from.as_ref();
     while let Some(run) = from {
         let text = format!(

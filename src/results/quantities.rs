@@ -67,7 +67,8 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &Moment<'_>, sites: &[Site])
             f64::NAN
         }
         Measure::Difference { field, patches } => {
-            let mean = |patch| weighted(Statistic::Mean, &on_patch(moment, field, patch));
+            let of = (field.as_str(), None);
+            let mean = |patch| weighted(Statistic::Mean, &on_patch(moment, of, patch));
             mean(&patches[0]) - mean(&patches[1])
         }
         Measure::Gas {
@@ -75,14 +76,15 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &Moment<'_>, sites: &[Site])
             over,
             statistic: which,
         } => {
+            let of = (field.as_str(), quantity.column);
             let values = match over {
-                GasPlace::Everywhere => in_cells(moment, field),
-                GasPlace::Patch(patch) => on_patch(moment, field, patch),
+                GasPlace::Everywhere => in_cells(moment, of),
+                GasPlace::Patch(patch) => on_patch(moment, of, patch),
                 GasPlace::Probe(probe) => {
                     let cells = site(sites, probe).map_or(&[][..], |site| &site.cells);
                     let inside = cells.iter().flatten();
                     inside
-                        .map(|&cell| (in_cell(moment, field, cell), 1.0))
+                        .map(|&cell| (in_cell(moment, of, cell), 1.0))
                         .collect()
                 }
             };
@@ -93,7 +95,7 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &Moment<'_>, sites: &[Site])
             over,
             statistic: which,
         } => {
-            let values = of_particles(moment, field);
+            let values = of_particles(moment, (field, quantity.column));
             let (bed, all) = (moment.particles, &values[..]);
             let values: Vec<f64> = match over {
                 ParticlePlace::Everywhere => return statistic(*which, all),
@@ -118,7 +120,11 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &Moment<'_>, sites: &[Site])
         }
         Measure::Particle { field, number } => number
             .checked_sub(1)
-            .and_then(|place| of_particles(moment, field).get(place).copied())
+            .and_then(|place| {
+                of_particles(moment, (field, quantity.column))
+                    .get(place)
+                    .copied()
+            })
             .unwrap_or(f64::NAN),
         Measure::SurfaceAngle { point, axis, down } => surface_angle(
             moment.particles.position,
@@ -131,7 +137,7 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &Moment<'_>, sites: &[Site])
 }
 
 /// A field of all particles; speeds are those of process time.
-fn of_particles(moment: &Moment<'_>, field: &str) -> Vec<f64> {
+fn of_particles(moment: &Moment<'_>, (field, column): Field<'_>) -> Vec<f64> {
     let bed = moment.particles;
     match field {
         "speed" => {
@@ -140,6 +146,13 @@ fn of_particles(moment: &Moment<'_>, field: &str) -> Vec<f64> {
             bed.velocity.iter().map(speed).collect()
         }
         "height" => bed.position.iter().map(|centre| centre.z).collect(),
+        "mass" => moment.particle_mass.to_vec(),
+        "mass_fraction" => {
+            let solids = moment.solid_fractions.len() / bed.len().max(1);
+            let of = column.unwrap_or(0);
+            let fractions = moment.solid_fractions.iter().skip(of);
+            fractions.step_by(solids.max(1)).copied().collect()
+        }
         _ => moment.particle_temperature.to_vec(),
     }
 }
@@ -176,8 +189,11 @@ fn weighted(which: Statistic, pairs: &[(f64, f64)]) -> f64 {
     statistic(which, &values)
 }
 
+/// A field by its name, and which species it is of.
+type Field<'a> = (&'a str, Option<usize>);
+
 /// A gas field in a cell.
-fn in_cell(moment: &Moment<'_>, field: &str, cell: usize) -> f64 {
+fn in_cell(moment: &Moment<'_>, (field, column): Field<'_>, cell: usize) -> f64 {
     let gas = moment.gas;
     match field {
         "pressure" => gas.pressure[cell],
@@ -185,12 +201,17 @@ fn in_cell(moment: &Moment<'_>, field: &str, cell: usize) -> f64 {
         "density" => gas.density[cell],
         "speed" => gas.velocity[cell].norm(),
         "void_fraction" => moment.bed.void_fraction[cell],
+        "mass_fraction" => {
+            let species = gas.composition.len() / gas.temperature.len().max(1);
+            let at = cell * species + column.unwrap_or(0);
+            gas.composition.get(at).copied().unwrap_or(f64::NAN)
+        }
         _ => f64::NAN,
     }
 }
 
 /// A gas field in all cells, each with its volume of gas in m³.
-fn in_cells(moment: &Moment<'_>, field: &str) -> Vec<(f64, f64)> {
+fn in_cells(moment: &Moment<'_>, field: Field<'_>) -> Vec<(f64, f64)> {
     let volumes = moment.mesh.cell_volume().iter().enumerate();
     volumes
         .map(|(cell, volume)| {
@@ -203,7 +224,7 @@ fn in_cells(moment: &Moment<'_>, field: &str) -> Vec<(f64, f64)> {
 /// A gas field on the faces of a patch, each with its area in m²: the pressure is carried from the
 /// cell to the face centre with the cell's gradient, p_f = p_c + ∇p·(x_f − x_c); others are the
 /// cell's.
-fn on_patch(moment: &Moment<'_>, field: &str, patch: &str) -> Vec<(f64, f64)> {
+fn on_patch(moment: &Moment<'_>, field: Field<'_>, patch: &str) -> Vec<(f64, f64)> {
     let mesh = moment.mesh;
     let Some(patch) = mesh.patch(patch) else {
         return Vec::new();
@@ -211,7 +232,7 @@ fn on_patch(moment: &Moment<'_>, field: &str, patch: &str) -> Vec<(f64, f64)> {
     let on_face = |face: usize| {
         let cell = mesh.owner()[face] as usize;
         let mut value = in_cell(moment, field, cell);
-        if field == "pressure" {
+        if field.0 == "pressure" {
             let arm = mesh.face_centre()[face] - mesh.cell_centre()[cell];
             value += moment.gas.pressure_gradient[cell].dot(&arm);
         }

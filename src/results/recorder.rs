@@ -19,7 +19,7 @@ use super::summary::{
     Verdict, WallTimes,
 };
 use super::vtk::{self, Cells};
-use super::{CASE, ResultsError, STORE, SUMMARY, files, snapshot};
+use super::{CASE, ResultsError, STORE, SUMMARY, files, pace, snapshot};
 use crate::case::model::Case;
 
 /// So many rows are gathered before they go to the HDF5 file.
@@ -203,8 +203,17 @@ impl Recorder {
         self.flush()?;
         let sites = self.open.as_ref().map_or(&[][..], |open| &open.sites);
         self.counters.captured.take(&self.case, moment, sites, true);
+        if let Some(words) = self.pace_warning() {
+            tracing::warn!("{words}");
+        }
         let results = self.counters.captured.results(&self.case, true);
         self.summarise(moment, quantities::overall(results.values()))
+    }
+
+    /// Whether the bed was moved too fast, in words.
+    fn pace_warning(&self) -> Option<String> {
+        let pace = &self.counters.pace;
+        (pace.rows > 0).then(|| pace.warning()).flatten()
     }
 
     /// Adds the window's convergence.
@@ -233,6 +242,10 @@ impl Recorder {
             .output
             .series_every
             .unwrap_or(self.case.output.every);
+        if moment.window.is_some() && series::accelerated(&self.case) {
+            let number = pace::of_bed(moment, self.case.gas.gravity);
+            self.counters.pace.add(number);
+        }
         let now = moment.clocks.process;
         self.counters.last_row = Some(now.count());
         self.counters.next_row = following(now, every);
@@ -250,7 +263,8 @@ impl Recorder {
             self.case.gas.properties.species(),
             moment,
         )?;
-        let particles = snapshot::particles(&self.case.output, moment)?;
+        let particles =
+            snapshot::particles(&self.case.output, &self.case.chemistry.solids, moment)?;
         let number = self.counters.snapshots.len();
         let now = moment.clocks.process;
         let Some(open) = &mut self.open else {
@@ -388,6 +402,7 @@ impl Recorder {
             processor_time_s: self.processor(moment.timing),
             quantities: captured.results(case, over),
             convergence: self.counters.convergence,
+            pace: (self.counters.pace.rows > 0).then_some(self.counters.pace),
         };
         summary.replace(&self.directory)?;
         self.summary = Some(summary);

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use super::pace::Pace;
 use super::quantities::Captured;
 use super::summary::{ConvergenceSummary, ProcessorTimes, Provenance, Summary, Verdict, WallTimes};
 use super::{ResultsError, SERIES, STORE, SUMMARY, files};
@@ -38,6 +39,9 @@ pub(super) struct Counters {
     pub captured: Captured,
     /// Convergence so far.
     pub convergence: ConvergenceSummary,
+    /// Inertial number so far.
+    #[serde(default)]
+    pub pace: Pace,
     /// Wall times so far.
     pub wall: WallTimes,
     /// Processor times so far.

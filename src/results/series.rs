@@ -9,8 +9,8 @@ use calcine_coupler::observer::Moment;
 
 use super::probe::Site;
 use super::quantities::{evaluate, statistic};
-use super::{ResultsError, SERIES};
-use crate::case::model::{Case, Statistic};
+use super::{ResultsError, SERIES, pace};
+use crate::case::model::{Case, Motion, MotionKind, Statistic};
 
 /// Up to so many particles each has a column of its own; beyond, the series holds statistics.
 pub(super) const TRACKED_PARTICLES: usize = 1000;
@@ -83,6 +83,10 @@ pub(super) fn columns(case: &Case, moment: &Moment<'_>) -> Vec<Column> {
             &text,
         ));
     }
+    if accelerated(case) {
+        let text = "inertial number of the bed in motion time, mean over its contacts";
+        list.push(Column::new("particles", "inertial_number", "1", text));
+    }
     list.push(Column::new(
         "gas",
         "outer_iterations",
@@ -134,6 +138,13 @@ pub(super) fn columns(case: &Case, moment: &Moment<'_>) -> Vec<Column> {
     list
 }
 
+/// True where free particles move faster than they would at their own pace.
+pub(super) fn accelerated(case: &Case) -> bool {
+    let kind = case.motion.as_ref().map(|motion| motion.kind);
+    let moves = case.particles.iter().any(|one| one.motion == Motion::Free);
+    moves && kind == Some(MotionKind::Accelerated)
+}
+
 /// One row.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Row {
@@ -167,6 +178,9 @@ pub(super) fn row(
     }
     for which in [Statistic::Min, Statistic::Max] {
         values.push(statistic(which, moment.gas.temperature));
+    }
+    if accelerated(case) {
+        values.push(pace::of_bed(moment, case.gas.gravity));
     }
     values.push(f64::from(moment.convergence.outer_iterations));
     values.push(f64::from(moment.convergence.linear_iterations));

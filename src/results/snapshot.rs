@@ -2,6 +2,7 @@
 
 use calcine_coupler::observer::Moment;
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::solids::SolidSpecies;
 
 use super::ResultsError;
 use crate::case::model::Output;
@@ -80,6 +81,8 @@ const fn field<'a>(
 
 /// The name by which a case file asks for the mass fractions of all species.
 pub(super) const MASS_FRACTIONS: &str = "mass_fractions";
+/// The same of the solids of particles.
+pub(super) const SOLIDS: &str = "solids";
 
 /// The gas fields that the case asks for, in a fixed order; mass fractions go by the names of the
 /// species.
@@ -134,6 +137,7 @@ pub(super) fn gas<'a>(
 /// What every particle snapshot holds, then the particle fields that the case asks for.
 pub(super) fn particles<'a>(
     output: &Output,
+    solids: &'a [SolidSpecies],
     moment: &Moment<'a>,
 ) -> Result<Vec<Field<'a>>, ResultsError> {
     use Values::{Scalar, Small, Vector, Whole};
@@ -167,10 +171,39 @@ pub(super) fn particles<'a>(
             "mean heat flow into the particle over the last window",
             Scalar(moment.particle_heat),
         ),
+        field("mass", "kg", "particle mass", Scalar(moment.particle_mass)),
+        field(
+            "force",
+            "N",
+            "force of the gas on the particle over the last window",
+            Vector(moment.felt.force),
+        ),
+        field(
+            "void_fraction",
+            "1",
+            "void fraction by which the laws of the particle were evaluated",
+            Scalar(moment.felt.void_fraction),
+        ),
+        field(
+            "slip",
+            "m/s",
+            "speed of the gas relative to the particle by which its laws were evaluated",
+            Scalar(moment.felt.slip),
+        ),
     ];
     let count = bed.len();
     let mut fields = always.to_vec();
     fields.extend(chosen(&all, &output.particles, count, "particle")?);
+    if output.particles.iter().any(|name| name == SOLIDS) && !moment.solid_fractions.is_empty() {
+        fields.extend(solids.iter().enumerate().map(|(column, solid)| {
+            let values = Values::Column {
+                table: moment.solid_fractions,
+                column,
+                columns: solids.len(),
+            };
+            field(solid.name(), "1", "mass fraction of this solid", values)
+        }));
+    }
     match fields.iter().find(|field| field.values.len() != count) {
         None => Ok(fields),
         Some(field) => Err(wrong_length(field, count, "particle")),

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Deserializer, Serialize};
 
+use super::pace::Pace;
 use super::{ResultsError, SUMMARY, files};
 
 /// How a quantity, or the run, stands against what the case expects.
@@ -83,6 +84,9 @@ pub struct Summary {
     pub quantities: BTreeMap<String, QuantityResult>,
     /// Convergence of the gas, over the run.
     pub convergence: ConvergenceSummary,
+    /// How far a bed that moves accelerated is from quasi-static.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pace: Option<Pace>,
 }
 
 /// The case of a run.
@@ -260,7 +264,7 @@ pub struct ConvergenceSummary {
 }
 
 /// A number, or NaN for the `null` that JSON has in its place.
-fn number<'de, D: Deserializer<'de>>(source: D) -> Result<f64, D::Error> {
+pub(super) fn number<'de, D: Deserializer<'de>>(source: D) -> Result<f64, D::Error> {
     Ok(Option::<f64>::deserialize(source)?.unwrap_or(f64::NAN))
 }
 

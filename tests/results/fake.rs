@@ -33,10 +33,12 @@ const SETTLED: Placement = Placement {
 /// A case of 20 s at AF 50 in windows of 10 ms, with rows each 0.7 s and snapshots each 5 s.
 pub fn case() -> Case {
     let quantity = |name: &str, unit, measure, expect| Quantity {
+        column: None,
         name: name.into(),
         measure,
         unit,
         agree: Some(Band::Relative(0.01)),
+        agree_from: 0.0,
         agree_over: 0.0,
         expect,
     };
@@ -64,6 +66,7 @@ pub fn case() -> Case {
             patches: ["side", "side", "side", "side", "bottom", "top"].map(String::from),
         },
         materials: vec![],
+        chemistry: Default::default(),
         contacts: vec![],
         walls: vec![],
         wall_temperatures: vec![],
@@ -74,6 +77,7 @@ pub fn case() -> Case {
         gas: gas_setup(),
         particles: vec![],
         laws: Laws {
+            momentum: Default::default(),
             drag: DragLaw::ErgunWenYu,
             conduction: Conduction {
                 law: ConductionLaw::None,
@@ -82,6 +86,7 @@ pub fn case() -> Case {
             },
             radiation: None,
             heat_transfer: HeatLaw::Gunn,
+            mass_transfer: HeatLaw::None,
         },
         coupling: Coupling {
             mapping: Mapping::Overlap,
@@ -169,6 +174,7 @@ fn gas_setup() -> GasSetup {
         pressure: 101_325.0,
         velocity: Vec3::zeros(),
         gravity: Vec3::new(0.0, 0.0, -9.81),
+        momentum: Default::default(),
         patches: vec![],
         controls: GasControls {
             convection: Convection::Upwind,
@@ -350,6 +356,9 @@ impl World {
             },
             particle_temperature: &self.temperature,
             particle_heat: &self.heat,
+            particle_mass: &self.mass,
+            solid_fractions: &[],
+            felt: Default::default(),
             placement: &SETTLED,
             reservoirs: &[],
             reservoir_heat: &[],

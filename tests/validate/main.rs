@@ -5,7 +5,13 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
 mod elastic_box;
+#[cfg(feature = "hdf5")]
+#[path = "../support/fluidised.rs"]
+mod fluidised;
+#[cfg(feature = "hdf5")]
+mod fluidised_bed;
 mod hopper;
+mod moving_bed;
 mod repose;
 mod voids;
 
@@ -18,9 +24,12 @@ use calcine::results::read::Series;
 /// What `cargo xtask validate` says before the names.
 const MARK: &str = "--validate";
 /// Every validation by its name.
-const ALL: [(&str, fn()); 4] = [
+const ALL: &[(&str, fn())] = &[
     ("elastic-box", elastic_box::run),
+    #[cfg(feature = "hdf5")]
+    ("fluidised-bed", fluidised_bed::run),
     ("hopper", hopper::run),
+    ("moving-bed", moving_bed::run),
     ("repose", repose::run),
     ("voids", voids::run),
 ];
@@ -55,12 +64,24 @@ fn main() -> ExitCode {
 
 /// Runs a case natively with settings, below a folder; gives its results' folder and its series.
 fn run(case: &Path, folder: &Path, name: &str, set: &[String]) -> (PathBuf, Series) {
+    run_with(case, folder, name, set, &[])
+}
+
+/// The same with options, such as those of the pairing.
+fn run_with(
+    case: &Path,
+    folder: &Path,
+    name: &str,
+    set: &[String],
+    options: &[&str],
+) -> (PathBuf, Series) {
     let out = folder.join(name);
     let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
     command
         .arg("run")
         .arg(case)
         .arg("--quiet")
+        .args(options)
         .arg("--out")
         .arg(&out);
     for setting in set {

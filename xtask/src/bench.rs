@@ -34,6 +34,8 @@ pub struct Choice {
     pub table_only: bool,
     /// Without OpenFOAM, LIGGGHTS and MPI.
     pub native: bool,
+    /// Only whole runs.
+    pub runs_only: bool,
     /// Words for `cargo bench`, for example the beginning of a benchmark's name.
     pub words: Vec<OsString>,
 }
@@ -57,7 +59,8 @@ pub fn run(workspace: &Workspace, choice: &Choice) -> Outcome<()> {
     if everything {
         tasks::build_parts(workspace, needs, Profile::Release)?;
     }
-    for folder in FOLDERS {
+    let folders = if choice.runs_only { &[][..] } else { &FOLDERS };
+    for &folder in folders {
         let absent = !workspace.root.join(folder).join("benches").is_dir();
         if absent || folder == "adapters/mpi" && choice.native {
             continue;
@@ -76,7 +79,9 @@ pub fn run(workspace: &Workspace, choice: &Choice) -> Outcome<()> {
     } else {
         Ok(Vec::new())
     };
-    print(&table(&measurements(&workspace.target, Some(begun))))?;
+    if !choice.runs_only {
+        print(&table(&measurements(&workspace.target, Some(begun))))?;
+    }
     tables?.iter().try_for_each(print)
 }
 

@@ -34,6 +34,7 @@ usage: cargo xtask TASK
         [--native]        without the adapters for OpenFOAM and LIGGGHTS
   bench …                 run the benchmarks and print one table; words go to `cargo bench`
         [--native]        without OpenFOAM, LIGGGHTS and MPI
+        [--runs]          whole runs only
         [--table]         the table of what was measured last
   fuzz [--minutes N]      fuzz what reads users' files, ten minutes each unless told
         [--seed S] [case|polymesh]
@@ -41,7 +42,8 @@ usage: cargo xtask TASK
         [--seed S]
   faults [--kills N]      kill or stop random processes of coupled runs at random moments (500
         [--seed S]        unless told): each is named, and everything ends and is cleaned up
-  validate [NAME …]       long validations, all unless named: elastic-box, hopper, repose, voids";
+  validate [NAME …]       long validations, all unless named: elastic-box, fluidised-bed, hopper,
+                          moving-bed, repose, voids";
 
 /// Exit code of a wrong command line, as `calcine` has it.
 const USAGE_CODE: u8 = 2;
@@ -109,10 +111,12 @@ fn read(words: &[OsString]) -> Option<Task> {
         "bench" => {
             let first = |name: &str| rest.first().is_some_and(|word| word == name);
             let (table_only, native) = (first("--table"), first("--native"));
+            let runs_only = first("--runs");
             Some(Task::Bench(bench::Choice {
                 table_only,
                 native,
-                words: rest[usize::from(table_only || native)..].to_vec(),
+                runs_only,
+                words: rest[usize::from(table_only || native || runs_only)..].to_vec(),
             }))
         }
         "fuzz" => program("fuzz", Needs::NATIVE, ["--minutes", "10"], rest),
@@ -120,7 +124,7 @@ fn read(words: &[OsString]) -> Option<Task> {
         "faults" => program("faults_random", Needs::ALL, ["--kills", "500"], rest),
         "validate" => Some(Task::Program {
             name: "validate",
-            needs: Needs::NATIVE,
+            needs: Needs::ALL,
             words: [&[OsString::from("--validate")], rest].concat(),
         }),
         "install" => install(rest),
@@ -229,7 +233,7 @@ mod tests {
         assert_eq!(read(&words("torture")), torture);
         let faults = task("faults_random", Needs::ALL, "--kills 500");
         assert_eq!(read(&words("faults")), faults);
-        let validate = task("validate", Needs::NATIVE, "--validate hopper");
+        let validate = task("validate", Needs::ALL, "--validate hopper");
         assert_eq!(read(&words("validate hopper")), validate);
     }
 

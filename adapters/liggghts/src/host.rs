@@ -28,6 +28,13 @@ const RESTART: &str = "liggghts.restart";
 const GROUPS: &str = "group calcine_";
 /// The fix that holds the pushed forces; the script of a moving bed makes it.
 const PUSH: &str = "calcine_push";
+/// What a wall's line of the script has where its forces are to be counted; LIGGGHTS keeps them by particle
+/// in a fix named after the wall's.
+const COUNTED: (&str, &str) = (" store_force yes", "force_");
+/// What makes a line of the script a wall's.
+const WALL: &str = " wall/gran ";
+/// What is sent where walls' impulses are not counted.
+const UNCOUNTED: [f64; 3] = [f64::NAN; 3];
 /// LIGGGHTS' own log, in the script's folder; it ends where the windows begin.
 const LOG: &str = "log.liggghts";
 
@@ -107,6 +114,8 @@ pub struct Host {
     particles: u64,
     rank: u32,
     told: Instant,
+    /// Fixes that hold the force of each wall on particles; empty where they are not counted.
+    walls: Vec<String>,
 }
 
 impl Host {
@@ -126,6 +135,7 @@ impl Host {
             particles: 0,
             rank,
             told: Instant::now(),
+            walls: Vec::new(),
         };
         let restart = host.start.restart.clone();
         host.set_up(restart.as_deref())?;
@@ -142,7 +152,7 @@ impl Host {
         };
         host.tell(&format!("{} with {} particles", hello.version, hello.count));
         on_link(|link| link.greet(&hello, GREETING).map(|_| ()))?;
-        host.answer(Header::of(Kind::State), &[])?;
+        host.answer(Header::of(Kind::State))?;
         Ok(host)
     }
 
@@ -159,12 +169,12 @@ impl Host {
                 Some(Kind::Checkpoint) => {
                     let directory = on_link(|link| link.text().map(PathBuf::from))?;
                     self.checkpoint(&directory)?;
-                    self.answer(header.answer(Kind::Checkpointed), &[])?;
+                    self.answer(header.answer(Kind::Checkpointed))?;
                 }
                 Some(Kind::Change) => {
                     let text = on_link(|link| link.text().map(str::to_owned))?;
                     self.change(&text)?;
-                    self.answer(header.answer(Kind::Changed), &[])?;
+                    self.answer(header.answer(Kind::Changed))?;
                 }
                 Some(Kind::Bye) => {
                     self.tell("goodbye");
@@ -198,13 +208,58 @@ impl Host {
             self.tell(&format!("window {}: {steps} steps", header.window));
         }
         self.push(&force, &header, steps)?;
-        if steps > 0 {
-            self.liggghts
-                .command(&format!("run {steps} pre no post no"));
-        }
+        let [x, y, z] = self.run(steps)?;
         self.look()?;
         let impulse = self.impulse(&force, &header, steps)?;
-        self.answer(header.answer(Kind::Finished), &impulse)
+        let acted = steps as f64 * self.step()?;
+        let support = [acted, x, y, z];
+        self.reply(header.answer(Kind::Finished), &impulse, support)
+    }
+
+    /// Runs so many steps; the impulse in N s that walls gave this rank's particles, step by step where it
+    /// is counted: the forces at the ends of a step act for half of it each.
+    fn run(&mut self, steps: i64) -> Result<[f64; 3], HostError> {
+        if self.walls.is_empty() {
+            if steps > 0 {
+                self.liggghts
+                    .command(&format!("run {steps} pre no post no"));
+            }
+            return Ok(UNCOUNTED);
+        }
+        let half = 0.5 * self.step()?;
+        let mut impulse = [0.0; 3];
+        let mut add = |force: [f64; 3]| {
+            for (sum, force) in impulse.iter_mut().zip(force) {
+                *sum += half * force;
+            }
+        };
+        for _ in 0..steps {
+            add(self.wall_force());
+            self.liggghts.command("run 1 pre no post no");
+            add(self.wall_force());
+        }
+        Ok(impulse)
+    }
+
+    /// Force in N of all walls on this rank's particles at the last step.
+    fn wall_force(&mut self) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for wall in &self.walls {
+            let forces = self.liggghts.fix_vectors_mut(wall).unwrap_or_default();
+            for force in forces.chunks_exact(3) {
+                for (sum, force) in sum.iter_mut().zip(force) {
+                    *sum += force;
+                }
+            }
+        }
+        sum
+    }
+
+    /// LIGGGHTS' time step in s.
+    fn step(&self) -> Result<f64, HostError> {
+        self.liggghts
+            .step()
+            .ok_or(HostError::Missing { name: "dt" })
     }
 
     /// Impulse in N s that the pushed forces gave each particle that is here now, in the order of the state: of
@@ -216,10 +271,7 @@ impl Host {
         header: &Header,
         steps: i64,
     ) -> Result<Vec<f64>, HostError> {
-        let step = self
-            .liggghts
-            .step()
-            .ok_or(HostError::Missing { name: "dt" })?;
+        let step = self.step()?;
         let Some(pushed) = self.liggghts.fix_vectors_mut(PUSH) else {
             let span = header.span_motion as f64 / TICKS;
             return Ok(force.iter().flatten().map(|force| force * span).collect());
@@ -233,10 +285,7 @@ impl Host {
     /// Has the forces act from the first half step on, and over the window's steps so much that their
     /// impulse is that over its span.
     fn push(&mut self, force: &[[f64; 3]], header: &Header, steps: i64) -> Result<(), HostError> {
-        let step = self
-            .liggghts
-            .step()
-            .ok_or(HostError::Missing { name: "dt" })?;
+        let step = self.step()?;
         let Some(pushed) = self.liggghts.fix_vectors_mut(PUSH) else {
             return Ok(()); // a bed that is held
         };
@@ -279,11 +328,7 @@ impl Host {
     /// Steps of a window: those between the steps nearest to its start and to its end, so that
     /// rounding never adds up.
     fn steps(&self, header: &Header) -> Result<i64, HostError> {
-        let step = self
-            .liggghts
-            .step()
-            .ok_or(HostError::Missing { name: "dt" })?
-            * TICKS;
+        let step = self.step()? * TICKS;
         let nearest = |ticks: i64| (ticks as f64 / step).round() as i64;
         let end = header.start_motion.saturating_add(header.span_motion);
         Ok(nearest(end) - nearest(header.start_motion))
@@ -321,13 +366,24 @@ impl Host {
                 cause,
             })?;
         }
+        self.walls.clear();
+        let mut uncounted = false;
         for line in self.script()?.lines() {
+            let id = line.split_ascii_whitespace().nth(1);
+            match (line.contains(WALL), line.contains(COUNTED.0), id) {
+                (true, true, Some(id)) => self.walls.push(format!("{}{id}", COUNTED.1)),
+                (true, _, _) => uncounted = true,
+                (false, _, _) => {}
+            }
             let reads = line.split_ascii_whitespace().next() == Some("read_data");
             if reads && restart.is_some() {
                 self.liggghts.command(&format!("read_restart {RESTART}"));
             } else {
                 self.liggghts.command(line);
             }
+        }
+        if uncounted {
+            self.walls.clear(); // of a script of the user's: a part of the walls is no balance
         }
         self.liggghts.command("run 0");
         // Each window would add its lines to the log.
@@ -371,16 +427,14 @@ impl Host {
         }))
     }
 
-    /// Sends the state; without impulses they are zero.
-    fn answer(&self, header: Header, impulse: &[f64]) -> Result<(), HostError> {
-        let none;
-        let impulse = if impulse.is_empty() {
-            none = vec![0.0; 3 * self.state.id.len()];
-            &none
-        } else {
-            impulse
-        };
-        on_link(|link| self.state.send(link, header, impulse))
+    /// Sends the state between windows, with impulses of zero.
+    fn answer(&self, header: Header) -> Result<(), HostError> {
+        let none = vec![0.0; 3 * self.state.id.len()];
+        self.reply(header, &none, [0.0; 4])
+    }
+
+    fn reply(&self, header: Header, impulse: &[f64], support: [f64; 4]) -> Result<(), HostError> {
+        on_link(|link| self.state.send(link, header, impulse, support))
     }
 
     /// A line for the log that the coordinator shows when something goes wrong.

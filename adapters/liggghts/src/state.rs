@@ -70,8 +70,15 @@ impl State {
         )))
     }
 
-    /// Sends the state with the impulses in N s.
-    pub fn send(&self, link: &mut Link, header: Header, impulse: &[f64]) -> Result<(), WireError> {
+    /// Sends the state with the impulses in N s, and the time in s that the window's steps cover with the
+    /// impulse of walls on this rank's particles in N s.
+    pub fn send(
+        &self,
+        link: &mut Link,
+        header: Header,
+        impulse: &[f64],
+        support: [f64; 4],
+    ) -> Result<(), WireError> {
         link.loan(header, self.id.len())?;
         link.column_words_mut("id")?.copy_from_slice(&self.id);
         link.column_words_mut("population")?
@@ -83,6 +90,7 @@ impl State {
             ("radius", &self.radius),
             ("mass", &self.mass),
             ("impulse", impulse),
+            ("support", &support),
         ];
         for (name, values) in columns {
             link.column_mut(name)?.copy_from_slice(values);

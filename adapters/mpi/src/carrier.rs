@@ -64,6 +64,13 @@ pub fn place_files(root: &Path, memory: &Path) {
 
 unsafe extern "C" {
     fn _exit(code: c_int) -> !;
+    fn atexit(function: extern "C" fn()) -> c_int;
+}
+
+/// Has a function called where this process ends by `exit`, whoever calls that.
+pub fn at_exit(function: extern "C" fn()) {
+    // SAFETY: the function lives as long as the program; a handler that cannot be registered is not called.
+    unsafe { atexit(function) };
 }
 
 /// Ends this process without what MPI would do then, which waits for the dead.

@@ -8,7 +8,7 @@ use calcine_mpi::{MpiNetwork, end};
 use calcine_wire::Network;
 
 fn main() -> ExitCode {
-    let (network, universe) = match MpiNetwork::start() {
+    let (network, universe) = match MpiNetwork::start_guarded() {
         Ok(started) => started,
         Err(error) => {
             eprintln!("MPI cannot be started: {error}");

@@ -2,8 +2,9 @@
 // residual, per cell:
 //
 //   m_old (u - u_old)/dt + sum phi_f u_f - u sum phi_f
-//       - sum (eps mu)_f (grad(u) + grad(u)^T - 2/3 div(u)).S = -eps grad(p) V + eps rho V g + S_d - K_d u
+//       - sum (eps mu)_f (grad(u) + grad(u)^T - 2/3 div(u)).S = -chi grad(p) V + chi rho V g + S_d - K_d u
 //
+// chi the share of the pressure gradient that the gas takes, eps by model A, 1 by model B.
 // u_f as fvSchemes says, beyond upwind explicitly; of the viscous stress the part grad(u).S is implicit. No viscous stress acts on
 // slip walls; mu with that of eddies (models.H); gas leaves an outlet as if the flow were developed there.
 #include "gas.H"
@@ -15,7 +16,7 @@
 Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, report& result)
 {
     const scalarField& volume = mesh_.cellVolumes();
-    const scalarField pores(given_.voidFraction*volume);
+    const scalarField share(pressureShare_*volume);
     const scalarField inertia(committed_.mass/window_.motionSpan);
     const surfaceScalarField faceViscosity("viscosity", fvc::interpolate(viscosity()));
 
@@ -47,7 +48,7 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     outflow_ = outflow();
     matrix.diag() += inertia + given_.dragCoefficient - outflow_;
     matrix.source() +=
-        inertia*committed_.velocity + given_.dragSource + density*pores*gravity_
+        inertia*committed_.velocity + given_.dragSource + density*share*gravity_
       + outOf(*stressForce_) - outOf(*beyondU_);
 
     // The normal velocity at a wall without friction is not stressed by the wall either.
@@ -61,7 +62,7 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     }
 
     momentumDiagonal_ = matrix.A()().primitiveField();
-    const vectorField push(-pores*pressureGradient_);
+    const vectorField push(-share*pressureGradient_);
     const vectorField pull(matrix.H()().primitiveField()*volume);
     const vectorField own(momentumDiagonal_*volume*U_.primitiveField());
     const scalar error = gSumMag(pull + push - own);

@@ -1,6 +1,8 @@
 // Species, as mass fractions Y_k, with exactly the fluxes and masses of continuity, per cell:
 //
-//   (m Y - m_old Y_old)/dtau + sum phi_f Y_f - sum (eps mu)_f/Sc grad(Y).S = 0
+//   (m Y - m_old Y_old)/dtau + sum phi_f Y_f - sum (eps mu)_f/Sc grad(Y).S = S - C Y
+//
+// with what particles give and take, whose sum continuity has.
 //
 // All species diffuse alike, so that Fick's fluxes sum to zero. Y_f as div(phi,Yi) of fvSchemes says, beyond
 // upwind explicitly and with the smallest limiter of all species, so that the fractions go on summing to
@@ -51,7 +53,7 @@ Foam::scalar Foam::calcine::gas::solveSpecies(report& result)
     // Of the linear value, what the limited one has more than the upwind one, as a mass flux.
     const upwind<scalar> up(mesh_, phi_);
     const surfaceScalarField limitedFlux(phi_*speciesLimiter());
-    const scalarField inertia(committed_.mass/span), out(outflow());
+    const scalarField inertia(committed_.mass/span), out(outflow() - massSource());
 
     scalar residual = 0;
     PtrList<surfaceScalarField> beyond(Y.size()), diffused(Y.size());
@@ -81,10 +83,11 @@ Foam::scalar Foam::calcine::gas::solveSpecies(report& result)
             mesh_, phi_, tmp<surfaceInterpolationScheme<scalar>>(new upwind<scalar>(mesh_, phi_))
         );
         fvScalarMatrix matrix(convection.fvmDiv(phi_, Y[k]) - laplacian);
-        matrix.diag() += inertia - out;
-        matrix.source() += inertia*old - outOf(beyond[k]);
+        matrix.diag() += inertia - out + given_.speciesCoefficient[k];
+        matrix.source() += inertia*old - outOf(beyond[k]) + given_.speciesSource[k];
 
-        scalar moving = gSumMag(mass_*Y[k].primitiveField() - committed_.mass*old)/span;
+        scalar moving = gSumMag(mass_*Y[k].primitiveField() - committed_.mass*old)/span
+          + gSumMag(given_.speciesSource[k]);
         for (const fvsPatchScalarField& flux : phi_.boundaryField())
         {
             moving += flux.coupled() ? 0 : gSumMag(flux);
@@ -221,6 +224,10 @@ void Foam::calcine::gas::balanceSpecies(report& result) const
         );
         own.stored = gSum(stored);
         own.storedMagnitude = gSumMag(stored);
+        own.exchange = window_.storageSpan*gSum
+        (
+            given_.speciesSource[k] - given_.speciesCoefficient[k]*Y[k].primitiveField()
+        );
         for (const fvPatch& patch : mesh_.boundary())
         {
             if (patch.coupled())

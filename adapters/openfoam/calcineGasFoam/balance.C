@@ -6,7 +6,7 @@ void Foam::calcine::gas::finishReport(report& result) const
 {
     // The temperature as the enthalpy equation took it, before the thermophysical model's.
     const scalarField T(temperatureBase_ + thermo_->he().primitiveField()/heatCapacity_);
-    result.heat = given_.heatSource - given_.heatCoefficient*T;
+    result.heat = heatGiven_ - heatSlope_*T;
     result.drag = given_.dragSource - given_.dragCoefficient*U_.primitiveField();
 
     const scalarField held(given_.voidFraction*density()*mesh_.cellVolumes());
@@ -21,6 +21,7 @@ void Foam::calcine::gas::finishReport(report& result) const
         (shared_.within(facei) ? circulating : passing) += shared_.share(facei)*mag(flux_[facei]);
     }
     reduce(circulating, sumOp<scalar>());
+    result.mass.exchange = window_.storageSpan*gSum(massSource());
     result.mass.boundary = -window_.storageSpan*boundaryOutflow();
     result.mass.boundaryMagnitude =
         window_.storageSpan*returnReduce(passing, sumOp<scalar>());
@@ -84,12 +85,12 @@ void Foam::calcine::gas::balanceMomentum(report& result) const
 {
     const scalar span = window_.motionSpan;
     const vectorField& u = U_.primitiveField();
-    const scalarField pores(given_.voidFraction*mesh_.cellVolumes());
+    const scalarField share(pressureShare_*mesh_.cellVolumes());
     const vectorField stored(committed_.mass*(u - committed_.velocity));
     // Pressure, gravity, and u times the continuity residual, which the equation's form subtracts.
     const vectorField source
     (
-        pores*(density()*gravity_ - pressureGradient_) + u*outflow_
+        share*(density()*gravity_ - pressureGradient_) + u*outflow_
     );
     for (direction axis = 0; axis < 3; ++axis)
     {

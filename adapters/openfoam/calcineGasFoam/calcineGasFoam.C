@@ -51,6 +51,25 @@ calcine::window windowOf(const calcine_header& header)
     return when;
 }
 
+// A column of species by species within each cell.
+void receiveSpecies(const calcine::link& link, const char* name, List<scalarField>& fields)
+{
+    scalarField flat(fields.size()*fields[0].size());
+    link.get(name, flat);
+    forAll(fields, k)
+    {
+        forAll(fields[k], celli)
+        {
+            fields[k][celli] = flat[celli*fields.size() + k];
+            if (!(mag(fields[k][celli]) < GREAT))
+            {
+                FatalErrorInFunction
+                    << name << " is no finite number" << exit(FatalError);
+            }
+        }
+    }
+}
+
 void receive
 (
     const calcine::link& link,
@@ -63,6 +82,13 @@ void receive
     link.get("drag_source", given.dragSource);
     link.get("heat_coefficient", given.heatCoefficient);
     link.get("heat_source", given.heatSource);
+    if (given.speciesSource.size())
+    {
+        receiveSpecies(link, "species_source", given.speciesSource);
+        receiveSpecies(link, "species_coefficient", given.speciesCoefficient);
+        receiveSpecies(link, "species_taken", given.speciesTaken);
+        link.get("species_heat", given.speciesHeat);
+    }
     forAll(given.voidFraction, celli)
     {
         const scalar pores = given.voidFraction[celli];
@@ -163,6 +189,16 @@ void serve
     given.dragSource.setSize(cells);
     given.heatCoefficient.setSize(cells);
     given.heatSource.setSize(cells);
+    const label species = gas.speciesNames().size();
+    for (auto* list : {&given.speciesSource, &given.speciesCoefficient, &given.speciesTaken})
+    {
+        list->setSize(species);
+        for (scalarField& one : *list)
+        {
+            one.setSize(cells);
+        }
+    }
+    given.speciesHeat.setSize(species ? cells : 0);
     calcine::report result;
 
     for (;;)
@@ -245,16 +281,14 @@ void run(const argList& args, calcine::link& link)
     Info<< "End" << endl;
 }
 
-int fail(calcine::link& link, const std::string& text)
+[[noreturn]] void fail(calcine::link& link, const std::string& text)
 {
     Serr<< "calcineGasFoam failed: " << text.c_str() << endl;
     link.failed(text);
-    if (Pstream::parRun())
-    {
-        // The other ranks wait for this one somewhere: MPI cannot be ended in an orderly way.
-        std::_Exit(1);
-    }
-    return 1;
+    // Other ranks may wait for this one somewhere: MPI cannot be ended in an orderly way. And OpenFOAM's own end
+    // would say that all went well (exit code 0).
+    std::cout.flush();
+    std::_Exit(1);
 }
 
 // OpenFOAM's message on one line, with the file of an input error.
@@ -293,11 +327,11 @@ int main(int argc, char* argv[])
         {
             std::ostringstream place;
             place << " (" << what.ioFileName() << ", line " << what.ioStartLineNumber() << ")";
-            return fail(link, words(what, place.str()));
+            fail(link, words(what, place.str()));
         }
         catch (const error& what)
         {
-            return fail(link, words(what, ""));
+            fail(link, words(what, ""));
         }
         catch (const calcine::coordinatorGone&)
         {
@@ -305,7 +339,7 @@ int main(int argc, char* argv[])
         }
         catch (const std::exception& what)
         {
-            return fail(link, what.what());
+            fail(link, what.what());
         }
     }
     catch (const calcine::coordinatorGone& what)
@@ -316,5 +350,5 @@ int main(int argc, char* argv[])
     {
         Serr<< "calcineGasFoam cannot reach Calcine: " << what.what() << endl;
     }
-    return 2;
+    std::_Exit(2);
 }

@@ -113,6 +113,7 @@ Foam::calcine::gas::gas
     momentumSolver_(mesh, "U"),
     pressureSolver_(mesh, "p"),
     enthalpySolver_(mesh, "h"),
+    takesAllPressure_(properties.getOrDefault<word>("momentumModel", "a") == "b"),
     schmidt_(properties.lookupOrDefault<scalar>("schmidt", 1)),
     startVelocity_(U_.primitiveField())
 {
@@ -268,6 +269,18 @@ Foam::scalarField Foam::calcine::gas::outflow() const
 }
 
 
+Foam::scalarField Foam::calcine::gas::massSource() const
+{
+    scalarField sum(mesh_.nCells(), Zero);
+    forAll(given_.speciesSource, k)
+    {
+        const scalarField& Y = species_->Y()[k].primitiveField();
+        sum += given_.speciesSource[k] - given_.speciesCoefficient[k]*Y;
+    }
+    return sum;
+}
+
+
 Foam::scalarField Foam::calcine::gas::density() const
 {
     return thermo_->rho()().primitiveField();
@@ -289,7 +302,8 @@ void Foam::calcine::gas::updateBasePressure()
     {
         return;
     }
-    const scalar held = gSum(committed_.mass) - window_.storageSpan*boundaryOutflow();
+    const scalar held = gSum(committed_.mass)
+      + window_.storageSpan*(gSum(massSource()) - boundaryOutflow());
     modelPressure_ == dimensionedScalar("p", dimPressure, held/atOnePascal);
     thermo_->correct();
 }
@@ -308,8 +322,8 @@ Foam::scalar Foam::calcine::gas::boundaryOutflow() const
 
 Foam::scalarField Foam::calcine::gas::wantedOutflow(const scalarField& density) const
 {
-    return
-        (committed_.mass - given_.voidFraction*density*mesh_.cellVolumes())/window_.storageSpan;
+    return massSource()
+      + (committed_.mass - given_.voidFraction*density*mesh_.cellVolumes())/window_.storageSpan;
 }
 
 
@@ -359,6 +373,11 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
     given_ = given;
     voidFraction_.primitiveFieldRef() = given_.voidFraction;
     voidFraction_.correctBoundaryConditions();
+    pressureShare_ = given_.voidFraction;
+    if (takesAllPressure_)
+    {
+        pressureShare_ = 1;
+    }
     restore();
     // Inlets of a given velocity carry gas of pRef, whatever the pressure of a closed domain is.
     modelPressure_ == dimensionedScalar("p", dimPressure, pRef_);
@@ -395,11 +414,11 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
         {
             correctPressure(rho, result);
         }
-        mass_ = committed_.mass - window_.storageSpan*outflow();
+        mass_ = committed_.mass - window_.storageSpan*(outflow() - massSource());
         setFlux();
         result.residual = max(result.residual, solveSpecies(result));
         result.residual = max(result.residual, solveEnthalpy(result));
-        guard();
+        guard(true);
         result.outerIterations = outer;
         thermo_->correct();
         if (result.residual <= outerTolerance_)
@@ -408,6 +427,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
             break;
         }
     }
+    guard(false);
     finishReport(result);
 }
 
@@ -440,7 +460,7 @@ void Foam::calcine::gas::checkpoint(const fileName& directory)
 }
 
 
-void Foam::calcine::gas::guard() const
+void Foam::calcine::gas::guard(bool early) const
 {
     const scalarField& h = thermo_->he().primitiveField();
     forAll(mass_, celli)
@@ -448,7 +468,9 @@ void Foam::calcine::gas::guard() const
         const scalar T = temperatureBase_[celli] + h[celli]/heatCapacity_[celli];
         const scalar speed = mag(U_[celli]);
         // Each comparison is false for what is not a number.
-        if (T > 0 && T < 1e4 && speed < 1e4 && mag(p_[celli]) < GREAT && mass_[celli] > 0)
+        // An early iterate may give more gas than a cell holds; the last one must not.
+        const bool held = mass_[celli] > 0 || (early && mag(mass_[celli]) < GREAT);
+        if (T > 0 && T < 1e4 && speed < 1e4 && mag(p_[celli]) < GREAT && held)
         {
             continue;
         }

@@ -1,6 +1,6 @@
 // Enthalpy, with exactly the fluxes and masses of continuity, per cell:
 //
-//   (m h - m_old h_old)/dtau + sum phi_f h_f - sum (eps kappa)_f grad(T).S = S - K T(h) + eps V (p0 - p0_old)/dtau
+//   (m h - m_old h_old)/dtau + sum phi_f h_f - sum (eps kappa)_f grad(T).S = S - K T(h) + eps V (p0 - p0_old)/dtau + H - sum_k D_k h_k(T)
 //
 // h_f as fvSchemes says, beyond upwind explicitly; T linear in h: T = T* + (h - h*)/c_p. Because m = m_old - dtau sum phi_f, a uniform temperature
 // stays uniform whatever the flow does (p0, the model's pressure, changes in a closed domain alone), and energy closes to the linear tolerance whatever the outer
@@ -33,10 +33,11 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
     }
     fvScalarMatrix& matrix = *enthalpy_;
     addConduction(matrix);
+    updateGivenHeat();
     matrix.diag() +=
-        committed_.mass/span + given_.heatCoefficient/heatCapacity_ - outflow();
+        committed_.mass/span + heatSlope_/heatCapacity_ - outflow() + massSource();
     matrix.source() += committed_.mass*committed_.enthalpy/span
-      + given_.heatSource - given_.heatCoefficient*temperatureBase_
+      + heatGiven_ - heatSlope_*temperatureBase_
       - outOf(*beyondH_) + compression*given_.voidFraction*mesh_.cellVolumes();
     if (models_->radiates())
     {
@@ -61,7 +62,7 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
     const scalar content = gSumMag(matrix.diag()*heatCapacity_*T.primitiveField());
     const scalarField heat
     (
-        given_.heatSource - given_.heatCoefficient*T.primitiveField()
+        heatGiven_ - heatSlope_*T.primitiveField()
     );
     scalar moving = sumMag(heat) + sumMag
     (
@@ -83,6 +84,31 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
         enthalpySolver_.solve(matrix, scalarField(matrix.source()), target, h);
     result.linearIterations += solution.iterations;
     return solution.initial/content;
+}
+
+
+// What particles take of the gas leaves with h_k(T), linear in T about that at hand.
+void Foam::calcine::gas::updateGivenHeat()
+{
+    heatGiven_ = given_.heatSource;
+    heatSlope_ = given_.heatCoefficient;
+    if (given_.speciesSource.empty())
+    {
+        return;
+    }
+    const scalarField& T = thermo_->T().primitiveField();
+    heatGiven_ += given_.speciesHeat;
+    forAll(given_.speciesTaken, k)
+    {
+        const gasSpecies& one = species_->mixture()[k];
+        const scalarField& taken = given_.speciesTaken[k];
+        forAll(T, celli)
+        {
+            const scalar slope = one.heatCapacity(T[celli]);
+            heatGiven_[celli] -= taken[celli]*(one.enthalpy(T[celli]) - slope*T[celli]);
+            heatSlope_[celli] += taken[celli]*slope;
+        }
+    }
 }
 
 

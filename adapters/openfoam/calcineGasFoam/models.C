@@ -60,6 +60,13 @@ Foam::calcine::models::models
                 << "scalar fields" << exit(FatalError);
         }
     }
+    // From now on OpenFOAM keeps the values of the time step before, in a resumed run as in one that goes on.
+    density_.oldTime();
+    const HashTable<volScalarField*> all(fields());
+    forAllConstIters(all, field)
+    {
+        field.val()->oldTime();
+    }
     store();
 }
 
@@ -175,7 +182,10 @@ void Foam::calcine::models::advance(scalar motionSpan, const scalarField& densit
         time.setDeltaT(motionSpan, false);
         ++time;
         setDensity(density);
+        density_.oldTime().primitiveFieldRef() =
+            committedDensity_.empty() ? density : committedDensity_;
         turbulence_->correct();
+        committedDensity_ = density;
     }
     store();
 }
@@ -204,7 +214,7 @@ void Foam::calcine::models::write(const fileName& directory) const
             out << values << nl;
         }
     }
-    out << word(lastWord) << endl;
+    out << committedDensity_ << nl << word(lastWord) << endl;
     if (!out.good())
     {
         FatalErrorInFunction
@@ -238,10 +248,10 @@ void Foam::calcine::models::read(const fileName& directory)
             in >> values;
         }
     }
+    in >> committedDensity_;
     if (word(in) != lastWord)
     {
         FatalErrorInFunction << in.name() << " is cut short" << exit(FatalError);
     }
     begin();
-    // Old values are those of the time step before, which begins anew.
 }

@@ -1,6 +1,6 @@
 // Pressure and mass flux. A half cell between a centre and a face is a resistance in series with the
-// next: with the force F on the gas per volume of pores (everything but pressure), the mobility
-// b = rho eps^2/A and the distance d to the face, the superficial mass flux per area G obeys
+// next: with the force F on the gas per chi V (everything but pressure; chi the share of grad(p) that the
+// gas takes, eps by model A), the mobility b = rho eps chi/A and the distance d to the face, the superficial mass flux per area G obeys
 //
 //   p_f = p_P + d_P (F_P.n - G/b_P)   and   p_N = p_f + d_N (F_N.n - G/b_N),
 //
@@ -20,7 +20,7 @@ Foam::scalar Foam::calcine::gas::inertia(label facei, label celli) const
     const scalar faceFlux = committed_.flux[facei]/mag(mesh_.faceAreas()[facei]);
     const scalar cellFlux =
         committed_.mass[celli]/mesh_.cellVolumes()[celli]*(committed_.velocity[celli] & normal_[facei]);
-    return (faceFlux - cellFlux)/(window_.motionSpan*given_.voidFraction[celli]);
+    return (faceFlux - cellFlux)/(window_.motionSpan*pressureShare_[celli]);
 }
 
 
@@ -42,13 +42,13 @@ Foam::scalar Foam::calcine::gas::ownerPush(label facei) const
 
 void Foam::calcine::gas::updateForce()
 {
-    force_ = momentum_->H()().primitiveField()/given_.voidFraction;
+    force_ = momentum_->H()().primitiveField()/pressureShare_;
 }
 
 
 Foam::scalar Foam::calcine::gas::assemblePressure(const scalarField& density)
 {
-    mobility_ = density*sqr(given_.voidFraction)/momentumDiagonal_;
+    mobility_ = density*given_.voidFraction*pressureShare_/momentumDiagonal_;
     const labelUList& owner = mesh_.faceOwner();
     const scalarField mobilityBeyond(shared_.beyond(mobility_));
     forAll(conductance_, facei)
@@ -211,7 +211,7 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
     updatePressureGradient();
 
     U_.primitiveFieldRef() =
-        given_.voidFraction/momentumDiagonal_*(force_ - pressureGradient_);
+        pressureShare_/momentumDiagonal_*(force_ - pressureGradient_);
     U_.correctBoundaryConditions();
 }
 

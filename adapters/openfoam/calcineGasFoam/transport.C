@@ -3,7 +3,7 @@
 // inertia meet at the face: the balance of the half cell (pEqn.C) has A_t times the flux there only to damp
 // oscillations between faces, and gets back, with M = rho eps u,
 //
-//   c_P = A_t/(rho eps^2) (M_f - M_P.n),
+//   c_P = A_t/(rho eps chi) (M_f - M_P.n),
 //   M_f = (d_N M_P + d_P M_N).n/(d_P + d_N) - d_P d_N (g_N - g_P)/(d_P + d_N),   g = n.grad(M).n:
 //
 // the flux per area that the cells around the face stand for, to fourth order of smooth fields, because a
@@ -54,7 +54,7 @@ void Foam::calcine::gas::updateTransport(const scalarField& density)
             momentumDiagonal_
           - (committed_.mass/window_.motionSpan + given_.dragCoefficient)/mesh_.cellVolumes()
         )
-       /(density*sqr(given_.voidFraction))
+       /(density*given_.voidFraction*pressureShare_)
     );
     const vectorField massVelocityBeyond(shared_.beyond(massVelocity));
     const tensorField gradientBeyond(shared_.beyond(gradient));

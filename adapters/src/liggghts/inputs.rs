@@ -9,6 +9,7 @@ use calcine_coupler::motion::Motion;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 
+use super::moving::WallForm;
 use super::template::{Template, Values};
 use super::{facets, moving};
 
@@ -33,6 +34,8 @@ pub struct Inputs<'a> {
     pub step: f64,
     /// Number of ranks, side by side along the longer horizontal side.
     pub ranks: u32,
+    /// Whether the impulse of walls is counted, step by step.
+    pub wall_impulse: bool,
     /// The user's own script in place of the generated one; of a bed that moves only.
     pub template: Option<&'a Template>,
 }
@@ -105,7 +108,7 @@ impl Inputs<'_> {
                 skin,
                 bins,
                 corners: (lower, upper),
-                smallest: self.smallest(),
+                walls: self.form(),
             };
             return own.script(contacts, &values).map_err(|error| {
                 let message = "the script of `liggghts.template` does not go with the case";
@@ -114,7 +117,7 @@ impl Inputs<'_> {
         }
         let (template, contacts) = match &self.setup.motion {
             Motion::Frozen => (FROZEN_BED, String::new()),
-            Motion::Free(contacts) => (MOVING_BED, moving::commands(contacts, self.smallest())),
+            Motion::Free(contacts) => (MOVING_BED, moving::commands(contacts, self.form())),
         };
         let script = template
             .replace("{bins}", &format!("{bins:e}"))
@@ -164,6 +167,14 @@ impl Inputs<'_> {
             let _ = writeln!(text, "{id} {x:e} {y:e} {z:e} 0 0 0");
         }
         text
+    }
+
+    /// How walls are told.
+    fn form(&self) -> WallForm {
+        WallForm {
+            smallest: self.smallest(),
+            counted: self.wall_impulse,
+        }
     }
 
     /// Radius of the smallest sphere in m.
@@ -223,6 +234,7 @@ mod tests {
             bounds: (Vec3::zeros(), Vec3::new(0.01, 0.01, 0.3)),
             step: 1e-4,
             ranks: 1,
+            wall_impulse: false,
             template: None,
         }
     }

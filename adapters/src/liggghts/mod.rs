@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use calcine_coupler::checkpoint::{StateFile, StateFileError};
 use calcine_coupler::error::{FailureKind, PartError};
-use calcine_coupler::motion::Change;
+use calcine_coupler::motion::{Change, Motion};
 use calcine_coupler::part::{
     About, Part, ParticleEvent, ParticleFields, ParticlePush, ParticleReceived, Particles,
 };
@@ -99,6 +99,10 @@ struct State {
     radius: Vec<f64>,
     mass: Vec<f64>,
     impulse: Vec<Vec3>,
+    /// Time in s that the window's steps cover.
+    acted: f64,
+    /// Impulse of walls on all particles in N s; not a number where it is not counted.
+    support: Vec3,
     /// By rank: where the particles that it had stand in the columns above, in ascending id.
     places: Vec<Vec<usize>>,
 }
@@ -110,6 +114,8 @@ pub struct LiggghtsParticles {
     committed: State,
     attempt: State,
     window: Window,
+    /// True where there is neither a wall nor a held particle.
+    alone: bool,
 }
 
 impl LiggghtsParticles {
@@ -147,6 +153,8 @@ impl LiggghtsParticles {
             })?,
         };
         let ranks = launch.inputs.ranks;
+        let alone = matches!(&setup.motion, Motion::Free(contacts)
+            if contacts.walls.is_empty() && !contacts.held.contains(&true));
         let solver = ExternalSolver::launch(
             Launch {
                 name: NAME.into(),
@@ -175,6 +183,7 @@ impl LiggghtsParticles {
             committed: State::default(),
             attempt: State::default(),
             window: Window::default(),
+            alone,
         };
         particles.committed = particles.read(None)?;
         particles.attempt = particles.committed.clone();
@@ -254,6 +263,13 @@ impl State {
                 .flat_map(|&(_, rank, row)| vectors(&columns[rank][3 * row..3 * row + 3]));
             Ok::<Vec<Vec3>, WireError>(joined.collect())
         };
+        let (mut acted, mut support) = (0.0, Vec3::zeros());
+        for link in links {
+            if let [time, x, y, z] = *link.column("support")? {
+                acted = time;
+                support += Vec3::new(x, y, z);
+            }
+        }
         let small = |value: u64| u32::try_from(value).unwrap_or(u32::MAX);
         Ok(Self {
             id: words("id")?,
@@ -264,6 +280,8 @@ impl State {
             radius: scalars("radius")?,
             mass: scalars("mass")?,
             impulse: vectors("impulse")?,
+            acted,
+            support,
             places,
         })
     }
@@ -387,6 +405,12 @@ impl Particles for LiggghtsParticles {
             return Err(self.solver.refuse(Some(&window), message));
         }
         received.impulse.clone_from(&self.attempt.impulse);
+        received.acted = self.attempt.acted;
+        // Without walls and held particles nothing else acts on a free one.
+        received.support = match self.alone {
+            true => Some(Vec3::zeros()),
+            false => Some(self.attempt.support).filter(|sum| sum.iter().all(|x| x.is_finite())),
+        };
         Ok(())
     }
 }

@@ -61,12 +61,22 @@ pub fn refusal(contacts: &Contacts) -> Option<String> {
     None
 }
 
-/// The commands after the particles are read, for spheres of this radius in m at least.
-pub fn commands(contacts: &Contacts, smallest: f64) -> String {
+/// How walls are told.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WallForm {
+    /// Radius of the smallest sphere in m, by which round walls are cut into facets.
+    pub smallest: f64,
+    /// Whether forces of walls are kept by particle, to be counted; they are not with held particles, whose own
+    /// forces LIGGGHTS does not keep.
+    pub counted: bool,
+}
+
+/// The commands after the particles are read.
+pub fn commands(contacts: &Contacts, form: WallForm) -> String {
     laws(contacts)
         + &groups(contacts)
         + &gravity(contacts)
-        + &walls(contacts, smallest)
+        + &walls(contacts, form)
         + &push()
         + &motion(contacts)
 }
@@ -280,9 +290,13 @@ fn primitive(shape: &WallShape) -> Option<String> {
     }
 }
 
-/// Walls, with the contact law of the particles, for spheres of this radius in m at least.
-pub fn walls(contacts: &Contacts, smallest: f64) -> String {
+/// Walls, with the contact law of the particles.
+pub fn walls(contacts: &Contacts, form: WallForm) -> String {
     let (mut text, model) = (String::new(), model(contacts));
+    let end = match form.counted && !contacts.held.contains(&true) {
+        true => format!(" store_force yes{}", settings(contacts)),
+        false => settings(contacts).to_owned(),
+    };
     let mut meshes = Vec::new();
     for (index, wall) in contacts.walls.iter().enumerate() {
         let kind = contacts.material_of.len() + wall.material + 1;
@@ -290,8 +304,7 @@ pub fn walls(contacts: &Contacts, smallest: f64) -> String {
         if let Some(primitive) = own.flatten() {
             let _ = writeln!(
                 text,
-                "fix calcine_wall_{index} all wall/gran {model} primitive type {kind} {primitive}{}",
-                settings(contacts)
+                "fix calcine_wall_{index} all wall/gran {model} primitive type {kind} {primitive}{end}"
             );
             continue;
         }
@@ -305,7 +318,7 @@ pub fn walls(contacts: &Contacts, smallest: f64) -> String {
             } else {
                 String::new()
             },
-            curvature(wall, smallest)
+            curvature(wall, form.smallest)
         );
         if !stays {
             moving_mesh(&mut text, index, wall.motion);
@@ -318,7 +331,7 @@ pub fn walls(contacts: &Contacts, smallest: f64) -> String {
             "fix calcine_meshes all wall/gran {model} mesh n_meshes {} meshes {}{}",
             meshes.len(),
             meshes.join(" "),
-            settings(contacts)
+            end
         );
     }
     text

@@ -144,8 +144,8 @@ pub struct Values {
     pub bins: f64,
     /// Corners of the box in m.
     pub corners: (Vec3, Vec3),
-    /// Radius of the smallest sphere in m.
-    pub smallest: f64,
+    /// How walls are told.
+    pub walls: moving::WallForm,
 }
 
 impl Template {
@@ -190,7 +190,7 @@ impl Template {
                 }
                 ["include", "calcine.contacts"] => text += &moving::laws(contacts),
                 ["include", "calcine.gravity"] => text += &moving::gravity(contacts),
-                ["include", "calcine.walls"] => text += &moving::walls(contacts, values.smallest),
+                ["include", "calcine.walls"] => text += &moving::walls(contacts, values.walls),
                 ["include", "calcine.motion"] => text += &moving::motion(contacts),
                 _ => {
                     text += &command.text;

@@ -308,6 +308,7 @@ mod tests {
             pressure: 101_325.0,
             velocity: Vec3::zeros(),
             gravity: Vec3::zeros(),
+            momentum: Default::default(),
             patches: patches.map(|(name, patch)| (name.to_owned(), patch)).into(),
             controls: GasControls {
                 outer_iterations: 3,
@@ -353,7 +354,7 @@ mod tests {
 
     #[test]
     fn a_box_s_schemes_are_without_the_correction_that_a_sheared_mesh_needs() {
-        let text = DEFAULTS[0].1;
+        let text = Solver::default().defaults()[0].1;
         assert!(suited(text, &mesh()).contains("Gauss linear orthogonal;"));
         let mut sheared = mesh().topology().clone();
         for point in &mut sheared.points {

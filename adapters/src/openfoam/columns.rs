@@ -103,7 +103,26 @@ pub fn write(
     owned: &[usize],
     bed: &Bed,
     exchange: &CellExchange,
+    species: usize,
 ) -> Result<(), WireError> {
+    let given = &exchange.species;
+    if species > 0 {
+        for (name, items, values) in [
+            ("species_source", species, &given.source),
+            ("species_coefficient", species, &given.coefficient),
+            ("species_taken", species, &given.taken),
+            ("species_heat", 1, &given.heat),
+        ] {
+            let places = link.column_mut(name)?.chunks_exact_mut(items);
+            for (place, &cell) in places.zip(owned) {
+                match values.get(cell * items..(cell + 1) * items) {
+                    Some(values) => place.copy_from_slice(values),
+                    // No particle exchanges gas.
+                    None => place.fill(0.0),
+                }
+            }
+        }
+    }
     for (name, values) in [
         ("void_fraction", &bed.void_fraction),
         ("drag_coefficient", &exchange.drag_coefficient),

@@ -138,12 +138,14 @@ pub fn calcine(setup: &GasSetup, case_hash: &str, catalogue: &Catalogue) -> Stri
         "caseHash        \"{case_hash}\";\n\
          // Reference pressure of the low-Mach gas in Pa; gravity in m/s^2.\n\
          pRef            {:e};\ngravity         {};\n\
+         // How gas and particles share the pressure gradient: a or b.\nmomentumModel   {};\n\
          // Seconds of wall time between lines of the log; 0: a line for each attempt.\n\
          logInterval     1;\n\ncontrols\n{{\n    outerIterations     {};\n    \
          pressureCorrections {};\n    outerTolerance      {:e};\n    linearTolerance     {:e};\n}}\n\n\
          // Tables over process time in s: m/s, kg/s, K, Pa, W/m^2, W/m^2/K.\npatches\n{{\n",
         setup.pressure,
         vector(setup.gravity),
+        setup.momentum.name(),
         controls.outer_iterations,
         controls.pressure_corrections,
         controls.outer_tolerance,

@@ -322,11 +322,12 @@ impl Gas for OpenfoamGas {
         };
         self.window = Some(*window);
         let owned = Arc::clone(self.solver.owned());
+        let species = self.species;
         self.solver.send_columns(
             window,
             request,
             |rank| owned[rank].len(),
-            |rank, link| columns::write(link, &owned[rank], bed, exchange),
+            |rank, link| columns::write(link, &owned[rank], bed, exchange, species),
         )
     }
 

@@ -72,6 +72,7 @@ pub fn setup() -> GasSetup {
         pressure: PRESSURE,
         velocity: Vec3::new(0.0, 0.0, SPEED),
         gravity: Vec3::zeros(),
+        momentum: Default::default(),
         patches: patches.collect(),
         controls: GasControls {
             outer_iterations: 50,
@@ -108,6 +109,7 @@ pub fn exchange_of_nothing(cells: usize) -> CellExchange {
         drag_source: vec![Vec3::zeros(); cells],
         heat_coefficient: vec![0.0; cells],
         heat_source: vec![0.0; cells],
+        ..CellExchange::default()
     }
 }
 

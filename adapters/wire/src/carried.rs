@@ -74,6 +74,8 @@ pub struct Carried<C> {
     carrier: C,
     loan: Option<Message>,
     received: Option<(Header, Message)>,
+    /// Memory of the message received before, for the next: large ones cost as much to make as to move.
+    spare: Vec<Line>,
     coordinator: Option<(Watch, LinkAddress)>,
 }
 
@@ -84,6 +86,7 @@ impl<C: Carrier> Carried<C> {
             carrier,
             loan: None,
             received: None,
+            spare: Vec::new(),
             coordinator: None,
         }
     }
@@ -140,7 +143,9 @@ impl<C: Carrier> Transport for Carried<C> {
 
     fn receive(&mut self, patience: Duration) -> Result<bool, WireError> {
         let begun = Instant::now();
-        self.received = None;
+        if let Some((_, message)) = self.received.take() {
+            self.spare = message.lines;
+        }
         let mut pause = PAUSES.0;
         loop {
             // Looked at before the queue, so that a last word of the dead is still heard.
@@ -150,7 +155,8 @@ impl<C: Carrier> Transport for Carried<C> {
                 .filter(|(watch, _)| watch.is_dead());
             let dead = dead.map(|(watch, address)| (watch.pid(), address.clone()));
             if let Some(count) = self.carrier.arrived()? {
-                let mut lines = vec![Line::default(); count.div_ceil(LINE)];
+                let mut lines = std::mem::take(&mut self.spare);
+                lines.resize(count.div_ceil(LINE), Line::default());
                 self.carrier
                     .take(&mut words::of_lines_mut(&mut lines)[..count])?;
                 let message = Message { lines };

@@ -150,7 +150,8 @@ state velocity 3 m/s item
 state angular_velocity 3 rad/s item
 state radius 1 m item
 state mass 1 kg item
-state impulse 3 Ns item";
+state impulse 3 Ns item
+state support 4 s,Ns rank";
 
 impl Catalogue {
     /// The standard catalogue of a role, "gas" or "particles".
@@ -163,7 +164,7 @@ impl Catalogue {
     }
 
     /// That of a gas of so many species (0: a single gas): the standard one with the composition, species by
-    /// species within each cell, and a balance of each species after the momentum's.
+    /// species within each cell, what particles exchange of it, and a balance of each species after the momentum's.
     pub fn gas(species: usize) -> Result<Self, WireError> {
         let mut gas = Self::standard("gas")?;
         if species > 0 {
@@ -172,8 +173,15 @@ impl Catalogue {
                     field.components += 7 * species;
                 }
             }
-            gas.fields
-                .push(format!("state composition {species} 1 item").parse()?);
+            for line in [
+                format!("state composition {species} 1 item"),
+                format!("start species_source {species} kg/s item"),
+                format!("start species_coefficient {species} kg/s item"),
+                format!("start species_taken {species} kg/s item"),
+                "start species_heat 1 W item".into(),
+            ] {
+                gas.fields.push(line.parse()?);
+            }
         }
         Ok(gas)
     }

@@ -184,6 +184,14 @@ pub enum WireError {
         /// How long was waited, in s.
         seconds: f64,
     },
+    /// A rank that died where MPI would wait for it for ever.
+    #[error("of {ranks} ranks {left} are left, and they had not started MPI yet")]
+    DiedStarting {
+        /// How many were asked for.
+        ranks: u32,
+        /// How many live.
+        left: usize,
+    },
     /// Nobody, or a full buffer, at the other end.
     #[error("a message was not delivered: {receivers} of 1 receivers took it")]
     NotDelivered {

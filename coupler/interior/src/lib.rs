@@ -2,10 +2,12 @@
 
 mod model;
 mod network;
+pub mod reacting;
 mod thin;
 
 pub use model::{Newcomer, ParticleModel};
 pub use network::{Beside, HeatLaws, Meeting, Network, Thermal, Touch, Views, WallTouch};
+pub use reacting::Reacting;
 pub use thin::Thin;
 
 /// Takes rows, in ascending order, out of a list; the others keep their order.

@@ -1,6 +1,7 @@
 //! The trait behind which particles are thermally thin or resolved along the radius.
 
 use crate::network::{Beside, Meeting};
+use crate::reacting::Reacting;
 
 /// A particle that comes in.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +21,16 @@ pub trait ParticleModel: Send {
 
     /// Surface temperature of each particle in K at the last commit.
     fn committed_temperature(&self) -> &[f64];
+
+    /// The particles as ones that react; `None` where none does.
+    fn reacting(&mut self) -> Option<&mut Reacting> {
+        None
+    }
+
+    /// The same to look at.
+    fn reactions(&self) -> Option<&Reacting> {
+        None
+    }
 
     /// True where particles exchange heat with each other and with walls, so that `meet` and `conduct` matter.
     fn conducts(&self) -> bool;

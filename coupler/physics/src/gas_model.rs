@@ -95,6 +95,14 @@ impl GasModel {
         }
     }
 
+    /// Specific heat capacity of a species in J/kg/K.
+    pub fn species_heat_capacity(&self, species: usize, temperature: f64) -> f64 {
+        match self {
+            Self::Perfect(_) | Self::Constant(_) => self.heat_capacity(temperature, &[]),
+            Self::Mixture(mixture) => mixture.species()[species].heat_capacity(temperature),
+        }
+    }
+
     /// Each element with its mass in a unit mass of each species; empty for a single gas.
     pub fn elements(&self) -> Vec<(String, Vec<f64>)> {
         match self {

@@ -8,13 +8,16 @@ pub mod drag;
 pub mod gas;
 pub mod gas_model;
 pub mod heat_transfer;
+pub mod inertial_number;
 pub mod local;
 pub mod mass_transfer;
 pub mod numbers;
 pub mod pressure_drop;
 pub mod quadrature;
 pub mod radiation;
+pub mod reaction;
 pub mod solid;
+pub mod solids;
 pub mod thermo;
 
 /// A vector in space.

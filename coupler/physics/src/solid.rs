@@ -10,6 +10,8 @@ pub struct HeatCapacity {
     points: Vec<(f64, f64)>,
     /// Enthalpy at the points in J/kg, zero at the first.
     enthalpy: Vec<f64>,
+    /// Entropy at the points in J/kg/K, zero at the first.
+    entropy: Vec<f64>,
 }
 
 impl HeatCapacity {
@@ -21,12 +23,17 @@ impl HeatCapacity {
     /// Points of temperature in K, increasing, and c_p in J/kg/K, positive; at least one.
     pub fn table(points: Vec<(f64, f64)>) -> Self {
         debug_assert!(!points.is_empty());
-        let mut enthalpy = vec![0.0];
+        let (mut enthalpy, mut entropy) = (vec![0.0], vec![0.0]);
         for pair in points.windows(2) {
             let area = 0.5 * (pair[0].1 + pair[1].1) * (pair[1].0 - pair[0].0);
             enthalpy.push(enthalpy[enthalpy.len() - 1] + area);
+            entropy.push(entropy[entropy.len() - 1] + heat_over_temperature(pair[0], pair[1]));
         }
-        Self { points, enthalpy }
+        Self {
+            points,
+            enthalpy,
+            entropy,
+        }
     }
 
     /// True where it is the same at all temperatures.
@@ -61,6 +68,16 @@ impl HeatCapacity {
         self.enthalpy[place] + mean * (temperature - from)
     }
 
+    /// Entropy in J/kg/K, counted from the first point.
+    pub fn entropy(&self, temperature: f64) -> f64 {
+        let next = self
+            .points
+            .partition_point(|&(from, _)| from <= temperature);
+        let place = next.saturating_sub(1);
+        let to = (temperature, self.at(temperature));
+        self.entropy[place] + heat_over_temperature(self.points[place], to)
+    }
+
     /// Temperature in K of an enthalpy in J/kg.
     pub fn temperature(&self, enthalpy: f64) -> f64 {
         let next = self.enthalpy.partition_point(|&from| from <= enthalpy);
@@ -75,6 +92,16 @@ impl HeatCapacity {
         let root = (capacity * capacity + 2.0 * slope * rest).max(0.0).sqrt();
         from + 2.0 * rest / (capacity + root)
     }
+}
+
+/// ∫ c_p/T dT between two points of temperature in K and c_p, linear in between.
+fn heat_over_temperature(from: (f64, f64), to: (f64, f64)) -> f64 {
+    let span = to.0 - from.0;
+    if span == 0.0 {
+        return 0.0;
+    }
+    let slope = (to.1 - from.1) / span;
+    (from.1 - slope * from.0) * (to.0 / from.0).ln() + slope * span
 }
 
 #[cfg(test)]
@@ -114,6 +141,29 @@ mod tests {
                 "{t}"
             );
         }
+    }
+
+    #[test]
+    fn entropy_is_the_integral_of_heat_over_temperature() {
+        let law = alumina();
+        // Midpoint sums of 20 000 parts in Python.
+        for (t, expected) in [
+            (600.0, 632.710_647),
+            (1200.0, 1_436.543_109),
+            (200.0, -316.262_784),
+        ] {
+            assert!(
+                (law.entropy(t) / expected - 1.0).abs() < 1e-7,
+                "{t}: {}",
+                law.entropy(t)
+            );
+        }
+        assert!(
+            (HeatCapacity::constant(840.0).entropy(2.0 * REFERENCE_TEMPERATURE)
+                - 840.0 * std::f64::consts::LN_2)
+                .abs()
+                < 1e-10
+        );
     }
 
     #[test]

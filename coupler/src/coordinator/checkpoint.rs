@@ -138,6 +138,17 @@ impl Run<'_> {
         Ok(())
     }
 
+    /// Takes up what particles are made of.
+    pub(super) fn restore_amounts(&mut self, state: &StateFile) -> Result<(), RunError> {
+        let particles = self.parts.particles.fields().len();
+        if let Some(reacting) = self.parts.interior.reacting() {
+            let solids = reacting.chemistry().solids.len();
+            let amounts = state.f64s_of("particle_amounts", particles * solids)?;
+            reacting.restore_amounts(amounts);
+        }
+        Ok(())
+    }
+
     fn own_state(&self) -> StateFile {
         let mut state = StateFile::new();
         let ledger: Vec<f64> = self
@@ -164,6 +175,9 @@ impl Run<'_> {
             "particle_temperature",
             self.parts.interior.committed_temperature(),
         );
+        if let Some(reacting) = self.parts.interior.reactions() {
+            state.set_f64s("particle_amounts", reacting.amounts());
+        }
         state.set_f64s("particle_heat", &self.work.exchange.heat);
         let other: Vec<f64> = self
             .work
@@ -224,7 +238,9 @@ impl Run<'_> {
             *total = Moved::from_numbers(numbers);
         }
         self.plan.traffic.restore(&state)?;
+        self.restore_amounts(&state)?;
         self.parts.interior.restore(temperature);
+        self.weigh();
         self.work.exchange.heat.copy_from_slice(heat);
         for (line, values) in self
             .ledger

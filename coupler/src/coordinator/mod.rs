@@ -3,6 +3,7 @@
 mod checkpoint;
 mod momentum;
 mod origin;
+mod react;
 mod trade;
 mod window;
 
@@ -10,7 +11,9 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use calcine_interior::ParticleModel;
+use calcine_interior::reacting::ReactError;
 use calcine_physics::Vec3;
+use calcine_physics::thermo::Element;
 use thiserror::Error;
 
 pub use checkpoint::{CheckpointError, CheckpointPaths};
@@ -23,7 +26,7 @@ use crate::exchange::{Exchange, Placement};
 use crate::ledger::{Ledger, Line};
 use crate::mapping::{Mapper, MappingError, Method};
 use crate::mesh::Mesh;
-use crate::observer::{Moment, Observer, ObserverError, Timing};
+use crate::observer::{Felt, Moment, Observer, ObserverError, Timing};
 use crate::packing::PackingError;
 use crate::part::{Bed, CellReceived, Convergence, Gas, ParticlePush, ParticleReceived, Particles};
 use crate::paths::{Paths, PathsSetup};
@@ -31,6 +34,7 @@ use crate::smoother::{Operator, Smoother, SmootherError};
 use crate::supervisor::Supervisor;
 use crate::time::{Acceleration, Clocks, GasStorage, Ticks, TimeError};
 use crate::traffic::Traffic;
+use crate::turnover::Turnover;
 
 /// When windows, checkpoints and the run end, and how exactly a window is exchanged.
 #[derive(Clone, Debug)]
@@ -100,6 +104,14 @@ pub enum RunError {
         /// What the law said.
         cause: ClosureError,
     },
+    /// Reactions that cannot be followed.
+    #[error("window {window}: {cause}")]
+    React {
+        /// Index of the window.
+        window: u64,
+        /// Which particle, and why.
+        cause: ReactError,
+    },
     /// A feed whose particles cannot be drawn.
     #[error("feeds: {0}")]
     Feed(#[from] PackingError),
@@ -145,6 +157,12 @@ struct Workspace {
     seen: Seen,
     coefficients: Coefficients,
     exchange: Exchange,
+    turnover: Turnover,
+    /// Pressure in Pa that each particle sees, where some react.
+    pressure: Vec<f64>,
+    /// Masses in kg and mass fractions of solids, for observers.
+    particle_mass: Vec<f64>,
+    solid_fractions: Vec<f64>,
     received: CellReceived,
     particle_received: ParticleReceived,
     push: ParticlePush,
@@ -187,7 +205,7 @@ impl<'m> Run<'m> {
         parts: Parts,
     ) -> Result<Self, RunError> {
         let mapper = Mapper::new(mesh);
-        let elements = closures.gas.elements().into_iter();
+        let elements = elements(&closures, &*parts.interior).into_iter();
         let mut timing = Timing::default();
         let particles = &*parts.particles;
         let mapped = window::map(&mapper, plan.mapping, &smoother, particles, &mut timing)?;
@@ -196,6 +214,9 @@ impl<'m> Run<'m> {
             .heat
             .resize(parts.particles.fields().len(), 0.0);
         work.begin(&parts.particles.fields(), &plan.free, plan.gravity);
+        let pores = &mut work.seen.void_fraction;
+        pores.resize(mapped.operator.particles(), 1.0);
+        mapped.operator.sample(&mapped.bed.void_fraction, pores);
         let paths = Paths::new(plan.paths.clone());
         let mut run = Self {
             paths,
@@ -209,7 +230,7 @@ impl<'m> Run<'m> {
             clocks: Clocks::default(),
             windows: 0,
             ledger: Ledger {
-                elements: elements.map(|(name, _)| (name, Line::default())).collect(),
+                elements: elements.map(|name| (name, Line::default())).collect(),
                 ..Ledger::default()
             },
             timing,
@@ -221,6 +242,7 @@ impl<'m> Run<'m> {
             work,
         };
         run.find_contacts();
+        run.weigh();
         Ok(run)
     }
 
@@ -237,10 +259,12 @@ impl<'m> Run<'m> {
             observer.start(&self.moment(None))?;
         }
         let mut last_checkpoint = Instant::now();
+        let mut last = None;
         while self.clocks.process < self.plan.end {
             let window = self.next_window()?;
             self.trade(supervisor, &window)?;
             self.advance(supervisor, &window)?;
+            last = Some(window);
 
             let output = Instant::now();
             for observer in observers.iter_mut() {
@@ -263,7 +287,7 @@ impl<'m> Run<'m> {
         }
         self.note_processors();
         for observer in observers.iter_mut() {
-            observer.finish(&self.moment(None))?;
+            observer.finish(&self.moment(last.as_ref()))?;
         }
         self.checkpoint(&mut [])?;
         self.finish_parts(supervisor)?;
@@ -306,6 +330,13 @@ impl<'m> Run<'m> {
             particles: self.parts.particles.fields(),
             particle_temperature: self.parts.interior.temperature(),
             particle_heat: &self.work.exchange.heat,
+            particle_mass: &self.work.particle_mass,
+            solid_fractions: &self.work.solid_fractions,
+            felt: Felt {
+                force: &self.work.push.force,
+                void_fraction: &self.work.seen.void_fraction,
+                slip: &self.work.coefficients.slip,
+            },
             reservoirs: self.paths.names(),
             reservoir_heat: &self.work.reservoir_heat,
             ledger: &self.ledger,
@@ -325,4 +356,24 @@ impl<'m> Run<'m> {
     pub fn ledger(&self) -> &Ledger {
         &self.ledger
     }
+}
+
+/// Symbols of the elements of gas and particles.
+fn elements(closures: &Closures, interior: &dyn ParticleModel) -> Vec<String> {
+    let mut names: Vec<String> = closures
+        .gas
+        .elements()
+        .into_iter()
+        .map(|one| one.0)
+        .collect();
+    if let Some(reacting) = interior.reactions() {
+        let solids = &reacting.chemistry().solids;
+        for element in Element::ALL {
+            let held = solids.iter().any(|one| one.atoms()[element as usize] > 0.0);
+            if held && !names.iter().any(|name| name == element.symbol()) {
+                names.push(element.symbol().to_owned());
+            }
+        }
+    }
+    names
 }

@@ -16,6 +16,8 @@ impl Workspace {
         self.other.clear();
         self.other
             .extend(particles.mass.iter().map(|mass| *mass * gravity));
+        self.push.force.resize(particles.len(), Vec3::zeros());
+        self.coefficients.slip.resize(particles.len(), 0.0);
     }
 }
 
@@ -40,8 +42,28 @@ impl Run<'_> {
         self.work.velocity.extend_from_slice(fields.velocity);
     }
 
+    /// Books the momentum of the particles that move, where the solver says what walls and held particles
+    /// gave them: the forces between free particles cancel, whatever they are.
+    fn book_momentum(&mut self) {
+        let Some(support) = self.work.particle_received.support else {
+            return;
+        };
+        let (fields, work) = (self.parts.particles.fields(), &self.work);
+        let received = &work.particle_received;
+        let (mut left, mut moved) = (-support, support.norm());
+        for p in (0..fields.len()).filter(|&p| work.free[p]) {
+            let mass = fields.mass[p];
+            let change = mass * (fields.velocity[p] - work.velocity[p]);
+            let weight = mass * received.acted * self.plan.gravity;
+            left += change - received.impulse[p] - weight;
+            moved += change.norm() + received.impulse[p].norm() + weight.norm();
+        }
+        self.ledger.particle_momentum.book(left.norm(), moved);
+    }
+
     /// What acted on each particle besides drag, contacts included: from its change of momentum.
     pub(super) fn note_forces(&mut self, window: &Window) {
+        self.book_momentum();
         let span = window.span.motion.seconds();
         let fields = self.parts.particles.fields();
         let work = &mut self.work;

@@ -215,7 +215,9 @@ impl Run<'_> {
             }
             .into());
         }
+        self.restore_amounts(&origin.state)?;
         self.parts.interior.restore(temperature);
+        self.weigh();
         Ok(())
     }
 }

@@ -4,6 +4,7 @@ use calcine_interior::{Newcomer, without};
 use calcine_physics::Vec3;
 
 use super::{Run, RunError};
+use crate::part::ParticleFields;
 use crate::supervisor::Supervisor;
 use crate::time::Window;
 use crate::traffic::Moment;
@@ -30,8 +31,9 @@ impl Run<'_> {
         }
         let held = |masses: &[f64]| masses.iter().sum::<f64>();
         let before = held(fields.mass);
+        let momentum_before = momentum(&fields);
         let [mut came, mut went] = self.ledger.traffic;
-        let gone_before = went.mass;
+        let (gone_before, left_before) = (went.mass, went.momentum);
         for &row in &trade.rows {
             let enthalpy = self.parts.interior.enthalpy(row);
             went.add(fields.mass[row], enthalpy, fields.velocity[row]);
@@ -54,8 +56,8 @@ impl Run<'_> {
             })
             .collect();
         self.parts.interior.change(&trade.rows, &newcomers);
+        let (brought_before, carried_before) = (came.mass, came.momentum);
         self.paths.forget();
-        let brought_before = came.mass;
         for row in first..fields.len() {
             let enthalpy = self.parts.interior.enthalpy(row);
             came.add(fields.mass[row], enthalpy, fields.velocity[row]);
@@ -66,6 +68,11 @@ impl Run<'_> {
         self.ledger
             .particle_mass
             .book(after - before - brought + taken, brought + taken);
+        let carried = [came.momentum - carried_before, went.momentum - left_before];
+        let left = momentum(&fields) - momentum_before - carried[0] + carried[1];
+        self.ledger
+            .particle_momentum
+            .book(left.norm(), carried[0].norm() + carried[1].norm());
 
         let work = &mut self.work;
         without(&mut work.exchange.heat, &trade.rows);
@@ -78,6 +85,8 @@ impl Run<'_> {
             work.free.push(free);
             work.other.push(fields.mass[row] * self.plan.gravity);
         }
+        work.push.force.clear();
+        work.push.force.resize(fields.len(), Vec3::zeros());
         debug_assert!(work.other.len() == fields.len() && work.free.len() == fields.len());
         debug_assert!(
             self.work
@@ -87,4 +96,10 @@ impl Run<'_> {
         );
         Ok(())
     }
+}
+
+/// Momentum of all particles in N s.
+fn momentum(fields: &ParticleFields<'_>) -> Vec3 {
+    let pairs = fields.mass.iter().zip(fields.velocity);
+    pairs.map(|(mass, velocity)| *mass * velocity).sum()
 }

@@ -3,9 +3,10 @@
 use std::f64::consts::PI;
 use std::time::{Duration, Instant};
 
-use calcine_interior::Beside;
+use calcine_interior::{Beside, Reacting};
 use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
+use calcine_physics::thermo::Element;
 use rustix::time::{ClockId, clock_gettime};
 
 use super::{Mapped, Run, RunError};
@@ -13,13 +14,13 @@ use crate::exchange::{Placement, Setting};
 use crate::ledger::Ledger;
 use crate::mapping::{Mapper, Method};
 use crate::observer::Timing;
-use crate::part::{Balance, Bed, Particles};
+use crate::part::{Balance, Bed, CellReceived, Particles};
 use crate::smoother::Smoother;
 use crate::supervisor::Supervisor;
 use crate::time::{Acceleration, Clocks, Ticks, TimeError, Window};
 
 /// Adds the time that a stage takes to its account.
-fn timed<T>(account: &mut Duration, stage: impl FnOnce() -> T) -> T {
+pub(super) fn timed<T>(account: &mut Duration, stage: impl FnOnce() -> T) -> T {
     let begun = Instant::now();
     let value = stage();
     *account += begun.elapsed();
@@ -163,6 +164,7 @@ impl Run<'_> {
             })?;
         let span = window.span.process.seconds();
         self.relax_drag(window);
+        self.evaluate_films(window);
         let (work, count) = (&mut self.work, self.parts.particles.fields().len());
         work.exchange.conductance.resize(count, 0.0);
         self.parts.interior.eliminated(
@@ -174,79 +176,133 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Repeats the window of gas and interior until the exchange is where it belongs.
+    /// Repeats the window of gas and interior until the exchange is where it belongs, and what reacts is what the
+    /// gas has for it; then once more with what particles give and take fixed, where they react.
     fn exchange_with_gas(
         &mut self,
         supervisor: &Supervisor,
         window: &mut Window,
     ) -> Result<(), RunError> {
         let first_attempt = window.attempt;
-        let acceleration = window.acceleration();
-        let span = window.span.process.seconds();
-        let end = window.start.process.seconds() + span;
+        let reacts = self.reacts();
+        self.begin_exchange(window);
+        loop {
+            self.look_at_particles(window)?;
+            let mut misplaced = self.attempt(supervisor, window)?;
+            let off = misplaced.max(self.follow_rates());
+            let mut attempts = window.attempt - first_attempt;
+            let settled = off <= self.plan.exchange_tolerance;
+            if !settled && attempts + u32::from(reacts) < self.plan.exchange_attempts {
+                continue;
+            }
+            if reacts {
+                self.fix_rates(window);
+                misplaced = self.attempt(supervisor, window)?;
+                attempts += 1;
+            }
+            if !settled {
+                tracing::warn!(
+                    window = window.index,
+                    attempts,
+                    misplaced = off,
+                    "the attempts ended with a larger share of the exchange in the wrong cells \
+                     of a particle, or of what reacts off its rate, than coupling.exchange.tolerance allows"
+                );
+            }
+            self.book_rates(window);
+            self.credit_drag(window);
+            let (work, timing) = (&self.work, &mut self.timing);
+            timed(&mut timing.interior, || {
+                let span = window.span.process.seconds();
+                self.parts.interior.advance(&work.exchange.heat, span);
+            });
+            self.placement = Placement {
+                attempts: window.attempt,
+                misplaced: if settled { misplaced.min(off) } else { off },
+                settled,
+            };
+            return Ok(());
+        }
+    }
+
+    /// Spreads what does not change between attempts.
+    fn begin_exchange(&mut self, window: &Window) {
         let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
-        let begun = Instant::now();
-        let exchange = &mut work.exchange;
-        let gas = self.parts.gas.fields();
         let setting = Setting {
             operator: &mapped.operator,
             particles: self.parts.particles.fields(),
             coefficients: &work.coefficients,
-            acceleration,
+            acceleration: window.acceleration(),
         };
-        exchange.begin(&setting, &gas);
-        timing.exchange += begun.elapsed();
-        loop {
-            if self.parts.interior.conducts() {
+        timed(&mut timing.exchange, || {
+            work.exchange.begin(&setting, &self.parts.gas.fields());
+        });
+    }
+
+    /// What the interior does over the window with the gas as it is: conduction, reactions.
+    fn look_at_particles(&mut self, window: &Window) -> Result<(), RunError> {
+        let span = window.span.process.seconds();
+        let end = window.start.process.seconds() + span;
+        if self.parts.interior.conducts() {
+            let (work, timing) = (&self.work, &mut self.timing);
+            timed(&mut timing.interior, || {
                 let beside = Beside {
                     conductance: &work.coefficients.conductance,
-                    temperature: exchange.seen_temperature(),
+                    temperature: work.exchange.seen_temperature(),
                     gas_conductivity: &work.coefficients.gas_conductivity,
                     reservoirs: self.paths.reservoirs(end),
                 };
-                timed(&mut timing.interior, || {
-                    self.parts.interior.conduct(&beside, span);
-                });
-            }
-            timed(&mut timing.exchange, || {
-                exchange.linearise(&setting, self.parts.interior.start_temperature());
+                self.parts.interior.conduct(&beside, span);
             });
-            let accounts = (&mut timing.gas, &mut timing.gas_processor);
-            self.convergence = metered(accounts.0, accounts.1, || {
-                self.parts.gas.start(window, &mapped.bed, &exchange.cells)?;
-                self.parts.gas.finish(supervisor, &mut work.received)
-            })?;
-            let misplaced = timed(&mut timing.exchange, || {
-                let start = self.parts.interior.start_temperature();
-                exchange.credit_heat(&setting, start, &self.parts.gas.fields(), &work.received)
-            });
-            timed(&mut timing.interior, || {
-                self.parts.interior.advance(&exchange.heat, span)
-            });
-            window.attempt += 1;
-            let attempts = window.attempt - first_attempt;
-            let settled = misplaced <= self.plan.exchange_tolerance;
-            if settled || attempts >= self.plan.exchange_attempts {
-                if !settled {
-                    tracing::warn!(
-                        window = window.index,
-                        attempts,
-                        misplaced,
-                        "the attempts ended with a larger share of the exchange in the wrong cells \
-                         of a particle than coupling.exchange.tolerance allows"
-                    );
-                }
-                self.placement = Placement {
-                    attempts: window.attempt,
-                    misplaced,
-                    settled,
-                };
-                timed(&mut timing.exchange, || {
-                    exchange.credit_drag(&setting, &self.parts.gas.fields(), &work.received);
-                });
-                return Ok(());
-            }
         }
+        self.react(window)
+    }
+
+    /// One attempt of the gas; the share of the exchange that it left misplaced.
+    fn attempt(&mut self, supervisor: &Supervisor, window: &mut Window) -> Result<f64, RunError> {
+        let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
+        let setting = Setting {
+            operator: &mapped.operator,
+            particles: self.parts.particles.fields(),
+            coefficients: &work.coefficients,
+            acceleration: window.acceleration(),
+        };
+        let start = self.parts.interior.start_temperature();
+        timed(&mut timing.exchange, || {
+            work.exchange.linearise(&setting, start);
+        });
+        let accounts = (&mut timing.gas, &mut timing.gas_processor);
+        self.convergence = metered(accounts.0, accounts.1, || {
+            self.parts
+                .gas
+                .start(window, &mapped.bed, &work.exchange.cells)?;
+            self.parts.gas.finish(supervisor, &mut work.received)
+        })?;
+        window.attempt += 1;
+        let misplaced = timed(&mut timing.exchange, || {
+            let (gas, properties) = (self.parts.gas.fields(), &self.closures.gas);
+            let (turnover, told) = (&mut work.turnover, &work.exchange.cells.species);
+            turnover.heat_of_cells(&gas, properties, told);
+            let apart = &turnover.cell_heat;
+            work.exchange
+                .credit_heat(&setting, start, &gas, &work.received, apart)
+        });
+        Ok(misplaced)
+    }
+
+    /// Gives the particles their drag after the last attempt.
+    fn credit_drag(&mut self, window: &Window) {
+        let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
+        let setting = Setting {
+            operator: &mapped.operator,
+            particles: self.parts.particles.fields(),
+            coefficients: &work.coefficients,
+            acceleration: window.acceleration(),
+        };
+        timed(&mut timing.exchange, || {
+            let gas = self.parts.gas.fields();
+            work.exchange.credit_drag(&setting, &gas, &work.received);
+        });
     }
 
     fn move_particles(&mut self, supervisor: &Supervisor, window: &Window) -> Result<(), RunError> {
@@ -257,6 +313,7 @@ impl Run<'_> {
             &self.mapped.operator,
             &self.parts.gas.fields(),
             &self.mapped.solid_volume,
+            (self.closures.momentum, self.plan.gravity),
             &mut work.pressure_force,
             &mut work.push,
         );
@@ -279,6 +336,7 @@ impl Run<'_> {
         let heat = self.parts.interior.reservoir_heat();
         self.work.reservoir_heat.extend_from_slice(heat);
         self.parts.interior.commit();
+        self.weigh();
         self.clocks = window.end()?;
         self.windows += 1;
         Ok(())
@@ -293,11 +351,12 @@ impl Run<'_> {
 
         let (sum, magnitude) = open(&received.mass);
         ledger.mass.book(scale * sum, scale * magnitude);
-        book_elements(ledger, &self.closures.gas, &received.species, scale);
+        let reacting = self.parts.interior.reactions();
+        book_elements(ledger, &self.closures.gas, received, reacting, scale);
         book_energy(
             ledger,
             received,
-            &work.exchange.heat,
+            [&work.exchange.heat, &work.turnover.carried],
             &*self.parts.interior,
             scale,
             process,
@@ -336,24 +395,49 @@ fn open(balance: &Balance) -> (f64, f64) {
     )
 }
 
-/// The mass of each element, from the balances of the species that hold it.
-fn book_elements(ledger: &mut Ledger, gas: &GasModel, species: &[Balance], scale: f64) {
-    for ((_, line), (_, shares)) in ledger.elements.iter_mut().zip(gas.elements()) {
+/// The mass of each element in gas and particles together, and that of the particles: what they exchange drops
+/// out of the one and stands in the other.
+fn book_elements(
+    ledger: &mut Ledger,
+    gas: &GasModel,
+    received: &CellReceived,
+    reacting: Option<&Reacting>,
+    scale: f64,
+) {
+    let shares = gas.elements();
+    let changes = reacting.map(Reacting::mass_changes);
+    for (name, line) in &mut ledger.elements {
         let (mut sum, mut magnitude) = (0.0, 0.0);
-        for (share, balance) in shares.iter().zip(species) {
+        let own = shares.iter().find(|(element, _)| element == name);
+        for (share, balance) in own
+            .iter()
+            .flat_map(|own| own.1.iter().zip(&received.species))
+        {
             let (open, terms) = open(balance);
-            sum += share * open;
-            magnitude += share * terms;
+            sum += scale * share * (open + balance.exchange);
+            magnitude += scale * share * (terms - balance.exchange.abs());
         }
-        line.book(scale * sum, scale * magnitude);
+        if let Some((_, elements)) = &changes {
+            let place = Element::ALL.iter().position(|one| one.symbol() == name);
+            let [change, moved] = place.map_or([0.0; 2], |k| elements[k]);
+            sum += change;
+            magnitude += moved;
+        }
+        line.book(sum, magnitude);
+    }
+    if let Some((change, _)) = changes {
+        let given = scale * received.mass.exchange;
+        let magnitude = received.species.iter().map(|one| one.exchange.abs());
+        let magnitude = scale * magnitude.sum::<f64>();
+        ledger.particle_mass.book(change + given, magnitude);
     }
 }
 
 /// Gas and particles together: the exchange drops out of the sum and is booked by itself.
 fn book_energy(
     ledger: &mut Ledger,
-    received: &crate::part::CellReceived,
-    heat: &[f64],
+    received: &CellReceived,
+    [heat, carried]: [&[f64]; 2],
     interior: &dyn calcine_interior::ParticleModel,
     scale: f64,
     process: f64,
@@ -364,7 +448,7 @@ fn book_energy(
     let walls: f64 = reservoirs.iter().sum::<f64>() * process;
     let walls_magnitude: f64 = reservoirs.iter().map(|q| q.abs()).sum::<f64>() * process;
     let to_gas: f64 = received.heat.iter().sum::<f64>() * process;
-    let to_particles: f64 = heat.iter().sum::<f64>() * process;
+    let to_particles = (heat.iter().sum::<f64>() + carried.iter().sum::<f64>()) * process;
     let exchanged = process
         * (received.heat.iter().map(|q| q.abs()).sum::<f64>()
             + heat.iter().map(|q| q.abs()).sum::<f64>());

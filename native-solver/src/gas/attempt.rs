@@ -27,6 +27,9 @@ pub struct Frame<'a> {
     pub gravity: Vec3,
     /// Void fraction at the end of the window.
     pub void_fraction: &'a [f64],
+    /// Share of −∇p and ρ g that the gas of each cell takes: ε by model A, 1 by model B (requirements
+    /// DRG-1).
+    pub pressure_share: &'a [f64],
     /// Exchange with the particles.
     pub exchange: &'a CellExchange,
     /// State at the start of the window.
@@ -41,6 +44,15 @@ impl Frame<'_> {
     /// Number of species; zero for a single gas.
     pub fn species(&self) -> usize {
         self.properties.species().len()
+    }
+
+    /// Mass that the gas of a cell gains from particles in kg/s.
+    pub fn mass_source(&self, now: &State, cell: usize) -> f64 {
+        let given = &self.exchange.species;
+        if given.is_none() {
+            return 0.0;
+        }
+        given.mass(cell, now.composition_of(cell, self.species()))
     }
 }
 
@@ -107,7 +119,8 @@ fn closed_pressure(frame: &Frame<'_>, now: &State) -> f64 {
             .properties
             .density(1.0, now.temperature[cell], composition);
         let pores = frame.void_fraction[cell] * grid.volume[cell];
-        [frame.old.mass[cell], pores * density]
+        let gained = frame.storage_span * frame.mass_source(now, cell);
+        [frame.old.mass[cell] + gained, pores * density]
     });
     let boundary = grid.faces.len() - grid.internal;
     let [outflow] = sums(boundary, |face| {

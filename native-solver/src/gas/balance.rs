@@ -54,11 +54,16 @@ fn mass(frame: &Frame<'_>, now: &State) -> Balance {
     if magnitude == 0.0 {
         [magnitude] = sums(frame.grid.internal, |face| [now.flux[face].abs()]);
     }
+    let exchanged = match frame.exchange.species.is_none() {
+        true => 0.0,
+        false => sums(frame.grid.cells(), |cell| [frame.mass_source(now, cell)])[0],
+    };
     Balance {
         stored,
         stored_magnitude,
         boundary: inflow * frame.storage_span,
         boundary_magnitude: magnitude * frame.storage_span,
+        exchange: exchanged * frame.storage_span,
         ..Balance::default()
     }
 }
@@ -94,8 +99,8 @@ fn momenta(
     let (grid, old, span) = (frame.grid, frame.old, frame.motion_span);
     let cells: [f64; 15] = sums(grid.cells(), |cell| {
         let stored = old.mass[cell] * (now.velocity[cell] - old.velocity[cell]);
-        let pores = frame.void_fraction[cell] * grid.volume[cell];
-        let source = pores * (material.density[cell] * frame.gravity - now.pressure_gradient[cell])
+        let share = frame.pressure_share[cell] * grid.volume[cell];
+        let source = share * (material.density[cell] * frame.gravity - now.pressure_gradient[cell])
             + outflow(grid, &now.flux, cell) * now.velocity[cell];
         side_by_side([stored, stored.abs(), drag[cell], source, source.abs()])
     });

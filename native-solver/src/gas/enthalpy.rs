@@ -1,8 +1,10 @@
 //! Enthalpy of the gas, with exactly the fluxes and masses of continuity, per cell:
 //!
 //! (m h − m_old h_old)/Δτ + Σ φ_f h_f − Σ (εκ)_f ∇T·S + Σ Σ_k h_k J_k·S
-//!     = heat_source − heat_coefficient · T + ε V (p₀ − p₀_old)/Δτ
+//!     = heat_source − heat_coefficient · T + ε V (p₀ − p₀_old)/Δτ + H − Σ_k D_k h_k(T)
 //!
+//! with the enthalpy H of gas that particles set free and the gas D_k that they take at the cell's temperature,
+//! h_k linear in T like T in h (below).
 //! Implicit Euler, h_f upwind, what a second-order value has beyond it and the enthalpy that diffusing
 //! species carry explicitly from the last iterate (species.rs); T linear in h: T = θ + h/c_p, θ = T* − h*/c_p. Because
 //! m + Δτ Σ φ_f = m_old, the matrix keeps a uniform temperature uniform whatever the flow does,
@@ -41,6 +43,9 @@ pub struct Enthalpy {
     heat_capacity: Vec<f64>,
     /// Enthalpy that leaves the owner of each face in W, of what the equation takes explicitly.
     explicit: Vec<f64>,
+    /// Heat from particles to each cell as source − coefficient · T in W and W/K, with that of the gas that
+    /// they give and take.
+    given: [Vec<f64>; 2],
     preconditioner: Incomplete,
     /// Gradients of h and T, from the last iterate.
     gradients: [Vec<Vec3>; 2],
@@ -133,6 +138,7 @@ impl Enthalpy {
             base: vec![0.0; cells],
             heat_capacity: vec![0.0; cells],
             explicit: vec![0.0; faces],
+            given: [vec![0.0; cells], vec![0.0; cells]],
             preconditioner: Incomplete::default(),
             gradients: [vec![Vec3::zeros(); cells], vec![Vec3::zeros(); cells]],
             faces: vec![0.0; faces],
@@ -168,11 +174,14 @@ impl Enthalpy {
             conduction(frame, material, now, index)
         });
         self.update_explicit(frame, carried, share, now);
+        self.update_given(frame, now);
         let (conduction, heat_capacity) = (&self.conduction, &self.heat_capacity);
+        let [_, coefficient] = &self.given;
         self.matrix.assemble(|cell, diagonal, neighbours| {
             let own = heat_capacity[cell];
             *diagonal = frame.old.mass[cell] / frame.storage_span
-                + frame.exchange.heat_coefficient[cell] / own;
+                + frame.mass_source(now, cell)
+                + coefficient[cell] / own;
             for link in grid.links(cell) {
                 let index = link.face as usize;
                 let inflow = (-link.sign * now.flux[index]).max(0.0);
@@ -192,10 +201,11 @@ impl Enthalpy {
         });
         let compression = (now.base_pressure - frame.old.base_pressure) / frame.storage_span;
         let (base, explicit) = (&self.base, &self.explicit);
+        let [given, coefficient] = &self.given;
         fill(&mut self.source, |cell| {
             let mut source = frame.old.mass[cell] * frame.old.enthalpy[cell] / frame.storage_span
-                + frame.exchange.heat_source[cell]
-                - frame.exchange.heat_coefficient[cell] * base[cell]
+                + given[cell]
+                - coefficient[cell] * base[cell]
                 + compression * frame.void_fraction[cell] * grid.volume[cell];
             for link in grid.links(cell) {
                 let index = link.face as usize;
@@ -213,6 +223,35 @@ impl Enthalpy {
                 source -= link.sign * explicit[index];
             }
             source
+        });
+    }
+
+    fn update_given(&mut self, frame: &Frame<'_>, now: &State) {
+        let exchange = frame.exchange;
+        let [given, coefficient] = &mut self.given;
+        given.clone_from(&exchange.heat_source);
+        coefficient.clone_from(&exchange.heat_coefficient);
+        let species = &exchange.species;
+        if species.is_none() {
+            return;
+        }
+        let count = frame.species();
+        let gas = frame.properties;
+        update(given, |cell, heat| {
+            let temperature = now.temperature[cell];
+            let sum = |k: usize| {
+                let slope = gas.species_heat_capacity(k, temperature);
+                let beyond = gas.species_enthalpy(k, temperature) - slope * temperature;
+                species.taken[cell * count + k] * beyond
+            };
+            *heat += species.heat[cell] - (0..count).map(sum).sum::<f64>();
+        });
+        update(coefficient, |cell, slope| {
+            let temperature = now.temperature[cell];
+            let one = |k: usize| {
+                species.taken[cell * count + k] * gas.species_heat_capacity(k, temperature)
+            };
+            *slope += (0..count).map(one).sum::<f64>();
         });
     }
 
@@ -319,9 +358,9 @@ impl Enthalpy {
 
     /// Heat from the particles to a cell in W, as the equation takes it.
     #[inline]
-    fn heat(&self, frame: &Frame<'_>, now: &State, cell: usize) -> f64 {
+    fn heat(&self, now: &State, cell: usize) -> f64 {
         let temperature = self.base[cell] + now.enthalpy[cell] / self.heat_capacity[cell];
-        frame.exchange.heat_source[cell] - frame.exchange.heat_coefficient[cell] * temperature
+        self.given[0][cell] - self.given[1][cell] * temperature
     }
 
     /// Energy that moves, in W: through the boundary, from the particles, into storage.
@@ -336,7 +375,7 @@ impl Enthalpy {
         let cells = sum(now.mass.len(), |cell| {
             let stored = now.mass[cell] * now.enthalpy[cell]
                 - frame.old.mass[cell] * frame.old.enthalpy[cell];
-            stored.abs() / frame.storage_span + self.heat(frame, now, cell).abs()
+            stored.abs() / frame.storage_span + self.heat(now, cell).abs()
         });
         boundary + cells
     }
@@ -360,7 +399,7 @@ impl Enthalpy {
         let grid = frame.grid;
         let mut taken = std::mem::take(&mut self.taken);
         taken.heat.resize(grid.cells(), 0.0);
-        fill(&mut taken.heat, |cell| self.heat(frame, now, cell));
+        fill(&mut taken.heat, |cell| self.heat(now, cell));
         taken.boundary = sums(grid.faces.len() - grid.internal, |face| {
             let inflow = self.inflow(frame, now, grid.internal + face);
             [inflow, inflow.abs()]

@@ -60,6 +60,8 @@ pub struct NativeGas {
     attempted: Option<(u64, u32)>,
     window: Option<Window>,
     void_fraction: Vec<f64>,
+    /// Share of −∇p and ρ g that the gas of each cell takes.
+    pressure_share: Vec<f64>,
     exchange: CellExchange,
     /// Absolute pressure in Pa, for the eyes of others.
     pressure: Vec<f64>,
@@ -95,6 +97,7 @@ impl NativeGas {
             taken_over: None,
             window: None,
             void_fraction: Vec::new(),
+            pressure_share: Vec::new(),
             exchange: CellExchange::default(),
             pressure: vec![0.0; cells],
             density: vec![0.0; cells],
@@ -144,6 +147,25 @@ impl NativeGas {
         ] {
             if found != cells {
                 return Err(format!("the {field} has {found} values for {cells} cells"));
+            }
+        }
+        let species = &exchange.species;
+        let wanted = match species.is_none() {
+            true => 0,
+            false => cells * self.setup.properties.species().len(),
+        };
+        for (field, list) in [
+            ("source", &species.source),
+            ("coefficient", &species.coefficient),
+            ("taken", &species.taken),
+        ] {
+            let odd = list.iter().find(|value| !value.is_finite());
+            if list.len() != wanted || odd.is_some() {
+                return Err(format!(
+                    "the {field} of species has {} values of {wanted}, {} among them",
+                    list.len(),
+                    odd.copied().unwrap_or_default()
+                ));
             }
         }
         let place = |cell: usize| {
@@ -245,6 +267,10 @@ impl Gas for NativeGas {
         })?;
         self.window = Some(*window);
         self.void_fraction.clone_from(&bed.void_fraction);
+        let share = |&pores: &f64| self.setup.momentum.pressure_share(pores);
+        self.pressure_share.clear();
+        self.pressure_share
+            .extend(bed.void_fraction.iter().map(share));
         self.exchange.clone_from(exchange);
         Ok(())
     }
@@ -282,6 +308,7 @@ impl Gas for NativeGas {
             convection: self.setup.controls.convection,
             gravity: self.setup.gravity,
             void_fraction: &self.void_fraction,
+            pressure_share: &self.pressure_share,
             exchange: &self.exchange,
             old: &self.committed,
             motion_span: spans.0,

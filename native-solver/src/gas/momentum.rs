@@ -2,9 +2,9 @@
 //! continuity residual (requirements TSM-8), per cell:
 //!
 //! m_old (u − u_old)/Δt + Σ φ_f u_f − u Σ φ_f − Σ (εμ)_f (∇u + ∇uᵀ − ⅔ ∇·u)·S
-//!     = −ε ∇p V + ε ρ V g + S_d − K_d u
+//!     = −χ ∇p V + χ ρ V g + S_d − K_d u
 //!
-//! (requirements FLO-5, Newtonian). Implicit Euler; u_f upwind, what a second-order value has beyond it
+//! (requirements FLO-5, Newtonian), χ the share of the pressure gradient: ε by model A, 1 by model B. Implicit Euler; u_f upwind, what a second-order value has beyond it
 //! explicitly from the last iterate; of the viscous stress the part ∇u·S implicitly, the rest explicitly;
 //! no viscous stress on free-slip walls and planes of symmetry; gas leaves an outlet as if the flow were developed there.
 
@@ -30,7 +30,7 @@ const PREDICTOR: f64 = 1e-3;
 /// does not.
 const ITERATIONS: u32 = 200;
 
-/// Matrix and right-hand side, the pressure left out: A u = b − ε V ∇p.
+/// Matrix and right-hand side, the pressure left out: A u = b − χ V ∇p.
 #[derive(Debug)]
 pub struct Momentum {
     /// A, the same for each component.
@@ -141,7 +141,7 @@ impl Momentum {
         });
         let explicit = &self.explicit;
         fill(&mut self.source, |cell| {
-            let weight = frame.void_fraction[cell] * material.density[cell] * grid.volume[cell];
+            let weight = frame.pressure_share[cell] * material.density[cell] * grid.volume[cell];
             let mut source = inertia(cell) * frame.old.velocity[cell]
                 + frame.exchange.drag_source[cell]
                 + weight * frame.gravity;
@@ -162,12 +162,12 @@ impl Momentum {
         });
     }
 
-    /// Σ over cells of |b − ε V ∇p − A u|, relative to the magnitudes of its terms.
+    /// Σ over cells of |b − χ V ∇p − A u|, relative to the magnitudes of its terms.
     pub fn residual(&self, frame: &Frame<'_>, now: &State) -> f64 {
         let (grid, cells) = (frame.grid, self.source.len());
         let parts = |cell: usize| {
             let own = self.matrix.diagonal()[cell] * now.velocity[cell];
-            let push = frame.void_fraction[cell] * grid.volume[cell];
+            let push = frame.pressure_share[cell] * grid.volume[cell];
             let pressure = push * now.pressure_gradient[cell];
             let force = self.without_pressure(cell, &now.velocity);
             (own, pressure, force)
@@ -213,7 +213,7 @@ impl Momentum {
             let (source, velocity) = (&self.source, &now.velocity);
             let gradient = &now.pressure_gradient;
             fill(&mut self.right, |cell| {
-                let push = frame.void_fraction[cell] * frame.grid.volume[cell];
+                let push = frame.pressure_share[cell] * frame.grid.volume[cell];
                 source[cell][axis] - push * gradient[cell][axis]
             });
             fill(&mut self.component, |cell| velocity[cell][axis]);

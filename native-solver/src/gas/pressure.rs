@@ -1,6 +1,6 @@
 //! Pressure and mass flux. A half cell between a centre and a face is a resistance in series with
-//! the next one: with the force F on the gas per void volume (everything but pressure), the
-//! mobility b = ρ ε² V/a of the cell and the distance d to the face, the superficial mass flux
+//! the next one: with the force F on the gas per χ V (everything but pressure; χ the share of ∇p that the
+//! gas takes, ε by model A), the mobility b = ρ ε χ V/a of the cell and the distance d to the face, the superficial mass flux
 //! per area G obeys
 //!
 //! p_f = p_P + d_P (F_P·n − G/b_P)  and  p_N = p_f + d_N (F_N·n − G/b_N),
@@ -70,7 +70,7 @@ impl Approximation {
 pub struct Pressure {
     matrix: Matrix,
     preconditioner: Approximation,
-    /// ρ ε² V/a of each cell in s.
+    /// ρ ε χ V/a of each cell in s.
     mobility: Vec<f64>,
     /// F of each cell in N/m³.
     force: Vec<Vec3>,
@@ -120,7 +120,7 @@ impl Pressure {
                 let held = old.mass[cell] / grid.volume[cell];
                 let difference =
                     old.flux[index] / face.area - held * old.velocity[cell].dot(&face.normal);
-                difference / (frame.motion_span * frame.void_fraction[cell])
+                difference / (frame.motion_span * frame.pressure_share[cell])
             };
             let neighbour = if index < grid.internal {
                 half(face.neighbour)
@@ -143,7 +143,7 @@ impl Pressure {
         let grid = frame.grid;
         fill(&mut self.mobility, |cell| {
             let pores = frame.void_fraction[cell];
-            material.density[cell] * pores * pores * grid.volume[cell]
+            material.density[cell] * pores * frame.pressure_share[cell] * grid.volume[cell]
                 / momentum.matrix.diagonal()[cell]
         });
         let mobility = &self.mobility;
@@ -192,13 +192,13 @@ impl Pressure {
         let velocity = &now.velocity;
         fill(&mut self.force, |cell| {
             momentum.without_pressure(cell, velocity)
-                / (frame.void_fraction[cell] * grid.volume[cell])
+                / (frame.pressure_share[cell] * grid.volume[cell])
         });
         self.update_drive(frame, &now.pressure_gradient);
 
         let (drive, conductance) = (&self.drive, &self.conductance);
         fill(&mut self.source, |cell| {
-            let mut source = target(frame, material, cell) - outflow(grid, drive, cell);
+            let mut source = target(frame, material, now, cell) - outflow(grid, drive, cell);
             for link in grid.links(cell).iter().filter(|link| link.is_boundary()) {
                 let index = link.face as usize;
                 if let Value::Outlet { pressure } = frame.boundary.at(index) {
@@ -307,8 +307,8 @@ impl Pressure {
         });
         let gradients = &now.pressure_gradient;
         fill(&mut now.velocity, |cell| {
-            let pores = frame.void_fraction[cell] * grid.volume[cell];
-            pores / momentum.matrix.diagonal()[cell] * (self.force[cell] - gradients[cell])
+            let share = frame.pressure_share[cell] * grid.volume[cell];
+            share / momentum.matrix.diagonal()[cell] * (self.force[cell] - gradients[cell])
         });
     }
 }
@@ -339,9 +339,9 @@ fn recovery(grid: &Grid) -> Vec<Matrix3<f64>> {
 
 /// The outflow that continuity asks of a cell in kg/s.
 #[inline]
-fn target(frame: &Frame<'_>, material: &Material, cell: usize) -> f64 {
+fn target(frame: &Frame<'_>, material: &Material, now: &State, cell: usize) -> f64 {
     let mass = frame.void_fraction[cell] * material.density[cell] * frame.grid.volume[cell];
-    (frame.old.mass[cell] - mass) / frame.storage_span
+    (frame.old.mass[cell] - mass) / frame.storage_span + frame.mass_source(now, cell)
 }
 
 /// Σ over cells of the mismatch of continuity, relative to what the cells hold and what flows
@@ -355,7 +355,7 @@ pub fn residual(frame: &Frame<'_>, material: &Material, now: &State) -> f64 {
             net += link.sign * flux;
             through += 0.5 * flux.abs();
         }
-        let error = (target(frame, material, cell) - net).abs();
+        let error = (target(frame, material, now, cell) - net).abs();
         [error, frame.old.mass[cell] / frame.storage_span + through]
     });
     error / terms
@@ -363,8 +363,10 @@ pub fn residual(frame: &Frame<'_>, material: &Material, now: &State) -> f64 {
 
 /// Continuity: what each cell holds after the window.
 pub fn advance_mass(frame: &Frame<'_>, now: &mut State) {
-    let flux = &now.flux;
-    fill(&mut now.mass, |cell| {
-        frame.old.mass[cell] - frame.storage_span * outflow(frame.grid, flux, cell)
+    let mut mass = std::mem::take(&mut now.mass);
+    fill(&mut mass, |cell| {
+        let net = outflow(frame.grid, &now.flux, cell) - frame.mass_source(now, cell);
+        frame.old.mass[cell] - frame.storage_span * net
     });
+    now.mass = mass;
 }

@@ -1,7 +1,8 @@
 //! Species of the gas, as mass fractions Y_k, with exactly the fluxes and masses of continuity, per cell:
 //!
-//! (m Y − m_old Y_old)/Δτ + Σ φ_f Y_f − Σ (εμ)_f/Sc ∇Y·S = 0
+//! (m Y − m_old Y_old)/Δτ + Σ φ_f Y_f − Σ (εμ)_f/Sc ∇Y·S = S − C Y
 //!
+//! with what particles give and take, S − C Y (continuity has their sum),
 //! (requirements SPC-1; all species diffuse alike, so that Fick's fluxes sum to zero). Implicit Euler,
 //! Y_f upwind, what a second-order value has beyond it explicitly from the last iterate, with one limiter
 //! for all species, so that the fractions go on summing to one. The last species is what the others leave.
@@ -112,11 +113,17 @@ impl Species {
         if species == 0 {
             return 0;
         }
-        self.assemble(frame, material, now);
+        self.update_diffusion(frame, material);
+        self.assemble(frame, now, 0);
         self.update_explicit(frame, share, now);
         self.preconditioner.update(&self.matrix);
+        let own = !frame.exchange.species.is_none();
         let mut iterations = 0;
         for k in 0..species - 1 {
+            if own && k > 0 {
+                self.assemble(frame, now, k);
+                self.preconditioner.update(&self.matrix);
+            }
             self.fill_source(frame, now, k);
             let target = Target {
                 absolute: goal.absolute * self.throughput(frame, now, k),
@@ -159,10 +166,15 @@ impl Species {
         if frame.species() == 0 {
             return 0.0;
         }
-        self.assemble(frame, material, now);
+        self.update_diffusion(frame, material);
+        self.assemble(frame, now, 0);
         self.update_explicit(frame, share, now);
+        let own = !frame.exchange.species.is_none();
         let mut worst: f64 = 0.0;
         for k in 0..frame.species() - 1 {
+            if own && k > 0 {
+                self.assemble(frame, now, k);
+            }
             self.fill_source(frame, now, k);
             let [error, content] = sums(now.mass.len(), |cell| {
                 let error = self.source[cell] - self.matrix.row_times(cell, &self.fractions[k]);
@@ -173,7 +185,7 @@ impl Species {
         worst
     }
 
-    fn assemble(&mut self, frame: &Frame<'_>, material: &Material, now: &State) {
+    fn update_diffusion(&mut self, frame: &Frame<'_>, material: &Material) {
         let grid = frame.grid;
         fill(&mut self.diffusion, |index| {
             let face = &grid.faces[index];
@@ -188,9 +200,18 @@ impl Species {
                 Value::Wall { .. } | Value::Outlet { .. } => 0.0,
             }
         });
+    }
+
+    /// The matrix of a species; that of all of them where no particle exchanges gas.
+    fn assemble(&mut self, frame: &Frame<'_>, now: &State, k: usize) {
+        let (grid, species) = (frame.grid, frame.species());
         let diffusion = &self.diffusion;
+        let given = &frame.exchange.species;
         self.matrix.assemble(|cell, diagonal, neighbours| {
             *diagonal = frame.old.mass[cell] / frame.storage_span;
+            if !given.is_none() {
+                *diagonal += frame.mass_source(now, cell) + given.coefficient[cell * species + k];
+            }
             for link in grid.links(cell) {
                 let index = link.face as usize;
                 let inflow = (-link.sign * now.flux[index]).max(0.0);
@@ -254,6 +275,9 @@ impl Species {
         fill(&mut self.source, |cell| {
             let old = frame.old.composition[cell * species + k];
             let mut source = frame.old.mass[cell] * old / frame.storage_span;
+            if let Some(given) = frame.exchange.species.source.get(cell * species + k) {
+                source += given;
+            }
             for link in grid.links(cell) {
                 let index = link.face as usize;
                 if link.is_boundary()
@@ -279,7 +303,9 @@ impl Species {
             let old = frame.old.mass[cell] * frame.old.composition[cell * species + k];
             [(now.mass[cell] * self.fractions[k][cell] - old).abs()]
         })[0];
-        boundary + stored / frame.storage_span
+        let given = &frame.exchange.species.source;
+        let exchanged = given.iter().skip(k).step_by(species);
+        boundary + stored / frame.storage_span + exchanged.map(|flow| flow.abs()).sum::<f64>()
     }
 
     /// Flow of a species into the domain through a boundary face in kg/s.
@@ -397,7 +423,16 @@ impl Species {
                 [stored, stored.abs()]
             });
             let [inflow, magnitude] = self.boundary[k];
+            let given = &frame.exchange.species;
+            let exchanged = match given.is_none() {
+                true => 0.0,
+                false => sums(now.mass.len(), |cell| {
+                    let at = cell * species + k;
+                    [given.source[at] - given.coefficient[at] * now.composition[at]]
+                })[0],
+            };
             balances.push(Balance {
+                exchange: exchanged * frame.storage_span,
                 stored,
                 stored_magnitude,
                 boundary: inflow * frame.storage_span,

@@ -3,7 +3,7 @@
 //! inertia meet at the face: the balance of the half cell (see [`super::pressure`]) has
 //! a_t times the flux there only to damp oscillations between faces, and gets back
 //!
-//! c_P = a_t/(ρ ε² V) (M̂_f − M_P·n),  M = ρ ε u,
+//! c_P = a_t/(ρ ε χ V) (M̂_f − M_P·n),  M = ρ ε u,
 //!
 //! where M̂_f is the flux per area that the cells around the face stand for. A cell's velocity is the
 //! mean of its faces, so that to fourth order of smooth fields, with g = n·∇M n,
@@ -70,8 +70,8 @@ impl Transport {
         let gradients = &self.gradients;
         let per_flux = |cell: usize| {
             let density = material.density[cell];
-            let pores = frame.void_fraction[cell];
-            momentum.transport(frame, cell) / (density * pores * pores * grid.volume[cell])
+            let shares = frame.void_fraction[cell] * frame.pressure_share[cell];
+            momentum.transport(frame, cell) / (density * shares * grid.volume[cell])
         };
         fill(&mut self.force[..grid.internal], |index| {
             let face = &grid.faces[index];

@@ -24,6 +24,8 @@ use dem::{Carried, CarriedWall, Engine, Newcomer, Stray};
 
 /// Steps between two looks at the user's interrupts.
 const SLICE: i64 = 200;
+/// A window is whole steps where it differs from them by a smaller share: by the rounding of its ticks.
+const WHOLE: f64 = 1e-11;
 
 /// A bed: frozen, or in motion.
 #[derive(Debug)]
@@ -38,6 +40,8 @@ pub struct NativeParticles {
     mass: Vec<f64>,
     started: Option<Window>,
     impulse: Vec<Vec3>,
+    /// Motion time in s that the steps of the window cover.
+    acted: f64,
     events: Vec<ParticleEvent>,
     /// The solver of moving particles.
     engine: Option<Box<Engine>>,
@@ -68,6 +72,7 @@ impl NativeParticles {
                 .collect(),
             started: None,
             impulse: vec![Vec3::zeros(); count],
+            acted: 0.0,
             events: Vec::new(),
             engine: None,
             steps: 0,
@@ -147,12 +152,45 @@ impl NativeParticles {
         }
     }
 
-    fn advance(&mut self, window: &Window, supervisor: &Supervisor) -> Result<(), PartError> {
+    /// Number of the first and the last step of a window.
+    fn steps(&self, window: &Window) -> (i64, i64) {
         let end = window.start.motion.count() + window.span.motion.count();
-        let (mut done, end) = (
-            self.nearest(window.start.motion),
-            self.nearest(Ticks::new(end)),
-        );
+        let begin = self.nearest(window.start.motion);
+        (begin, self.nearest(Ticks::new(end)))
+    }
+
+    /// Has the forces act over the window's steps so much that their impulse is that over its span.
+    fn push(&mut self, window: &Window, force: &[Vec3]) -> Result<(), PartError> {
+        let span = window.span.motion.seconds();
+        self.impulse.clear();
+        self.impulse.extend(force.iter().map(|force| force * span));
+        self.acted = span;
+        let (begin, end) = self.steps(window);
+        let Some(engine) = &mut self.engine else {
+            return Ok(());
+        };
+        let step = engine.contacts().step;
+        if end <= begin {
+            let message = format!(
+                "a window of {span} s holds no time step of {step} s; shorten `motion.motion_step`"
+            );
+            return Err(self
+                .failure(FailureKind::Protocol, message)
+                .in_window(window));
+        }
+        self.acted = (end - begin) as f64 * step;
+        let scale = span / self.acted;
+        if (scale - 1.0).abs() < WHOLE {
+            engine.push(force);
+        } else {
+            let scaled: Vec<Vec3> = force.iter().map(|force| force * scale).collect();
+            engine.push(&scaled);
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, window: &Window, supervisor: &Supervisor) -> Result<(), PartError> {
+        let (mut done, end) = self.steps(window);
         while done < end {
             let steps = (end - done).min(SLICE);
             let Some(engine) = &mut self.engine else {
@@ -338,13 +376,7 @@ impl Particles for NativeParticles {
                 .failure(FailureKind::Protocol, message)
                 .in_window(window));
         }
-        let span = window.span.motion.seconds();
-        for (impulse, force) in self.impulse.iter_mut().zip(&push.force) {
-            *impulse = force * span;
-        }
-        if let Some(engine) = &mut self.engine {
-            engine.push(&push.force);
-        }
+        self.push(window, &push.force)?;
         self.events.clear();
         self.started = Some(*window);
         Ok(())
@@ -362,6 +394,8 @@ impl Particles for NativeParticles {
             self.advance(&window, supervisor)?;
         }
         received.impulse.clone_from(&self.impulse);
+        received.acted = self.acted;
+        received.support = self.engine.as_mut().map(|engine| engine.take_support());
         Ok(())
     }
 }

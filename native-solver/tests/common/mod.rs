@@ -149,6 +149,7 @@ pub fn setup(patches: &[(&str, GasPatch)]) -> GasSetup {
         pressure: ATMOSPHERE,
         velocity: Vec3::zeros(),
         gravity: Vec3::zeros(),
+        momentum: Default::default(),
         patches: patches
             .iter()
             .map(|(name, patch)| ((*name).to_owned(), patch.clone()))
@@ -188,6 +189,7 @@ impl Driver {
                 drag_source: vec![Vec3::zeros(); cells],
                 heat_coefficient: vec![0.0; cells],
                 heat_source: vec![0.0; cells],
+                ..CellExchange::default()
             },
             received: CellReceived::default(),
             clocks: Clocks::default(),

@@ -129,7 +129,12 @@ impl Bed {
 
     /// One window of so many steps.
     pub fn try_run(&mut self, steps: u64) -> Result<(), PartError> {
-        let span = Ticks::from_seconds(steps as f64 * self.step).unwrap();
+        self.try_span(steps as f64 * self.step)
+    }
+
+    /// One window of a length in s.
+    pub fn try_span(&mut self, seconds: f64) -> Result<(), PartError> {
+        let span = Ticks::from_seconds(seconds).unwrap();
         let window = Window {
             start: self.clocks,
             span: Clocks {

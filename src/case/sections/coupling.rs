@@ -5,12 +5,13 @@ use std::time::Duration;
 
 use calcine_adapters::liggghts::template::Template;
 use calcine_adapters::openfoam::stock::{Solver, refusal};
+use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::setup::GasSetup;
 use calcine_coupler::time::GasStorage;
 
 use super::existing;
 use super::zone::zones;
-use crate::case::model::{Coupling, External, Mapping, Motion, Population, Time};
+use crate::case::model::{Coupling, External, Laws, Mapping, Motion, Population, Time};
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
 
@@ -82,7 +83,13 @@ fn fraction(table: &Reader<'_>, key: &str) -> Option<f64> {
 }
 
 /// A stock solver does less than calcineGasFoam: what this case asks of it in vain.
-pub(super) fn check_stock(root: &Reader<'_>, openfoam: &External, gas: &GasSetup, time: &Time) {
+pub(super) fn check_stock(
+    root: &Reader<'_>,
+    openfoam: &External,
+    gas: &GasSetup,
+    time: &Time,
+    laws: Option<&Laws>,
+) {
     if !openfoam.solver.is_stock() {
         return;
     }
@@ -98,6 +105,13 @@ pub(super) fn check_stock(root: &Reader<'_>, openfoam: &External, gas: &GasSetup
              cannot do `process` storage"
         );
         let help = "write `gas_storage = \"accelerated\"`, or leave `openfoam.solver` out";
+        section.fail("solver", rule, help);
+    }
+    if laws.is_some_and(|laws| laws.momentum != MomentumModel::A) {
+        let rule = format!(
+            "names {name}, which knows no void fraction in its momentum, but `laws.drag.model` is \"b\""
+        );
+        let help = "leave `laws.drag.model` out, or leave `openfoam.solver` out";
         section.fail("solver", rule, help);
     }
     if let Some(why) = refusal(openfoam.solver, gas, splits) {
@@ -127,6 +141,7 @@ pub(super) fn external(root: &Reader<'_>, key: &str, folder: &Path) -> External 
         template: None,
         start: None,
         solver: Solver::default(),
+        wall_impulse: false,
         ranks: 1,
     };
     if let Some(section) = root.table(key) {
@@ -135,6 +150,8 @@ pub(super) fn external(root: &Reader<'_>, key: &str, folder: &Path) -> External 
             external.start = existing(&section, "start", folder);
             let solvers = Solver::ALL.map(|solver| (solver.name(), solver));
             external.solver = section.choice("solver", &solvers).unwrap_or_default();
+        } else {
+            external.wall_impulse = section.truth("wall_impulse").unwrap_or(false);
         }
         if let Some(ranks) = section.whole("ranks", 1..=100_000) {
             external.ranks = u32::try_from(ranks).unwrap_or(1);

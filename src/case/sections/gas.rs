@@ -1,5 +1,6 @@
 //! `[gas]`.
 
+use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
 use calcine_coupler::physics::gas_model::{ConstantGas, GasModel};
@@ -41,6 +42,7 @@ pub(super) fn read(
         pressure,
         velocity,
         gravity: Vec3::from(gravity),
+        momentum: MomentumModel::default(), // `laws.drag.model` says
         patches: patches?,
         controls,
     };

@@ -1,25 +1,14 @@
 //! `[laws]`: each is stated, none has a default.
 
+use calcine_coupler::momentum_model::MomentumModel;
+
 use super::heat;
 use crate::case::model::{DragLaw, HeatLaw, Laws};
 use crate::case::table::Reader;
 
 pub(super) fn read(root: &Reader<'_>) -> Option<Laws> {
     let section = root.required_table("laws", "[laws] with drag = { law = \"ergun-wen-yu\" }")?;
-    let drag = law(
-        &section,
-        "drag",
-        &[
-            ("ergun-wen-yu", DragLaw::ErgunWenYu),
-            ("ergun", DragLaw::Ergun),
-            ("wen-yu", DragLaw::WenYu),
-            ("gidaspow", DragLaw::Gidaspow),
-            ("di-felice", DragLaw::DiFelice),
-            ("koch-hill", DragLaw::KochHill),
-            ("beetstra", DragLaw::Beetstra),
-            ("none", DragLaw::None),
-        ],
-    );
+    let drag = drag(&section);
     let heats = [
         ("gunn", HeatLaw::Gunn),
         ("ranz-marshall", HeatLaw::RanzMarshall),
@@ -28,15 +17,42 @@ pub(super) fn read(root: &Reader<'_>) -> Option<Laws> {
         ("none", HeatLaw::None),
     ];
     let heat_transfer = law(&section, "heat_transfer", &heats);
+    let mass_transfer = match section.has("mass_transfer") {
+        true => law(&section, "mass_transfer", &heats),
+        false => Some(HeatLaw::None),
+    };
     let conduction = heat::conduction(&section);
     let radiation = heat::radiation(&section);
     section.finish();
+    let (drag, momentum) = drag?;
     Some(Laws {
-        drag: drag?,
+        drag,
+        momentum,
         heat_transfer: heat_transfer?,
         conduction: conduction?,
         radiation: radiation?,
+        mass_transfer: mass_transfer?,
     })
+}
+
+/// The drag law, and the model by which it is exchanged.
+fn drag(section: &Reader<'_>) -> Option<(DragLaw, MomentumModel)> {
+    let laws = [
+        ("ergun-wen-yu", DragLaw::ErgunWenYu),
+        ("ergun", DragLaw::Ergun),
+        ("wen-yu", DragLaw::WenYu),
+        ("gidaspow", DragLaw::Gidaspow),
+        ("di-felice", DragLaw::DiFelice),
+        ("koch-hill", DragLaw::KochHill),
+        ("beetstra", DragLaw::Beetstra),
+        ("none", DragLaw::None),
+    ];
+    let table = section.required_table("drag", "drag = { law = \"ergun-wen-yu\" }")?;
+    let law = table.required_choice("law", &laws);
+    let models = [MomentumModel::A, MomentumModel::B].map(|model| (model.name(), model));
+    let model = table.choice("model", &models).unwrap_or_default();
+    table.finish();
+    Some((law?, model))
 }
 
 fn law<T: Copy>(section: &Reader<'_>, key: &str, choices: &[(&str, T)]) -> Option<T> {

@@ -5,6 +5,7 @@ mod coupling;
 mod gas;
 mod gas_patch;
 mod heat;
+mod inventory;
 mod laws;
 mod mesh;
 mod motion;
@@ -13,7 +14,9 @@ mod particles;
 mod place;
 mod probes;
 mod quantities;
+mod reactions;
 mod sizes;
+mod solids;
 mod time;
 mod traffic;
 mod walls;
@@ -45,7 +48,8 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     let folder = path.parent().unwrap_or(Path::new("."));
     let time = time::read(root);
     let mesh = mesh::read(root, folder);
-    let materials = particles::materials(root);
+    let solids = solids::solids(root);
+    let materials = particles::materials(root, &solids);
     let contacts = particles::contacts(root, &materials);
     let gas = gas::read(
         root,
@@ -64,19 +68,29 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     if let (Some(laws), Some(particles)) = (&laws, &particles) {
         heat::need_properties(root, laws, &materials, particles, &walls);
     }
+    let reactions = reactions::reactions(root, &solids, gas.as_ref().map(|(gas, _)| gas));
+    let chemistry = inventory::inventory(solids, reactions, &materials);
+    if let (Some(laws), Some(particles)) = (&laws, &particles) {
+        reactions::fits(root, &chemistry, laws, particles, openfoam.solver);
+    }
     let output = output::output(root);
     let probes = probes::probes(root);
-    let known = quantities::Known {
-        mesh: mesh.as_ref(),
-        populations: particles.as_deref(),
-        probes: &probes,
-        walls: &walls,
-        gravity: gas.as_ref().map(|(gas, _)| gas.gravity),
+    let quantities = {
+        let species = gas.as_ref().map(|(gas, _)| gas.properties.species());
+        let known = quantities::Known {
+            mesh: mesh.as_ref(),
+            populations: particles.as_deref(),
+            probes: &probes,
+            walls: &walls,
+            species: species.unwrap_or_default(),
+            solids: &chemistry.solids,
+            gravity: gas.as_ref().map(|(gas, _)| gas.gravity),
+        };
+        quantities::quantities(root, &known)
     };
-    let quantities = quantities::quantities(root, &known);
     let (walls, wall_temperatures): (Vec<_>, Vec<_>) = walls.into_iter().unzip();
     if let (Some((gas, _)), Some((time, _))) = (&gas, &time) {
-        coupling::check_stock(root, &openfoam, gas, time);
+        coupling::check_stock(root, &openfoam, gas, time, laws.as_ref());
     }
     if let Some(particles) = &particles {
         coupling::check_script(root, &liggghts, particles);
@@ -95,7 +109,9 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         }
     }
     let (time, _) = time?;
-    let (gas, gas_held) = gas?;
+    let (mut gas, gas_held) = gas?;
+    let laws = laws?;
+    gas.momentum = laws.momentum;
     Some(Case {
         name: path
             .file_stem()
@@ -107,6 +123,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         time,
         mesh: mesh?,
         materials,
+        chemistry,
         contacts,
         walls,
         wall_temperatures,
@@ -116,7 +133,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         particles: particles?,
         feeds,
         outlets,
-        laws: laws?,
+        laws,
         coupling: coupling?,
         openfoam,
         liggghts,

@@ -14,7 +14,16 @@ const GAS: [&str; 6] = [
     "mass_fractions",
 ];
 /// Particle fields of the snapshots.
-const PARTICLES: [&str; 3] = ["temperature", "velocity", "heat"];
+const PARTICLES: [&str; 8] = [
+    "temperature",
+    "velocity",
+    "heat",
+    "force",
+    "void_fraction",
+    "slip",
+    "mass",
+    "solids",
+];
 
 pub(super) fn output(root: &Reader<'_>) -> Option<Output> {
     let section = root.required_table("output", "[output] with every = \"30 s\"")?;

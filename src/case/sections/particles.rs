@@ -5,15 +5,17 @@ use std::path::Path;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::conduction::Conductivity;
 use calcine_coupler::physics::solid::HeatCapacity;
+use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::physics::thermo::Nasa7;
 
 use super::place::place;
+use super::reactions::{composition, mixed};
 use super::sizes::sizes;
 use crate::case::model::{Contact, Material, MeshSpec, Motion, Population};
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
 
-pub(super) fn materials(root: &Reader<'_>) -> Vec<Material> {
+pub(super) fn materials(root: &Reader<'_>, solids: &[SolidSpecies]) -> Vec<Material> {
     let example = "[materials.glass] with density = \"2500 kg/m^3\"";
     let Some(section) = root.required_table("materials", example) else {
         return Vec::new();
@@ -21,17 +23,30 @@ pub(super) fn materials(root: &Reader<'_>) -> Vec<Material> {
     section
         .named()
         .into_iter()
-        .map(|(name, table)| material(name, &table))
+        .map(|(name, table)| material(name, &table, solids))
         .collect()
 }
 
-fn material(name: String, table: &Reader<'_>) -> Material {
+fn material(name: String, table: &Reader<'_>, solids: &[SolidSpecies]) -> Material {
     // A value that could not be read is recorded as an error; its stand-in is never used.
     let positive = |key, dimension| table.required_positive(key, dimension).unwrap_or(f64::NAN);
+    let composed = table.table("composition");
+    let composition = composed.and_then(|table| composition(&table, solids));
+    let heat_capacity = match &composition {
+        Some(_) if table.has("heat_capacity") => {
+            let help = "remove it: the heat capacity is that of the solids";
+            table.fail("heat_capacity", "stands beside `composition`", help);
+            HeatCapacity::constant(f64::NAN)
+        }
+        Some(fractions) => mixed(fractions, solids),
+        None if table.has("composition") => HeatCapacity::constant(f64::NAN),
+        None => heat_capacity(table),
+    };
     let made = Material {
         name,
         density: positive("density", Dimension::DENSITY),
-        heat_capacity: heat_capacity(table),
+        heat_capacity,
+        composition,
         conductivity: conductivity(table),
         emissivity: table.quantity("emissivity", Dimension::NONE),
         young: table.positive("young", Dimension::PRESSURE),

@@ -10,6 +10,8 @@ use crate::case::model::{
     Band, Expect, GasPlace, Measure, MeshSpec, ParticlePlace, Place, Population, Probe, Quantity,
     SURROUNDINGS, Statistic, belongs,
 };
+use calcine_coupler::physics::solids::SolidSpecies;
+
 use crate::case::table::Reader;
 use crate::case::units::{Dimension, difference};
 
@@ -36,17 +38,26 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
     let example = "measure = { difference = \"pressure\", patches = [\"bottom\", \"top\"] }";
     let measure = table.required_table("measure", example).and_then(|reader| {
         let measure = measure(&reader, known);
+        let of = reader.text("of");
+        let column = measure
+            .as_ref()
+            .and_then(|(measure, field)| column(&reader, measure, field, of, known));
         reader.finish();
-        measure
+        measure.map(|measure| (measure, column))
     });
     // Keys are read even where the measure could not be, so that they are not called unknown.
     let (agree, expected) = (table.has("agree"), table.table("expect"));
+    let from = table.quantity("agree_from", Dimension::TIME);
+    if !agree && table.has("agree_from") {
+        let help = "add agree = \"1 %\", or remove it";
+        table.fail("agree_from", "stands without `agree`", help);
+    }
     let over = table.positive("agree_over", Dimension::TIME);
     if over.is_some() && !agree {
         let help = "add agree = \"5 %\", or remove it";
         table.fail("agree_over", "stands without `agree`", help);
     }
-    let Some((measure, field)) = measure else {
+    let Some(((measure, field), column)) = measure else {
         table.finish();
         return None;
     };
@@ -57,6 +68,8 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
         "void_fraction" => (Dimension::NONE, "1"),
         "height" => (Dimension::LENGTH, "m"),
         "wall_heat" => (Dimension::POWER, "W"),
+        "mass" => (Dimension::MASS, "kg"),
+        "mass_fraction" => (Dimension::NONE, "1"),
         "angle" => (Dimension::NONE, "rad"),
         _ => (Dimension::TEMPERATURE, "K"),
     };
@@ -83,8 +96,10 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
     Some(Quantity {
         name: name?.into(),
         measure,
+        column,
         unit,
         agree,
+        agree_from: from.unwrap_or(0.0),
         agree_over: over.unwrap_or(0.0),
         expect,
     })
@@ -113,33 +128,71 @@ fn band(table: &Reader<'_>, key: &str, dimension: Dimension) -> Option<Band> {
 
 /// What a measure may name.
 pub(super) struct Known<'a> {
-    /// The mesh, for its patches.
     pub mesh: Option<&'a MeshSpec>,
-    /// Populations.
     pub populations: Option<&'a [Population]>,
-    /// Probes.
     pub probes: &'a [Probe],
     /// Walls, with the temperatures of those that have one.
     pub walls: &'a [(Wall, Option<Schedule>)],
-    /// Gravity in m/s²; none where the gas could not be read.
+    pub species: &'a [String],
+    pub solids: &'a [SolidSpecies],
+    /// In m/s²; none where the gas could not be read.
     pub gravity: Option<Vec3>,
+}
+
+/// The species or solid whose mass fraction is measured.
+fn column(
+    reader: &Reader<'_>,
+    measure: &Measure,
+    field: &str,
+    of: Option<&str>,
+    known: &Known<'_>,
+) -> Option<usize> {
+    if field != "mass_fraction" {
+        if of.is_some() {
+            let help = "remove it: only a mass_fraction is of a species";
+            reader.fail("of", "does not go with this measure", help);
+        }
+        return None;
+    }
+    let Some(name) = of else {
+        reader.missing("of", "\"CO2\"");
+        return None;
+    };
+    let solids: Vec<&str> = known.solids.iter().map(SolidSpecies::name).collect();
+    let gases: Vec<&str> = known.species.iter().map(String::as_str).collect();
+    let names = match measure {
+        Measure::Gas { .. } => gases,
+        _ => solids,
+    };
+    let found = names.iter().position(|other| *other == name);
+    if found.is_none() {
+        let help = match names[..] {
+            [] => "there are none here".into(),
+            _ => format!("there are {}", names.join(", ")),
+        };
+        reader.fail("of", format!("is \"{name}\""), help);
+    }
+    found
 }
 
 /// Fields whose difference between patches can be asked for.
 const DIFFERENCES: [(&str, &str); 2] = [("pressure", "pressure"), ("temperature", "temperature")];
 /// Fields of the gas.
-const GAS: [(&str, &str); 5] = [
+const GAS: [(&str, &str); 6] = [
     ("temperature", "temperature"),
     ("pressure", "pressure"),
     ("density", "density"),
     ("speed", "speed"),
     ("void_fraction", "void_fraction"),
+    ("mass_fraction", "mass_fraction"),
 ];
 /// Fields of particles.
-const PARTICLES: [(&str, &str); 3] = [
+const PARTICLES: [(&str, &str); 5] = [
     ("temperature", "temperature"),
     ("speed", "speed"),
     ("height", "height"),
+    ("mass", "mass"),
+    ("mass_fraction", "mass_fraction"),
 ];
 
 /// The measure and the field that it is of.

@@ -1,6 +1,6 @@
 //! Chemical elements.
 
-/// An element that gases here are made of.
+/// An element that gases and solids here are made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Element {
     /// Hydrogen.
@@ -13,13 +13,37 @@ pub enum Element {
     O,
     /// Argon.
     Ar,
+    /// Iron.
+    Fe,
+    /// Calcium.
+    Ca,
+    /// Silicon.
+    Si,
+    /// Aluminium.
+    Al,
+    /// Magnesium.
+    Mg,
+    /// Sulfur.
+    S,
 }
 
 impl Element {
     /// How many elements there are.
-    pub const COUNT: usize = 5;
+    pub const COUNT: usize = 11;
     /// All of them, in the order of every list of element amounts.
-    pub const ALL: [Self; Self::COUNT] = [Self::H, Self::C, Self::N, Self::O, Self::Ar];
+    pub const ALL: [Self; Self::COUNT] = [
+        Self::H,
+        Self::C,
+        Self::N,
+        Self::O,
+        Self::Ar,
+        Self::Fe,
+        Self::Ca,
+        Self::Si,
+        Self::Al,
+        Self::Mg,
+        Self::S,
+    ];
 
     /// Its symbol.
     pub fn symbol(self) -> &'static str {
@@ -29,6 +53,12 @@ impl Element {
             Self::N => "N",
             Self::O => "O",
             Self::Ar => "Ar",
+            Self::Fe => "Fe",
+            Self::Ca => "Ca",
+            Self::Si => "Si",
+            Self::Al => "Al",
+            Self::Mg => "Mg",
+            Self::S => "S",
         }
     }
 
@@ -41,6 +71,12 @@ impl Element {
             Self::N => 14.007e-3,
             Self::O => 15.999e-3,
             Self::Ar => 39.95e-3,
+            Self::Fe => 55.845e-3,
+            Self::Ca => 40.078e-3,
+            Self::Si => 28.085e-3,
+            Self::Al => 26.982e-3,
+            Self::Mg => 24.305e-3,
+            Self::S => 32.06e-3,
         }
     }
 }
@@ -59,7 +95,7 @@ mod tests {
     #[test]
     fn methane_and_air_s_gases_have_the_molar_masses_of_the_handbooks() {
         // NIST Chemistry WebBook, g/mol: CH4 16.0425, O2 31.9988, CO2 44.0095.
-        let [h, c, _, o, _] = Element::ALL.map(Element::molar_mass);
+        let [h, c, _, o, ..] = Element::ALL.map(Element::molar_mass);
         assert!((c + 4.0 * h - 16.0425e-3).abs() < 1e-6);
         assert!((2.0 * o - 31.9988e-3).abs() < 1e-6);
         assert!((c + 2.0 * o - 44.0095e-3).abs() < 1e-6);

@@ -313,8 +313,10 @@ mod tests {
             Species::new("X", atoms, *n2.polynomial(), viscosity, volume)
         };
         assert!(with(*n2.atoms(), 1e-6, 18.5).is_ok());
-        assert!(with([0.0; 5], 1e-6, 18.5).is_err());
-        assert!(with([-1.0, 1.0, 1.0, 0.0, 0.0], 1e-6, 18.5).is_err());
+        assert!(with([0.0; Element::COUNT], 1e-6, 18.5).is_err());
+        let mut negative = *n2.atoms();
+        negative[0] = -1.0;
+        assert!(with(negative, 1e-6, 18.5).is_err());
         assert!(with(*n2.atoms(), -1e-6, 18.5).is_err());
         let message = with(*n2.atoms(), 1e-6, f64::NAN).unwrap_err().to_string();
         assert!(

@@ -12,8 +12,18 @@ use super::sphere::{Load, Moves, Place, Spheres};
 use super::walls::WallBody;
 use super::walls::group::WallContacts;
 
-/// Particles per block; fixed, so that sums do not depend on the number of threads.
-pub const SIZE: usize = 2048;
+/// Most and fewest particles per block.
+const SIZES: [usize; 2] = [256, 2048];
+/// Blocks wanted at least, so that threads find equal shares: five blocks on two threads are three for the one
+/// and two for the other.
+const BLOCKS: usize = 16;
+
+/// Particles per block of so many; it depends on nothing else, so that sums do not depend on the number of
+/// threads.
+pub fn size(count: usize) -> usize {
+    let share = count.div_ceil(BLOCKS).next_power_of_two();
+    share.clamp(SIZES[0], SIZES[1])
+}
 
 /// Pairs that may touch, with their memory. Arrays that a run does not need are empty.
 #[derive(Clone, Debug, Default)]
@@ -57,6 +67,11 @@ pub struct Block {
     pub touching: Vec<u32>,
     /// Energies of its contacts.
     pub budget: Budget,
+    /// Force of all walls on its particles in the last evaluation, in N.
+    pub wall_force: Vec3,
+    /// Impulse in N s that walls and held particles gave its free ones, and what of it others' free ones
+    /// got: sums over all blocks are of free particles.
+    pub support: Vec3,
 }
 
 /// What an evaluation of all forces shares.
@@ -87,6 +102,11 @@ impl Block {
         self.load.fill(Load::default());
         self.walls
             .evaluate::<L, BUDGET>(scene, self.begin, &mut self.load, &mut self.budget);
+        self.wall_force = if self.walls.groups.is_empty() {
+            Vec3::zeros()
+        } else {
+            self.load.iter().map(|load| load.force).sum()
+        };
         let Self {
             begin,
             inner,

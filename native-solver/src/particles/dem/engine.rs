@@ -5,7 +5,7 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{ContactLaw, HertzMindlin, Linear, SpringSliderDashpot};
 use rayon::prelude::*;
 
-use super::block::{Block, SIZE, Scene};
+use super::block::{Block, Scene, size};
 use super::carry::{Carried, CarriedWall, Carry};
 use super::energy::{Budget, Energy};
 use super::motion::{self, Kick};
@@ -20,6 +20,8 @@ const SKIN: f64 = 0.2;
 const SKINS: [f64; 2] = [0.04, 1.0];
 /// Between so many steps per search the skin is right: below, it grows; above, it shrinks.
 const STEPS: [u64; 2] = [15, 60];
+/// Up to so many particles one thread does the work alone.
+const ALONE: usize = 2048;
 /// After so many steps without a search the skin is too wide in any case.
 const IDLE: u64 = 500;
 
@@ -158,6 +160,7 @@ impl Engine {
         self.stamp = 1;
         for block in &mut self.blocks {
             block.budget = Budget::default();
+            block.support = Vec3::zeros();
         }
         if particles.is_empty() {
             self.blocks.clear();
@@ -195,6 +198,12 @@ impl Engine {
             velocity[row as usize] = moves.velocity;
             spin[row as usize] = moves.spin;
         }
+    }
+
+    /// Impulse in N s that walls and held particles gave the free ones since this was asked last.
+    pub fn take_support(&mut self) -> Vec3 {
+        let blocks = self.blocks.iter_mut();
+        blocks.map(|block| std::mem::take(&mut block.support)).sum()
     }
 
     /// Counts energies from now on, at some cost, or no longer.
@@ -298,7 +307,7 @@ impl Engine {
 
     /// True where more than one thread is worth waking.
     fn parallel(&self) -> bool {
-        self.spheres.len() > SIZE && rayon::current_num_threads() > 1
+        self.spheres.len() > ALONE && rayon::current_num_threads() > 1
     }
 
     fn kick(&self, times: u32) -> Kick {
@@ -314,6 +323,7 @@ impl Engine {
     fn drift(&mut self, times: u32) -> f64 {
         let (parallel, counting) = (self.parallel(), self.counting);
         let kick = self.kick(times);
+        let size = size(self.spheres.len());
         let (outgoing, spheres) = (&self.outgoing, &mut self.spheres);
         let work = |(((block, place), moves), push): Portion<'_>| {
             if times > 1 {
@@ -328,17 +338,17 @@ impl Engine {
         let fastest = if parallel {
             self.blocks
                 .par_iter_mut()
-                .zip(spheres.place.par_chunks_mut(SIZE))
-                .zip(spheres.moves.par_chunks_mut(SIZE))
-                .zip(spheres.push.par_chunks(SIZE))
+                .zip(spheres.place.par_chunks_mut(size))
+                .zip(spheres.moves.par_chunks_mut(size))
+                .zip(spheres.push.par_chunks(size))
                 .map(work)
                 .reduce(|| 0.0, f64::max)
         } else {
             self.blocks
                 .iter_mut()
-                .zip(spheres.place.chunks_mut(SIZE))
-                .zip(spheres.moves.chunks_mut(SIZE))
-                .zip(spheres.push.chunks(SIZE))
+                .zip(spheres.place.chunks_mut(size))
+                .zip(spheres.moves.chunks_mut(size))
+                .zip(spheres.push.chunks(size))
                 .map(work)
                 .fold(0.0, f64::max)
         };
@@ -347,12 +357,13 @@ impl Engine {
 
     fn close(&mut self) {
         let kick = self.kick(1);
-        let chunks = self.spheres.moves.chunks_mut(SIZE);
+        let size = size(self.spheres.len());
+        let chunks = self.spheres.moves.chunks_mut(size);
         for ((block, moves), push) in self
             .blocks
-            .iter()
+            .iter_mut()
             .zip(chunks)
-            .zip(self.spheres.push.chunks(SIZE))
+            .zip(self.spheres.push.chunks(size))
         {
             motion::close(block, &kick, moves, push);
         }

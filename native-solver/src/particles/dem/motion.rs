@@ -1,4 +1,9 @@
 //! Velocity Verlet, with rotation.
+//!
+//! What walls and held particles give the free ones is counted on the way, from the other side of the
+//! forces: Σ_free walls − Σ_held pairs = Σ_all walls − Σ_held (walls + pairs), because the forces of a pair
+//! cancel. That the momentum of the free particles changes by no more than this, gravity and what they
+//! are pushed with is what a ledger can find out.
 
 use calcine_coupler::physics::Vec3;
 
@@ -43,22 +48,32 @@ pub fn drift<const BUDGET: bool>(
 ) -> f64 {
     let step = 2.0 * now.half;
     let mut fastest = 0.0f64;
+    let mut held = Vec3::zeros();
     for (((load, place), moves), push) in block.load.iter().zip(place).zip(moves).zip(push) {
         kick(now, moves, load.force + push, load.torque);
         place.centre += moves.velocity * step;
         fastest = fastest.max(moves.velocity.norm_squared());
+        if moves.inverse_mass == 0.0 {
+            held += load.force;
+        }
         if BUDGET && moves.inverse_mass > 0.0 {
             let way = moves.velocity * step;
             block.budget.gravity_work += now.gravity.dot(&way) / moves.inverse_mass;
             block.budget.push_work += push.dot(&way);
         }
     }
+    block.support += (block.wall_force - held) * (now.half * f64::from(now.times));
     fastest
 }
 
 /// The last half kick of a window.
-pub fn close(block: &Block, now: &Kick, moves: &mut [Moves], push: &[Vec3]) {
+pub fn close(block: &mut Block, now: &Kick, moves: &mut [Moves], push: &[Vec3]) {
+    let mut held = Vec3::zeros();
     for ((load, moves), push) in block.load.iter().zip(moves).zip(push) {
         kick(now, moves, load.force + push, load.torque);
+        if moves.inverse_mass == 0.0 {
+            held += load.force;
+        }
     }
+    block.support += (block.wall_force - held) * now.half;
 }

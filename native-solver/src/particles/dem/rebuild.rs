@@ -4,7 +4,7 @@ use calcine_coupler::motion::WallShape;
 use calcine_coupler::physics::contact::{ContactLaw, PairConstants};
 use rayon::prelude::*;
 
-use super::block::{Block, Candidates, SIZE};
+use super::block::{Block, Candidates, size};
 use super::carry::Carry;
 use super::grid::{self, Around, Grid};
 use super::rules::Rules;
@@ -60,11 +60,12 @@ impl Search {
         self.carry.sort(spheres.len());
         self.grid.fill(&spheres.place, task.bounds, task.skin);
         self.near_triangles(task, spheres);
-        blocks.resize_with(spheres.len().div_ceil(SIZE), Block::default);
+        let size = size(spheres.len());
+        blocks.resize_with(spheres.len().div_ceil(size), Block::default);
         outgoing.resize_with(blocks.len(), Vec::new);
         let list = |(k, (block, outgoing)): (usize, (&mut Block, &mut Vec<Load>))| {
-            block.begin = k * SIZE;
-            let end = spheres.len().min(block.begin + SIZE);
+            block.begin = k * size;
+            let end = spheres.len().min(block.begin + size);
             block.load.clear();
             block.load.resize(end - block.begin, Load::default());
             self.pairs(task, spheres, block, end);
@@ -85,7 +86,7 @@ impl Search {
         } else {
             blocks.iter_mut().zip(outgoing).enumerate().for_each(list);
         }
-        deliver(blocks);
+        deliver(blocks, size);
     }
 
     fn sort<L>(&mut self, task: &Task<'_, L>, spheres: &mut Spheres) {
@@ -256,15 +257,15 @@ impl Search {
 }
 
 /// Tells each block which loads of others are for its particles, in the order of blocks and slots.
-fn deliver(blocks: &mut [Block]) {
+fn deliver(blocks: &mut [Block], size: usize) {
     for block in blocks.iter_mut() {
         block.incoming.clear();
     }
     for source in 0..blocks.len() {
         for slot in 0..blocks[source].cross.pair.len() {
             let particle = blocks[source].cross.pair[slot][1] as usize;
-            let target = &mut blocks[particle / SIZE];
-            let own = (particle % SIZE) as u32;
+            let target = &mut blocks[particle / size];
+            let own = (particle % size) as u32;
             target.incoming.push([source as u32, slot as u32, own]);
         }
     }

@@ -1,0 +1,418 @@
+//! Shrinking cores against their closed forms, adiabatic calorimeters, elements.
+
+use calcine_physics::gas::GAS_CONSTANT;
+use calcine_physics::reaction::{Arrhenius, Equilibrium, PowerLaw};
+use calcine_physics::solids::SolidSpecies;
+use calcine_physics::thermo::{Element, Mixture};
+
+use super::*;
+use crate::ParticleModel;
+
+const RADIUS: f64 = 6e-3;
+const PRESSURE: f64 = 101_325.0;
+const HOT: f64 = 1100.0;
+
+fn constant(factor: f64) -> Arrhenius {
+    Arrhenius {
+        factor,
+        exponent: 0.0,
+        activation_energy: 0.0,
+    }
+}
+
+fn solid(name: &str) -> SolidSpecies {
+    SolidSpecies::built_in(name).unwrap()
+}
+
+/// FeO + CO => Fe + CO2 as a shrinking core with these constants (m/s and m²/s).
+fn reduction(rate_constant: f64, diffusivity: f64) -> Chemistry {
+    let reaction = Reaction {
+        name: "reduction".into(),
+        solids: vec![(0, -1.0), (1, 1.0)],
+        gases: vec![(0, -1.0), (1, 1.0)],
+        rate: Rate::Core {
+            rate_constant: constant(rate_constant),
+            diffusivity: LayerDiffusivity {
+                value: diffusivity,
+                at: 300.0,
+                exponent: 0.0,
+            },
+        },
+        equilibrium: Equilibrium::OneWay,
+    };
+    let gas = Mixture::new(["CO", "CO2", "N2"]).unwrap();
+    Chemistry::new(vec![solid("FeO"), solid("Fe")], Some(gas), vec![reaction]).unwrap()
+}
+
+/// One particle of 1 g of the first solid.
+fn particle(chemistry: Chemistry) -> Reacting {
+    let mut fractions = vec![0.0; chemistry.solids.len()];
+    fractions[0] = 1.0;
+    Reacting::new(chemistry, &[fractions], &[1e-3], vec![0], vec![HOT], None)
+}
+
+/// Follows particles in gas of a composition for so many windows; the extents so far after each.
+fn follow(
+    reacting: &mut Reacting,
+    composition: &[f64],
+    (film, conductance): (f64, f64),
+    span: f64,
+    windows: usize,
+) -> Vec<f64> {
+    let species = composition.len();
+    let mut sum = 0.0;
+    (0..windows)
+        .map(|_| {
+            let film = vec![film; species];
+            let around = Surroundings {
+                temperature: &[HOT],
+                pressure: &[PRESSURE],
+                composition,
+                conductance: &[conductance],
+                film: &film,
+                radius: &[RADIUS],
+            };
+            reacting.react(&around, span).unwrap();
+            let rates: Vec<f64> = {
+                let (slope, off) = reacting.lines();
+                let keys = reacting.channels().iter().map(|channel| channel.key);
+                let lines = slope.iter().zip(off).zip(keys);
+                lines.map(|((s, o), k)| s * composition[k] - o).collect()
+            };
+            let mut shares = Vec::new();
+            reacting.limit(&rates, span, &mut shares);
+            let rates: Vec<f64> = rates.iter().zip(&shares).map(|(r, s)| r * s).collect();
+            let heat = reacting.conductance[0] * (HOT - reacting.start[0]);
+            let carried = [carried(reacting, &rates)];
+            reacting.book(
+                &Booking {
+                    rates: &rates,
+                    carried: &carried,
+                },
+                span,
+            );
+            reacting.advance(&[heat], span);
+            sum += reacting.extents.iter().sum::<f64>();
+            reacting.commit();
+            sum
+        })
+        .collect()
+}
+
+/// Sensible heat in W that gases bring in: what is taken at the gas' temperature, what leaves at the particle's.
+fn carried(reacting: &Reacting, rates: &[f64]) -> f64 {
+    let Some(gas) = &reacting.chemistry().gas else {
+        return 0.0;
+    };
+    let channels = reacting.channels().iter().zip(rates);
+    channels
+        .flat_map(|(channel, rate)| {
+            channel
+                .mass
+                .iter()
+                .enumerate()
+                .map(move |(k, m)| (k, m * rate))
+        })
+        .map(|(k, made)| {
+            let at = if made < 0.0 {
+                HOT
+            } else {
+                reacting.end_temperature()[0]
+            };
+            -made * gas.species_enthalpy(k, at)
+        })
+        .sum()
+}
+
+/// Largest difference of the time at which a conversion is reached from a closed form t(X), as a share of
+/// the time of full conversion τ; kept hot by the gas.
+fn worst(
+    rate_constant: f64,
+    diffusivity: f64,
+    film: f64,
+    closed: impl Fn(f64) -> f64,
+    tau: f64,
+) -> f64 {
+    let mut reacting = particle(reduction(rate_constant, diffusivity));
+    let gas = Mixture::new(["CO", "CO2", "N2"]).unwrap();
+    let composition = gas.mass_fractions(&[0.3, 0.0, 0.7]);
+    let amount = 1e-3 / solid("FeO").molar_mass();
+    let windows = 40;
+    let span = tau / 41.0;
+    let sums = follow(&mut reacting, &composition, (film, 1e6), span, windows);
+    let errors = sums.iter().enumerate().map(|(k, sum)| {
+        let time = (k + 1) as f64 * span;
+        (closed(sum / amount) - time / tau).abs()
+    });
+    errors.fold(0.0, f64::max)
+}
+
+fn concentration() -> f64 {
+    0.3 * PRESSURE / (GAS_CONSTANT * HOT)
+}
+
+/// Moles of the core's solid by volume of the particle.
+fn density() -> f64 {
+    1e-3 / solid("FeO").molar_mass() / (4.0 / 3.0 * std::f64::consts::PI * RADIUS.powi(3))
+}
+
+#[test]
+fn the_three_limiting_regimes_of_the_shrinking_core_are_met_within_half_a_percent() {
+    // Levenspiel, Chemical Reaction Engineering (1999), chapter 25: t/τ = X with τ = ρ R/(3 β c),
+    // 1 − 3 (1−X)^⅔ + 2 (1−X) with ρ R²/(6 D c), 1 − (1−X)^⅓ with ρ R/(k c).
+    let (rho, c) = (density(), concentration());
+    let film = worst(1e3, 1e3, 1e-3, |x| x, rho * RADIUS / (3.0 * 1e-3 * c));
+    assert!(film < 1e-4, "film: {film}");
+    let layer = |x: f64| 1.0 - 3.0 * (1.0 - x).powf(2.0 / 3.0) + 2.0 * (1.0 - x);
+    let layer = worst(
+        1e3,
+        1e-6,
+        1e3,
+        layer,
+        rho * RADIUS * RADIUS / (6.0 * 1e-6 * c),
+    );
+    assert!(layer < 2e-4, "layer: {layer}");
+    let kinetics = worst(
+        1e-4,
+        1e3,
+        1e3,
+        |x| 1.0 - (1.0 - x).cbrt(),
+        rho * RADIUS / (1e-4 * c),
+    );
+    // Where 1.5e-5 of the core is left, an error of 1e-6 in X is one of 6e-4 in t.
+    assert!(kinetics < 1e-3, "kinetics: {kinetics}");
+}
+
+#[test]
+fn the_three_resistances_in_series_add_their_times() {
+    let (rho, c) = (density(), concentration());
+    let taus = [
+        rho * RADIUS / (3.0 * 0.02 * c),
+        rho * RADIUS * RADIUS / (6.0 * 2e-5 * c),
+        rho * RADIUS / (0.01 * c),
+    ];
+    let tau: f64 = taus.iter().sum();
+    let closed = |x: f64| {
+        let layer = 1.0 - 3.0 * (1.0 - x).powf(2.0 / 3.0) + 2.0 * (1.0 - x);
+        (taus[0] * x + taus[1] * layer + taus[2] * (1.0 - (1.0 - x).cbrt())) / tau
+    };
+    let error = worst(0.01, 2e-5, 0.02, closed, tau);
+    assert!(error < 1e-3, "{error}");
+}
+
+#[test]
+fn nothing_reacts_beyond_what_is_there_and_elements_stay() {
+    let mut reacting = particle(reduction(1.0, 1e-3));
+    let gas = Mixture::new(["CO", "CO2", "N2"]).unwrap();
+    let composition = gas.mass_fractions(&[0.3, 0.0, 0.7]);
+    let sums = follow(&mut reacting, &composition, (1.0, 1.0), 1e5, 3);
+    let amount = 1e-3 / solid("FeO").molar_mass();
+    assert!((sums[2] / amount - 1.0).abs() < 1e-9);
+    assert!(reacting.amounts()[0].abs() < 1e-9 * amount);
+    assert!((reacting.amounts()[1] / amount - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn an_inner_reaction_heats_a_closed_particle_by_its_enthalpies() {
+    // 3 Fe + ... : 4 FeO => Fe3O4 + Fe of first order, adiabatic: sensible enthalpy of the products at the
+    // end is that of the start and the heat at 298.15 K.
+    let reaction = Reaction {
+        name: "disproportionation".into(),
+        solids: vec![(0, -4.0), (1, 1.0), (2, 1.0)],
+        gases: Vec::new(),
+        rate: Rate::Power(PowerLaw {
+            rate_constant: constant(0.1),
+            in_series: None,
+            solids: vec![(0, 1.0)],
+            gases: Vec::new(),
+        }),
+        equilibrium: Equilibrium::OneWay,
+    };
+    let solids = vec![solid("FeO"), solid("Fe3O4"), solid("Fe")];
+    let chemistry = Chemistry::new(solids.clone(), None, vec![reaction]).unwrap();
+    assert!(
+        chemistry
+            .imbalance(&chemistry.reactions[0])
+            .iter()
+            .all(|n| n.abs() < 1e-12)
+    );
+    let mut reacting = particle(chemistry);
+    let amount = 1e-3 / solids[0].molar_mass();
+    let begin = amount * solids[0].molar_mass() * solids[0].enthalpy(HOT);
+    for _ in 0..10 {
+        follow(&mut reacting, &[], (0.0, 0.0), 2.0, 1);
+    }
+    let now = reacting.amounts().to_vec();
+    let turned = amount - now[0];
+    assert!(turned / amount > 0.9);
+    let heat = 4.0 * -272_035.0 + 1_119_926.0;
+    let gained = heat * turned / 4.0;
+    let expected = |t: f64| {
+        let parts = solids.iter().zip(&now);
+        parts
+            .map(|(s, n)| n * s.molar_mass() * s.enthalpy(t))
+            .sum::<f64>()
+            - begin
+            - gained
+    };
+    let (mut low, mut high) = (HOT - 500.0, HOT + 500.0);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if expected(middle) > 0.0 {
+            high = middle
+        } else {
+            low = middle
+        }
+    }
+    let rise = reacting.temperature()[0] - HOT;
+    assert!(rise > 10.0, "{rise}");
+    assert!(
+        (rise / (low - HOT) - 1.0).abs() < 1e-6,
+        "{rise} {}",
+        low - HOT
+    );
+    let mass: f64 = solids
+        .iter()
+        .zip(&now)
+        .map(|(s, n)| s.molar_mass() * n)
+        .sum();
+    assert!((mass / 1e-3 - 1.0).abs() < 1e-12);
+    for element in [Element::Fe, Element::O] {
+        let atoms = |n: &[f64]| -> f64 {
+            solids
+                .iter()
+                .zip(n)
+                .map(|(s, n)| s.atoms()[element as usize] * n)
+                .sum()
+        };
+        assert!((atoms(&now) / atoms(&[amount, 0.0, 0.0]) - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_first_order_reaction_decays_as_its_exponential() {
+    let reaction = Reaction {
+        name: "decay".into(),
+        solids: vec![(0, -4.0), (1, 1.0), (2, 1.0)],
+        gases: Vec::new(),
+        rate: Rate::Power(PowerLaw {
+            rate_constant: constant(0.01),
+            in_series: None,
+            solids: vec![(0, 1.0)],
+            gases: Vec::new(),
+        }),
+        equilibrium: Equilibrium::OneWay,
+    };
+    let solids = vec![solid("FeO"), solid("Fe3O4"), solid("Fe")];
+    let chemistry = Chemistry::new(solids, None, vec![reaction]).unwrap();
+    let mut reacting = particle(chemistry);
+    let amount = 1e-3 / solid("FeO").molar_mass();
+    let sums = follow(&mut reacting, &[], (0.0, 0.0), 5.0, 10);
+    for (k, sum) in sums.iter().enumerate() {
+        // dn/dt = −4 k n
+        let left = (-0.04 * 5.0 * (k + 1) as f64).exp();
+        assert!((1.0 - 4.0 * sum / amount - left).abs() < 1e-4, "{k}");
+    }
+}
+
+#[test]
+fn limestone_in_hot_gas_keeps_to_the_temperature_of_its_equilibrium() {
+    // Heat-controlled: fast kinetics, slow heat; the particle stays where p_CO2 is that of the gas.
+    let reaction = Reaction {
+        name: "calcination".into(),
+        solids: vec![(0, -1.0), (1, 1.0)],
+        gases: vec![(0, 1.0)],
+        rate: Rate::Core {
+            rate_constant: constant(10.0),
+            diffusivity: LayerDiffusivity {
+                value: 1.0,
+                at: 300.0,
+                exponent: 0.0,
+            },
+        },
+        equilibrium: Equilibrium::Line {
+            constant: 18.0,
+            over_temperature: -19_800.0,
+        },
+    };
+    let gas = Mixture::new(["CO2", "N2"]).unwrap();
+    let composition = gas.mass_fractions(&[0.2, 0.8]);
+    let chemistry = Chemistry::new(
+        vec![solid("CaCO3"), solid("CaO")],
+        Some(gas),
+        vec![reaction],
+    )
+    .unwrap();
+    let mut reacting = particle(chemistry);
+    // ln K = ln(0.2 · 1.01325): T = 19800/(18 + 1.5962) = 1010.4 K
+    let rest = 19_800.0 / (18.0 - (0.2 * 1.01325f64).ln());
+    let sums = follow(&mut reacting, &composition, (10.0, 0.01), 50.0, 10);
+    let turned = sums[9] * 100.09e-3 / 1e-3;
+    assert!(turned > 0.1 && turned < 0.9, "{turned}");
+    assert!(
+        (reacting.temperature()[0] - rest).abs() < 3.0,
+        "{} {rest}",
+        reacting.temperature()[0]
+    );
+}
+
+#[test]
+fn three_oxides_are_reduced_in_their_order() {
+    let core = |name: &str, from: (usize, f64), to: (usize, f64), gas: f64| Reaction {
+        name: name.into(),
+        solids: vec![(from.0, -from.1), to],
+        gases: vec![(0, -gas), (1, gas)],
+        rate: Rate::Core {
+            rate_constant: constant(0.05),
+            diffusivity: LayerDiffusivity {
+                value: 1e-4,
+                at: 300.0,
+                exponent: 0.0,
+            },
+        },
+        equilibrium: Equilibrium::OneWay,
+    };
+    let reactions = vec![
+        core("wustite", (2, 1.0), (3, 0.947), 1.0),
+        core("hematite", (0, 3.0), (1, 2.0), 1.0),
+        core("magnetite", (1, 0.947), (2, 3.0), 0.788),
+    ];
+    let solids = vec![
+        solid("Fe2O3"),
+        solid("Fe3O4"),
+        solid("Fe0.947O"),
+        solid("Fe"),
+    ];
+    let gas = Mixture::new(["CO", "CO2", "N2"]).unwrap();
+    let composition = gas.mass_fractions(&[0.4, 0.0, 0.6]);
+    let chemistry = Chemistry::new(solids.clone(), Some(gas), reactions).unwrap();
+    for reaction in &chemistry.reactions {
+        assert!(chemistry.imbalance(reaction).iter().all(|n| n.abs() < 1e-9));
+    }
+    let mut reacting = particle(chemistry);
+    let iron = |n: &[f64]| -> f64 {
+        let parts = solids.iter().zip(n);
+        parts
+            .map(|(s, n)| s.atoms()[Element::Fe as usize] * n)
+            .sum()
+    };
+    let begin = iron(reacting.amounts());
+    let mut peaks = [0.0f64; 4];
+    let mut when = [0; 4];
+    for window in 0..400 {
+        follow(&mut reacting, &composition, (0.05, 1.0), 5.0, 1);
+        let now = reacting.amounts();
+        assert!((iron(now) / begin - 1.0).abs() < 1e-12);
+        for k in 0..4 {
+            assert!(now[k] > -1e-12 * begin);
+            if now[k] > peaks[k] {
+                (peaks[k], when[k]) = (now[k], window);
+            }
+        }
+    }
+    assert!(when[1] < when[2] && when[2] < when[3], "{when:?}");
+    assert!(
+        (reacting.amounts()[3] / begin - 1.0).abs() < 1e-6,
+        "all iron in the end"
+    );
+}

@@ -1,0 +1,96 @@
+//! Arrhenius' rate constant, 1889.
+
+use crate::gas::GAS_CONSTANT;
+
+/// A rate constant k = A T^b exp(−E/(R T)), or two of them in series, 1/k = 1/k₁ + 1/k₂, where the
+/// slower of two steps (chemistry, diffusion in pores) governs.
+///
+/// Source: Arrhenius, Z. phys. Chem. 4 (1889) 226, doi 10.1515/zpch-1889-0416.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrhenius {
+    /// A in the unit of k (times K^−b).
+    pub factor: f64,
+    /// b.
+    pub exponent: f64,
+    /// E in J/mol.
+    pub activation_energy: f64,
+}
+
+impl Arrhenius {
+    /// k at a temperature in K.
+    pub fn at(&self, temperature: f64) -> f64 {
+        let power = if self.exponent == 0.0 {
+            1.0
+        } else {
+            temperature.powf(self.exponent)
+        };
+        self.factor * power * (-self.activation_energy / (GAS_CONSTANT * temperature)).exp()
+    }
+}
+
+/// k of one constant, or of two steps in series, at a temperature in K.
+pub fn in_series(first: &Arrhenius, second: Option<&Arrhenius>, temperature: f64) -> f64 {
+    let one = first.at(temperature);
+    match second.map(|second| second.at(temperature)) {
+        Some(other) if one > 0.0 && other > 0.0 => 1.0 / (1.0 / one + 1.0 / other),
+        Some(_) => 0.0,
+        None => one,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAW: Arrhenius = Arrhenius {
+        factor: 4.4e11,
+        exponent: 0.5,
+        activation_energy: 125_520.0,
+    };
+
+    #[test]
+    fn agrees_with_an_independent_evaluation() {
+        // In Python: 4.4e11 · √1200 · exp(−125520/8.314462618/1200).
+        assert!(
+            (LAW.at(1200.0) / 5.240_909_191_381_193e7 - 1.0).abs() < 1e-9,
+            "{:e}",
+            LAW.at(1200.0)
+        );
+    }
+
+    #[test]
+    fn the_logarithm_over_one_over_temperature_has_the_slope_of_the_activation_energy() {
+        let law = Arrhenius {
+            exponent: 0.0,
+            ..LAW
+        };
+        let slope = (law.at(1001.0) / law.at(999.0)).ln() / (1.0 / 999.0 - 1.0 / 1001.0);
+        assert!((slope * GAS_CONSTANT / 125_520.0 - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn of_two_steps_in_series_the_slower_governs() {
+        let slow = Arrhenius {
+            factor: 2.0,
+            exponent: 0.0,
+            activation_energy: 0.0,
+        };
+        let fast = Arrhenius {
+            factor: 3.0,
+            ..slow
+        };
+        assert!((in_series(&slow, Some(&fast), 300.0) - 1.2).abs() < 1e-15);
+        assert_eq!(in_series(&slow, None, 300.0), 2.0);
+        assert_eq!(
+            in_series(
+                &slow,
+                Some(&Arrhenius {
+                    factor: 0.0,
+                    ..slow
+                }),
+                300.0
+            ),
+            0.0
+        );
+    }
+}

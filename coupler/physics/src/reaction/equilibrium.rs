@@ -1,0 +1,96 @@
+//! Equilibria.
+
+use crate::gas::GAS_CONSTANT;
+
+/// Standard pressure of thermodynamic tables in Pa.
+pub const STANDARD_PRESSURE: f64 = 1e5;
+
+/// How the equilibrium constant K of a reaction follows temperature; gases enter it by their partial
+/// pressures over 1 bar, solids as pure phases.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Equilibrium {
+    /// The reaction goes one way: 1/K = 0.
+    OneWay,
+    /// ln K = a + b/T, such as a measured line.
+    Line {
+        /// a.
+        constant: f64,
+        /// b in K.
+        over_temperature: f64,
+    },
+    /// ln K = −ΔG°/(R T) of the species' own Gibbs energies, tabulated.
+    Gibbs(GibbsLine),
+}
+
+/// ln K at temperatures T₀, T₀ + ΔT … in between linear in T.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GibbsLine {
+    values: Vec<f64>,
+}
+
+/// First temperature of the table in K, and its step: within a step ln K is linear to 1e-3
+/// at 300 K, 2e-5 at 1000 K.
+const FIRST: f64 = 250.0;
+const STEP: f64 = 2.0;
+const LAST: f64 = 2500.0;
+
+impl GibbsLine {
+    /// Tabulates a change of Gibbs energy in J/mol over temperature in K.
+    pub fn new(change: impl Fn(f64) -> f64) -> Self {
+        let count = ((LAST - FIRST) / STEP) as usize + 1;
+        let value = |k: usize| {
+            let temperature = FIRST + k as f64 * STEP;
+            -change(temperature) / (GAS_CONSTANT * temperature)
+        };
+        Self {
+            values: (0..count).map(value).collect(),
+        }
+    }
+
+    fn at(&self, temperature: f64) -> f64 {
+        let place = ((temperature - FIRST) / STEP).clamp(0.0, (self.values.len() - 2) as f64);
+        let low = place as usize;
+        let share = (temperature - FIRST) / STEP - low as f64;
+        self.values[low] + share * (self.values[low + 1] - self.values[low])
+    }
+}
+
+impl Equilibrium {
+    /// 1/K at a temperature in K.
+    pub fn inverse(&self, temperature: f64) -> f64 {
+        match self {
+            Self::OneWay => 0.0,
+            Self::Line {
+                constant,
+                over_temperature,
+            } => (-constant - over_temperature / temperature).exp(),
+            Self::Gibbs(line) => (-line.at(temperature)).exp(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_is_its_formula_and_one_way_has_no_way_back() {
+        let law = Equilibrium::Line {
+            constant: -2.946,
+            over_temperature: 2744.0,
+        };
+        // exp(2744/1173 − 2.946) in Python.
+        assert!((law.inverse(1173.0) * 0.545_147_4 - 1.0).abs() < 1e-6);
+        assert_eq!(Equilibrium::OneWay.inverse(1173.0), 0.0);
+    }
+
+    #[test]
+    fn the_table_of_a_gibbs_energy_is_exact_at_its_points_and_near_between() {
+        let change = |t: f64| 170e3 - 145.0 * t + 4.0 * t * (t / 300.0).ln();
+        let law = Equilibrium::Gibbs(GibbsLine::new(change));
+        for t in [300.0, 301.0, 777.7, 1166.0, 2499.0] {
+            let exact = (change(t) / (GAS_CONSTANT * t)).exp();
+            assert!((law.inverse(t) / exact - 1.0).abs() < 1e-3, "{t}");
+        }
+    }
+}

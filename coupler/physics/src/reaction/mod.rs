@@ -1,0 +1,14 @@
+//! Reactions: equations, rate constants, equilibria, and the laws by which particles react.
+
+pub mod arrhenius;
+pub mod equation;
+pub mod equilibrium;
+pub mod formula;
+pub mod power_law;
+pub mod shrinking_core;
+
+pub use arrhenius::Arrhenius;
+pub use equation::{Equation, EquationError};
+pub use equilibrium::Equilibrium;
+pub use power_law::PowerLaw;
+pub use shrinking_core::Interface;

@@ -1,0 +1,145 @@
+//! Rates by powers of concentrations.
+
+use super::arrhenius::{self, Arrhenius};
+
+/// Rate of a reaction in the volume of a particle in mol/m³/s,
+///
+/// r = k(T) Π c_i^n_i,
+///
+/// with the concentrations c of the solids in the particle (mol per m³ of the particle) and of gases at
+/// its surface (mol/m³), each to its order. An order of zero is allowed (a factor of one, as long as the reactant is
+/// there), a negative one only of a species that is always there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PowerLaw {
+    /// k in (mol/m³)^(1 − Σ n)/s.
+    pub rate_constant: Arrhenius,
+    /// A second step in series with it, in the same unit.
+    pub in_series: Option<Arrhenius>,
+    /// Order of each solid, by its index.
+    pub solids: Vec<(usize, f64)>,
+    /// Order of each gas, by its index.
+    pub gases: Vec<(usize, f64)>,
+}
+
+impl PowerLaw {
+    /// The rate in mol/m³/s, but for the factor of one gas (by its index), which comes with its order.
+    pub fn without(
+        &self,
+        key: Option<usize>,
+        temperature: f64,
+        solid: impl Fn(usize) -> f64,
+        gas: impl Fn(usize) -> f64,
+    ) -> (f64, f64) {
+        let mut rate =
+            arrhenius::in_series(&self.rate_constant, self.in_series.as_ref(), temperature);
+        let mut order = 0.0;
+        for &(s, n) in &self.solids {
+            rate *= power(solid(s), n);
+        }
+        for &(g, n) in &self.gases {
+            if Some(g) == key {
+                order = n;
+            } else {
+                rate *= power(gas(g), n);
+            }
+        }
+        (rate, order)
+    }
+}
+
+/// c^n; nothing reacts of what is not there.
+pub fn power(concentration: f64, order: f64) -> f64 {
+    if order == 0.0 {
+        1.0
+    } else if concentration <= 0.0 {
+        0.0
+    } else if order == 1.0 {
+        concentration
+    } else {
+        concentration.powf(order)
+    }
+}
+
+/// Concentration c in mol/m³ at a surface to which a film brings m (b − c) and of which r cⁿ is used, both in
+/// mol/s: m (b − c) = r cⁿ with b the bulk concentration in mol/m³. By Newton's method on a function that is monotone;
+/// closed for n = 0 and 1.
+pub fn at_surface(bulk: f64, film: f64, rate: f64, order: f64) -> f64 {
+    if bulk <= 0.0 || rate <= 0.0 || film.is_infinite() {
+        return bulk.max(0.0);
+    }
+    if order == 0.0 {
+        return (bulk - rate / film).max(0.0);
+    }
+    if order == 1.0 {
+        return bulk * film / (film + rate);
+    }
+    // Bisection keeps hold of the root, Newton's steps find it.
+    let (mut low, mut high) = (0.0, bulk);
+    let mut c = bulk;
+    for _ in 0..200 {
+        let used = rate * power(c, order);
+        let left = film * (bulk - c) - used;
+        if left > 0.0 {
+            low = c;
+        } else {
+            high = c;
+        }
+        if left.abs() <= 1e-14 * film * bulk || high - low <= 1e-16 * bulk {
+            break;
+        }
+        let slope = film + order * used / c;
+        let next = c + left / slope;
+        c = if next > low && next < high {
+            next
+        } else {
+            0.5 * (low + high)
+        };
+    }
+    c
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rate_is_the_product_of_its_powers() {
+        let law = PowerLaw {
+            rate_constant: Arrhenius {
+                factor: 2.0,
+                exponent: 0.0,
+                activation_energy: 0.0,
+            },
+            in_series: None,
+            solids: vec![(0, 2.0)],
+            gases: vec![(1, 0.5), (2, 1.0)],
+        };
+        let (rate, order) = law.without(Some(1), 300.0, |_| 3.0, |_| 5.0);
+        assert_eq!((rate, order), (2.0 * 9.0 * 5.0, 0.5));
+        assert_eq!(law.without(None, 300.0, |_| 0.0, |_| 5.0).0, 0.0);
+    }
+
+    #[test]
+    fn the_film_brings_what_the_surface_uses_for_any_order() {
+        for order in [0.0, 0.3, 0.5, 1.0, 1.7, 2.0] {
+            for rate in [1e-6, 1e-3, 1.0, 1e3] {
+                let c = at_surface(4.0, 0.02, rate, order);
+                let brought = 0.02 * (4.0 - c);
+                if c > 0.0 {
+                    let used = rate * power(c, order);
+                    assert!((brought / used - 1.0).abs() < 1e-9, "{order} {rate} {c}");
+                } else {
+                    assert!(order == 0.0 && rate >= brought);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_fast_film_leaves_the_bulk_s_concentration_and_a_fast_reaction_nothing() {
+        assert!((at_surface(4.0, 1e12, 1.0, 0.5) - 4.0).abs() < 1e-10);
+        assert!(at_surface(4.0, 1.0, 1e12, 1.0) < 1e-11);
+        assert_eq!(at_surface(4.0, f64::INFINITY, 1.0, 1.0), 4.0);
+        assert_eq!(at_surface(0.0, 1.0, 1.0, 0.5), 0.0);
+    }
+}

@@ -1,0 +1,266 @@
+//! What particles that react exchange with the gas (requirements RXN-1, 2).
+//!
+//! The rate of a heterogeneous reaction j of particle p is a line in the mass fraction of its key gas,
+//! r = b Y − a, and each cell that p spans has its share W_cp of it by the cell's own Y. A first attempt of
+//! a window gives the gas these lines: the key gas implicitly, which is what keeps large process steps stable, all
+//! others explicitly. What comes of it gives the rates of the cells; limited to the solids that are there, they are given to
+//! the gas once more as fixed sources, all species of a reaction in their proportions, so that elements close whatever the
+//! attempts before did.
+//!
+//! Gas that is used up leaves its cell with the cell's temperature, gas that is made comes with the
+//! particle's.
+
+use calcine_interior::Reacting;
+use calcine_physics::gas_model::GasModel;
+
+use crate::part::{GasFields, SpeciesExchange};
+use crate::smoother::Operator;
+
+/// The exchange of species of one window, with its scratch memory.
+#[derive(Debug, Default)]
+pub struct Turnover {
+    /// Mean rate of each channel of each particle in mol/s, channel by channel within each particle.
+    pub rates: Vec<f64>,
+    /// Sensible heat in W that exchanged gases bring into each particle.
+    pub carried: Vec<f64>,
+    /// The same into each cell, of the last attempt.
+    pub cell_heat: Vec<f64>,
+    shares: Vec<f64>,
+    /// Of each channel: slopes and offsets of particles, and of cells.
+    particle: [Vec<f64>; 2],
+    cell: [Vec<Vec<f64>>; 2],
+    /// The same, times the sensible enthalpy in J/mol of what the reaction makes.
+    warm: [Vec<Vec<f64>>; 2],
+    /// Mass fractions by which the fixed rates went.
+    fractions: Vec<f64>,
+    scratch: Vec<f64>,
+    seen: Vec<f64>,
+}
+
+impl Turnover {
+    /// Tells the gas the lines, about its present fields.
+    pub fn linearise(
+        &mut self,
+        operator: &Operator,
+        reacting: &Reacting,
+        gas: &GasFields<'_>,
+        properties: &GasModel,
+        out: &mut SpeciesExchange,
+    ) {
+        let species = properties.species().len();
+        let count = reacting.channels().len() * operator.particles();
+        self.shares.clear();
+        self.shares.resize(count, 1.0);
+        self.spread(operator, reacting, properties);
+        self.fractions.clear();
+        self.fractions.extend_from_slice(gas.composition);
+        self.sample_rates(operator, reacting, species);
+        self.fill(reacting, species, true, out);
+    }
+
+    /// Rates of the lines at the gas as it is now; how far they are from those before, as a share of all.
+    pub fn follow(
+        &mut self,
+        operator: &Operator,
+        reacting: &Reacting,
+        gas: &GasFields<'_>,
+        species: usize,
+    ) -> f64 {
+        let before = std::mem::take(&mut self.rates);
+        self.fractions.clear();
+        self.fractions.extend_from_slice(gas.composition);
+        self.sample_rates(operator, reacting, species);
+        let (mut moved, mut all) = (0.0, 0.0);
+        for (now, before) in self.rates.iter().zip(&before) {
+            moved += (now - before).abs();
+            all += now.abs();
+        }
+        if moved == 0.0 { 0.0 } else { moved / all }
+    }
+
+    /// Tells the gas the rates of the last attempt as they are, limited to the solids that are there over a
+    /// span in s.
+    pub fn fix(
+        &mut self,
+        operator: &Operator,
+        reacting: &mut Reacting,
+        span: f64,
+        properties: &GasModel,
+        out: &mut SpeciesExchange,
+    ) {
+        let species = properties.species().len();
+        reacting.limit(&self.rates, span, &mut self.shares);
+        for (rate, share) in self.rates.iter_mut().zip(&self.shares) {
+            *rate *= share;
+        }
+        if self.shares.iter().any(|share| *share != 1.0) {
+            self.spread(operator, reacting, properties);
+        }
+        self.fill(reacting, species, false, out);
+    }
+
+    /// What of the heat that cells received came with exchanged gas, in W.
+    pub fn heat_of_cells(
+        &mut self,
+        gas: &GasFields<'_>,
+        properties: &GasModel,
+        told: &SpeciesExchange,
+    ) {
+        let species = properties.species().len();
+        self.cell_heat.clear();
+        self.cell_heat
+            .extend(told.heat.iter().enumerate().map(|(cell, brought)| {
+                let taken = (0..species).map(|k| {
+                    let mass = told.taken[cell * species + k];
+                    if mass == 0.0 {
+                        0.0
+                    } else {
+                        mass * properties.species_enthalpy(k, gas.temperature[cell])
+                    }
+                });
+                brought - taken.sum::<f64>()
+            }));
+    }
+
+    /// Sets `carried`: the sensible heat of what each particle takes from its cells, less that of what it makes.
+    pub fn credit(
+        &mut self,
+        operator: &Operator,
+        reacting: &Reacting,
+        gas: &GasFields<'_>,
+        properties: &GasModel,
+    ) {
+        let (cells, particles) = (operator.cells(), operator.particles());
+        let species = properties.species().len();
+        let channels = reacting.channels();
+        self.carried.clear();
+        self.carried.resize(particles, 0.0);
+        self.seen.resize(particles, 0.0);
+        let mut enthalpy = vec![0.0; cells];
+        for (c, channel) in channels.iter().enumerate() {
+            for (cell, sum) in enthalpy.iter_mut().enumerate() {
+                let used = channel
+                    .mass
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, mass)| **mass < 0.0);
+                *sum = used
+                    .map(|(k, mass)| -mass * properties.species_enthalpy(k, gas.temperature[cell]))
+                    .sum();
+            }
+            operator.sample(&enthalpy, &mut self.seen);
+            for (p, seen) in self.seen.iter().enumerate() {
+                let at = p * channels.len() + c;
+                self.carried[p] -= self.shares[at] * reacting.lines().1[at] * seen;
+            }
+            for (cell, value) in enthalpy.iter_mut().enumerate() {
+                *value *= self.fractions[cell * species + channel.key];
+            }
+            operator.sample(&enthalpy, &mut self.seen);
+            for (p, seen) in self.seen.iter().enumerate() {
+                let at = p * channels.len() + c;
+                self.carried[p] += self.shares[at] * reacting.lines().0[at] * seen
+                    - self.rates[at] * made(channel, properties, reacting.end_temperature()[p]);
+            }
+        }
+    }
+
+    /// Brings the particles' lines to the cells.
+    fn spread(&mut self, operator: &Operator, reacting: &Reacting, properties: &GasModel) {
+        let (cells, particles) = (operator.cells(), operator.particles());
+        let channels = reacting.channels();
+        let lines = [reacting.lines().0, reacting.lines().1];
+        self.scratch.resize(particles, 0.0);
+        for (which, lines) in lines.into_iter().enumerate() {
+            self.cell[which].resize(channels.len(), Vec::new());
+            self.warm[which].resize(channels.len(), Vec::new());
+            for (c, channel) in channels.iter().enumerate() {
+                let at = |p: usize| p * channels.len() + c;
+                for (p, value) in self.scratch.iter_mut().enumerate() {
+                    *value = self.shares[at(p)] * lines[at(p)];
+                }
+                self.cell[which][c].resize(cells, 0.0);
+                operator.spread(&self.scratch, &mut self.cell[which][c]);
+                for (p, value) in self.scratch.iter_mut().enumerate() {
+                    if *value != 0.0 {
+                        *value *= made(channel, properties, reacting.end_temperature()[p]);
+                    }
+                }
+                self.warm[which][c].resize(cells, 0.0);
+                operator.spread(&self.scratch, &mut self.warm[which][c]);
+            }
+        }
+    }
+
+    /// Rates of all particles' lines, unlimited, at the mass fractions at hand.
+    fn sample_rates(&mut self, operator: &Operator, reacting: &Reacting, species: usize) {
+        let channels = reacting.channels();
+        let (slopes, offsets) = reacting.lines();
+        self.rates.clear();
+        self.rates.resize(slopes.len(), 0.0);
+        self.scratch.resize(operator.cells(), 0.0);
+        self.seen.resize(operator.particles(), 0.0);
+        let mut sampled = None;
+        for (c, channel) in channels.iter().enumerate() {
+            if sampled != Some(channel.key) {
+                self.particle[0].resize(operator.cells(), 0.0);
+                for (cell, value) in self.particle[0].iter_mut().enumerate() {
+                    *value = self.fractions[cell * species + channel.key];
+                }
+                operator.sample(&self.particle[0], &mut self.seen);
+                sampled = Some(channel.key);
+            }
+            for (p, seen) in self.seen.iter().enumerate() {
+                let at = p * channels.len() + c;
+                self.rates[at] = slopes[at] * seen - offsets[at];
+            }
+        }
+        self.scratch.resize(operator.particles(), 0.0);
+    }
+
+    /// What the gas is told, by the cells' lines at the mass fractions at hand.
+    fn fill(&self, reacting: &Reacting, species: usize, implicit: bool, out: &mut SpeciesExchange) {
+        let cells = self.fractions.len() / species.max(1);
+        out.reset(cells, species);
+        for (c, channel) in reacting.channels().iter().enumerate() {
+            for cell in 0..cells {
+                let (slope, offset) = (self.cell[0][c][cell], self.cell[1][c][cell]);
+                if slope == 0.0 && offset == 0.0 {
+                    continue;
+                }
+                let fraction = self.fractions[cell * species + channel.key];
+                let rate = slope * fraction - offset;
+                for (k, mass) in channel.mass.iter().enumerate().filter(|(_, m)| **m != 0.0) {
+                    let at = cell * species + k;
+                    let steepness = -mass * slope;
+                    if implicit && k == channel.key && steepness > 0.0 {
+                        out.coefficient[at] += steepness;
+                        out.source[at] -= mass * offset;
+                    } else {
+                        out.source[at] += mass * rate;
+                    }
+                    if *mass < 0.0 {
+                        out.taken[at] -= mass * rate;
+                    }
+                }
+                out.heat[cell] += self.warm[0][c][cell] * fraction - self.warm[1][c][cell];
+            }
+        }
+    }
+}
+
+/// Sensible enthalpy in J/mol of the gases that a reaction makes, at a temperature in K.
+fn made(
+    channel: &calcine_interior::reacting::Channel,
+    properties: &GasModel,
+    temperature: f64,
+) -> f64 {
+    let parts = channel
+        .mass
+        .iter()
+        .enumerate()
+        .filter(|(_, mass)| **mass > 0.0);
+    parts
+        .map(|(k, mass)| mass * properties.species_enthalpy(k, temperature))
+        .sum()
+}

@@ -1,0 +1,473 @@
+//! `[[reactions]]`, and what materials are made of.
+
+use calcine_adapters::openfoam::stock::Solver;
+use calcine_coupler::interior::reacting::{Chemistry, LayerDiffusivity, Rate, Reaction};
+use calcine_coupler::physics::gas_model::GasModel;
+use calcine_coupler::physics::reaction::equilibrium::GibbsLine;
+use calcine_coupler::physics::reaction::{Arrhenius, Equation, Equilibrium, PowerLaw};
+use calcine_coupler::physics::solid::HeatCapacity;
+use calcine_coupler::physics::solids::SolidSpecies;
+use calcine_coupler::physics::thermo::{Element, Mixture};
+use calcine_coupler::setup::{GasPatch, GasSetup};
+
+use crate::case::model::{HeatLaw, Laws, Motion, Population, ReactionSpec};
+use crate::case::table::Reader;
+use crate::case::units::Dimension;
+
+/// How far fractions may be from summing to 1, as of gases.
+const SLACK: f64 = 1e-3;
+/// How far a stated heat may be from that of the enthalpies.
+const HEAT: f64 = 0.02;
+/// Atoms that a mole of a balanced reaction may lose.
+const BALANCED: f64 = 1e-9;
+
+/// Mass fractions of the solids that `{ mass = { … } }` or `{ mole = { … } }` states.
+pub(super) fn composition(table: &Reader<'_>, solids: &[SolidSpecies]) -> Option<Vec<f64>> {
+    let mut given = ["mole", "mass"].into_iter().filter(|key| table.has(key));
+    let (Some(kind), None) = (given.next(), given.next()) else {
+        let help = "for example { mass = { Fe2O3 = 0.95, Al2O3 = 0.05 } }";
+        table.fail_whole("needs exactly one of mole and mass", help);
+        return None;
+    };
+    let inner = table.table(kind)?;
+    let mut fractions = vec![0.0; solids.len()];
+    for (name, value) in inner.numbers()? {
+        let Some(k) = solids.iter().position(|one| one.name() == name) else {
+            let help = format!("the solids are {}; others go into [solids]", names(solids));
+            inner.fail(&name, "is no solid of the case", help);
+            return None;
+        };
+        if !(0.0..=1.0 + SLACK).contains(&value) {
+            let help = "fractions are between 0 and 1";
+            inner.fail(&name, format!("is {value}"), help);
+            return None;
+        }
+        fractions[k] = value;
+    }
+    table.finish();
+    let sum: f64 = fractions.iter().sum();
+    if (sum - 1.0).abs() > SLACK {
+        table.fail(kind, format!("sums to {sum}"), "fractions sum to 1");
+        return None;
+    }
+    if kind == "mole" {
+        for (fraction, solid) in fractions.iter_mut().zip(solids) {
+            *fraction *= solid.molar_mass();
+        }
+    }
+    let sum: f64 = fractions.iter().sum();
+    Some(fractions.iter().map(|fraction| fraction / sum).collect())
+}
+
+/// The heat capacity of a mixture of solids, at points 50 K apart.
+pub(super) fn mixed(fractions: &[f64], solids: &[SolidSpecies]) -> HeatCapacity {
+    let at = |temperature: f64| {
+        let parts = fractions.iter().zip(solids);
+        parts
+            .map(|(y, solid)| y * solid.heat_capacity(temperature))
+            .sum()
+    };
+    let points = (4..40).map(|k| f64::from(k) * 50.0);
+    HeatCapacity::table(points.map(|t| (t, at(t))).collect())
+}
+
+fn names(solids: &[SolidSpecies]) -> String {
+    let names: Vec<&str> = solids.iter().map(SolidSpecies::name).collect();
+    names.join(", ")
+}
+
+/// What a reaction may name.
+struct Known<'a> {
+    solids: &'a [SolidSpecies],
+    gas: Option<&'a Mixture>,
+    setup: Option<&'a GasSetup>,
+}
+
+pub(super) fn reactions(
+    root: &Reader<'_>,
+    solids: &[SolidSpecies],
+    setup: Option<&GasSetup>,
+) -> Vec<Reaction> {
+    let gas = setup.and_then(|setup| match &setup.properties {
+        GasModel::Mixture(mixture) => Some(mixture),
+        _ => None,
+    });
+    let known = Known { solids, gas, setup };
+    let mut made: Vec<Reaction> = Vec::new();
+    let tables = root.tables("reactions");
+    for table in &tables {
+        let Some(reaction) = reaction(table, &known) else {
+            continue;
+        };
+        if made.iter().any(|other| other.name == reaction.name) {
+            let rule = format!("is \"{}\" a second time", reaction.name);
+            table.fail("name", rule, "names of reactions must differ");
+        }
+        made.push(reaction);
+    }
+    if made.len() == tables.len()
+        && let Err(error) = Chemistry::new(solids.to_vec(), gas.cloned(), made.clone())
+    {
+        let help = "write law = \"power-law\", or change the equation";
+        root.fail(
+            "reactions",
+            format!("make no shrinking core: {error}"),
+            help,
+        );
+    }
+    made
+}
+
+fn reaction(table: &Reader<'_>, known: &Known<'_>) -> Option<Reaction> {
+    let name = table.required_text("name", "\"reduction\"");
+    let text = table.required_text("equation", "\"CaCO3 <=> CaO + CO2\"");
+    let core = table.required_choice("law", &[("shrinking-core", true), ("power-law", false)]);
+    let equation = text.and_then(|text| equation(table, text, known));
+    let rate = match core {
+        Some(true) => core_rate(table),
+        Some(false) => power_rate(table, known, equation.as_ref()),
+        None => None,
+    };
+    // Known, even where the equation could not be read.
+    table.has("equilibrium");
+    let equilibrium = equation
+        .as_ref()
+        .and_then(|(equation, parts)| equilibrium(table, equation, parts, known));
+    let heat = table.quantity("heat", Dimension::MOLAR_ENERGY);
+    table.finish();
+    let (equation, parts) = equation?;
+    let made = Reaction {
+        name: name?.into(),
+        solids: parts.solids,
+        gases: parts.gases,
+        rate: rate?,
+        equilibrium: equilibrium?,
+    };
+    if !equation.reversible && matches!(made.rate, Rate::Core { .. }) {
+        let sets_free = made.gases.iter().all(|gas| gas.1 > 0.0);
+        if sets_free {
+            let help = "write <=>: the gas that is set free holds such a core back";
+            table.fail("equation", "sets gas free and goes one way", help);
+            return None;
+        }
+    }
+    heat.is_none_or(|heat| agrees(table, heat, &made, known))
+        .then_some(made)
+}
+
+/// Solids and gases of an equation with what a mole of the reaction makes of each.
+struct Parts {
+    solids: Vec<(usize, f64)>,
+    gases: Vec<(usize, f64)>,
+}
+
+fn equation(table: &Reader<'_>, text: &str, known: &Known<'_>) -> Option<(Equation, Parts)> {
+    let equation = match Equation::parse(text) {
+        Ok(equation) => equation,
+        Err(error) => {
+            let help = "for example \"CaCO3 <=> CaO + CO2\"";
+            table.fail("equation", format!("cannot be read: {error}"), help);
+            return None;
+        }
+    };
+    let mut parts = Parts {
+        solids: Vec::new(),
+        gases: Vec::new(),
+    };
+    for (name, n) in equation.net() {
+        let solid = known.solids.iter().position(|one| one.name() == name);
+        let gas = known
+            .gas
+            .and_then(|gas| gas.names().iter().position(|one| *one == name));
+        match (solid, gas) {
+            (_, Some(k)) => parts.gases.push((k, n)),
+            (Some(k), None) => parts.solids.push((k, n)),
+            (None, None) => {
+                let gases = known
+                    .gas
+                    .map_or("none".into(), |gas| gas.names().join(", "));
+                let help = format!(
+                    "the gases are {gases} (`gas.species`); the solids are {}",
+                    names(known.solids)
+                );
+                let rule = format!("names {name}, which is neither a gas nor a solid of the case");
+                table.fail("equation", rule, help);
+                return None;
+            }
+        }
+    }
+    balanced(table, &parts, known)?;
+    if parts.solids.is_empty() {
+        let help = "reactions among gases alone are not computed";
+        table.fail("equation", "has no solid", help);
+        return None;
+    }
+    let last = known.gas.map_or(0, |gas| gas.names().len()).wrapping_sub(1);
+    if parts.gases.iter().any(|gas| gas.0 == last) {
+        let name = known.gas.map_or("", |gas| &gas.names()[last]);
+        let rule = format!("has {name}, the last of `gas.species`");
+        let help = "the last species is what the others leave: put one last that does not react, such as N2";
+        table.fail("equation", rule, help);
+        return None;
+    }
+    Some((equation, parts))
+}
+
+fn balanced(table: &Reader<'_>, parts: &Parts, known: &Known<'_>) -> Option<()> {
+    let mut off = Vec::new();
+    for element in Element::ALL {
+        let at = element as usize;
+        let solids = parts.solids.iter();
+        let solids = solids.map(|&(s, n)| n * known.solids[s].atoms()[at]);
+        let gases = parts.gases.iter().map(|&(g, n)| {
+            known
+                .gas
+                .map_or(0.0, |gas| n * gas.species()[g].atoms()[at])
+        });
+        let sum: f64 = solids.chain(gases).sum();
+        if sum.abs() > BALANCED {
+            let side = if sum > 0.0 { "right" } else { "left" };
+            off.push(format!(
+                "{:.6} {} more on the {side}",
+                sum.abs(),
+                element.symbol()
+            ));
+        }
+    }
+    if off.is_empty() {
+        return Some(());
+    }
+    let help = "write numbers of moles by which each element is the same on both sides";
+    table.fail(
+        "equation",
+        format!("is not balanced: {}", off.join(", ")),
+        help,
+    );
+    None
+}
+
+/// Factor, exponent and activation energy of a rate constant.
+fn arrhenius(table: &Reader<'_>, unit: Option<Dimension>) -> Option<Arrhenius> {
+    let factor = table.required_positive("factor", unit.unwrap_or(Dimension::NONE));
+    let exponent = table.quantity("exponent", Dimension::NONE).unwrap_or(0.0);
+    let energy = table
+        .quantity("activation_energy", Dimension::MOLAR_ENERGY)
+        .unwrap_or(0.0);
+    Some(Arrhenius {
+        factor: factor?,
+        exponent,
+        activation_energy: energy,
+    })
+}
+
+fn core_rate(table: &Reader<'_>) -> Option<Rate> {
+    let example = "rate = { factor = \"0.3 m/s\", activation_energy = \"70 kJ/mol\" }";
+    let rate = table.required_table("rate", example);
+    let constant = rate.and_then(|rate| {
+        let made = arrhenius(&rate, Some(Dimension::VELOCITY));
+        rate.finish();
+        made
+    });
+    let example =
+        "layer_diffusivity = { value = \"1e-5 m^2/s\", at = \"1100 K\", exponent = 1.75 }";
+    let layer = table.required_table("layer_diffusivity", example);
+    let diffusivity = layer.and_then(|layer| {
+        let value = layer.required_positive("value", Dimension::DIFFUSIVITY);
+        let exponent = layer.quantity("exponent", Dimension::NONE).unwrap_or(0.0);
+        if exponent != 0.0 && !layer.has("at") {
+            layer.missing("at", "\"1100 K\"");
+        }
+        let at = layer.positive("at", Dimension::TEMPERATURE).unwrap_or(1.0);
+        layer.finish();
+        Some(LayerDiffusivity {
+            value: value?,
+            at,
+            exponent,
+        })
+    });
+    Some(Rate::Core {
+        rate_constant: constant?,
+        diffusivity: diffusivity?,
+    })
+}
+
+fn power_rate(
+    table: &Reader<'_>,
+    known: &Known<'_>,
+    equation: Option<&(Equation, Parts)>,
+) -> Option<Rate> {
+    let example =
+        "rate = { factor = 3e4, activation_energy = \"60 kJ/mol\", orders = { Fe = 1, O2 = 1 } }";
+    let rate = table.required_table("rate", example)?;
+    let constant = arrhenius(&rate, None);
+    let in_series = rate.table("in_series").map(|slow| {
+        let made = arrhenius(&slow, None);
+        slow.finish();
+        made
+    });
+    let orders = rate.required_table("orders", "orders = { Fe = 1, O2 = 1 }");
+    let orders = orders.and_then(|orders| {
+        let given = orders.numbers()?;
+        let mut made: [Vec<(usize, f64)>; 2] = Default::default();
+        for (name, order) in given {
+            let solid = known.solids.iter().position(|one| one.name() == name);
+            let gas = known
+                .gas
+                .and_then(|gas| gas.names().iter().position(|one| *one == name));
+            match (solid, gas) {
+                (_, Some(k)) => made[1].push((k, order)),
+                (Some(k), None) => made[0].push((k, order)),
+                (None, None) => {
+                    let help = "name gases and solids of the case";
+                    orders.fail(&name, "is neither a gas nor a solid of the case", help);
+                    return None;
+                }
+            }
+            if order < 0.0
+                && let Some(why) = absent(known, gas, equation)
+            {
+                let rule = format!("is {order}, but {name} {why}: the rate would be infinite");
+                let help = "write an order of zero or above, or see to it that the species is always there";
+                orders.fail(&name, rule, help);
+                return None;
+            }
+        }
+        Some(made)
+    });
+    rate.finish();
+    let [solids, gases] = orders?;
+    let in_series = match in_series {
+        Some(step) => Some(step?),
+        None => None,
+    };
+    Some(Rate::Power(PowerLaw {
+        rate_constant: constant?,
+        in_series,
+        solids,
+        gases,
+    }))
+}
+
+/// Where a species of a negative order may be missing.
+fn absent(
+    known: &Known<'_>,
+    gas: Option<usize>,
+    equation: Option<&(Equation, Parts)>,
+) -> Option<&'static str> {
+    let Some(k) = gas else {
+        return Some("is a solid that may not be there");
+    };
+    if let Some((_, parts)) = equation
+        && parts.gases.iter().any(|&(g, n)| g == k && n < 0.0)
+    {
+        return Some("is used up by the reaction");
+    }
+    let setup = known.setup?;
+    if setup.composition.get(k).is_some_and(|y| *y <= 0.0) {
+        return Some("is not in `gas.initial`");
+    }
+    let lacking = |patch: &GasPatch| match patch {
+        GasPatch::Inlet {
+            composition: Some(composition),
+            ..
+        } => composition.0.iter().any(|(_, y)| y[k] <= 0.0),
+        _ => false,
+    };
+    let somewhere = setup.patches.iter().any(|(_, patch)| lacking(patch));
+    somewhere.then_some("is not in the gas of an inlet")
+}
+
+fn equilibrium(
+    table: &Reader<'_>,
+    equation: &Equation,
+    parts: &Parts,
+    known: &Known<'_>,
+) -> Option<Equilibrium> {
+    let given = table.table("equilibrium");
+    if !equation.reversible {
+        if given.is_some() {
+            let help = "write <=> in the equation, or remove it";
+            table.fail(
+                "equilibrium",
+                "stands beside an equation that goes one way",
+                help,
+            );
+            return None;
+        }
+        return Some(Equilibrium::OneWay);
+    }
+    if let Some(line) = given {
+        let constant = line.required_quantity("constant", Dimension::NONE);
+        let over = line.required_quantity("over_temperature", Dimension::TEMPERATURE);
+        line.finish();
+        return Some(Equilibrium::Line {
+            constant: constant?,
+            over_temperature: over?,
+        });
+    }
+    let change = |temperature: f64| -> f64 {
+        let solids = parts.solids.iter();
+        let solids = solids.map(|&(s, n)| n * known.solids[s].gibbs_energy(temperature));
+        let gases = parts.gases.iter().map(|&(g, n)| {
+            known.gas.map_or(0.0, |gas| {
+                n * gas.species()[g].polynomial().gibbs_energy(temperature)
+            })
+        });
+        solids.chain(gases).sum()
+    };
+    Some(Equilibrium::Gibbs(GibbsLine::new(change)))
+}
+
+/// True where a stated heat is that of the enthalpies of formation.
+fn agrees(table: &Reader<'_>, heat: f64, made: &Reaction, known: &Known<'_>) -> bool {
+    let gas = known.gas.cloned();
+    let Ok(chemistry) = Chemistry::new(known.solids.to_vec(), gas, Vec::new()) else {
+        return true;
+    };
+    let own = chemistry.heat_of(made);
+    if (heat - own).abs() <= HEAT * own.abs().max(1e3) {
+        return true;
+    }
+    let rule = format!(
+        "is {:.1} kJ/mol, but the enthalpies of formation give {:.1} kJ/mol at 298.15 K",
+        heat / 1e3,
+        own / 1e3
+    );
+    let help = "correct it, or remove it: heats follow from the enthalpies, taken up positive";
+    table.fail("heat", rule, help);
+    false
+}
+
+/// Errors where reactions do not go with the rest of the case.
+pub(super) fn fits(
+    root: &Reader<'_>,
+    chemistry: &ReactionSpec,
+    laws: &Laws,
+    particles: &[Population],
+    solver: Solver,
+) {
+    if !chemistry.exchanges() {
+        return;
+    }
+    if laws.mass_transfer == HeatLaw::None {
+        let help = "add mass_transfer = { law = \"gunn\" } to [laws]";
+        root.fail(
+            "laws",
+            "has no mass transfer, by which gas reaches particles that react",
+            help,
+        );
+    }
+    if solver.is_stock() {
+        let help = "leave `openfoam.solver` out: calcineGasFoam has sources of species";
+        root.fail(
+            "openfoam",
+            "names a stock solver, which takes no gas from particles",
+            help,
+        );
+    }
+    if particles.iter().any(|one| one.motion == Motion::Free) {
+        let help = "write motion = \"frozen\"";
+        let rule = "exchange gas with particles that move, whose mass is fixed so far";
+        root.fail("reactions", rule, help);
+    }
+}

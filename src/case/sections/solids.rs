@@ -1,0 +1,54 @@
+//! `[solids]`: pure solids, beside those that are built in.
+
+use calcine_coupler::physics::solid::HeatCapacity;
+use calcine_coupler::physics::solids::SolidSpecies;
+
+use crate::case::table::Reader;
+use crate::case::units::Dimension;
+
+/// All solids that a case may name: its own, and the built-in ones that it does not redefine.
+pub(super) fn solids(root: &Reader<'_>) -> Vec<SolidSpecies> {
+    let own = root.table("solids").map_or(Vec::new(), |section| {
+        let tables = section.named().into_iter();
+        tables
+            .filter_map(|(name, table)| solid(&name, &table))
+            .collect()
+    });
+    let mut all: Vec<SolidSpecies> = own;
+    for name in SolidSpecies::built_in_names() {
+        if all.iter().all(|one| one.name() != name) {
+            all.extend(SolidSpecies::built_in(name).ok());
+        }
+    }
+    all
+}
+
+fn solid(name: &str, table: &Reader<'_>) -> Option<SolidSpecies> {
+    let formula = table.required_text("formula", "\"SiO2\"");
+    let enthalpy = table.required_quantity("formation_enthalpy", Dimension::MOLAR_ENERGY);
+    let entropy = table.required_positive("entropy", Dimension::MOLAR_ENTROPY);
+    let points = table.curve(
+        "heat_capacity",
+        Dimension::TEMPERATURE,
+        Dimension::HEAT_CAPACITY,
+    );
+    table.finish();
+    let points = points?;
+    if let Some((_, value)) = points.iter().find(|point| point.1 <= 0.0) {
+        let help = "it is above zero at all temperatures";
+        table.fail("heat_capacity", format!("is {value} J/kg/K"), help);
+        return None;
+    }
+    let law = match points[..] {
+        [(_, value)] => HeatCapacity::constant(value),
+        _ => HeatCapacity::table(points),
+    };
+    match SolidSpecies::new(name, formula?, enthalpy?, entropy?, law) {
+        Ok(made) => Some(made),
+        Err(error) => {
+            let help = "write elements with their numbers, such as CaCO3";
+            table.fail("formula", format!("is refused: {error}"), help);
+            None
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Reacting beds through the program: the ledger, the order in the window, mass against oxygen, resuming.
+
+#![allow(clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use calcine::results::Summary;
+use calcine::results::read::Series;
+
+fn run(case: &str, out: &Path, settings: &[&str]) -> Summary {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(case);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
+    command.arg("run").arg(path).arg("--quiet");
+    for setting in settings {
+        command.args(["--set", setting]);
+    }
+    let output = command.arg("--out").arg(out).output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{case}: {text}");
+    Summary::read(out).unwrap()
+}
+
+fn value(summary: &Summary, name: &str) -> f64 {
+    summary.quantities[name].value.unwrap()
+}
+
+fn closes(summary: &Summary) {
+    for name in ["mass", "energy", "energy_exchange", "particle_mass"] {
+        let error = summary.ledger.lines[name].relative_error;
+        assert!(error < 1e-11, "{name}: {error}");
+    }
+    assert!(summary.ledger.elements.len() >= 3);
+    for (element, line) in &summary.ledger.elements {
+        assert!(
+            line.relative_error < 1e-11,
+            "{element}: {}",
+            line.relative_error
+        );
+    }
+}
+
+#[test]
+fn burning_lime_converges_with_its_windows_and_closes_elements_and_energy() {
+    let folder = tempfile::tempdir().unwrap();
+    let lime = |step: &str| {
+        let step = format!("time.process_step={step}");
+        let out: PathBuf = folder.path().join(step.replace(['=', ' '], "-"));
+        let settings = [
+            "time.end=640 s",
+            "output.every=640 s",
+            "output.series_every=640 s",
+            &step,
+        ];
+        let summary = run("cases/lime-burning.toml", &out, &settings);
+        closes(&summary);
+        value(&summary, "lime")
+    };
+    let [coarse, middle, fine] = ["80 s", "40 s", "20 s"].map(lime);
+    let order = ((coarse - middle) / (middle - fine)).abs().log2();
+    // First order, as an implicit step of the gas and held gas about the particles are.
+    assert!(fine > 0.04 && (fine / middle - 1.0).abs() < 0.04);
+    assert!(
+        (order - 1.0).abs() < 0.15,
+        "{order}: {coarse} {middle} {fine}"
+    );
+}
+
+#[test]
+fn iron_that_heats_itself_gains_the_mass_of_the_oxygen_it_takes() {
+    let folder = tempfile::tempdir().unwrap();
+    let settings = ["time.end=1000 s", "output.every=1000 s"];
+    let summary = run("cases/dri-self-heating.toml", folder.path(), &settings);
+    closes(&summary);
+    let series = Series::read(folder.path()).unwrap();
+    let of = |name: &str| series.column(&format!("quantities.{name}")).to_vec();
+    let (mass, oxide) = (of("pellet_mass"), of("oxide"));
+    let last = mass.len() - 1;
+    let gained = mass[last] - mass[0];
+    // 15.999 g of oxygen in 71.844 g of FeO.
+    let bound = (mass[last] * oxide[last] - mass[0] * oxide[0]) * 15.999 / 71.844;
+    assert!(gained > 0.0);
+    // All pellets are alike in size, so that means of products are near the product of means.
+    assert!((gained / bound - 1.0).abs() < 1e-4, "{gained} {bound}");
+    let oxygen = of("outlet_oxygen");
+    assert!(
+        oxygen[last] < oxygen[0],
+        "the bed takes oxygen from the air"
+    );
+    assert!(of("highest_temperature")[last] > 333.0);
+}
+
+#[test]
+fn every_key_of_reactions_runs_and_closes() {
+    let folder = tempfile::tempdir().unwrap();
+    let summary = run("tests/inputs/good/reactions.toml", folder.path(), &[]);
+    closes(&summary);
+    assert!(
+        value(&summary, "oxide") > 0.05,
+        "{}",
+        value(&summary, "oxide")
+    );
+}
+
+#[test]
+fn ore_is_reduced_step_by_step_and_its_oxygen_leaves_with_the_gas() {
+    let folder = tempfile::tempdir().unwrap();
+    let summary = run(
+        "cases/ore-reduction.toml",
+        folder.path(),
+        &["time.end=100 s"],
+    );
+    closes(&summary);
+    assert!(summary.ledger.elements.contains_key("Fe"));
+    assert!(value(&summary, "magnetite") > value(&summary, "wustite"));
+    assert!(value(&summary, "wustite") > value(&summary, "iron"));
+    assert!(value(&summary, "iron") > 1e-3);
+}
