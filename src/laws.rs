@@ -71,6 +71,7 @@ pub fn heat(case: &Case) -> Option<HeatLaws> {
         area,
         gap,
         radiates,
+        inside: case.laws.radiation.as_ref().is_some_and(|one| one.inside),
     })
 }
 

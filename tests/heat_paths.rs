@@ -224,7 +224,7 @@ fn a_random_bed_conducts_as_zehner_bauer_and_schluender_say_from_300_to_1500_kel
         let bed = PackedBed {
             void_fraction,
             diameter: 6e-3,
-            solid_conductivity: 2.0,
+            solid_conductivity: 20.0,
             gas_conductivity: air(kelvin),
             emissivity: 0.9,
             temperature: kelvin,
@@ -233,8 +233,11 @@ fn a_random_bed_conducts_as_zehner_bauer_and_schluender_say_from_300_to_1500_kel
         println!(
             "{kelvin} K: void fraction {void_fraction:.3}, {made:.4}, Zehner-Bauer-Schlünder {zbs:.4} W/m/K"
         );
-        // The correlation itself is good for 30 %.
-        assert!((made / zbs - 1.0).abs() < 0.35, "{kelvin}: {made} {zbs}");
+        // The correlation is good for 30 %; the bed has no contact areas, which tells where it is cold.
+        assert!(
+            (0.65..1.3).contains(&(made / zbs)),
+            "{kelvin}: {made} {zbs}"
+        );
     }
 }
 

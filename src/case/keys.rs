@@ -316,6 +316,7 @@ const KEYS: &[Key] = &[
     key("laws.radiation", "table", Required, "Radiation between particles, to walls and surroundings; the gas is transparent.", "{ law = \"none\" }"),
     key("laws.radiation.law", "`view-factors`, `distance` or `none`", Required, "View factors by rays, with what stands between; by the distance alone, fitted to rays in random beds; or no radiation.", "\"view-factors\""),
     key("laws.radiation.surroundings", "temperature, K, or schedule, or `closed`", Default("required with a law"), "Temperature of what rays reach that meet no wall; `closed`: nothing leaves.", "\"300 K\""),
+    key("laws.radiation.inside", "`isothermal` or `singh-kaviany`", Default("`isothermal`"), "Spheres of one temperature, or less radiation through the bed where they conduct so badly that their warm side cannot pass on what it receives; the materials then need a conductivity.", "\"singh-kaviany\""),
     key("laws.radiation.rays", "whole number", Default("1024"), "Rays a particle, 16 to 1000000; of `view-factors`.", "1024"),
     key("laws.radiation.range", "number", Default("3"), "Distance of centres in largest diameters up to which particles see each other, 1 or more.", "3"),
     key("laws.radiation.refresh", "time, s", Default("with every window"), "Views of moving particles hold for so much process time.", "\"10 s\""),

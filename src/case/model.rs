@@ -380,6 +380,8 @@ pub enum Gap {
 pub struct Radiation {
     /// How views are found.
     pub sight: Sight,
+    /// True where badly conducting spheres pass on less.
+    pub inside: bool,
     /// Temperature in K of what is seen beyond all walls; `None`: nothing leaves.
     pub surroundings: Option<Schedule>,
     /// Views of moving particles hold for so much process time in s.

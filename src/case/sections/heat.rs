@@ -121,13 +121,18 @@ pub(super) fn radiation(section: &Reader<'_>) -> Option<Option<Radiation>> {
         true => table.positive("refresh", Dimension::TIME),
         false => Some(0.0),
     };
+    let insides = [("isothermal", false), ("singh-kaviany", true)];
+    let inside = match table.has("inside") {
+        true => table.choice("inside", &insides),
+        false => Some(false),
+    };
     let surroundings = surroundings(&table, law);
     let own: &[&str] = match law {
-        Some(1) => &["rays", "range", "refresh", "surroundings"],
-        Some(2) => &["range", "refresh", "surroundings"],
+        Some(1) => &["rays", "range", "refresh", "surroundings", "inside"],
+        Some(2) => &["range", "refresh", "surroundings", "inside"],
         _ => &[],
     };
-    for key in ["rays", "range", "refresh", "surroundings"] {
+    for key in ["rays", "range", "refresh", "surroundings", "inside"] {
         if law.is_some() && table.has(key) && !own.contains(&key) {
             table.fail(key, "does not go with this law of radiation", "remove it");
         }
@@ -146,6 +151,7 @@ pub(super) fn radiation(section: &Reader<'_>) -> Option<Option<Radiation>> {
     };
     Some(Some(Radiation {
         sight,
+        inside: inside?,
         surroundings: surroundings?,
         refresh: refresh?,
     }))
@@ -202,8 +208,9 @@ pub(super) fn need_properties(
                 section.fail(&material.name, what, help);
             }
         };
+        let inside = laws.radiation.as_ref().is_some_and(|one| one.inside);
         need(
-            conducts && material.conductivity.is_none(),
+            (conducts || inside) && material.conductivity.is_none(),
             "has no conductivity, which conduction between particles needs",
             "conductivity = \"1.1 W/m/K\"",
             "conduction = { law = \"none\" }",

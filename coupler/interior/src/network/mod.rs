@@ -18,6 +18,7 @@ mod solver;
 use calcine_physics::conduction::{
     Conduction, Conductivity, Contact, ContactArea, Gap, GasGap, Stiffness,
 };
+use calcine_physics::radiation::conducted_share;
 
 pub use meeting::{Beside, Meeting, Touch, Views, WallTouch};
 use radiation::Radiation;
@@ -51,6 +52,9 @@ pub struct HeatLaws {
     pub gap: Box<dyn GasGap>,
     /// True where surfaces radiate to each other.
     pub radiates: bool,
+    /// True where what a sphere cannot conduct from side to side is taken off its radiation
+    /// (`radiation::conducted_share`).
+    pub inside: bool,
 }
 
 impl HeatLaws {
@@ -61,6 +65,7 @@ impl HeatLaws {
             area: ContactArea::Overlap,
             gap: Box::new(calcine_physics::conduction::NoGap),
             radiates: false,
+            inside: false,
         }
     }
 
@@ -176,6 +181,14 @@ impl Network {
     ) {
         let count = old.len();
         self.conduct(old, beside);
+        if self.laws.inside {
+            let (materials, material) = (&self.materials, &self.material);
+            self.radiation.limit(|p, diameter| {
+                let of = &materials[material[p]];
+                let conductivity = of.conductivity.at(old[p]);
+                conducted_share(of.emissivity, conductivity, diameter, old[p])
+            });
+        }
         let work = &mut self.work;
         let (solid, walled) = (work.bonds.len(), work.ties.len());
         let nodes = count + self.radiation.radiosities();

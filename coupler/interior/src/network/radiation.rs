@@ -1,5 +1,7 @@
 //! Views as bonds whose conductance follows temperature.
 
+use std::f64::consts::PI;
+
 use calcine_physics::radiation::linear;
 
 use super::Views;
@@ -9,6 +11,8 @@ use super::Views;
 pub(super) struct Radiation {
     views: Views,
     emissivity: Vec<f64>,
+    /// Share of the exchange of each particle that it can pass on through its inside; empty for all.
+    share: Vec<f64>,
     /// True where some surface is not black, so that each has a radiosity of its own.
     grey: bool,
 }
@@ -20,7 +24,28 @@ impl Radiation {
             views: views.clone(),
             grey: views.radiosity && emissivity.iter().any(|e| *e < 1.0),
             emissivity,
+            share: Vec::new(),
         }
+    }
+
+    /// Takes up the share that each particle, of a diameter in m, can pass on.
+    pub fn limit(&mut self, share: impl Fn(usize, f64) -> f64) {
+        let views = &self.views;
+        let diameter = |p: usize| {
+            let absorbs = if views.radiosity {
+                1.0
+            } else {
+                self.emissivity[p]
+            };
+            (views.surface[p] / (absorbs * PI)).sqrt()
+        };
+        self.share = (0..views.surface.len())
+            .map(|p| share(p, diameter(p)))
+            .collect();
+    }
+
+    fn of(&self, particle: usize) -> f64 {
+        self.share.get(particle).copied().unwrap_or(1.0)
     }
 
     /// True where nothing radiates.
@@ -51,12 +76,13 @@ impl Radiation {
         let shift = self.radiosities();
         for &([i, j], area) in &self.views.pairs {
             let ends = [i + shift, j + shift];
-            bonds.push((ends, area * linear(kelvin[ends[0]], kelvin[ends[1]])));
+            let left = (self.of(i) * self.of(j)).sqrt();
+            bonds.push((ends, left * area * linear(kelvin[ends[0]], kelvin[ends[1]])));
         }
         for &([i, reservoir], area) in &self.views.reservoirs {
             let node = i + shift;
             let h = linear(kelvin[node], reservoirs[reservoir]);
-            ties.push(([node, reservoir], area * h));
+            ties.push(([node, reservoir], self.of(i) * area * h));
         }
         for i in 0..shift {
             let e = self.emissivity[i];

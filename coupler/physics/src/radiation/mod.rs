@@ -2,10 +2,12 @@
 
 mod distance;
 mod gas;
+mod inside;
 mod sphere;
 
 pub use distance::{visibility, wall_visibility};
 pub use gas::{GasRadiation, TransparentGas};
+pub use inside::conducted_share;
 pub use sphere::{SphereTable, element_to_sphere, sphere_to_sphere};
 
 /// Stefan and Boltzmann's constant σ in W/m²/K⁴ (CODATA 2018, exact digits cut).
