@@ -20,6 +20,7 @@ use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::motion::Motion;
 use calcine_coupler::part::{Gas, ParticleFields, Particles};
+use calcine_coupler::paths::{HeatWall, PathsSetup};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::ParticleSetup;
@@ -583,15 +584,43 @@ fn plan(case: &Case, prepared: &Prepared, checkpoint: CheckpointPaths) -> Plan {
         },
         gravity: case.gas.gravity,
         traffic: traffic(case, prepared),
-        substance: case
-            .particles
-            .iter()
-            .map(|population| {
-                let material = population.material;
-                let conductivity = case.materials[material].conductivity;
-                (material, conductivity.unwrap_or(0.0))
+        substance: case.particles.iter().map(|one| one.material).collect(),
+        paths: paths(case, prepared),
+    }
+}
+
+/// Heat between particles and to walls, as the coordinator finds it.
+fn paths(case: &Case, prepared: &Prepared) -> PathsSetup {
+    let Some(laws) = laws::heat(case) else {
+        return PathsSetup::default();
+    };
+    let radii = &prepared.particles.radius;
+    let fed = case
+        .feeds
+        .iter()
+        .map(|feed| 0.5 * case.particles[feed.population].sizes.largest());
+    let largest = radii.iter().copied().chain(fed).fold(0.0, f64::max);
+    let emissivity = |material: usize| case.materials[material].emissivity.unwrap_or(1.0);
+    let walls = case.walls.iter().zip(&case.wall_temperatures);
+    let radiation = case.laws.radiation.as_ref();
+    PathsSetup {
+        walls: walls
+            .map(|(wall, temperature)| HeatWall {
+                name: wall.name.clone(),
+                shape: wall.shape.clone(),
+                temperature: temperature.clone(),
+                emissivity: emissivity(wall.material),
             })
             .collect(),
+        emissivity: case
+            .particles
+            .iter()
+            .map(|one| emissivity(one.material))
+            .collect(),
+        gap: laws.reach(largest),
+        sight: radiation.map(|one| one.sight),
+        surroundings: radiation.and_then(|one| one.surroundings.clone()),
+        refresh: radiation.map_or(0.0, |one| one.refresh),
     }
 }
 
@@ -619,10 +648,15 @@ fn interior(
     };
     let volume = |p: usize| 4.0 / 3.0 * std::f64::consts::PI * particles.radius[p].powi(3);
     let material = |p: usize| case.particles[particles.population[p] as usize].material;
-    let network = laws::conduction(case.laws.conduction).map(|law| {
-        // The case file states a conductivity where conduction asks for one.
-        let conductivity = |p: usize| case.materials[material(p)].conductivity.unwrap_or(0.0);
-        Network::new(law, all.clone().map(conductivity).collect())
+    let network = laws::heat(case).map(|laws| {
+        let walls = case.walls.iter().zip(&case.wall_temperatures);
+        let warm = walls.filter(|(_, temperature)| temperature.is_some());
+        Network::new(
+            laws,
+            laws::thermal(case),
+            all.clone().map(material).collect(),
+            warm.map(|(wall, _)| wall.material).collect(),
+        )
     });
     let masses: Vec<f64> = all.clone().map(|p| density(p) * volume(p)).collect();
     let materials: Vec<usize> = all.clone().map(material).collect();

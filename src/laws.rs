@@ -1,6 +1,11 @@
 //! The laws that a case names.
 
-use calcine_coupler::physics::conduction::{BatchelorObrien, Conduction, Lens};
+use calcine_coupler::interior::{HeatLaws, Thermal};
+use calcine_coupler::motion::ContactForce;
+use calcine_coupler::physics::conduction::{
+    BatchelorObrien, Cheng, Conduction, Conductivity, ContactArea, ElasticLaw, GasGap, Lens,
+    NoConduction, NoGap, RongHorio, Stiffness,
+};
 use calcine_coupler::physics::drag::{
     Beetstra, DiFelice, Drag, Ergun, ErgunWenYu, Gidaspow, KochHill, NoDrag, WenYu,
 };
@@ -8,7 +13,7 @@ use calcine_coupler::physics::heat_transfer::{
     Gnielinski, Gunn, HeatTransfer, NoHeatTransfer, RanzMarshall, Wakao,
 };
 
-use crate::case::model::{ConductionLaw, DragLaw, HeatLaw};
+use crate::case::model::{Area, Case, ConductionLaw, DragLaw, Gap, HeatLaw};
 
 /// The drag law of a case.
 pub fn drag(law: DragLaw) -> Box<dyn Drag> {
@@ -35,11 +40,58 @@ pub fn heat_transfer(law: HeatLaw) -> Box<dyn HeatTransfer> {
     }
 }
 
-/// The conduction law of a case; `None` where particles conduct nothing to each other.
-pub fn conduction(law: ConductionLaw) -> Option<Box<dyn Conduction>> {
-    match law {
-        ConductionLaw::None => None,
-        ConductionLaw::BatchelorObrien => Some(Box::new(BatchelorObrien)),
-        ConductionLaw::Lens => Some(Box::new(Lens)),
+/// The laws of heat between particles of a case; `None` where there are none.
+pub fn heat(case: &Case) -> Option<HeatLaws> {
+    let (laws, radiates) = (&case.laws.conduction, case.laws.radiation.is_some());
+    if !case.laws.conducts() && !radiates {
+        return None;
     }
+    let conduction: Box<dyn Conduction> = match laws.law {
+        ConductionLaw::None => Box::new(NoConduction),
+        ConductionLaw::BatchelorObrien => Box::new(BatchelorObrien),
+        ConductionLaw::Lens => Box::new(Lens),
+    };
+    let area = match laws.area {
+        Area::Overlap => ContactArea::Overlap,
+        Area::Load { force, within } => ContactArea::Load { force, within },
+        Area::Force => ContactArea::Force(match case.motion.map(|motion| motion.law.force) {
+            Some(ContactForce::Linear {
+                characteristic_speed: speed,
+            }) => ElasticLaw::Linear { speed },
+            _ => ElasticLaw::Hertz,
+        }),
+    };
+    let gap: Box<dyn GasGap> = match laws.gap {
+        Gap::None => Box::new(NoGap),
+        Gap::RongHorio { lens, least_width } => Box::new(RongHorio { lens, least_width }),
+        Gap::Cheng { cone, widest } => Box::new(Cheng { cone, widest }),
+    };
+    Some(HeatLaws {
+        conduction,
+        area,
+        gap,
+        radiates,
+    })
+}
+
+/// What heat between particles needs of the materials of a case. What a case does not state is not asked for:
+/// the check demands all that its laws need.
+pub fn thermal(case: &Case) -> Vec<Thermal> {
+    let of = |material: &crate::case::model::Material| {
+        let stiffness = |young: Option<f64>| Stiffness {
+            young: young.unwrap_or(f64::NAN),
+            poisson: material.poisson.unwrap_or(f64::NAN),
+        };
+        Thermal {
+            conductivity: material
+                .conductivity
+                .clone()
+                .unwrap_or(Conductivity::constant(0.0)),
+            emissivity: material.emissivity.unwrap_or(1.0),
+            density: material.density,
+            soft: stiffness(material.young),
+            real: stiffness(material.real_young.or(material.young)),
+        }
+    };
+    case.materials.iter().map(of).collect()
 }

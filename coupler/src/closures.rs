@@ -122,6 +122,8 @@ pub struct Coefficients {
     pub conductance: Vec<f64>,
     /// Magnitude of the slip u − v/AF in m/s by which they were evaluated.
     pub slip: Vec<f64>,
+    /// Conductivity of the gas in W/m/K.
+    pub gas_conductivity: Vec<f64>,
     /// Share of the other forces in N that drag holds back within the window (requirements
     /// DRG-2, see [`Coefficients::relax`]); zero, or empty, where particles are held.
     pub held_back: Vec<Vec3>,
@@ -234,6 +236,7 @@ impl Closures {
         coefficients.drag.resize(count, 0.0);
         coefficients.conductance.resize(count, 0.0);
         coefficients.slip.resize(count, 0.0);
+        coefficients.gas_conductivity.resize(count, 0.0);
         for p in 0..count {
             let id = particles.id[p];
             let temperature = seen.temperature[p];
@@ -277,6 +280,7 @@ impl Closures {
             coefficients.drag[p] = self.momentum.coefficient(drag, seen.void_fraction[p]);
             coefficients.conductance[p] = conductance;
             coefficients.slip[p] = local.slip;
+            coefficients.gas_conductivity[p] = local.conductivity;
         }
         Ok(())
     }

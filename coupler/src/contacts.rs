@@ -1,9 +1,9 @@
 //! Which spheres are near each other, and which overlap.
 
-use calcine_interior::Touch;
+use calcine_interior::{Touch, WallTouch};
 use calcine_physics::Vec3;
 
-use crate::part::ParticleFields;
+use crate::sight::Surface;
 
 /// All pairs of spheres whose surfaces are nearer than `gap` in m, found by cells over a box (its lowest
 /// corner and its size in m; what lies outside counts to the nearest cell). The first of a pair is the
@@ -60,8 +60,8 @@ pub fn pairs(
     pairs
 }
 
-/// Pairs of spheres that overlap, in the order of their indices.
-pub fn overlapping(radii: &[f64], centres: &[Vec3]) -> Vec<Touch> {
+/// Pairs of spheres whose surfaces are nearer than `gap` in m, in the order of their indices.
+fn near(radii: &[f64], centres: &[Vec3], gap: f64) -> Vec<[u32; 2]> {
     let Some(first) = centres.first() else {
         return Vec::new();
     };
@@ -77,8 +77,22 @@ pub fn overlapping(radii: &[f64], centres: &[Vec3]) -> Vec<Touch> {
         .fold(0.0, f64::max)
         .max(f64::MIN_POSITIVE);
     let size = (high - low).map(|length| length.max(width));
-    let mut found = pairs((low, size), radii, centres, 0.0);
+    let mut found = pairs((low, size), radii, centres, gap);
     found.sort_unstable();
+    found
+}
+
+/// Pairs of spheres whose centres are nearer than `reach` in m, in the order of their indices.
+pub fn pairs_around(radii: &[f64], centres: &[Vec3], reach: f64) -> Vec<[u32; 2]> {
+    let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut found = near(radii, centres, (reach - 2.0 * smallest).max(0.0));
+    let apart = |&[a, b]: &[u32; 2]| centres[b as usize] - centres[a as usize];
+    found.retain(|pair| apart(pair).norm_squared() < reach * reach);
+    found
+}
+
+/// Pairs of spheres that overlap, or whose surfaces are nearer than `gap` in m, in the order of their indices.
+pub fn touching(radii: &[f64], centres: &[Vec3], gap: f64) -> Vec<Touch> {
     let touch = |[a, b]: [u32; 2]| {
         let particles = [a as usize, b as usize];
         let radius = particles.map(|p| radii[p]);
@@ -89,13 +103,33 @@ pub fn overlapping(radii: &[f64], centres: &[Vec3]) -> Vec<Touch> {
             overlap: radius[0] + radius[1] - distance,
         }
     };
-    let touches = found.into_iter().map(touch);
-    touches.filter(|touch| touch.overlap > 0.0).collect()
+    let touches = near(radii, centres, gap).into_iter().map(touch);
+    touches.filter(|touch| touch.overlap > -gap).collect()
 }
 
-/// Particles that overlap.
-pub fn touching(particles: &ParticleFields<'_>) -> Vec<Touch> {
-    overlapping(particles.radius, particles.position)
+/// Spheres that overlap a wall, or whose surfaces are nearer to it than `gap` in m; walls with the reservoirs
+/// that they are.
+pub fn touching_walls<'w>(
+    radii: &[f64],
+    centres: &[Vec3],
+    walls: impl Iterator<Item = (usize, &'w Surface)>,
+    gap: f64,
+) -> Vec<WallTouch> {
+    let mut found = Vec::new();
+    for (reservoir, surface) in walls {
+        for (particle, (&radius, &centre)) in radii.iter().zip(centres).enumerate() {
+            let overlap = radius - surface.distance(centre, radius + gap);
+            if overlap > -gap {
+                found.push(WallTouch {
+                    particle,
+                    reservoir,
+                    radius,
+                    overlap,
+                });
+            }
+        }
+    }
+    found
 }
 
 #[cfg(test)]
@@ -131,7 +165,7 @@ mod tests {
                     }
                 }
             }
-            let fast: Vec<_> = overlapping(&radii, &centres)
+            let fast: Vec<_> = touching(&radii, &centres, 0.0)
                 .iter()
                 .map(|touch| touch.particles)
                 .collect();
@@ -142,10 +176,32 @@ mod tests {
     #[test]
     fn an_overlap_is_the_sum_of_the_radii_less_the_distance() {
         let centres = [Vec3::zeros(), Vec3::new(3.0, 4.0, 0.0)];
-        let found = overlapping(&[2.0, 3.5], &centres);
+        let found = touching(&[2.0, 3.5], &centres, 0.0);
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].overlap, found[0].radius), (0.5, [2.0, 3.5]));
-        assert!(overlapping(&[2.0, 3.0], &centres).is_empty());
-        assert!(overlapping(&[], &[]).is_empty());
+        assert!(touching(&[2.0, 3.0], &centres, 0.0).is_empty());
+        assert!(touching(&[], &[], 0.0).is_empty());
+    }
+
+    #[test]
+    fn gaps_and_walls_count_up_to_their_width() {
+        let centres = [Vec3::new(0.0, 0.0, 1.1), Vec3::new(2.5, 0.0, 0.9)];
+        let pairs = touching(&[1.0; 2], &centres, 0.6);
+        assert!((pairs[0].overlap + (6.29_f64.sqrt() - 2.0)).abs() < 1e-14);
+        assert!(touching(&[1.0; 2], &centres, 0.4).is_empty());
+        assert_eq!(pairs_around(&[1.0; 2], &centres, 2.51), [[0, 1]]);
+        assert!(pairs_around(&[1.0; 2], &centres, 2.5).is_empty());
+        let floor = Surface::new(&crate::motion::WallShape::Plane {
+            point: Vec3::zeros(),
+            normal: Vec3::z(),
+        });
+        let found = touching_walls(&[1.0; 2], &centres, [(4, &floor)].into_iter(), 0.2);
+        let overlaps: Vec<f64> = found.iter().map(|one| one.overlap).collect();
+        assert!((overlaps[0] + 0.1).abs() < 1e-15 && (overlaps[1] - 0.1).abs() < 1e-15);
+        assert!(found.iter().all(|one| one.reservoir == 4));
+        assert_eq!(
+            touching_walls(&[1.0; 2], &centres, [(4, &floor)].into_iter(), 0.0).len(),
+            1
+        );
     }
 }

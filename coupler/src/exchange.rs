@@ -129,10 +129,10 @@ impl Exchange {
     pub fn linearise(&mut self, setting: &Setting<'_>, temperature: &[f64]) {
         let (operator, iterate) = (setting.operator, &mut self.iterate);
         // K_p, g_p and the source side by side: three components cost little more than one.
-        for p in 0..operator.particles() {
+        for (p, kelvin) in temperature.iter().enumerate() {
             let own = self.conductance[p];
             let tie = tie(setting.coefficients.conductance[p], own);
-            let source = own * temperature[p] + tie * iterate.seen_temperature[p];
+            let source = own * kelvin + tie * iterate.seen_temperature[p];
             self.vector[p] = Vec3::new(own, tie, source);
         }
         operator.spread_vectors(&self.vector, &mut self.cell_vector);
@@ -169,10 +169,10 @@ impl Exchange {
             self.cell_vector[c] = Vec3::new(credited, own, 0.0);
         }
         operator.sample_vectors(&self.cell_vector, &mut self.vector);
-        for p in 0..operator.particles() {
+        for (p, kelvin) in temperature.iter().enumerate() {
             let [credited, seen, _] = self.vector[p].into();
             let own = self.conductance[p];
-            self.heat[p] = own * (credited - temperature[p]);
+            self.heat[p] = own * (credited - kelvin);
             let before = std::mem::replace(&mut self.iterate.seen_temperature[p], seen);
             self.scalar[p] = tie(coefficients.conductance[p], own) * (seen - before);
         }

@@ -78,6 +78,10 @@ pub struct Moment<'a> {
     pub solid_fractions: &'a [f64],
     /// What else the particles had of the gas.
     pub felt: Felt<'a>,
+    /// Names of walls and surroundings that give heat to the particles.
+    pub reservoirs: &'a [String],
+    /// Mean heat from each of these into the particles over the window in W; empty where there is none.
+    pub reservoir_heat: &'a [f64],
     /// The ledger so far.
     pub ledger: &'a Ledger,
     /// Convergence of the gas in the window.

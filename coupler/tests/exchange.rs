@@ -157,7 +157,7 @@ fn attempts(
     let coefficients = Coefficients {
         drag: vec![1e-3, 2e-3],
         conductance: vec![conductance; 2],
-        held_back: Vec::new(),
+        ..Coefficients::default()
     };
     let mut exchange = Exchange::default();
     exchange.conductance.resize(2, 0.0);
@@ -257,7 +257,7 @@ fn stiff_drag_relaxes_a_free_particle_and_leaves_a_held_one_its_full_drag() {
     let mut coefficients = Coefficients {
         drag: vec![drag; 3],
         conductance: vec![0.0; 3],
-        held_back: Vec::new(),
+        ..Coefficients::default()
     };
     coefficients.relax(&Inertia {
         mass: &[mass; 3],

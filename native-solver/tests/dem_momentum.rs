@@ -5,6 +5,7 @@
 mod grains;
 
 use calcine_coupler::motion::{NewParticle, WallMotion};
+use calcine_coupler::part::Particles;
 use calcine_coupler::physics::Vec3;
 use grains::{Bed, contacts, cuboid, loose};
 

@@ -12,10 +12,13 @@ use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::motion::{ContactLaw, Wall};
 use calcine_coupler::packing::Sizes;
 use calcine_coupler::packing::regular::Lattice;
+pub use calcine_coupler::paths::SURROUNDINGS;
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::conduction::Conductivity;
 use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::physics::solids::SolidSpecies;
-use calcine_coupler::setup::GasSetup;
+use calcine_coupler::setup::{GasSetup, Schedule};
+use calcine_coupler::sight::Sight;
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
 use calcine_coupler::traffic::Outlet;
 
@@ -44,6 +47,8 @@ pub struct Case {
     pub contacts: Vec<Contact>,
     /// Walls that particles touch.
     pub walls: Vec<Wall>,
+    /// Temperature in K of each wall that particles exchange heat with; `None`: adiabatic.
+    pub wall_temperatures: Vec<Option<Schedule>>,
     /// How particles that are free move.
     pub motion: Option<FreeMotion>,
     /// The gas.
@@ -159,10 +164,14 @@ pub struct Material {
     pub heat_capacity: HeatCapacity,
     /// Mass fractions of all solids that there are; `None` where it is not said what it is made of.
     pub composition: Option<Vec<f64>>,
-    /// Thermal conductivity in W/m/K.
-    pub conductivity: Option<f64>,
-    /// Young's modulus in Pa.
+    /// Thermal conductivity over temperature.
+    pub conductivity: Option<Conductivity>,
+    /// Emissivity of its surface.
+    pub emissivity: Option<f64>,
+    /// Young's modulus in Pa, as contacts are computed.
     pub young: Option<f64>,
+    /// Young's modulus in Pa of the real material, where the other one is softened.
+    pub real_young: Option<f64>,
     /// Poisson's ratio.
     pub poisson: Option<f64>,
 }
@@ -295,7 +304,7 @@ pub enum Place {
 }
 
 /// Laws; each is stated in the case file, none has a default.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Laws {
     /// Drag on a particle.
     pub drag: DragLaw,
@@ -304,9 +313,83 @@ pub struct Laws {
     /// Heat transfer between gas and particle.
     pub heat_transfer: HeatLaw,
     /// Heat conduction between particles.
-    pub conduction: ConductionLaw,
+    pub conduction: Conduction,
     /// Mass transfer between gas and particles that react.
     pub mass_transfer: HeatLaw,
+    /// Radiation between particles; `None`: none.
+    pub radiation: Option<Radiation>,
+}
+
+impl Laws {
+    /// True where heat passes contacts or gaps.
+    pub fn conducts(&self) -> bool {
+        self.conduction.law != ConductionLaw::None || self.conduction.gap != Gap::None
+    }
+}
+
+/// How particles conduct heat to each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conduction {
+    /// Through contacts.
+    pub law: ConductionLaw,
+    /// By which overlap.
+    pub area: Area,
+    /// Through the gas between surfaces.
+    pub gap: Gap,
+}
+
+/// The overlap by which contacts conduct.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Area {
+    /// As it is.
+    Overlap,
+    /// That of the real materials under the computed force.
+    Force,
+    /// That of the real materials under one force.
+    Load {
+        /// The force in N.
+        force: f64,
+        /// The widest gap in m that counts as a contact.
+        within: f64,
+    },
+}
+
+/// Conduction through the gas between surfaces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Gap {
+    /// None.
+    None,
+    /// Rong and Horio 1999.
+    RongHorio {
+        /// Thickness of the film over the radius.
+        lens: f64,
+        /// Least width of a gap in m.
+        least_width: f64,
+    },
+    /// Cheng, Yu and Zulli 1999.
+    Cheng {
+        /// Radius of the cones' base over the particle's.
+        cone: f64,
+        /// Widest gap over the radius.
+        widest: f64,
+    },
+}
+
+/// How particles radiate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Radiation {
+    /// How views are found.
+    pub sight: Sight,
+    /// Temperature in K of what is seen beyond all walls; `None`: nothing leaves.
+    pub surroundings: Option<Schedule>,
+    /// Views of moving particles hold for so much process time in s.
+    pub refresh: f64,
+}
+
+/// True where a wall is the named one, or a part of it.
+pub fn belongs(wall: &str, name: &str) -> bool {
+    wall.strip_prefix(name)
+        .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
 /// Conduction laws.
@@ -480,6 +563,11 @@ pub enum Measure {
         over: ParticlePlace,
         /// `mean`, `min` or `max`.
         statistic: Statistic,
+    },
+    /// Heat in W from a wall of a temperature, or from the surroundings, into the particles.
+    WallHeat {
+        /// Its name.
+        wall: String,
     },
     /// One particle, by its place in the order of ids, counted from 1.
     Particle {

@@ -1,6 +1,6 @@
 //! Particles of different populations must not overlap.
 
-use calcine_coupler::contacts::overlapping;
+use calcine_coupler::contacts::touching;
 use calcine_coupler::interior::Touch;
 use calcine_coupler::setup::ParticleSetup;
 
@@ -34,7 +34,7 @@ pub(super) fn between_populations(setup: &ParticleSetup) -> Option<Overlap> {
         let radii = touch.radius[0] + touch.radius[1];
         setup.population[a] != setup.population[b] && touch.overlap > radii * PRESSED
     };
-    let touches = overlapping(&setup.radius, &setup.position).into_iter();
+    let touches = touching(&setup.radius, &setup.position, 0.0).into_iter();
     let found = touches
         .filter(foreign)
         .min_by_key(|touch| touch.particles[1])?;

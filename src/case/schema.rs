@@ -138,6 +138,9 @@ impl Node {
             let words = words.strip_suffix(ending)?;
             Some(self.form(words.strip_suffix(',').unwrap_or(words)))
         };
+        if let Some(value) = stripped(" or `closed`") {
+            return either(value, json!({"const": "closed"}));
+        }
         if let Some(value) = stripped(" or schedule") {
             return either(value.clone(), pairs(quantity(1), value));
         }
@@ -169,6 +172,7 @@ impl Node {
             "three whole numbers" => tuple(3, json!({"type": "integer", "minimum": 1})),
             "true or false" => json!({"type": "boolean"}),
             "three numbers" => direction(),
+            "seven numbers" => tuple(7, json!({"type": "number"})),
             "number" | "plain number" | "as the field measured" => plain(),
             "number, or list" => either(plain(), list(tuple(3, plain()))),
             "list of pairs" => pairs(quantity(1), plain()),

@@ -44,6 +44,8 @@ dimensions! {
     HEAT_FLUX = [0, 1, -3, 0, 0], "a heat flux", "1 kW/m^2";
     HEAT_TRANSFER = [0, 1, -3, -1, 0], "a heat transfer coefficient", "10 W/m^2/K";
     ANGULAR_VELOCITY = [0, 0, -1, 0, 0], "an angular velocity", "3 rad/s";
+    FORCE = [1, 1, -2, 0, 0], "a force", "50 mN";
+    POWER = [2, 1, -3, 0, 0], "a power", "10 W";
     MOLAR_MASS = [0, 1, 0, 0, -1], "a molar mass", "28.96 g/mol";
     MOLAR_ENERGY = [2, 1, -2, 0, -1], "a molar energy", "70 kJ/mol";
     MOLAR_ENTROPY = [2, 1, -2, -1, -1], "a molar entropy", "57.6 J/mol/K";
@@ -106,6 +108,7 @@ const UNITS: &[(&str, f64, [i8; 5])] = &[
     ("kmol", 1e3, [0, 0, 0, 0, 1]),
     ("l", 1e-3, [3, 0, 0, 0, 0]),
     ("N", 1.0, [1, 1, -2, 0, 0]),
+    ("mN", 1e-3, [1, 1, -2, 0, 0]),
     ("Pa", 1.0, [-1, 1, -2, 0, 0]),
     ("hPa", 1e2, [-1, 1, -2, 0, 0]),
     ("kPa", 1e3, [-1, 1, -2, 0, 0]),

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use calcine_coupler::contacts::overlapping;
+use calcine_coupler::contacts;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::observer::Moment;
 use calcine_coupler::physics::Vec3;
@@ -31,7 +31,7 @@ pub(super) fn of_bed(moment: &Moment<'_>, gravity: Vec3) -> f64 {
         above -= (bed.mass[p] * gravity + force(p)).dot(&up);
         pressure[p] = above / area;
     }
-    let touching = overlapping(bed.radius, bed.position);
+    let touching = contacts::touching(bed.radius, bed.position, 0.0);
     if touching.is_empty() {
         return 0.0;
     }

@@ -9,7 +9,7 @@ use super::ResultsError;
 use super::probe::Site;
 use super::summary::{QuantityResult, Verdict};
 use crate::case::model::{
-    Band, Case, Expect, GasPlace, Measure, ParticlePlace, Quantity, Statistic,
+    Band, Case, Expect, GasPlace, Measure, ParticlePlace, Quantity, Statistic, belongs,
 };
 
 /// The largest distance from a value that a band allows, in the value's unit.
@@ -112,6 +112,11 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &Moment<'_>, sites: &[Site])
                 }
             };
             statistic(*which, &values)
+        }
+        Measure::WallHeat { wall } => {
+            let warm = moment.reservoirs.iter().zip(moment.reservoir_heat);
+            let own = warm.filter(|(name, _)| belongs(name, wall));
+            own.map(|(_, heat)| heat).sum()
         }
         Measure::Particle { field, number } => number
             .checked_sub(1)

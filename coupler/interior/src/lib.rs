@@ -6,7 +6,7 @@ pub mod reacting;
 mod thin;
 
 pub use model::{Newcomer, ParticleModel};
-pub use network::{Network, Touch};
+pub use network::{Beside, HeatLaws, Meeting, Network, Thermal, Touch, Views, WallTouch};
 pub use reacting::Reacting;
 pub use thin::Thin;
 

@@ -1,6 +1,6 @@
 //! The trait behind which particles are thermally thin or resolved along the radius.
 
-use crate::network::Touch;
+use crate::network::{Beside, Meeting};
 use crate::reacting::Reacting;
 
 /// A particle that comes in.
@@ -10,8 +10,6 @@ pub struct Newcomer {
     pub mass: f64,
     /// Index of its material.
     pub material: usize,
-    /// Its conductivity in W/m/K; only asked for where particles conduct.
-    pub conductivity: f64,
     /// Its temperature in K.
     pub temperature: f64,
 }
@@ -34,19 +32,22 @@ pub trait ParticleModel: Send {
         None
     }
 
-    /// True where particles conduct heat to each other, so that `touch` and `conduct` matter.
+    /// True where particles exchange heat with each other and with walls, so that `meet` and `conduct` matter.
     fn conducts(&self) -> bool;
 
-    /// Takes up which particles touch.
-    fn touch(&mut self, touches: &[Touch]);
+    /// Takes up which particles and walls meet at the present places.
+    fn meet(&mut self, meeting: &Meeting<'_>);
 
-    /// Fixes the heat that particles conduct to each other in the coming attempt: that of an implicit
-    /// step over a process span in s in which each particle also exchanges heat with gas of a
-    /// temperature `seen` in K through a conductance h A in W/K.
-    fn conduct(&mut self, conductance: &[f64], seen: &[f64], span: f64);
+    /// Fixes the heat that particles exchange with each other and with walls in the coming attempt: that
+    /// of an implicit step over a process span in s in which each particle also exchanges heat with the
+    /// gas beside it.
+    fn conduct(&mut self, beside: &Beside<'_>, span: f64);
+
+    /// Heat in W that each reservoir, a wall or the surroundings, gives to the particles in the attempt.
+    fn reservoir_heat(&self) -> &[f64];
 
     /// Temperature in K of each particle from which the exchange with the gas starts: the committed
-    /// one, moved by what the particles conduct to each other over the span.
+    /// one, moved by what the particles conduct and radiate over the span.
     fn start_temperature(&self) -> &[f64];
 
     /// Conductances with the particles' own new temperatures eliminated (requirements TSM-9):
@@ -55,7 +56,7 @@ pub trait ParticleModel: Send {
     fn eliminated(&self, conductance: &[f64], span: f64, out: &mut [f64]);
 
     /// One attempt over a process span in s, with the mean heat flow from the gas into each particle in
-    /// W; what the particles conduct to each other is added.
+    /// W; what the particles exchange with each other and with walls is added.
     fn advance(&mut self, heat: &[f64], span: f64);
 
     /// Takes the last attempt as the new start.

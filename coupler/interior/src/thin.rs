@@ -2,7 +2,7 @@
 
 use calcine_physics::solid::HeatCapacity;
 
-use crate::network::{Network, Touch};
+use crate::network::{Beside, Meeting, Network};
 use crate::{Newcomer, ParticleModel, without};
 
 /// Particles of uniform temperature: m dh(T)/dτ = Q, h the enthalpy of the material. Good for Biot
@@ -21,8 +21,6 @@ pub struct Thin {
     /// Start of the exchange with the gas where particles conduct, in K.
     start: Vec<f64>,
     network: Option<Network>,
-    /// Scratch: heat capacities over the span in W/K.
-    capacity: Vec<f64>,
 }
 
 impl Thin {
@@ -45,7 +43,6 @@ impl Thin {
             start: temperature.clone(),
             temperature,
             network,
-            capacity: Vec::new(),
         };
         thin.update_heat_capacity();
         thin
@@ -68,6 +65,7 @@ impl Thin {
         self.start.copy_from_slice(&self.committed);
         if let Some(network) = &mut self.network {
             network.heat.fill(0.0);
+            network.reservoir_heat.fill(0.0);
         }
     }
 }
@@ -85,24 +83,45 @@ impl ParticleModel for Thin {
         self.network.is_some()
     }
 
-    fn touch(&mut self, touches: &[Touch]) {
+    fn meet(&mut self, meeting: &Meeting<'_>) {
         if let Some(network) = &mut self.network {
-            network.connect(touches);
+            network.meet(meeting);
         }
     }
 
-    fn conduct(&mut self, conductance: &[f64], seen: &[f64], span: f64) {
+    fn conduct(&mut self, beside: &Beside<'_>, span: f64) {
         let Some(network) = self.network.as_mut().filter(|network| !network.is_empty()) else {
             return;
         };
-        self.capacity.clear();
-        let capacities = self.heat_capacity.iter();
-        self.capacity
-            .extend(capacities.map(|capacity| capacity / span));
-        network.solve(&self.capacity, &self.committed, conductance, seen);
-        let moved = self.committed.iter().zip(&network.heat).zip(&self.capacity);
+        let (mass, material, materials) = (&self.mass, &self.material, &self.materials);
+        let (heat_capacity, committed) = (&self.heat_capacity, &self.committed);
+        let capacity = |p: usize, kelvin: f64| {
+            let law = &materials[material[p]];
+            let rise = kelvin - committed[p];
+            let secant = if law.is_constant() || rise.abs() < SECANT * kelvin {
+                heat_capacity[p]
+            } else {
+                mass[p] * (law.enthalpy(kelvin) - law.enthalpy(committed[p])) / rise
+            };
+            secant / span
+        };
+        network.solve(capacity, committed, beside);
         self.start.clear();
-        self.start.extend(moved.map(|((t, q), c)| t + q / c));
+        for (p, heat) in network.heat.iter().enumerate() {
+            self.start.push(moved(
+                &materials[material[p]],
+                committed[p],
+                heat * span,
+                mass[p],
+                heat_capacity[p],
+            ));
+        }
+    }
+
+    fn reservoir_heat(&self) -> &[f64] {
+        self.network
+            .as_ref()
+            .map_or(&[], |network| &network.reservoir_heat)
     }
 
     fn start_temperature(&self) -> &[f64] {
@@ -119,12 +138,13 @@ impl ParticleModel for Thin {
         for (p, temperature) in self.temperature.iter_mut().enumerate() {
             let conducted = self.network.as_ref().map_or(0.0, |network| network.heat[p]);
             let gained = (heat[p] + conducted) * span;
-            let law = &self.materials[self.material[p]];
-            *temperature = if law.is_constant() {
-                self.committed[p] + gained / self.heat_capacity[p]
-            } else {
-                law.temperature(law.enthalpy(self.committed[p]) + gained / self.mass[p])
-            };
+            *temperature = moved(
+                &self.materials[self.material[p]],
+                self.committed[p],
+                gained,
+                self.mass[p],
+                self.heat_capacity[p],
+            );
         }
     }
 
@@ -179,9 +199,23 @@ impl ParticleModel for Thin {
     }
 }
 
+/// Below this share of the temperature a rise gives no secant of the enthalpy, and c_p stands for it.
+const SECANT: f64 = 1e-6;
+
+/// The temperature in K to which a particle of a mass in kg, and of a heat capacity in J/K at the start, comes
+/// with an energy in J.
+fn moved(law: &HeatCapacity, start: f64, energy: f64, mass: f64, heat_capacity: f64) -> f64 {
+    if law.is_constant() {
+        start + energy / heat_capacity
+    } else {
+        law.temperature(law.enthalpy(start) + energy / mass)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::network::{HeatLaws, Touch, plain};
     use calcine_physics::conduction::BatchelorObrien;
 
     #[test]
@@ -229,7 +263,8 @@ mod tests {
 
     #[test]
     fn touching_particles_in_still_gas_relax_to_their_common_temperature() {
-        let network = Network::new(Box::new(BatchelorObrien), vec![50.0; 2]);
+        let laws = HeatLaws::contacts(Box::new(BatchelorObrien));
+        let network = Network::new(laws, vec![plain(50.0)], vec![0; 2], Vec::new());
         let unit = vec![HeatCapacity::constant(1.0)];
         let mut thin = Thin::new(
             vec![1.0, 3.0],
@@ -238,14 +273,24 @@ mod tests {
             vec![300.0, 400.0],
             Some(network),
         );
-        thin.touch(&[Touch {
-            particles: [0, 1],
-            radius: [5e-3; 2],
-            overlap: 1e-6,
-        }]);
+        thin.meet(&Meeting {
+            touches: &[Touch {
+                particles: [0, 1],
+                radius: [5e-3; 2],
+                overlap: 1e-6,
+            }],
+            walls: &[],
+            views: None,
+        });
+        let still = Beside {
+            conductance: &[0.0; 2],
+            temperature: &[0.0; 2],
+            gas_conductivity: &[0.026; 2],
+            reservoirs: &[],
+        };
         // exp(−G t (1/C₁ + 1/C₂)), G = 5e-3: 1000 implicit steps of 0.1 s are within 1e-3 of it.
         for _ in 0..1000 {
-            thin.conduct(&[0.0; 2], &[0.0; 2], 0.1);
+            thin.conduct(&still, 0.1);
             thin.advance(&[0.0; 2], 0.1);
             assert!(thin.stored_change().0.abs() < 1e-12);
             thin.commit();

@@ -1,6 +1,7 @@
 //! Laws of reactive granular beds as pure functions of local state, one law a file.
 #![warn(missing_docs)]
 
+pub mod bed_conductivity;
 pub mod conduction;
 pub mod contact;
 pub mod drag;
@@ -12,6 +13,8 @@ pub mod local;
 pub mod mass_transfer;
 pub mod numbers;
 pub mod pressure_drop;
+pub mod quadrature;
+pub mod radiation;
 pub mod reaction;
 pub mod solid;
 pub mod solids;

@@ -129,6 +129,11 @@ impl Run<'_> {
             observer.checkpoint(&self.moment(None), &fresh)?;
         }
         self.plan.checkpoint.publish()?;
+        // A resumed run finds its views at the checkpoint's places; where nothing moves they are the same.
+        if !self.plan.free.is_empty() {
+            self.paths.forget();
+            self.find_contacts();
+        }
         self.timing.output += begun.elapsed();
         Ok(())
     }
@@ -254,6 +259,8 @@ impl Run<'_> {
                 process: Ticks::new(process.cast_signed()),
             };
         }
+        self.paths.forget();
+        self.find_contacts();
         Ok(())
     }
 }

@@ -29,6 +29,7 @@ use crate::mesh::Mesh;
 use crate::observer::{Felt, Moment, Observer, ObserverError, Timing};
 use crate::packing::PackingError;
 use crate::part::{Bed, CellReceived, Convergence, Gas, ParticlePush, ParticleReceived, Particles};
+use crate::paths::{Paths, PathsSetup};
 use crate::smoother::{Operator, Smoother, SmootherError};
 use crate::supervisor::Supervisor;
 use crate::time::{Acceleration, Clocks, GasStorage, Ticks, TimeError};
@@ -68,8 +69,10 @@ pub struct Plan {
     pub gravity: Vec3,
     /// Feeds and outlets.
     pub traffic: Traffic,
-    /// Material and conductivity in W/m/K of each population, for what feeds bring in.
-    pub substance: Vec<(usize, f64)>,
+    /// Material of each population, for what feeds bring in.
+    pub substance: Vec<usize>,
+    /// Heat between particles and to walls.
+    pub paths: PathsSetup,
 }
 
 /// How a run ended without an error.
@@ -169,6 +172,8 @@ struct Workspace {
     /// All but drag that acted on each particle in the last window, in N.
     other: Vec<Vec3>,
     free: Vec<bool>,
+    /// Heat of the last window from walls and surroundings into the particles in W.
+    reservoir_heat: Vec<f64>,
 }
 
 /// A run: the parts, the laws, the state of the loop.
@@ -187,6 +192,7 @@ pub struct Run<'m> {
     convergence: Convergence,
     placement: Placement,
     work: Workspace,
+    paths: Paths,
 }
 
 impl<'m> Run<'m> {
@@ -211,7 +217,9 @@ impl<'m> Run<'m> {
         let pores = &mut work.seen.void_fraction;
         pores.resize(mapped.operator.particles(), 1.0);
         mapped.operator.sample(&mapped.bed.void_fraction, pores);
+        let paths = Paths::new(plan.paths.clone());
         let mut run = Self {
+            paths,
             plan,
             mesh,
             mapper,
@@ -329,6 +337,8 @@ impl<'m> Run<'m> {
                 void_fraction: &self.work.seen.void_fraction,
                 slip: &self.work.coefficients.slip,
             },
+            reservoirs: self.paths.names(),
+            reservoir_heat: &self.work.reservoir_heat,
             ledger: &self.ledger,
             convergence: &self.convergence,
             placement: &self.placement,

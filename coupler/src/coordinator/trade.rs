@@ -48,17 +48,16 @@ impl Run<'_> {
             .map(|(row, &temperature)| {
                 let population = fields.population[row] as usize;
                 let substance = self.plan.substance.get(population);
-                let (material, conductivity) = substance.copied().unwrap_or_default();
                 Newcomer {
                     mass: fields.mass[row],
-                    material,
-                    conductivity,
+                    material: substance.copied().unwrap_or_default(),
                     temperature,
                 }
             })
             .collect();
         self.parts.interior.change(&trade.rows, &newcomers);
         let (brought_before, carried_before) = (came.mass, came.momentum);
+        self.paths.forget();
         for row in first..fields.len() {
             let enthalpy = self.parts.interior.enthalpy(row);
             came.add(fields.mass[row], enthalpy, fields.velocity[row]);

@@ -3,14 +3,13 @@
 use std::f64::consts::PI;
 use std::time::{Duration, Instant};
 
-use calcine_interior::Reacting;
+use calcine_interior::{Beside, Reacting};
 use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
 use calcine_physics::thermo::Element;
 use rustix::time::{ClockId, clock_gettime};
 
 use super::{Mapped, Run, RunError};
-use crate::contacts::touching;
 use crate::exchange::{Placement, Setting};
 use crate::ledger::Ledger;
 use crate::mapping::{Mapper, Method};
@@ -137,12 +136,15 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Tells the interior which particles touch, where that matters.
+    /// Tells the interior what particles touch and see, where that matters.
     pub(super) fn find_contacts(&mut self) {
         if self.parts.interior.conducts() {
             let begun = Instant::now();
-            let touches = touching(&self.parts.particles.fields());
-            self.parts.interior.touch(&touches);
+            let time = self.clocks.process.seconds();
+            let interior = &mut self.parts.interior;
+            let particles = self.parts.particles.fields();
+            self.paths
+                .meet(&particles, time, |meeting| interior.meet(meeting));
             self.timing.interior += begun.elapsed();
         }
     }
@@ -240,12 +242,17 @@ impl Run<'_> {
     /// What the interior does over the window with the gas as it is: conduction, reactions.
     fn look_at_particles(&mut self, window: &Window) -> Result<(), RunError> {
         let span = window.span.process.seconds();
+        let end = window.start.process.seconds() + span;
         if self.parts.interior.conducts() {
             let (work, timing) = (&self.work, &mut self.timing);
             timed(&mut timing.interior, || {
-                let conductance = &work.coefficients.conductance;
-                let seen = work.exchange.seen_temperature();
-                self.parts.interior.conduct(conductance, seen, span);
+                let beside = Beside {
+                    conductance: &work.coefficients.conductance,
+                    temperature: work.exchange.seen_temperature(),
+                    gas_conductivity: &work.coefficients.gas_conductivity,
+                    reservoirs: self.paths.reservoirs(end),
+                };
+                self.parts.interior.conduct(&beside, span);
             });
         }
         self.react(window)
@@ -325,6 +332,9 @@ impl Run<'_> {
         self.parts.gas.commit()?;
         self.parts.particles.commit()?;
         self.note_forces(window);
+        self.work.reservoir_heat.clear();
+        let heat = self.parts.interior.reservoir_heat();
+        self.work.reservoir_heat.extend_from_slice(heat);
         self.parts.interior.commit();
         self.weigh();
         self.clocks = window.end()?;
@@ -434,15 +444,19 @@ fn book_energy(
 ) {
     let gas = &received.energy;
     let (stored, stored_magnitude) = interior.stored_change();
+    let reservoirs = interior.reservoir_heat();
+    let walls: f64 = reservoirs.iter().sum::<f64>() * process;
+    let walls_magnitude: f64 = reservoirs.iter().map(|q| q.abs()).sum::<f64>() * process;
     let to_gas: f64 = received.heat.iter().sum::<f64>() * process;
     let to_particles = (heat.iter().sum::<f64>() + carried.iter().sum::<f64>()) * process;
     let exchanged = process
         * (received.heat.iter().map(|q| q.abs()).sum::<f64>()
             + heat.iter().map(|q| q.abs()).sum::<f64>());
     ledger.energy.book(
-        scale * (gas.stored - gas.boundary - gas.source) + stored,
+        scale * (gas.stored - gas.boundary - gas.source) + stored - walls,
         scale * (gas.stored_magnitude + gas.boundary_magnitude + gas.source_magnitude)
             + stored_magnitude
+            + walls_magnitude
             + exchanged,
     );
     ledger

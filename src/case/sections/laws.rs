@@ -2,7 +2,8 @@
 
 use calcine_coupler::momentum_model::MomentumModel;
 
-use crate::case::model::{ConductionLaw, DragLaw, HeatLaw, Laws};
+use super::heat;
+use crate::case::model::{DragLaw, HeatLaw, Laws};
 use crate::case::table::Reader;
 
 pub(super) fn read(root: &Reader<'_>) -> Option<Laws> {
@@ -20,22 +21,16 @@ pub(super) fn read(root: &Reader<'_>) -> Option<Laws> {
         true => law(&section, "mass_transfer", &heats),
         false => Some(HeatLaw::None),
     };
-    let conductions = [
-        ("batchelor-obrien", ConductionLaw::BatchelorObrien),
-        ("lens", ConductionLaw::Lens),
-        ("none", ConductionLaw::None),
-    ];
-    let conduction = law(&section, "conduction", &conductions);
-    // Stated in every case file; only "none" is computed so far.
-    let radiation = only_none(&section, "radiation");
+    let conduction = heat::conduction(&section);
+    let radiation = heat::radiation(&section);
     section.finish();
-    radiation?;
     let (drag, momentum) = drag?;
     Some(Laws {
         drag,
         momentum,
         heat_transfer: heat_transfer?,
         conduction: conduction?,
+        radiation: radiation?,
         mass_transfer: mass_transfer?,
     })
 }
@@ -58,21 +53,6 @@ fn drag(section: &Reader<'_>) -> Option<(DragLaw, MomentumModel)> {
     let model = table.choice("model", &models).unwrap_or_default();
     table.finish();
     Some((law?, model))
-}
-
-fn only_none(section: &Reader<'_>, key: &str) -> Option<()> {
-    let table = section.required_table(key, &format!("{key} = {{ law = \"none\" }}"))?;
-    let law = table.required_text("law", "\"none\"");
-    if let Some(law) = law.filter(|law| *law != "none") {
-        let help = "write \"none\": the run leaves it out";
-        table.fail(
-            "law",
-            format!("is \"{law}\"; {key} is not supported yet"),
-            help,
-        );
-    }
-    table.finish();
-    law.map(|_| ())
 }
 
 fn law<T: Copy>(section: &Reader<'_>, key: &str, choices: &[(&str, T)]) -> Option<T> {

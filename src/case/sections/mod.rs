@@ -4,6 +4,7 @@ mod composition;
 mod coupling;
 mod gas;
 mod gas_patch;
+mod heat;
 mod inventory;
 mod laws;
 mod mesh;
@@ -65,7 +66,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     let openfoam = coupling::external(root, "openfoam", folder);
     let liggghts = coupling::external(root, "liggghts", folder);
     if let (Some(laws), Some(particles)) = (&laws, &particles) {
-        particles::need_conductivities(root, laws, &materials, particles);
+        heat::need_properties(root, laws, &materials, particles, &walls);
     }
     let reactions = reactions::reactions(root, &solids, gas.as_ref().map(|(gas, _)| gas));
     let chemistry = inventory::inventory(solids, reactions, &materials);
@@ -80,12 +81,14 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
             mesh: mesh.as_ref(),
             populations: particles.as_deref(),
             probes: &probes,
+            walls: &walls,
             species: species.unwrap_or_default(),
             solids: &chemistry.solids,
             gravity: gas.as_ref().map(|(gas, _)| gas.gravity),
         };
         quantities::quantities(root, &known)
     };
+    let (walls, wall_temperatures): (Vec<_>, Vec<_>) = walls.into_iter().unzip();
     if let (Some((gas, _)), Some((time, _))) = (&gas, &time) {
         coupling::check_stock(root, &openfoam, gas, time, laws.as_ref());
     }
@@ -123,6 +126,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         chemistry,
         contacts,
         walls,
+        wall_temperatures,
         motion,
         gas,
         gas_held,

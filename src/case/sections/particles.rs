@@ -3,13 +3,15 @@
 use std::path::Path;
 
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::conduction::Conductivity;
 use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::physics::solids::SolidSpecies;
+use calcine_coupler::physics::thermo::Nasa7;
 
 use super::place::place;
 use super::reactions::{composition, mixed};
 use super::sizes::sizes;
-use crate::case::model::{ConductionLaw, Contact, Laws, Material, MeshSpec, Motion, Population};
+use crate::case::model::{Contact, Material, MeshSpec, Motion, Population};
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
 
@@ -45,8 +47,10 @@ fn material(name: String, table: &Reader<'_>, solids: &[SolidSpecies]) -> Materi
         density: positive("density", Dimension::DENSITY),
         heat_capacity,
         composition,
-        conductivity: table.positive("conductivity", Dimension::CONDUCTIVITY),
+        conductivity: conductivity(table),
+        emissivity: table.quantity("emissivity", Dimension::NONE),
         young: table.positive("young", Dimension::PRESSURE),
+        real_young: table.positive("real_young", Dimension::PRESSURE),
         poisson: table.quantity("poisson", Dimension::NONE),
     };
     if made
@@ -59,17 +63,53 @@ fn material(name: String, table: &Reader<'_>, solids: &[SolidSpecies]) -> Materi
             "Poisson's ratio lies between -1 and 0.5",
         );
     }
+    if made.emissivity.is_some_and(|e| !(e > 0.0 && e <= 1.0)) {
+        table.fail(
+            "emissivity",
+            "is out of range",
+            "it lies above 0 and up to 1",
+        );
+    }
     table.finish();
     made
 }
 
 /// A number, or points over temperature.
-fn heat_capacity(table: &Reader<'_>) -> HeatCapacity {
+fn conductivity(table: &Reader<'_>) -> Option<Conductivity> {
+    if !table.has("conductivity") {
+        return None;
+    }
     let points = table.curve(
-        "heat_capacity",
+        "conductivity",
         Dimension::TEMPERATURE,
-        Dimension::HEAT_CAPACITY,
-    );
+        Dimension::CONDUCTIVITY,
+    )?;
+    if let Some((_, value)) = points.iter().find(|point| point.1 <= 0.0) {
+        let rule = format!("is {value} W/m/K");
+        table.fail("conductivity", rule, "it is above zero at all temperatures");
+    }
+    Some(Conductivity::table(points))
+}
+
+/// A number, points over temperature, or a table with NASA's polynomials.
+fn heat_capacity(table: &Reader<'_>) -> HeatCapacity {
+    let polynomials = table
+        .raw("heat_capacity")
+        .is_some_and(|item| item.as_table_like().is_some());
+    let points = if polynomials {
+        let inner = table.table("heat_capacity");
+        inner.and_then(|inner| {
+            let made = polynomial(&inner);
+            inner.finish();
+            made
+        })
+    } else {
+        table.curve(
+            "heat_capacity",
+            Dimension::TEMPERATURE,
+            Dimension::HEAT_CAPACITY,
+        )
+    };
     let Some(points) = points else {
         return HeatCapacity::constant(f64::NAN);
     };
@@ -84,29 +124,54 @@ fn heat_capacity(table: &Reader<'_>) -> HeatCapacity {
     HeatCapacity::table(points)
 }
 
-/// Conduction asks for the conductivity of every material in the bed.
-pub(super) fn need_conductivities(
-    root: &Reader<'_>,
-    laws: &Laws,
-    materials: &[Material],
-    particles: &[Population],
-) {
-    if laws.conduction == ConductionLaw::None {
-        return;
-    }
-    let Some(section) = root.table("materials") else {
-        return;
-    };
-    for (k, material) in materials.iter().enumerate() {
-        let used = particles.iter().any(|population| population.material == k);
-        if used && material.conductivity.is_none() {
-            section.fail(
-                &material.name,
-                "has no conductivity, which conduction between particles needs",
-                "add conductivity = \"1.1 W/m/K\", or write conduction = { law = \"none\" }",
-            );
+/// NASA's seven coefficients over two ranges, every few kelvin: c_p is linear in between, and the enthalpy
+/// its exact integral.
+fn polynomial(table: &Reader<'_>) -> Option<Vec<(f64, f64)>> {
+    const STEP: f64 = 2.0;
+    let molar_mass = table.required_positive("molar_mass", Dimension::MOLAR_MASS);
+    let ends = table.required_vector("ranges", Dimension::TEMPERATURE);
+    let low = coefficients(table, "low");
+    let high = coefficients(table, "high");
+    let (molar_mass, ends) = (molar_mass?, ends?);
+    let made = match Nasa7::new(ends, low?, high?) {
+        Ok(made) => made,
+        Err(error) => {
+            let help = "write ranges = \"200 1000 6000 K\": lowest, common and highest temperature";
+            table.fail("ranges", error.to_string(), help);
+            return None;
         }
+    };
+    let range = |from: f64, to: f64| {
+        let parts = ((to - from) / STEP).ceil();
+        let parts_whole = parts as usize;
+        (0..parts_whole).map(move |k| from + (to - from) * k as f64 / parts)
+    };
+    let kelvins = range(ends[0], ends[1]).chain(range(ends[1], ends[2]));
+    let at = |kelvin: f64| (kelvin, made.heat_capacity(kelvin) / molar_mass);
+    Some(kelvins.chain([ends[2]]).map(at).collect())
+}
+
+fn coefficients(table: &Reader<'_>, key: &str) -> Option<[f64; 7]> {
+    let example = "[2.5, 0, 0, 0, 0, 0, 0]";
+    let Some(item) = table.raw(key) else {
+        table.missing(key, example);
+        return None;
+    };
+    let numbers = item.as_array().map(|array| {
+        let number = |value: &toml_edit::Value| {
+            let whole = value.as_integer().map(|number| number as f64);
+            value.as_float().or(whole)
+        };
+        array.iter().map(number).collect::<Option<Vec<f64>>>()
+    });
+    let seven = numbers
+        .flatten()
+        .and_then(|numbers| <[f64; 7]>::try_from(numbers).ok());
+    if seven.is_none() {
+        let help = format!("write a1 to a7 of NASA's polynomials, for example {example}");
+        table.fail(key, "is not a list of seven numbers", help);
     }
+    seven
 }
 
 pub(super) fn contacts(root: &Reader<'_>, materials: &[Material]) -> Vec<Contact> {

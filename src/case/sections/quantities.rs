@@ -1,12 +1,14 @@
 //! `[[quantities]]`.
 
+use calcine_coupler::motion::Wall;
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::Schedule;
 
 use super::patches;
 use super::walls::direction;
 use crate::case::model::{
     Band, Expect, GasPlace, Measure, MeshSpec, ParticlePlace, Place, Population, Probe, Quantity,
-    Statistic,
+    SURROUNDINGS, Statistic, belongs,
 };
 use calcine_coupler::physics::solids::SolidSpecies;
 
@@ -65,6 +67,7 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
         "speed" => (Dimension::VELOCITY, "m/s"),
         "void_fraction" => (Dimension::NONE, "1"),
         "height" => (Dimension::LENGTH, "m"),
+        "wall_heat" => (Dimension::POWER, "W"),
         "mass" => (Dimension::MASS, "kg"),
         "mass_fraction" => (Dimension::NONE, "1"),
         "angle" => (Dimension::NONE, "rad"),
@@ -128,6 +131,8 @@ pub(super) struct Known<'a> {
     pub mesh: Option<&'a MeshSpec>,
     pub populations: Option<&'a [Population]>,
     pub probes: &'a [Probe],
+    /// Walls, with the temperatures of those that have one.
+    pub walls: &'a [(Wall, Option<Schedule>)],
     pub species: &'a [String],
     pub solids: &'a [SolidSpecies],
     /// In m/s²; none where the gas could not be read.
@@ -197,6 +202,7 @@ fn measure(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static 
         "gas",
         "particles",
         "particle",
+        "wall_heat",
         "surface_angle",
     ];
     let given: Vec<&str> = kinds.into_iter().filter(|kind| reader.has(kind)).collect();
@@ -205,10 +211,11 @@ fn measure(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static 
         ["gas"] => gas(reader, known),
         ["particles"] => particles(reader, known),
         ["particle"] => particle(reader, known),
+        ["wall_heat"] => wall_heat(reader, known),
         ["surface_angle"] => surface_angle(reader, known),
         _ => {
             reader.fail_whole(
-                "needs exactly one of difference, gas, particles, particle and surface_angle",
+                "needs exactly one of difference, gas, particles, particle, wall_heat and surface_angle",
                 "for example { particles = \"temperature\", statistic = \"mean\" }",
             );
             None
@@ -328,6 +335,22 @@ fn particle(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static
         },
         field,
     ))
+}
+
+/// Heat from a wall of a temperature, or from all parts of one of several shapes.
+fn wall_heat(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
+    let name = reader.text("wall_heat")?;
+    let warm = known.walls.iter().filter(|(_, kelvin)| kelvin.is_some());
+    let names: Vec<&str> = warm.map(|(wall, _)| wall.name.as_str()).collect();
+    if name != SURROUNDINGS && !names.iter().any(|own| belongs(own, name)) {
+        let help = match names[..] {
+            [] => "give a wall of [[walls]] a temperature".into(),
+            _ => format!("walls of a temperature are {}", names.join(", ")),
+        };
+        let rule = format!("is \"{name}\", which is no wall of a temperature");
+        reader.fail("wall_heat", rule, help);
+    }
+    Some((Measure::WallHeat { wall: name.into() }, "wall_heat"))
 }
 
 fn surface_angle(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {

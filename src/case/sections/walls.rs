@@ -4,8 +4,9 @@ use std::path::Path;
 
 use calcine_coupler::motion::{Wall, WallMotion, WallShape};
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::Schedule;
 
-use super::existing;
+use super::{existing, heat};
 use crate::case::model::{Material, MeshSpec};
 use crate::case::place::inner_diameter;
 use crate::case::stl;
@@ -19,8 +20,8 @@ pub(super) fn walls(
     materials: &[Material],
     mesh: Option<&MeshSpec>,
     folder: &Path,
-) -> Vec<Wall> {
-    let mut all: Vec<Wall> = Vec::new();
+) -> Vec<(Wall, Option<Schedule>)> {
+    let mut all: Vec<(Wall, Option<Schedule>)> = Vec::new();
     for table in root.tables("walls") {
         let name = table.required_text("name", "\"container\"");
         let material = table
@@ -36,6 +37,10 @@ pub(super) fn walls(
             });
         let shapes = shapes(&table, mesh, folder);
         let motion = motion(&table);
+        let temperature = match table.has("temperature") {
+            true => table.temperatures("temperature"),
+            false => None,
+        };
         table.finish();
         let (Some(name), Some(material), Some(shapes)) = (name, material, shapes) else {
             continue;
@@ -46,16 +51,20 @@ pub(super) fn walls(
                 true => format!("{name}.{part}"),
                 false => name.to_owned(),
             };
-            if all.iter().any(|other| other.name == name) {
+            if temperature.is_some() {
+                heat::stays(&table, &shape, &motion);
+            }
+            if all.iter().any(|(other, _)| other.name == name) {
                 let rule = format!("is \"{name}\" a second time");
                 table.fail("name", rule, "names of walls must differ");
             }
-            all.push(Wall {
+            let wall = Wall {
                 name,
                 material,
                 shape,
                 motion,
-            });
+            };
+            all.push((wall, temperature.clone()));
         }
     }
     all

@@ -184,6 +184,7 @@ impl Reacting {
         self.released = (0.0, 0.0);
         if let Some(network) = &mut self.network {
             network.heat.fill(0.0);
+            network.reservoir_heat.fill(0.0);
         }
     }
 }

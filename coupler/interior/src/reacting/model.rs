@@ -1,7 +1,7 @@
 //! Particles that react as the coordinator sees them.
 
 use super::Reacting;
-use crate::network::Touch;
+use crate::network::{Beside, Meeting};
 use crate::{Newcomer, ParticleModel, without};
 
 impl ParticleModel for Reacting {
@@ -25,14 +25,14 @@ impl ParticleModel for Reacting {
         self.network.is_some()
     }
 
-    fn touch(&mut self, touches: &[Touch]) {
+    fn meet(&mut self, meeting: &Meeting<'_>) {
         if let Some(network) = &mut self.network {
-            network.connect(touches);
+            network.meet(meeting);
         }
     }
 
     /// The heat of the last attempt's reactions counts as if it had come before.
-    fn conduct(&mut self, conductance: &[f64], seen: &[f64], span: f64) {
+    fn conduct(&mut self, beside: &Beside<'_>, span: f64) {
         let Some(network) = self.network.as_mut().filter(|network| !network.is_empty()) else {
             return;
         };
@@ -44,8 +44,13 @@ impl ParticleModel for Reacting {
             self.committed.temperature[p] + (heat + self.carried[p] * span) / self.capacity[p]
         };
         let old: Vec<f64> = (0..self.capacity.len()).map(warmed).collect();
-        let over_span: Vec<f64> = self.capacity.iter().map(|c| c / span).collect();
-        network.solve(&over_span, &old, conductance, seen);
+        network.solve(|p, _| self.capacity[p] / span, &old, beside);
+    }
+
+    fn reservoir_heat(&self) -> &[f64] {
+        self.network
+            .as_ref()
+            .map_or(&[], |network| &network.reservoir_heat)
     }
 
     fn start_temperature(&self) -> &[f64] {

@@ -26,6 +26,11 @@ impl Conduction for Lens {
 
     fn conductance(&self, contact: &Contact) -> f64 {
         let [own, other] = contact.radius;
+        if other.is_infinite() {
+            // A plane cuts the sphere: r² = R² − (R − δ)².
+            let area = PI * contact.overlap * (2.0 * own - contact.overlap);
+            return 2.0 * contact.conductivity() * area.max(0.0).sqrt();
+        }
         let d = own + other - contact.overlap;
         // Heron: 16 times the square of the triangle of both radii and the distance is 4 d² r².
         let product = (own + other - d) * (d + own - other) * (d - own + other) * (d + own + other);
@@ -49,6 +54,19 @@ mod tests {
         // Centres 1.6 apart: r² = 1 − 0.64, √A = √π 0.6
         let expected = 2.0 * 3.0 * PI.sqrt() * 0.6;
         assert!((Lens.conductance(&contact) / expected - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_wall_cuts_the_circle_that_the_sphere_shows_it() {
+        let mut contact = Contact {
+            radius: [1.0, f64::INFINITY],
+            overlap: 0.2,
+            conductivity: [3.0, 3.0],
+        };
+        let expected = 2.0 * 3.0 * PI.sqrt() * 0.6;
+        assert!((Lens.conductance(&contact) / expected - 1.0).abs() < 1e-14);
+        contact.radius[1] = 1e9;
+        assert!((Lens.conductance(&contact) / expected - 1.0).abs() < 1e-6);
     }
 
     #[test]

@@ -1,16 +1,30 @@
-//! Heat conduction between particles that touch, one law a file.
+//! Heat conduction between particles that touch, or nearly so, one law a file.
+//!
+//! Three things add up to the conductance of a pair: through the contact (trait [`Conduction`]), whose
+//! overlap may be that of the real, stiffer material ([`ContactArea`]), and through the gas between the
+//! surfaces around it (trait [`GasGap`]).
 
+mod area;
 mod batchelor_obrien;
+mod cheng;
+mod conductivity;
+mod gap;
 mod lens;
 mod none;
+mod rong_horio;
 
 use std::fmt::Debug;
 
+pub use area::{ContactArea, ElasticLaw, Stiffness};
 pub use batchelor_obrien::BatchelorObrien;
+pub use cheng::Cheng;
+pub use conductivity::Conductivity;
+pub use gap::{Gap, GasGap, NoGap};
 pub use lens::Lens;
 pub use none::NoConduction;
+pub use rong_horio::RongHorio;
 
-/// Two spheres that overlap.
+/// Two spheres that overlap; a flat wall is one of endless radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     /// Radii in m.
@@ -28,9 +42,19 @@ impl Contact {
         2.0 * own * other / (own + other)
     }
 
-    /// Reduced radius R* = R₁R₂/(R₁ + R₂) in m.
+    /// Reduced radius R* in m, 1/R* = 1/R₁ + 1/R₂.
     pub fn reduced_radius(&self) -> f64 {
-        let [own, other] = self.radius;
+        reduced(self.radius)
+    }
+}
+
+/// R* in m of two radii, of which one may be endless.
+fn reduced([own, other]: [f64; 2]) -> f64 {
+    if other.is_infinite() {
+        own
+    } else if own.is_infinite() {
+        other
+    } else {
         own * other / (own + other)
     }
 }

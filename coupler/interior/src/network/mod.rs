@@ -1,0 +1,346 @@
+//! Heat between particles and to walls: a network of conductances, solved implicitly.
+//!
+//! Particles are nodes that store heat; walls and surroundings are reservoirs of a given temperature.
+//! Contacts and gaps are bonds of a conductance in W/K that is fixed over an attempt. Views are bonds too:
+//! black radiation between surfaces of exchange area S is S σ (T_i⁴ − T_j⁴) = S h (T_i − T_j) with
+//! h = σ (T_i² + T_j²)(T_i + T_j) (`radiation::linear`), h from the last iterate. With positive conductances
+//! every iterate lies between the temperatures it starts from and those beside it, whatever the span, so
+//! that steps of process time may be as long as a case asks for.
+//!
+//! A grey surface gets a second node without heat capacity, its radiosity J = σ T_J⁴: views lead from one
+//! radiosity to the other, and A e/(1 − e) from the surface to its own. Their heat is booked where the views
+//! end, so that what a pair exchanges adds up to zero to the last bit.
+
+mod meeting;
+mod radiation;
+mod solver;
+
+use calcine_physics::conduction::{
+    Conduction, Conductivity, Contact, ContactArea, Gap, GasGap, Stiffness,
+};
+
+pub use meeting::{Beside, Meeting, Touch, Views, WallTouch};
+use radiation::Radiation;
+use solver::{Solver, System};
+
+use crate::{Newcomer, without};
+
+/// What heat between particles needs to know of a material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Thermal {
+    /// Conductivity.
+    pub conductivity: Conductivity,
+    /// Emissivity of its surface, above 0 and up to 1.
+    pub emissivity: f64,
+    /// Density in kg/m³.
+    pub density: f64,
+    /// Elastic constants in the computation of contacts.
+    pub soft: Stiffness,
+    /// Elastic constants of the real material.
+    pub real: Stiffness,
+}
+
+/// Laws of heat between particles.
+#[derive(Debug)]
+pub struct HeatLaws {
+    /// Through contacts.
+    pub conduction: Box<dyn Conduction>,
+    /// By which overlap contacts conduct.
+    pub area: ContactArea,
+    /// Through the gas between surfaces.
+    pub gap: Box<dyn GasGap>,
+    /// True where surfaces radiate to each other.
+    pub radiates: bool,
+}
+
+impl HeatLaws {
+    /// Conduction by the overlap alone.
+    pub fn contacts(conduction: Box<dyn Conduction>) -> Self {
+        Self {
+            conduction,
+            area: ContactArea::Overlap,
+            gap: Box::new(calcine_physics::conduction::NoGap),
+            radiates: false,
+        }
+    }
+
+    /// The widest gap in m across which spheres of up to a radius in m exchange heat by conduction.
+    pub fn reach(&self, radius: f64) -> f64 {
+        let walls = self.gap.reach([radius, f64::INFINITY]);
+        self.gap
+            .reach([radius; 2])
+            .max(walls)
+            .max(self.area.within())
+    }
+}
+
+/// Conductances between particles, and to reservoirs.
+#[derive(Debug)]
+pub struct Network {
+    laws: HeatLaws,
+    materials: Vec<Thermal>,
+    /// Index of the material of each particle.
+    material: Vec<usize>,
+    /// Index of the material of each reservoir that is a wall.
+    walls: Vec<usize>,
+    touches: Vec<Touch>,
+    wall_touches: Vec<WallTouch>,
+    radiation: Radiation,
+    /// Heat into each particle from the others and from reservoirs in W.
+    pub heat: Vec<f64>,
+    /// Heat from each reservoir into the particles in W.
+    pub reservoir_heat: Vec<f64>,
+    work: Work,
+}
+
+/// Scratch of an attempt.
+#[derive(Debug, Default)]
+struct Work {
+    solver: Solver,
+    /// Pairs of nodes with their conductance in W/K; contacts first.
+    bonds: Vec<([usize; 2], f64)>,
+    /// Node and reservoir with their conductance in W/K; contacts first.
+    ties: Vec<([usize; 2], f64)>,
+    capacity: Vec<f64>,
+    old: Vec<f64>,
+    tie: Vec<f64>,
+    drive: Vec<f64>,
+    temperature: Vec<f64>,
+    last: Vec<f64>,
+}
+
+/// Changes of temperature below this share end the iteration over radiation and heat capacity.
+const SETTLED: f64 = 1e-10;
+/// Iterations at most; each shortens the change at least to a half in all but made-up cases.
+const ITERATIONS: usize = 60;
+
+impl Network {
+    /// A network without contacts and views yet: laws, materials, the material of each particle and of each
+    /// wall that is a reservoir.
+    pub fn new(
+        laws: HeatLaws,
+        materials: Vec<Thermal>,
+        material: Vec<usize>,
+        walls: Vec<usize>,
+    ) -> Self {
+        Self {
+            laws,
+            heat: vec![0.0; material.len()],
+            reservoir_heat: Vec::new(),
+            materials,
+            material,
+            walls,
+            touches: Vec::new(),
+            wall_touches: Vec::new(),
+            radiation: Radiation::default(),
+            work: Work::default(),
+        }
+    }
+
+    /// Particles that go, by their rows in ascending order, and come; all contacts and views are forgotten.
+    pub fn change(&mut self, gone: &[usize], new: &[Newcomer]) {
+        without(&mut self.material, gone);
+        self.material.extend(new.iter().map(|one| one.material));
+        self.heat = vec![0.0; self.material.len()];
+        self.touches.clear();
+        self.wall_touches.clear();
+        self.radiation = Radiation::default();
+    }
+
+    /// Takes up what the particles meet at their present places.
+    pub fn meet(&mut self, meeting: &Meeting<'_>) {
+        self.touches.clear();
+        self.touches.extend_from_slice(meeting.touches);
+        self.wall_touches.clear();
+        self.wall_touches.extend_from_slice(meeting.walls);
+        if let Some(views) = meeting.views.filter(|_| self.laws.radiates) {
+            let emissivity = |&k: &usize| self.materials[k].emissivity;
+            self.radiation = Radiation::new(views, self.material.iter().map(emissivity).collect());
+        }
+    }
+
+    /// True where no heat can flow.
+    pub fn is_empty(&self) -> bool {
+        self.touches.is_empty() && self.wall_touches.is_empty() && self.radiation.is_empty()
+    }
+
+    /// Sets `heat` to that of an implicit step: temperatures T with
+    /// C_i (T_i − T_i,old) = h_i (S_i − T_i) + Σ_j G_ij (T_j − T_i), where `capacity` gives C_i, the heat
+    /// capacity over the span in W/K, between the old and a present temperature of particle i in K, and
+    /// h_i and S_i are conductance and temperature of the gas beside it.
+    pub fn solve(
+        &mut self,
+        capacity: impl Fn(usize, f64) -> f64,
+        old: &[f64],
+        beside: &Beside<'_>,
+    ) {
+        let count = old.len();
+        self.conduct(old, beside);
+        let work = &mut self.work;
+        let (solid, walled) = (work.bonds.len(), work.ties.len());
+        let nodes = count + self.radiation.radiosities();
+        let repeats = !self.radiation.is_empty();
+        work.old.clear();
+        work.old.extend_from_slice(old);
+        work.old.extend_from_slice(&old[..nodes - count]);
+        work.temperature.clone_from(&work.old);
+        for _ in 0..ITERATIONS {
+            work.capacity.clear();
+            work.capacity
+                .extend((0..count).map(|i| capacity(i, work.temperature[i])));
+            work.capacity.resize(nodes, 0.0);
+            work.bonds.truncate(solid);
+            work.ties.truncate(walled);
+            self.radiation.linearise(
+                &work.temperature,
+                beside.reservoirs,
+                &mut work.bonds,
+                &mut work.ties,
+            );
+            work.tie.clear();
+            work.tie.extend_from_slice(beside.conductance);
+            work.tie.resize(nodes, 0.0);
+            work.drive.clear();
+            work.drive.extend(
+                (0..count).map(|i| beside.conductance[i] * (beside.temperature[i] - old[i])),
+            );
+            work.drive.resize(nodes, 0.0);
+            for &([node, reservoir], g) in &work.ties {
+                work.tie[node] += g;
+                work.drive[node] += g * (beside.reservoirs[reservoir] - work.old[node]);
+            }
+            work.last.clone_from(&work.temperature);
+            let system = System {
+                bonds: &work.bonds,
+                capacity: &work.capacity,
+                old: &work.old,
+                tie: &work.tie,
+                drive: &work.drive,
+            };
+            work.solver.solve(&system, &mut work.temperature);
+            let mut pairs = work.temperature.iter().zip(&work.last);
+            let settled = pairs.all(|(now, last)| (now - last).abs() <= SETTLED * last.abs());
+            if settled || !repeats {
+                break;
+            }
+        }
+        self.book(count, solid, beside.reservoirs);
+    }
+
+    /// Heat over every bond and tie, the same on both of its sides.
+    fn book(&mut self, count: usize, solid: usize, reservoirs: &[f64]) {
+        let work = &self.work;
+        let kelvin = &work.temperature;
+        self.heat.clear();
+        self.heat.resize(count, 0.0);
+        self.reservoir_heat.clear();
+        self.reservoir_heat.resize(reservoirs.len(), 0.0);
+        let row = |node: usize| if node < count { node } else { node - count };
+        for (k, &([i, j], g)) in work.bonds.iter().enumerate() {
+            // A surface and its own radiosity are one particle.
+            if row(i) == row(j) && k >= solid {
+                continue;
+            }
+            let flow = g * (kelvin[j] - kelvin[i]);
+            self.heat[row(i)] += flow;
+            self.heat[row(j)] -= flow;
+        }
+        for &([node, reservoir], g) in &work.ties {
+            let flow = g * (reservoirs[reservoir] - kelvin[node]);
+            self.heat[row(node)] += flow;
+            self.reservoir_heat[reservoir] += flow;
+        }
+    }
+
+    /// Contacts and gaps at the temperatures of the start, in K.
+    fn conduct(&mut self, old: &[f64], beside: &Beside<'_>) {
+        let Self {
+            laws,
+            materials,
+            material,
+            walls,
+            work,
+            ..
+        } = self;
+        work.bonds.clear();
+        work.ties.clear();
+        for touch in &self.touches {
+            let [i, j] = touch.particles;
+            let of = [i, j].map(|p| &materials[material[p]]);
+            let conductivity = [of[0].conductivity.at(old[i]), of[1].conductivity.at(old[j])];
+            let gas = [i, j].map(|p| beside.gas_conductivity[p]);
+            let gas = 2.0 * gas[0] * gas[1] / (gas[0] + gas[1]);
+            let g = conductance(laws, of, touch.radius, touch.overlap, conductivity, gas);
+            if g > 0.0 {
+                work.bonds.push(([i, j], g));
+            }
+        }
+        for touch in &self.wall_touches {
+            let (i, reservoir) = (touch.particle, touch.reservoir);
+            let Some(&wall) = walls.get(reservoir) else {
+                continue;
+            };
+            let of = [&materials[material[i]], &materials[wall]];
+            let kelvin = [old[i], beside.reservoirs[reservoir]];
+            let conductivity = [0, 1].map(|k| of[k].conductivity.at(kelvin[k]));
+            let radius = [touch.radius, f64::INFINITY];
+            let gas = beside.gas_conductivity[i];
+            let g = conductance(laws, of, radius, touch.overlap, conductivity, gas);
+            if g > 0.0 {
+                work.ties.push(([i, reservoir], g));
+            }
+        }
+    }
+}
+
+/// Conductance in W/K of contact and gap of two spheres.
+fn conductance(
+    laws: &HeatLaws,
+    of: [&Thermal; 2],
+    radius: [f64; 2],
+    overlap: f64,
+    conductivity: [f64; 2],
+    gas_conductivity: f64,
+) -> f64 {
+    let density = of.map(|one| one.density);
+    let (soft, real) = (of.map(|one| one.soft), of.map(|one| one.real));
+    let contact = Contact {
+        radius,
+        overlap: laws.area.overlap(radius, overlap, density, soft, real),
+        conductivity,
+    };
+    let through = match contact.overlap > 0.0 {
+        true => laws.conduction.conductance(&contact),
+        false => 0.0,
+    };
+    let gap = Gap {
+        radius,
+        distance: match contact.overlap > 0.0 {
+            true => -contact.overlap,
+            false => -overlap,
+        },
+        contact_radius: (contact.reduced_radius() * contact.overlap).sqrt(),
+        conductivity,
+        gas_conductivity,
+    };
+    through + laws.gap.conductance(&gap)
+}
+
+/// A black material of a conductivity in W/m/K.
+#[cfg(test)]
+pub(crate) fn plain(conductivity: f64) -> Thermal {
+    let stiffness = Stiffness {
+        young: 1e9,
+        poisson: 0.3,
+    };
+    Thermal {
+        conductivity: Conductivity::constant(conductivity),
+        emissivity: 1.0,
+        density: 2500.0,
+        soft: stiffness,
+        real: stiffness,
+    }
+}
+
+#[cfg(test)]
+mod tests;

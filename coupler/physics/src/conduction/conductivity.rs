@@ -1,0 +1,51 @@
+//! Conductivity of solids.
+
+/// Thermal conductivity of a solid, linear in temperature between given points and constant outside them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Conductivity {
+    /// Temperatures in K, increasing, and conductivities in W/m/K there; at least one.
+    points: Vec<(f64, f64)>,
+}
+
+impl Conductivity {
+    /// The same at all temperatures, in W/m/K.
+    pub fn constant(value: f64) -> Self {
+        Self::table(vec![(0.0, value)])
+    }
+
+    /// Points of temperature in K, increasing, and conductivity in W/m/K, positive; at least one.
+    pub fn table(points: Vec<(f64, f64)>) -> Self {
+        debug_assert!(!points.is_empty());
+        Self { points }
+    }
+
+    /// Conductivity in W/m/K at a temperature in K.
+    pub fn at(&self, temperature: f64) -> f64 {
+        let next = self
+            .points
+            .partition_point(|&(from, _)| from <= temperature);
+        match (next.checked_sub(1), self.points.get(next)) {
+            (Some(before), Some(after)) => {
+                let before = self.points[before];
+                let share = (temperature - before.0) / (after.0 - before.0);
+                before.1 + share * (after.1 - before.1)
+            }
+            (Some(last), None) => self.points[last].1,
+            (None, _) => self.points[0].1,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn is_linear_between_points_and_constant_outside() {
+        let iron = Conductivity::table(vec![(300.0, 80.0), (600.0, 55.0), (1000.0, 33.0)]);
+        for (kelvin, expected) in [(200.0, 80.0), (450.0, 67.5), (800.0, 44.0), (2000.0, 33.0)] {
+            assert!((iron.at(kelvin) - expected).abs() < 1e-12, "{kelvin}");
+        }
+        assert_eq!(Conductivity::constant(1.1).at(500.0), 1.1);
+    }
+}

@@ -1,0 +1,148 @@
+//! Ways of heat beside the gas: which walls and surroundings particles exchange heat with, what they touch
+//! and whom they see. The same for every backend of the particles, from their places alone.
+
+use calcine_interior::{Meeting, Views};
+
+use crate::contacts::{touching, touching_walls};
+use crate::motion::WallShape;
+use crate::part::ParticleFields;
+use crate::setup::Schedule;
+use crate::sight::{Mirror, Scene, Sight, Surface, views};
+
+/// Name of the surroundings among the reservoirs.
+pub const SURROUNDINGS: &str = "surroundings";
+
+/// A wall that particles exchange heat with, or that reflects their radiation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeatWall {
+    /// Its name.
+    pub name: String,
+    /// Its shape.
+    pub shape: WallShape,
+    /// Its temperature in K over process time in s; `None` for an adiabatic wall, which is a mirror.
+    pub temperature: Option<Schedule>,
+    /// Its emissivity.
+    pub emissivity: f64,
+}
+
+/// What a case says of heat between particles.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PathsSetup {
+    /// Walls.
+    pub walls: Vec<HeatWall>,
+    /// Emissivity of each population.
+    pub emissivity: Vec<f64>,
+    /// The widest gap in m between particles of these radii in m, and to walls, that conducts, over the largest
+    /// radius in m.
+    pub gap: f64,
+    /// How particles see each other; `None`: they do not radiate.
+    pub sight: Option<Sight>,
+    /// Temperature in K of what is seen beyond all walls, over process time in s; `None`: nothing leaves.
+    pub surroundings: Option<Schedule>,
+    /// Views of moving particles hold for so much process time in s.
+    pub refresh: f64,
+}
+
+/// Walls ready to be asked, and the views that hold.
+#[derive(Debug, Default)]
+pub struct Paths {
+    setup: PathsSetup,
+    mirrors: Vec<Mirror>,
+    names: Vec<String>,
+    /// Process time in s at which views were found last.
+    seen_at: Option<f64>,
+    /// Temperatures of the reservoirs in K.
+    kelvin: Vec<f64>,
+}
+
+impl Paths {
+    /// Walls that have a temperature are the first reservoirs, in their order; the surroundings are the last.
+    pub fn new(setup: PathsSetup) -> Self {
+        let mut reservoirs = 0..;
+        let warm = setup.walls.iter().filter(|wall| wall.temperature.is_some());
+        let beyond = setup.surroundings.as_ref();
+        let mirror = |wall: &HeatWall| Mirror {
+            surface: Surface::new(&wall.shape),
+            absorbs: wall
+                .temperature
+                .as_ref()
+                .and_then(|_| reservoirs.next())
+                .map(|k| (k, wall.emissivity)),
+        };
+        Self {
+            mirrors: setup.walls.iter().map(mirror).collect(),
+            names: warm
+                .map(|wall| wall.name.clone())
+                .chain(beyond.map(|_| SURROUNDINGS.to_owned()))
+                .collect(),
+            seen_at: None,
+            kelvin: Vec::new(),
+            setup,
+        }
+    }
+
+    /// Names of the reservoirs.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// Forgets the views: the next call of [`Paths::meet`] finds them anew.
+    pub fn forget(&mut self) {
+        self.seen_at = None;
+    }
+
+    /// Temperatures of the reservoirs in K at a process time in s.
+    pub fn reservoirs(&mut self, time: f64) -> &[f64] {
+        let walls = self.setup.walls.iter();
+        let schedules = walls.filter_map(|wall| wall.temperature.as_ref());
+        self.kelvin.clear();
+        self.kelvin.extend(
+            schedules
+                .chain(&self.setup.surroundings)
+                .map(|one| one.at(time)),
+        );
+        &self.kelvin
+    }
+
+    /// Finds what particles meet at a process time in s, and tells it.
+    pub fn meet(
+        &mut self,
+        particles: &ParticleFields<'_>,
+        time: f64,
+        tell: impl FnOnce(&Meeting<'_>),
+    ) {
+        let (radii, centres) = (particles.radius, particles.position);
+        let gap = self.setup.gap;
+        let touches = touching(radii, centres, gap);
+        let absorbing = self.mirrors.iter().filter_map(|mirror| {
+            let (reservoir, _) = mirror.absorbs?;
+            Some((reservoir, &mirror.surface))
+        });
+        let walls = touching_walls(radii, centres, absorbing, gap);
+        let due = self
+            .seen_at
+            .is_none_or(|at| time - at >= self.setup.refresh * (1.0 - 1e-9));
+        let found: Option<Views> = self.setup.sight.filter(|_| due).map(|sight| {
+            let reservoirs = self.mirrors.iter().filter(|m| m.absorbs.is_some()).count();
+            let own = |k: &u32| self.setup.emissivity.get(*k as usize).copied();
+            let emissivity = particles.population.iter().map(|k| own(k).unwrap_or(1.0));
+            let scene = Scene {
+                radii,
+                centres,
+                emissivity: &emissivity.collect::<Vec<f64>>(),
+                walls: &self.mirrors,
+                reservoirs,
+                beyond: self.setup.surroundings.as_ref().map(|_| reservoirs),
+            };
+            views(&scene, sight)
+        });
+        if found.is_some() {
+            self.seen_at = Some(time);
+        }
+        tell(&Meeting {
+            touches: &touches,
+            walls: &walls,
+            views: found.as_ref(),
+        });
+    }
+}
