@@ -199,7 +199,7 @@ impl Closures {
         let species = mixture.names().len();
         let mut diffusivities = vec![0.0; species];
         coefficients.film.resize(species * particles.len(), 0.0);
-        for p in 0..particles.len() {
+        for (p, &pressure) in pressure.iter().enumerate() {
             let own = p * species..(p + 1) * species;
             let composition = &seen.composition[own.clone()];
             let temperature = seen.temperature[p];
@@ -214,7 +214,7 @@ impl Closures {
                 heat_capacity: self.gas.heat_capacity(temperature, composition),
                 slip: (seen.velocity[p] - particles.velocity[p] / acceleration).norm(),
             };
-            mixture.diffusivities(pressure[p], temperature, composition, &mut diffusivities);
+            mixture.diffusivities(pressure, temperature, composition, &mut diffusivities);
             let diameter = 2.0 * particles.radius[p];
             for (film, diffusivity) in coefficients.film[own].iter_mut().zip(&diffusivities) {
                 let law = &*self.mass_transfer;

@@ -203,8 +203,8 @@ impl Rosenbrock {
 
 fn solve(factors: &[f64], pivots: &[usize], x: &mut [f64]) {
     let n = x.len();
-    for k in 0..n {
-        x.swap(k, pivots[k]);
+    for (k, &pivot) in pivots.iter().enumerate() {
+        x.swap(k, pivot);
     }
     for row in 1..n {
         for column in 0..row {
