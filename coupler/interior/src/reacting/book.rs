@@ -64,8 +64,8 @@ impl Reacting {
                 }
                 within = false;
                 for (extent, reaction) in extents.iter_mut().zip(reactions) {
-                    let uses = |one: &&(usize, f64)| one.0 == s && one.1 * *extent < 0.0;
-                    if reaction.solids.iter().find(uses).is_some() {
+                    let uses = |one: &(usize, f64)| one.0 == s && one.1 * *extent < 0.0;
+                    if reaction.solids.iter().any(uses) {
                         *extent *= there / used;
                     }
                 }

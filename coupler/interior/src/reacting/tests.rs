@@ -403,10 +403,10 @@ fn three_oxides_are_reduced_in_their_order() {
         follow(&mut reacting, &composition, (0.05, 1.0), 5.0, 1);
         let now = reacting.amounts();
         assert!((iron(now) / begin - 1.0).abs() < 1e-12);
-        for k in 0..4 {
-            assert!(now[k] > -1e-12 * begin);
-            if now[k] > peaks[k] {
-                (peaks[k], when[k]) = (now[k], window);
+        for (k, &amount) in now.iter().enumerate() {
+            assert!(amount > -1e-12 * begin);
+            if amount > peaks[k] {
+                (peaks[k], when[k]) = (amount, window);
             }
         }
     }
