@@ -75,7 +75,7 @@ impl Shade {
     pub fn label(self) -> &'static str {
         match self {
             Self::Temperature => "T in K",
-            Self::Speed => "speed in m/s",
+            Self::Speed => "v in m/s",
         }
     }
 }
