@@ -70,7 +70,9 @@ fn come_to(moment: Moment, mark: &str, out: &Path) -> (Child, Vec<u32>, u32) {
 /// Nothing of a run is there within 5 s.
 fn assert_all_gone(coordinator: u32, peers: &[u32]) {
     wait_until(LIMIT, || {
-        !peers.iter().any(|&pid| alive(pid)) && leftovers(coordinator).is_empty()
+        !peers.iter().any(|&pid| alive(pid))
+            && belonging(coordinator).is_empty()
+            && leftovers(coordinator).is_empty()
     });
     for &pid in peers {
         assert!(!alive(pid), "{pid} is still there: {}", command_line(pid));

@@ -12,9 +12,10 @@ use calcine::results::read::Series;
 fn case(folder: &Path, script: &str) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let text = fs::read_to_string(root.join("cases/settled-bed.toml")).unwrap();
-    let own = "\n[liggghts]\ntemplate = \"in.bed\"\n";
+    let own = text.replace("[liggghts]\n", "[liggghts]\ntemplate = \"in.bed\"\n");
+    assert_ne!(own, text);
     fs::create_dir_all(folder).unwrap();
-    fs::write(folder.join("case.toml"), text + own).unwrap();
+    fs::write(folder.join("case.toml"), own).unwrap();
     fs::write(folder.join("in.bed"), script).unwrap();
 }
 

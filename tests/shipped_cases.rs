@@ -46,6 +46,8 @@ fn sources(case: &Path) -> (f64, f64) {
     match &*name {
         "purged-bed" => (300.0, 600.0),
         "packed-column" => (293.15, 313.15),
+        "iron-stack" => (675.0, 725.0),
+        "bed-conductivity" => (850.0, 950.0),
         // Reactions heat and cool what they are in.
         "ore-reduction" => (1050.0, 1250.0),
         "lime-burning" => (1000.0, 1200.0),

@@ -141,6 +141,9 @@ impl Node {
         if let Some(value) = stripped(" or `closed`") {
             return either(value, json!({"const": "closed"}));
         }
+        if let Some(value) = stripped(" or a number") {
+            return either(value, json!({"type": "number"}));
+        }
         if let Some(value) = stripped(" or schedule") {
             return either(value.clone(), pairs(quantity(1), value));
         }

@@ -74,7 +74,14 @@ pub fn differences(expected: &Path, found: &Path) -> Vec<String> {
         summary.processor_time_s = Default::default();
     }
     if one != other {
-        list.push("summary.json".to_owned());
+        let [one, other] = [one, other].map(|summary| serde_json::to_value(summary).unwrap());
+        let keys = one.as_object().unwrap().iter();
+        let differing = keys.filter(|(key, value)| other[key.as_str()] != **value);
+        let parts = differing.map(|(key, value)| format!("{key}: {value}, {}", other[key]));
+        list.push(format!(
+            "summary.json: {}",
+            parts.collect::<Vec<_>>().join("; ")
+        ));
     }
     list
 }
