@@ -63,7 +63,7 @@ fn every_shipped_case_runs_natively_and_with_both_solvers_between_its_sources() 
         for (gas, particles) in [("native", "native"), ("openfoam", "liggghts")] {
             let (particles, end) = match moves(&case) {
                 true => ("liggghts", "time.end=0.05 s"),
-                false if steps(&case) => (particles, "time.end=40 s"),
+                false if steps(&case) => (particles, "time.end=100 s"),
                 false => (particles, "time.end=8 s"),
             };
             let name = format!("{}-{gas}", case.file_stem().unwrap().to_string_lossy());

@@ -140,12 +140,14 @@ impl Host {
         let restart = host.start.restart.clone();
         host.set_up(restart.as_deref())?;
         host.particles = host.liggghts.particles().unwrap_or_default();
+        // The sum over the ranks comes first: the first rank has then closed the log that says the version.
+        let mesh_hash = host.state.hash();
         let hello = Hello {
             role: "particles".into(),
             name: "LIGGGHTS".into(),
             version: version(),
             case_hash: host.start.case_hash.clone(),
-            mesh_hash: host.state.hash(),
+            mesh_hash,
             count: host.particles,
             ranks,
             catalogue: Catalogue::standard("particles")?,
