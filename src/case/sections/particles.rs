@@ -124,6 +124,9 @@ fn heat_capacity(table: &Reader<'_>) -> HeatCapacity {
     HeatCapacity::table(points)
 }
 
+/// Highest temperature in K to which NASA fits polynomials (TP-2002-211556).
+const HOTTEST: f64 = 20_000.0;
+
 /// NASA's seven coefficients over two ranges, every few kelvin: c_p is linear in between, and the enthalpy
 /// its exact integral.
 fn polynomial(table: &Reader<'_>) -> Option<Vec<(f64, f64)>> {
@@ -141,6 +144,12 @@ fn polynomial(table: &Reader<'_>) -> Option<Vec<(f64, f64)>> {
             return None;
         }
     };
+    if ends[2] > HOTTEST {
+        let rule = format!("reaches up to {} K, beyond {HOTTEST} K", ends[2]);
+        let help = "no polynomial of NASA's goes further; write the ranges that they are fitted to";
+        table.fail("ranges", rule, help);
+        return None;
+    }
     let range = |from: f64, to: f64| {
         let parts = ((to - from) / STEP).ceil();
         let parts_whole = parts as usize;
