@@ -46,7 +46,7 @@ fn delay(reactor: &mut Reactor, phi: f64, start: f64, pressure: f64, guess: f64)
 }
 
 #[test]
-fn ignition_delays_and_final_temperatures_are_cantera_s_within_0_1_percent() {
+fn ignition_delays_and_final_temperatures_are_cantera_s() {
     let mut reactor = reactor();
     let mut worst = [0.0_f64; 2];
     for row in table(include_str!("reference/ignition.csv")) {
@@ -61,7 +61,7 @@ fn ignition_delays_and_final_temperatures_are_cantera_s_within_0_1_percent() {
         worst[1] = worst[1].max((t / end - 1.0).abs());
     }
     println!("worst: delay {:e}, end {:e}", worst[0], worst[1]);
-    assert!(worst[0] < 1e-3 && worst[1] < 1e-5, "{worst:?}");
+    assert!(worst[0] < 5e-5 && worst[1] < 5e-6, "{worst:?}");
 }
 
 #[test]
@@ -110,7 +110,7 @@ fn burnt_gas_reaches_cantera_s_equilibrium() {
         "worst: temperature {:e}, mole fraction {:e}",
         worst[0], worst[1]
     );
-    assert!(worst[0] < 1e-4 && worst[1] < 1e-4, "{worst:?}");
+    assert!(worst[0] < 1e-6 && worst[1] < 1e-6, "{worst:?}");
 }
 
 #[test]
