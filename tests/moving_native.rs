@@ -30,7 +30,10 @@ fn projectile(mut velocity: [f64; 2], mut height: f64, time: f64) -> ([f64; 2], 
     let mass = bead.volume() * bead.density;
     let change = |v: [f64; 2]| {
         let drag = bead.resistance(v[0].hypot(v[1])) / mass;
-        [-drag * v[0], -drag * v[1] - 9.81 * (1.0 - bead.fluid / bead.density)]
+        [
+            -drag * v[0],
+            -drag * v[1] - 9.81 * (1.0 - bead.fluid / bead.density),
+        ]
     };
     let steps = 20_000;
     let step = time / f64::from(steps);

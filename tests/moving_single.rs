@@ -62,7 +62,10 @@ fn a_bead_drags_the_air_of_its_cells_along_where_the_gas_is_solved() {
     run(&case("settling-sphere"), directory.path(), &set);
     let series = Series::read(directory.path()).unwrap();
     let speed = *series.column("quantities.speed").last().unwrap();
-    println!("two-way: {speed} m/s against {} m/s of the law", bead().terminal());
+    println!(
+        "two-way: {speed} m/s against {} m/s of the law",
+        bead().terminal()
+    );
     // The cells are 100 diameters wide: the disturbance is small, and always to the faster side.
     assert!(
         speed > 0.99 * bead().terminal() && speed < 1.1 * bead().terminal(),

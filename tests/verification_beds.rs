@@ -19,7 +19,12 @@ use program::run_text;
 
 /// Writes a case, runs it on two threads into a folder of its name, and returns that folder.
 fn run(directory: &Path, name: &str, text: &str, words: &[&str]) -> PathBuf {
-    run_text(directory, name, text, &[words, &["--threads", "2"]].concat())
+    run_text(
+        directory,
+        name,
+        text,
+        &[words, &["--threads", "2"]].concat(),
+    )
 }
 
 fn last(series: &Series, name: &str) -> f64 {

@@ -56,15 +56,19 @@ impl Overlap {
         };
         let convex = |cell: usize| {
             let faces = mesh.faces_of(cell);
-            let corners = || faces.iter().flat_map(|&face| mesh.face_points(face as usize));
+            let corners = || {
+                faces
+                    .iter()
+                    .flat_map(|&face| mesh.face_points(face as usize))
+            };
             faces.iter().all(|&face| {
                 let face = face as usize;
                 let (side, centre) = (side(mesh, cell, face), mesh.face_centre()[face]);
                 // To the precision at which a face counts as plane.
                 normal[face].is_some_and(|normal| {
-                    corners().map(point).all(|p| {
-                        side * normal.dot(&(p - centre)) <= 1e-9 * (p - centre).norm()
-                    })
+                    corners()
+                        .map(point)
+                        .all(|p| side * normal.dot(&(p - centre)) <= 1e-9 * (p - centre).norm())
                 })
             })
         };
@@ -253,9 +257,12 @@ impl Plane {
         let (p, q) = (a + along * enter, a + along * leave);
         let mut sum = stretch(p, q, true);
         // An edge that ends in the disc has no stretch beyond it.
-        for (from, to) in [(enter > 0.0).then_some((a, p)), (leave < 1.0).then_some((q, b))]
-            .into_iter()
-            .flatten()
+        for (from, to) in [
+            (enter > 0.0).then_some((a, p)),
+            (leave < 1.0).then_some((q, b)),
+        ]
+        .into_iter()
+        .flatten()
         {
             let part = stretch(from, to, false);
             sum.area += part.area;
