@@ -194,7 +194,7 @@ const KEYS: &[Key] = &[
     key("gas.species", "list of `N2`, `O2`, `Ar`, `CO2`, `H2O`, `CO`, `H2`, `CH4`", Default("a single gas"), "Species of a mixture of ideal gases; with `gas.schmidt`, and a composition wherever gas stands at the start or flows in.", "[\"N2\", \"O2\"]"),
     key("gas.schmidt", "number", Default("goes with `species`"), "Schmidt number of all species: they diffuse alike, with viscosity over density over this.", "0.7"),
     key("gas.chemistry", "table", Default("the gas does not react with itself"), "Reactions of the gas with itself; of a mixture of `gas.species`.", "{ mechanism = \"jones-lindstedt\" }"),
-    key("gas.chemistry.mechanism", "text or path", OneOf, "`jones-lindstedt` (refined), `jones-lindstedt-original`, or a file of Cantera (.yaml) or CHEMKIN (any other name). Either this or `reactions`.", "\"jones-lindstedt\""),
+    key("gas.chemistry.mechanism", "text", OneOf, "`jones-lindstedt` (refined), `jones-lindstedt-original`, or a file of Cantera (.yaml) or CHEMKIN (any other name). Either this or `reactions`.", "\"jones-lindstedt\""),
     key("gas.chemistry.thermo", "path", Default("that of the mechanism's file"), "A CHEMKIN file of thermodynamics; those of `gas.species` count, the file's must agree.", "\"therm.dat\""),
     key("gas.chemistry.reactions", "list of tables", OneOf, "Reactions of the case's own. Either this or `mechanism`.", "[{ name = \"shift\", equation = \"CO + H2O <=> CO2 + H2\", rate = { factor = 2.75e6, activation_energy = \"83.6 kJ/mol\" } }]"),
     key("gas.chemistry.reactions.name", "text", Required, "Its name.", "\"shift\""),
