@@ -51,6 +51,11 @@ pub(super) fn read(
     section.finish();
     let (temperature, pressure, velocity, composition) = initial?;
     let (reacting, files) = chemistry?;
+    if held && reacting.reacting().is_some() {
+        let help = "leave `gas.held` out, or `gas.chemistry`";
+        let rule = "reacts, but `gas.held` leaves the gas as it is at the start";
+        section.fail("chemistry", rule, help);
+    }
     let setup = GasSetup {
         mixture: mixture?.into(),
         properties: properties?,

@@ -32,7 +32,7 @@ pub enum KineticsError {
         off: String,
     },
     /// A number that is none.
-    #[error("{reaction}: {quantity} is {value}, which is no finite number of its kind")]
+    #[error("{reaction}: {quantity} is {value}, which is no number of its kind")]
     Value {
         /// The reaction.
         reaction: String,
