@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 
+use calcine_coupler::gas_chemistry::Combustion;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::local::LocalGas;
 use calcine_coupler::physics::numbers::VoidFraction;
@@ -55,6 +56,19 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
         text,
         "  bed            {particles} particles, void fraction {void_fraction:.3}"
     );
+    if let Some(gas) = case.gas.chemistry.reacting() {
+        let how = match gas.combustion {
+            Combustion::Laminar => "laminar".to_owned(),
+            Combustion::Pasr { mixing_constant } => {
+                format!("partially stirred, C_mix {mixing_constant}")
+            }
+        };
+        let _ = writeln!(
+            text,
+            "  gas reactions  {}, {how}",
+            gas.mechanism.steps().len()
+        );
+    }
     let memory = sizes::memory(cells as f64, particles as f64);
     let _ = writeln!(
         text,

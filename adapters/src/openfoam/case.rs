@@ -302,6 +302,7 @@ mod tests {
             mixture: "air".into(),
             properties: GasProperties::air().into(),
             schmidt: 1.0,
+            chemistry: Default::default(),
             composition: Vec::new(),
             storage: GasStorage::Process,
             temperature: 300.0,
