@@ -168,6 +168,7 @@ fn gas_setup() -> GasSetup {
         }
         .into(),
         schmidt: 1.0,
+        chemistry: Default::default(),
         composition: Vec::new(),
         storage: GasStorage::Process,
         temperature: 300.0,

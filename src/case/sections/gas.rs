@@ -36,6 +36,7 @@ pub(super) fn read(
         mixture: mixture?.into(),
         properties: properties?,
         schmidt: schmidt?,
+        chemistry: Default::default(),
         storage: storage.unwrap_or_default(),
         temperature,
         composition,
