@@ -80,7 +80,8 @@ void Foam::calcine::reactions::evaluate
     thermo_->he() = thermo_->he(thermo_->p(), T_);
     thermo_->correct();
     // The result must not depend on what the model did before.
-    chemistry_->deltaTChem() = dimensionedScalar("firstStep", dimTime, firstStep_);
+    T_.mesh().lookupObjectRef<volScalarField::Internal>(named("deltaTChem")) =
+        dimensionedScalar("firstStep", dimTime, firstStep_);
     chemistry_->solve(span);
 
     const scalarField density(thermo_->rho()().primitiveField());
