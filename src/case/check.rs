@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 use std::fmt::Write as _;
 
 use calcine_adapters::openfoam::chemistry;
+use calcine_coupler::gas_chemistry::Combustion;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::local::LocalGas;
@@ -57,6 +58,19 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
         text,
         "  bed            {particles} particles, void fraction {void_fraction:.3}"
     );
+    if let Some(gas) = case.gas.chemistry.reacting() {
+        let how = match gas.combustion {
+            Combustion::Laminar => "laminar".to_owned(),
+            Combustion::Pasr { mixing_constant } => {
+                format!("partially stirred, C_mix {mixing_constant}")
+            }
+        };
+        let _ = writeln!(
+            text,
+            "  gas reactions  {}, {how}",
+            gas.mechanism.steps().len()
+        );
+    }
     let memory = sizes::memory(cells as f64, particles as f64);
     let _ = writeln!(
         text,

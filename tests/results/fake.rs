@@ -74,6 +74,7 @@ pub fn case() -> Case {
         feeds: vec![],
         outlets: vec![],
         gas_held: false,
+        gas_files: vec![],
         gas: gas_setup(),
         particles: vec![],
         laws: Laws {
