@@ -13,6 +13,7 @@ pub mod kinetics;
 pub mod local;
 pub mod mass_transfer;
 pub mod numbers;
+pub mod points;
 pub mod pressure_drop;
 pub mod quadrature;
 pub mod radiation;

@@ -148,13 +148,11 @@ impl<'m> Mapper<'m> {
     fn by_overlap(&self, home: usize, position: Vec3, radius: f64) -> Vec<(u32, f64)> {
         let ball = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
         let mesh = self.locator.mesh();
-        let share = |cell: u32| {
-            let volume = self.overlap.volume(mesh, cell as usize, position, radius);
-            (cell, volume / ball)
-        };
-        let cells = self.locator.cells_near(position, radius).into_iter();
+        let cells = self.locator.cells_near(position, radius);
+        let volumes = self.overlap.volumes(mesh, &cells, position, radius);
         let shares: Vec<_> = cells
-            .map(share)
+            .into_iter()
+            .zip(volumes.into_iter().map(|volume| volume / ball))
             .filter(|&(_, share)| share > Self::ROUND_OFF)
             .collect();
         // A ball too small for its volume to be a number is a point.

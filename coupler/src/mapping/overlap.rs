@@ -1,5 +1,7 @@
 //! Exact overlap of a ball and a polyhedron.
 
+use std::f64::consts::PI;
+
 use calcine_physics::Vec3;
 
 use crate::mesh::Mesh;
@@ -12,32 +14,155 @@ use crate::mesh::locate::Locator;
 /// cone ∩ ball = h/3 · area(F ∩ D) + R³/3 · Ω(F ∖ D), Ω the solid angle. Both are sums over the
 /// edges of F of what the triangle (foot of the centre, edge) has. Faces that are not plane are
 /// taken as triangles around the mean of their points, as for cell volumes.
+///
+/// The solid angles of all faces of a convex cell sum to 4π where the centre lies inside and to none outside, so
+/// that there only the faces count that the ball cuts, each by h/3 · area(F ∩ D) − R³/3 · Ω(F ∩ D), once for both
+/// of its cells.
 #[derive(Clone, Debug)]
 pub(super) struct Overlap {
-    plane: Vec<bool>,
+    /// Unit normals of plane faces; `None` of others.
+    normal: Vec<Option<Vec3>>,
+    /// Largest distance in m of each face's points from its centre.
+    reach: Vec<f64>,
+    /// Cells of plane faces, behind each of which all their points lie.
+    convex: Vec<bool>,
 }
+
+/// How a cell's share of a ball is found.
+#[derive(Clone, Copy, PartialEq)]
+enum Way {
+    /// All of the cell lies in the ball.
+    Whole,
+    /// By the faces that the ball cuts.
+    Cut,
+    /// By the cones over all faces.
+    Cones,
+}
+
+/// Below this height of the centre over a face, as a share of the radius, its side is not certain.
+const GRAZING: f64 = 1e-10;
 
 impl Overlap {
     pub fn new(locator: &Locator<'_>) -> Self {
-        let faces = 0..locator.mesh().faces();
+        let mesh = locator.mesh();
+        let point = |&point: &u32| mesh.topology().points[point as usize];
+        let normal: Vec<Option<Vec3>> = (0..mesh.faces())
+            .map(|face| (locator.warp(face) == 0.0).then(|| mesh.face_area()[face].normalize()))
+            .collect();
+        let reach = |face: usize| {
+            let centre = mesh.face_centre()[face];
+            let points = mesh.face_points(face).iter().map(point);
+            points.map(|p| (p - centre).norm()).fold(0.0, f64::max)
+        };
+        let convex = |cell: usize| {
+            let faces = mesh.faces_of(cell);
+            let corners = || {
+                faces
+                    .iter()
+                    .flat_map(|&face| mesh.face_points(face as usize))
+            };
+            faces.iter().all(|&face| {
+                let face = face as usize;
+                let (side, centre) = (side(mesh, cell, face), mesh.face_centre()[face]);
+                // To the precision at which a face counts as plane.
+                normal[face].is_some_and(|normal| {
+                    corners()
+                        .map(point)
+                        .all(|p| side * normal.dot(&(p - centre)) <= 1e-9 * (p - centre).norm())
+                })
+            })
+        };
         Self {
-            plane: faces.map(|face| locator.warp(face) == 0.0).collect(),
+            convex: (0..mesh.cells()).map(convex).collect(),
+            reach: (0..mesh.faces()).map(reach).collect(),
+            normal,
         }
     }
 
-    /// Volume in m³ that the ball shares with a cell, to round-off of the ball's own volume.
-    pub fn volume(&self, mesh: &Mesh, cell: usize, centre: Vec3, radius: f64) -> f64 {
-        let mut volume = 0.0;
+    /// Volumes in m³ that the ball shares with cells, which ascend, to round-off of the ball's own volume.
+    pub fn volumes(&self, mesh: &Mesh, cells: &[u32], centre: Vec3, radius: f64) -> Vec<f64> {
+        let ways: Vec<Way> = cells
+            .iter()
+            .map(|&cell| self.way(mesh, cell as usize, centre, radius))
+            .collect();
+        let mut volumes = vec![0.0; cells.len()];
+        for (place, &cell) in cells.iter().enumerate() {
+            let cell = cell as usize;
+            match ways[place] {
+                Way::Whole => volumes[place] = mesh.cell_volume()[cell],
+                Way::Cones => {
+                    let cones = mesh.faces_of(cell).iter().map(|&face| {
+                        let face = face as usize;
+                        side(mesh, cell, face) * self.cone(mesh, face, centre, radius)
+                    });
+                    volumes[place] = cones.sum();
+                }
+                Way::Cut => {
+                    let mut inside = true;
+                    for &face in mesh.faces_of(cell) {
+                        let face = face as usize;
+                        let Some(normal) = self.normal[face] else {
+                            continue;
+                        };
+                        let outwards = side(mesh, cell, face);
+                        let height = normal.dot(&(mesh.face_centre()[face] - centre));
+                        inside &= outwards * height > 0.0;
+                        if height.abs() >= radius {
+                            continue;
+                        }
+                        let other = mesh.across(cell, face).and_then(|other| {
+                            let place = cells.binary_search(&(other as u32)).ok()?;
+                            (ways[place] == Way::Cut).then_some(place)
+                        });
+                        // The first of its two cells finds what it takes for both.
+                        if other.is_some_and(|other| other < place) {
+                            continue;
+                        }
+                        let plane = Plane::new(normal, height, radius);
+                        let within = self.within(mesh, face, centre, &plane);
+                        volumes[place] += outwards * within;
+                        if let Some(other) = other {
+                            volumes[other] -= outwards * within;
+                        }
+                    }
+                    if inside {
+                        volumes[place] += 4.0 / 3.0 * PI * radius.powi(3);
+                    }
+                }
+            }
+        }
+        volumes
+    }
+
+    fn way(&self, mesh: &Mesh, cell: usize, centre: Vec3, radius: f64) -> Way {
+        if !self.convex[cell] {
+            return Way::Cones;
+        }
+        let mut whole = true;
         for &face in mesh.faces_of(cell) {
             let face = face as usize;
-            let outward = if mesh.owner()[face] as usize == cell {
-                1.0
-            } else {
-                -1.0
-            };
-            volume += outward * self.cone(mesh, face, centre, radius);
+            let away = mesh.face_centre()[face] - centre;
+            let height = self.normal[face].map_or(0.0, |normal| normal.dot(&away));
+            if height.abs() < GRAZING * radius {
+                return Way::Cones;
+            }
+            whole &= away.norm() + self.reach[face] <= radius;
         }
-        volume
+        if whole { Way::Whole } else { Way::Cut }
+    }
+
+    /// What a plane face takes of the ball: h/3 · area(F ∩ D) − sign(h) R³/3 · Ω(F ∩ D).
+    fn within(&self, mesh: &Mesh, face: usize, centre: Vec3, plane: &Plane) -> f64 {
+        let away = mesh.face_centre()[face] - centre;
+        let from_foot = away.norm_squared() - plane.height * plane.height;
+        let span = plane.disc.max(0.0).sqrt() + self.reach[face];
+        if plane.disc <= 0.0 || from_foot >= span * span {
+            return 0.0;
+        }
+        let points = mesh.face_points(face);
+        let at = |i: usize| mesh.topology().points[points[i % points.len()] as usize] - centre;
+        let parts = (0..points.len()).map(|i| plane.edge(at(i), at(i + 1), Plane::inside));
+        plane.cone(parts, -1.0)
     }
 
     /// Signed volume of ball ∩ cone over one face, positive where the face's normal points away.
@@ -45,11 +170,11 @@ impl Overlap {
         let points = mesh.face_points(face);
         let count = points.len();
         let at = |i: usize| mesh.topology().points[points[i % count] as usize] - centre;
-        if self.plane[face] {
-            let normal = mesh.face_area()[face].normalize();
+        if let Some(normal) = self.normal[face] {
             let height = normal.dot(&(mesh.face_centre()[face] - centre));
             let plane = Plane::new(normal, height, radius);
-            return plane.cone((0..count).map(|i| plane.edge(at(i), at(i + 1))));
+            let parts = (0..count).map(|i| plane.edge(at(i), at(i + 1), Plane::outside));
+            return plane.cone(parts, 1.0);
         }
         let middle = (0..count).map(at).sum::<Vec3>() / count as f64;
         let triangle = |i: usize| {
@@ -60,7 +185,8 @@ impl Overlap {
             }
             let normal = area.normalize();
             let plane = Plane::new(normal, normal.dot(&middle), radius);
-            plane.cone((0..3).map(|k| plane.edge(corners[k], corners[(k + 1) % 3])))
+            let edge = |k: usize| plane.edge(corners[k], corners[(k + 1) % 3], Plane::outside);
+            plane.cone((0..3).map(edge), 1.0)
         };
         (0..count).map(triangle).sum()
     }
@@ -76,12 +202,19 @@ struct Plane {
     disc: f64,
 }
 
-/// What the triangle (foot, edge) has inside the disc and outside.
+/// What the triangle (foot, edge) has of the disc.
+#[derive(Default)]
 struct Part {
     /// Area in m² inside.
     area: f64,
-    /// Solid angle outside.
+    /// Solid angle, of what lies inside or outside.
     angle: f64,
+}
+
+/// A stretch of an edge: its ends in the plane from the foot, and whether it lies in the disc.
+struct Stretch {
+    ends: [Vec3; 2],
+    in_disc: bool,
 }
 
 impl Plane {
@@ -94,33 +227,48 @@ impl Plane {
         }
     }
 
-    fn cone(&self, parts: impl Iterator<Item = Part>) -> f64 {
+    /// The volume of areas and solid angles, the latter counted with a sign.
+    fn cone(&self, parts: impl Iterator<Item = Part>, sign: f64) -> f64 {
         let (mut area, mut angle) = (0.0, 0.0);
         for part in parts {
             area += part.area;
             angle += part.angle;
         }
-        self.height * area / 3.0 + self.height.signum() * self.radius.powi(3) * angle / 3.0
+        let angle = sign * self.height.signum() * angle;
+        self.height * area / 3.0 + self.radius.powi(3) * angle / 3.0
     }
 
-    /// The contribution of an edge from `a` to `b`, both relative to the ball's centre.
-    fn edge(&self, a: Vec3, b: Vec3) -> Part {
+    /// The contribution of an edge from `a` to `b`, both relative to the ball's centre, stretch by stretch.
+    fn edge(&self, a: Vec3, b: Vec3, of: impl Fn(&Self, Stretch) -> Part) -> Part {
         let in_plane = |p: Vec3| p - self.normal * self.normal.dot(&p);
         let (a, b) = (in_plane(a), in_plane(b));
         let along = b - a;
         let (square, slope) = (along.norm_squared(), a.dot(&along));
         let root = slope * slope - square * (a.norm_squared() - self.disc);
+        let stretch = |p: Vec3, q: Vec3, in_disc: bool| {
+            let ends = [p, q];
+            of(self, Stretch { ends, in_disc })
+        };
         if self.disc <= 0.0 || square == 0.0 || root <= 0.0 {
-            return self.beyond(a, b);
+            return stretch(a, b, false);
         }
         let enter = ((-slope - root.sqrt()) / square).clamp(0.0, 1.0);
         let leave = ((-slope + root.sqrt()) / square).clamp(0.0, 1.0);
         let (p, q) = (a + along * enter, a + along * leave);
-        let (first, last) = (self.beyond(a, p), self.beyond(q, b));
-        Part {
-            area: first.area + 0.5 * self.turn(p, q) + last.area,
-            angle: first.angle + last.angle,
+        let mut sum = stretch(p, q, true);
+        // An edge that ends in the disc has no stretch beyond it.
+        for (from, to) in [
+            (enter > 0.0).then_some((a, p)),
+            (leave < 1.0).then_some((q, b)),
+        ]
+        .into_iter()
+        .flatten()
+        {
+            let part = stretch(from, to, false);
+            sum.area += part.area;
+            sum.angle += part.angle;
         }
+        sum
     }
 
     /// p × q along the normal.
@@ -128,40 +276,80 @@ impl Plane {
         self.normal.dot(&p.cross(&q))
     }
 
-    /// The triangle (foot, p, q) of an edge that lies outside the disc: the disc's sector of angle θ
-    /// lies inside; outside is the triangle's solid angle (Van Oosterom and Strackee,
-    /// doi:10.1109/TBME.1983.325207, with one corner at the foot) less the sector's θ (1 − h/R).
-    fn beyond(&self, p: Vec3, q: Vec3) -> Part {
-        let turn = self.turn(p, q);
+    /// Solid angle of the triangle (foot, p, q). Van Oosterom and Strackee, doi:10.1109/TBME.1983.325207, with
+    /// one corner at the foot.
+    fn triangle(&self, [p, q]: [Vec3; 2], turn: f64) -> f64 {
+        let height = self.height.abs();
+        let far = |p: Vec3| (height * height + p.norm_squared()).sqrt();
+        let (far_p, far_q) = (far(p), far(q));
+        let denominator = far_p * far_q + height * (far_p + far_q) + height * height + p.dot(&q);
+        2.0 * turn.atan2(denominator)
+    }
+
+    /// Area and solid angle of the disc's sector before a stretch beyond it: ρ²/2 · θ and θ (1 − h/R).
+    fn sector(&self, [p, q]: [Vec3; 2], turn: f64) -> Part {
+        let angle = turn.atan2(p.dot(&q));
+        Part {
+            area: 0.5 * self.disc * angle,
+            angle: angle * (1.0 - self.height.abs() / self.radius),
+        }
+    }
+
+    /// What the triangle (foot, stretch) has inside the disc.
+    fn inside(&self, stretch: Stretch) -> Part {
+        let ends = stretch.ends;
+        let turn = self.turn(ends[0], ends[1]);
         if turn == 0.0 {
+            return Part::default();
+        }
+        if stretch.in_disc {
             return Part {
-                area: 0.0,
+                area: 0.5 * turn,
+                angle: self.triangle(ends, turn),
+            };
+        }
+        self.sector(ends, turn)
+    }
+
+    /// The area inside the disc, and the solid angle outside it.
+    fn outside(&self, stretch: Stretch) -> Part {
+        let ends = stretch.ends;
+        let turn = self.turn(ends[0], ends[1]);
+        if turn == 0.0 {
+            return Part::default();
+        }
+        if stretch.in_disc {
+            return Part {
+                area: 0.5 * turn,
                 angle: 0.0,
             };
         }
-        let height = self.height.abs();
-        let (far_p, far_q) = (height.hypot(p.norm()), height.hypot(q.norm()));
-        let along = p.dot(&q);
-        let denominator = far_p * far_q + height * (far_p + far_q) + height * height + along;
-        let triangle = 2.0 * turn.atan2(denominator);
+        let triangle = self.triangle(ends, turn);
         if self.disc <= 0.0 {
             return Part {
                 area: 0.0,
                 angle: triangle,
             };
         }
-        let sector = turn.atan2(along);
+        let sector = self.sector(ends, turn);
         Part {
-            area: 0.5 * self.disc * sector,
-            angle: triangle - sector * (1.0 - height / self.radius),
+            area: sector.area,
+            angle: triangle - sector.angle,
         }
+    }
+}
+
+/// 1 where a face's normal points out of the cell, −1 where it points in.
+fn side(mesh: &Mesh, cell: usize, face: usize) -> f64 {
+    if mesh.owner()[face] as usize == cell {
+        1.0
+    } else {
+        -1.0
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::PI;
-
     use super::*;
     use crate::mesh::Topology;
     use crate::mesh::block::{BoxSpec, box_mesh};
@@ -193,9 +381,8 @@ mod tests {
 
     fn volumes(mesh: &Mesh, centre: Vec3, radius: f64) -> Vec<f64> {
         let overlap = Overlap::new(&Locator::new(mesh));
-        (0..mesh.cells())
-            .map(|cell| overlap.volume(mesh, cell, centre, radius))
-            .collect()
+        let cells: Vec<u32> = (0..mesh.cells() as u32).collect();
+        overlap.volumes(mesh, &cells, centre, radius)
     }
 
     fn ball(radius: f64) -> f64 {
