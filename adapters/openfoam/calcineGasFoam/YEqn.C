@@ -86,7 +86,6 @@ Foam::scalar Foam::calcine::gas::solveSpecies(report& result)
         matrix.diag() += inertia - out + given_.speciesCoefficient[k];
         matrix.source() += inertia*old - outOf(beyond[k]) + given_.speciesSource[k];
         addMade(k, matrix);
-        speciesDiagonal_ = matrix.diag();
 
         scalar moving = gSumMag(mass_*Y[k].primitiveField() - committed_.mass*old)/span
           + gSumMag(given_.speciesSource[k]);

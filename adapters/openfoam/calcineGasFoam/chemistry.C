@@ -9,9 +9,9 @@
 //
 //   m (Y - Y0)/dt + (m Y - m_old Y_old)/dtau + transport = m w(Y0),
 //
-// so that the place of a steady flame does not depend on dtau. After the iteration the equations are solved without
-// the pseudo-step, so that energy and elements close; where that solution lacks a species that a cell would consume,
-// the cell's rates are cut back, all by one share.
+// so that the place of a steady flame does not depend on dtau. After the last pseudo-step the equations are solved once
+// more without it, with m (R' - Y)/dt in place of m w, which is what that step took in all, R' being R(Y0) with the elements of
+// the new Y: so energy and every element close whatever the iteration did, and no cell gives what it does not have.
 #include "gas.H"
 
 namespace
@@ -21,10 +21,6 @@ namespace
 const Foam::scalar longer = 1e-6;
 // Pseudo-steps in an outer iteration at most.
 const Foam::label pseudoSteps = 5;
-// How often rates are cut back to what there is, before none is left.
-const Foam::label cuts = 12;
-// A mass fraction below minus this is a lack; iteration and linear solvers leave smaller ones.
-const Foam::scalar lack = 1e-9;
 
 } // End anonymous namespace
 
@@ -47,7 +43,6 @@ void Foam::calcine::gas::beginReactions()
     {
         return;
     }
-    reactingShare_ = scalarField(mesh_.nCells(), 1);
     speciesMade_.setSize(species_->Y().size());
     evaluateReactions();
     react(false);
@@ -67,7 +62,7 @@ void Foam::calcine::gas::react(bool pseudo)
     heatMade_ = scalarField(mass.size(), Zero);
     forAll(speciesMade_, k)
     {
-        speciesMade_[k] = reactingShare_*mass*reactions_->rates()[k];
+        speciesMade_[k] = mass*reactions_->rates()[k];
         heatMade_ -= species_->mixture()[k].formationEnthalpy()*speciesMade_[k];
     }
     pseudoInertia_ = pseudo ? scalarField(mass/window_.motionSpan) : scalarField();
@@ -157,48 +152,28 @@ void Foam::calcine::gas::closeReactions(report& result)
     {
         return;
     }
-    reactingShare_ = 1;
-    evaluateReactions();
-    for (label round = 0; round <= cuts; ++round)
+    const scalarField mass(given_.voidFraction*density()*mesh_.cellVolumes());
+    const label species = speciesMade_.size();
+    scalarList here(species), reached(species);
+    heatMade_ = Zero;
+    forAll(mass, celli)
     {
-        if (round == cuts)
+        for (label k = 0; k < species; ++k)
         {
-            reactingShare_ = 0;
+            here[k] = species_->Y()[k][celli];
+            reached[k] = speciesBefore_[k][celli]
+              + window_.motionSpan*reactions_->rates()[k][celli];
         }
-        react(false);
-        solveSpecies(result);
-        solveEnthalpy(result);
-        guard(false);
-        if (!cutReactions())
+        reactions_->restoreElements(here, reached);
+        for (label k = 0; k < species; ++k)
         {
-            break;
-        }
-        thermo_->correct();
-    }
-}
-
-
-// Cuts back the rates of cells in which the solution lacks what they consume: to what there would be, were the
-// neighbours to stay as they are. False where none does, on any rank.
-bool Foam::calcine::gas::cutReactions()
-{
-    bool some = false;
-    forAll(reactingShare_, celli)
-    {
-        scalar kept = 1;
-        forAll(speciesMade_, k)
-        {
-            const scalar fraction = species_->Y()[k][celli], made = speciesMade_[k][celli];
-            if (fraction < -lack && made < 0)
-            {
-                kept = min(kept, 1 - speciesDiagonal_[celli]*fraction/made);
-            }
-        }
-        if (kept < 1)
-        {
-            reactingShare_[celli] *= max(kept, scalar(0));
-            some = true;
+            speciesMade_[k][celli] = mass[celli]*(reached[k] - here[k])/window_.motionSpan;
+            heatMade_[celli] -=
+                species_->mixture()[k].formationEnthalpy()*speciesMade_[k][celli];
         }
     }
-    return returnReduce(some, orOp<bool>());
+    pseudoInertia_.clear();
+    solveSpecies(result);
+    solveEnthalpy(result);
+    thermo_->correct();
 }

@@ -67,7 +67,7 @@ pub fn files(
             "constant/reactions",
             reactions(mixture, gas.mechanism.steps())?,
         ),
-        ("constant/chemistryProperties.chemistry", properties(gas)),
+        ("constant/chemistryProperties.chemistry", properties(mixture, gas)),
         (
             "0/Ydefault.chemistry",
             field(about, setup, |_| zero_gradient()),
@@ -113,7 +113,7 @@ fn species(mixture: &Mixture) -> String {
     text
 }
 
-fn properties(gas: &ReactingGas) -> String {
+fn properties(mixture: &Mixture, gas: &ReactingGas) -> String {
     let mut text = header("dictionary", "chemistryProperties.chemistry");
     let relative = gas.tolerances.relative;
     let _ = write!(
@@ -122,6 +122,12 @@ fn properties(gas: &ReactingGas) -> String {
          initialChemicalTimeStep {FIRST_STEP:e};\n\nodeCoeffs\n{{\n    solver          seulex;\n    \
          absTol          {CONCENTRATION:e};\n    relTol          {relative:e};\n}}\n"
     );
+    text += "\n// Mass of each element in a unit mass of each species, in the order of calcineGasFoam's own.\nelementShares\n(\n";
+    for (element, shares) in mixture.elements() {
+        let shares: Vec<_> = shares.iter().map(|share| format!("{share:e}")).collect();
+        let _ = writeln!(text, "    ({}) // {element}", shares.join(" "));
+    }
+    text += ");\n";
     if let Combustion::Pasr { mixing_constant } = gas.combustion {
         let _ = write!(
             text,

@@ -14,12 +14,13 @@
 //! m (Y − Y°)/Δt + (m Y − m_old Y_old)/Δτ + transport = m w(Y°),
 //!
 //! whose right side with m Y°/Δt is m R(Y°)/Δt, not negative. A converged window, and so a steady flame, has the same w
-//! at any Δτ: its place does not depend on AF. After the iteration the equations are solved once more without
-//! the pseudo-step, so that energy and every element close whatever it did; where it has not converged and that
-//! solution lacks a species that a cell would consume, the cell's rates are cut back, all by one share.
+//! at any Δτ: its place does not depend on AF. After the last pseudo-step the equations are solved once more without
+//! it, with m (R′ − Y)/Δt in place of m w, which is what that step took in all, R′ being R(Y°) with the elements of the new Y:
+//! so energy and every element close whatever the iteration did, and no cell gives what it does not have.
 
 use calcine_coupler::gas_chemistry::ReactingGas;
 use calcine_coupler::physics::kinetics::Reactor;
+use calcine_coupler::physics::kinetics::elements::Elements;
 use calcine_coupler::physics::thermo::mixture::MOST_SPECIES;
 use rayon::prelude::*;
 
@@ -31,8 +32,6 @@ use crate::numerics::parallel::{fill, largest};
 const GRAIN: usize = 16;
 /// A span is longer than the motion span beyond this share: less is round-off of clocks.
 const LONGER: f64 = 1e-6;
-/// A mass fraction below minus this is a lack; iteration and linear solvers leave smaller ones.
-const LACK: f64 = 1e-9;
 
 /// What reactions add to an equation of a quantity x per kg of gas: gain + inertia (x° − x).
 #[derive(Clone, Debug, Default)]
@@ -78,8 +77,8 @@ impl Source {
 pub struct Chemistry {
     /// w of the fields last evaluated in 1/s, species by species within each cell.
     rates: Vec<f64>,
-    /// Share of the rates that each cell takes.
-    share: Vec<f64>,
+    /// R of the start of the last pseudo-step, likewise.
+    reached: Vec<f64>,
     /// Enthalpies of formation in J/kg.
     formation: Vec<f64>,
     /// True while the rates are those of the fields at hand.
@@ -105,18 +104,11 @@ impl Chemistry {
         let species = frame.species();
         let formation = |k| frame.properties.formation_enthalpy(k);
         self.formation = (0..species).map(formation).collect();
-        self.restore_share(frame);
         if is_dual(frame) {
             self.change = f64::INFINITY;
             return Ok(());
         }
         self.evaluate(frame, gas, frame.old)
-    }
-
-    /// Every cell takes its rates as they are.
-    pub fn restore_share(&mut self, frame: &Frame<'_>) {
-        self.share.clear();
-        self.share.resize(frame.grid.cells(), 1.0);
     }
 
     /// The fields have changed.
@@ -198,14 +190,9 @@ impl Chemistry {
         composition.gain.resize(cells * species, 0.0);
         fill(&mut composition.gain, |at| {
             let cell = at / species;
-            self.share[cell] * mass(cell) * self.rates[at]
+            mass(cell) * self.rates[at]
         });
-        enthalpy.gain.resize(cells, 0.0);
-        let gain = &composition.gain;
-        fill(&mut enthalpy.gain, |cell| {
-            let own = self.formation.iter().zip(&gain[cell * species..]);
-            -own.map(|(formation, gain)| formation * gain).sum::<f64>()
-        });
+        self.heat(species, &composition.gain, &mut enthalpy.gain);
         for (source, values) in [
             (composition, &now.composition),
             (enthalpy, &now.enthalpy),
@@ -220,8 +207,57 @@ impl Chemistry {
         }
     }
 
-    /// Books what the pseudo-step changed.
-    pub fn measure(&mut self, [composition, enthalpy]: [&Source; 2], heat: &[f64], now: &State) {
+    /// Heat of what is made, in W.
+    fn heat(&self, species: usize, made: &[f64], heat: &mut Vec<f64>) {
+        heat.resize(made.len() / species, 0.0);
+        fill(heat, |cell| {
+            let own = self.formation.iter().zip(&made[cell * species..]);
+            -own.map(|(formation, made)| formation * made).sum::<f64>()
+        });
+    }
+
+    /// Sets what the equations take at the end of the iteration.
+    pub fn conclude(
+        &self,
+        frame: &Frame<'_>,
+        gas: &ReactingGas,
+        now: &State,
+        [composition, enthalpy]: [&mut Source; 2],
+    ) {
+        let species = frame.species();
+        let elements = Elements::new(gas.mechanism.mixture());
+        for (cell, inertia) in composition.inertia.iter().enumerate() {
+            let here = now.composition_of(cell, species);
+            let own = cell * species..(cell + 1) * species;
+            let mut reached = [0.0; MOST_SPECIES];
+            let reached = &mut reached[..species];
+            reached.copy_from_slice(&self.reached[own.clone()]);
+            elements.restore(&elements.of(here), reached);
+            let gain = &mut composition.gain[own];
+            for (gain, (after, before)) in gain.iter_mut().zip(reached.iter().zip(here)) {
+                *gain = inertia * (after - before);
+            }
+        }
+        self.heat(species, &composition.gain, &mut enthalpy.gain);
+        for source in [composition, enthalpy] {
+            source.inertia.clear();
+            source.before.clear();
+        }
+    }
+
+    /// Books what the pseudo-step changed, and what its reactors reached.
+    pub fn measure(
+        &mut self,
+        frame: &Frame<'_>,
+        [composition, enthalpy]: [&Source; 2],
+        heat: &[f64],
+        now: &State,
+    ) {
+        self.reached.resize(self.rates.len(), 0.0);
+        let rates = &self.rates;
+        fill(&mut self.reached, |at| {
+            composition.before[at] + rates[at] * frame.motion_span
+        });
         let fractions = |at: usize| (now.composition[at] - composition.before[at]).abs();
         let warmth = |cell: usize| {
             let content = heat[cell] * now.temperature[cell];
@@ -230,33 +266,6 @@ impl Chemistry {
         let (_, changed) = largest(now.composition.len(), fractions);
         let (_, warmed) = largest(now.enthalpy.len(), warmth);
         self.change = changed.max(warmed);
-    }
-
-    /// Cuts back the rates of cells in which the solution lacks what they consume: to what there would be, were the
-    /// neighbours to stay as they are (`diagonal` in kg/s). False where none does.
-    pub fn cut(&mut self, frame: &Frame<'_>, source: &Source, diagonal: &[f64], now: &State) -> bool {
-        let species = frame.species();
-        let mut some = false;
-        for (cell, share) in self.share.iter_mut().enumerate() {
-            let mut kept: f64 = 1.0;
-            for k in 0..species {
-                let at = cell * species + k;
-                let (fraction, gain) = (now.composition[at], source.gain(at));
-                if fraction < -LACK && gain < 0.0 {
-                    kept = kept.min(1.0 - diagonal[cell] * fraction / gain);
-                }
-            }
-            if kept < 1.0 {
-                *share *= kept.max(0.0);
-                some = true;
-            }
-        }
-        some
-    }
-
-    /// No cell reacts.
-    pub fn quench(&mut self) {
-        fill(&mut self.share, |_| 0.0);
     }
 }
 

@@ -29,9 +29,6 @@ const FOLLOWED: u32 = 8;
 /// Pseudo-steps of reacting species and enthalpy in an outer iteration at most.
 const PSEUDO_STEPS: u32 = 5;
 
-/// How often the rates of a window that has not converged are cut back to what there is, before none is left.
-const CUTS: u32 = 12;
-
 /// When the solve of a scalar ends: where its residual is below either.
 #[derive(Clone, Copy, Debug)]
 pub struct Goal {
@@ -183,7 +180,8 @@ impl Equations {
         }
         self.material.update(frame, now);
         let sources = [&self.species.reactions, &self.enthalpy.reactions];
-        self.chemistry.measure(sources, &self.material.heat_capacity, now);
+        let heat = &self.material.heat_capacity;
+        self.chemistry.measure(frame, sources, heat, now);
         Ok(iterations)
     }
 
@@ -192,20 +190,13 @@ impl Equations {
         if !chemistry::is_dual(frame) {
             return self.scalars(frame, tolerance, 0.0, now);
         }
-        self.chemistry.restore_share(frame);
-        let mut iterations = 0;
-        for round in 0..=CUTS {
-            if round == CUTS {
-                self.chemistry.quench();
-            }
-            self.react(frame, false, now);
-            iterations += self.scalars(frame, tolerance, 0.0, now);
-            let (source, diagonal) = (&self.species.reactions, self.species.diagonal());
-            if !self.chemistry.cut(frame, source, diagonal, now) {
-                break;
-            }
+        // The last pseudo-step's inertia goes, with what it took.
+        self.react(frame, true, now);
+        let sources = [&mut self.species.reactions, &mut self.enthalpy.reactions];
+        if let Some(gas) = frame.chemistry.reacting() {
+            self.chemistry.conclude(frame, gas, now, sources);
         }
-        iterations
+        self.scalars(frame, tolerance, 0.0, now)
     }
 
     /// Species and enthalpy with the fluxes and masses at hand, to a tolerance relative to what moves or a

@@ -103,11 +103,6 @@ impl Species {
         fill(&mut self.temperature_gradients, |_| Vec3::zeros());
     }
 
-    /// The matrix's diagonal in kg/s.
-    pub fn diagonal(&self) -> &[f64] {
-        self.matrix.diagonal()
-    }
-
     /// Assembles and solves the equations; returns the linear iterations.
     pub fn solve(
         &mut self,
