@@ -1,5 +1,5 @@
 //! Verification of gas reactions against an independent code, Cantera: `reference/references.py` made the tables.
-#![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use calcine_physics::kinetics::{Mechanism, Reactor, State, Tolerances};
 use calcine_physics::thermo::Mixture;

@@ -83,7 +83,12 @@ impl Step {
                 Some(efficiencies)
             }
         };
-        if collider.is_none() && matches!(stated.rate, RateConstant::Falloff { .. }) {
+        let falloff = matches!(stated.rate, RateConstant::Falloff { .. });
+        let nobody = match &collider {
+            None => falloff,
+            Some(efficiencies) => efficiencies.iter().all(|one| *one == 0.0),
+        };
+        if nobody {
             return Err(KineticsError::NoCollider {
                 reaction: stated.name.clone(),
             });
