@@ -10,6 +10,7 @@ use calcine_coupler::time::GasStorage;
 
 use super::composition::fractions;
 use super::gas_patch::boundary;
+use super::turbulence::turbulence;
 use crate::case::model::MeshSpec;
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
@@ -28,7 +29,9 @@ pub(super) fn read(
         .vector("gravity", Dimension::ACCELERATION)
         .unwrap_or([0.0; 3]);
     let held = section.truth("held").unwrap_or(false);
-    let patches = boundary(&section, mesh, properties.as_ref());
+    let turbulence = turbulence(&section);
+    let turbulent = turbulence.map(|model| !model.is_laminar());
+    let patches = boundary(&section, mesh, properties.as_ref(), turbulent);
     let controls = controls(&section);
     section.finish();
     let (temperature, pressure, velocity, composition) = initial?;
@@ -42,6 +45,7 @@ pub(super) fn read(
         pressure,
         velocity,
         gravity: Vec3::from(gravity),
+        turbulence: turbulence?,
         momentum: MomentumModel::default(), // `laws.drag.model` says
         patches: patches?,
         controls,

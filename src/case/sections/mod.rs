@@ -19,6 +19,7 @@ mod sizes;
 mod solids;
 mod time;
 mod traffic;
+mod turbulence;
 mod walls;
 mod zone;
 
@@ -74,6 +75,9 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         reactions::fits(root, &chemistry, laws, particles, openfoam.solver);
     }
     let output = output::output(root);
+    if let (Some((gas, held)), Some(output)) = (&gas, &output) {
+        turbulence::fits(root, &gas.turbulence, *held, output);
+    }
     let probes = probes::probes(root);
     let quantities = {
         let species = gas.as_ref().map(|(gas, _)| gas.properties.species());
