@@ -8,9 +8,9 @@ use std::sync::Arc;
 
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::part::{Gas, Part};
+use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::turbulence::{KEpsilon, LogLaw};
 use calcine_coupler::setup::{Convection, GasPatch, InletTurbulence, Schedule, Turbulence};
-use calcine_coupler::physics::Vec3;
 use calcine_native::gas::NativeGas;
 use common::*;
 
@@ -66,9 +66,9 @@ fn decay_error(steps: u32) -> f64 {
 fn eddies_in_still_air_decay_as_the_closed_form_says_to_first_order_in_the_step() {
     let errors = [25, 50, 100, 200].map(|steps| decay_error(steps).abs());
     let orders = orders(&errors);
-    println!("{errors:.2e?}, orders {orders:.3?}");
+    println!("{errors:.5?}, orders {orders:.3?}");
     assert!(orders.iter().all(|order| (0.95..1.05).contains(order)));
-    assert!(errors[3] < 2e-3);
+    assert!(errors[3] < 7e-3);
 }
 
 /// Root mean square of the relative error of k along a duct of so many cells, after twelve transit times.
@@ -102,9 +102,10 @@ fn duct_error(cells: usize) -> f64 {
 fn eddies_carried_along_a_duct_decay_as_the_closed_form_says_to_first_order_in_the_cell() {
     let errors = [20, 40, 80, 160].map(duct_error);
     let orders = orders(&errors);
-    println!("{errors:.2e?}, orders {orders:.3?}");
-    assert!(orders.iter().all(|order| (0.85..1.1).contains(order)));
-    assert!(errors[3] < 2e-2);
+    println!("{errors:.5?}, orders {orders:.3?}");
+    // Upwind: rising to 1.
+    assert!(orders[0] > 0.8 && orders[1] > 0.88 && (0.94..1.05).contains(&orders[2]));
+    assert!(errors[3] < 7e-3);
 }
 
 /// A plane channel of half height δ, from its wall to its plane of symmetry.
@@ -200,10 +201,10 @@ fn friction_in_a_channel_follows_the_correlation_of_dean_and_velocity_the_law_of
 fn duct_with_bed() -> Driver {
     let mut setup = setup(&[
         ("side", no_slip()),
-        ("bottom", turbulent_inlet(5.0, 0.1, 2e-3)),
+        ("bottom", turbulent_inlet(5.0, 0.3, 5e-4)),
         ("top", outlet()),
     ]);
-    setup.turbulence = k_epsilon(0.1, 2e-3);
+    setup.turbulence = k_epsilon(1.0, 5e-4);
     setup.velocity = Vec3::new(0.0, 0.0, 5.0);
     setup.controls.outer_iterations = 5;
     let mesh = duct([0.04, 0.04, 0.12], [4, 4, 12]);
@@ -227,16 +228,14 @@ fn eddies_that_enter_a_bed_decay_there_and_carry_nothing() {
         let mean = |list: &[f64]| list[cells.clone()].iter().sum::<f64>() / 16.0;
         (mean(eddies.energy), mean(eddies.viscosity))
     };
-    let before = layer(3);
-    for k in 4..8 {
+    for k in 0..12 {
         let (energy, viscosity) = layer(k);
         println!("layer {k}: k {energy:.2e}, mu_t {viscosity:.1e}");
-        assert_eq!(viscosity, 0.0);
-        assert!(energy > 0.0 && energy < layer(k - 1).0);
+        assert_eq!(viscosity == 0.0, (4..8).contains(&k));
     }
-    assert!(before.1 > 0.0 && layer(7).0 < 0.5 * before.0);
-    // Behind it walls make new ones.
-    assert!(layer(11).0 > layer(8).0 && layer(8).1 > 0.0);
+    // The last layer of the bed has some from behind it.
+    assert!((4..7).all(|k| layer(k).0 < 0.95 * layer(k - 1).0));
+    assert!(layer(6).0 < 0.7 * layer(3).0);
 }
 
 #[test]
@@ -297,5 +296,8 @@ fn an_inlet_without_eddies_is_refused() {
     ]);
     setup.turbulence = k_epsilon(0.1, 1e-3);
     let error = NativeGas::new(duct([0.1; 3], [1, 1, 2]), &setup).unwrap_err();
-    assert!(error.to_string().contains("says nothing of its eddies"), "{error}");
+    assert!(
+        error.to_string().contains("says nothing of its eddies"),
+        "{error}"
+    );
 }

@@ -318,7 +318,7 @@ mod tests {
             velocity: Vec3::zeros(),
             gravity: Vec3::zeros(),
             turbulence: Default::default(),
-        momentum: Default::default(),
+            momentum: Default::default(),
             patches: patches.map(|(name, patch)| (name.to_owned(), patch)).into(),
             controls: GasControls {
                 outer_iterations: 3,

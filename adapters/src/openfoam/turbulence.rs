@@ -20,7 +20,10 @@ pub fn files(setup: &GasSetup, options: &str) -> Vec<(&'static str, String)> {
     };
     let dissipation = KEpsilon::STANDARD.dissipation(energy, length_scale);
     vec![
-        ("constant/turbulenceProperties", properties(prandtl, schmidt)),
+        (
+            "constant/turbulenceProperties",
+            properties(prandtl, schmidt),
+        ),
         (
             "constant/fvOptions",
             header("dictionary", "fvOptions")
@@ -84,7 +87,12 @@ fn inlet(patch: &GasPatch) -> Option<InletTurbulence> {
 
 /// `0/k`.
 fn energy(setup: &GasSetup, start: f64) -> String {
-    let about = ("volScalarField", "k", "[0 2 -2 0 0 0 0]", &*format!("{start:e}"));
+    let about = (
+        "volScalarField",
+        "k",
+        "[0 2 -2 0 0 0 0]",
+        &*format!("{start:e}"),
+    );
     field(about, setup, |patch| {
         if let Some(InletTurbulence { intensity, .. }) = inlet(patch) {
             let more = format!("        intensity       {intensity:e};\n");
@@ -99,7 +107,12 @@ fn energy(setup: &GasSetup, start: f64) -> String {
 
 /// `0/epsilon`.
 fn dissipation(setup: &GasSetup, start: f64) -> String {
-    let about = ("volScalarField", "epsilon", "[0 2 -3 0 0 0 0]", &*format!("{start:e}"));
+    let about = (
+        "volScalarField",
+        "epsilon",
+        "[0 2 -3 0 0 0 0]",
+        &*format!("{start:e}"),
+    );
     field(about, setup, |patch| {
         if let Some(InletTurbulence { length_scale, .. }) = inlet(patch) {
             let more = format!("        mixingLength    {length_scale:e};\n");

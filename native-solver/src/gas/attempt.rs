@@ -138,7 +138,9 @@ impl Material {
         let species = if species == 0 { 0 } else { cells };
         self.diffusivity.resize(species, 0.0);
         let viscosity = &self.viscosity;
-        fill(&mut self.diffusivity, |cell| viscosity[cell] / frame.schmidt);
+        fill(&mut self.diffusivity, |cell| {
+            viscosity[cell] / frame.schmidt
+        });
         self.add_eddies(frame);
     }
 

@@ -34,8 +34,8 @@ use boundary::Boundaries;
 pub use error::NativeError;
 use outer::Equations;
 use state::State;
-use turbulence::{Eddies, KEpsilonEquations, Step};
 pub(crate) use state::{flat, vectors};
+use turbulence::{Eddies, KEpsilonEquations, Step};
 
 use crate::numerics::grid::Grid;
 use crate::numerics::matrix::Matrix;
@@ -379,11 +379,7 @@ impl Gas for NativeGas {
 }
 
 /// The equations of a turbulent gas.
-fn eddies(
-    setup: &GasSetup,
-    grid: &Arc<Grid>,
-    boundary: &Boundaries,
-) -> Option<KEpsilonEquations> {
+fn eddies(setup: &GasSetup, grid: &Arc<Grid>, boundary: &Boundaries) -> Option<KEpsilonEquations> {
     let turbulent = !setup.turbulence.is_laminar();
     turbulent.then(|| KEpsilonEquations::new(Matrix::new(grid.clone()), boundary))
 }

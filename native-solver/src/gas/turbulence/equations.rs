@@ -20,9 +20,7 @@ use crate::gas::state::State;
 use crate::numerics::grid::{Grid, Link};
 use crate::numerics::krylov::{Krylov, Target};
 use crate::numerics::matrix::Matrix;
-use crate::numerics::operators::{
-    conductance, displacement, face_values, gradient, outflow,
-};
+use crate::numerics::operators::{conductance, displacement, face_values, gradient, outflow};
 use crate::numerics::parallel::{fill, largest, update};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
@@ -251,8 +249,7 @@ impl KEpsilonEquations {
         let rates = |cell: usize| {
             let mass = now.mass[cell];
             let squeezed = 2.0 / 3.0 * (-divergence[cell]).max(0.0) * old[cell];
-            let destroyed =
-                dissipation[cell] / old[cell] + 2.0 / 3.0 * divergence[cell].max(0.0);
+            let destroyed = dissipation[cell] / old[cell] + 2.0 / 3.0 * divergence[cell].max(0.0);
             [made[cell] + mass * squeezed, mass * destroyed]
         };
         let scalar = Scalar {
