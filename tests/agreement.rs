@@ -34,7 +34,7 @@ const CLOSE: Bands = Bands {
     particle_temperature: 1e-4,
     velocity: 1e-4,
     composition: 1e-4,
-    eddies: 1e-3,
+    eddies: 1e-4,
     pressure_drop: 1e-5,
     ledger: 1e-10,
 };
@@ -47,6 +47,18 @@ const SKEWED: Bands = Bands {
     velocity: 1.5e-2,
     composition: 1e-2,
     eddies: 1e-2,
+    pressure_drop: 1e-3,
+    ledger: 1e-10,
+};
+
+/// What turbulent air reaches while its temperature rises by a kelvin a window: one takes the density of the
+/// window's end for what makes k, the other that of its start. Steady flows agree a hundred times better.
+const TURBULENT: Bands = Bands {
+    gas_temperature: 5e-4,
+    particle_temperature: 1e-4,
+    velocity: 2e-4,
+    composition: 1e-4,
+    eddies: 6e-3,
     pressure_drop: 1e-3,
     ledger: 1e-10,
 };
@@ -158,6 +170,6 @@ fn turbulent_air_in_a_duct_and_through_a_bed_with_walls_of_each_kind() {
         (single, r#"{ temperature = "320 K" }"#),
         (bed, r#"{ coefficient = "20 W/m^2/K", ambient = "300 K" }"#),
     ] {
-        agree_on(&cases::turbulent_duct(beads, heat), &CLOSE);
+        agree_on(&cases::turbulent_duct(beads, heat), &TURBULENT);
     }
 }

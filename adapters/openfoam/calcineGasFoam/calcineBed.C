@@ -98,6 +98,11 @@ void Foam::fv::calcineBed::removeProductionOfDissipation
 
 void Foam::fv::calcineBed::correct(volScalarField& nut)
 {
+    // The model has k and epsilon corrected too, after each solve.
+    if (nut.name() != "nut")
+    {
+        return;
+    }
     const auto& voidFraction = mesh_.lookupObject<volScalarField>("voidFraction");
     forAll(nut, celli)
     {
