@@ -52,7 +52,7 @@ const SKEWED: Bands = Bands {
 };
 
 /// What turbulent air reaches while its temperature rises by a kelvin a window: one takes the density of the
-/// window's end for what makes k, the other that of its start. Steady flows agree a hundred times better.
+/// window's end for what makes k, the other that of its start. Steady, without a bed, they agree within 1e-4.
 const TURBULENT: Bands = Bands {
     gas_temperature: 5e-4,
     particle_temperature: 1e-4,

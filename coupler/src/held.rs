@@ -9,7 +9,8 @@ use calcine_physics::gas_model::GasModel;
 use crate::error::PartError;
 use crate::mesh::Mesh;
 use crate::part::{
-    About, Balance, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, TurbulenceFields,
+    About, Balance, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part,
+    TurbulenceFields,
 };
 use crate::setup::GasSetup;
 use crate::supervisor::Supervisor;
