@@ -20,6 +20,7 @@ mod sizes;
 mod solids;
 mod time;
 mod traffic;
+mod turbulence;
 mod walls;
 mod zone;
 
@@ -77,6 +78,9 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         reactions::fits(root, &chemistry, laws, particles, openfoam.solver);
     }
     let output = output::output(root);
+    if let (Some((gas, held)), Some(output)) = (&gas, &output) {
+        turbulence::fits(root, &gas.turbulence, *held, output);
+    }
     let probes = probes::probes(root);
     let quantities = {
         let species = gas.as_ref().map(|gas| gas.setup.properties.species());
