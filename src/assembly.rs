@@ -10,7 +10,7 @@ use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch, LiggghtsParticles}
 use calcine_adapters::openfoam::case::OpenfoamCase;
 use calcine_adapters::openfoam::{LIBRARY, OpenfoamGas, OpenfoamLaunch};
 use calcine_coupler::closures::Closures;
-use calcine_coupler::coordinator::{CheckpointPaths, Origin, Parts, Plan, Run, RunError};
+use calcine_coupler::coordinator::{CheckpointPaths, Origin, Pace, Parts, Plan, Run, RunError};
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::held::HeldGas;
 use calcine_coupler::interior::reacting::{Chemistry, LayersError};
@@ -586,6 +586,10 @@ fn plan(case: &Case, prepared: &Prepared, checkpoint: CheckpointPaths) -> Plan {
         traffic: traffic(case, prepared),
         substance: case.particles.iter().map(|one| one.material).collect(),
         paths: paths(case, prepared),
+        pace: match &prepared.particles.motion {
+            Motion::Frozen => None,
+            Motion::Free(contacts) => Some(Pace::of(contacts)),
+        },
     }
 }
 
@@ -669,14 +673,15 @@ fn interior(
         let made = Thin::new(masses, materials, laws.collect(), temperature, network);
         return Ok(Box::new(made));
     }
-    Ok(Box::new(Reacting::new(
+    let made = Reacting::new(
         chemistry(case)?,
         &case.chemistry.compositions,
         &masses,
         materials,
         temperature,
         network,
-    )))
+    );
+    Ok(Box::new(made.with_sizes(case.chemistry.sizes.clone())))
 }
 
 /// The reactions of a case.

@@ -2,6 +2,7 @@
 
 use calcine_interior::{Newcomer, without};
 use calcine_physics::Vec3;
+use calcine_physics::thermo::Element;
 
 use super::{Run, RunError};
 use crate::part::ParticleFields;
@@ -38,6 +39,13 @@ impl Run<'_> {
             let enthalpy = self.parts.interior.enthalpy(row);
             went.add(fields.mass[row], enthalpy, fields.velocity[row]);
         }
+        let reacting = self.parts.interior.reactions();
+        let elements = reacting.map(|one| {
+            [
+                one.elements(0..fields.len()),
+                one.elements(trade.rows.iter().copied()),
+            ]
+        });
         self.parts.particles.change(supervisor, &trade.change)?;
 
         // New ids are the highest: their rows are the last ones.
@@ -56,6 +64,9 @@ impl Run<'_> {
             })
             .collect();
         self.parts.interior.change(&trade.rows, &newcomers);
+        if let Some(before) = elements {
+            self.book_traded_elements(before, &newcomers);
+        }
         let (brought_before, carried_before) = (came.mass, came.momentum);
         self.paths.forget();
         for row in first..fields.len() {
@@ -95,6 +106,25 @@ impl Run<'_> {
                 .all(|force: &Vec3| force.norm().is_finite())
         );
         Ok(())
+    }
+}
+
+impl Run<'_> {
+    /// The mass of each element that particles held before a trade, and that of those that went, against what
+    /// they hold now and what the newcomers' compositions say.
+    fn book_traded_elements(&mut self, [before, gone]: [Vec<f64>; 2], new: &[Newcomer]) {
+        let Some(reacting) = self.parts.interior.reactions() else {
+            return;
+        };
+        let after = reacting.elements(0..self.parts.particles.fields().len());
+        let brought = reacting.elements_brought(new);
+        for (name, line) in &mut self.ledger.elements {
+            let found = Element::ALL.iter().position(|one| one.symbol() == name);
+            if let Some(k) = found {
+                let left = after[k] - before[k] - brought[k] + gone[k];
+                line.book(left, brought[k] + gone[k]);
+            }
+        }
     }
 }
 
