@@ -15,14 +15,15 @@ use std::path::Path;
 use std::process::Command;
 
 use calcine::results::Summary;
+use calcine::results::read::Series;
 
 /// Distance of centres and diameter in m, wall temperature in K.
 const APART: f64 = 10e-3;
 const DIAMETER: f64 = 10.1e-3;
 const WALL: f64 = 400.0;
 /// Activation energy and heat of the reaction in J/mol, gas constant in J/mol/K.
-const ENERGY: f64 = 200e3;
-const HEAT: f64 = 24e3;
+const ENERGY: f64 = 120e3;
+const HEAT: f64 = 30e3;
 const GAS: f64 = 8.314_462_618;
 /// Density in kg/m³ and heat capacity in J/kg/K.
 const DENSITY: f64 = 2500.0;
@@ -98,7 +99,7 @@ fn the_integrated_limits_are_those_of_frank_and_kamenetskii() {
     // Semenov's limit, where all resistance is at the surface: δ → Bi (j + 1)/e.
     let (delta, middle) = limit(0.0, 0.0, 1e-3);
     assert!((delta / (1e-3 / 1f64.exp()) - 1.0).abs() < 1e-2, "{delta}");
-    assert!((middle - 1.0).abs() < 0.02, "{middle}");
+    assert!((middle - 1.0).abs() < 0.05, "{middle}");
 }
 
 /// A bed in its container, as files of a case.
@@ -157,7 +158,7 @@ impl Container {
     }
 
     /// Runs the bed with a rate in mol/m³/s at the temperature of the wall, for so many windows of a span in s;
-    /// temperatures of the first two particles and the highest, in K above the wall's.
+    /// temperatures of the first two particles at the end, and the highest of all times, in K above the wall's.
     fn run(&self, rate: f64, energy: f64, (windows, span): (u32, f64)) -> [f64; 3] {
         let folder = tempfile::tempdir().unwrap();
         let file = |name: &str, centres: &[[f64; 3]]| {
@@ -178,7 +179,15 @@ impl Container {
             let error = summary.ledger.lines[name].relative_error;
             assert!(error < 1e-11, "{name}: {error}");
         }
-        ["first", "second", "hottest"].map(|name| summary.quantities[name].value.unwrap() - WALL)
+        let series = Series::read(&out).unwrap();
+        let hottest = series.column("quantities.hottest").iter();
+        let [first, second] =
+            ["first", "second"].map(|name| summary.quantities[name].value.unwrap() - WALL);
+        [
+            first,
+            second,
+            hottest.copied().fold(0.0, f64::max) - WALL,
+        ]
     }
 
     fn case(&self, rate: f64, energy: f64, (windows, span): (u32, f64)) -> String {
@@ -207,7 +216,7 @@ process_step = "{span} s"
 box = {{ size = "{x} {y} {z} m", cells = [1, 1, 1] }}
 [solids.warm]
 formula = "SiO2"
-formation_enthalpy = "-886.7 kJ/mol"
+formation_enthalpy = "-880.7 kJ/mol"
 entropy = "41.5 J/mol/K"
 heat_capacity = "{CAPACITY} J/kg/K"
 [solids.spent]
@@ -249,6 +258,7 @@ mapping = "centroid"
 smoother = {{ max_solid_fraction = 0.9 }}
 [output]
 every = "{end} s"
+series_every = "{span} s"
 gas = []
 particles = ["temperature"]
 [[quantities]]
@@ -348,6 +358,6 @@ fn runaway_appears_beyond_the_limit_of_a_container_and_not_below_it() {
             (measured.resistance * measured.contact).sqrt(),
         );
         assert!(below > 0.7 * middle && below < middle, "{shape:?}: {below}");
-        assert!(above > 20.0, "{shape:?}: {above}");
+        assert!(above > 10.0, "{shape:?}: {above}");
     }
 }

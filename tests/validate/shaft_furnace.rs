@@ -16,7 +16,7 @@ use crate::{run as calcine, shipped};
 /// What the paper reports in K: gas, particles.
 const PAPER: [f64; 2] = [2243.0, 2209.0];
 /// Height of the burners in m.
-const BURNERS: f64 = 0.45;
+const BURNERS: f64 = 0.30;
 /// Side of the burners' cells in m, and the smallest particle's diameter.
 const FINE: f64 = 5e-3;
 const SMALLEST: f64 = 16e-3;
@@ -119,20 +119,20 @@ fn peaks(series: &Series) {
     assert!(moved.abs() < 0.02 * SPAN, "{moved}");
 }
 
-/// Mean temperatures in K of particles by height, in slices of a tenth of a metre.
+/// Mean temperatures in K of particles by height, in slices of a twentieth of a metre.
 fn by_height(out: &Path) -> Vec<(f64, f64)> {
     let files = read::collection(out, "particles.pvd").unwrap();
     let arrays = read::arrays(&files.last().unwrap().1).unwrap();
     let places = arrays["points"].values.as_chunks::<3>().0;
     let kelvin = &arrays["temperature"].values;
-    let mut slices = vec![(0.0, 0.0); 10];
+    let mut slices = vec![(0.0, 0.0); 14];
     for (place, kelvin) in places.iter().zip(kelvin) {
-        let slice = &mut slices[((place[2] / 0.1) as usize).min(9)];
+        let slice = &mut slices[((place[2] / 0.05) as usize).min(13)];
         *slice = (slice.0 + 1.0, slice.1 + kelvin);
     }
     let numbered = slices.iter().enumerate().filter(|(_, one)| one.0 > 5.0);
     numbered
-        .map(|(k, one)| (0.05 + 0.1 * k as f64, one.1 / one.0))
+        .map(|(k, one)| (0.025 + 0.05 * k as f64, one.1 / one.0))
         .collect()
 }
 
@@ -193,7 +193,7 @@ fn nothing_is_lost(case: &Path, out: &Path) {
 fn paces(case: &Path, folder: &Path) {
     let at = |factor: u32| {
         let set = [
-            "time.end=2000 s".to_owned(),
+            "time.end=1500 s".to_owned(),
             format!("time.acceleration={factor}"),
         ];
         calcine(case, folder, &format!("pace-{factor}"), &set).1

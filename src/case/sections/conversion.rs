@@ -131,6 +131,11 @@ pub(super) fn fits(
         }
         let start = &chemistry.compositions[index];
         let held = reached(chemistry, start);
+        // What could not be read is told already.
+        let unread = matches!(&materials[index].size, SizeLaw::Densities { densities, .. } if densities.is_empty());
+        if unread {
+            continue;
+        }
         if let Some(s) = (0..each.len()).find(|&s| held[s] && each[s] == 0.0) {
             let solid = chemistry.solids[s].name();
             let rule =

@@ -81,6 +81,11 @@ impl Reacting {
         self
     }
 
+    /// True where some particle may get another radius.
+    pub fn changes_sizes(&self) -> bool {
+        self.sizes.iter().any(|size| *size != Size::Constant)
+    }
+
     pub(super) fn size(&self, row: usize) -> &Size {
         &self.sizes[self.material[row]]
     }
