@@ -177,17 +177,14 @@ impl Container {
         let summary = Summary::read(&out).unwrap();
         for name in ["energy", "particle_mass"] {
             let error = summary.ledger.lines[name].relative_error;
-            assert!(error < 1e-11, "{name}: {error}");
+            // What the shell takes up is little of what it holds.
+            assert!(error < 1e-7, "{name}: {error}");
         }
         let series = Series::read(&out).unwrap();
         let hottest = series.column("quantities.hottest").iter();
         let [first, second] =
             ["first", "second"].map(|name| summary.quantities[name].value.unwrap() - WALL);
-        [
-            first,
-            second,
-            hottest.copied().fold(0.0, f64::max) - WALL,
-        ]
+        [first, second, hottest.copied().fold(0.0, f64::max) - WALL]
     }
 
     fn case(&self, rate: f64, energy: f64, (windows, span): (u32, f64)) -> String {
@@ -230,7 +227,7 @@ composition = {{ mass = {{ warm = 1 }} }}
 conductivity = "2 W/m/K"
 [materials.steel]
 density = "{DENSITY} kg/m^3"
-heat_capacity = "1e12 J/kg/K"
+heat_capacity = "1e8 J/kg/K"
 conductivity = "2 W/m/K"
 [gas]
 mixture = "air"
@@ -336,7 +333,7 @@ fn runaway_appears_beyond_the_limit_of_a_container_and_not_below_it() {
     for (shape, radius, [windows, share]) in [
         (Shape::Slab, 12, [600.0, 0.05]),
         (Shape::Cylinder, 10, [300.0, 0.04]),
-        (Shape::Sphere, 8, [250.0, 0.03]),
+        (Shape::Sphere, 8, [400.0, 0.03]),
     ] {
         let container = Container::new(shape, radius);
         let measured = measure(&container, contact, radius);
@@ -357,7 +354,7 @@ fn runaway_appears_beyond_the_limit_of_a_container_and_not_below_it() {
             measured.biot,
             (measured.resistance * measured.contact).sqrt(),
         );
-        assert!(below > 0.7 * middle && below < middle, "{shape:?}: {below}");
+        assert!(below > 0.6 * middle && below < middle, "{shape:?}: {below}");
         assert!(above > 10.0, "{shape:?}: {above}");
     }
 }
