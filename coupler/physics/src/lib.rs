@@ -12,6 +12,7 @@ pub mod inertial_number;
 pub mod local;
 pub mod mass_transfer;
 pub mod numbers;
+pub mod points;
 pub mod pressure_drop;
 pub mod quadrature;
 pub mod radiation;
