@@ -141,7 +141,7 @@ mod tests {
         assert!(pace(1.90e-5).bears(0, &new).is_ok());
         let error = pace(1.91e-5).bears(0, &new).unwrap_err().to_string();
         assert!(
-            error.contains("particle 7") && error.contains("3.80"),
+            error.contains("particle 7") && error.contains("0.00003802"),
             "{error}"
         );
         let nothing = Resized { mass: 0.0, ..new };
