@@ -4,6 +4,7 @@ use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
 use calcine_physics::points::linear;
 
+use crate::gas_chemistry::GasChemistry;
 use crate::momentum_model::MomentumModel;
 use crate::motion::Motion;
 use crate::time::GasStorage;
@@ -34,6 +35,8 @@ pub struct GasSetup {
     pub properties: GasModel,
     /// Schmidt number of all species of a mixture (requirements SPC-1); 1 where there are none.
     pub schmidt: f64,
+    /// Reactions of the gas with itself.
+    pub chemistry: GasChemistry,
     /// Over which clock the gas stores.
     pub storage: GasStorage,
     /// Start temperature in K.

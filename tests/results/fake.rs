@@ -75,6 +75,7 @@ pub fn case() -> Case {
         feeds: vec![],
         outlets: vec![],
         gas_held: false,
+        gas_files: vec![],
         gas: gas_setup(),
         particles: vec![],
         laws: Laws {
@@ -169,6 +170,7 @@ fn gas_setup() -> GasSetup {
         }
         .into(),
         schmidt: 1.0,
+        chemistry: Default::default(),
         composition: Vec::new(),
         storage: GasStorage::Process,
         temperature: 300.0,

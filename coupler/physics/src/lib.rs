@@ -9,6 +9,7 @@ pub mod gas;
 pub mod gas_model;
 pub mod heat_transfer;
 pub mod inertial_number;
+pub mod kinetics;
 pub mod local;
 pub mod mass_transfer;
 pub mod numbers;

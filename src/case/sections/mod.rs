@@ -1,5 +1,6 @@
 //! The sections of a case file, one file each.
 
+mod chemistry;
 mod composition;
 mod conversion;
 mod coupling;
@@ -27,6 +28,7 @@ use std::path::{Path, PathBuf};
 
 use calcine_coupler::mesh::openings::Opening;
 
+use self::gas::GasRead;
 use super::model::{Case, MeshSpec};
 use super::table::Reader;
 
@@ -58,6 +60,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         root,
         mesh.as_ref(),
         time.as_ref().map(|(_, storage)| *storage),
+        folder,
     );
     let particles = particles::populations(root, &materials, mesh.as_ref(), folder);
     let feeds = traffic::feeds(root, particles.as_deref());
@@ -71,7 +74,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     if let (Some(laws), Some(particles)) = (&laws, &particles) {
         heat::need_properties(root, laws, &materials, particles, &walls);
     }
-    let reactions = reactions::reactions(root, &solids, gas.as_ref().map(|(gas, _)| gas));
+    let reactions = reactions::reactions(root, &solids, gas.as_ref().map(|gas| &gas.setup));
     let chemistry = inventory::inventory(solids, reactions, &materials);
     if let Some(particles) = &particles {
         conversion::fits(root, &chemistry, &materials, particles);
@@ -82,7 +85,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     let output = output::output(root);
     let probes = probes::probes(root);
     let quantities = {
-        let species = gas.as_ref().map(|(gas, _)| gas.properties.species());
+        let species = gas.as_ref().map(|gas| gas.setup.properties.species());
         let known = quantities::Known {
             mesh: mesh.as_ref(),
             populations: particles.as_deref(),
@@ -90,13 +93,13 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
             walls: &walls,
             species: species.unwrap_or_default(),
             solids: &chemistry.solids,
-            gravity: gas.as_ref().map(|(gas, _)| gas.gravity),
+            gravity: gas.as_ref().map(|gas| gas.setup.gravity),
         };
         quantities::quantities(root, &known)
     };
     let (walls, wall_temperatures): (Vec<_>, Vec<_>) = walls.into_iter().unzip();
-    if let (Some((gas, _)), Some((time, _))) = (&gas, &time) {
-        coupling::check_stock(root, &openfoam, gas, time, laws.as_ref());
+    if let (Some(gas), Some((time, _))) = (&gas, &time) {
+        coupling::check_stock(root, &openfoam, &gas.setup, time, laws.as_ref());
     }
     if let Some(particles) = &particles {
         coupling::check_script(root, &liggghts, particles);
@@ -115,7 +118,11 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         }
     }
     let (time, _) = time?;
-    let (mut gas, gas_held) = gas?;
+    let GasRead {
+        setup: mut gas,
+        held: gas_held,
+        files: gas_files,
+    } = gas?;
     let laws = laws?;
     gas.momentum = laws.momentum;
     Some(Case {
@@ -136,6 +143,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         motion,
         gas,
         gas_held,
+        gas_files,
         particles: particles?,
         feeds,
         outlets,
