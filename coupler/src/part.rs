@@ -323,7 +323,8 @@ pub trait Particles: Part {
     /// Particles in and out during the last window.
     fn events(&self) -> &[ParticleEvent];
 
-    /// Takes particles out and puts new ones in, between two windows and after a commit.
+    /// Takes particles out, puts new ones in and gives others another size, between two windows and after a
+    /// commit. A held bed only has to take sizes.
     fn change(&mut self, supervisor: &Supervisor, change: &Change) -> Result<(), PartError>;
 
     /// Starts the window; does not wait.

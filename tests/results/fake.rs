@@ -63,6 +63,7 @@ pub fn case() -> Case {
             cells: CELLS,
             grading: Default::default(),
             refine: vec![],
+            openings: vec![],
             patches: ["side", "side", "side", "side", "bottom", "top"].map(String::from),
         },
         materials: vec![],
