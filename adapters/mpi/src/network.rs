@@ -15,7 +15,7 @@ use calcine_wire::{Carried, LinkAddress, Network, Run, Transport, WireError};
 use mpi::Threading;
 use mpi::environment::Universe;
 
-use crate::carrier::{World, at_exit, end_at_once, place_files};
+use crate::carrier::{World, at_end, end_at_once, place_files};
 
 /// What removes the files of a coordinator that was killed while MPI started, when there is no solver yet to do
 /// it: it waits for the end of a pipe that only the coordinator holds, and looks for what MPI's daemon still leaves.
@@ -73,8 +73,8 @@ static FILES: OnceLock<LinkAddress> = OnceLock::new();
 const THREADS: usize = 4;
 static ENDS: AtomicBool = AtomicBool::new(false);
 
-/// Open MPI ends its process by `exit` where its own daemon has died, from any thread and from several at once:
-/// the first has to say so and to clean up, the others wait for it here.
+/// Open MPI ends its process by `exit` or `_exit` where its own daemon has died, from any thread and from several at
+/// once: the first has to say so and to clean up, the others wait for it here.
 extern "C" fn ended_by_mpi() {
     static TAKEN: AtomicBool = AtomicBool::new(false);
     let Some(files) = FILES.get().filter(|_| !ENDS.load(Ordering::SeqCst)) else {
@@ -95,9 +95,7 @@ extern "C" fn ended_by_mpi() {
 impl MpiNetwork {
     /// Starts MPI in a process that MPI may end: then it says so, and its files go.
     pub fn start_guarded() -> Result<(Self, Universe), WireError> {
-        for _ in 0..THREADS {
-            at_exit(ended_by_mpi);
-        }
+        at_end(ended_by_mpi, THREADS);
         Self::start()
     }
 
