@@ -6,6 +6,7 @@ pub mod contacts;
 pub mod coordinator;
 pub mod error;
 pub mod exchange;
+pub mod gas_chemistry;
 pub mod held;
 pub mod ledger;
 pub mod mapping;

@@ -2,7 +2,9 @@
 
 use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
+use calcine_physics::points::linear;
 
+use crate::gas_chemistry::GasChemistry;
 use crate::momentum_model::MomentumModel;
 use crate::motion::Motion;
 use crate::time::GasStorage;
@@ -20,15 +22,7 @@ impl Schedule {
 
     /// The value at a process time in s: linear between entries, constant outside them.
     pub fn at(&self, time: f64) -> f64 {
-        let next = self.0.partition_point(|&(from, _)| from <= time);
-        let before = self.0[next.saturating_sub(1)];
-        match self.0.get(next) {
-            Some(after) if next > 0 => {
-                let share = (time - before.0) / (after.0 - before.0);
-                before.1 + share * (after.1 - before.1)
-            }
-            _ => before.1,
-        }
+        linear(&self.0, time)
     }
 }
 
@@ -41,6 +35,8 @@ pub struct GasSetup {
     pub properties: GasModel,
     /// Schmidt number of all species of a mixture (requirements SPC-1); 1 where there are none.
     pub schmidt: f64,
+    /// Reactions of the gas with itself.
+    pub chemistry: GasChemistry,
     /// Over which clock the gas stores.
     pub storage: GasStorage,
     /// Start temperature in K.

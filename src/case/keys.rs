@@ -193,6 +193,26 @@ const KEYS: &[Key] = &[
     key("gas.held", "true or false", Default("false"), "The gas stays as it is at the start, at any exchange: superficial velocity, temperature, and a pressure gradient of its own weight. No gas solver runs.", "true"),
     key("gas.species", "list of `N2`, `O2`, `Ar`, `CO2`, `H2O`, `CO`, `H2`, `CH4`", Default("a single gas"), "Species of a mixture of ideal gases; with `gas.schmidt`, and a composition wherever gas stands at the start or flows in.", "[\"N2\", \"O2\"]"),
     key("gas.schmidt", "number", Default("goes with `species`"), "Schmidt number of all species: they diffuse alike, with viscosity over density over this.", "0.7"),
+    key("gas.chemistry", "table", Default("the gas does not react with itself"), "Reactions of the gas with itself; of a mixture of `gas.species`.", "{ mechanism = \"jones-lindstedt\" }"),
+    key("gas.chemistry.mechanism", "text", OneOf, "`jones-lindstedt` (refined), `jones-lindstedt-original`, or a file of Cantera (.yaml) or CHEMKIN (any other name). Either this or `reactions`.", "\"jones-lindstedt\""),
+    key("gas.chemistry.thermo", "path", Default("that of the mechanism's file"), "A CHEMKIN file of thermodynamics; those of `gas.species` count, the file's must agree.", "\"therm.dat\""),
+    key("gas.chemistry.reactions", "list of tables", OneOf, "Reactions of the case's own. Either this or `mechanism`.", "[{ name = \"shift\", equation = \"CO + H2O <=> CO2 + H2\", rate = { factor = 2.75e6, activation_energy = \"83.6 kJ/mol\" } }]"),
+    key("gas.chemistry.reactions.name", "text", Required, "Its name.", "\"shift\""),
+    key("gas.chemistry.reactions.equation", "text", Required, "Moles of gases of `gas.species`, with => (one way) or <=> (both ways, by the Gibbs energies); balanced. The last species of the gas reacts in none.", "\"CO + H2O <=> CO2 + H2\""),
+    key("gas.chemistry.reactions.rate", "table", Required, "Rate constant k = factor T^exponent exp(-activation_energy/RT) of the forward reaction.", "{ factor = 2.75e6, activation_energy = \"83.6 kJ/mol\" }"),
+    key("gas.chemistry.reactions.rate.factor", "number", Required, "In mol, m and s, of the rate in mol/m^3/s by concentrations in mol/m^3.", "2.75e6"),
+    key("gas.chemistry.reactions.rate.exponent", "number", Default("0"), "Exponent of the temperature in K.", "-1"),
+    key("gas.chemistry.reactions.rate.activation_energy", "molar energy, J/mol", Default("0 J/mol"), "Activation energy.", "\"83.6 kJ/mol\""),
+    key("gas.chemistry.reactions.rate.orders", "table of numbers", Default("the numbers of the left side"), "Order of each gas, of all of them. Below 1e-6 mol/m^3 a power of an order below one goes on as a straight line; a negative one only of a gas that is always there.", "{ CH4 = 0.5, O2 = 1.25 }"),
+    key("gas.chemistry.reactions.third_body", "table", Default("none"), "The rate is also proportional to the concentration of all gases, each by its efficiency.", "{ efficiencies = { H2O = 6 } }"),
+    key("gas.chemistry.reactions.third_body.efficiencies", "table of numbers", Default("`others` for all"), "Efficiencies by species.", "{ H2O = 6, CO2 = 2 }"),
+    key("gas.chemistry.reactions.third_body.others", "number", Default("1"), "Efficiency of all others.", "1"),
+    key("gas.chemistry.reactions.heat", "molar energy, J/mol", Default("not stated"), "Heat that the reaction takes up at 298.15 K, to be compared with that of the enthalpies of formation, which counts; more than 2 % off is an error.", "\"-41.2 kJ/mol\""),
+    key("gas.chemistry.model", "`laminar` or `pasr`", Default("`laminar`"), "A cell is mixed; or the partially stirred reactor: only what turbulence mixes reacts.", "\"laminar\""),
+    key("gas.chemistry.mixing_constant", "number", Default("1"), "C_mix of the partially stirred reactor.", "1"),
+    key("gas.chemistry.tolerance", "number", Default("1e-6"), "Error of a step of the integration, relative to temperature and each mass fraction.", "1e-6"),
+    key("gas.chemistry.fraction_tolerance", "number", Default("1e-10"), "Error of a step in a mass fraction that counts as none.", "1e-10"),
+    key("gas.chemistry.negligible", "number", Default("1e-12"), "Change of a mass fraction over a step of the gas below which reactions are not integrated.", "1e-12"),
     key("gas.constant", "table", Default("an ideal gas"), "A fluid of constant properties; not with `gas.properties`. Its enthalpy is c_p (T - 298.15 K).", "[gas.constant]"),
     key("gas.constant.density", "density, kg/m^3", Required, "Density.", "\"1.2 kg/m^3\""),
     key("gas.constant.heat_capacity", "specific heat capacity, J/kg/K", Required, "Specific heat capacity c_p.", "\"1005 J/kg/K\""),
@@ -427,69 +447,4 @@ const TABLE: &str =
     "| Key | Value | Required, or default | Meaning | Example |\n|---|---|---|---|---|\n";
 
 #[cfg(test)]
-mod tests {
-    use std::collections::BTreeSet;
-    use std::path::Path;
-
-    use super::*;
-    use crate::case::table::{Problems, Reader};
-
-    #[test]
-    fn the_table_holds_exactly_the_keys_that_the_reader_asks_for() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let mut asked = BTreeSet::new();
-        for folder in ["cases", "tests/inputs/good"] {
-            for entry in std::fs::read_dir(root.join(folder)).unwrap() {
-                let path = entry.unwrap().path();
-                if path.extension().is_none_or(|extension| extension != "toml") {
-                    continue;
-                }
-                let text = std::fs::read_to_string(&path).unwrap();
-                let document = toml_edit::Document::parse(text.as_str()).unwrap();
-                let problems = Problems::default();
-                let reader = Reader::root(&problems, document.as_table());
-                crate::case::sections::case(&reader, &path, &text, String::new());
-                asked.append(&mut problems.asked());
-            }
-        }
-        let known: BTreeSet<String> = KEYS.iter().map(|key| key.key.to_owned()).collect();
-        assert_eq!(known.len(), KEYS.len(), "a key stands twice");
-        let missing: Vec<_> = asked.difference(&known).collect();
-        let never: Vec<_> = known.difference(&asked).collect();
-        assert!(missing.is_empty(), "not in the table: {missing:?}");
-        assert!(never.is_empty(), "the reader never asks for: {never:?}");
-    }
-
-    #[test]
-    fn every_example_is_toml() {
-        for key in KEYS
-            .iter()
-            .filter(|key| !key.example.starts_with("[[") || key.example.contains('"'))
-        {
-            let text = if key.value == "table" && key.example.starts_with('[') {
-                key.example.to_owned()
-            } else {
-                format!("x = {}", key.example)
-            };
-            assert!(toml_edit::Document::parse(text.as_str()).is_ok(), "{text}");
-        }
-    }
-
-    #[test]
-    fn the_page_of_the_docs_is_made_from_the_table() {
-        let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/case-file.md");
-        let mut written = std::fs::read_to_string(&page).unwrap();
-        let begin = written.find(BEGIN).unwrap_or(written.len());
-        if std::env::var_os("CALCINE_WRITE_DOCS").is_some() {
-            let prose = written[..begin].trim_end();
-            std::fs::write(&page, format!("{prose}\n\n{}", markdown())).unwrap();
-            written = std::fs::read_to_string(&page).unwrap();
-        }
-        let begin = written.find(BEGIN).unwrap_or(written.len());
-        assert_eq!(
-            &written[begin..],
-            markdown(),
-            "set CALCINE_WRITE_DOCS=1 and run this test again to write docs/case-file.md"
-        );
-    }
-}
+mod tests;

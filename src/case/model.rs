@@ -55,6 +55,8 @@ pub struct Case {
     pub gas: GasSetup,
     /// True where the gas is held as it is at the start.
     pub gas_held: bool,
+    /// Files of the gas' reactions.
+    pub gas_files: Vec<PathBuf>,
     /// Populations, in the order of the file.
     pub particles: Vec<Population>,
     /// What comes in.

@@ -74,6 +74,7 @@ pub fn case() -> Case {
         feeds: vec![],
         outlets: vec![],
         gas_held: false,
+        gas_files: vec![],
         gas: gas_setup(),
         particles: vec![],
         laws: Laws {
@@ -168,6 +169,7 @@ fn gas_setup() -> GasSetup {
         }
         .into(),
         schmidt: 1.0,
+        chemistry: Default::default(),
         composition: Vec::new(),
         storage: GasStorage::Process,
         temperature: 300.0,

@@ -124,6 +124,10 @@ Foam::calcine::gas::gas
     linearTolerance_ = controls.get<scalar>("linearTolerance");
     measureFaces();
     models_.reset(new models(mesh, U_, phi_, *thermo_));
+    if (species_ && reactions::wanted(mesh))
+    {
+        reactions_.reset(new reactions(mesh, thermo_->T(), speciesNames()));
+    }
 
     const scalarField reference(1, 298.15);
     referenceEnthalpy_ = thermo_->he(scalarField(1, pRef_), reference, labelList(1, 0))()[0];
@@ -400,6 +404,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
     U_.correctBoundaryConditions();
 
     models_->begin();
+    beginReactions();
     result = report();
     for (label outer = 1; outer <= max(outerIterations_, 1); ++outer)
     {
@@ -416,8 +421,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
         }
         mass_ = committed_.mass - window_.storageSpan*(outflow() - massSource());
         setFlux();
-        result.residual = max(result.residual, solveSpecies(result));
-        result.residual = max(result.residual, solveEnthalpy(result));
+        result.residual = max(result.residual, solveScalars(result));
         guard(true);
         result.outerIterations = outer;
         thermo_->correct();
@@ -427,6 +431,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
             break;
         }
     }
+    closeReactions(result);
     guard(false);
     finishReport(result);
 }

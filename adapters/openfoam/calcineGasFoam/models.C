@@ -120,6 +120,24 @@ Foam::tmp<Foam::volScalarField> Foam::calcine::models::eddyDiffusivity() const
 }
 
 
+Foam::tmp<Foam::scalarField> Foam::calcine::models::mixingTime
+(
+    const scalarField& viscosity,
+    const scalarField& density
+) const
+{
+    if (!turbulent())
+    {
+        FatalErrorInFunction
+            << "PaSR needs a turbulence model, and constant/turbulenceProperties has none"
+            << exit(FatalError);
+    }
+    const scalarField eddies(turbulence_->nut()().primitiveField());
+    const scalarField dissipation(turbulence_->epsilon()().primitiveField());
+    return sqrt((viscosity/density + eddies)/(dissipation + SMALL));
+}
+
+
 void Foam::calcine::models::radiativeHeat
 (
     const scalarField& T,

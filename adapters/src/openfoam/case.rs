@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::{Mesh, polymesh};
+use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::{GasPatch, GasSetup};
 use calcine_wire::Catalogue;
 
 use super::start::Start;
 use super::stock::{self, Solver};
-use super::{NAME, decompose, dictionaries, species};
+use super::{NAME, chemistry, decompose, dictionaries, species};
 use crate::launch::without_blanks;
 
 /// What an OpenFOAM case is made from.
@@ -81,6 +82,7 @@ impl OpenfoamCase<'_> {
             let fraction = start.applied(name, species::fraction(setup, k, name));
             put(&folder.join("0").join(name), &fraction)?;
         }
+        self.write_chemistry(folder)?;
         if self.ranks > 1 {
             self.divide(folder)?;
         }
@@ -100,6 +102,27 @@ impl OpenfoamCase<'_> {
             ("0/T", start.applied("T", dictionaries::temperature(setup))),
             ("0/p", start.applied("p", dictionaries::pressure(setup))),
         ] {
+            put(&folder.join(name), &text)?;
+        }
+        Ok(())
+    }
+
+    /// Reactions of the gas, for calcineGasFoam alone.
+    fn write_chemistry(&self, folder: &Path) -> Result<(), PartError> {
+        let setup = self.setup;
+        let GasModel::Mixture(mixture) = &setup.properties else {
+            return Ok(());
+        };
+        let Some(gas) = setup.chemistry.reacting() else {
+            return Ok(());
+        };
+        let refuse = |words: String| PartError::new(NAME, FailureKind::NotStarted, words);
+        if self.solver.is_stock() {
+            let words = "a stock solver does not take Calcine's reactions of the gas; use calcineGasFoam";
+            return Err(refuse(words.into()));
+        }
+        let files = chemistry::files(setup, mixture, gas);
+        for (name, text) in files.map_err(|error| refuse(error.to_string()))? {
             put(&folder.join(name), &text)?;
         }
         Ok(())
@@ -302,6 +325,7 @@ mod tests {
             mixture: "air".into(),
             properties: GasProperties::air().into(),
             schmidt: 1.0,
+            chemistry: Default::default(),
             composition: Vec::new(),
             storage: GasStorage::Process,
             temperature: 300.0,

@@ -1,6 +1,7 @@
 //! Gas in Debian's OpenFOAM 1912: the solver calcineGasFoam in a case that is generated here.
 
 pub mod case;
+pub mod chemistry;
 mod columns;
 mod decompose;
 mod dictionaries;

@@ -66,6 +66,7 @@ pub fn setup() -> GasSetup {
         mixture: "air".into(),
         properties: GasProperties::air().into(),
         schmidt: 1.0,
+        chemistry: Default::default(),
         composition: Vec::new(),
         storage: GasStorage::Process,
         temperature: TEMPERATURE,

@@ -413,9 +413,11 @@ fn book_elements(
             .iter()
             .flat_map(|own| own.1.iter().zip(&received.species))
         {
+            // Reactions of the gas make no element, so that what they make of the species is left in.
             let (open, terms) = open(balance);
-            sum += scale * share * (open + balance.exchange);
-            magnitude += scale * share * (terms - balance.exchange.abs());
+            let other = balance.exchange.abs() + balance.source_magnitude;
+            sum += scale * share * (open + balance.exchange + balance.source);
+            magnitude += scale * share * (terms - other);
         }
         if let Some((_, elements)) = &changes {
             let place = Element::ALL.iter().position(|one| one.symbol() == name);

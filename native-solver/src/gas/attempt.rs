@@ -1,5 +1,6 @@
 //! What every equation of an attempt looks at: geometry, bed, exchange, spans, gas properties.
 
+use calcine_coupler::gas_chemistry::GasChemistry;
 use calcine_coupler::part::CellExchange;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas_model::GasModel;
@@ -21,6 +22,8 @@ pub struct Frame<'a> {
     pub properties: &'a GasModel,
     /// Schmidt number of all species.
     pub schmidt: f64,
+    /// Reactions of the gas with itself.
+    pub chemistry: &'a GasChemistry,
     /// How cell values are carried to faces.
     pub convection: Convection,
     /// Gravity in m/s².

@@ -4,6 +4,7 @@
 mod attempt;
 mod balance;
 mod boundary;
+mod chemistry;
 mod continuation;
 mod enthalpy;
 mod error;
@@ -305,6 +306,7 @@ impl Gas for NativeGas {
             boundary: &self.boundaries,
             properties: &self.setup.properties,
             schmidt: self.setup.schmidt,
+            chemistry: &self.setup.chemistry,
             convection: self.setup.controls.convection,
             gravity: self.setup.gravity,
             void_fraction: &self.void_fraction,

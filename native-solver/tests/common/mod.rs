@@ -143,6 +143,7 @@ pub fn setup(patches: &[(&str, GasPatch)]) -> GasSetup {
         mixture: "air".into(),
         properties: AIR.into(),
         schmidt: 1.0,
+        chemistry: Default::default(),
         composition: Vec::new(),
         storage: GasStorage::Process,
         temperature: 300.0,

@@ -1,5 +1,7 @@
 //! `[gas]`.
 
+use std::path::{Path, PathBuf};
+
 use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
@@ -8,17 +10,27 @@ use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{Convection, GasControls, GasSetup};
 use calcine_coupler::time::GasStorage;
 
+use super::chemistry::{Around, chemistry};
 use super::composition::fractions;
 use super::gas_patch::boundary;
 use crate::case::model::MeshSpec;
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
 
+/// What the section says.
+pub(super) struct GasRead {
+    pub setup: GasSetup,
+    pub held: bool,
+    /// Files of its chemistry.
+    pub files: Vec<PathBuf>,
+}
+
 pub(super) fn read(
     root: &Reader<'_>,
     mesh: Option<&MeshSpec>,
     storage: Option<GasStorage>,
-) -> Option<(GasSetup, bool)> {
+    folder: &Path,
+) -> Option<GasRead> {
     let section = root.required_table("gas", "[gas] with mixture = \"air\"")?;
     let mixture = section.required_text("mixture", "\"air\"");
     let properties = properties(&section, mixture);
@@ -30,12 +42,25 @@ pub(super) fn read(
     let held = section.truth("held").unwrap_or(false);
     let patches = boundary(&section, mesh, properties.as_ref());
     let controls = controls(&section);
+    let around = Around {
+        gas: properties.as_ref(),
+        initial: initial.as_ref().map_or(&[], |initial| &initial.3),
+        patches: patches.as_deref().unwrap_or_default(),
+    };
+    let chemistry = chemistry(&section, &around, folder);
     section.finish();
     let (temperature, pressure, velocity, composition) = initial?;
+    let (reacting, files) = chemistry?;
+    if held && reacting.reacting().is_some() {
+        let help = "leave `gas.held` out, or `gas.chemistry`";
+        let rule = "reacts, but `gas.held` leaves the gas as it is at the start";
+        section.fail("chemistry", rule, help);
+    }
     let setup = GasSetup {
         mixture: mixture?.into(),
         properties: properties?,
         schmidt: schmidt?,
+        chemistry: reacting,
         storage: storage.unwrap_or_default(),
         temperature,
         composition,
@@ -46,7 +71,7 @@ pub(super) fn read(
         patches: patches?,
         controls,
     };
-    Some((setup, held))
+    Some(GasRead { setup, held, files })
 }
 
 /// A built-in mixture, or the properties of `[gas.properties]` or `[gas.constant]`.

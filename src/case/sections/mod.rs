@@ -1,5 +1,6 @@
 //! The sections of a case file, one file each.
 
+mod chemistry;
 mod composition;
 mod coupling;
 mod gas;
@@ -24,6 +25,7 @@ mod zone;
 
 use std::path::{Path, PathBuf};
 
+use self::gas::GasRead;
 use super::model::{Case, MeshSpec};
 use super::table::Reader;
 
@@ -55,6 +57,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         root,
         mesh.as_ref(),
         time.as_ref().map(|(_, storage)| *storage),
+        folder,
     );
     let particles = particles::populations(root, &materials, mesh.as_ref(), folder);
     let feeds = traffic::feeds(root, particles.as_deref());
@@ -68,7 +71,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     if let (Some(laws), Some(particles)) = (&laws, &particles) {
         heat::need_properties(root, laws, &materials, particles, &walls);
     }
-    let reactions = reactions::reactions(root, &solids, gas.as_ref().map(|(gas, _)| gas));
+    let reactions = reactions::reactions(root, &solids, gas.as_ref().map(|gas| &gas.setup));
     let chemistry = inventory::inventory(solids, reactions, &materials);
     if let (Some(laws), Some(particles)) = (&laws, &particles) {
         reactions::fits(root, &chemistry, laws, particles, openfoam.solver);
@@ -76,7 +79,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     let output = output::output(root);
     let probes = probes::probes(root);
     let quantities = {
-        let species = gas.as_ref().map(|(gas, _)| gas.properties.species());
+        let species = gas.as_ref().map(|gas| gas.setup.properties.species());
         let known = quantities::Known {
             mesh: mesh.as_ref(),
             populations: particles.as_deref(),
@@ -84,13 +87,13 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
             walls: &walls,
             species: species.unwrap_or_default(),
             solids: &chemistry.solids,
-            gravity: gas.as_ref().map(|(gas, _)| gas.gravity),
+            gravity: gas.as_ref().map(|gas| gas.setup.gravity),
         };
         quantities::quantities(root, &known)
     };
     let (walls, wall_temperatures): (Vec<_>, Vec<_>) = walls.into_iter().unzip();
-    if let (Some((gas, _)), Some((time, _))) = (&gas, &time) {
-        coupling::check_stock(root, &openfoam, gas, time, laws.as_ref());
+    if let (Some(gas), Some((time, _))) = (&gas, &time) {
+        coupling::check_stock(root, &openfoam, &gas.setup, time, laws.as_ref());
     }
     if let Some(particles) = &particles {
         coupling::check_script(root, &liggghts, particles);
@@ -109,7 +112,11 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         }
     }
     let (time, _) = time?;
-    let (mut gas, gas_held) = gas?;
+    let GasRead {
+        setup: mut gas,
+        held: gas_held,
+        files: gas_files,
+    } = gas?;
     let laws = laws?;
     gas.momentum = laws.momentum;
     Some(Case {
@@ -130,6 +137,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         motion,
         gas,
         gas_held,
+        gas_files,
         particles: particles?,
         feeds,
         outlets,
