@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 use calcine_coupler::gas_chemistry::{Combustion, ReactingGas};
 use calcine_coupler::physics::gas::GAS_CONSTANT;
-use calcine_coupler::physics::kinetics::mechanism::Step;
+use calcine_coupler::physics::kinetics::Step;
 use calcine_coupler::physics::kinetics::RateConstant;
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::GasSetup;
