@@ -7,7 +7,7 @@ use calcine_coupler::gas_chemistry::{Combustion, GasChemistry, ReactingGas};
 use calcine_coupler::part::Gas;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::kinetics::{Mechanism, Tolerances};
-use calcine_coupler::physics::thermo::{Element, Mixture};
+use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{CompositionSchedule, Convection, GasPatch, InletFlow, Schedule};
 use calcine_coupler::time::GasStorage;
 use common::*;
@@ -46,13 +46,18 @@ fn burner(storage: GasStorage) -> (Driver, Mixture) {
         flow: InletFlow::SuperficialVelocity(Schedule::constant(0.15)),
         temperature: Schedule::constant(300.0),
         composition: Some(CompositionSchedule(vec![(0.0, fresh(&mixture, 0.8))])),
+        turbulence: None,
     };
     let mut setup = setup(&[("bottom", bottom), ("top", outlet()), ("side", slip())]);
     setup.temperature = 1800.0;
     setup.composition = burnt(&mixture, 0.8);
     setup.schmidt = std::env::var("SC").map_or(1.0, |s| s.parse().unwrap());
     setup.storage = storage;
-    setup.controls.convection = if std::env::var_os("VL").is_some() { Convection::VanLeer } else { Convection::Upwind };
+    setup.controls.convection = if std::env::var_os("VL").is_some() {
+        Convection::VanLeer
+    } else {
+        Convection::Upwind
+    };
     setup.controls.outer_tolerance = 1e-8;
     setup.chemistry = GasChemistry::Reacting(Box::new(ReactingGas {
         mechanism: Mechanism::jones_lindstedt(&mixture).unwrap(),
@@ -86,7 +91,10 @@ fn steady(factor: f64, storage: GasStorage, most: u64) -> Flame {
         let convergence = burner.window(WINDOW, factor);
         let fields = burner.gas.fields();
         for &y in fields.composition {
-            assert!((-1e-8..=1.0 + 1e-8).contains(&y), "AF {factor}: a mass fraction of {y}");
+            assert!(
+                (-1e-8..=1.0 + 1e-8).contains(&y),
+                "AF {factor}: a mass fraction of {y}"
+            );
         }
         let received = &burner.received;
         let energy = &received.energy;
@@ -95,19 +103,40 @@ fn steady(factor: f64, storage: GasStorage, most: u64) -> Flame {
         for (name, shares) in &elements {
             let each = || shares.iter().zip(&received.species);
             let sum: f64 = each().map(|(s, b)| s * (b.stored - b.boundary)).sum();
-            let all: f64 = each().map(|(s, b)| s * (b.stored_magnitude + b.boundary_magnitude)).sum();
-            assert!(sum.abs() < 1e-10 * all, "AF {factor}: {name} {sum} of {all}");
+            let all: f64 = each()
+                .map(|(s, b)| s * (b.stored_magnitude + b.boundary_magnitude))
+                .sum();
+            assert!(
+                sum.abs() < 1e-10 * all,
+                "AF {factor}: {name} {sum} of {all}"
+            );
         }
         let now = fields.temperature.to_vec();
-        let change = now.iter().zip(&before).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let change = now
+            .iter()
+            .zip(&before)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
         before = now;
-        if std::env::var_os("FLAME").is_some() && burner.index % (if factor > 1.0 {1} else {50}) == 0 {
-            eprintln!("AF {factor} window {} change {change:.3e} K peak {:.2} K outer {} residual {:.2e}", burner.index,
-                before.iter().copied().fold(0.0, f64::max), convergence.outer_iterations, convergence.residual);
+        if std::env::var_os("FLAME").is_some()
+            && burner.index % (if factor > 1.0 { 1 } else { 50 }) == 0
+        {
+            eprintln!(
+                "AF {factor} window {} change {change:.3e} K peak {:.2} K outer {} residual {:.2e}",
+                burner.index,
+                before.iter().copied().fold(0.0, f64::max),
+                convergence.outer_iterations,
+                convergence.residual
+            );
         }
-        if change < std::env::var("TOL").map_or(1e-3, |s| s.parse().unwrap()) || burner.index == most {
+        if change < std::env::var("TOL").map_or(1e-3, |s| s.parse().unwrap())
+            || burner.index == most
+        {
             assert!(convergence.converged, "AF {factor}: {convergence:?}");
-            assert!(burner.index < most, "AF {factor}: not steady, {change} K a window");
+            assert!(
+                burner.index < most,
+                "AF {factor}: not steady, {change} K a window"
+            );
             break;
         }
     }
@@ -132,7 +161,10 @@ fn a_flame_stands_where_it_stands_whatever_the_acceleration() {
         for factor in list.split(',') {
             let start = std::time::Instant::now();
             let flame = steady(factor.parse().unwrap(), GasStorage::Process, 6000);
-            eprintln!("AF {factor} {flame:?} limit {limit} in {:?}", start.elapsed());
+            eprintln!(
+                "AF {factor} {flame:?} limit {limit} in {:?}",
+                start.elapsed()
+            );
         }
         return;
     }

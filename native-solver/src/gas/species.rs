@@ -454,7 +454,6 @@ impl Species {
                 stored_magnitude,
                 boundary: inflow * frame.storage_span,
                 boundary_magnitude: magnitude * frame.storage_span,
-                ..Balance::default()
             });
         }
     }

@@ -84,8 +84,8 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         reactions::fits(root, &chemistry, laws, openfoam.solver);
     }
     let output = output::output(root);
-    if let (Some((gas, held)), Some(output)) = (&gas, &output) {
-        turbulence::fits(root, &gas.turbulence, *held, output);
+    if let (Some(gas), Some(output)) = (&gas, &output) {
+        turbulence::fits(root, &gas.setup.turbulence, gas.held, output);
     }
     let probes = probes::probes(root);
     let quantities = {
