@@ -118,7 +118,8 @@ impl OpenfoamCase<'_> {
         };
         let refuse = |words: String| PartError::new(NAME, FailureKind::NotStarted, words);
         if self.solver.is_stock() {
-            let words = "a stock solver does not take Calcine's reactions of the gas; use calcineGasFoam";
+            let words =
+                "a stock solver does not take Calcine's reactions of the gas; use calcineGasFoam";
             return Err(refuse(words.into()));
         }
         let files = chemistry::files(setup, mixture, gas);

@@ -89,8 +89,7 @@ pub struct Chemistry {
 
 /// Whether the window's reactions take pseudo-steps.
 pub fn is_dual(frame: &Frame<'_>) -> bool {
-    frame.chemistry.reacting().is_some()
-        && frame.storage_span > (1.0 + LONGER) * frame.motion_span
+    frame.chemistry.reacting().is_some() && frame.storage_span > (1.0 + LONGER) * frame.motion_span
 }
 
 impl Chemistry {
@@ -193,10 +192,7 @@ impl Chemistry {
             mass(cell) * self.rates[at]
         });
         self.heat(species, &composition.gain, &mut enthalpy.gain);
-        for (source, values) in [
-            (composition, &now.composition),
-            (enthalpy, &now.enthalpy),
-        ] {
+        for (source, values) in [(composition, &now.composition), (enthalpy, &now.enthalpy)] {
             source.inertia.clear();
             source.before.clear();
             if pseudo {

@@ -138,7 +138,12 @@ impl Equations {
     }
 
     /// One outer iteration, on the momentum equation as assembled; returns linear iterations.
-    fn iterate(&mut self, frame: &Frame<'_>, controls: &GasControls, now: &mut State) -> Result<u32, String> {
+    fn iterate(
+        &mut self,
+        frame: &Frame<'_>,
+        controls: &GasControls,
+        now: &mut State,
+    ) -> Result<u32, String> {
         let tolerance = controls.linear_tolerance;
         let (krylov, material) = (&mut self.krylov, &self.material);
         let mut iterations = self.momentum.predict(frame, krylov, tolerance, now);
@@ -170,7 +175,12 @@ impl Equations {
     }
 
     /// A pseudo-step of species and enthalpy, with the rates of its start.
-    fn pseudo_step(&mut self, frame: &Frame<'_>, tolerance: f64, now: &mut State) -> Result<u32, String> {
+    fn pseudo_step(
+        &mut self,
+        frame: &Frame<'_>,
+        tolerance: f64,
+        now: &mut State,
+    ) -> Result<u32, String> {
         self.chemistry.follow(frame, now)?;
         self.react(frame, true, now);
         let iterations = self.scalars(frame, tolerance, SCALARS, now);
