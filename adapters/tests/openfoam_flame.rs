@@ -45,6 +45,7 @@ fn burner() -> GasSetup {
                     flow: InletFlow::SuperficialVelocity(Schedule::constant(0.4)),
                     temperature: Schedule::constant(300.0),
                     composition: Some(CompositionSchedule(vec![(0.0, fresh.clone())])),
+                    turbulence: None,
                 }
             }
             "top" => {

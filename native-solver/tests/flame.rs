@@ -67,6 +67,7 @@ fn burner(storage: GasStorage, outer_iterations: u32) -> Driver {
         flow: InletFlow::SuperficialVelocity(Schedule::constant(0.4)),
         temperature: Schedule::constant(300.0),
         composition: Some(CompositionSchedule(vec![(0.0, fresh(&mixture))])),
+        turbulence: None,
     };
     let top = GasPatch::Outlet {
         pressure: Schedule::constant(PRESSURE),

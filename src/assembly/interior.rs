@@ -45,14 +45,15 @@ pub(super) fn interior(
         let made = Thin::new(masses, materials, laws.collect(), temperature, network);
         return Ok(Box::new(made));
     }
-    Ok(Box::new(Reacting::new(
+    let made = Reacting::new(
         chemistry(case)?,
         &case.chemistry.compositions,
         &masses,
         materials,
         temperature,
         network,
-    )))
+    );
+    Ok(Box::new(made.with_sizes(case.chemistry.sizes.clone())))
 }
 
 /// The reactions of a case.

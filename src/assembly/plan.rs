@@ -1,7 +1,7 @@
 //! What the coordinator is told of a case: its plan and its laws.
 
 use calcine_coupler::closures::Closures;
-use calcine_coupler::coordinator::{CheckpointPaths, Plan};
+use calcine_coupler::coordinator::{CheckpointPaths, Pace, Plan};
 use calcine_coupler::motion::Motion;
 use calcine_coupler::paths::{HeatWall, PathsSetup};
 use calcine_coupler::physics::Vec3;
@@ -33,6 +33,10 @@ pub(super) fn plan(case: &Case, prepared: &Prepared, checkpoint: CheckpointPaths
         traffic: traffic(case, prepared),
         substance: case.particles.iter().map(|one| one.material).collect(),
         paths: paths(case, prepared),
+        pace: match &prepared.particles.motion {
+            Motion::Frozen => None,
+            Motion::Free(contacts) => Some(Pace::of(contacts)),
+        },
     }
 }
 

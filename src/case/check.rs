@@ -71,7 +71,7 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
             gas.mechanism.steps().len()
         );
     }
-    let memory = sizes::memory(cells as f64, particles as f64);
+    let memory = sizes::memory(case, cells as f64, particles as f64);
     let _ = writeln!(
         text,
         "  memory         about {} (native)",

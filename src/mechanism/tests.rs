@@ -147,8 +147,9 @@ fn what_of_cantera_s_is_not_read_is_refused_by_file_line_and_name() {
     let reaction = "- equation: CO + H2O <=> CO2 + H2\n  rate-constant: {A: 1, b: 0, Ea: 0}\n";
     let mut twice = String::from("reactions:\n");
     let _ = write!(twice, "{reaction}{reaction}");
+    let mut wrong = Vec::new();
     for (text, expected) in [
-        ("reactions: [", "a.yaml:1: no YAML"),
+        ("reactions: [\n", "a.yaml:2: no YAML"),
         ("", "a.yaml: has no content"),
         (
             "reactions:\n- equation: CO + H2O\n",
@@ -165,6 +166,10 @@ fn what_of_cantera_s_is_not_read_is_refused_by_file_line_and_name() {
         (
             "reactions:\n- equation: A => B\n",
             "a.yaml:2: A => B has no rate-constant",
+        ),
+        (
+            "reactions:\n- equation: A => B\n  rate-constant: {A: -1, b: 0, Ea: 0}\n",
+            "a.yaml:2: A => B has a negative A without negative-A",
         ),
         (
             "reactions:\n- equation: A => B\n  rate-constant: {A: many, b: 0, Ea: 0}\n",
@@ -204,12 +209,16 @@ fn what_of_cantera_s_is_not_read_is_refused_by_file_line_and_name() {
         ),
     ] {
         let message = parse(Path::new("a.yaml"), text).unwrap_err().to_string();
-        assert!(message.starts_with(expected), "{message}\nfor\n{expected}");
+        if !message.starts_with(expected) {
+            wrong.push(format!("{message}\nfor {expected}"));
+        }
     }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]
 fn what_of_chemkin_s_is_not_read_is_refused_by_file_line_and_name() {
+    let mut wrong = Vec::new();
     for (text, expected) in [
         (
             "REACTIONS\nA=>B 1 0\n",
@@ -240,6 +249,10 @@ fn what_of_chemkin_s_is_not_read_is_refused_by_file_line_and_name() {
             "a.inp:2: A<=>B goes both ways and has FORD",
         ),
         (
+            "REACTIONS\nA=>B -1 0 0\n",
+            "a.inp:2: A=>B has a negative A and is no DUPLICATE",
+        ),
+        (
             "REACTIONS ERGS/MOLE\n",
             "a.inp:1: the unit ERGS/MOLE of REACTIONS is not read",
         ),
@@ -255,8 +268,11 @@ fn what_of_chemkin_s_is_not_read_is_refused_by_file_line_and_name() {
         ("TRANSPORT\n", "a.inp:1: a section TRANSPORT is not read"),
     ] {
         let message = parse(Path::new("a.inp"), text).unwrap_err().to_string();
-        assert!(message.starts_with(expected), "{message}\nfor\n{expected}");
+        if !message.starts_with(expected) {
+            wrong.push(format!("{message}\nfor {expected}"));
+        }
     }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     let twice = "REACTIONS\nA=>B 1 0 0\nDUP\nA=>B 2 0 0\nDUPLICATE\n";
     assert_eq!(parse(Path::new("a.inp"), twice).unwrap().reactions.len(), 2);
 }

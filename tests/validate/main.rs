@@ -13,6 +13,7 @@ mod fluidised_bed;
 mod hopper;
 mod moving_bed;
 mod repose;
+mod shaft_furnace;
 mod voids;
 
 use std::path::{Path, PathBuf};
@@ -31,6 +32,7 @@ const ALL: &[(&str, fn())] = &[
     ("hopper", hopper::run),
     ("moving-bed", moving_bed::run),
     ("repose", repose::run),
+    ("shaft-furnace", shaft_furnace::run),
     ("voids", voids::run),
 ];
 

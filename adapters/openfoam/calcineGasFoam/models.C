@@ -192,7 +192,23 @@ void Foam::calcine::models::begin()
 }
 
 
-void Foam::calcine::models::advance(scalar motionSpan, const scalarField& density)
+void Foam::calcine::models::place(const scalarField& density)
+{
+    if (turbulent())
+    {
+        setDensity(density);
+        turbulence_->validate();
+        store();
+    }
+}
+
+
+void Foam::calcine::models::advance
+(
+    scalar motionSpan,
+    const scalarField& density,
+    const scalarField& outflow
+)
 {
     if (turbulent())
     {
@@ -200,12 +216,28 @@ void Foam::calcine::models::advance(scalar motionSpan, const scalarField& densit
         time.setDeltaT(motionSpan, false);
         ++time;
         setDensity(density);
-        density_.oldTime().primitiveFieldRef() =
-            committedDensity_.empty() ? density : committedDensity_;
+        density_.oldTime().primitiveFieldRef() = density + motionSpan*outflow;
         turbulence_->correct();
-        committedDensity_ = density;
     }
     store();
+}
+
+
+Foam::scalarField Foam::calcine::models::energy() const
+{
+    return turbulence_->k()().primitiveField();
+}
+
+
+Foam::scalarField Foam::calcine::models::dissipation() const
+{
+    return turbulence_->epsilon()().primitiveField();
+}
+
+
+Foam::scalarField Foam::calcine::models::viscosity() const
+{
+    return turbulence_->mut()().primitiveField();
 }
 
 
@@ -232,7 +264,7 @@ void Foam::calcine::models::write(const fileName& directory) const
             out << values << nl;
         }
     }
-    out << committedDensity_ << nl << word(lastWord) << endl;
+    out << word(lastWord) << endl;
     if (!out.good())
     {
         FatalErrorInFunction
@@ -266,7 +298,6 @@ void Foam::calcine::models::read(const fileName& directory)
             in >> values;
         }
     }
-    in >> committedDensity_;
     if (word(in) != lastWord)
     {
         FatalErrorInFunction << in.name() << " is cut short" << exit(FatalError);

@@ -46,7 +46,7 @@ fn delay(reactor: &mut Reactor, phi: f64, start: f64, pressure: f64, guess: f64)
 }
 
 #[test]
-fn ignition_delays_and_final_temperatures_are_cantera_s_within_0_1_percent() {
+fn ignition_delays_and_final_temperatures_are_cantera_s() {
     let mut reactor = reactor();
     let mut worst = [0.0_f64; 2];
     for row in table(include_str!("reference/ignition.csv")) {
@@ -56,12 +56,10 @@ fn ignition_delays_and_final_temperatures_are_cantera_s_within_0_1_percent() {
         let found = delay(&mut reactor, phi, start, pressure, expected);
         let (mut t, mut y) = (start, fresh(phi));
         reactor.advance(pressure, &mut t, &mut y, 10.0).unwrap();
-        println!("{phi} {start} {pressure} {expected:e} {found:e} {end} {t}");
         worst[0] = worst[0].max((found / expected - 1.0).abs());
         worst[1] = worst[1].max((t / end - 1.0).abs());
     }
-    println!("worst: delay {:e}, end {:e}", worst[0], worst[1]);
-    assert!(worst[0] < 1e-3 && worst[1] < 1e-5, "{worst:?}");
+    assert!(worst[0] < 5e-5 && worst[1] < 5e-6, "{worst:?}");
 }
 
 #[test]
@@ -104,13 +102,8 @@ fn burnt_gas_reaches_cantera_s_equilibrium() {
         for (found, expected) in x.iter().zip(&row[4..]) {
             worst[1] = worst[1].max((found - expected).abs());
         }
-        println!("{phi} {start} {end} {t} {x:?}");
     }
-    println!(
-        "worst: temperature {:e}, mole fraction {:e}",
-        worst[0], worst[1]
-    );
-    assert!(worst[0] < 1e-4 && worst[1] < 1e-4, "{worst:?}");
+    assert!(worst[0] < 1e-6 && worst[1] < 1e-6, "{worst:?}");
 }
 
 #[test]

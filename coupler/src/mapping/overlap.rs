@@ -20,10 +20,9 @@ use crate::mesh::locate::Locator;
 /// of its cells.
 #[derive(Clone, Debug)]
 pub(super) struct Overlap {
-    /// Unit normals of plane faces; `None` of others.
-    normal: Vec<Option<Vec3>>,
-    /// Largest distance in m of each face's points from its centre.
-    reach: Vec<f64>,
+    /// Largest distance in m of each face's points from its centre, and of each cell's from its own.
+    face_reach: Vec<f64>,
+    cell_reach: Vec<f64>,
     /// Cells of plane faces, behind each of which all their points lie.
     convex: Vec<bool>,
 }
@@ -33,8 +32,8 @@ pub(super) struct Overlap {
 enum Way {
     /// All of the cell lies in the ball.
     Whole,
-    /// By the faces that the ball cuts.
-    Cut,
+    /// By the faces that the ball cuts, and the ball's centre inside the cell or not.
+    Cut { inside: bool },
     /// By the cones over all faces.
     Cones,
 }
@@ -45,88 +44,87 @@ const GRAZING: f64 = 1e-10;
 impl Overlap {
     pub fn new(locator: &Locator<'_>) -> Self {
         let mesh = locator.mesh();
-        let point = |&point: &u32| mesh.topology().points[point as usize];
-        let normal: Vec<Option<Vec3>> = (0..mesh.faces())
-            .map(|face| (locator.warp(face) == 0.0).then(|| mesh.face_area()[face].normalize()))
-            .collect();
-        let reach = |face: usize| {
-            let centre = mesh.face_centre()[face];
-            let points = mesh.face_points(face).iter().map(point);
-            points.map(|p| (p - centre).norm()).fold(0.0, f64::max)
+        let points = |face: usize| {
+            let indices = mesh.face_points(face).iter();
+            indices.map(|&point| mesh.topology().points[point as usize])
+        };
+        let farthest = |from: Vec3, points: &mut dyn Iterator<Item = Vec3>| {
+            points.map(|p| (p - from).norm()).fold(0.0, f64::max)
+        };
+        let corners = |cell: usize| {
+            let faces = mesh.faces_of(cell).iter();
+            faces.flat_map(|&face| points(face as usize))
+        };
+        // Points to the precision at which a face counts as plane.
+        let behind = |cell: usize, face: usize| {
+            let (normal, centre) = (locator.normal(face), mesh.face_centre()[face]);
+            let outwards = locator.side(cell, face) * normal;
+            corners(cell).all(|p| outwards.dot(&(p - centre)) <= 1e-9 * (p - centre).norm())
         };
         let convex = |cell: usize| {
-            let faces = mesh.faces_of(cell);
-            let corners = || {
-                faces
-                    .iter()
-                    .flat_map(|&face| mesh.face_points(face as usize))
-            };
-            faces.iter().all(|&face| {
-                let face = face as usize;
-                let (side, centre) = (side(mesh, cell, face), mesh.face_centre()[face]);
-                // To the precision at which a face counts as plane.
-                normal[face].is_some_and(|normal| {
-                    corners()
-                        .map(point)
-                        .all(|p| side * normal.dot(&(p - centre)) <= 1e-9 * (p - centre).norm())
-                })
-            })
+            let faces = mesh.faces_of(cell).iter().map(|&face| face as usize);
+            faces
+                .into_iter()
+                .all(|face| locator.warp(face) == 0.0 && behind(cell, face))
         };
         Self {
+            face_reach: (0..mesh.faces())
+                .map(|face| farthest(mesh.face_centre()[face], &mut points(face)))
+                .collect(),
+            cell_reach: (0..mesh.cells())
+                .map(|cell| farthest(mesh.cell_centre()[cell], &mut corners(cell)))
+                .collect(),
             convex: (0..mesh.cells()).map(convex).collect(),
-            reach: (0..mesh.faces()).map(reach).collect(),
-            normal,
         }
     }
 
     /// Volumes in m³ that the ball shares with cells, which ascend, to round-off of the ball's own volume.
-    pub fn volumes(&self, mesh: &Mesh, cells: &[u32], centre: Vec3, radius: f64) -> Vec<f64> {
+    pub fn volumes(
+        &self,
+        locator: &Locator<'_>,
+        cells: &[u32],
+        centre: Vec3,
+        radius: f64,
+    ) -> Vec<f64> {
+        let mesh = locator.mesh();
         let ways: Vec<Way> = cells
             .iter()
-            .map(|&cell| self.way(mesh, cell as usize, centre, radius))
+            .map(|&cell| self.way(locator, cell as usize, centre, radius))
             .collect();
         let mut volumes = vec![0.0; cells.len()];
         for (place, &cell) in cells.iter().enumerate() {
             let cell = cell as usize;
+            let faces = mesh.faces_of(cell).iter().map(|&face| face as usize);
             match ways[place] {
                 Way::Whole => volumes[place] = mesh.cell_volume()[cell],
                 Way::Cones => {
-                    let cones = mesh.faces_of(cell).iter().map(|&face| {
-                        let face = face as usize;
-                        side(mesh, cell, face) * self.cone(mesh, face, centre, radius)
-                    });
-                    volumes[place] = cones.sum();
+                    let cone =
+                        |face| locator.side(cell, face) * cone(locator, face, centre, radius);
+                    volumes[place] = faces.map(cone).sum();
                 }
-                Way::Cut => {
-                    let mut inside = true;
-                    for &face in mesh.faces_of(cell) {
-                        let face = face as usize;
-                        let Some(normal) = self.normal[face] else {
-                            continue;
-                        };
-                        let outwards = side(mesh, cell, face);
-                        let height = normal.dot(&(mesh.face_centre()[face] - centre));
-                        inside &= outwards * height > 0.0;
-                        if height.abs() >= radius {
+                Way::Cut { inside } => {
+                    if inside {
+                        volumes[place] += 4.0 / 3.0 * PI * radius.powi(3);
+                    }
+                    for face in faces {
+                        let plane = Plane::of(locator, face, centre, radius);
+                        if plane.disc <= 0.0 {
                             continue;
                         }
                         let other = mesh.across(cell, face).and_then(|other| {
                             let place = cells.binary_search(&(other as u32)).ok()?;
-                            (ways[place] == Way::Cut).then_some(place)
+                            matches!(ways[place], Way::Cut { .. }).then_some(place)
                         });
                         // The first of its two cells finds what it takes for both.
                         if other.is_some_and(|other| other < place) {
                             continue;
                         }
-                        let plane = Plane::new(normal, height, radius);
                         let within = self.within(mesh, face, centre, &plane);
-                        volumes[place] += outwards * within;
+                        let within = locator.side(cell, face) * within;
+                        volumes[place] += within;
                         if let Some(other) = other {
-                            volumes[other] -= outwards * within;
+                            volumes[other] -= within;
                         }
-                    }
-                    if inside {
-                        volumes[place] += 4.0 / 3.0 * PI * radius.powi(3);
                     }
                 }
             }
@@ -134,28 +132,32 @@ impl Overlap {
         volumes
     }
 
-    fn way(&self, mesh: &Mesh, cell: usize, centre: Vec3, radius: f64) -> Way {
+    fn way(&self, locator: &Locator<'_>, cell: usize, centre: Vec3, radius: f64) -> Way {
         if !self.convex[cell] {
             return Way::Cones;
         }
-        let mut whole = true;
+        let mesh = locator.mesh();
+        if (mesh.cell_centre()[cell] - centre).norm() + self.cell_reach[cell] <= radius {
+            return Way::Whole;
+        }
+        let mut inside = true;
         for &face in mesh.faces_of(cell) {
             let face = face as usize;
             let away = mesh.face_centre()[face] - centre;
-            let height = self.normal[face].map_or(0.0, |normal| normal.dot(&away));
+            let height = locator.side(cell, face) * locator.normal(face).dot(&away);
             if height.abs() < GRAZING * radius {
                 return Way::Cones;
             }
-            whole &= away.norm() + self.reach[face] <= radius;
+            inside &= height > 0.0;
         }
-        if whole { Way::Whole } else { Way::Cut }
+        Way::Cut { inside }
     }
 
     /// What a plane face takes of the ball: h/3 · area(F ∩ D) − sign(h) R³/3 · Ω(F ∩ D).
     fn within(&self, mesh: &Mesh, face: usize, centre: Vec3, plane: &Plane) -> f64 {
         let away = mesh.face_centre()[face] - centre;
         let from_foot = away.norm_squared() - plane.height * plane.height;
-        let span = plane.disc.max(0.0).sqrt() + self.reach[face];
+        let span = plane.disc.max(0.0).sqrt() + self.face_reach[face];
         if plane.disc <= 0.0 || from_foot >= span * span {
             return 0.0;
         }
@@ -164,32 +166,32 @@ impl Overlap {
         let parts = (0..points.len()).map(|i| plane.edge(at(i), at(i + 1), Plane::inside));
         plane.cone(parts, -1.0)
     }
+}
 
-    /// Signed volume of ball ∩ cone over one face, positive where the face's normal points away.
-    fn cone(&self, mesh: &Mesh, face: usize, centre: Vec3, radius: f64) -> f64 {
-        let points = mesh.face_points(face);
-        let count = points.len();
-        let at = |i: usize| mesh.topology().points[points[i % count] as usize] - centre;
-        if let Some(normal) = self.normal[face] {
-            let height = normal.dot(&(mesh.face_centre()[face] - centre));
-            let plane = Plane::new(normal, height, radius);
-            let parts = (0..count).map(|i| plane.edge(at(i), at(i + 1), Plane::outside));
-            return plane.cone(parts, 1.0);
-        }
-        let middle = (0..count).map(at).sum::<Vec3>() / count as f64;
-        let triangle = |i: usize| {
-            let corners = [middle, at(i), at(i + 1)];
-            let area = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
-            if area.norm() == 0.0 {
-                return 0.0;
-            }
-            let normal = area.normalize();
-            let plane = Plane::new(normal, normal.dot(&middle), radius);
-            let edge = |k: usize| plane.edge(corners[k], corners[(k + 1) % 3], Plane::outside);
-            plane.cone((0..3).map(edge), 1.0)
-        };
-        (0..count).map(triangle).sum()
+/// Signed volume of ball ∩ cone over one face, positive where the face's normal points away.
+fn cone(locator: &Locator<'_>, face: usize, centre: Vec3, radius: f64) -> f64 {
+    let mesh = locator.mesh();
+    let points = mesh.face_points(face);
+    let count = points.len();
+    let at = |i: usize| mesh.topology().points[points[i % count] as usize] - centre;
+    if locator.warp(face) == 0.0 {
+        let plane = Plane::of(locator, face, centre, radius);
+        let parts = (0..count).map(|i| plane.edge(at(i), at(i + 1), Plane::outside));
+        return plane.cone(parts, 1.0);
     }
+    let middle = (0..count).map(at).sum::<Vec3>() / count as f64;
+    let triangle = |i: usize| {
+        let corners = [middle, at(i), at(i + 1)];
+        let area = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
+        if area.norm() == 0.0 {
+            return 0.0;
+        }
+        let normal = area.normalize();
+        let plane = Plane::new(normal, normal.dot(&middle), radius);
+        let edge = |k: usize| plane.edge(corners[k], corners[(k + 1) % 3], Plane::outside);
+        plane.cone((0..3).map(edge), 1.0)
+    };
+    (0..count).map(triangle).sum()
 }
 
 /// A plane seen from the ball's centre.
@@ -218,6 +220,13 @@ struct Stretch {
 }
 
 impl Plane {
+    /// That of a plane face.
+    fn of(locator: &Locator<'_>, face: usize, centre: Vec3, radius: f64) -> Self {
+        let normal = locator.normal(face);
+        let height = normal.dot(&(locator.mesh().face_centre()[face] - centre));
+        Self::new(normal, height, radius)
+    }
+
     fn new(normal: Vec3, height: f64, radius: f64) -> Self {
         Self {
             normal,
@@ -339,15 +348,6 @@ impl Plane {
     }
 }
 
-/// 1 where a face's normal points out of the cell, −1 where it points in.
-fn side(mesh: &Mesh, cell: usize, face: usize) -> f64 {
-    if mesh.owner()[face] as usize == cell {
-        1.0
-    } else {
-        -1.0
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -380,9 +380,9 @@ mod tests {
     }
 
     fn volumes(mesh: &Mesh, centre: Vec3, radius: f64) -> Vec<f64> {
-        let overlap = Overlap::new(&Locator::new(mesh));
+        let locator = Locator::new(mesh);
         let cells: Vec<u32> = (0..mesh.cells() as u32).collect();
-        overlap.volumes(mesh, &cells, centre, radius)
+        Overlap::new(&locator).volumes(&locator, &cells, centre, radius)
     }
 
     fn ball(radius: f64) -> f64 {

@@ -53,7 +53,8 @@ pub struct Equations {
     pub chemistry: Chemistry,
     /// Properties at the last temperature.
     pub material: Material,
-    krylov: Krylov,
+    /// Memory of the linear solvers.
+    pub krylov: Krylov,
     /// How far what is taken explicitly from the last iterate follows it, as a share.
     share: f64,
 }
@@ -115,6 +116,9 @@ impl Equations {
             return Err(words);
         }
         convergence.volume_residual = self.volume_residual(frame, now);
+        if !frame.turbulence.is_laminar() {
+            self.momentum.update_gradients(frame, &now.velocity);
+        }
         Ok(convergence)
     }
 

@@ -13,6 +13,7 @@ use calcine_coupler::time::GasStorage;
 use super::chemistry::{Around, chemistry};
 use super::composition::fractions;
 use super::gas_patch::boundary;
+use super::turbulence::turbulence;
 use crate::case::model::MeshSpec;
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
@@ -40,7 +41,9 @@ pub(super) fn read(
         .vector("gravity", Dimension::ACCELERATION)
         .unwrap_or([0.0; 3]);
     let held = section.truth("held").unwrap_or(false);
-    let patches = boundary(&section, mesh, properties.as_ref());
+    let turbulence = turbulence(&section);
+    let turbulent = turbulence.map(|model| !model.is_laminar());
+    let patches = boundary(&section, mesh, properties.as_ref(), turbulent);
     let controls = controls(&section);
     let around = Around {
         gas: properties.as_ref(),
@@ -51,6 +54,11 @@ pub(super) fn read(
     section.finish();
     let (temperature, pressure, velocity, composition) = initial?;
     let (reacting, files) = chemistry?;
+    if held && reacting.reacting().is_some() {
+        let help = "leave `gas.held` out, or `gas.chemistry`";
+        let rule = "reacts, but `gas.held` leaves the gas as it is at the start";
+        section.fail("chemistry", rule, help);
+    }
     let setup = GasSetup {
         mixture: mixture?.into(),
         properties: properties?,
@@ -62,6 +70,7 @@ pub(super) fn read(
         pressure,
         velocity,
         gravity: Vec3::from(gravity),
+        turbulence: turbulence?,
         momentum: MomentumModel::default(), // `laws.drag.model` says
         patches: patches?,
         controls,

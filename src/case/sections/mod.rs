@@ -2,6 +2,7 @@
 
 mod chemistry;
 mod composition;
+mod conversion;
 mod coupling;
 mod gas;
 mod gas_patch;
@@ -20,10 +21,13 @@ mod sizes;
 mod solids;
 mod time;
 mod traffic;
+mod turbulence;
 mod walls;
 mod zone;
 
 use std::path::{Path, PathBuf};
+
+use calcine_coupler::mesh::openings::Opening;
 
 use self::gas::GasRead;
 use super::model::{Case, MeshSpec};
@@ -73,10 +77,16 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     }
     let reactions = reactions::reactions(root, &solids, gas.as_ref().map(|gas| &gas.setup));
     let chemistry = inventory::inventory(solids, reactions, &materials);
-    if let (Some(laws), Some(particles)) = (&laws, &particles) {
-        reactions::fits(root, &chemistry, laws, particles, openfoam.solver);
+    if let Some(particles) = &particles {
+        conversion::fits(root, &chemistry, &materials, particles);
+    }
+    if let Some(laws) = &laws {
+        reactions::fits(root, &chemistry, laws, openfoam.solver);
     }
     let output = output::output(root);
+    if let (Some(gas), Some(output)) = (&gas, &output) {
+        turbulence::fits(root, &gas.setup.turbulence, gas.held, output);
+    }
     let probes = probes::probes(root);
     let quantities = {
         let species = gas.as_ref().map(|gas| gas.setup.properties.species());
@@ -151,16 +161,32 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     })
 }
 
+/// Names of openings, each once.
+fn opened(openings: &[Opening]) -> impl Iterator<Item = &str> {
+    let name = |index: usize| openings[index].name.as_str();
+    (0..openings.len())
+        .filter(move |&k| (0..k).all(|before| name(before) != name(k)))
+        .map(name)
+}
+
 /// The patch names of a mesh, where the case itself knows them.
 fn patches(mesh: Option<&MeshSpec>) -> Option<Vec<&str>> {
     match mesh? {
-        MeshSpec::Box { patches, .. } => {
-            let mut names: Vec<&str> = patches.iter().map(String::as_str).collect();
+        MeshSpec::Box {
+            patches, openings, ..
+        } => {
+            let sides = patches.iter().map(String::as_str);
+            let mut names: Vec<&str> = sides.chain(opened(openings)).collect();
             names.sort_unstable();
             names.dedup();
             Some(names)
         }
-        MeshSpec::Cylinder { .. } => Some(vec!["bottom", "side", "top"]),
+        MeshSpec::Cylinder { openings, .. } => {
+            let sides = ["bottom", "side", "top"].into_iter();
+            let mut names: Vec<&str> = sides.chain(opened(openings)).collect();
+            names.dedup();
+            Some(names)
+        }
         MeshSpec::PolyMesh(_) => None,
     }
 }

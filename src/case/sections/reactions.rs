@@ -10,7 +10,7 @@ use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::physics::thermo::{Element, Mixture};
 use calcine_coupler::setup::{GasPatch, GasSetup};
 
-use crate::case::model::{HeatLaw, Laws, Motion, Population, ReactionSpec};
+use crate::case::model::{HeatLaw, Laws, ReactionSpec};
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
 
@@ -452,13 +452,7 @@ pub(super) fn heat_agrees(table: &Reader<'_>, heat: f64, own: f64) -> bool {
 }
 
 /// Errors where reactions do not go with the rest of the case.
-pub(super) fn fits(
-    root: &Reader<'_>,
-    chemistry: &ReactionSpec,
-    laws: &Laws,
-    particles: &[Population],
-    solver: Solver,
-) {
+pub(super) fn fits(root: &Reader<'_>, chemistry: &ReactionSpec, laws: &Laws, solver: Solver) {
     if !chemistry.exchanges() {
         return;
     }
@@ -477,10 +471,5 @@ pub(super) fn fits(
             "names a stock solver, which takes no gas from particles",
             help,
         );
-    }
-    if particles.iter().any(|one| one.motion == Motion::Free) {
-        let help = "write motion = \"frozen\"";
-        let rule = "exchange gas with particles that move, whose mass is fixed so far";
-        root.fail("reactions", rule, help);
     }
 }

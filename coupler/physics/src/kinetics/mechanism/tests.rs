@@ -51,6 +51,24 @@ fn the_four_steps_at_unit_concentrations_are_their_rate_constants() {
 }
 
 #[test]
+fn the_original_third_step_is_its_table_s_and_runs_back_by_the_equilibrium() {
+    let jl4 = Mechanism::jones_lindstedt_original(&gas()).unwrap();
+    let mut c = [0.0; MOST_SPECIES];
+    jl4.concentrations(&state(&FRACTIONS), &mut c);
+    let k = 6.8e15 / 1600.0 * (-1.67e8 / 8_314.462_618 / 1600.0_f64).exp();
+    let (h2, o2, h2o) = (c[3] / 1e3, c[1] / 1e3, c[4] / 1e3);
+    let expected = 1e3 * k * h2.powf(0.25) * o2.powf(1.5);
+    let (forth, back) = jl4.progress(state(&FRACTIONS))[2];
+    assert!((forth / expected - 1.0).abs() < 1e-12);
+    // K of kmol/m³, ln K_p = −ΔG°/(R T) at 1600 K of the tables.
+    let g = |k: usize| gas().species()[k].polynomial().gibbs_energy(1600.0);
+    let k_p = (-(g(4) - g(3) - 0.5 * g(1)) / (GAS_CONSTANT * 1600.0)).exp();
+    let k_c = k_p * (1e5_f64 / (8_314.462_618 * 1600.0)).powf(-0.5);
+    let expected = 1e3 * k / k_c * h2.powf(-0.75) * o2 * h2o;
+    assert!((back / expected - 1.0).abs() < 1e-12);
+}
+
+#[test]
 fn elements_and_mass_are_neither_made_nor_lost() {
     for mechanism in [
         Mechanism::jones_lindstedt(&gas()).unwrap(),
@@ -217,6 +235,12 @@ fn what_is_no_mechanism_says_why() {
     let mut wrong = stated("CO + H2O => CO2 + H2");
     wrong.orders = Some(vec![("CO".into(), f64::NAN)]);
     assert!(message(&gas(), wrong).contains("an order is NaN"));
+    let mut by_helium = stated("CO + H2O => CO2 + H2");
+    by_helium.collider = Some(Collider {
+        efficiencies: vec![("HE".into(), 1.0)],
+        others: 0.0,
+    });
+    assert!(message(&gas(), by_helium).contains("needs a third body"));
     let mut alone = stated("CO + H2O => CO2 + H2");
     let RateConstant::Arrhenius(law) = alone.rate else {
         unreachable!()
@@ -226,5 +250,5 @@ fn what_is_no_mechanism_says_why() {
         low: law,
         broadening: crate::kinetics::Broadening::Lindemann,
     };
-    assert!(message(&gas(), alone).contains("falloff but no third body"));
+    assert!(message(&gas(), alone).contains("needs a third body"));
 }
