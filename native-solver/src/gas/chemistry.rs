@@ -19,8 +19,8 @@
 //! so energy and every element close whatever the iteration did, and no cell gives what it does not have.
 
 use calcine_coupler::gas_chemistry::ReactingGas;
-use calcine_coupler::physics::kinetics::{self, Reactor};
 use calcine_coupler::physics::kinetics::elements::Elements;
+use calcine_coupler::physics::kinetics::{self, Reactor};
 use calcine_coupler::physics::thermo::mixture::MOST_SPECIES;
 use rayon::prelude::*;
 
