@@ -134,7 +134,8 @@ Foam::tmp<Foam::scalarField> Foam::calcine::models::mixingTime
     }
     const scalarField eddies(turbulence_->nut()().primitiveField());
     const scalarField dissipation(turbulence_->epsilon()().primitiveField());
-    return sqrt((viscosity/density + eddies)/(dissipation + SMALL));
+    // No eddies in the bed: what is there counts as mixed.
+    return pos(eddies - VSMALL)*sqrt((viscosity/density + eddies)/(dissipation + SMALL));
 }
 
 

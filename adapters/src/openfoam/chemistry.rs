@@ -55,8 +55,8 @@ pub fn files(
     mixture: &Mixture,
     gas: &ReactingGas,
 ) -> Result<Vec<(&'static str, String)>, Inexpressible> {
-    // A species without a field of its own starts from this one; calcineGasFoam sets it anyway.
-    let about = ("volScalarField", "Ydefault", "[0 0 0 0 0 0 0]", "0");
+    // What species without fields of their own start from: OpenFOAM brings their sum to one, calcineGasFoam sets them.
+    let about = ("volScalarField", "Ydefault", "[0 0 0 0 0 0 0]", "1");
     Ok(vec![
         (
             "constant/thermophysicalProperties.chemistry",

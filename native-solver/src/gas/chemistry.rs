@@ -19,13 +19,14 @@
 //! so energy and every element close whatever the iteration did, and no cell gives what it does not have.
 
 use calcine_coupler::gas_chemistry::ReactingGas;
-use calcine_coupler::physics::kinetics::Reactor;
 use calcine_coupler::physics::kinetics::elements::Elements;
+use calcine_coupler::physics::kinetics::{self, Reactor};
 use calcine_coupler::physics::thermo::mixture::MOST_SPECIES;
 use rayon::prelude::*;
 
 use super::attempt::{Frame, Material};
 use super::state::State;
+use super::stirring::reacting_share;
 use crate::numerics::parallel::{fill, largest};
 
 /// Cells that a thread takes at a time: a reactor costs some ten to hundred microseconds.
@@ -138,9 +139,15 @@ impl Chemistry {
             after.copy_from_slice(before);
             let mut temperature = at.temperature[cell];
             let pressure = at.base_pressure;
+            let state = kinetics::State {
+                pressure,
+                temperature,
+                fractions: before,
+            };
+            let share = reacting_share(frame, gas, cell, state);
             let reacted = reactor.advance(pressure, &mut temperature, after, span);
             for (rate, (after, before)) in rates.iter_mut().zip(after.iter().zip(before.iter())) {
-                *rate = (after - before) / span;
+                *rate = share * (after - before) / span;
             }
             reacted.map(|_| ()).map_err(|error| {
                 let place = frame.grid.centre[cell];

@@ -14,6 +14,7 @@ mod outer;
 mod pressure;
 mod species;
 mod state;
+mod stirring;
 mod transport;
 mod turbulence;
 

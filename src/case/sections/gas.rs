@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use calcine_coupler::gas_chemistry::Combustion;
 use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
@@ -54,6 +55,14 @@ pub(super) fn read(
     section.finish();
     let (temperature, pressure, velocity, composition) = initial?;
     let (reacting, files) = chemistry?;
+    let stirred = reacting
+        .reacting()
+        .is_some_and(|gas| gas.combustion != Combustion::Laminar);
+    if stirred && turbulent == Some(false) {
+        let help = "state [gas.turbulence], or write model = \"laminar\"";
+        let rule = "has the model `pasr`, but the gas has no eddies to mix it";
+        section.fail("chemistry", rule, help);
+    }
     if held && reacting.reacting().is_some() {
         let help = "leave `gas.held` out, or `gas.chemistry`";
         let rule = "reacts, but `gas.held` leaves the gas as it is at the start";
