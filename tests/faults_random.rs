@@ -239,6 +239,7 @@ fn strike(out: &Path, scratch: &Path, kind: Kind, random: &mut Random) -> Story 
         run.kill().unwrap();
         run.wait().unwrap();
     }
+    let coordinator_took = struck.elapsed().saturating_sub(silence);
     let code = ended.and_then(|status| status.code());
     let text = said(&mut run);
     // A coordinator that was killed says nothing; its solvers end by themselves.
@@ -311,14 +312,23 @@ fn strike(out: &Path, scratch: &Path, kind: Kind, random: &mut Random) -> Story 
     let verb = if stops { "stopped" } else { "killed" };
     Story {
         text: format!(
-            "{gas}+{particles} {transport}, {:.2} s, {stage}: {name} {verb}, ended after {:.2} s",
+            "{gas}+{particles} {transport}, {:.2} s, {stage}: {name} {verb}, ended after {:.2} s (calcine \
+             after {:.2} s), load {}",
             moment.as_secs_f64(),
-            taken.as_secs_f64()
+            taken.as_secs_f64(),
+            coordinator_took.as_secs_f64(),
+            load()
         ),
         victim: format!("{name} {verb}"),
         taken,
         fault: (!faults.is_empty()).then(|| faults.join("; ")),
     }
+}
+
+/// Processes that wanted to run, in the mean of the last minute: a limit of seconds means less where they are many.
+fn load() -> String {
+    let text = fs::read_to_string("/proc/loadavg").unwrap_or_default();
+    text.split(' ').next().unwrap_or_default().to_owned()
 }
 
 /// True for a rank of a solver, not for what starts it.

@@ -114,6 +114,72 @@ fn over_mpi_a_killed_rank_is_named() {
     assert_named(pid, code, &text, &["OpenFOAM (gas, rank", "died"]);
 }
 
+/// Open MPI ends a coordinator that has lost its daemon by `_exit`, which no handler of an exit sees.
+#[test]
+fn over_mpi_a_killed_daemon_is_named() {
+    let words = [&RANKS[..], &["--transport", "mpi"]].concat();
+    let (_, code, text) = strike(&words, "orted", Signal::KILL);
+    assert_eq!(code, 4, "{text}");
+    assert!(text.contains("its daemon (orted) died"), "{text}");
+    assert!(text.contains("`--resume`"), "{text}");
+}
+
+/// A rank between the start of MPI and its introduction has no launcher that would end with it.
+#[test]
+fn over_mpi_a_rank_that_dies_before_it_introduces_itself_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |name: &str| fs::read_to_string(root.join(name)).unwrap();
+    let case = read("cases/settled-bed.toml");
+    let own = case.replace("[liggghts]\n", "[liggghts]\ntemplate = \"in.bed\"\n");
+    fs::write(folder.path().join("case.toml"), own).unwrap();
+    // Nothing is heard of the host while its script sleeps.
+    let script = read("liggghts-inputs/own-bed.in") + "\nshell sleep 30\n";
+    fs::write(folder.path().join("in.bed"), script).unwrap();
+    let mut run = Command::new(env!("CARGO_BIN_EXE_calcine"))
+        .arg("run")
+        .arg(folder.path().join("case.toml"))
+        .args(["--particles", "liggghts", "--transport", "mpi", "--quiet"])
+        .arg("--out")
+        .arg(folder.path().join("out"))
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let coordinator = run.id();
+    let rank_that_sleeps = || {
+        let peers = descendants(coordinator);
+        let sleeps = peers
+            .iter()
+            .any(|&pid| command_line(pid).contains("sleep 30"));
+        let host = |pid: &&u32| {
+            let line = command_line(**pid);
+            let program = line.split(' ').next().unwrap_or_default();
+            program.ends_with("calcine-liggghts")
+        };
+        peers.iter().find(host).copied().filter(|_| sleeps)
+    };
+    wait_until(Duration::from_secs(60), || rank_that_sleeps().is_some());
+    let victim = rank_that_sleeps().expect("no host sleeps");
+    let peers = descendants(coordinator);
+    kill(victim);
+    let (code, text, taken) = end_of(&mut run);
+    println!("ended {taken:?} after the blow; message:\n{text}");
+    assert_eq!(code, 4, "{text}");
+    // It has not written to its log yet.
+    for word in ["LIGGGHTS (particles", "died", &format!("pid {victim}")] {
+        assert!(text.contains(word), "`{word}` is missing in: {text}");
+    }
+    assert!(taken < Duration::from_secs(5), "{taken:?}");
+    // What the script started is nobody's process of ours.
+    let sleeps = |pid: u32| command_line(pid).contains("sleep 30");
+    let (asleep, ours): (Vec<u32>, Vec<u32>) = peers.into_iter().partition(|&pid| sleeps(pid));
+    assert_nothing_left(coordinator, &ours);
+    for pid in asleep.into_iter().filter(|&pid| alive(pid)) {
+        kill(pid);
+    }
+}
+
 #[test]
 fn a_killed_coordinator_leaves_no_rank_and_no_file_by_either_transport() {
     for transport in ["shared-memory", "mpi"] {

@@ -268,7 +268,13 @@ impl ExternalSolver {
             links = open_links(&own, &launch.hello).map_err(unopened)?;
             run = Some(own);
         }
-        let peer = Peer::new(&launch, processes.pid(), supervisor)?;
+        let mut peer = Peer::new(&launch, processes.pid(), supervisor)?;
+        if let Launcher::Network(Spawner(network)) = &launch.launcher {
+            // No launcher of ours would end with a rank that dies before it introduces itself.
+            let mut own = Supervisor::new(launch.handshake, supervisor.interrupts().clone());
+            peer.watch(&mut own, &network.ranks_here(&launch.hello.role))?;
+            peer.own = own;
+        }
         let mut solver = Self {
             links,
             processes,

@@ -3,173 +3,18 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use std::path::{Path, PathBuf};
-use std::time::Duration;
+#[path = "liggghts_support/mod.rs"]
+mod support;
 
-use calcine_adapters::launch::Launcher;
-use calcine_adapters::liggghts::inputs::Inputs;
-use calcine_adapters::liggghts::{LiggghtsLaunch, LiggghtsParticles};
-use calcine_coupler::error::PartError;
+use std::path::Path;
+
+use calcine_adapters::liggghts::LiggghtsParticles;
 use calcine_coupler::motion::{
-    Change, Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, NewParticle, Pair,
-    Resized, Rolling, Wall, WallMotion, WallShape,
+    Change, ContactForce, Contacts, NewParticle, Resized, Wall, WallMotion, WallShape,
 };
-use calcine_coupler::part::{Part, ParticlePush, ParticleReceived, Particles};
+use calcine_coupler::part::{Part, Particles};
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::setup::ParticleSetup;
-use calcine_coupler::supervisor::{Interrupts, Supervisor};
-use calcine_coupler::time::{Clocks, Ticks, Window};
-
-const STEP: f64 = 1e-6;
-const BOX: f64 = 0.1;
-
-fn law() -> ContactLaw {
-    ContactLaw {
-        force: ContactForce::HertzMindlin,
-        attractive_damping: true,
-        rolling: Rolling::None,
-        cohesion: Cohesion::None,
-    }
-}
-
-/// A floor, no gravity unless asked for.
-fn contacts(gravity: Vec3) -> Contacts {
-    Contacts {
-        step: STEP,
-        gravity,
-        bounds: (Vec3::zeros(), Vec3::repeat(BOX)),
-        materials: vec![Elastic {
-            young: 5e7,
-            poisson: 0.25,
-        }],
-        material_of: vec![0, 0],
-        held: vec![false, true],
-        law: law(),
-        pairs: vec![Pair {
-            restitution: 0.5,
-            friction: 0.3,
-            ..Pair::default()
-        }],
-        walls: vec![Wall {
-            name: "floor".into(),
-            material: 0,
-            shape: WallShape::Plane {
-                point: Vec3::zeros(),
-                normal: Vec3::z(),
-            },
-            motion: WallMotion::Still,
-        }],
-    }
-}
-
-/// Spheres of 5 mm at these places with these velocities.
-fn setup(contacts: Contacts, spheres: &[(Vec3, Vec3)]) -> ParticleSetup {
-    let count = spheres.len();
-    ParticleSetup {
-        id: (1..=count as u64).collect(),
-        population: vec![0; count],
-        position: spheres.iter().map(|sphere| sphere.0).collect(),
-        radius: vec![0.0025; count],
-        density: vec![2500.0; count],
-        velocity: spheres.iter().map(|sphere| sphere.1).collect(),
-        motion: Motion::Free(Box::new(contacts)),
-    }
-}
-
-struct Bench {
-    folder: tempfile::TempDir,
-    supervisor: Supervisor,
-    index: u64,
-    start: Ticks,
-    /// Of the last window.
-    acted: f64,
-    support: Option<Vec3>,
-}
-
-impl Bench {
-    fn new() -> Self {
-        Self {
-            folder: tempfile::tempdir().unwrap(),
-            supervisor: Supervisor::new(Duration::from_secs(30), Interrupts::default()),
-            index: 0,
-            start: Ticks::ZERO,
-            acted: 0.0,
-            support: None,
-        }
-    }
-
-    fn launch(
-        &mut self,
-        setup: &ParticleSetup,
-        name: &str,
-        resume: Option<PathBuf>,
-    ) -> LiggghtsParticles {
-        self.try_launch(setup, name, resume).unwrap()
-    }
-
-    fn try_launch(
-        &mut self,
-        setup: &ParticleSetup,
-        name: &str,
-        resume: Option<PathBuf>,
-    ) -> Result<LiggghtsParticles, PartError> {
-        let launch = LiggghtsLaunch {
-            inputs: Inputs {
-                setup,
-                bounds: (Vec3::zeros(), Vec3::repeat(BOX)),
-                step: STEP,
-                ranks: 1,
-                wall_impulse: true,
-                template: None,
-            },
-            case_hash: "moving".into(),
-            launcher: Launcher::Mpirun,
-            folder: self.folder.path().join(name),
-            log: self.folder.path().join(format!("{name}.log")),
-            resume,
-            deadline: Duration::from_secs(30),
-        };
-        LiggghtsParticles::launch(launch, &mut self.supervisor)
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn window(
-        &mut self,
-        particles: &mut LiggghtsParticles,
-        span: f64,
-        force: &[Vec3],
-    ) -> Result<Vec<Vec3>, PartError> {
-        let span = Ticks::from_seconds(span).unwrap();
-        let window = Window {
-            index: self.index,
-            attempt: 0,
-            start: Clocks {
-                motion: self.start,
-                process: self.start,
-            },
-            span: Clocks {
-                motion: span,
-                process: span,
-            },
-        };
-        let push = ParticlePush {
-            force: force.to_vec(),
-        };
-        particles.start(&window, &push)?;
-        let mut received = ParticleReceived::default();
-        particles.finish(&self.supervisor, &mut received)?;
-        particles.commit()?;
-        (self.acted, self.support) = (received.acted, received.support);
-        self.index += 1;
-        self.start = self.start.checked_add(span).unwrap();
-        Ok(received.impulse)
-    }
-}
-
-const MASS: f64 = 4.0 / 3.0 * std::f64::consts::PI * 1.5625e-8 * 2500.0;
+use support::{Bench, MASS, contacts, heap, momentum, setup, setup_with};
 
 #[test]
 fn the_impulse_of_a_force_is_exact_also_where_it_changes_and_the_window_is_no_whole_number_of_steps()
@@ -231,30 +76,6 @@ fn gravity_and_restitution_are_those_of_the_case() {
     assert!((speed + 0.0981).abs() < 1e-12, "{speed}");
 }
 
-fn setup_with(contacts: Contacts, other: &ParticleSetup) -> ParticleSetup {
-    ParticleSetup {
-        motion: Motion::Free(Box::new(contacts)),
-        ..other.clone()
-    }
-}
-
-/// Forty spheres that fall on each other and on the floor.
-fn heap() -> ParticleSetup {
-    let spheres: Vec<(Vec3, Vec3)> = (0..40)
-        .map(|k| {
-            let (i, j, layer) = (k % 3, (k / 3) % 3, k / 9);
-            let wiggle = 1e-5 * f64::from(k % 7);
-            let centre = Vec3::new(
-                0.04 + 0.0052 * f64::from(i) + wiggle,
-                0.04 + 0.0052 * f64::from(j) - wiggle,
-                0.0026 + 0.0051 * f64::from(layer),
-            );
-            (centre, Vec3::zeros())
-        })
-        .collect();
-    setup(contacts(Vec3::new(0.0, 0.0, -9.81)), &spheres)
-}
-
 #[test]
 fn a_heap_gains_what_gravity_the_floor_and_its_pushes_give() {
     let mut bench = Bench::new();
@@ -262,20 +83,15 @@ fn a_heap_gains_what_gravity_the_floor_and_its_pushes_give() {
     all_free.held = vec![false, false];
     let setup = setup_with(all_free, &heap());
     let mut particles = bench.launch(&setup, "a", None);
-    let total = |particles: &LiggghtsParticles| -> Vec3 {
-        let fields = particles.fields();
-        let pairs = fields.mass.iter().zip(fields.velocity);
-        pairs.map(|(mass, velocity)| *mass * velocity).sum()
-    };
     let push: Vec<Vec3> = (0..40).map(|k| Vec3::x() * 1e-4 * f64::from(k)).collect();
     let mut given = 0.0;
     for span in [1e-3, 1.004e-3, 7.31e-3, 2e-2] {
-        let before = total(&particles);
+        let before = momentum(&particles);
         let impulse = bench.window(&mut particles, span, &push).unwrap();
         let support = bench.support.unwrap();
         let weight = 40.0 * MASS * bench.acted * Vec3::new(0.0, 0.0, -9.81);
         let pushed: Vec3 = impulse.iter().sum();
-        let left = total(&particles) - before - pushed - weight - support;
+        let left = momentum(&particles) - before - pushed - weight - support;
         assert!(left.norm() < 1e-12 * weight.norm(), "{left} of {weight}");
         given += support.z;
     }

@@ -130,12 +130,12 @@ fn assert_closed(duct: &Duct, tolerance: f64) {
 }
 
 #[test]
-fn two_and_four_ranks_compute_the_gas_of_one_and_their_balances_close() {
+fn two_three_and_four_ranks_compute_the_gas_of_one_and_their_balances_close() {
     let folder = tempfile::tempdir().unwrap();
     let mut one = launch(1, &heated(), &folder.path().join("1"), None);
     one.advance(4, &bed(), &heating());
     assert_closed(&one, 1e-10);
-    for ranks in [2, 4] {
+    for ranks in [2, 3, 4] {
         let mut more = launch(
             ranks,
             &heated(),

@@ -23,6 +23,7 @@ pub mod smoother;
 pub mod supervisor;
 pub mod time;
 pub mod traffic;
+pub mod turbulence;
 pub mod turnover;
 
 pub use calcine_interior as interior;

@@ -8,6 +8,7 @@ use crate::gas_chemistry::GasChemistry;
 use crate::momentum_model::MomentumModel;
 use crate::motion::Motion;
 use crate::time::GasStorage;
+pub use crate::turbulence::{InletTurbulence, Turbulence};
 
 /// A value over process time: (time in s, value) entries with increasing times,
 /// at least one; linear in between, constant before the first and after the last.
@@ -51,6 +52,8 @@ pub struct GasSetup {
     pub gravity: Vec3,
     /// How gas and particles share their momentum.
     pub momentum: MomentumModel,
+    /// Eddies outside the bed.
+    pub turbulence: Turbulence,
     /// Boundary condition of each patch, in the order of the file; every patch of the mesh has one.
     pub patches: Vec<(String, GasPatch)>,
     /// Controls of the solver, honoured by native gas and calcineGasFoam alike.
@@ -108,6 +111,8 @@ pub enum GasPatch {
         temperature: Schedule,
         /// Composition; `None` for a single gas.
         composition: Option<CompositionSchedule>,
+        /// Eddies that come in; `None` where the gas is laminar.
+        turbulence: Option<InletTurbulence>,
     },
     /// Gas leaves (or enters in the state of the cell behind) at a pressure.
     Outlet {
@@ -132,6 +137,7 @@ impl GasPatch {
             flow: InletFlow::SuperficialVelocity(velocity),
             temperature,
             composition: None,
+            turbulence: None,
         }
     }
 }

@@ -231,6 +231,16 @@ fn reaction(node: &Node, units: &Units) -> Result<Stated, Fault> {
         let bodies = if body == Body::Three { 1.0 } else { 0.0 };
         RateConstant::Arrhenius(law("rate-constant", sum + bodies)?)
     };
+    let negative = node.get("negative-A");
+    if let RateConstant::Arrhenius(law) = &rate
+        && law.factor < 0.0
+        && !negative.map_or(Ok(false), |node| node.truth("negative-A"))?
+    {
+        return fault(
+            node.line,
+            format!("{name} has a negative A without negative-A"),
+        );
+    }
     let collider = collider(node, body, &name)?;
     let duplicate = node
         .get("duplicate")

@@ -233,6 +233,10 @@ impl Draft {
             (Body::Three, None) => RateConstant::Arrhenius(law(self.rate, sum + 1.0)),
             (Body::None, None) => RateConstant::Arrhenius(law(self.rate, sum)),
         };
+        if self.rate[0] < 0.0 && !self.duplicate {
+            let what = format!("{} has a negative A and is no DUPLICATE", self.name);
+            return fault(self.line, what);
+        }
         let collider = match self.body {
             Body::None if self.efficiencies.is_empty() => None,
             Body::None => {

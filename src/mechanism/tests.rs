@@ -168,6 +168,10 @@ fn what_of_cantera_s_is_not_read_is_refused_by_file_line_and_name() {
             "a.yaml:2: A => B has no rate-constant",
         ),
         (
+            "reactions:\n- equation: A => B\n  rate-constant: {A: -1, b: 0, Ea: 0}\n",
+            "a.yaml:2: A => B has a negative A without negative-A",
+        ),
+        (
             "reactions:\n- equation: A => B\n  rate-constant: {A: many, b: 0, Ea: 0}\n",
             "a.yaml:3: A is \"many\", which is no number",
         ),
@@ -243,6 +247,10 @@ fn what_of_chemkin_s_is_not_read_is_refused_by_file_line_and_name() {
         (
             "REACTIONS\nA<=>B 1 0 0\nFORD/A 2/\n",
             "a.inp:2: A<=>B goes both ways and has FORD",
+        ),
+        (
+            "REACTIONS\nA=>B -1 0 0\n",
+            "a.inp:2: A=>B has a negative A and is no DUPLICATE",
         ),
         (
             "REACTIONS ERGS/MOLE\n",

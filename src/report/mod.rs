@@ -8,6 +8,7 @@ mod picture;
 pub(crate) mod plot;
 mod probes;
 mod section;
+mod voids;
 
 use std::path::{Path, PathBuf};
 
@@ -53,6 +54,12 @@ pub fn write(directory: &Path) -> Result<PathBuf, ResultsError> {
     if !sampled.is_empty() {
         let text = "Fields at the points of the case's probes, snapshot by snapshot.";
         page.section("Probes", text, &sampled);
+    }
+    let profiles = voids::render(directory)?;
+    if !profiles.is_empty() {
+        let text = "Share of the cross-section, and in a cylinder of the surface of each distance from its wall, \
+                    that no particle covers, at the end.";
+        page.section("Void fraction", text, &profiles);
     }
     page.section(
         "Ledger",

@@ -1,8 +1,8 @@
 //! Results of a run: what is written while it runs, and how it is read back.
 //!
 //! A result directory holds `summary.json`, `status.json`, `series.csv`, `results.h5`, `case.toml`,
-//! `gas.pvd` with `gas/gas_NNNN.vtu`, `particles.pvd` with `particles/particles_NNNN.vtp`, and
-//! `probes/probes_NNNN.csv` where the case has probes.
+//! `gas.pvd` with `gas/gas_NNNN.vtu`, `particles.pvd` with `particles/particles_NNNN.vtp`,
+//! `probes/probes_NNNN.csv` where the case has probes, and at its end `voids.csv` where it has a bed.
 //! Every time in them is process time, unless its name begins with `motion_`.
 
 mod error;
@@ -22,6 +22,7 @@ mod status;
 #[cfg_attr(not(feature = "hdf5"), path = "no_store.rs")]
 mod store;
 pub mod summary;
+pub mod voids;
 mod vtk;
 
 pub use error::ResultsError;

@@ -19,7 +19,7 @@ use super::summary::{
     Verdict, WallTimes,
 };
 use super::vtk::{self, Cells};
-use super::{CASE, ResultsError, STORE, SUMMARY, files, pace, snapshot};
+use super::{CASE, ResultsError, STORE, SUMMARY, files, pace, snapshot, voids};
 use crate::case::model::Case;
 
 /// So many rows are gathered before they go to the HDF5 file.
@@ -201,6 +201,9 @@ impl Recorder {
             self.snapshot(moment)?;
         }
         self.flush()?;
+        if let Some(voids) = voids::of_bed(&self.case, &moment.particles) {
+            voids.write(&self.directory)?;
+        }
         let sites = self.open.as_ref().map_or(&[][..], |open| &open.sites);
         self.counters.captured.take(&self.case, moment, sites, true);
         if let Some(words) = self.pace_warning() {

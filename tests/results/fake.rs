@@ -177,6 +177,7 @@ fn gas_setup() -> GasSetup {
         pressure: 101_325.0,
         velocity: Vec3::zeros(),
         gravity: Vec3::new(0.0, 0.0, -9.81),
+        turbulence: Default::default(),
         momentum: Default::default(),
         patches: vec![],
         controls: GasControls {
@@ -346,6 +347,7 @@ impl World {
                 density: &self.gas.density,
                 velocity: &self.gas.velocity,
                 pressure_gradient: &self.gas.pressure_gradient,
+                turbulence: Default::default(),
             },
             bed: &self.bed,
             particles: ParticleFields {

@@ -52,6 +52,9 @@ pub fn differences(expected: &Path, found: &Path) -> Vec<String> {
         let mut files: BTreeMap<_, _> = ["series.csv", "gas.pvd", "particles.pvd", "case.toml"]
             .map(|name| (name.to_owned(), read(name)))
             .into();
+        if folder.join("voids.csv").is_file() {
+            files.insert("voids.csv".into(), read("voids.csv"));
+        }
         for sub in ["gas", "particles"] {
             for entry in fs::read_dir(folder.join(sub)).unwrap() {
                 let name = format!("{sub}/{}", entry.unwrap().file_name().display());

@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use calcine::results::read;
+use calcine::results::voids::Voids;
 
 use crate::run as calcine;
 
@@ -40,6 +41,15 @@ pub fn run() {
         .map(|k| void(&centres, RADIUS - f64::from(k) * 0.08 * BEAD, band))
         .collect();
     let at = |k: usize| k as f64 * 0.08;
+    // The run's own profile cuts the spheres exactly, at every second of its places.
+    let own = Voids::read(&out).unwrap().unwrap().wall;
+    let apart = profile.iter().enumerate().map(|(k, void)| {
+        assert!((own.place[2 * k] - at(k) * BEAD).abs() < 1e-9);
+        (own.void_fraction[2 * k] - void).abs()
+    });
+    let apart = apart.fold(0.0, f64::max);
+    println!("  the run's own profile: {apart:.4} apart at most");
+    assert!(apart < 0.015, "{apart}");
     let extremes: Vec<(f64, f64, bool)> = (1..profile.len() - 1)
         .filter_map(|k| {
             let low = profile[k] < profile[k - 1] && profile[k] <= profile[k + 1];

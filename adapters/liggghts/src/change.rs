@@ -14,6 +14,9 @@ const IDS_A_LINE: usize = 100;
 /// The group of those that go.
 const GROUP: &str = "calcine_gone";
 
+/// A place in no box.
+const NOWHERE: &str = "1e30 1e30 1e30";
+
 /// One particle that comes.
 struct New {
     id: i32,
@@ -71,16 +74,16 @@ impl Change {
     }
 
     /// Makes the change; how many particles there must be afterwards.
+    ///
+    /// Deleting comes first, be it of nobody. The springs of contacts lie in the list of neighbours, by the places
+    /// of particles, and deleting takes them over to the particles. One that comes takes the place of a ghost: if
+    /// the list were read after that, springs would be lost or those of other pairs, and different ones on the two
+    /// ranks of a pair, whose forces would no more cancel.
     pub fn apply(&self, liggghts: &mut Liggghts, before: u64) -> Result<u64, HostError> {
         self.resize(liggghts)?;
         if self.remove.is_empty() && self.insert.is_empty() {
             return Ok(before);
         }
-        for new in &self.insert {
-            put_in(liggghts, new)?;
-        }
-        // Deleting comes last, be it of nobody: it makes LIGGGHTS' map of ids anew, which must hold
-        // the ids given here.
         liggghts.command(&format!("group {GROUP} subtract all all"));
         for ids in self.remove.chunks(IDS_A_LINE) {
             let words: Vec<String> = ids.iter().map(u64::to_string).collect();
@@ -89,6 +92,13 @@ impl Change {
         // Without `no` the ids of those that stay would be counted anew.
         liggghts.command(&format!("delete_atoms group {GROUP} compress no"));
         liggghts.command(&format!("group {GROUP} delete"));
+        for new in &self.insert {
+            put_in(liggghts, new)?;
+        }
+        if !self.insert.is_empty() {
+            // Creating one beyond the box makes nothing but LIGGGHTS' map of ids anew, which must hold those given here.
+            liggghts.command(&format!("create_atoms 1 single {NOWHERE} units box"));
+        }
         Ok(before + self.insert.len() as u64 - self.remove.len() as u64)
     }
 }

@@ -8,7 +8,9 @@ use std::collections::VecDeque;
 use std::ffi::{CString, OsString, c_char, c_int};
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
+use std::process;
 use std::ptr;
+use std::sync::OnceLock;
 
 use calcine_wire::{Carrier, Message, WireError};
 use mpi::environment::Universe;
@@ -63,20 +65,43 @@ pub fn place_files(root: &Path, memory: &Path) {
 }
 
 unsafe extern "C" {
-    fn _exit(code: c_int) -> !;
+    // ISO C's name of what POSIX calls `_exit`.
+    #[link_name = "_Exit"]
+    fn leave(code: c_int) -> !;
     fn atexit(function: extern "C" fn()) -> c_int;
 }
 
-/// Has a function called where this process ends by `exit`, whoever calls that.
-pub fn at_exit(function: extern "C" fn()) {
-    // SAFETY: the function lives as long as the program; a handler that cannot be registered is not called.
-    unsafe { atexit(function) };
+/// This process' id, and what is called where it ends.
+static AT_END: OnceLock<(u32, extern "C" fn())> = OnceLock::new();
+
+/// Has a function called where this process ends by `exit` or `_exit`, whoever calls that; by `exit` as many times
+/// as threads may call that at once.
+pub fn at_end(function: extern "C" fn(), threads: usize) {
+    let _ = AT_END.set((process::id(), function));
+    for _ in 0..threads {
+        // SAFETY: the function lives as long as the program; a handler that cannot be registered is not called.
+        unsafe { atexit(function) };
+    }
+}
+
+/// POSIX' `_exit`, which Open MPI calls a second after it has lost its daemon, past all handlers of `exit`: the
+/// dynamic linker prefers the executable's symbols over the C library's.
+#[unsafe(no_mangle)]
+extern "C" fn _exit(code: c_int) -> ! {
+    // A child between its start and its program has these, too, but is not meant.
+    if let Some((own, function)) = AT_END.get()
+        && *own == process::id()
+    {
+        function();
+    }
+    // SAFETY: takes any code.
+    unsafe { leave(code) }
 }
 
 /// Ends this process without what MPI would do then, which waits for the dead.
 pub fn end_at_once(code: u8) -> ! {
     // SAFETY: takes any code.
-    unsafe { _exit(code.into()) }
+    unsafe { leave(code.into()) }
 }
 
 /// Ends MPI in a process that MPI has spawned; rsmpi would part from the parent a second time.

@@ -15,7 +15,7 @@ use calcine_wire::{Carried, LinkAddress, Network, Run, Transport, WireError};
 use mpi::Threading;
 use mpi::environment::Universe;
 
-use crate::carrier::{World, at_exit, end_at_once, place_files};
+use crate::carrier::{World, at_end, end_at_once, place_files};
 
 /// What removes the files of a coordinator that was killed while MPI started, when there is no solver yet to do
 /// it: it waits for the end of a pipe that only the coordinator holds, and looks for what MPI's daemon still leaves.
@@ -56,6 +56,9 @@ impl Drop for Guard {
 const LOOK: Duration = Duration::from_millis(10);
 const CERTAIN: u32 = 20;
 
+/// Begins the variable by which Open MPI tells a process its rank.
+const RANK: &str = "OMPI_COMM_WORLD_RANK=";
+
 /// MPI in this process, and the worlds that it has spawned.
 pub struct MpiNetwork {
     _guard: Guard,
@@ -70,8 +73,8 @@ static FILES: OnceLock<LinkAddress> = OnceLock::new();
 const THREADS: usize = 4;
 static ENDS: AtomicBool = AtomicBool::new(false);
 
-/// Open MPI ends its process by `exit` where its own daemon has died, from any thread and from several at once:
-/// the first has to say so and to clean up, the others wait for it here.
+/// Open MPI ends its process by `exit` or `_exit` where its own daemon has died, from any thread and from several at
+/// once: the first has to say so and to clean up, the others wait for it here.
 extern "C" fn ended_by_mpi() {
     static TAKEN: AtomicBool = AtomicBool::new(false);
     let Some(files) = FILES.get().filter(|_| !ENDS.load(Ordering::SeqCst)) else {
@@ -92,9 +95,7 @@ extern "C" fn ended_by_mpi() {
 impl MpiNetwork {
     /// Starts MPI in a process that MPI may end: then it says so, and its files go.
     pub fn start_guarded() -> Result<(Self, Universe), WireError> {
-        for _ in 0..THREADS {
-            at_exit(ended_by_mpi);
-        }
+        at_end(ended_by_mpi, THREADS);
         Self::start()
     }
 
@@ -160,7 +161,7 @@ impl Network for MpiNetwork {
                     return Err(WireError::NotSpawned { ranks, seconds });
                 }
             }
-            let left = mark.as_deref().map_or(0, living_with);
+            let left = mark.as_deref().map_or(0, |mark| living_with(mark).count());
             most = most.max(left);
             fewer = if left < most { fewer + 1 } else { 0 };
             if fewer >= CERTAIN {
@@ -169,6 +170,21 @@ impl Network for MpiNetwork {
         };
         let end = |rank| Box::new(Carried::new(world.of_rank(rank))) as Box<dyn Transport + Send>;
         Ok((0..ranks).map(end).collect())
+    }
+
+    fn ranks_here(&self, role: &str) -> Vec<(usize, u32)> {
+        let mark = format!("{VARIABLE}={}", self.address(role).to_text());
+        let rank = |(pid, environment): (u32, Vec<u8>)| {
+            let own = environment.split(|&byte| byte == 0);
+            let mut ranks = own.filter_map(|word| {
+                let text = std::str::from_utf8(word).ok()?;
+                text.strip_prefix(RANK)?.parse().ok()
+            });
+            Some((ranks.next()?, pid))
+        };
+        let mut ranks: Vec<_> = living_with(&mark).filter_map(rank).collect();
+        ranks.sort_unstable();
+        ranks
     }
 
     fn goodbye(&self) {
@@ -184,15 +200,17 @@ fn address_in(line: &[OsString]) -> Option<String> {
     Some(format!("{VARIABLE}={address}"))
 }
 
-/// Processes of this machine that live and have a variable of this value.
-fn living_with(variable: &str) -> usize {
+/// Processes of this machine that live and have a variable of this value, with their environments.
+fn living_with(variable: &str) -> impl Iterator<Item = (u32, Vec<u8>)> {
     let entries = fs::read_dir("/proc").into_iter().flatten().flatten();
-    let has = |entry: &fs::DirEntry| {
+    entries.filter_map(move |entry| {
+        let pid = entry.file_name().to_str()?.parse().ok()?;
         let text = fs::read(entry.path().join("environ")).unwrap_or_default();
-        text.split(|&byte| byte == 0)
-            .any(|word| word == variable.as_bytes())
-    };
-    entries.filter(has).count()
+        let has = text
+            .split(|&byte| byte == 0)
+            .any(|word| word == variable.as_bytes());
+        has.then_some((pid, text))
+    })
 }
 
 /// Ends this process: MPI first, where nothing died. After a death MPI waits for the dead, so that its

@@ -115,6 +115,7 @@ Foam::calcine::gas::gas
     enthalpySolver_(mesh, "h"),
     takesAllPressure_(properties.getOrDefault<word>("momentumModel", "a") == "b"),
     schmidt_(properties.lookupOrDefault<scalar>("schmidt", 1)),
+    sendsEddies_(properties.lookupOrDefault<bool>("sendsEddies", false)),
     startVelocity_(U_.primitiveField())
 {
     const dictionary& controls = properties.subDict("controls");
@@ -400,6 +401,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
     {
         place();
         restore();
+        models_->place(committed_.voidFraction*density());
     }
     U_.correctBoundaryConditions();
 
@@ -453,7 +455,10 @@ void Foam::calcine::gas::commit()
     committed_.pressureGradient = pressureGradient_;
     committed_.flux = flux_;
     committed_.voidFraction = given_.voidFraction;
-    models_->advance(window_.motionSpan, committed_.voidFraction*density());
+    models_->advance
+    (
+        window_.motionSpan, committed_.voidFraction*density(), outflow()/mesh_.cellVolumes()
+    );
 }
 
 

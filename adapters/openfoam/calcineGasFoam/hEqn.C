@@ -52,7 +52,7 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
     boundary_.addHeat
     (
         window_.processEnd,
-        conductivity()().primitiveField(),
+        conductivity()(),
         temperatureBase_,
         heatCapacity_,
         ownerDistance_,

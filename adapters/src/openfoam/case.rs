@@ -12,7 +12,7 @@ use calcine_wire::Catalogue;
 
 use super::start::Start;
 use super::stock::{self, Solver};
-use super::{NAME, chemistry, decompose, dictionaries, species};
+use super::{NAME, chemistry, decompose, dictionaries, species, turbulence};
 use crate::launch::without_blanks;
 
 /// What an OpenFOAM case is made from.
@@ -40,7 +40,9 @@ impl OpenfoamCase<'_> {
     /// Writes the case into a folder, which is made if it is not there.
     pub fn write(&self, folder: &Path) -> Result<(), PartError> {
         self.check()?;
-        let catalogue = Catalogue::gas(self.setup.properties.species().len()).map_err(|error| {
+        let turbulent = !self.setup.turbulence.is_laminar();
+        let species = self.setup.properties.species().len();
+        let catalogue = Catalogue::gas(species, turbulent).map_err(|error| {
             PartError::new(NAME, FailureKind::NotStarted, "its columns").caused_by(error)
         })?;
         make(folder)?;
@@ -104,6 +106,13 @@ impl OpenfoamCase<'_> {
         ] {
             put(&folder.join(name), &text)?;
         }
+        if setup.turbulence.is_laminar() {
+            return Ok(());
+        }
+        let options = self.beside(folder, "constant/fvOptions")?;
+        for (name, text) in turbulence::files(setup, &options) {
+            put(&folder.join(name), &text)?;
+        }
         Ok(())
     }
 
@@ -118,7 +127,8 @@ impl OpenfoamCase<'_> {
         };
         let refuse = |words: String| PartError::new(NAME, FailureKind::NotStarted, words);
         if self.solver.is_stock() {
-            let words = "a stock solver does not take Calcine's reactions of the gas; use calcineGasFoam";
+            let words =
+                "a stock solver does not take Calcine's reactions of the gas; use calcineGasFoam";
             return Err(refuse(words.into()));
         }
         let files = chemistry::files(setup, mixture, gas);
@@ -332,6 +342,7 @@ mod tests {
             pressure: 101_325.0,
             velocity: Vec3::zeros(),
             gravity: Vec3::zeros(),
+            turbulence: Default::default(),
             momentum: Default::default(),
             patches: patches.map(|(name, patch)| (name.to_owned(), patch)).into(),
             controls: GasControls {

@@ -6,8 +6,8 @@ use std::fmt::Write;
 
 use calcine_coupler::gas_chemistry::{Combustion, ReactingGas};
 use calcine_coupler::physics::gas::GAS_CONSTANT;
-use calcine_coupler::physics::kinetics::mechanism::Step;
 use calcine_coupler::physics::kinetics::RateConstant;
+use calcine_coupler::physics::kinetics::Step;
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::GasSetup;
 use thiserror::Error;
@@ -55,8 +55,8 @@ pub fn files(
     mixture: &Mixture,
     gas: &ReactingGas,
 ) -> Result<Vec<(&'static str, String)>, Inexpressible> {
-    // A species without a field of its own starts from this one; calcineGasFoam sets it anyway.
-    let about = ("volScalarField", "Ydefault", "[0 0 0 0 0 0 0]", "0");
+    // What species without fields of their own start from: OpenFOAM brings their sum to one, calcineGasFoam sets them.
+    let about = ("volScalarField", "Ydefault", "[0 0 0 0 0 0 0]", "1");
     Ok(vec![
         (
             "constant/thermophysicalProperties.chemistry",
@@ -67,7 +67,10 @@ pub fn files(
             "constant/reactions",
             reactions(mixture, gas.mechanism.steps())?,
         ),
-        ("constant/chemistryProperties.chemistry", properties(mixture, gas)),
+        (
+            "constant/chemistryProperties.chemistry",
+            properties(mixture, gas),
+        ),
         (
             "0/Ydefault.chemistry",
             field(about, setup, |_| zero_gradient()),
@@ -251,7 +254,12 @@ mod tests {
         let mechanism = Mechanism::jones_lindstedt(&mixture()).unwrap();
         let texts = texts(mechanism.steps());
         for (text, equation, factor, temperature) in [
-            (&texts[0], "CH4^0.5 + 0.5O2^1.25 = CO + 2H2", 4.4e11, 15_154.0),
+            (
+                &texts[0],
+                "CH4^0.5 + 0.5O2^1.25 = CO + 2H2",
+                4.4e11,
+                15_154.0,
+            ),
             (&texts[1], "CH4 + H2O = CO + 3H2", 3.0e8, 15_154.0),
             (&texts[2], "H2 + 0.5O2 = H2O", 5.69e11, 17_620.0),
             (&texts[3], "CO + H2O = CO2 + H2", 2.75e9, 10_055.0),
@@ -259,7 +267,10 @@ mod tests {
             assert!(text.contains(&format!("\"{equation}\"")), "{text}");
             assert!((number(text, "A ") / factor - 1.0).abs() < 1e-12, "{text}");
             // E/R of the table's J/kmol by hand, to its digits.
-            assert!((number(text, "Ta") / temperature - 1.0).abs() < 1e-4, "{text}");
+            assert!(
+                (number(text, "Ta") / temperature - 1.0).abs() < 1e-4,
+                "{text}"
+            );
         }
         assert!(texts[0].contains("irreversibleArrheniusReaction"));
         assert!(texts[2].contains(" reversibleArrheniusReaction"));
@@ -283,7 +294,10 @@ mod tests {
         steps[0].collider = Some(vec![1.0, 1.0, 1.0, 1.0, 6.0, 1.0, 1.0]);
         let text = &texts(&steps)[0];
         assert!(text.contains(" reversibleThirdBodyArrheniusReaction"));
-        assert!(text.contains("(CH4 1e0)") && text.contains("(H2O 6e0)"), "{text}");
+        assert!(
+            text.contains("(CH4 1e0)") && text.contains("(H2O 6e0)"),
+            "{text}"
+        );
         assert!((number(text, "A ") / plain / 1e3 - 1.0).abs() < 1e-12);
     }
 }

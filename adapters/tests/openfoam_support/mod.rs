@@ -73,6 +73,7 @@ pub fn setup() -> GasSetup {
         pressure: PRESSURE,
         velocity: Vec3::new(0.0, 0.0, SPEED),
         gravity: Vec3::zeros(),
+        turbulence: Default::default(),
         momentum: Default::default(),
         patches: patches.collect(),
         controls: GasControls {

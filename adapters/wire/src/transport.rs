@@ -48,6 +48,9 @@ pub trait Network: Send + Sync {
         patience: Duration,
     ) -> Result<Vec<Box<dyn Transport + Send>>, WireError>;
 
+    /// Rank and process id of a role's ranks that run on this machine, from when they were spawned on.
+    fn ranks_here(&self, role: &str) -> Vec<(usize, u32)>;
+
     /// A solver has said goodbye: its world ends in an orderly way.
     fn goodbye(&self);
 }

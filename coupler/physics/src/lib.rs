@@ -21,6 +21,7 @@ pub mod reaction;
 pub mod solid;
 pub mod solids;
 pub mod thermo;
+pub mod turbulence;
 
 /// A vector in space.
 pub type Vec3 = nalgebra::Vector3<f64>;

@@ -19,13 +19,14 @@
 //! so energy and every element close whatever the iteration did, and no cell gives what it does not have.
 
 use calcine_coupler::gas_chemistry::ReactingGas;
-use calcine_coupler::physics::kinetics::Reactor;
 use calcine_coupler::physics::kinetics::elements::Elements;
+use calcine_coupler::physics::kinetics::{self, Reactor};
 use calcine_coupler::physics::thermo::mixture::MOST_SPECIES;
 use rayon::prelude::*;
 
 use super::attempt::{Frame, Material};
 use super::state::State;
+use super::stirring::reacting_share;
 use crate::numerics::parallel::{fill, largest};
 
 /// Cells that a thread takes at a time: a reactor costs some ten to hundred microseconds.
@@ -89,8 +90,7 @@ pub struct Chemistry {
 
 /// Whether the window's reactions take pseudo-steps.
 pub fn is_dual(frame: &Frame<'_>) -> bool {
-    frame.chemistry.reacting().is_some()
-        && frame.storage_span > (1.0 + LONGER) * frame.motion_span
+    frame.chemistry.reacting().is_some() && frame.storage_span > (1.0 + LONGER) * frame.motion_span
 }
 
 impl Chemistry {
@@ -139,9 +139,15 @@ impl Chemistry {
             after.copy_from_slice(before);
             let mut temperature = at.temperature[cell];
             let pressure = at.base_pressure;
+            let state = kinetics::State {
+                pressure,
+                temperature,
+                fractions: before,
+            };
+            let share = reacting_share(frame, gas, cell, state);
             let reacted = reactor.advance(pressure, &mut temperature, after, span);
             for (rate, (after, before)) in rates.iter_mut().zip(after.iter().zip(before.iter())) {
-                *rate = (after - before) / span;
+                *rate = share * (after - before) / span;
             }
             reacted.map(|_| ()).map_err(|error| {
                 let place = frame.grid.centre[cell];
@@ -193,10 +199,7 @@ impl Chemistry {
             mass(cell) * self.rates[at]
         });
         self.heat(species, &composition.gain, &mut enthalpy.gain);
-        for (source, values) in [
-            (composition, &now.composition),
-            (enthalpy, &now.enthalpy),
-        ] {
+        for (source, values) in [(composition, &now.composition), (enthalpy, &now.enthalpy)] {
             source.inertia.clear();
             source.before.clear();
             if pseudo {

@@ -12,7 +12,7 @@
 //! (it changes in a closed domain alone).
 
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::setup::Convection;
+use calcine_coupler::setup::{Convection, Turbulence};
 
 use super::attempt::{Frame, Material};
 use super::boundary::{Heat, Value};
@@ -111,23 +111,48 @@ fn conduction(frame: &Frame<'_>, material: &Material, now: &State, index: usize)
         return conductance(face, interpolate(face, &material.conductivity));
     }
     let pores = frame.void_fraction[face.owner];
+    let eddies = frame.heat_eddies_at(index);
     match frame.boundary.at(index) {
-        Value::Inlet { gas, .. } => conductance(face, pores * gas.conductivity),
+        Value::Inlet { gas, .. } => {
+            let carried = if eddies > 0.0 {
+                let composition = frame.boundary.composition(index).unwrap_or_default();
+                eddies * frame.properties.heat_capacity(gas.temperature, composition)
+            } else {
+                0.0
+            };
+            conductance(face, pores * gas.conductivity + carried)
+        }
         Value::Wall { heat, .. } => match heat {
             Heat::Temperature(temperature) => {
                 let composition = now.composition_of(face.owner, frame.species());
-                let conductivity = frame.properties.conductivity(temperature, composition);
-                conductance(face, pores * conductivity)
+                let gas = frame.properties;
+                let conductivity = gas.conductivity(temperature, composition);
+                let carried = if eddies > 0.0 {
+                    eddies * gas.heat_capacity(temperature, composition)
+                } else {
+                    0.0
+                };
+                conductance(face, pores * conductivity + carried)
             }
             // The half cell and the wall in series.
             Heat::Convective { coefficient, .. } if coefficient > 0.0 => {
-                let gas = face.distance() / material.conductivity[face.owner];
+                let gas = face.distance() / at_wall(frame, material, index, face.owner);
                 face.area / (1.0 / coefficient + gas)
             }
             Heat::Convective { .. } | Heat::Adiabatic | Heat::Flux(_) => 0.0,
         },
         Value::Outlet { .. } => 0.0,
     }
+}
+
+/// Void fraction × conductivity of the gas at a wall in W/m/K, with the eddies there in place of the cell's.
+#[inline]
+fn at_wall(frame: &Frame<'_>, material: &Material, index: usize, cell: usize) -> f64 {
+    let Turbulence::KEpsilon { prandtl, .. } = frame.turbulence else {
+        return material.conductivity[cell];
+    };
+    let more = frame.heat_eddies_at(index) - frame.old.turbulence.viscosity[cell] / prandtl;
+    material.conductivity[cell] + material.heat_capacity[cell] * more
 }
 
 impl Enthalpy {

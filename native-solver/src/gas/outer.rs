@@ -53,7 +53,8 @@ pub struct Equations {
     pub chemistry: Chemistry,
     /// Properties at the last temperature.
     pub material: Material,
-    krylov: Krylov,
+    /// Memory of the linear solvers.
+    pub krylov: Krylov,
     /// How far what is taken explicitly from the last iterate follows it, as a share.
     share: f64,
 }
@@ -115,6 +116,9 @@ impl Equations {
             return Err(words);
         }
         convergence.volume_residual = self.volume_residual(frame, now);
+        if !frame.turbulence.is_laminar() {
+            self.momentum.update_gradients(frame, &now.velocity);
+        }
         Ok(convergence)
     }
 
@@ -138,7 +142,12 @@ impl Equations {
     }
 
     /// One outer iteration, on the momentum equation as assembled; returns linear iterations.
-    fn iterate(&mut self, frame: &Frame<'_>, controls: &GasControls, now: &mut State) -> Result<u32, String> {
+    fn iterate(
+        &mut self,
+        frame: &Frame<'_>,
+        controls: &GasControls,
+        now: &mut State,
+    ) -> Result<u32, String> {
         let tolerance = controls.linear_tolerance;
         let (krylov, material) = (&mut self.krylov, &self.material);
         let mut iterations = self.momentum.predict(frame, krylov, tolerance, now);
@@ -170,7 +179,12 @@ impl Equations {
     }
 
     /// A pseudo-step of species and enthalpy, with the rates of its start.
-    fn pseudo_step(&mut self, frame: &Frame<'_>, tolerance: f64, now: &mut State) -> Result<u32, String> {
+    fn pseudo_step(
+        &mut self,
+        frame: &Frame<'_>,
+        tolerance: f64,
+        now: &mut State,
+    ) -> Result<u32, String> {
         self.chemistry.follow(frame, now)?;
         self.react(frame, true, now);
         let iterations = self.scalars(frame, tolerance, SCALARS, now);

@@ -1,6 +1,6 @@
 //! Species of the gas, as mass fractions Y_k, with exactly the fluxes and masses of continuity, per cell:
 //!
-//! (m Y − m_old Y_old)/Δτ + Σ φ_f Y_f − Σ (εμ)_f/Sc ∇Y·S = S − C Y + m w
+//! (m Y − m_old Y_old)/Δτ + Σ φ_f Y_f − Σ (εμ/Sc + μ_t/Sc_t)_f ∇Y·S = S − C Y + m w
 //!
 //! with what particles give and take, S − C Y (continuity has their sum), and what reactions make (chemistry.rs),
 //! (requirements SPC-1; all species diffuse alike, so that Fick's fluxes sum to zero). Implicit Euler,
@@ -194,12 +194,13 @@ impl Species {
         fill(&mut self.diffusion, |index| {
             let face = &grid.faces[index];
             if index < grid.internal {
-                return conductance(face, interpolate(face, &material.viscosity) / frame.schmidt);
+                return conductance(face, interpolate(face, &material.diffusivity));
             }
             match frame.boundary.at(index) {
                 Value::Inlet { gas, .. } => {
                     let pores = frame.void_fraction[face.owner];
-                    conductance(face, pores * gas.viscosity / frame.schmidt)
+                    let laminar = pores * gas.viscosity / frame.schmidt;
+                    conductance(face, laminar + frame.species_eddies_at(index))
                 }
                 Value::Wall { .. } | Value::Outlet { .. } => 0.0,
             }
@@ -453,7 +454,6 @@ impl Species {
                 stored_magnitude,
                 boundary: inflow * frame.storage_span,
                 boundary_magnitude: magnitude * frame.storage_span,
-                ..Balance::default()
             });
         }
     }

@@ -47,6 +47,11 @@ pub(super) fn chemistry(
     };
     let found = match (named, own) {
         (true, false) => file(&table, mixture, folder),
+        (false, true) if table.has("thermo") => {
+            let help = "remove it: the case's own reactions take Calcine's thermodynamics";
+            table.fail("thermo", "stands beside reactions of the case's own", help);
+            None
+        }
         (false, true) => reactions(&table, mixture, around).map(|made| (made, Vec::new())),
         _ => {
             let help = "for example mechanism = \"jones-lindstedt\"";

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use calcine_coupler::gas_chemistry::Combustion;
 use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
@@ -13,6 +14,7 @@ use calcine_coupler::time::GasStorage;
 use super::chemistry::{Around, chemistry};
 use super::composition::fractions;
 use super::gas_patch::boundary;
+use super::turbulence::turbulence;
 use crate::case::model::MeshSpec;
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
@@ -40,7 +42,9 @@ pub(super) fn read(
         .vector("gravity", Dimension::ACCELERATION)
         .unwrap_or([0.0; 3]);
     let held = section.truth("held").unwrap_or(false);
-    let patches = boundary(&section, mesh, properties.as_ref());
+    let turbulence = turbulence(&section);
+    let turbulent = turbulence.map(|model| !model.is_laminar());
+    let patches = boundary(&section, mesh, properties.as_ref(), turbulent);
     let controls = controls(&section);
     let around = Around {
         gas: properties.as_ref(),
@@ -51,6 +55,19 @@ pub(super) fn read(
     section.finish();
     let (temperature, pressure, velocity, composition) = initial?;
     let (reacting, files) = chemistry?;
+    let stirred = reacting
+        .reacting()
+        .is_some_and(|gas| gas.combustion != Combustion::Laminar);
+    if stirred && turbulent == Some(false) {
+        let help = "state [gas.turbulence], or write model = \"laminar\"";
+        let rule = "has the model `pasr`, but the gas has no eddies to mix it";
+        section.fail("chemistry", rule, help);
+    }
+    if held && reacting.reacting().is_some() {
+        let help = "leave `gas.held` out, or `gas.chemistry`";
+        let rule = "reacts, but `gas.held` leaves the gas as it is at the start";
+        section.fail("chemistry", rule, help);
+    }
     let setup = GasSetup {
         mixture: mixture?.into(),
         properties: properties?,
@@ -62,6 +79,7 @@ pub(super) fn read(
         pressure,
         velocity,
         gravity: Vec3::from(gravity),
+        turbulence: turbulence?,
         momentum: MomentumModel::default(), // `laws.drag.model` says
         patches: patches?,
         controls,

@@ -21,6 +21,7 @@ mod sizes;
 mod solids;
 mod time;
 mod traffic;
+mod turbulence;
 mod walls;
 mod zone;
 
@@ -83,6 +84,9 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         reactions::fits(root, &chemistry, laws, openfoam.solver);
     }
     let output = output::output(root);
+    if let (Some(gas), Some(output)) = (&gas, &output) {
+        turbulence::fits(root, &gas.setup.turbulence, gas.held, output);
+    }
     let probes = probes::probes(root);
     let quantities = {
         let species = gas.as_ref().map(|gas| gas.setup.properties.species());

@@ -32,7 +32,7 @@ pub enum KineticsError {
         off: String,
     },
     /// A number that is none.
-    #[error("{reaction}: {quantity} is {value}, which is no finite number of its kind")]
+    #[error("{reaction}: {quantity} is {value}, which is no number of its kind")]
     Value {
         /// The reaction.
         reaction: String,
@@ -42,7 +42,7 @@ pub enum KineticsError {
         value: f64,
     },
     /// A third body without efficiency.
-    #[error("{reaction} has a falloff but no third body")]
+    #[error("{reaction} needs a third body, but the gas has none for it")]
     NoCollider {
         /// The reaction.
         reaction: String,

@@ -98,6 +98,10 @@ impl Broadening {
         if let Some(second) = second {
             centre = centre + (N::constant(-second) / temperature).exp();
         }
+        if centre.value() <= 0.0 {
+            // The limit of F_c going to zero: log F is −log(1/F_c)/(1 + 0.57²).
+            return N::constant(0.0);
+        }
         let to_ten = std::f64::consts::LOG10_E;
         let centre = centre.ln().times(to_ten);
         let shifted = pressure.ln().times(to_ten) - N::constant(0.4) - centre.times(0.67);
@@ -162,6 +166,26 @@ mod tests {
     }
 
     const TROE_AT_1500: f64 = 5_153_221.750_737_188;
+
+    #[test]
+    fn a_centre_of_zero_leaves_no_rate_between_the_limits() {
+        let law = methyl(Broadening::Troe {
+            share: 1.0,
+            third: 1e30,
+            first: 1e-3,
+            second: None,
+        });
+        let k: f64 = law.at(1500.0, 8.1);
+        assert_eq!(k, 0.0);
+        let nearly = methyl(Broadening::Troe {
+            share: 1.0,
+            third: 1e30,
+            first: 5.0,
+            second: None,
+        });
+        let k: f64 = nearly.at(1500.0, 8.1);
+        assert!(k > 0.0 && k < 1e-60, "{k:e}");
+    }
 
     #[test]
     fn derivatives_are_the_difference_quotients() {

@@ -9,6 +9,9 @@ use crate::thermo::{Element, Mixture};
 /// Atoms that a mole of a balanced reaction may lose: printed coefficients have few digits.
 const BALANCED: f64 = 1e-9;
 
+/// A in messages.
+const FACTOR: &str = "a factor A";
+
 /// A reaction of a mechanism; species by their index in the mixture, numbers of moles as in its equation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
@@ -80,7 +83,12 @@ impl Step {
                 Some(efficiencies)
             }
         };
-        if collider.is_none() && matches!(stated.rate, RateConstant::Falloff { .. }) {
+        let falloff = matches!(stated.rate, RateConstant::Falloff { .. });
+        let nobody = match &collider {
+            None => falloff,
+            Some(efficiencies) => efficiencies.iter().all(|one| *one == 0.0),
+        };
+        if nobody {
             return Err(KineticsError::NoCollider {
                 reaction: stated.name.clone(),
             });
@@ -139,7 +147,7 @@ fn balanced(mixture: &Mixture, name: &str, net: &[(usize, f64)]) -> Result<(), K
 fn finite(stated: &Statement) -> Result<(), KineticsError> {
     let mut numbers = Vec::new();
     let mut law = |law: &Arrhenius| {
-        numbers.push(("a factor A", law.factor));
+        numbers.push((FACTOR, law.factor));
         numbers.push(("an exponent b", law.exponent));
         numbers.push(("an activation energy E in J/mol", law.activation_energy));
     };
@@ -149,6 +157,15 @@ fn finite(stated: &Statement) -> Result<(), KineticsError> {
             law(high);
             law(low);
         }
+    }
+    let falloff = matches!(stated.rate, RateConstant::Falloff { .. });
+    let negative = numbers.iter().find(|one| one.0 == FACTOR && one.1 <= 0.0);
+    if let Some(&(_, value)) = negative.filter(|_| falloff) {
+        return Err(KineticsError::Value {
+            reaction: stated.name.clone(),
+            quantity: "a factor A of a falloff",
+            value,
+        });
     }
     let orders = stated.orders.iter().flatten();
     numbers.extend(orders.map(|(_, order)| ("an order", *order)));

@@ -235,6 +235,12 @@ fn what_is_no_mechanism_says_why() {
     let mut wrong = stated("CO + H2O => CO2 + H2");
     wrong.orders = Some(vec![("CO".into(), f64::NAN)]);
     assert!(message(&gas(), wrong).contains("an order is NaN"));
+    let mut by_helium = stated("CO + H2O => CO2 + H2");
+    by_helium.collider = Some(Collider {
+        efficiencies: vec![("HE".into(), 1.0)],
+        others: 0.0,
+    });
+    assert!(message(&gas(), by_helium).contains("needs a third body"));
     let mut alone = stated("CO + H2O => CO2 + H2");
     let RateConstant::Arrhenius(law) = alone.rate else {
         unreachable!()
@@ -244,5 +250,5 @@ fn what_is_no_mechanism_says_why() {
         low: law,
         broadening: crate::kinetics::Broadening::Lindemann,
     };
-    assert!(message(&gas(), alone).contains("falloff but no third body"));
+    assert!(message(&gas(), alone).contains("needs a third body"));
 }

@@ -1,0 +1,109 @@
+//! Spheres that touch across LIGGGHTS' ranks, while others come and go: springs stay with their contacts, and
+//! what the two ranks of a pair give each other cancels.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "liggghts_support/mod.rs"]
+mod support;
+
+use calcine_adapters::liggghts::LiggghtsParticles;
+use calcine_coupler::motion::{Change, NewParticle};
+use calcine_coupler::part::Particles;
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::ParticleSetup;
+use support::{Bench, MASS, contacts, heap, heap_from, momentum, setup, setup_with};
+
+/// A sphere that comes in above the heap and away from it, at a place along x in m.
+fn elsewhere(id: u64, x: f64) -> NewParticle {
+    NewParticle {
+        id,
+        population: 0,
+        position: Vec3::new(x, 0.09, 0.08),
+        velocity: Vec3::zeros(),
+        radius: 0.0025,
+        density: 2500.0,
+    }
+}
+
+/// The heap behind a lone sphere of id 1, which goes first.
+fn heap_and_one() -> ParticleSetup {
+    let mut spheres = vec![(Vec3::new(0.01, 0.01, 0.08), Vec3::zeros())];
+    let heap = heap();
+    spheres.extend(heap.position.iter().map(|&centre| (centre, Vec3::zeros())));
+    setup(contacts(Vec3::new(0.0, 0.0, -9.81)), &spheres)
+}
+
+/// Pushed aside and pressed down, so that contacts slide and stick.
+fn press(particles: &LiggghtsParticles) -> Vec<Vec3> {
+    let each = particles.fields().id.iter();
+    each.map(|&id| Vec3::new(2e-4 * (id % 5) as f64, 1e-4, -1e-3))
+        .collect()
+}
+
+/// Velocities after 15 ms in which the heap comes to rest on itself, a change, and 1 ms more; of the heap.
+fn after(change: &Change) -> Vec<Vec3> {
+    let mut bench = Bench::new();
+    let mut particles = bench.launch(&heap_and_one(), "a", None);
+    let push = press(&particles);
+    bench.window(&mut particles, 1.5e-2, &push).unwrap();
+    particles.change(&bench.supervisor, change).unwrap();
+    let push = press(&particles);
+    bench.window(&mut particles, 1e-3, &push).unwrap();
+    let fields = particles.fields();
+    let own = fields.id.iter().zip(fields.velocity);
+    own.filter(|(id, _)| (2..=41).contains(*id))
+        .map(|(_, velocity)| *velocity)
+        .collect()
+}
+
+#[test]
+fn springs_stay_with_their_contacts_where_others_come_and_go() {
+    let change = |remove: &[u64], insert: &[u64]| Change {
+        remove: remove.to_vec(),
+        insert: insert.iter().map(|&id| elsewhere(id, 0.09)).collect(),
+    };
+    // One that comes takes the last place: nobody moves.
+    let undisturbed = after(&change(&[], &[50]));
+    // The first that goes has the last one, of the heap, take its place.
+    let moved = after(&change(&[1], &[]));
+    let largest = undisturbed.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    assert!(largest > 1e-3, "{largest}");
+    let apart = undisturbed.iter().zip(&moved).map(|(a, b)| (a - b).norm());
+    let apart = apart.fold(0.0, f64::max);
+    println!("{apart:.1e} m/s apart of {largest:.1e}");
+    // Another order of the sums, over 1000 steps of contacts.
+    assert!(apart < 1e-9 * largest, "{apart} of {largest} m/s");
+}
+
+#[test]
+fn what_two_and_three_ranks_give_each_other_cancels_while_particles_come_and_go() {
+    for (ranks, x) in [(1, 0.04), (2, 0.045), (3, 0.028)] {
+        let mut bench = Bench::new();
+        bench.ranks = ranks;
+        let mut all_free = contacts(Vec3::new(0.0, 0.0, -9.81));
+        all_free.held = vec![false, false];
+        let setup = setup_with(all_free, &heap_from(x));
+        let mut particles = bench.launch(&setup, "a", None);
+        let mut worst = 0.0f64;
+        for round in 0..8u64 {
+            let push = press(&particles);
+            let before = momentum(&particles);
+            let impulse = bench.window(&mut particles, 2e-3, &push).unwrap();
+            let count = particles.fields().len() as f64;
+            let weight = count * MASS * bench.acted * Vec3::new(0.0, 0.0, -9.81);
+            let pushed: Vec3 = impulse.iter().sum();
+            let support = bench.support.unwrap();
+            let left = momentum(&particles) - before - pushed - weight - support;
+            worst = worst.max(left.norm() / weight.norm());
+            let ids = particles.fields().id;
+            let change = Change {
+                remove: vec![ids[ids.len() / 2]],
+                insert: vec![elsewhere(100 + round, 0.01 + 0.01 * round as f64)],
+            };
+            particles.change(&bench.supervisor, &change).unwrap();
+            assert_eq!(particles.fields().len(), 40);
+        }
+        println!("{ranks} ranks: {worst:.1e} of the weight");
+        assert!(worst < 1e-12, "{ranks} ranks: {worst}");
+    }
+}

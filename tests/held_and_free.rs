@@ -1,0 +1,119 @@
+//! A bed that settled is held, heated, and let go again: each case takes its particles from the last snapshot of the one
+//! before (`particles.place.file`), with sizes and temperatures.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use calcine::results::Summary;
+use calcine::results::read::{Series, arrays, collection};
+use calcine::results::voids::Voids;
+
+/// The shipped settled bed; its lines by their beginnings replaced.
+fn case(folder: &Path, name: &str, replaced: &[(&str, String)]) -> PathBuf {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/settled-bed.toml");
+    let text = fs::read_to_string(source).unwrap();
+    let line = |line: &str| {
+        let own = replaced.iter().find(|(begin, _)| line.starts_with(begin));
+        own.map_or_else(|| line.to_owned(), |(_, text)| text.clone())
+    };
+    let lines: Vec<String> = text.lines().map(line).collect();
+    let path = folder.join(format!("{name}.toml"));
+    fs::write(&path, lines.join("\n")).unwrap();
+    path
+}
+
+/// Runs a case; the last snapshot of its particles.
+fn run(case: &Path, out: &Path, set: &[&str]) -> PathBuf {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
+    command.arg("run").arg(case).arg("--quiet");
+    for setting in set {
+        command.args(["--set", setting]);
+    }
+    let output = command.arg("--out").arg(out).output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{}: {text}", case.display());
+    let files = collection(out, "particles.pvd").unwrap();
+    files.last().unwrap().1.clone()
+}
+
+fn heights(file: &Path) -> Vec<f64> {
+    let arrays = arrays(file).unwrap();
+    let points = arrays["points"].values.chunks_exact(3);
+    points.map(|centre| centre[2]).collect()
+}
+
+fn last(out: &Path, name: &str) -> f64 {
+    *Series::read(out).unwrap().column(name).last().unwrap()
+}
+
+#[test]
+fn a_settled_bed_is_held_heated_and_let_go_where_it_lies() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = |name: &str| folder.path().join(name);
+    let settled = run(&case(folder.path(), "settle", &[]), &out("settle"), &[]);
+
+    // The report shows how its void fraction goes; in a box there is no distance from one wall.
+    let voids = Voids::read(&out("settle")).unwrap().unwrap();
+    assert!(voids.wall.place.is_empty());
+    let points = voids.height.place.iter().zip(&voids.height.void_fraction);
+    let inner = points.filter(|(z, _)| (0.006..0.018).contains(*z));
+    let inner: Vec<f64> = inner.map(|(_, void_fraction)| *void_fraction).collect();
+    let mean = inner.iter().sum::<f64>() / inner.len() as f64;
+    println!("void fraction from 6 to 18 mm: {mean:.3}");
+    assert!((0.38..0.46).contains(&mean), "{mean}");
+    let page = fs::read_to_string(out("settle").join("report.html")).unwrap();
+    assert!(page.contains("Void fraction over the height"));
+    assert!(!page.contains("Void fraction from the wall inwards"));
+
+    let place = |file: &Path| format!("place = {{ file = \"{}\" }}", file.display());
+    let held = case(
+        folder.path(),
+        "held",
+        &[
+            ("place = ", place(&settled)),
+            ("motion = ", "motion = \"frozen\"".into()),
+            (
+                "heat_transfer = ",
+                "heat_transfer = { law = \"gunn\" }".into(),
+            ),
+            ("particles = [", "particles = [\"temperature\"]".into()),
+            (
+                "wall = { velocity = \"slip\", heat = \"adiabatic\" }",
+                "wall = { velocity = \"slip\", heat = { temperature = \"400 K\" } }".into(),
+            ),
+        ],
+    );
+    let set = [
+        "time.end=20 s",
+        "time.acceleration=20",
+        "output.every=20 s",
+        "output.series_every=1 s",
+    ];
+    let heated = run(&held, &out("held"), &set);
+    assert_eq!(heights(&heated), heights(&settled));
+    let warm = last(&out("held"), "particles.temperature_mean");
+    assert!(warm > 300.5, "{warm}");
+
+    let free = case(
+        folder.path(),
+        "free",
+        &[
+            ("place = ", place(&heated)),
+            ("particles = [", "particles = [\"temperature\"]".into()),
+        ],
+    );
+    let let_go = run(&free, &out("free"), &["time.end=0.1 s"]);
+    // It lay, and lies: contacts build their springs anew, over a part of an overlap.
+    let pairs = heights(&let_go).into_iter().zip(heights(&settled));
+    let moved = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let speed = last(&out("free"), "quantities.mean_speed");
+    let kept = last(&out("free"), "particles.temperature_mean");
+    println!("let go: {moved:.1e} m at most, {speed:.1e} m/s; {warm:.3} K held, {kept:.3} K");
+    assert!(moved < 2e-4 && speed < 1e-3, "{moved} m, {speed} m/s");
+    assert!((kept - warm).abs() < 0.5, "{warm} {kept}");
+    let summary = Summary::read(&out("free")).unwrap();
+    assert_eq!(summary.particles, heights(&settled).len());
+}
