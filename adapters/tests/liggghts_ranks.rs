@@ -61,6 +61,7 @@ fn springs_stay_with_their_contacts_where_others_come_and_go() {
     let change = |remove: &[u64], insert: &[u64]| Change {
         remove: remove.to_vec(),
         insert: insert.iter().map(|&id| elsewhere(id, 0.09)).collect(),
+        ..Change::default()
     };
     // One that comes takes the last place: nobody moves.
     let undisturbed = after(&change(&[], &[50]));
