@@ -6,6 +6,7 @@ pub mod commands;
 pub mod compare;
 pub mod exit;
 mod laws;
+pub mod mechanism;
 mod progress;
 pub mod report;
 pub mod results;

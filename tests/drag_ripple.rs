@@ -4,16 +4,27 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use std::f64::consts::PI;
-use std::fs;
+#[path = "support/program.rs"]
+mod program;
+#[path = "support/schiller_naumann.rs"]
+mod schiller_naumann;
+
 use std::path::Path;
-use std::process::Command;
 
 use calcine::results::read::Series;
+use program::run_text;
+use schiller_naumann::Sphere;
 
 const DIAMETER: f64 = 2e-3;
 const CELL: f64 = 4e-3;
 const WINDOW: f64 = 1e-3;
+/// The bead, in water.
+const BEAD: Sphere = Sphere {
+    diameter: DIAMETER,
+    density: 2500.0,
+    fluid: 998.0,
+    viscosity: 1e-3,
+};
 
 /// A bead of glass in water at rest, over a column of cells twice as wide as it.
 fn case(mapping: &str, diffusion: &str) -> String {
@@ -93,20 +104,7 @@ struct Ripple {
 
 fn ripple(directory: &Path, mapping: &str, diffusion: &str) -> Ripple {
     let name = format!("{mapping}-{}", diffusion.replace(' ', "-"));
-    let (file, out) = (
-        directory.join(format!("{name}.toml")),
-        directory.join(&name),
-    );
-    fs::write(&file, case(mapping, diffusion)).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_calcine"))
-        .arg("run")
-        .arg(&file)
-        .args(["--quiet", "--out"])
-        .arg(&out)
-        .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{name}: {text}");
+    let out = run_text(directory, &name, &case(mapping, diffusion), &[]);
     let series = Series::read(&out).unwrap();
     let (speeds, heights) = (
         series.column("quantities.speed"),
@@ -118,7 +116,7 @@ fn ripple(directory: &Path, mapping: &str, diffusion: &str) -> Ripple {
         .filter(|&row| (low..high).contains(&heights[row]))
         .collect();
     assert!(within.len() > 50, "{} windows", within.len());
-    let mass = PI / 6.0 * DIAMETER.powi(3) * 2500.0;
+    let mass = BEAD.volume() * BEAD.density;
     let force = |&row: &usize| mass * (9.81 - (speeds[row] - speeds[row - 1]) / WINDOW);
     let forces: Vec<f64> = within.iter().map(force).collect();
     let crossed: Vec<f64> = within.iter().map(|&row| speeds[row]).collect();
@@ -167,24 +165,5 @@ fn the_force_on_a_bead_that_crosses_ten_cells_ripples_least_by_overlap() {
     assert!(centroid[0].peak > 10.0 * overlap[0].peak);
     // The bead drags the water of its own cells along; F spreads that, and comes nearer to the law's 0.27 m/s.
     assert!(overlap[0].mean < overlap[1].mean && overlap[1].mean < overlap[2].mean);
-    assert!((overlap[2].mean / terminal() - 1.0).abs() < 0.02);
-}
-
-/// Terminal velocity in m/s of the lone bead by the law in that limit (Schiller and Naumann), by bisection.
-fn terminal() -> f64 {
-    let weight = PI / 6.0 * DIAMETER.powi(3) * (2500.0 - 998.0) * 9.81;
-    let drag = |u: f64| {
-        let re = 998.0 * u * DIAMETER / 1e-3;
-        3.0 * PI * 1e-3 * DIAMETER * (1.0 + 0.15 * re.powf(0.687)) * u
-    };
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if drag(middle) < weight {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    low
+    assert!((overlap[2].mean / BEAD.terminal() - 1.0).abs() < 0.02);
 }

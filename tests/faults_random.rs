@@ -5,6 +5,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
+#[path = "support/by_name.rs"]
+mod by_name;
 #[path = "support/processes.rs"]
 mod processes;
 #[path = "fuzz/random.rs"]
@@ -18,6 +20,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitCode, Stdio};
 use std::time::{Duration, Instant};
 
+use by_name::{Orders, orders};
 use processes::{alive, belonging, command_line, descendants, leftovers, wait_until};
 use random::Random;
 use rustix::process::{Pid, Signal, kill_process};
@@ -51,25 +54,9 @@ const KINDS: [Kind; 10] = [
 ];
 
 fn main() -> ExitCode {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let value = |option: &str| {
-        let at = words.iter().position(|word| word == option)?;
-        words.get(at + 1)?.parse::<u64>().ok()
-    };
-    // What `cargo test` hands to every test program: a list, filters.
-    let mut filters = words
-        .iter()
-        .filter(|word| !word.starts_with('-'))
-        .peekable();
-    let named = filters.peek().is_none() || filters.any(|word| "faults_random".contains(&**word));
-    let told = words.iter().any(|word| word == "--kills");
-    if !(named || told) || words.iter().any(|word| word == "--list") {
+    let Some(Orders { kills, seed }) = orders("faults_random", FEW, SEED) else {
         return ExitCode::SUCCESS;
-    }
-    let (kills, seed) = (
-        value("--kills").unwrap_or(FEW),
-        value("--seed").unwrap_or(SEED),
-    );
+    };
     println!("faults: seed {seed}, {kills} blows");
     // A short path: the wire's sockets lie in it. Nothing else is in it, so that whatever stays is seen.
     let scratch = tempfile::Builder::new().prefix("c").rand_bytes(4).tempdir();

@@ -6,6 +6,8 @@
 
 #[path = "support/lattice.rs"]
 mod lattice;
+#[path = "support/program.rs"]
+mod program;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -26,19 +28,7 @@ const STACK: &str = "cases/iron-stack.toml";
 fn run(name: &str, set: &[String]) -> (f64, Series, Summary) {
     let directory = tempfile::tempdir().unwrap();
     let out = directory.path().join("out");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
-    command
-        .arg("run")
-        .arg(case(name))
-        .arg("--out")
-        .arg(&out)
-        .arg("--quiet");
-    for setting in set {
-        command.arg("--set").arg(setting);
-    }
-    let output = command.output().unwrap();
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{set:?}: {told}");
+    program::run(&case(name), &out, &[], set);
     let summary = Summary::read(&out).unwrap();
     let heat = summary.quantities.get("heat").and_then(|one| one.value);
     (

@@ -4,13 +4,16 @@
 #![cfg(feature = "hdf5")]
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+#[path = "support/program.rs"]
+mod program;
+
 use std::f64::consts::PI;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 
 use calcine::results::Summary;
 use calcine::results::read::Series;
+use program::{run_text, shipped};
 
 const DIAMETER: f64 = 7.8e-3;
 
@@ -66,22 +69,6 @@ measure = {{ difference = "pressure", patches = ["bottom", "top"] }}
     )
 }
 
-fn run(directory: &Path, name: &str, text: &str, arguments: &[&str]) -> PathBuf {
-    let (file, out) = (directory.join(format!("{name}.toml")), directory.join(name));
-    fs::write(&file, text).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_calcine"))
-        .arg("run")
-        .arg(&file)
-        .args(arguments)
-        .args(["--quiet", "--out"])
-        .arg(&out)
-        .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{name}: {text}");
-    out
-}
-
 /// Forces on the particles in N, upwards, in the last snapshot.
 fn forces(out: &Path) -> Vec<f64> {
     let file = hdf5::File::open(out.join("results.h5")).unwrap();
@@ -97,7 +84,7 @@ fn every_particle_of_a_uniform_bed_is_pushed_alike_by_both_models() {
     for (gas, arguments) in runs {
         let [a, b] = ["a", "b"].map(|model| {
             let name = format!("{gas}-{model}");
-            run(directory.path(), &name, &bed(model), arguments)
+            run_text(directory.path(), &name, &bed(model), arguments)
         });
         let (pushed_a, pushed_b) = (forces(&a), forces(&b));
         // What holds up their volume of water, and drag: half as much.
@@ -133,12 +120,11 @@ fn every_particle_of_a_uniform_bed_is_pushed_alike_by_both_models() {
 #[test]
 fn a_bead_sinks_at_the_same_speed_by_both_models() {
     let directory = tempfile::tempdir().unwrap();
-    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/settling-sphere.toml");
-    let text = fs::read_to_string(case).unwrap();
+    let text = fs::read_to_string(shipped("settling-sphere")).unwrap();
     let speed = |model: &str| {
         let model = format!("laws.drag.model={model}");
         let arguments = ["--set", "gas.held=false", "--set", &model];
-        let out = run(directory.path(), model.trim(), &text, &arguments);
+        let out = run_text(directory.path(), model.trim(), &text, &arguments);
         *Series::read(&out)
             .unwrap()
             .column("quantities.speed")

@@ -3,44 +3,37 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use std::f64::consts::PI;
+#[path = "support/program.rs"]
+mod program;
+#[path = "support/schiller_naumann.rs"]
+mod schiller_naumann;
+
 use std::fs;
-use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use calcine::results::read::Series;
+use program::shipped;
+use schiller_naumann::Sphere;
 use serde_json::Value;
-
-fn case(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{name}.toml"))
-}
 
 /// The series of a native run with settings.
 fn run(name: &str, set: &[&str]) -> Series {
     let out = tempfile::tempdir().unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
-    command.arg("run").arg(case(name)).arg("--quiet");
-    command.arg("--out").arg(out.path());
-    for setting in set {
-        command.args(["--set", setting]);
-    }
-    let output = command.output().unwrap();
-    let text = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{name}: {text}");
+    program::run(&shipped(name), out.path(), &[], set);
     Series::read(out.path()).unwrap()
 }
 
 /// Velocity and height in m/s and m of a bead of 0.1 mm in air of 300 K that was thrown upwards and aside, by
 /// Runge's and Kutta's method: m v' = (m − ρV) g − 3πμd (1 + 0.15 Re^0.687) v (Schiller and Naumann).
 fn projectile(mut velocity: [f64; 2], mut height: f64, time: f64) -> ([f64; 2], f64) {
-    let (d, solid) = (1e-4f64, 2500.0);
-    let density = 101_325.0 * 0.028_96 / (8.314_462_618 * 300.0);
-    let viscosity = 1.716e-5 * (300.0f64 / 273.15).powf(1.5) * (273.15 + 110.4) / (300.0 + 110.4);
-    let mass = PI / 6.0 * d.powi(3) * solid;
+    let bead = Sphere::in_air(1e-4, 2500.0);
+    let mass = bead.volume() * bead.density;
     let change = |v: [f64; 2]| {
-        let re = density * v[0].hypot(v[1]) * d / viscosity;
-        let drag = 3.0 * PI * viscosity * d * (1.0 + 0.15 * re.powf(0.687)) / mass;
-        [-drag * v[0], -drag * v[1] - 9.81 * (1.0 - density / solid)]
+        let drag = bead.resistance(v[0].hypot(v[1])) / mass;
+        [
+            -drag * v[0],
+            -drag * v[1] - 9.81 * (1.0 - bead.fluid / bead.density),
+        ]
     };
     let steps = 20_000;
     let step = time / f64::from(steps);
@@ -124,7 +117,7 @@ fn a_drum_has_one_slope_in_native_particles_and_in_liggghts() {
     let out = tempfile::tempdir().unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_calcine"))
         .arg("compare")
-        .arg(case("rotating-drum"))
+        .arg(shipped("rotating-drum"))
         .args(["--pairings", "native+native,native+liggghts", "--quiet"])
         .args(["--set", "time.end=2 s", "--out"])
         .arg(out.path())

@@ -5,33 +5,17 @@
 
 #[path = "support/moving.rs"]
 mod moving;
+#[path = "support/schiller_naumann.rs"]
+mod schiller_naumann;
 
 use calcine::results::Summary;
 use calcine::results::read::Series;
 use moving::{case, refused, run};
+use schiller_naumann::Sphere;
 
-/// Terminal velocity in m/s of the bead of cases/settling-sphere.toml by Wen and Yu's law in the limit of a
-/// lone sphere (Schiller and Naumann), evaluated apart by bisection: (m − ρV) g = 3πμd(1 + 0.15
-/// Re^0.687) u with air of 28.96 g/mol at 300 K and 1 atm, and Sutherland's viscosity.
-fn terminal() -> f64 {
-    let (d, solid) = (1e-4, 2500.0);
-    let density = 101_325.0 * 0.028_96 / (8.314_462_618 * 300.0);
-    let viscosity = 1.716e-5 * (300.0f64 / 273.15).powf(1.5) * (273.15 + 110.4) / (300.0 + 110.4);
-    let weight = std::f64::consts::PI / 6.0 * f64::powi(d, 3) * (solid - density) * 9.81;
-    let drag = |u: f64| {
-        let re = density * u * d / viscosity;
-        3.0 * std::f64::consts::PI * viscosity * d * (1.0 + 0.15 * re.powf(0.687)) * u
-    };
-    let (mut low, mut high) = (0.0, 10.0);
-    for _ in 0..200 {
-        let middle = 0.5 * (low + high);
-        if drag(middle) < weight {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    low
+/// The bead of cases/settling-sphere.toml.
+fn bead() -> Sphere {
+    Sphere::in_air(1e-4, 2500.0)
 }
 
 #[test]
@@ -40,7 +24,7 @@ fn a_bead_settles_at_the_terminal_velocity_of_the_law_where_the_gas_is_held() {
     run(&case("settling-sphere"), directory.path(), &[]);
     let series = Series::read(directory.path()).unwrap();
     let speed = *series.column("quantities.speed").last().unwrap();
-    let expected = terminal();
+    let expected = bead().terminal();
     println!("terminal velocity {speed} m/s, by the law {expected} m/s");
     assert!((speed / expected - 1.0).abs() < 0.01, "{speed} {expected}");
     let summary = Summary::read(directory.path()).unwrap();
@@ -59,7 +43,7 @@ fn windows_longer_than_the_beads_own_time_relax_without_overshoot() {
     run(&case("settling-sphere"), directory.path(), &set);
     let series = Series::read(directory.path()).unwrap();
     let speeds = series.column("quantities.speed");
-    let expected = terminal();
+    let expected = bead().terminal();
     println!("{speeds:?} {expected}");
     assert!(
         speeds.iter().all(|speed| *speed < 1.02 * expected),
@@ -78,10 +62,13 @@ fn a_bead_drags_the_air_of_its_cells_along_where_the_gas_is_solved() {
     run(&case("settling-sphere"), directory.path(), &set);
     let series = Series::read(directory.path()).unwrap();
     let speed = *series.column("quantities.speed").last().unwrap();
-    println!("two-way: {speed} m/s against {} m/s of the law", terminal());
+    println!(
+        "two-way: {speed} m/s against {} m/s of the law",
+        bead().terminal()
+    );
     // The cells are 100 diameters wide: the disturbance is small, and always to the faster side.
     assert!(
-        speed > 0.99 * terminal() && speed < 1.1 * terminal(),
+        speed > 0.99 * bead().terminal() && speed < 1.1 * bead().terminal(),
         "{speed}"
     );
     let summary = Summary::read(directory.path()).unwrap();

@@ -4,10 +4,13 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use calcine::results::Summary;
 use calcine::results::read::Series;
+use program::run_text;
+
+#[path = "support/program.rs"]
+mod program;
 
 #[path = "agreement/cases.rs"]
 #[allow(dead_code)]
@@ -21,20 +24,7 @@ fn template(name: &str) -> PathBuf {
 
 /// Runs a case's text with an OpenFOAM gas; its results folder.
 fn run(text: &str, folder: &Path, name: &str, more: &[&str]) -> PathBuf {
-    let case = folder.join(format!("{name}.toml"));
-    fs::write(&case, text).unwrap();
-    let out = folder.join(name);
-    let output = Command::new(env!("CARGO_BIN_EXE_calcine"))
-        .arg("run")
-        .arg(&case)
-        .args(["--gas", "openfoam", "--quiet", "--out"])
-        .arg(&out)
-        .args(more)
-        .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{name}: {text}");
-    out
+    run_text(folder, name, text, &[&["--gas", "openfoam"], more].concat())
 }
 
 fn last(out: &Path, column: &str) -> f64 {

@@ -2,22 +2,17 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "support/program.rs"]
+mod program;
+
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use calcine::results::Summary;
 use calcine::results::read::Series;
 
 fn run(case: &str, out: &Path, settings: &[&str]) -> Summary {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(case);
-    let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
-    command.arg("run").arg(path).arg("--quiet");
-    for setting in settings {
-        command.args(["--set", setting]);
-    }
-    let output = command.arg("--out").arg(out).output().unwrap();
-    let text = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{case}: {text}");
+    program::run(&path, out, &[], settings);
     Summary::read(out).unwrap()
 }
 

@@ -6,6 +6,8 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+#[path = "support/by_name.rs"]
+mod by_name;
 #[path = "fuzz/random.rs"]
 #[allow(dead_code)]
 mod random;
@@ -17,6 +19,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitCode, Stdio};
 use std::time::{Duration, Instant};
 
+use by_name::{Orders, orders};
 use random::Random;
 use results_equal::differences;
 
@@ -28,25 +31,9 @@ const FEW: u64 = 4;
 const PATIENCE: Duration = Duration::from_secs(300);
 
 fn main() -> ExitCode {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let value = |option: &str| {
-        let at = words.iter().position(|word| word == option)?;
-        words.get(at + 1)?.parse::<u64>().ok()
-    };
-    // What `cargo test` hands to every test program: a list, filters.
-    let mut filters = words
-        .iter()
-        .filter(|word| !word.starts_with('-'))
-        .peekable();
-    let named = filters.peek().is_none() || filters.any(|word| "torture".contains(&**word));
-    let told = words.iter().any(|word| word == "--kills");
-    if !(named || told) || words.iter().any(|word| word == "--list") {
+    let Some(Orders { kills, seed }) = orders("torture", FEW, SEED) else {
         return ExitCode::SUCCESS;
-    }
-    let (kills, seed) = (
-        value("--kills").unwrap_or(FEW),
-        value("--seed").unwrap_or(SEED),
-    );
+    };
     let scratch = tempfile::tempdir().unwrap();
     let bed = Bed::new(scratch.path());
     let whole = scratch.path().join("whole");

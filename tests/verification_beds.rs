@@ -3,6 +3,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
+#[path = "support/program.rs"]
+mod program;
 #[path = "support/results_equal.rs"]
 mod results_equal;
 #[path = "support/schumann.rs"]
@@ -10,33 +12,19 @@ mod schumann;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use calcine::case::{particles, read};
 use calcine::results::read::Series;
+use program::run_text;
 
-/// Writes a case, runs it into a folder of its name, and returns that folder.
-fn run(directory: &Path, name: &str, text: &str, arguments: &[&str]) -> PathBuf {
-    run_on(2, directory, name, text, arguments)
-}
-
-/// The same on so many threads.
-fn run_on(threads: u32, directory: &Path, name: &str, text: &str, arguments: &[&str]) -> PathBuf {
-    let file = directory.join(format!("{name}.toml"));
-    fs::write(&file, text).unwrap();
-    let out = directory.join(name);
-    let output = Command::new(env!("CARGO_BIN_EXE_calcine"))
-        .args(["run", "--threads", &threads.to_string()])
-        .arg(&file)
-        .args(arguments)
-        .arg("--out")
-        .arg(&out)
-        .arg("--quiet")
-        .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{name}: {text}");
-    out
+/// Writes a case, runs it on two threads into a folder of its name, and returns that folder.
+fn run(directory: &Path, name: &str, text: &str, words: &[&str]) -> PathBuf {
+    run_text(
+        directory,
+        name,
+        text,
+        &[words, &["--threads", "2"]].concat(),
+    )
 }
 
 fn last(series: &Series, name: &str) -> f64 {
@@ -289,10 +277,11 @@ fn a_whole_run_has_the_same_bits_on_one_and_on_two_threads() {
         "--set",
         "output.every=1 s",
     ];
-    let [one, two] = [1, 2].map(|threads| {
+    let [one, two] = ["1", "2"].map(|threads| {
         let folder = directory.path().join(format!("on-{threads}"));
         fs::create_dir(&folder).unwrap();
-        run_on(threads, &folder, "bed", SHIPPED, &set)
+        let words = [&set[..], &["--threads", threads]].concat();
+        run_text(&folder, "bed", SHIPPED, &words)
     });
     let summary = calcine::results::Summary::read(&one).unwrap();
     // Loops over fewer than 16 384 cells stay on one thread anyway.

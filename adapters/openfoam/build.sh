@@ -16,7 +16,8 @@ flags=(-std=c++14 -m64 -DOPENFOAM=1912 -DWM_DP -DWM_LABEL_SIZE=32 -Dlinux64 -DWM
     -Wall -Wextra -Wno-unused-parameter -Wno-old-style-cast -Wnon-virtual-dtor
     -I library -I calcineGasFoam -I "$WIRE_INCLUDE")
 for part in OpenFOAM OSspecific/POSIX finiteVolume meshTools thermophysicalModels/basic \
-    thermophysicalModels/specie thermophysicalModels/radiation transportModels/compressible \
+    thermophysicalModels/specie thermophysicalModels/reactionThermo thermophysicalModels/chemistryModel ODE \
+    thermophysicalModels/radiation transportModels/compressible \
     TurbulenceModels/turbulenceModels TurbulenceModels/compressible; do
     flags+=(-isystem "$src/$part/lnInclude")
 done
@@ -51,5 +52,5 @@ mapfile -t solver < <(own calcineGasFoam)
 g++ -o "$OUT_DIR/.calcineGasFoam" "${solver[@]}" -L "$OUT_DIR" '-Wl,-rpath,$ORIGIN' \
     -Xlinker --add-needed -Xlinker --no-as-needed -lcalcineFoam -lfiniteVolume -lmeshTools \
     -lfluidThermophysicalModels -lcompressibleTransportModels -lturbulenceModels \
-    -lcompressibleTurbulenceModels -lradiationModels -lspecie -lOpenFOAM -lPstream -ldl -lm
+    -lcompressibleTurbulenceModels -lradiationModels -lspecie -lreactionThermophysicalModels -lchemistryModel -lODE -lOpenFOAM -lPstream -ldl -lm
 mv "$OUT_DIR/.calcineGasFoam" "$OUT_DIR/calcineGasFoam"

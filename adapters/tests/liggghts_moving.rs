@@ -10,7 +10,7 @@ use std::path::Path;
 
 use calcine_adapters::liggghts::LiggghtsParticles;
 use calcine_coupler::motion::{
-    Change, ContactForce, Contacts, NewParticle, Wall, WallMotion, WallShape,
+    Change, ContactForce, Contacts, NewParticle, Resized, Wall, WallMotion, WallShape,
 };
 use calcine_coupler::part::{Part, Particles};
 use calcine_coupler::physics::Vec3;
@@ -126,6 +126,7 @@ fn particles_come_and_go_with_the_ids_they_are_given_and_the_others_do_not_notic
     let change = Change {
         remove: vec![3, 39, 40],
         insert: vec![new(41, 0.01), new(57, 0.02)],
+        ..Change::default()
     };
     particles.change(&bench.supervisor, &change).unwrap();
     let fields = particles.fields();
@@ -156,6 +157,7 @@ fn particles_come_and_go_with_the_ids_they_are_given_and_the_others_do_not_notic
     let change = Change {
         remove: all,
         insert: vec![new(100, 0.03)],
+        ..Change::default()
     };
     particles.change(&bench.supervisor, &change).unwrap();
     assert_eq!(particles.fields().id, [100]);
@@ -176,6 +178,7 @@ fn after_a_checkpoint_the_resumed_run_takes_the_same_path_as_the_one_that_went_o
     let remove = Change {
         remove: vec![7],
         insert: Vec::new(),
+        ..Change::default()
     };
     particles.change(&bench.supervisor, &remove).unwrap();
     let checkpoint = bench.path("checkpoint");
@@ -200,6 +203,46 @@ fn after_a_checkpoint_the_resumed_run_takes_the_same_path_as_the_one_that_went_o
     assert_eq!(resumed.fields().len(), 39);
     let again = path(&mut bench, &mut resumed);
     assert!(went_on == again, "the paths differ");
+}
+
+#[test]
+fn a_particle_that_gets_another_size_moves_by_its_new_mass_and_keeps_it_in_checkpoints() {
+    let mut bench = Bench::new();
+    let at = |x: f64| (Vec3::new(x, 0.05, 0.05), Vec3::zeros());
+    let setup = setup(contacts(Vec3::zeros()), &[at(0.02), at(0.05), at(0.08)]);
+    let mut particles = bench.launch(&setup, "a", None);
+    let still = [Vec3::zeros(); 3];
+    bench.window(&mut particles, 1e-4, &still).unwrap();
+    let new = Resized {
+        id: 2,
+        radius: 0.0021,
+        mass: 0.4 * MASS,
+    };
+    let change = Change {
+        resize: vec![new],
+        ..Change::default()
+    };
+    particles.change(&bench.supervisor, &change).unwrap();
+    let fields = particles.fields();
+    assert_eq!(fields.radius, [0.0025, 0.0021, 0.0025]);
+    assert_eq!(fields.mass[1], 0.4 * MASS);
+    let push = [Vec3::x() * 1e-3; 3];
+    bench.window(&mut particles, 1e-3, &push).unwrap();
+    let speeds: Vec<f64> = particles.fields().velocity.iter().map(|v| v.x).collect();
+    for (speed, mass) in speeds.iter().zip([MASS, 0.4 * MASS, MASS]) {
+        assert!(
+            (speed / (1e-6 / mass) - 1.0).abs() < 1e-12,
+            "{speed} {mass}"
+        );
+    }
+    let checkpoint = bench.path("checkpoint");
+    std::fs::create_dir_all(&checkpoint).unwrap();
+    particles.checkpoint(&checkpoint).unwrap();
+    let resumed = bench.launch(&setup, "b", Some(checkpoint));
+    for fields in [particles.fields(), resumed.fields()] {
+        assert_eq!(fields.radius[1].to_bits(), new.radius.to_bits());
+        assert_eq!(fields.mass[1].to_bits(), new.mass.to_bits());
+    }
 }
 
 #[test]

@@ -10,6 +10,7 @@ use crate::error::PartError;
 use crate::mesh::Mesh;
 use crate::part::{
     About, Balance, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part,
+    TurbulenceFields,
 };
 use crate::setup::GasSetup;
 use crate::supervisor::Supervisor;
@@ -99,6 +100,7 @@ impl Gas for HeldGas {
             composition: &self.composition,
             velocity: &self.velocity,
             pressure_gradient: &self.pressure_gradient,
+            turbulence: TurbulenceFields::default(),
         }
     }
 

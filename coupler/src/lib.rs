@@ -6,6 +6,7 @@ pub mod contacts;
 pub mod coordinator;
 pub mod error;
 pub mod exchange;
+pub mod gas_chemistry;
 pub mod held;
 pub mod ledger;
 pub mod mapping;
@@ -22,6 +23,7 @@ pub mod smoother;
 pub mod supervisor;
 pub mod time;
 pub mod traffic;
+pub mod turbulence;
 pub mod turnover;
 
 pub use calcine_interior as interior;

@@ -190,21 +190,35 @@ pub enum WallMotion {
     },
 }
 
-/// Particles that come and go between two windows. The coordinator decides on them, so that they
-/// are the same for every backend.
+/// Particles that come and go between two windows, or become others by what reacts in them. The
+/// coordinator decides on them, so that they are the same for every backend.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Change {
     /// Ids of those that go.
     pub remove: Vec<u64>,
     /// Those that come, with ids that were never used before, ascending.
     pub insert: Vec<NewParticle>,
+    /// Those that stay with another radius or mass, in ascending id; none of those that go. They keep place,
+    /// velocity and the memories of their contacts.
+    pub resize: Vec<Resized>,
 }
 
 impl Change {
     /// True where nothing changes.
     pub fn is_empty(&self) -> bool {
-        self.remove.is_empty() && self.insert.is_empty()
+        self.remove.is_empty() && self.insert.is_empty() && self.resize.is_empty()
     }
+}
+
+/// A particle that has become larger, smaller, lighter or heavier.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resized {
+    /// Its id.
+    pub id: u64,
+    /// Radius in m.
+    pub radius: f64,
+    /// Mass in kg.
+    pub mass: f64,
 }
 
 /// A particle that comes in.

@@ -62,6 +62,39 @@ pub struct GasFields<'a> {
     pub velocity: &'a [Vec3],
     /// The cell gradient of the total pressure that the momentum equation used, in Pa/m.
     pub pressure_gradient: &'a [Vec3],
+    /// Eddies; empty where the gas is laminar.
+    pub turbulence: TurbulenceFields<'a>,
+}
+
+/// Eddies of the gas, one value per cell.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TurbulenceFields<'a> {
+    /// Turbulent energy k in m²/s².
+    pub energy: &'a [f64],
+    /// Its dissipation in m²/s³.
+    pub dissipation: &'a [f64],
+    /// Void fraction × eddy viscosity in Pa s; zero in the bed.
+    pub viscosity: &'a [f64],
+}
+
+/// How fast eddies mix within a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mixing {
+    /// Void fraction × eddy viscosity in Pa s.
+    pub viscosity: f64,
+    /// Dissipation in m²/s³.
+    pub dissipation: f64,
+}
+
+impl TurbulenceFields<'_> {
+    /// What mixes in a cell; `None` in the bed and in a laminar gas.
+    pub fn mixing(&self, cell: usize) -> Option<Mixing> {
+        let viscosity = *self.viscosity.get(cell)?;
+        (viscosity > 0.0).then(|| Mixing {
+            viscosity,
+            dissipation: self.dissipation[cell],
+        })
+    }
 }
 
 /// What the gas is told of the bed, one value per cell, valid at the end of the window.
@@ -290,7 +323,8 @@ pub trait Particles: Part {
     /// Particles in and out during the last window.
     fn events(&self) -> &[ParticleEvent];
 
-    /// Takes particles out and puts new ones in, between two windows and after a commit.
+    /// Takes particles out, puts new ones in and gives others another size, between two windows and after a
+    /// commit. A held bed only has to take sizes.
     fn change(&mut self, supervisor: &Supervisor, change: &Change) -> Result<(), PartError>;
 
     /// Starts the window; does not wait.

@@ -2,10 +2,13 @@
 
 use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
+use calcine_physics::points::linear;
 
+use crate::gas_chemistry::GasChemistry;
 use crate::momentum_model::MomentumModel;
 use crate::motion::Motion;
 use crate::time::GasStorage;
+pub use crate::turbulence::{InletTurbulence, Turbulence};
 
 /// A value over process time: (time in s, value) entries with increasing times,
 /// at least one; linear in between, constant before the first and after the last.
@@ -20,15 +23,7 @@ impl Schedule {
 
     /// The value at a process time in s: linear between entries, constant outside them.
     pub fn at(&self, time: f64) -> f64 {
-        let next = self.0.partition_point(|&(from, _)| from <= time);
-        let before = self.0[next.saturating_sub(1)];
-        match self.0.get(next) {
-            Some(after) if next > 0 => {
-                let share = (time - before.0) / (after.0 - before.0);
-                before.1 + share * (after.1 - before.1)
-            }
-            _ => before.1,
-        }
+        linear(&self.0, time)
     }
 }
 
@@ -41,6 +36,8 @@ pub struct GasSetup {
     pub properties: GasModel,
     /// Schmidt number of all species of a mixture (requirements SPC-1); 1 where there are none.
     pub schmidt: f64,
+    /// Reactions of the gas with itself.
+    pub chemistry: GasChemistry,
     /// Over which clock the gas stores.
     pub storage: GasStorage,
     /// Start temperature in K.
@@ -55,6 +52,8 @@ pub struct GasSetup {
     pub gravity: Vec3,
     /// How gas and particles share their momentum.
     pub momentum: MomentumModel,
+    /// Eddies outside the bed.
+    pub turbulence: Turbulence,
     /// Boundary condition of each patch, in the order of the file; every patch of the mesh has one.
     pub patches: Vec<(String, GasPatch)>,
     /// Controls of the solver, honoured by native gas and calcineGasFoam alike.
@@ -112,6 +111,8 @@ pub enum GasPatch {
         temperature: Schedule,
         /// Composition; `None` for a single gas.
         composition: Option<CompositionSchedule>,
+        /// Eddies that come in; `None` where the gas is laminar.
+        turbulence: Option<InletTurbulence>,
     },
     /// Gas leaves (or enters in the state of the cell behind) at a pressure.
     Outlet {
@@ -136,6 +137,7 @@ impl GasPatch {
             flow: InletFlow::SuperficialVelocity(velocity),
             temperature,
             composition: None,
+            turbulence: None,
         }
     }
 }

@@ -52,6 +52,7 @@ impl StillGas {
             density: &self.zero,
             velocity: &self.velocity,
             pressure_gradient: &self.zero_vector,
+            turbulence: Default::default(),
         }
     }
 

@@ -6,7 +6,7 @@ mod grains;
 use std::f64::consts::PI;
 
 use calcine_coupler::motion::{
-    Change, Cohesion, ContactForce, Contacts, Rolling, WallMotion, WallShape,
+    Change, Cohesion, ContactForce, Contacts, Resized, Rolling, WallMotion, WallShape,
 };
 use calcine_coupler::part::{Part, Particles};
 use calcine_coupler::physics::Vec3;
@@ -293,6 +293,7 @@ fn particles_come_and_go_and_the_others_do_not_notice() {
     let change = Change {
         remove: vec![5, 2],
         insert: vec![at(6, 0.03), at(9, 0.04)],
+        ..Change::default()
     };
     bed.change(&change).unwrap();
     let fields = bed.particles.fields();
@@ -313,15 +314,54 @@ fn particles_come_and_go_and_the_others_do_not_notice() {
         Change {
             remove: vec![7],
             insert: vec![],
+            ..Change::default()
         },
         Change {
             remove: vec![],
             insert: vec![at(4, 0.0)],
+            ..Change::default()
         },
     ] {
         assert!(bed.change(&wrong).is_err());
         assert_eq!(bed.particles.fields().id, [1, 6, 9]);
     }
+}
+
+#[test]
+fn a_bead_that_becomes_smaller_and_lighter_sinks_into_the_floor_as_hertz_says() {
+    let mut contacts = contacts(1e-5);
+    contacts.walls = vec![plane(Vec3::zeros(), Vec3::z())];
+    contacts.gravity = Vec3::z() * -9.81;
+    let mut bed = Bed::new(
+        contacts,
+        &[sphere(1, Vec3::new(0.0, 0.0, 1e-3), Vec3::zeros(), 1e-3)],
+    );
+    bed.run(20_000);
+    let overlap = |bed: &Bed| bed.particles.fields().radius[0] - bed.place(0).z;
+    let before = overlap(&bed);
+    let mass = bed.particles.fields().mass[0];
+    let new = Resized {
+        id: 1,
+        radius: 0.5e-3,
+        mass: 0.25 * mass,
+    };
+    let change = Change {
+        resize: vec![new],
+        ..Change::default()
+    };
+    bed.change(&change).unwrap();
+    let fields = bed.particles.fields();
+    assert_eq!((fields.radius[0], fields.mass[0]), (0.5e-3, 0.25 * mass));
+    assert_eq!(bed.place(0).x, 0.0);
+    bed.run(40_000);
+    // 4/3 E* √R δ^1.5 = m g: δ goes by (m²/R)^(1/3), here (1/16 · 2)^(1/3) = 1/2.
+    let after = overlap(&bed);
+    assert!((after / before - 0.5).abs() < 1e-3, "{before} {after}");
+    let nobody = Change {
+        resize: vec![Resized { id: 7, ..new }],
+        ..Change::default()
+    };
+    assert!(bed.change(&nobody).is_err());
 }
 
 #[test]

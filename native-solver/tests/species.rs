@@ -21,6 +21,7 @@ fn duct_of(
         flow: InletFlow::SuperficialVelocity(Schedule::constant(velocity)),
         temperature: Schedule::constant(temperature),
         composition: Some(CompositionSchedule(vec![(0.0, vec![0.1, 0.9])])),
+        turbulence: None,
     };
     let mut setup = setup(&[("bottom", bottom), ("top", outlet()), ("side", slip())]);
     setup.properties = GasModel::Mixture(Mixture::new(species).unwrap());

@@ -3,7 +3,10 @@
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 
+use calcine_adapters::openfoam::chemistry;
+use calcine_coupler::gas_chemistry::Combustion;
 use calcine_coupler::mesh::Mesh;
+use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::local::LocalGas;
 use calcine_coupler::physics::numbers::VoidFraction;
 use calcine_coupler::setup::{GasPatch, InletFlow};
@@ -55,7 +58,20 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
         text,
         "  bed            {particles} particles, void fraction {void_fraction:.3}"
     );
-    let memory = sizes::memory(cells as f64, particles as f64);
+    if let Some(gas) = case.gas.chemistry.reacting() {
+        let how = match gas.combustion {
+            Combustion::Laminar => "laminar".to_owned(),
+            Combustion::Pasr { mixing_constant } => {
+                format!("partially stirred, C_mix {mixing_constant}")
+            }
+        };
+        let _ = writeln!(
+            text,
+            "  gas reactions  {}, {how}",
+            gas.mechanism.steps().len()
+        );
+    }
+    let memory = sizes::memory(case, cells as f64, particles as f64);
     let _ = writeln!(
         text,
         "  memory         about {} (native)",
@@ -109,6 +125,16 @@ fn honoured(text: &mut String, case: &Case) {
 /// What an OpenFOAM gas makes of the case, and what its template alone states.
 fn openfoam(case: &Case) -> String {
     let mut text = String::from("every key");
+    if let (Some(gas), GasModel::Mixture(mixture)) =
+        (case.gas.chemistry.reacting(), &case.gas.properties)
+    {
+        if case.openfoam.solver.is_stock() {
+            return "not this case: a stock solver (`openfoam.solver`) does not take reactions of the gas".into();
+        }
+        if let Err(error) = chemistry::files(&case.gas, mixture, gas) {
+            return format!("not this case: {error}");
+        }
+    }
     if case.openfoam.solver.is_stock() {
         text += ", approximately: a stock solver (`openfoam.solver`) has no void fraction in its storage; \
                  see docs/stock-solvers.md";

@@ -80,6 +80,15 @@ const KEYS: &[Key] = &[
     key("mesh.box.refine.cylinder.to", "three lengths, m", Required, "Centre of the other end.", "\"0 0 50 mm\""),
     key("mesh.box.refine.cylinder.radius", "length, m", Required, "Radius.", "\"8 mm\""),
     key("mesh.box.refine.levels", "whole number", Default("1"), "How often cells are split whose centres lie in the zone, 1 to 6.", "2"),
+    key("mesh.box.openings", "list of tables", Default("none"), "Parts of the boundary with patches of their own, such as burners: boundary faces whose centres lie in a zone, after refinement. Particles see the side as if it were closed.", "[{ name = \"burners\", box = { from = \"-1 45 195 mm\", to = \"1 55 205 mm\" } }]"),
+    key("mesh.box.openings.name", "text", Required, "Name of the patch; openings of one name make one patch.", "\"burners\""),
+    key("mesh.box.openings.box", "table", OneOf, "A box along the axes. Either this or `cylinder`.", "{ from = \"-1 45 195 mm\", to = \"1 55 205 mm\" }"),
+    key("mesh.box.openings.box.from", "three lengths, m", Required, "Corner with the smallest coordinates.", "\"-1 45 195 mm\""),
+    key("mesh.box.openings.box.to", "three lengths, m", Required, "Corner with the largest coordinates.", "\"1 55 205 mm\""),
+    key("mesh.box.openings.cylinder", "table", OneOf, "A cylinder of any direction. Either this or `box`.", "{ from = \"-1 50 200 mm\", to = \"1 50 200 mm\", radius = \"5 mm\" }"),
+    key("mesh.box.openings.cylinder.from", "three lengths, m", Required, "Centre of one end.", "\"-1 50 200 mm\""),
+    key("mesh.box.openings.cylinder.to", "three lengths, m", Required, "Centre of the other end.", "\"1 50 200 mm\""),
+    key("mesh.box.openings.cylinder.radius", "length, m", Required, "Radius.", "\"5 mm\""),
     key("mesh.box.patches", "six texts", Default("four times `side`, `bottom`, `top`"), "Patches of x-, x+, y-, y+, z-, z+; equal names make one patch.", "[\"side\", \"side\", \"side\", \"side\", \"low\", \"high\"]"),
     key("mesh.cylinder", "table", OneOf, "An upright cylinder, generated as an O-grid; patches `side`, `bottom`, `top`.", "{ diameter = \"50 mm\", length = \"300 mm\", cells = [12, 60] }"),
     key("mesh.cylinder.origin", "three lengths, m", Default("0 0 0 m"), "Centre of the bottom.", "\"0 0 10 mm\""),
@@ -97,6 +106,15 @@ const KEYS: &[Key] = &[
     key("mesh.cylinder.refine.cylinder.to", "three lengths, m", Required, "Centre of the other end.", "\"0 0 50 mm\""),
     key("mesh.cylinder.refine.cylinder.radius", "length, m", Required, "Radius.", "\"8 mm\""),
     key("mesh.cylinder.refine.levels", "whole number", Default("1"), "How often cells are split whose centres lie in the zone, 1 to 6.", "2"),
+    key("mesh.cylinder.openings", "list of tables", Default("none"), "Parts of the boundary with patches of their own, such as burners: boundary faces whose centres lie in a zone, after refinement. Particles see the side as if it were closed.", "[{ name = \"burners\", box = { from = \"-1 45 195 mm\", to = \"1 55 205 mm\" } }]"),
+    key("mesh.cylinder.openings.name", "text", Required, "Name of the patch; openings of one name make one patch.", "\"burners\""),
+    key("mesh.cylinder.openings.box", "table", OneOf, "A box along the axes. Either this or `cylinder`.", "{ from = \"-1 45 195 mm\", to = \"1 55 205 mm\" }"),
+    key("mesh.cylinder.openings.box.from", "three lengths, m", Required, "Corner with the smallest coordinates.", "\"-1 45 195 mm\""),
+    key("mesh.cylinder.openings.box.to", "three lengths, m", Required, "Corner with the largest coordinates.", "\"1 55 205 mm\""),
+    key("mesh.cylinder.openings.cylinder", "table", OneOf, "A cylinder of any direction. Either this or `box`.", "{ from = \"-1 50 200 mm\", to = \"1 50 200 mm\", radius = \"5 mm\" }"),
+    key("mesh.cylinder.openings.cylinder.from", "three lengths, m", Required, "Centre of one end.", "\"-1 50 200 mm\""),
+    key("mesh.cylinder.openings.cylinder.to", "three lengths, m", Required, "Centre of the other end.", "\"1 50 200 mm\""),
+    key("mesh.cylinder.openings.cylinder.radius", "length, m", Required, "Radius.", "\"5 mm\""),
     key("mesh.polymesh", "path", OneOf, "An OpenFOAM polyMesh folder. Either this or `mesh.box`.", "\"constant/polyMesh\""),
     key("materials", "table", Required, "Solid materials by name.", "[materials.glass]"),
     key("materials.NAME.density", "density, kg/m^3", Required, "Density.", "\"2500 kg/m^3\""),
@@ -108,6 +126,10 @@ const KEYS: &[Key] = &[
     key("materials.NAME.heat_capacity.ranges", "three temperatures, K", Required, "Lowest, common and highest temperature of the two polynomials; c_p is constant beyond.", "\"200 1000 6000 K\""),
     key("materials.NAME.heat_capacity.low", "seven numbers", Required, "NASA's coefficients a1 to a7 below the common temperature.", "[2.5, 0, 0, 0, 0, 0, 0]"),
     key("materials.NAME.heat_capacity.high", "seven numbers", Required, "NASA's coefficients a1 to a7 above it.", "[2.5, 0, 0, 0, 0, 0, 0]"),
+    key("materials.NAME.size", "table", Default("diameters stay"), "How particles of the material take up room while they react; goes with `composition`.", "{ law = \"constant-density\", least_diameter = \"1 mm\" }"),
+    key("materials.NAME.size.law", "`constant-diameter`, `constant-density` or `densities`", Required, "The diameter stays and the density follows the mass; the density stays and particles shrink or grow; or each solid has its own density in the particle.", "\"constant-density\""),
+    key("materials.NAME.size.densities", "table of densities, kg/m^3", Default("required with `densities`"), "Density of each solid that the particles hold or come to hold, with the pores that it has in them; together they give the material's density at the start.", "{ CaCO3 = \"2700 kg/m^3\", CaO = \"1600 kg/m^3\" }"),
+    key("materials.NAME.size.least_diameter", "length, m", Default("required but for `constant-diameter`"), "Below it no particle shrinks: from there on its density falls.", "\"1 mm\""),
     key("materials.NAME.conductivity", "thermal conductivity, W/m/K, or points over temperature", Default("not known"), "Thermal conductivity; linear between points, constant outside them.", "[[\"300 K\", \"80 W/m/K\"], [\"1000 K\", \"33 W/m/K\"]]"),
     key("materials.NAME.emissivity", "number", Default("not known"), "Emissivity of the surface, above 0 and up to 1.", "0.9"),
     key("materials.NAME.young", "pressure, Pa", Default("not known"), "Young's modulus by which contacts are computed.", "\"50 MPa\""),
@@ -193,6 +215,26 @@ const KEYS: &[Key] = &[
     key("gas.held", "true or false", Default("false"), "The gas stays as it is at the start, at any exchange: superficial velocity, temperature, and a pressure gradient of its own weight. No gas solver runs.", "true"),
     key("gas.species", "list of `N2`, `O2`, `Ar`, `CO2`, `H2O`, `CO`, `H2`, `CH4`", Default("a single gas"), "Species of a mixture of ideal gases; with `gas.schmidt`, and a composition wherever gas stands at the start or flows in.", "[\"N2\", \"O2\"]"),
     key("gas.schmidt", "number", Default("goes with `species`"), "Schmidt number of all species: they diffuse alike, with viscosity over density over this.", "0.7"),
+    key("gas.chemistry", "table", Default("the gas does not react with itself"), "Reactions of the gas with itself; of a mixture of `gas.species`.", "{ mechanism = \"jones-lindstedt\" }"),
+    key("gas.chemistry.mechanism", "text", OneOf, "`jones-lindstedt` (refined), `jones-lindstedt-original`, or a file of Cantera (.yaml) or CHEMKIN (any other name). Either this or `reactions`.", "\"jones-lindstedt\""),
+    key("gas.chemistry.thermo", "path", Default("that of the mechanism's file"), "A CHEMKIN file of thermodynamics; those of `gas.species` count, the file's must agree.", "\"therm.dat\""),
+    key("gas.chemistry.reactions", "list of tables", OneOf, "Reactions of the case's own. Either this or `mechanism`.", "[{ name = \"shift\", equation = \"CO + H2O <=> CO2 + H2\", rate = { factor = 2.75e6, activation_energy = \"83.6 kJ/mol\" } }]"),
+    key("gas.chemistry.reactions.name", "text", Required, "Its name.", "\"shift\""),
+    key("gas.chemistry.reactions.equation", "text", Required, "Moles of gases of `gas.species`, with => (one way) or <=> (both ways, by the Gibbs energies); balanced. The last species of the gas reacts in none.", "\"CO + H2O <=> CO2 + H2\""),
+    key("gas.chemistry.reactions.rate", "table", Required, "Rate constant k = factor T^exponent exp(-activation_energy/RT) of the forward reaction.", "{ factor = 2.75e6, activation_energy = \"83.6 kJ/mol\" }"),
+    key("gas.chemistry.reactions.rate.factor", "number", Required, "In mol, m and s, of the rate in mol/m^3/s by concentrations in mol/m^3.", "2.75e6"),
+    key("gas.chemistry.reactions.rate.exponent", "number", Default("0"), "Exponent of the temperature in K.", "-1"),
+    key("gas.chemistry.reactions.rate.activation_energy", "molar energy, J/mol", Default("0 J/mol"), "Activation energy.", "\"83.6 kJ/mol\""),
+    key("gas.chemistry.reactions.rate.orders", "table of numbers", Default("the numbers of the left side"), "Order of each gas, of all of them. Below 1e-6 mol/m^3 a power of an order below one goes on as a straight line; a negative one only of a gas that is always there.", "{ CH4 = 0.5, O2 = 1.25 }"),
+    key("gas.chemistry.reactions.third_body", "table", Default("none"), "The rate is also proportional to the concentration of all gases, each by its efficiency.", "{ efficiencies = { H2O = 6 } }"),
+    key("gas.chemistry.reactions.third_body.efficiencies", "table of numbers", Default("`others` for all"), "Efficiencies by species.", "{ H2O = 6, CO2 = 2 }"),
+    key("gas.chemistry.reactions.third_body.others", "number", Default("1"), "Efficiency of all others.", "1"),
+    key("gas.chemistry.reactions.heat", "molar energy, J/mol", Default("not stated"), "Heat that the reaction takes up at 298.15 K, to be compared with that of the enthalpies of formation, which counts; more than 2 % off is an error.", "\"-41.2 kJ/mol\""),
+    key("gas.chemistry.model", "`laminar` or `pasr`", Default("`laminar`"), "A cell is mixed; or the partially stirred reactor: only what turbulence mixes reacts.", "\"laminar\""),
+    key("gas.chemistry.mixing_constant", "number", Default("1"), "C_mix of the partially stirred reactor.", "1"),
+    key("gas.chemistry.tolerance", "number", Default("1e-6"), "Error of a step of the integration, relative to temperature and each mass fraction.", "1e-6"),
+    key("gas.chemistry.fraction_tolerance", "number", Default("1e-10"), "Error of a step in a mass fraction that counts as none.", "1e-10"),
+    key("gas.chemistry.negligible", "number", Default("1e-12"), "Change of a mass fraction over a step of the gas below which reactions are not integrated.", "1e-12"),
     key("gas.constant", "table", Default("an ideal gas"), "A fluid of constant properties; not with `gas.properties`. Its enthalpy is c_p (T - 298.15 K).", "[gas.constant]"),
     key("gas.constant.density", "density, kg/m^3", Required, "Density.", "\"1.2 kg/m^3\""),
     key("gas.constant.heat_capacity", "specific heat capacity, J/kg/K", Required, "Specific heat capacity c_p.", "\"1005 J/kg/K\""),
@@ -204,6 +246,13 @@ const KEYS: &[Key] = &[
     key("gas.properties.viscosity", "dynamic viscosity, Pa s", Required, "Viscosity at `viscosity_at`.", "\"18.5e-6 Pa s\""),
     key("gas.properties.viscosity_at", "temperature, K", Required, "Temperature of `viscosity`.", "\"300 K\""),
     key("gas.properties.sutherland_temperature", "temperature, K", Required, "Temperature of Sutherland's law.", "\"120 K\""),
+    key("gas.turbulence", "table", Default("a laminar gas"), "Eddies outside the bed, that is, where the solid fraction is 0.1 or less.", "[gas.turbulence]"),
+    key("gas.turbulence.model", "`k-epsilon` or `laminar`", Required, "The standard k-epsilon model with wall functions (on walls with `no-slip` or `moving`), or none.", "\"k-epsilon\""),
+    key("gas.turbulence.initial", "table", Default("none; `k-epsilon` needs it"), "Eddies at the start, everywhere.", "{ energy = \"0.01 m^2/s^2\", length_scale = \"5 mm\" }"),
+    key("gas.turbulence.initial.energy", "energy per mass, m^2/s^2", Required, "Turbulent energy k, above 0.", "\"0.01 m^2/s^2\""),
+    key("gas.turbulence.initial.length_scale", "length, m", Required, "Length scale L; the dissipation is 0.09^0.75 k^1.5/L.", "\"5 mm\""),
+    key("gas.turbulence.prandtl", "number", Default("0.85"), "Turbulent Prandtl number: eddies carry heat with c_p times their viscosity over this.", "0.9"),
+    key("gas.turbulence.schmidt", "number", Default("0.7"), "Turbulent Schmidt number of all species.", "0.7"),
     key("gas.patch", "table", Required, "Boundary condition of every patch by its name. Without an outlet the domain is closed: an ideal gas then takes the pressure at which it fills the pores.", "[gas.patch.bottom]"),
     key("gas.patch.NAME.inlet", "table", OneOf, "Gas flows in. One of `inlet`, `outlet`, `wall`, `symmetry`.", "{ superficial_velocity = \"0.5 m/s\", temperature = \"400 K\" }"),
     key("gas.patch.NAME.inlet.superficial_velocity", "velocity, m/s, or schedule", OneOf, "Superficial velocity into the domain, zero or above, of gas at the pressure of `gas.initial`. Either this or `mass_flow`.", "\"0.5 m/s\""),
@@ -212,6 +261,9 @@ const KEYS: &[Key] = &[
     key("gas.patch.NAME.inlet.composition.mole", "table of numbers", OneOf, "Mole fractions by species. Either this or `mass`.", "{ CO2 = 1 }"),
     key("gas.patch.NAME.inlet.composition.mass", "table of numbers", OneOf, "Mass fractions by species. Either this or `mole`.", "{ CO2 = 1 }"),
     key("gas.patch.NAME.inlet.temperature", "temperature, K, or schedule", Required, "Temperature of the gas that enters.", "[[\"0 s\", \"300 K\"], [\"10 s\", \"400 K\"]]"),
+    key("gas.patch.NAME.inlet.turbulence", "table", Default("none; a turbulent gas needs it"), "Eddies of the gas that enters.", "{ intensity = 0.05, length_scale = \"5 mm\" }"),
+    key("gas.patch.NAME.inlet.turbulence.intensity", "number", Required, "Root mean square of one component of the fluctuation over the interstitial speed.", "0.05"),
+    key("gas.patch.NAME.inlet.turbulence.length_scale", "length, m", Required, "Length scale, see `gas.turbulence.initial`; some 0.07 of the diameter of a long pipe.", "\"5 mm\""),
     key("gas.patch.NAME.outlet", "table", OneOf, "Gas flows out. One of `inlet`, `outlet`, `wall`, `symmetry`.", "{ pressure = \"1 atm\" }"),
     key("gas.patch.NAME.outlet.pressure", "pressure, Pa, or schedule", Required, "Absolute pressure.", "\"1 atm\""),
     key("gas.patch.NAME.wall", "table", OneOf, "A wall. One of `inlet`, `outlet`, `wall`, `symmetry`.", "{ velocity = \"slip\", heat = \"adiabatic\" }"),
@@ -350,7 +402,7 @@ const KEYS: &[Key] = &[
     key("output", "table", Required, "What is written.", "[output]"),
     key("output.every", "time, s", Required, "A snapshot each so much process time, and one at the start and the end.", "\"60 s\""),
     key("output.series_every", "time, s", Default("with every snapshot"), "A row of the time series each so much process time.", "\"1 s\""),
-    key("output.gas", "list of `temperature`, `velocity`, `pressure`, `density`, `void_fraction`, `mass_fractions`", Default("`temperature`"), "Gas fields; `mass_fractions` of each species of a mixture, by its name.", "[\"temperature\", \"velocity\"]"),
+    key("output.gas", "list of `temperature`, `velocity`, `pressure`, `density`, `void_fraction`, `mass_fractions`, `turbulence`", Default("`temperature`"), "Gas fields; `mass_fractions` of each species of a mixture, by its name; `turbulence`: `turbulent_energy`, `dissipation` and `eddy_viscosity` of a turbulent gas.", "[\"temperature\", \"velocity\"]"),
     key("output.particles", "list of `temperature`, `velocity`, `heat`, `force`, `void_fraction`, `slip`, `mass`, `solids`", Default("`temperature`"), "Particle fields; `force` is that of the gas, `void_fraction` and `slip` what the laws saw, `solids` the mass fractions of what particles that react are made of.", "[\"temperature\"]"),
     key("probes", "list of tables", Default("none"), "Points at which fields are sampled with every snapshot, into `results.h5` and `probes/`.", "[[probes]]"),
     key("probes.name", "text", Required, "Name; no two alike.", "\"axis\""),
@@ -370,10 +422,10 @@ const KEYS: &[Key] = &[
     key("quantities.measure.patch", "text", Default("all cells"), "The patch, with `gas`; the mean is over its area.", "\"top\""),
     key("quantities.measure.probe", "text", Default("everywhere"), "The probe, with `gas` or `particles`.", "\"axis\""),
     key("quantities.measure.of", "text", Default("none"), "The species of the gas, or the solid of particles that react, of which a `mass_fraction` is; required with it.", "\"CO2\""),
-    key("quantities.measure.particles", "`temperature`, `speed`, `height`, `mass` or `mass_fraction`", OneOf, "A statistic (of the height, z, of the centre, or of the speed in process time, too) over all particles, over those of `population` or over those at `probe`.", "\"temperature\""),
+    key("quantities.measure.particles", "`temperature`, `speed`, `height`, `mass`, `diameter` or `mass_fraction`", OneOf, "A statistic (of the height, z, of the centre, or of the speed in process time, too) over all particles, over those of `population` or over those at `probe`.", "\"temperature\""),
     key("quantities.measure.population", "text", Default("all"), "The population, with `particles`.", "\"beads\""),
     key("quantities.measure.statistic", "`mean`, `min` or `max`", Default("with `probe` the mean"), "The statistic; required with `gas` and `particles`.", "\"mean\""),
-    key("quantities.measure.particle", "`temperature`, `speed`, `height`, `mass` or `mass_fraction`", OneOf, "The value of one particle.", "\"temperature\""),
+    key("quantities.measure.particle", "`temperature`, `speed`, `height`, `mass`, `diameter` or `mass_fraction`", OneOf, "The value of one particle.", "\"temperature\""),
     key("quantities.measure.number", "whole number", Default("none"), "Which particle, counted from 1; required with `particle`.", "10"),
     key("quantities.measure.wall_heat", "text", OneOf, "Heat in W from a wall of a temperature, or from `surroundings`, into the particles.", "\"hot\""),
     key("quantities.measure.surface_angle", "table", OneOf, "Slope of the bed in a drum, in rad: the angle by which the centre of mass of all particles has turned about an axis from straight below it; a flat surface stands across the line between them.", "{ point = \"0 0 0 mm\", axis = \"0 1 0\" }"),
@@ -427,69 +479,4 @@ const TABLE: &str =
     "| Key | Value | Required, or default | Meaning | Example |\n|---|---|---|---|---|\n";
 
 #[cfg(test)]
-mod tests {
-    use std::collections::BTreeSet;
-    use std::path::Path;
-
-    use super::*;
-    use crate::case::table::{Problems, Reader};
-
-    #[test]
-    fn the_table_holds_exactly_the_keys_that_the_reader_asks_for() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let mut asked = BTreeSet::new();
-        for folder in ["cases", "tests/inputs/good"] {
-            for entry in std::fs::read_dir(root.join(folder)).unwrap() {
-                let path = entry.unwrap().path();
-                if path.extension().is_none_or(|extension| extension != "toml") {
-                    continue;
-                }
-                let text = std::fs::read_to_string(&path).unwrap();
-                let document = toml_edit::Document::parse(text.as_str()).unwrap();
-                let problems = Problems::default();
-                let reader = Reader::root(&problems, document.as_table());
-                crate::case::sections::case(&reader, &path, &text, String::new());
-                asked.append(&mut problems.asked());
-            }
-        }
-        let known: BTreeSet<String> = KEYS.iter().map(|key| key.key.to_owned()).collect();
-        assert_eq!(known.len(), KEYS.len(), "a key stands twice");
-        let missing: Vec<_> = asked.difference(&known).collect();
-        let never: Vec<_> = known.difference(&asked).collect();
-        assert!(missing.is_empty(), "not in the table: {missing:?}");
-        assert!(never.is_empty(), "the reader never asks for: {never:?}");
-    }
-
-    #[test]
-    fn every_example_is_toml() {
-        for key in KEYS
-            .iter()
-            .filter(|key| !key.example.starts_with("[[") || key.example.contains('"'))
-        {
-            let text = if key.value == "table" && key.example.starts_with('[') {
-                key.example.to_owned()
-            } else {
-                format!("x = {}", key.example)
-            };
-            assert!(toml_edit::Document::parse(text.as_str()).is_ok(), "{text}");
-        }
-    }
-
-    #[test]
-    fn the_page_of_the_docs_is_made_from_the_table() {
-        let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/case-file.md");
-        let mut written = std::fs::read_to_string(&page).unwrap();
-        let begin = written.find(BEGIN).unwrap_or(written.len());
-        if std::env::var_os("CALCINE_WRITE_DOCS").is_some() {
-            let prose = written[..begin].trim_end();
-            std::fs::write(&page, format!("{prose}\n\n{}", markdown())).unwrap();
-            written = std::fs::read_to_string(&page).unwrap();
-        }
-        let begin = written.find(BEGIN).unwrap_or(written.len());
-        assert_eq!(
-            &written[begin..],
-            markdown(),
-            "set CALCINE_WRITE_DOCS=1 and run this test again to write docs/case-file.md"
-        );
-    }
-}
+mod tests;

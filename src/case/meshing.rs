@@ -5,6 +5,7 @@ use calcine_coupler::mesh::cylinder::{
     CylinderSpec, GradedBoxSpec, cylinder_mesh, graded_box_mesh,
 };
 use calcine_coupler::mesh::grading::{Stretch, shared};
+use calcine_coupler::mesh::openings::open;
 use calcine_coupler::mesh::polymesh::{self, PolyMeshError};
 use calcine_coupler::mesh::refine::refine;
 use calcine_coupler::mesh::{Mesh, MeshError};
@@ -23,15 +24,16 @@ pub enum MeshingError {
     PolyMesh(#[from] PolyMeshError),
 }
 
-/// Generates or reads the gas mesh: graded first, then refined in its zones.
+/// Generates or reads the gas mesh: graded first, then refined in its zones, then opened.
 pub fn mesh(spec: &MeshSpec) -> Result<Mesh, MeshingError> {
-    let (made, zones) = match spec {
+    let (made, zones, openings) = match spec {
         MeshSpec::Box {
             origin,
             size,
             cells,
             grading,
             refine,
+            openings,
             patches,
         } => {
             let plain = BoxSpec {
@@ -40,7 +42,7 @@ pub fn mesh(spec: &MeshSpec) -> Result<Mesh, MeshingError> {
                 cells: *cells,
                 patches: patches.clone(),
             };
-            (boxed(plain, grading)?, refine)
+            (boxed(plain, grading)?, refine, openings)
         }
         MeshSpec::Cylinder {
             origin,
@@ -49,6 +51,7 @@ pub fn mesh(spec: &MeshSpec) -> Result<Mesh, MeshingError> {
             cells,
             grading,
             refine,
+            openings,
         } => {
             let made = cylinder_mesh(&CylinderSpec {
                 origin: *origin,
@@ -58,14 +61,19 @@ pub fn mesh(spec: &MeshSpec) -> Result<Mesh, MeshingError> {
                 along: shared(cells[1], grading)?,
                 patches: ["side", "bottom", "top"].map(String::from),
             })?;
-            (made, refine)
+            (made, refine, openings)
         }
         MeshSpec::PolyMesh(directory) => return Ok(polymesh::read(directory)?),
     };
-    if zones.is_empty() {
+    let made = if zones.is_empty() {
+        made
+    } else {
+        refine(&made, zones)?
+    };
+    if openings.is_empty() {
         return Ok(made);
     }
-    Ok(refine(&made, zones)?)
+    Ok(open(&made, openings)?)
 }
 
 fn boxed(plain: BoxSpec, grading: &[Vec<Stretch>; 3]) -> Result<Mesh, MeshError> {

@@ -206,7 +206,10 @@ fn with_files(case: &Case) -> String {
             .to_vec(),
         model::MeshSpec::Box { .. } | model::MeshSpec::Cylinder { .. } => Vec::new(),
     };
-    let files: Vec<_> = places.chain(mesh).collect();
+    let files: Vec<_> = places
+        .chain(mesh)
+        .chain(case.gas_files.iter().cloned())
+        .collect();
     let triangles: Vec<_> = case
         .walls
         .iter()

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use calcine_adapters::openfoam::stock::Solver;
-use calcine_coupler::interior::reacting::Reaction;
+use calcine_coupler::interior::reacting::{Reaction, Size};
 use calcine_coupler::mesh::grading::Stretch;
+use calcine_coupler::mesh::openings::Opening;
 use calcine_coupler::mesh::refine::Refinement;
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::momentum_model::MomentumModel;
@@ -55,6 +56,8 @@ pub struct Case {
     pub gas: GasSetup,
     /// True where the gas is held as it is at the start.
     pub gas_held: bool,
+    /// Files of the gas' reactions.
+    pub gas_files: Vec<PathBuf>,
     /// Populations, in the order of the file.
     pub particles: Vec<Population>,
     /// What comes in.
@@ -113,6 +116,8 @@ pub enum MeshSpec {
         grading: [Vec<Stretch>; 3],
         /// Zones in which cells are split.
         refine: Vec<Refinement>,
+        /// Parts of the boundary with patches of their own.
+        openings: Vec<Opening>,
         /// Patch names of x−, x+, y−, y+, z−, z+; equal names make one patch.
         patches: [String; 6],
     },
@@ -130,6 +135,8 @@ pub enum MeshSpec {
         grading: Vec<Stretch>,
         /// Zones in which cells are split.
         refine: Vec<Refinement>,
+        /// Parts of the boundary with patches of their own.
+        openings: Vec<Opening>,
     },
     /// An OpenFOAM polyMesh folder (absolute path).
     PolyMesh(PathBuf),
@@ -144,6 +151,8 @@ pub struct ReactionSpec {
     pub reactions: Vec<Reaction>,
     /// Mass fractions of the solids in each material.
     pub compositions: Vec<Vec<f64>>,
+    /// How particles of each material take up room.
+    pub sizes: Vec<Size>,
 }
 
 impl ReactionSpec {
@@ -164,6 +173,8 @@ pub struct Material {
     pub heat_capacity: HeatCapacity,
     /// Mass fractions of all solids that there are; `None` where it is not said what it is made of.
     pub composition: Option<Vec<f64>>,
+    /// How its particles take up room while they react.
+    pub size: SizeLaw,
     /// Thermal conductivity over temperature.
     pub conductivity: Option<Conductivity>,
     /// Emissivity of its surface.
@@ -174,6 +185,26 @@ pub struct Material {
     pub real_young: Option<f64>,
     /// Poisson's ratio.
     pub poisson: Option<f64>,
+}
+
+/// How particles of a material take up room while they react.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum SizeLaw {
+    /// The diameter stays.
+    #[default]
+    Constant,
+    /// The density stays.
+    ConstantDensity {
+        /// Radius in m below which none shrinks.
+        least_radius: f64,
+    },
+    /// Each solid has its own density in the particle.
+    Densities {
+        /// In kg/m³, of all solids that there are; `None` where it is not said.
+        densities: Vec<Option<f64>>,
+        /// Radius in m below which none shrinks.
+        least_radius: f64,
+    },
 }
 
 /// Contact properties of a pair of materials.

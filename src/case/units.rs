@@ -49,6 +49,7 @@ dimensions! {
     MOLAR_MASS = [0, 1, 0, 0, -1], "a molar mass", "28.96 g/mol";
     MOLAR_ENERGY = [2, 1, -2, 0, -1], "a molar energy", "70 kJ/mol";
     MOLAR_ENTROPY = [2, 1, -2, -1, -1], "a molar entropy", "57.6 J/mol/K";
+    ENERGY_OF_MASS = [2, 0, -2, 0, 0], "an energy per mass", "0.01 m^2/s^2";
     DIFFUSIVITY = [2, 0, -1, 0, 0], "a diffusivity", "1e-5 m^2/s";
 }
 

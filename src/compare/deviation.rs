@@ -1,5 +1,6 @@
 //! How far each particle of one run is from the same particle of a reference run.
 
+use crate::report::plot::between;
 use crate::results::read::Series;
 
 /// Largest deviations over all common times.
@@ -48,14 +49,8 @@ pub fn deviation(reference: &Series, run: &Series, span: Option<f64>) -> Deviati
 
 /// The value at a time between two rows; `None` outside the rows.
 fn interpolate(times: &[f64], values: &[f64], time: f64) -> Option<f64> {
-    let next = times.partition_point(|&other| other < time);
-    if times.get(next) == Some(&time) {
-        return values.get(next).copied();
-    }
-    let before = next.checked_sub(1)?;
-    let (t0, t1) = (*times.get(before)?, *times.get(next)?);
-    let (v0, v1) = (*values.get(before)?, *values.get(next)?);
-    Some(v0 + (v1 - v0) * (time - t0) / (t1 - t0))
+    let within = *times.first()? <= time && time <= *times.last()?;
+    within.then(|| between(times, values, time))
 }
 
 #[cfg(test)]

@@ -325,6 +325,9 @@ fn unit(field: &str) -> &'static str {
         "density" => "kg/m^3",
         "heat" => "W",
         "force" => "N",
+        "turbulent_energy" => "m^2/s^2",
+        "dissipation" => "m^2/s^3",
+        "eddy_viscosity" => "Pa s",
         _ => "1",
     }
 }

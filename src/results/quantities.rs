@@ -147,6 +147,7 @@ fn of_particles(moment: &Moment<'_>, (field, column): Field<'_>) -> Vec<f64> {
         }
         "height" => bed.position.iter().map(|centre| centre.z).collect(),
         "mass" => moment.particle_mass.to_vec(),
+        "diameter" => bed.radius.iter().map(|radius| 2.0 * radius).collect(),
         "mass_fraction" => {
             let solids = moment.solid_fractions.len() / bed.len().max(1);
             let of = column.unwrap_or(0);

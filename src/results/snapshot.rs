@@ -81,6 +81,8 @@ const fn field<'a>(
 
 /// The name by which a case file asks for the mass fractions of all species.
 pub(super) const MASS_FRACTIONS: &str = "mass_fractions";
+/// The name by which a case file asks for the eddies.
+pub(super) const TURBULENCE: &str = "turbulence";
 /// The same of the solids of particles.
 pub(super) const SOLIDS: &str = "solids";
 
@@ -130,6 +132,35 @@ pub(super) fn gas<'a>(
             };
             field(name, "1", "mass fraction of this species", values)
         }));
+    }
+    if output.gas.iter().any(|name| name == TURBULENCE) {
+        let eddies = gas.turbulence;
+        for (name, unit, description, values) in [
+            (
+                "turbulent_energy",
+                "m^2/s^2",
+                "kinetic energy k of eddies",
+                eddies.energy,
+            ),
+            (
+                "dissipation",
+                "m^2/s^3",
+                "dissipation of the energy of eddies",
+                eddies.dissipation,
+            ),
+            (
+                "eddy_viscosity",
+                "Pa s",
+                "void fraction times the viscosity of eddies, zero in the bed",
+                eddies.viscosity,
+            ),
+        ] {
+            let one = field(name, unit, description, Scalar(values));
+            if values.len() != moment.mesh.cells() {
+                return Err(wrong_length(&one, moment.mesh.cells(), "gas"));
+            }
+            fields.push(one);
+        }
     }
     Ok(fields)
 }

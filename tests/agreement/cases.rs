@@ -152,3 +152,36 @@ wall = {{ velocity = "no-slip", heat = {{ coefficient = "20 W/m^2/K", ambient = 
         rest(beads)
     )
 }
+
+/// Turbulent air through a duct with walls, over beads that leave it free (`held`) or make a bed of its
+/// middle, into which eddies do not go.
+pub fn turbulent_duct(particles: &str, heat: &str) -> String {
+    format!(
+        r#"format = 1
+title = "Turbulent air in a duct"
+[time]
+end = "0.3 s"
+motion_window = "1 ms"
+[mesh]
+box = {{ size = "20 10 200 mm", cells = [6, 1, 24], patches = ["wall", "axis", "side", "side", "bottom", "top"] }}
+[gas]
+mixture = "air"
+initial = {{ temperature = "300 K", pressure = "1 atm", velocity = "0 0 8 m/s" }}
+turbulence = {{ model = "k-epsilon", initial = {{ energy = "0.5 m^2/s^2", length_scale = "2 mm" }} }}
+controls = {{ outer_iterations = 60, outer_tolerance = 1e-8, convection = "upwind" }}
+[gas.patch.bottom]
+inlet = {{ superficial_velocity = "8 m/s", temperature = [["0 s", "300 K"], ["0.1 s", "400 K"]], turbulence = {{ intensity = 0.1, length_scale = "2 mm" }} }}
+[gas.patch.top]
+outlet = {{ pressure = "1 atm" }}
+[gas.patch.wall]
+wall = {{ velocity = "no-slip", heat = {heat} }}
+[gas.patch.axis]
+symmetry = {{}}
+[gas.patch.side]
+symmetry = {{}}
+{}{DROP}"#,
+        rest(particles)
+            .replace(r#""pressure"]"#, r#""pressure", "turbulence"]"#)
+            .replace(r#"every = "0.5 s""#, r#"every = "0.1 s""#)
+    )
+}

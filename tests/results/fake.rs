@@ -63,6 +63,7 @@ pub fn case() -> Case {
             cells: CELLS,
             grading: Default::default(),
             refine: vec![],
+            openings: vec![],
             patches: ["side", "side", "side", "side", "bottom", "top"].map(String::from),
         },
         materials: vec![],
@@ -74,6 +75,7 @@ pub fn case() -> Case {
         feeds: vec![],
         outlets: vec![],
         gas_held: false,
+        gas_files: vec![],
         gas: gas_setup(),
         particles: vec![],
         laws: Laws {
@@ -168,12 +170,14 @@ fn gas_setup() -> GasSetup {
         }
         .into(),
         schmidt: 1.0,
+        chemistry: Default::default(),
         composition: Vec::new(),
         storage: GasStorage::Process,
         temperature: 300.0,
         pressure: 101_325.0,
         velocity: Vec3::zeros(),
         gravity: Vec3::new(0.0, 0.0, -9.81),
+        turbulence: Default::default(),
         momentum: Default::default(),
         patches: vec![],
         controls: GasControls {
@@ -343,6 +347,7 @@ impl World {
                 density: &self.gas.density,
                 velocity: &self.gas.velocity,
                 pressure_gradient: &self.gas.pressure_gradient,
+                turbulence: Default::default(),
             },
             bed: &self.bed,
             particles: ParticleFields {

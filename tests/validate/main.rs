@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
+mod backward_step;
 mod elastic_box;
 #[cfg(feature = "hdf5")]
 #[path = "../support/fluidised.rs"]
@@ -13,6 +14,7 @@ mod fluidised_bed;
 mod hopper;
 mod moving_bed;
 mod repose;
+mod shaft_furnace;
 mod voids;
 
 use std::path::{Path, PathBuf};
@@ -25,12 +27,14 @@ use calcine::results::read::Series;
 const MARK: &str = "--validate";
 /// Every validation by its name.
 const ALL: &[(&str, fn())] = &[
+    ("backward-step", backward_step::run),
     ("elastic-box", elastic_box::run),
     #[cfg(feature = "hdf5")]
     ("fluidised-bed", fluidised_bed::run),
     ("hopper", hopper::run),
     ("moving-bed", moving_bed::run),
     ("repose", repose::run),
+    ("shaft-furnace", shaft_furnace::run),
     ("voids", voids::run),
 ];
 

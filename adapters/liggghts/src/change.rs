@@ -1,8 +1,9 @@
-//! Particles that go and come between two windows.
+//! Particles that go and come between two windows, or get another size.
 //!
-//! The coordinator tells them as lines: `remove ID`, and `insert ID TYPE x y z vx vy vz RADIUS DENSITY`
-//! in SI with every digit.
+//! The coordinator tells them as lines: `remove ID`, `insert ID TYPE x y z vx vy vz RADIUS DENSITY`, and
+//! `resize ID RADIUS MASS`, in SI with every digit.
 
+use std::collections::HashMap;
 use std::f64::consts::PI;
 
 use crate::host::HostError;
@@ -24,16 +25,24 @@ struct New {
     values: [f64; 8],
 }
 
-/// What goes and comes.
+/// One particle that gets another size.
+struct Resized {
+    id: i32,
+    radius: f64,
+    mass: f64,
+}
+
+/// What goes and comes, and what becomes of those that stay.
 pub struct Change {
     remove: Vec<u64>,
     insert: Vec<New>,
+    resize: Vec<Resized>,
 }
 
 impl Change {
     /// Reads the lines.
     pub fn parse(text: &str) -> Result<Self, HostError> {
-        let (mut remove, mut insert) = (Vec::new(), Vec::new());
+        let (mut remove, mut insert, mut resize) = (Vec::new(), Vec::new(), Vec::new());
         for line in text.lines() {
             let refuse = || HostError::Change { line: line.into() };
             let words: Vec<&str> = line.split_ascii_whitespace().collect();
@@ -49,10 +58,19 @@ impl Change {
                         values: <[f64; 8]>::try_from(values).map_err(|_| refuse())?,
                     });
                 }
+                ["resize", id, radius, mass] => resize.push(Resized {
+                    id: id.parse().map_err(|_| refuse())?,
+                    radius: radius.parse().map_err(|_| refuse())?,
+                    mass: mass.parse().map_err(|_| refuse())?,
+                }),
                 _ => return Err(refuse()),
             }
         }
-        Ok(Self { remove, insert })
+        Ok(Self {
+            remove,
+            insert,
+            resize,
+        })
     }
 
     /// Makes the change; how many particles there must be afterwards.
@@ -62,6 +80,10 @@ impl Change {
     /// the list were read after that, springs would be lost or those of other pairs, and different ones on the two
     /// ranks of a pair, whose forces would no more cancel.
     pub fn apply(&self, liggghts: &mut Liggghts, before: u64) -> Result<u64, HostError> {
+        self.resize(liggghts)?;
+        if self.remove.is_empty() && self.insert.is_empty() {
+            return Ok(before);
+        }
         liggghts.command(&format!("group {GROUP} subtract all all"));
         for ids in self.remove.chunks(IDS_A_LINE) {
             let words: Vec<String> = ids.iter().map(u64::to_string).collect();
@@ -78,6 +100,36 @@ impl Change {
             liggghts.command(&format!("create_atoms 1 single {NOWHERE} units box"));
         }
         Ok(before + self.insert.len() as u64 - self.remove.len() as u64)
+    }
+}
+
+impl Change {
+    /// Gives this rank's particles their new sizes; other ranks get theirs in the setup that follows.
+    fn resize(&self, liggghts: &mut Liggghts) -> Result<(), HostError> {
+        if self.resize.is_empty() {
+            return Ok(());
+        }
+        let missing = |name| move || HostError::Missing { name };
+        let tags = liggghts.integers("id").ok_or_else(missing("id"))?;
+        let places: HashMap<i32, usize> = tags.iter().copied().zip(0..).collect();
+        let own: Vec<(usize, &Resized)> = self
+            .resize
+            .iter()
+            .filter_map(|new| Some((*places.get(&new.id)?, new)))
+            .collect();
+        let volume = |radius: f64| 4.0 / 3.0 * PI * radius.powi(3);
+        let value = |name, new: &Resized| match name {
+            "radius" => new.radius,
+            "rmass" => new.mass,
+            _ => new.mass / volume(new.radius),
+        };
+        for name in ["radius", "rmass", "density"] {
+            let column = liggghts.scalars_mut(name).ok_or_else(missing(name))?;
+            for (place, new) in &own {
+                column[*place] = value(name, new);
+            }
+        }
+        Ok(())
     }
 }
 
@@ -116,9 +168,13 @@ mod tests {
         let good = Change::parse("remove 7\ninsert 9 1 0 0 0.5 0 0 -1 1e-3 2500\n").unwrap();
         assert_eq!((good.remove[0], good.insert[0].id), (7, 9));
         assert_eq!(good.insert[0].values[2], 0.5);
+        let other = Change::parse("resize 3 2.5e-3 1.5e-4\n").unwrap();
+        let Resized { id, radius, mass } = other.resize[0];
+        assert_eq!((id, radius, mass), (3, 2.5e-3, 1.5e-4));
         for line in [
             "remove",
             "insert 9 1 0 0",
+            "resize 9 1e-3",
             "insert 9 1 0 0 0 0 0 0 x 1",
             "add 3",
         ] {

@@ -1,8 +1,8 @@
 // Species, as mass fractions Y_k, with exactly the fluxes and masses of continuity, per cell:
 //
-//   (m Y - m_old Y_old)/dtau + sum phi_f Y_f - sum (eps mu)_f/Sc grad(Y).S = S - C Y
+//   (m Y - m_old Y_old)/dtau + sum phi_f Y_f - sum (eps mu)_f/Sc grad(Y).S = S - C Y + m w
 //
-// with what particles give and take, whose sum continuity has.
+// with what particles give and take, whose sum continuity has, and what reactions make (chemistry.C).
 //
 // All species diffuse alike, so that Fick's fluxes sum to zero. Y_f as div(phi,Yi) of fvSchemes says, beyond
 // upwind explicitly and with the smallest limiter of all species, so that the fractions go on summing to
@@ -85,6 +85,7 @@ Foam::scalar Foam::calcine::gas::solveSpecies(report& result)
         fvScalarMatrix matrix(convection.fvmDiv(phi_, Y[k]) - laplacian);
         matrix.diag() += inertia - out + given_.speciesCoefficient[k];
         matrix.source() += inertia*old - outOf(beyond[k]) + given_.speciesSource[k];
+        addMade(k, matrix);
 
         scalar moving = gSumMag(mass_*Y[k].primitiveField() - committed_.mass*old)/span
           + gSumMag(given_.speciesSource[k]);
@@ -228,6 +229,11 @@ void Foam::calcine::gas::balanceSpecies(report& result) const
         (
             given_.speciesSource[k] - given_.speciesCoefficient[k]*Y[k].primitiveField()
         );
+        if (reactions_)
+        {
+            own.source = window_.storageSpan*gSum(speciesMade_[k]);
+            own.sourceMagnitude = window_.storageSpan*gSumMag(speciesMade_[k]);
+        }
         for (const fvPatch& patch : mesh_.boundary())
         {
             if (patch.coupled())

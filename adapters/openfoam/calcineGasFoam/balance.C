@@ -52,6 +52,17 @@ void Foam::calcine::gas::balanceEnergy(report& result) const
     energy.source = (basePressure() - committed_.basePressure)
        *gSum(given_.voidFraction*mesh_.cellVolumes());
     energy.sourceMagnitude = mag(energy.source);
+    if (reactions_)
+    {
+        // Heat of the gas' own reactions, from what the equations of the species say that they made.
+        scalar reacted = 0;
+        forAll(result.species, k)
+        {
+            reacted -= species_->mixture()[k].formationEnthalpy()*result.species[k].source;
+        }
+        energy.source += reacted;
+        energy.sourceMagnitude += mag(reacted);
+    }
     if (models_->radiates())
     {
         const scalarField T(temperatureBase_ + h/heatCapacity_);

@@ -197,7 +197,7 @@ Foam::scalar Foam::calcine::boundary::flow
 void Foam::calcine::boundary::addHeat
 (
     scalar time,
-    const scalarField& conductivity,
+    const volScalarField& conductivity,
     const scalarField& temperatureBase,
     const scalarField& heatCapacity,
     const scalarField& ownerDistance,
@@ -220,7 +220,8 @@ void Foam::calcine::boundary::addHeat
             {
                 // The half cell and the wall in series.
                 const label celli = patch.faceCells()[i];
-                const scalar half = ownerDistance[patch.start() + i]/conductivity[celli];
+                const scalar half = ownerDistance[patch.start() + i]
+                   /conductivity.boundaryField()[d.patch][i];
                 const scalar k = area/(1/d.coefficient->at(time) + half);
                 implicit[i] += k/heatCapacity[celli];
                 given[i] += k*(d.ambient->at(time) - temperatureBase[celli]);

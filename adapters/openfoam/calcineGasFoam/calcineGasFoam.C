@@ -143,6 +143,12 @@ void send
     {
         link.put("composition", gas.composition());
     }
+    if (gas.sendsEddies())
+    {
+        link.put("turbulent_energy", gas.eddies().energy());
+        link.put("dissipation", gas.eddies().dissipation());
+        link.put("eddy_viscosity", gas.eddies().viscosity());
+    }
     DynamicList<scalar> balances(35 + 7*gas.speciesNames().size());
     append(balances, result.mass);
     append(balances, result.energy);

@@ -115,6 +115,7 @@ Foam::calcine::gas::gas
     enthalpySolver_(mesh, "h"),
     takesAllPressure_(properties.getOrDefault<word>("momentumModel", "a") == "b"),
     schmidt_(properties.lookupOrDefault<scalar>("schmidt", 1)),
+    sendsEddies_(properties.lookupOrDefault<bool>("sendsEddies", false)),
     startVelocity_(U_.primitiveField())
 {
     const dictionary& controls = properties.subDict("controls");
@@ -124,6 +125,10 @@ Foam::calcine::gas::gas
     linearTolerance_ = controls.get<scalar>("linearTolerance");
     measureFaces();
     models_.reset(new models(mesh, U_, phi_, *thermo_));
+    if (species_ && reactions::wanted(mesh))
+    {
+        reactions_.reset(new reactions(mesh, thermo_->T(), speciesNames()));
+    }
 
     const scalarField reference(1, 298.15);
     referenceEnthalpy_ = thermo_->he(scalarField(1, pRef_), reference, labelList(1, 0))()[0];
@@ -396,10 +401,12 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
     {
         place();
         restore();
+        models_->place(committed_.voidFraction*density());
     }
     U_.correctBoundaryConditions();
 
     models_->begin();
+    beginReactions();
     result = report();
     for (label outer = 1; outer <= max(outerIterations_, 1); ++outer)
     {
@@ -416,8 +423,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
         }
         mass_ = committed_.mass - window_.storageSpan*(outflow() - massSource());
         setFlux();
-        result.residual = max(result.residual, solveSpecies(result));
-        result.residual = max(result.residual, solveEnthalpy(result));
+        result.residual = max(result.residual, solveScalars(result));
         guard(true);
         result.outerIterations = outer;
         thermo_->correct();
@@ -427,6 +433,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
             break;
         }
     }
+    closeReactions(result);
     guard(false);
     finishReport(result);
 }
@@ -448,7 +455,10 @@ void Foam::calcine::gas::commit()
     committed_.pressureGradient = pressureGradient_;
     committed_.flux = flux_;
     committed_.voidFraction = given_.voidFraction;
-    models_->advance(window_.motionSpan, committed_.voidFraction*density());
+    models_->advance
+    (
+        window_.motionSpan, committed_.voidFraction*density(), outflow()/mesh_.cellVolumes()
+    );
 }
 
 

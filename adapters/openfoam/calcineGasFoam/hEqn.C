@@ -1,6 +1,6 @@
 // Enthalpy, with exactly the fluxes and masses of continuity, per cell:
 //
-//   (m h - m_old h_old)/dtau + sum phi_f h_f - sum (eps kappa)_f grad(T).S = S - K T(h) + eps V (p0 - p0_old)/dtau + H - sum_k D_k h_k(T)
+//   (m h - m_old h_old)/dtau + sum phi_f h_f - sum (eps kappa)_f grad(T).S = S - K T(h) + eps V (p0 - p0_old)/dtau + H - sum_k D_k h_k(T) + m q
 //
 // h_f as fvSchemes says, beyond upwind explicitly; T linear in h: T = T* + (h - h*)/c_p. Because m = m_old - dtau sum phi_f, a uniform temperature
 // stays uniform whatever the flow does (p0, the model's pressure, changes in a closed domain alone), and energy closes to the linear tolerance whatever the outer
@@ -39,6 +39,7 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
     matrix.source() += committed_.mass*committed_.enthalpy/span
       + heatGiven_ - heatSlope_*temperatureBase_
       - outOf(*beyondH_) + compression*given_.voidFraction*mesh_.cellVolumes();
+    addHeatMade(matrix);
     if (models_->radiates())
     {
         const scalarField pores(given_.voidFraction*mesh_.cellVolumes());
@@ -51,7 +52,7 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
     boundary_.addHeat
     (
         window_.processEnd,
-        conductivity()().primitiveField(),
+        conductivity()(),
         temperatureBase_,
         heatCapacity_,
         ownerDistance_,

@@ -120,6 +120,25 @@ Foam::tmp<Foam::volScalarField> Foam::calcine::models::eddyDiffusivity() const
 }
 
 
+Foam::tmp<Foam::scalarField> Foam::calcine::models::mixingTime
+(
+    const scalarField& viscosity,
+    const scalarField& density
+) const
+{
+    if (!turbulent())
+    {
+        FatalErrorInFunction
+            << "PaSR needs a turbulence model, and constant/turbulenceProperties has none"
+            << exit(FatalError);
+    }
+    const scalarField eddies(turbulence_->nut()().primitiveField());
+    const scalarField dissipation(turbulence_->epsilon()().primitiveField());
+    // No eddies in the bed: what is there counts as mixed.
+    return pos(eddies - VSMALL)*sqrt((viscosity/density + eddies)/(dissipation + SMALL));
+}
+
+
 void Foam::calcine::models::radiativeHeat
 (
     const scalarField& T,
@@ -174,7 +193,23 @@ void Foam::calcine::models::begin()
 }
 
 
-void Foam::calcine::models::advance(scalar motionSpan, const scalarField& density)
+void Foam::calcine::models::place(const scalarField& density)
+{
+    if (turbulent())
+    {
+        setDensity(density);
+        turbulence_->validate();
+        store();
+    }
+}
+
+
+void Foam::calcine::models::advance
+(
+    scalar motionSpan,
+    const scalarField& density,
+    const scalarField& outflow
+)
 {
     if (turbulent())
     {
@@ -182,12 +217,28 @@ void Foam::calcine::models::advance(scalar motionSpan, const scalarField& densit
         time.setDeltaT(motionSpan, false);
         ++time;
         setDensity(density);
-        density_.oldTime().primitiveFieldRef() =
-            committedDensity_.empty() ? density : committedDensity_;
+        density_.oldTime().primitiveFieldRef() = density + motionSpan*outflow;
         turbulence_->correct();
-        committedDensity_ = density;
     }
     store();
+}
+
+
+Foam::scalarField Foam::calcine::models::energy() const
+{
+    return turbulence_->k()().primitiveField();
+}
+
+
+Foam::scalarField Foam::calcine::models::dissipation() const
+{
+    return turbulence_->epsilon()().primitiveField();
+}
+
+
+Foam::scalarField Foam::calcine::models::viscosity() const
+{
+    return turbulence_->mut()().primitiveField();
 }
 
 
@@ -214,7 +265,7 @@ void Foam::calcine::models::write(const fileName& directory) const
             out << values << nl;
         }
     }
-    out << committedDensity_ << nl << word(lastWord) << endl;
+    out << word(lastWord) << endl;
     if (!out.good())
     {
         FatalErrorInFunction
@@ -248,7 +299,6 @@ void Foam::calcine::models::read(const fileName& directory)
             in >> values;
         }
     }
-    in >> committedDensity_;
     if (word(in) != lastWord)
     {
         FatalErrorInFunction << in.name() << " is cut short" << exit(FatalError);

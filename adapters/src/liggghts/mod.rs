@@ -85,6 +85,9 @@ fn change_text(change: &Change) -> String {
         }
         text.push('\n');
     }
+    for new in &change.resize {
+        let _ = writeln!(text, "resize {} {:e} {:e}", new.id, new.radius, new.mass);
+    }
     text
 }
 

@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::{Mesh, polymesh};
+use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::{GasPatch, GasSetup};
 use calcine_wire::Catalogue;
 
 use super::start::Start;
 use super::stock::{self, Solver};
-use super::{NAME, decompose, dictionaries, species};
+use super::{NAME, chemistry, decompose, dictionaries, species, turbulence};
 use crate::launch::without_blanks;
 
 /// What an OpenFOAM case is made from.
@@ -39,7 +40,9 @@ impl OpenfoamCase<'_> {
     /// Writes the case into a folder, which is made if it is not there.
     pub fn write(&self, folder: &Path) -> Result<(), PartError> {
         self.check()?;
-        let catalogue = Catalogue::gas(self.setup.properties.species().len()).map_err(|error| {
+        let turbulent = !self.setup.turbulence.is_laminar();
+        let species = self.setup.properties.species().len();
+        let catalogue = Catalogue::gas(species, turbulent).map_err(|error| {
             PartError::new(NAME, FailureKind::NotStarted, "its columns").caused_by(error)
         })?;
         make(folder)?;
@@ -81,6 +84,7 @@ impl OpenfoamCase<'_> {
             let fraction = start.applied(name, species::fraction(setup, k, name));
             put(&folder.join("0").join(name), &fraction)?;
         }
+        self.write_chemistry(folder)?;
         if self.ranks > 1 {
             self.divide(folder)?;
         }
@@ -100,6 +104,35 @@ impl OpenfoamCase<'_> {
             ("0/T", start.applied("T", dictionaries::temperature(setup))),
             ("0/p", start.applied("p", dictionaries::pressure(setup))),
         ] {
+            put(&folder.join(name), &text)?;
+        }
+        if setup.turbulence.is_laminar() {
+            return Ok(());
+        }
+        let options = self.beside(folder, "constant/fvOptions")?;
+        for (name, text) in turbulence::files(setup, &options) {
+            put(&folder.join(name), &text)?;
+        }
+        Ok(())
+    }
+
+    /// Reactions of the gas, for calcineGasFoam alone.
+    fn write_chemistry(&self, folder: &Path) -> Result<(), PartError> {
+        let setup = self.setup;
+        let GasModel::Mixture(mixture) = &setup.properties else {
+            return Ok(());
+        };
+        let Some(gas) = setup.chemistry.reacting() else {
+            return Ok(());
+        };
+        let refuse = |words: String| PartError::new(NAME, FailureKind::NotStarted, words);
+        if self.solver.is_stock() {
+            let words =
+                "a stock solver does not take Calcine's reactions of the gas; use calcineGasFoam";
+            return Err(refuse(words.into()));
+        }
+        let files = chemistry::files(setup, mixture, gas);
+        for (name, text) in files.map_err(|error| refuse(error.to_string()))? {
             put(&folder.join(name), &text)?;
         }
         Ok(())
@@ -302,12 +335,14 @@ mod tests {
             mixture: "air".into(),
             properties: GasProperties::air().into(),
             schmidt: 1.0,
+            chemistry: Default::default(),
             composition: Vec::new(),
             storage: GasStorage::Process,
             temperature: 300.0,
             pressure: 101_325.0,
             velocity: Vec3::zeros(),
             gravity: Vec3::zeros(),
+            turbulence: Default::default(),
             momentum: Default::default(),
             patches: patches.map(|(name, patch)| (name.to_owned(), patch)).into(),
             controls: GasControls {

@@ -1,6 +1,8 @@
 //! What the columns of a gas' link mean.
 
-use calcine_coupler::part::{Balance, Bed, CellExchange, CellReceived, Convergence, GasFields};
+use calcine_coupler::part::{
+    Balance, Bed, CellExchange, CellReceived, Convergence, GasFields, TurbulenceFields,
+};
 use calcine_coupler::physics::Vec3;
 use calcine_wire::{Link, WireError};
 
@@ -14,6 +16,8 @@ pub struct State {
     composition: Vec<f64>,
     velocity: Vec<Vec3>,
     pressure_gradient: Vec<Vec3>,
+    /// Turbulent energy, its dissipation, eddy viscosity; empty for a laminar gas.
+    eddies: [Vec<f64>; 3],
 }
 
 /// The links of all ranks, and the cells of the whole mesh that each has.
@@ -72,13 +76,24 @@ impl Ranks<'_> {
 }
 
 impl State {
-    /// Takes the state, of so many species, out of the messages that the links hold.
-    pub fn read(&mut self, ranks: Ranks<'_>, species: usize) -> Result<(), WireError> {
+    /// Takes the state, of so many species, of a turbulent gas or not, out of the messages that the links hold.
+    pub fn read(
+        &mut self,
+        ranks: Ranks<'_>,
+        species: usize,
+        turbulent: bool,
+    ) -> Result<(), WireError> {
         ranks.copy("temperature", &mut self.temperature)?;
         ranks.copy("pressure", &mut self.pressure)?;
         ranks.copy("density", &mut self.density)?;
         if species > 0 {
             ranks.copy_items("composition", species, &mut self.composition)?;
+        }
+        if turbulent {
+            let [energy, dissipation, viscosity] = &mut self.eddies;
+            ranks.copy("turbulent_energy", energy)?;
+            ranks.copy("dissipation", dissipation)?;
+            ranks.copy("eddy_viscosity", viscosity)?;
         }
         ranks.copy_vectors("velocity", &mut self.velocity)?;
         ranks.copy_vectors("pressure_gradient", &mut self.pressure_gradient)
@@ -93,6 +108,11 @@ impl State {
             composition: &self.composition,
             velocity: &self.velocity,
             pressure_gradient: &self.pressure_gradient,
+            turbulence: TurbulenceFields {
+                energy: &self.eddies[0],
+                dissipation: &self.eddies[1],
+                viscosity: &self.eddies[2],
+            },
         }
     }
 }

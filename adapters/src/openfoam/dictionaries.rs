@@ -166,6 +166,9 @@ pub fn calcine(setup: &GasSetup, case_hash: &str, catalogue: &Catalogue) -> Stri
     }
     text += "}\n\n// Schmidt number of all species of a mixture.\n";
     let _ = writeln!(text, "schmidt         {:e};\n", setup.schmidt);
+    if !setup.turbulence.is_laminar() {
+        text += "// The eddies go to Calcine with the state.\nsendsEddies     yes;\n\n";
+    }
     text += "// Columns of the link to Calcine.\ncatalogue\n(\n";
     for column in catalogue.fields() {
         let _ = writeln!(text, "    \"{column}\"");
@@ -180,6 +183,8 @@ fn entries(condition: &GasPatch, names: &[String]) -> Vec<(&'static str, String)
             flow,
             temperature,
             composition,
+            // OpenFOAM's own conditions: 0/k, 0/epsilon.
+            turbulence: _,
         } => {
             let flow = match flow {
                 InletFlow::SuperficialVelocity(flow) => ("superficialVelocity", table(flow)),

@@ -1,6 +1,7 @@
 //! Gas in Debian's OpenFOAM 1912: the solver calcineGasFoam in a case that is generated here.
 
 pub mod case;
+pub mod chemistry;
 mod columns;
 mod decompose;
 mod dictionaries;
@@ -8,6 +9,7 @@ mod identity;
 mod species;
 mod start;
 pub mod stock;
+mod turbulence;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -83,6 +85,8 @@ pub struct OpenfoamGas {
     storage: GasStorage,
     /// Number of species; zero for a single gas.
     species: usize,
+    /// True where it has eddies.
+    turbulent: bool,
     state: State,
     window: Option<Window>,
 }
@@ -149,6 +153,7 @@ impl OpenfoamGas {
             arguments.extend([option.into(), folder.into()]);
         }
         let species = launch.setup.properties.species().len();
+        let turbulent = !launch.setup.turbulence.is_laminar();
         let hello = Hello {
             role: "gas".into(),
             name: "Calcine".into(),
@@ -157,7 +162,7 @@ impl OpenfoamGas {
             case_hash: launch.case_hash,
             count: launch.mesh.cells() as u64,
             ranks: launch.ranks,
-            catalogue: Catalogue::gas(species).map_err(|error| {
+            catalogue: Catalogue::gas(species, turbulent).map_err(|error| {
                 PartError::new(NAME, FailureKind::NotStarted, "its columns").caused_by(error)
             })?,
         };
@@ -190,6 +195,7 @@ impl OpenfoamGas {
             mesh: launch.mesh,
             storage: launch.setup.storage,
             species,
+            turbulent,
             state: State::default(),
             window: None,
         };
@@ -210,7 +216,7 @@ impl OpenfoamGas {
     /// Takes the state out of the messages that the links hold.
     fn read_state(&mut self, window: Option<&Window>) -> Result<(), PartError> {
         let ranks = ranks(&self.solver, &self.mesh);
-        let read = self.state.read(ranks, self.species);
+        let read = self.state.read(ranks, self.species, self.turbulent);
         read.map_err(|error| self.solver.failure(window, error))
     }
 }

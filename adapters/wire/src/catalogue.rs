@@ -165,7 +165,8 @@ impl Catalogue {
 
     /// That of a gas of so many species (0: a single gas): the standard one with the composition, species by
     /// species within each cell, what particles exchange of it, and a balance of each species after the momentum's.
-    pub fn gas(species: usize) -> Result<Self, WireError> {
+    /// That of a turbulent gas has the eddies too.
+    pub fn gas(species: usize, turbulent: bool) -> Result<Self, WireError> {
         let mut gas = Self::standard("gas")?;
         if species > 0 {
             for field in &mut gas.fields {
@@ -179,6 +180,15 @@ impl Catalogue {
                 format!("start species_coefficient {species} kg/s item"),
                 format!("start species_taken {species} kg/s item"),
                 "start species_heat 1 W item".into(),
+            ] {
+                gas.fields.push(line.parse()?);
+            }
+        }
+        if turbulent {
+            for line in [
+                "state turbulent_energy 1 m^2/s^2 item",
+                "state dissipation 1 m^2/s^3 item",
+                "state eddy_viscosity 1 Pas item",
             ] {
                 gas.fields.push(line.parse()?);
             }
@@ -285,12 +295,14 @@ mod tests {
 
     #[test]
     fn species_add_a_column_of_mass_fractions_and_a_balance_each() {
-        let gas = Catalogue::gas(3).unwrap();
+        let gas = Catalogue::gas(3, false).unwrap();
         let length = |name| gas.column(Record::State, name, 12).unwrap().1.len();
         assert_eq!(length("composition"), 36);
         assert_eq!(length("balances"), 35 + 21);
         let single = Catalogue::standard("gas").unwrap();
-        assert_eq!(Catalogue::gas(0).unwrap(), single);
+        assert_eq!(Catalogue::gas(0, false).unwrap(), single);
+        let turbulent = Catalogue::gas(0, true).unwrap();
+        assert_eq!(turbulent.fields().len(), single.fields().len() + 3);
     }
 
     #[test]

@@ -16,7 +16,7 @@ use crate::record::Header;
 use crate::run::LinkAddress;
 use crate::transport::{Transport, WireError};
 use crate::watch::Watch;
-use crate::words::{self, Loan};
+use crate::words::{self, LINE, Loan};
 
 type Ipc = ipc_threadsafe::Service;
 
@@ -131,6 +131,8 @@ impl Ports {
             End::Coordinator => (name("down")?, name("up")?),
             End::Solver => (name("up")?, name("down")?),
         };
+        // With words' own alignment: asked for lines, iceoryx2 0.10 pads each word to a line and loses a slot of
+        // the segment whenever it grows.
         let messages = |name: &ServiceName| {
             node.service_builder(name)
                 .publish_subscribe::<[u64]>()
@@ -141,7 +143,6 @@ impl Ports {
                 .subscriber_max_borrowed_samples(1)
                 .history_size(0)
                 .enable_safe_overflow(false)
-                .payload_alignment(Alignment::ALIGN_64)
                 .open_or_create()
                 .map_err(failed("opening a link"))
         };
@@ -261,20 +262,25 @@ impl Transport for SharedMemory {
     fn loan(&mut self, header: Header, words: usize) -> Result<&mut [u64], WireError> {
         let ports = self.ports()?;
         ports.loan = None;
+        // Room to begin at a line, which also gives an empty message a place of its own in a segment.
+        let words = words.saturating_add(LINE - 1);
         ports.make_room(words)?;
-        // An empty slice has no place of its own in a segment.
         let mut loan = ports
             .publisher
-            .loan_slice_uninit(words.max(1))
+            .loan_slice_uninit(words)
             .map_err(failed("reserving a message"))?;
         *loan.user_header_mut() = header;
         ports.back(&mut loan)?;
-        Ok(words::mapped(ports.loan.insert(loan).payload_mut()))
+        let payload = words::mapped(ports.loan.insert(loan).payload_mut());
+        let start = words::line_start(payload);
+        Ok(&mut payload[start..])
     }
 
     fn loaned(&mut self) -> Option<&mut [u64]> {
         let loan = self.ports.as_mut()?.loan.as_mut()?;
-        Some(words::mapped(loan.payload_mut()))
+        let payload = words::mapped(loan.payload_mut());
+        let start = words::line_start(payload);
+        Some(&mut payload[start..])
     }
 
     fn send(&mut self) -> Result<(), WireError> {
@@ -316,7 +322,11 @@ impl Transport for SharedMemory {
 
     fn received(&self) -> Option<(&Header, &[u64])> {
         let message = self.ports.as_ref()?.received.as_ref()?;
-        Some((message.user_header(), message.payload()))
+        let payload = message.payload();
+        Some((
+            message.user_header(),
+            &payload[words::line_start(payload)..],
+        ))
     }
 }
 
@@ -331,9 +341,9 @@ mod tests {
         let run = Run::create().unwrap();
         let mut end = SharedMemory::open(&run.address("gas"), 0, End::Coordinator).unwrap();
         let header = Header::of(Kind::Start);
-        // 2^44 words in 5 slots.
+        // 2^44 words in 5 slots, the first line of each included.
         let error = end
-            .loan(header, 1 << 44)
+            .loan(header, (1 << 44) - 8)
             .map(|_| ())
             .unwrap_err()
             .to_string();

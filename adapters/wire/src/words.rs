@@ -30,6 +30,15 @@ pub fn of_lines_mut(lines: &mut [Line]) -> &mut [u64] {
     unsafe { std::slice::from_raw_parts_mut(lines.as_mut_ptr().cast(), LINE * lines.len()) }
 }
 
+/// Where the first line begins in a payload with room for it: the same number in both processes, as memory is
+/// mapped by whole pages.
+pub fn line_start(payload: &[u64]) -> usize {
+    payload
+        .as_ptr()
+        .align_offset(align_of::<Line>())
+        .min(payload.len())
+}
+
 /// A reserved message of the shared-memory transport.
 pub type Loan = SampleMutUninit<Service, [std::mem::MaybeUninit<u64>], Header>;
 type Filled = SampleMut<Service, [u64], Header>;

@@ -200,10 +200,20 @@ fn started(pid: u32) -> u64 {
         .unwrap()
 }
 
+/// A process that ends with the test, however the test ends.
+struct Sleeper(Child);
+
+impl Drop for Sleeper {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
 /// A solver whose coordinator, here a sleeping process, is killed; its log, and how long it lived on.
 fn orphan(program: &Path, mesh: &str, greeted: bool) -> (String, Option<i32>, Duration) {
-    let mut coordinator = Command::new("sleep").arg("600").spawn().unwrap();
-    let pid = coordinator.id();
+    let coordinator = Sleeper(Command::new("sleep").arg("600").spawn().unwrap());
+    let pid = coordinator.0.id();
     let name = format!("calcine-{pid}-{:x}-0", started(pid));
     let root = std::env::temp_dir().join(&name);
     fs::create_dir(&root).unwrap();
@@ -220,8 +230,7 @@ fn orphan(program: &Path, mesh: &str, greeted: bool) -> (String, Option<i32>, Du
         receive(&mut link).unwrap();
     }
     assert!(!files_of(&name).is_empty());
-    coordinator.kill().unwrap();
-    coordinator.wait().unwrap();
+    drop(coordinator);
     let begun = Instant::now();
     while child.try_wait().unwrap().is_none() {
         if begun.elapsed() > Duration::from_secs(20) {

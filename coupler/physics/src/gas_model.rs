@@ -95,6 +95,14 @@ impl GasModel {
         }
     }
 
+    /// Enthalpy of formation of a species at 298.15 K in J/kg; zero for a single gas.
+    pub fn formation_enthalpy(&self, species: usize) -> f64 {
+        match self {
+            Self::Perfect(_) | Self::Constant(_) => 0.0,
+            Self::Mixture(mixture) => mixture.species()[species].formation_enthalpy(),
+        }
+    }
+
     /// Specific heat capacity of a species in J/kg/K.
     pub fn species_heat_capacity(&self, species: usize, temperature: f64) -> f64 {
         match self {

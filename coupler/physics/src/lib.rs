@@ -9,9 +9,11 @@ pub mod gas;
 pub mod gas_model;
 pub mod heat_transfer;
 pub mod inertial_number;
+pub mod kinetics;
 pub mod local;
 pub mod mass_transfer;
 pub mod numbers;
+pub mod points;
 pub mod pressure_drop;
 pub mod quadrature;
 pub mod radiation;
@@ -19,6 +21,7 @@ pub mod reaction;
 pub mod solid;
 pub mod solids;
 pub mod thermo;
+pub mod turbulence;
 
 /// A vector in space.
 pub type Vec3 = nalgebra::Vector3<f64>;

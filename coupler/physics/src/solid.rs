@@ -1,6 +1,7 @@
 //! Heat capacity of solids.
 
 use crate::gas::REFERENCE_TEMPERATURE;
+use crate::points::linear;
 
 /// Specific heat capacity of a solid, linear in temperature between given points and constant outside
 /// them; its integral, the enthalpy, and the inverse of that are exact.
@@ -43,18 +44,7 @@ impl HeatCapacity {
 
     /// c_p in J/kg/K at a temperature in K.
     pub fn at(&self, temperature: f64) -> f64 {
-        let next = self
-            .points
-            .partition_point(|&(from, _)| from <= temperature);
-        match (next.checked_sub(1), self.points.get(next)) {
-            (Some(before), Some(after)) => {
-                let before = self.points[before];
-                let share = (temperature - before.0) / (after.0 - before.0);
-                before.1 + share * (after.1 - before.1)
-            }
-            (Some(last), None) => self.points[last].1,
-            (None, _) => self.points[0].1,
-        }
+        linear(&self.points, temperature)
     }
 
     /// Enthalpy in J/kg, counted from the first point.

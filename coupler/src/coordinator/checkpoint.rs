@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use calcine_interior::Reacting;
 use rustix::fs::{CWD, RenameFlags, renameat_with};
 use thiserror::Error;
 
@@ -129,8 +130,10 @@ impl Run<'_> {
             observer.checkpoint(&self.moment(None), &fresh)?;
         }
         self.plan.checkpoint.publish()?;
-        // A resumed run finds its views at the checkpoint's places; where nothing moves they are the same.
-        if !self.plan.free.is_empty() {
+        // A resumed run finds its views at the checkpoint's places and sizes; else they are the same.
+        let reacting = self.parts.interior.reactions();
+        let grows = reacting.is_some_and(Reacting::changes_sizes);
+        if grows || !self.plan.free.is_empty() {
             self.paths.forget();
             self.find_contacts();
         }

@@ -4,6 +4,7 @@ mod checkpoint;
 mod momentum;
 mod origin;
 mod react;
+mod resize;
 mod trade;
 mod window;
 
@@ -18,6 +19,7 @@ use thiserror::Error;
 
 pub use checkpoint::{CheckpointError, CheckpointPaths};
 pub use origin::{Origin, OriginError};
+pub use resize::{Pace, TooLight};
 
 use crate::checkpoint::StateFileError;
 use crate::closures::{ClosureError, Closures, Coefficients, Seen};
@@ -73,6 +75,8 @@ pub struct Plan {
     pub substance: Vec<usize>,
     /// Heat between particles and to walls.
     pub paths: PathsSetup,
+    /// How light particles that move may become by what reacts in them; `None` where none moves.
+    pub pace: Option<Pace>,
 }
 
 /// How a run ended without an error.
@@ -112,6 +116,9 @@ pub enum RunError {
         /// Which particle, and why.
         cause: ReactError,
     },
+    /// A particle too light for the solver's time step.
+    #[error(transparent)]
+    TooLight(#[from] TooLight),
     /// A feed whose particles cannot be drawn.
     #[error("feeds: {0}")]
     Feed(#[from] PackingError),
@@ -262,6 +269,7 @@ impl<'m> Run<'m> {
         let mut last = None;
         while self.clocks.process < self.plan.end {
             let window = self.next_window()?;
+            self.resize(supervisor)?;
             self.trade(supervisor, &window)?;
             self.advance(supervisor, &window)?;
             last = Some(window);

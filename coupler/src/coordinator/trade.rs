@@ -2,8 +2,10 @@
 
 use calcine_interior::{Newcomer, without};
 use calcine_physics::Vec3;
+use calcine_physics::thermo::Element;
 
 use super::{Run, RunError};
+use crate::ledger::Ledger;
 use crate::part::ParticleFields;
 use crate::supervisor::Supervisor;
 use crate::time::Window;
@@ -38,6 +40,13 @@ impl Run<'_> {
             let enthalpy = self.parts.interior.enthalpy(row);
             went.add(fields.mass[row], enthalpy, fields.velocity[row]);
         }
+        let reacting = self.parts.interior.reactions();
+        let elements = reacting.map(|one| {
+            [
+                one.elements(0..fields.len()),
+                one.elements(trade.rows.iter().copied()),
+            ]
+        });
         self.parts.particles.change(supervisor, &trade.change)?;
 
         // New ids are the highest: their rows are the last ones.
@@ -56,8 +65,12 @@ impl Run<'_> {
             })
             .collect();
         self.parts.interior.change(&trade.rows, &newcomers);
+        if let (Some(before), Some(reacting)) = (elements, self.parts.interior.reactions()) {
+            let after = reacting.elements(0..fields.len());
+            let brought = reacting.elements_brought(&newcomers);
+            book_elements(&mut self.ledger, before, after, brought);
+        }
         let (brought_before, carried_before) = (came.mass, came.momentum);
-        self.paths.forget();
         for row in first..fields.len() {
             let enthalpy = self.parts.interior.enthalpy(row);
             came.add(fields.mass[row], enthalpy, fields.velocity[row]);
@@ -95,6 +108,23 @@ impl Run<'_> {
                 .all(|force: &Vec3| force.norm().is_finite())
         );
         Ok(())
+    }
+}
+
+/// The mass in kg of each element that particles held before a trade, and that of those that went, against what
+/// they hold now and what the newcomers' compositions say.
+fn book_elements(
+    ledger: &mut Ledger,
+    [before, gone]: [Vec<f64>; 2],
+    after: Vec<f64>,
+    brought: Vec<f64>,
+) {
+    for (name, line) in &mut ledger.elements {
+        let found = Element::ALL.iter().position(|one| one.symbol() == name);
+        if let Some(k) = found {
+            let left = after[k] - before[k] - brought[k] + gone[k];
+            line.book(left, brought[k] + gone[k]);
+        }
     }
 }
 

@@ -239,8 +239,20 @@ impl Run<'_> {
         });
     }
 
-    /// What the interior does over the window with the gas as it is: conduction, reactions.
+    /// What the interior does over the window with the gas as it is: conduction, and reactions with the heat that
+    /// is conducted. Conduction takes the heat of reactions from the attempt before; a first attempt has none,
+    /// and looks twice: heat that is set free would leave a window late.
     fn look_at_particles(&mut self, window: &Window) -> Result<(), RunError> {
+        if window.attempt == 0 && self.reacts() && self.parts.interior.conducts() {
+            self.conduct(window);
+            self.react(window)?;
+        }
+        self.conduct(window);
+        self.react(window)
+    }
+
+    /// Fixes the heat between particles and to walls.
+    fn conduct(&mut self, window: &Window) {
         let span = window.span.process.seconds();
         let end = window.start.process.seconds() + span;
         if self.parts.interior.conducts() {
@@ -255,7 +267,6 @@ impl Run<'_> {
                 self.parts.interior.conduct(&beside, span);
             });
         }
-        self.react(window)
     }
 
     /// One attempt of the gas; the share of the exchange that it left misplaced.
@@ -413,9 +424,11 @@ fn book_elements(
             .iter()
             .flat_map(|own| own.1.iter().zip(&received.species))
         {
+            // Reactions of the gas make no element, so that what they make of the species is left in.
             let (open, terms) = open(balance);
-            sum += scale * share * (open + balance.exchange);
-            magnitude += scale * share * (terms - balance.exchange.abs());
+            let other = balance.exchange.abs() + balance.source_magnitude;
+            sum += scale * share * (open + balance.exchange + balance.source);
+            magnitude += scale * share * (terms - other);
         }
         if let Some((_, elements)) = &changes {
             let place = Element::ALL.iter().position(|one| one.symbol() == name);

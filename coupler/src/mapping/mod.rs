@@ -119,11 +119,11 @@ impl<'m> Mapper<'m> {
         if !(radius >= 0.0 && radius.is_finite()) {
             return Err(MappingError::Radius { particle, radius });
         }
-        let home = self
+        let (home, depth) = self
             .locator
-            .cell_at(position)
+            .cell_and_depth(position)
             .ok_or(MappingError::Outside { particle, position })?;
-        if self.locator.depth(home, position) >= radius {
+        if depth >= radius {
             return Ok(vec![(home as u32, 1.0)]);
         }
         Ok(match method {
@@ -147,14 +147,12 @@ impl<'m> Mapper<'m> {
 
     fn by_overlap(&self, home: usize, position: Vec3, radius: f64) -> Vec<(u32, f64)> {
         let ball = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
-        let mesh = self.locator.mesh();
-        let share = |cell: u32| {
-            let volume = self.overlap.volume(mesh, cell as usize, position, radius);
-            (cell, volume / ball)
-        };
-        let cells = self.locator.cells_near(position, radius).into_iter();
+        let cells = self.locator.cells_near(position, radius);
+        let locator = &self.locator;
+        let volumes = self.overlap.volumes(locator, &cells, position, radius);
         let shares: Vec<_> = cells
-            .map(share)
+            .into_iter()
+            .zip(volumes.into_iter().map(|volume| volume / ball))
             .filter(|&(_, share)| share > Self::ROUND_OFF)
             .collect();
         // A ball too small for its volume to be a number is a point.

@@ -1,5 +1,7 @@
 //! Exact overlap of a ball and a polyhedron.
 
+use std::f64::consts::PI;
+
 use calcine_physics::Vec3;
 
 use crate::mesh::Mesh;
@@ -12,58 +14,184 @@ use crate::mesh::locate::Locator;
 /// cone ∩ ball = h/3 · area(F ∩ D) + R³/3 · Ω(F ∖ D), Ω the solid angle. Both are sums over the
 /// edges of F of what the triangle (foot of the centre, edge) has. Faces that are not plane are
 /// taken as triangles around the mean of their points, as for cell volumes.
+///
+/// The solid angles of all faces of a convex cell sum to 4π where the centre lies inside and to none outside, so
+/// that there only the faces count that the ball cuts, each by h/3 · area(F ∩ D) − R³/3 · Ω(F ∩ D), once for both
+/// of its cells.
 #[derive(Clone, Debug)]
 pub(super) struct Overlap {
-    plane: Vec<bool>,
+    /// Largest distance in m of each face's points from its centre, and of each cell's from its own.
+    face_reach: Vec<f64>,
+    cell_reach: Vec<f64>,
+    /// Cells of plane faces, behind each of which all their points lie.
+    convex: Vec<bool>,
 }
+
+/// How a cell's share of a ball is found.
+#[derive(Clone, Copy, PartialEq)]
+enum Way {
+    /// All of the cell lies in the ball.
+    Whole,
+    /// By the faces that the ball cuts, and the ball's centre inside the cell or not.
+    Cut { inside: bool },
+    /// By the cones over all faces.
+    Cones,
+}
+
+/// Below this height of the centre over a face, as a share of the radius, its side is not certain.
+const GRAZING: f64 = 1e-10;
 
 impl Overlap {
     pub fn new(locator: &Locator<'_>) -> Self {
-        let faces = 0..locator.mesh().faces();
+        let mesh = locator.mesh();
+        let points = |face: usize| {
+            let indices = mesh.face_points(face).iter();
+            indices.map(|&point| mesh.topology().points[point as usize])
+        };
+        let farthest = |from: Vec3, points: &mut dyn Iterator<Item = Vec3>| {
+            points.map(|p| (p - from).norm()).fold(0.0, f64::max)
+        };
+        let corners = |cell: usize| {
+            let faces = mesh.faces_of(cell).iter();
+            faces.flat_map(|&face| points(face as usize))
+        };
+        // Points to the precision at which a face counts as plane.
+        let behind = |cell: usize, face: usize| {
+            let (normal, centre) = (locator.normal(face), mesh.face_centre()[face]);
+            let outwards = locator.side(cell, face) * normal;
+            corners(cell).all(|p| outwards.dot(&(p - centre)) <= 1e-9 * (p - centre).norm())
+        };
+        let convex = |cell: usize| {
+            let faces = mesh.faces_of(cell).iter().map(|&face| face as usize);
+            faces
+                .into_iter()
+                .all(|face| locator.warp(face) == 0.0 && behind(cell, face))
+        };
         Self {
-            plane: faces.map(|face| locator.warp(face) == 0.0).collect(),
+            face_reach: (0..mesh.faces())
+                .map(|face| farthest(mesh.face_centre()[face], &mut points(face)))
+                .collect(),
+            cell_reach: (0..mesh.cells())
+                .map(|cell| farthest(mesh.cell_centre()[cell], &mut corners(cell)))
+                .collect(),
+            convex: (0..mesh.cells()).map(convex).collect(),
         }
     }
 
-    /// Volume in m³ that the ball shares with a cell, to round-off of the ball's own volume.
-    pub fn volume(&self, mesh: &Mesh, cell: usize, centre: Vec3, radius: f64) -> f64 {
-        let mut volume = 0.0;
+    /// Volumes in m³ that the ball shares with cells, which ascend, to round-off of the ball's own volume.
+    pub fn volumes(
+        &self,
+        locator: &Locator<'_>,
+        cells: &[u32],
+        centre: Vec3,
+        radius: f64,
+    ) -> Vec<f64> {
+        let mesh = locator.mesh();
+        let ways: Vec<Way> = cells
+            .iter()
+            .map(|&cell| self.way(locator, cell as usize, centre, radius))
+            .collect();
+        let mut volumes = vec![0.0; cells.len()];
+        for (place, &cell) in cells.iter().enumerate() {
+            let cell = cell as usize;
+            let faces = mesh.faces_of(cell).iter().map(|&face| face as usize);
+            match ways[place] {
+                Way::Whole => volumes[place] = mesh.cell_volume()[cell],
+                Way::Cones => {
+                    let cone =
+                        |face| locator.side(cell, face) * cone(locator, face, centre, radius);
+                    volumes[place] = faces.map(cone).sum();
+                }
+                Way::Cut { inside } => {
+                    if inside {
+                        volumes[place] += 4.0 / 3.0 * PI * radius.powi(3);
+                    }
+                    for face in faces {
+                        let plane = Plane::of(locator, face, centre, radius);
+                        if plane.disc <= 0.0 {
+                            continue;
+                        }
+                        let other = mesh.across(cell, face).and_then(|other| {
+                            let place = cells.binary_search(&(other as u32)).ok()?;
+                            matches!(ways[place], Way::Cut { .. }).then_some(place)
+                        });
+                        // The first of its two cells finds what it takes for both.
+                        if other.is_some_and(|other| other < place) {
+                            continue;
+                        }
+                        let within = self.within(mesh, face, centre, &plane);
+                        let within = locator.side(cell, face) * within;
+                        volumes[place] += within;
+                        if let Some(other) = other {
+                            volumes[other] -= within;
+                        }
+                    }
+                }
+            }
+        }
+        volumes
+    }
+
+    fn way(&self, locator: &Locator<'_>, cell: usize, centre: Vec3, radius: f64) -> Way {
+        if !self.convex[cell] {
+            return Way::Cones;
+        }
+        let mesh = locator.mesh();
+        if (mesh.cell_centre()[cell] - centre).norm() + self.cell_reach[cell] <= radius {
+            return Way::Whole;
+        }
+        let mut inside = true;
         for &face in mesh.faces_of(cell) {
             let face = face as usize;
-            let outward = if mesh.owner()[face] as usize == cell {
-                1.0
-            } else {
-                -1.0
-            };
-            volume += outward * self.cone(mesh, face, centre, radius);
+            let away = mesh.face_centre()[face] - centre;
+            let height = locator.side(cell, face) * locator.normal(face).dot(&away);
+            if height.abs() < GRAZING * radius {
+                return Way::Cones;
+            }
+            inside &= height > 0.0;
         }
-        volume
+        Way::Cut { inside }
     }
 
-    /// Signed volume of ball ∩ cone over one face, positive where the face's normal points away.
-    fn cone(&self, mesh: &Mesh, face: usize, centre: Vec3, radius: f64) -> f64 {
-        let points = mesh.face_points(face);
-        let count = points.len();
-        let at = |i: usize| mesh.topology().points[points[i % count] as usize] - centre;
-        if self.plane[face] {
-            let normal = mesh.face_area()[face].normalize();
-            let height = normal.dot(&(mesh.face_centre()[face] - centre));
-            let plane = Plane::new(normal, height, radius);
-            return plane.cone((0..count).map(|i| plane.edge(at(i), at(i + 1))));
+    /// What a plane face takes of the ball: h/3 · area(F ∩ D) − sign(h) R³/3 · Ω(F ∩ D).
+    fn within(&self, mesh: &Mesh, face: usize, centre: Vec3, plane: &Plane) -> f64 {
+        let away = mesh.face_centre()[face] - centre;
+        let from_foot = away.norm_squared() - plane.height * plane.height;
+        let span = plane.disc.max(0.0).sqrt() + self.face_reach[face];
+        if plane.disc <= 0.0 || from_foot >= span * span {
+            return 0.0;
         }
-        let middle = (0..count).map(at).sum::<Vec3>() / count as f64;
-        let triangle = |i: usize| {
-            let corners = [middle, at(i), at(i + 1)];
-            let area = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
-            if area.norm() == 0.0 {
-                return 0.0;
-            }
-            let normal = area.normalize();
-            let plane = Plane::new(normal, normal.dot(&middle), radius);
-            plane.cone((0..3).map(|k| plane.edge(corners[k], corners[(k + 1) % 3])))
-        };
-        (0..count).map(triangle).sum()
+        let points = mesh.face_points(face);
+        let at = |i: usize| mesh.topology().points[points[i % points.len()] as usize] - centre;
+        let parts = (0..points.len()).map(|i| plane.edge(at(i), at(i + 1), Plane::inside));
+        plane.cone(parts, -1.0)
     }
+}
+
+/// Signed volume of ball ∩ cone over one face, positive where the face's normal points away.
+fn cone(locator: &Locator<'_>, face: usize, centre: Vec3, radius: f64) -> f64 {
+    let mesh = locator.mesh();
+    let points = mesh.face_points(face);
+    let count = points.len();
+    let at = |i: usize| mesh.topology().points[points[i % count] as usize] - centre;
+    if locator.warp(face) == 0.0 {
+        let plane = Plane::of(locator, face, centre, radius);
+        let parts = (0..count).map(|i| plane.edge(at(i), at(i + 1), Plane::outside));
+        return plane.cone(parts, 1.0);
+    }
+    let middle = (0..count).map(at).sum::<Vec3>() / count as f64;
+    let triangle = |i: usize| {
+        let corners = [middle, at(i), at(i + 1)];
+        let area = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
+        if area.norm() == 0.0 {
+            return 0.0;
+        }
+        let normal = area.normalize();
+        let plane = Plane::new(normal, normal.dot(&middle), radius);
+        let edge = |k: usize| plane.edge(corners[k], corners[(k + 1) % 3], Plane::outside);
+        plane.cone((0..3).map(edge), 1.0)
+    };
+    (0..count).map(triangle).sum()
 }
 
 /// A plane seen from the ball's centre.
@@ -76,15 +204,29 @@ struct Plane {
     disc: f64,
 }
 
-/// What the triangle (foot, edge) has inside the disc and outside.
+/// What the triangle (foot, edge) has of the disc.
+#[derive(Default)]
 struct Part {
     /// Area in m² inside.
     area: f64,
-    /// Solid angle outside.
+    /// Solid angle, of what lies inside or outside.
     angle: f64,
 }
 
+/// A stretch of an edge: its ends in the plane from the foot, and whether it lies in the disc.
+struct Stretch {
+    ends: [Vec3; 2],
+    in_disc: bool,
+}
+
 impl Plane {
+    /// That of a plane face.
+    fn of(locator: &Locator<'_>, face: usize, centre: Vec3, radius: f64) -> Self {
+        let normal = locator.normal(face);
+        let height = normal.dot(&(locator.mesh().face_centre()[face] - centre));
+        Self::new(normal, height, radius)
+    }
+
     fn new(normal: Vec3, height: f64, radius: f64) -> Self {
         Self {
             normal,
@@ -94,33 +236,48 @@ impl Plane {
         }
     }
 
-    fn cone(&self, parts: impl Iterator<Item = Part>) -> f64 {
+    /// The volume of areas and solid angles, the latter counted with a sign.
+    fn cone(&self, parts: impl Iterator<Item = Part>, sign: f64) -> f64 {
         let (mut area, mut angle) = (0.0, 0.0);
         for part in parts {
             area += part.area;
             angle += part.angle;
         }
-        self.height * area / 3.0 + self.height.signum() * self.radius.powi(3) * angle / 3.0
+        let angle = sign * self.height.signum() * angle;
+        self.height * area / 3.0 + self.radius.powi(3) * angle / 3.0
     }
 
-    /// The contribution of an edge from `a` to `b`, both relative to the ball's centre.
-    fn edge(&self, a: Vec3, b: Vec3) -> Part {
+    /// The contribution of an edge from `a` to `b`, both relative to the ball's centre, stretch by stretch.
+    fn edge(&self, a: Vec3, b: Vec3, of: impl Fn(&Self, Stretch) -> Part) -> Part {
         let in_plane = |p: Vec3| p - self.normal * self.normal.dot(&p);
         let (a, b) = (in_plane(a), in_plane(b));
         let along = b - a;
         let (square, slope) = (along.norm_squared(), a.dot(&along));
         let root = slope * slope - square * (a.norm_squared() - self.disc);
+        let stretch = |p: Vec3, q: Vec3, in_disc: bool| {
+            let ends = [p, q];
+            of(self, Stretch { ends, in_disc })
+        };
         if self.disc <= 0.0 || square == 0.0 || root <= 0.0 {
-            return self.beyond(a, b);
+            return stretch(a, b, false);
         }
         let enter = ((-slope - root.sqrt()) / square).clamp(0.0, 1.0);
         let leave = ((-slope + root.sqrt()) / square).clamp(0.0, 1.0);
         let (p, q) = (a + along * enter, a + along * leave);
-        let (first, last) = (self.beyond(a, p), self.beyond(q, b));
-        Part {
-            area: first.area + 0.5 * self.turn(p, q) + last.area,
-            angle: first.angle + last.angle,
+        let mut sum = stretch(p, q, true);
+        // An edge that ends in the disc has no stretch beyond it.
+        for (from, to) in [
+            (enter > 0.0).then_some((a, p)),
+            (leave < 1.0).then_some((q, b)),
+        ]
+        .into_iter()
+        .flatten()
+        {
+            let part = stretch(from, to, false);
+            sum.area += part.area;
+            sum.angle += part.angle;
         }
+        sum
     }
 
     /// p × q along the normal.
@@ -128,40 +285,71 @@ impl Plane {
         self.normal.dot(&p.cross(&q))
     }
 
-    /// The triangle (foot, p, q) of an edge that lies outside the disc: the disc's sector of angle θ
-    /// lies inside; outside is the triangle's solid angle (Van Oosterom and Strackee,
-    /// doi:10.1109/TBME.1983.325207, with one corner at the foot) less the sector's θ (1 − h/R).
-    fn beyond(&self, p: Vec3, q: Vec3) -> Part {
-        let turn = self.turn(p, q);
+    /// Solid angle of the triangle (foot, p, q). Van Oosterom and Strackee, doi:10.1109/TBME.1983.325207, with
+    /// one corner at the foot.
+    fn triangle(&self, [p, q]: [Vec3; 2], turn: f64) -> f64 {
+        let height = self.height.abs();
+        let far = |p: Vec3| (height * height + p.norm_squared()).sqrt();
+        let (far_p, far_q) = (far(p), far(q));
+        let denominator = far_p * far_q + height * (far_p + far_q) + height * height + p.dot(&q);
+        2.0 * turn.atan2(denominator)
+    }
+
+    /// Area and solid angle of the disc's sector before a stretch beyond it: ρ²/2 · θ and θ (1 − h/R).
+    fn sector(&self, [p, q]: [Vec3; 2], turn: f64) -> Part {
+        let angle = turn.atan2(p.dot(&q));
+        Part {
+            area: 0.5 * self.disc * angle,
+            angle: angle * (1.0 - self.height.abs() / self.radius),
+        }
+    }
+
+    /// What the triangle (foot, stretch) has inside the disc.
+    fn inside(&self, stretch: Stretch) -> Part {
+        let ends = stretch.ends;
+        let turn = self.turn(ends[0], ends[1]);
         if turn == 0.0 {
+            return Part::default();
+        }
+        if stretch.in_disc {
             return Part {
-                area: 0.0,
+                area: 0.5 * turn,
+                angle: self.triangle(ends, turn),
+            };
+        }
+        self.sector(ends, turn)
+    }
+
+    /// The area inside the disc, and the solid angle outside it.
+    fn outside(&self, stretch: Stretch) -> Part {
+        let ends = stretch.ends;
+        let turn = self.turn(ends[0], ends[1]);
+        if turn == 0.0 {
+            return Part::default();
+        }
+        if stretch.in_disc {
+            return Part {
+                area: 0.5 * turn,
                 angle: 0.0,
             };
         }
-        let height = self.height.abs();
-        let (far_p, far_q) = (height.hypot(p.norm()), height.hypot(q.norm()));
-        let along = p.dot(&q);
-        let denominator = far_p * far_q + height * (far_p + far_q) + height * height + along;
-        let triangle = 2.0 * turn.atan2(denominator);
+        let triangle = self.triangle(ends, turn);
         if self.disc <= 0.0 {
             return Part {
                 area: 0.0,
                 angle: triangle,
             };
         }
-        let sector = turn.atan2(along);
+        let sector = self.sector(ends, turn);
         Part {
-            area: 0.5 * self.disc * sector,
-            angle: triangle - sector * (1.0 - height / self.radius),
+            area: sector.area,
+            angle: triangle - sector.angle,
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::PI;
-
     use super::*;
     use crate::mesh::Topology;
     use crate::mesh::block::{BoxSpec, box_mesh};
@@ -192,10 +380,9 @@ mod tests {
     }
 
     fn volumes(mesh: &Mesh, centre: Vec3, radius: f64) -> Vec<f64> {
-        let overlap = Overlap::new(&Locator::new(mesh));
-        (0..mesh.cells())
-            .map(|cell| overlap.volume(mesh, cell, centre, radius))
-            .collect()
+        let locator = Locator::new(mesh);
+        let cells: Vec<u32> = (0..mesh.cells() as u32).collect();
+        Overlap::new(&locator).volumes(&locator, &cells, centre, radius)
     }
 
     fn ball(radius: f64) -> f64 {

@@ -12,6 +12,8 @@ use super::Mesh;
 pub struct Locator<'m> {
     mesh: &'m Mesh,
     boxes: Vec<[Vec3; 2]>,
+    /// Unit normals of the faces, out of their owners.
+    normal: Vec<Vec3>,
     /// How far each face's points lie from its plane, in m; 0 to round-off for plane faces.
     warp: Vec<f64>,
     bins: Bins,
@@ -33,9 +35,11 @@ impl<'m> Locator<'m> {
             .collect();
         let bins = Bins::new(&boxes);
         let warp = (0..mesh.faces()).map(|face| warp(mesh, face)).collect();
+        let normal = mesh.face_area().iter().map(Vec3::normalize).collect();
         Self {
             mesh,
             boxes,
+            normal,
             warp,
             bins,
         }
@@ -51,40 +55,70 @@ impl<'m> Locator<'m> {
         self.mesh
     }
 
+    /// Unit normal of a face, out of its owner.
+    pub fn normal(&self, face: usize) -> Vec3 {
+        self.normal[face]
+    }
+
+    /// 1 where a face's normal points out of the cell, −1 where it points in.
+    pub fn side(&self, cell: usize, face: usize) -> f64 {
+        if self.mesh.owner()[face] as usize == cell {
+            1.0
+        } else {
+            -1.0
+        }
+    }
+
     /// The cell that holds a position; `None` outside the mesh. A position on a face belongs to
     /// one of its cells.
     pub fn cell_at(&self, position: Vec3) -> Option<usize> {
+        self.cell_and_depth(position).map(|(cell, _)| cell)
+    }
+
+    /// The cell that holds a position, and how deep it lies there, see [`Locator::depth`].
+    pub fn cell_and_depth(&self, position: Vec3) -> Option<(usize, f64)> {
         let candidates = self.bins.at(position)?;
         let mut best: Option<(usize, f64)> = None;
         for &cell in candidates {
             let cell = cell as usize;
+            // Within round-off of coordinates, so that a position on a wall lies inside.
+            let [lower, upper] = self.boxes[cell];
+            let margin = 1e-12 * (upper - lower).norm();
+            let beyond = (lower - position).sup(&(position - upper)).max();
+            if beyond > margin {
+                continue;
+            }
             let depth = self.depth(cell, position);
+            // No other cell holds what lies well within all planes of one.
+            if depth > margin {
+                return Some((cell, depth));
+            }
             if best.is_none_or(|(_, deepest)| depth > deepest) {
                 best = Some((cell, depth));
             }
         }
         let (cell, depth) = best?;
         let [lower, upper] = self.boxes[cell];
-        // Round-off of coordinates, so that a position on a wall lies inside.
         if depth >= -1e-12 * (upper - lower).norm() {
-            return Some(cell);
+            return Some((cell, depth));
         }
         // Cells that are not convex or have warped faces: the faces of the right one surround it.
         let surrounds = |&&cell: &&u32| self.surrounds(cell as usize, position);
-        candidates.iter().find(surrounds).map(|&cell| cell as usize)
+        let cell = *candidates.iter().find(surrounds)? as usize;
+        Some((cell, self.depth(cell, position)))
     }
 
     /// A distance in m that a ball around a position may have without leaving the cell; negative
     /// where a plane through a face, moved inwards by what the face is warped, is passed.
     pub fn depth(&self, cell: usize, position: Vec3) -> f64 {
-        let distance = |&face: &u32| {
+        let mut least = f64::INFINITY;
+        for &face in self.mesh.faces_of(cell) {
             let face = face as usize;
-            let outward = self.mesh.outward(cell, face);
-            let height = outward.dot(&(self.mesh.face_centre()[face] - position)) / outward.norm();
-            height - self.warp[face]
-        };
-        let faces = self.mesh.faces_of(cell).iter();
-        faces.map(distance).fold(f64::INFINITY, f64::min)
+            let away = self.mesh.face_centre()[face] - position;
+            let height = self.side(cell, face) * self.normal[face].dot(&away);
+            least = least.min(height - self.warp[face]);
+        }
+        least
     }
 
     /// The cells whose bounding boxes reach into a ball, ascending.

@@ -6,6 +6,7 @@ pub mod cylinder;
 mod extrude;
 pub mod grading;
 pub mod locate;
+pub mod openings;
 pub mod polymesh;
 pub mod refine;
 pub mod zone;

@@ -77,6 +77,18 @@ impl Sizes {
         }
     }
 
+    /// Smallest diameter in m.
+    pub fn smallest(&self) -> f64 {
+        match self {
+            Self::Equal(diameter) => *diameter,
+            Self::Mixture { parts, .. } => {
+                let diameters = parts.iter().map(|part| part.0);
+                diameters.fold(f64::INFINITY, f64::min)
+            }
+            Self::Range { min, .. } => *min,
+        }
+    }
+
     /// Mean diameter in m, by number.
     pub fn mean(&self) -> Result<f64, PackingError> {
         let sampler = self.sampler(0)?;

@@ -208,6 +208,8 @@ fn look(
         }
         same
     });
+    // Thousands of rays have been counted in it.
+    seen.others.shrink_to_fit();
     seen.direct = direct;
     seen
 }

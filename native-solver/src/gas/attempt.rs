@@ -1,14 +1,15 @@
 //! What every equation of an attempt looks at: geometry, bed, exchange, spans, gas properties.
 
+use calcine_coupler::gas_chemistry::GasChemistry;
 use calcine_coupler::part::CellExchange;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas_model::GasModel;
-use calcine_coupler::setup::Convection;
+use calcine_coupler::setup::{Convection, Turbulence};
 
 use super::boundary::Boundaries;
 use super::state::State;
 use crate::numerics::grid::Grid;
-use crate::numerics::parallel::{fill, sums};
+use crate::numerics::parallel::{fill, sums, update};
 
 /// The frame of an attempt; constant while it lasts.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +22,10 @@ pub struct Frame<'a> {
     pub properties: &'a GasModel,
     /// Schmidt number of all species.
     pub schmidt: f64,
+    /// Reactions of the gas with itself.
+    pub chemistry: &'a GasChemistry,
+    /// Eddies outside the bed; those of the attempt are of its old state.
+    pub turbulence: &'a Turbulence,
     /// How cell values are carried to faces.
     pub convection: Convection,
     /// Gravity in m/s².
@@ -46,6 +51,31 @@ impl Frame<'_> {
         self.properties.species().len()
     }
 
+    /// Void fraction × eddy viscosity on a boundary face in Pa s; zero for a laminar gas.
+    #[inline]
+    pub fn eddies_at(&self, index: usize) -> f64 {
+        let eddies = self.old.turbulence.boundary.get(index - self.grid.internal);
+        eddies.copied().unwrap_or(0.0)
+    }
+
+    /// The same through a Prandtl number, as void fraction × μ_t/Pr_t in kg/m/s.
+    #[inline]
+    pub fn heat_eddies_at(&self, index: usize) -> f64 {
+        match self.turbulence {
+            Turbulence::Laminar => 0.0,
+            Turbulence::KEpsilon { prandtl, .. } => self.eddies_at(index) / prandtl,
+        }
+    }
+
+    /// The same through a Schmidt number.
+    #[inline]
+    pub fn species_eddies_at(&self, index: usize) -> f64 {
+        match self.turbulence {
+            Turbulence::Laminar => 0.0,
+            Turbulence::KEpsilon { schmidt, .. } => self.eddies_at(index) / schmidt,
+        }
+    }
+
     /// Mass that the gas of a cell gains from particles in kg/s.
     pub fn mass_source(&self, now: &State, cell: usize) -> f64 {
         let given = &self.exchange.species;
@@ -63,11 +93,14 @@ pub struct Material {
     pub density: Vec<f64>,
     /// Specific heat capacity c_p in J/kg/K.
     pub heat_capacity: Vec<f64>,
-    /// Void fraction × viscosity, εμ, in Pa s.
+    /// Void fraction × viscosity, εμ, in Pa s, eddies included.
     pub viscosity: Vec<f64>,
     /// Void fraction × conductivity, εκ, in W/m/K: the gas in the pores conducts by its share of
-    /// the cross-section; conduction through the bed of particles is the particles' own.
+    /// the cross-section; conduction through the bed of particles is the particles' own. Eddies included.
     pub conductivity: Vec<f64>,
+    /// Void fraction × diffusivity of species × density, εμ/Sc, in kg/m/s, eddies included; empty for a
+    /// single gas.
+    pub diffusivity: Vec<f64>,
 }
 
 impl Material {
@@ -104,6 +137,31 @@ impl Material {
         fill(&mut self.conductivity, |cell| {
             let (temperature, composition) = state(cell);
             pores[cell] * gas.conductivity(temperature, composition)
+        });
+        let species = if species == 0 { 0 } else { cells };
+        self.diffusivity.resize(species, 0.0);
+        let viscosity = &self.viscosity;
+        fill(&mut self.diffusivity, |cell| {
+            viscosity[cell] / frame.schmidt
+        });
+        self.add_eddies(frame);
+    }
+
+    fn add_eddies(&mut self, frame: &Frame<'_>) {
+        let eddies = &frame.old.turbulence.viscosity;
+        let &Turbulence::KEpsilon {
+            prandtl, schmidt, ..
+        } = frame.turbulence
+        else {
+            return;
+        };
+        let heat_capacity = &self.heat_capacity;
+        update(&mut self.viscosity, |cell, sum| *sum += eddies[cell]);
+        update(&mut self.conductivity, |cell, sum| {
+            *sum += heat_capacity[cell] * eddies[cell] / prandtl;
+        });
+        update(&mut self.diffusivity, |cell, sum| {
+            *sum += eddies[cell] / schmidt;
         });
     }
 }

@@ -30,7 +30,7 @@ pub fn receive(
     });
     received.mass = mass(frame, now);
     species.balances(frame, now, &mut received.species);
-    received.energy = energy(frame, taken, now);
+    received.energy = energy(frame, taken, &received.species, now);
     received.momentum = momenta(frame, material, momentum, now, &received.drag);
 }
 
@@ -68,22 +68,31 @@ fn mass(frame: &Frame<'_>, now: &State) -> Balance {
     }
 }
 
-fn energy(frame: &Frame<'_>, taken: &Taken, now: &State) -> Balance {
+/// Heat of the gas' own reactions in J, from what the equations of the species say that they made.
+fn reacted(frame: &Frame<'_>, species: &[Balance]) -> f64 {
+    let each = species.iter().enumerate();
+    -each
+        .map(|(k, made)| frame.properties.formation_enthalpy(k) * made.source)
+        .sum::<f64>()
+}
+
+fn energy(frame: &Frame<'_>, taken: &Taken, species: &[Balance], now: &State) -> Balance {
     let old = frame.old;
     let [stored, stored_magnitude, exchange] = sums(frame.grid.cells(), |cell| {
         let stored = now.mass[cell] * now.enthalpy[cell] - old.mass[cell] * old.enthalpy[cell];
         [stored, stored.abs(), taken.heat[cell]]
     });
     let [inflow, magnitude] = taken.boundary;
-    let source = taken.compression * frame.storage_span;
+    let compression = taken.compression * frame.storage_span;
+    let reacted = reacted(frame, species);
     Balance {
         stored,
         stored_magnitude,
         boundary: inflow * frame.storage_span,
         boundary_magnitude: magnitude * frame.storage_span,
         exchange: exchange * frame.storage_span,
-        source,
-        source_magnitude: source.abs(),
+        source: compression + reacted,
+        source_magnitude: compression.abs() + reacted.abs(),
     }
 }
 

@@ -5,7 +5,9 @@ use std::ops::Range;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas_model::GasModel;
-use calcine_coupler::setup::{GasPatch, GasSetup, InletFlow, Schedule, WallHeat, WallVelocity};
+use calcine_coupler::setup::{
+    GasPatch, GasSetup, InletFlow, InletTurbulence, Schedule, WallHeat, WallVelocity,
+};
 
 use super::error::NativeError;
 
@@ -43,6 +45,8 @@ pub enum Value {
         mass_flux: f64,
         /// State of the gas that flows in.
         gas: BoundaryGas,
+        /// Its eddies; `None` where the gas is laminar.
+        turbulence: Option<InletTurbulence>,
     },
     /// Gas leaves at a pressure.
     Outlet {
@@ -112,6 +116,18 @@ impl Boundaries {
                 });
             }
             check(name, condition)?;
+            let laminar = matches!(
+                condition,
+                GasPatch::Inlet {
+                    turbulence: None,
+                    ..
+                }
+            );
+            if laminar && !setup.turbulence.is_laminar() {
+                return Err(NativeError::NoEddies {
+                    patch: name.clone(),
+                });
+            }
         }
         let mut boundaries = Self {
             internal: mesh.internal_faces(),
@@ -181,6 +197,20 @@ impl Boundaries {
         let boundary = &self.patches[self.patch_of[face - self.internal] as usize];
         matches!(boundary.value, Value::Inlet { .. }).then_some(&boundary.composition)
     }
+
+    /// k in m²/s² and its dissipation in m²/s³ of the gas that flows in through a boundary face into a cell of
+    /// this void fraction; zero where none does, or the gas is laminar.
+    #[inline]
+    pub fn eddies(&self, face: usize, void_fraction: f64) -> [f64; 2] {
+        match self.at(face) {
+            Value::Inlet {
+                superficial_velocity,
+                turbulence: Some(turbulence),
+                ..
+            } => turbulence.state(superficial_velocity / void_fraction),
+            _ => [0.0; 2],
+        }
+    }
 }
 
 impl Boundary {
@@ -191,6 +221,7 @@ impl Boundary {
                 flow,
                 temperature,
                 composition,
+                turbulence,
             } => {
                 self.composition = composition
                     .as_ref()
@@ -211,6 +242,7 @@ impl Boundary {
                     superficial_velocity,
                     mass_flux,
                     gas: BoundaryGas::at(model, temperature, &self.composition),
+                    turbulence: *turbulence,
                 }
             }
             GasPatch::Outlet { pressure } => Value::Outlet {

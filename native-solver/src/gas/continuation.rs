@@ -4,12 +4,12 @@ use std::path::Path;
 
 use super::boundary::Value;
 use super::state::State;
-use super::{NativeError, NativeGas, STATE, start};
+use super::{NativeError, NativeGas, STATE, start, turbulence};
 use crate::numerics::parallel::fill;
 
 impl NativeGas {
     /// Starts from the fields that another run on the same mesh left in a checkpoint's folder:
-    /// temperature, composition, pressure, superficial velocity and mass flux. What follows from
+    /// temperature, composition, pressure, superficial velocity, mass flux and eddies. What follows from
     /// them (mass, enthalpy) is by the properties and the bed of this run, so that both may have
     /// changed. The base pressure is the setup's, in a closed domain the other run's.
     pub fn take_over(&mut self, directory: &Path) -> Result<(), NativeError> {
@@ -26,6 +26,7 @@ impl NativeGas {
             let temperature = state.temperature[cell];
             state.enthalpy[cell] = gas.enthalpy(temperature, state.composition_of(cell, species));
         }
+        state.turbulence.begin(&self.setup.turbulence, cells);
         self.now.take(&state);
         for (velocity, pores) in state.velocity.iter_mut().zip(&state.void_fraction) {
             *velocity *= *pores;
@@ -76,5 +77,7 @@ impl NativeGas {
             }
         });
         state.void_fraction.clone_from(&self.void_fraction);
+        state.turbulence.begin(&setup.turbulence, grid.cells());
+        turbulence::update_viscosity(grid, boundaries, gas, state);
     }
 }

@@ -1,10 +1,10 @@
 //! Enthalpy of the gas, with exactly the fluxes and masses of continuity, per cell:
 //!
 //! (m h − m_old h_old)/Δτ + Σ φ_f h_f − Σ (εκ)_f ∇T·S + Σ Σ_k h_k J_k·S
-//!     = heat_source − heat_coefficient · T + ε V (p₀ − p₀_old)/Δτ + H − Σ_k D_k h_k(T)
+//!     = heat_source − heat_coefficient · T + ε V (p₀ − p₀_old)/Δτ + H − Σ_k D_k h_k(T) + m q
 //!
 //! with the enthalpy H of gas that particles set free and the gas D_k that they take at the cell's temperature,
-//! h_k linear in T like T in h (below).
+//! h_k linear in T like T in h (below), and the heat q of the gas' own reactions (chemistry.rs).
 //! Implicit Euler, h_f upwind, what a second-order value has beyond it and the enthalpy that diffusing
 //! species carry explicitly from the last iterate (species.rs); T linear in h: T = θ + h/c_p, θ = T* − h*/c_p. Because
 //! m + Δτ Σ φ_f = m_old, the matrix keeps a uniform temperature uniform whatever the flow does,
@@ -12,10 +12,11 @@
 //! (it changes in a closed domain alone).
 
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::setup::Convection;
+use calcine_coupler::setup::{Convection, Turbulence};
 
 use super::attempt::{Frame, Material};
 use super::boundary::{Heat, Value};
+use super::chemistry::Source;
 use super::outer::Goal;
 use super::state::State;
 use crate::numerics::convection::beyond_upwind;
@@ -35,6 +36,8 @@ const ITERATIONS: u32 = 1000;
 pub struct Enthalpy {
     matrix: Matrix,
     source: Vec<f64>,
+    /// What reactions of the gas add.
+    pub reactions: Source,
     /// Thermal conductance of each face in W/K; on the boundary to what `outer` says.
     conduction: Vec<f64>,
     /// θ of each cell in K.
@@ -108,23 +111,48 @@ fn conduction(frame: &Frame<'_>, material: &Material, now: &State, index: usize)
         return conductance(face, interpolate(face, &material.conductivity));
     }
     let pores = frame.void_fraction[face.owner];
+    let eddies = frame.heat_eddies_at(index);
     match frame.boundary.at(index) {
-        Value::Inlet { gas, .. } => conductance(face, pores * gas.conductivity),
+        Value::Inlet { gas, .. } => {
+            let carried = if eddies > 0.0 {
+                let composition = frame.boundary.composition(index).unwrap_or_default();
+                eddies * frame.properties.heat_capacity(gas.temperature, composition)
+            } else {
+                0.0
+            };
+            conductance(face, pores * gas.conductivity + carried)
+        }
         Value::Wall { heat, .. } => match heat {
             Heat::Temperature(temperature) => {
                 let composition = now.composition_of(face.owner, frame.species());
-                let conductivity = frame.properties.conductivity(temperature, composition);
-                conductance(face, pores * conductivity)
+                let gas = frame.properties;
+                let conductivity = gas.conductivity(temperature, composition);
+                let carried = if eddies > 0.0 {
+                    eddies * gas.heat_capacity(temperature, composition)
+                } else {
+                    0.0
+                };
+                conductance(face, pores * conductivity + carried)
             }
             // The half cell and the wall in series.
             Heat::Convective { coefficient, .. } if coefficient > 0.0 => {
-                let gas = face.distance() / material.conductivity[face.owner];
+                let gas = face.distance() / at_wall(frame, material, index, face.owner);
                 face.area / (1.0 / coefficient + gas)
             }
             Heat::Convective { .. } | Heat::Adiabatic | Heat::Flux(_) => 0.0,
         },
         Value::Outlet { .. } => 0.0,
     }
+}
+
+/// Void fraction × conductivity of the gas at a wall in W/m/K, with the eddies there in place of the cell's.
+#[inline]
+fn at_wall(frame: &Frame<'_>, material: &Material, index: usize, cell: usize) -> f64 {
+    let Turbulence::KEpsilon { prandtl, .. } = frame.turbulence else {
+        return material.conductivity[cell];
+    };
+    let more = frame.heat_eddies_at(index) - frame.old.turbulence.viscosity[cell] / prandtl;
+    material.conductivity[cell] + material.heat_capacity[cell] * more
 }
 
 impl Enthalpy {
@@ -134,6 +162,7 @@ impl Enthalpy {
         Self {
             matrix,
             source: vec![0.0; cells],
+            reactions: Source::default(),
             conduction: vec![0.0; faces],
             base: vec![0.0; cells],
             heat_capacity: vec![0.0; cells],
@@ -177,10 +206,12 @@ impl Enthalpy {
         self.update_given(frame, now);
         let (conduction, heat_capacity) = (&self.conduction, &self.heat_capacity);
         let [_, coefficient] = &self.given;
+        let reactions = &self.reactions;
         self.matrix.assemble(|cell, diagonal, neighbours| {
             let own = heat_capacity[cell];
             *diagonal = frame.old.mass[cell] / frame.storage_span
                 + frame.mass_source(now, cell)
+                + reactions.inertia(cell)
                 + coefficient[cell] / own;
             for link in grid.links(cell) {
                 let index = link.face as usize;
@@ -205,6 +236,7 @@ impl Enthalpy {
         fill(&mut self.source, |cell| {
             let mut source = frame.old.mass[cell] * frame.old.enthalpy[cell] / frame.storage_span
                 + given[cell]
+                + reactions.explicit(cell, cell)
                 - coefficient[cell] * base[cell]
                 + compression * frame.void_fraction[cell] * grid.volume[cell];
             for link in grid.links(cell) {

@@ -22,6 +22,15 @@ pub enum NativeError {
         /// Patches of the mesh.
         present: String,
     },
+    /// An inlet of turbulent gas that says nothing of its eddies.
+    #[error(
+        "the gas is turbulent, and `gas.patch.{patch}.inlet` says nothing of its eddies; give it a \
+         `turbulence`"
+    )]
+    NoEddies {
+        /// Name of the patch.
+        patch: String,
+    },
     /// More and more gas of constant density.
     #[error("gas of constant density flows in and no patch is an outlet; make one an outlet")]
     NoOutlet,

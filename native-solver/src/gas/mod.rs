@@ -4,6 +4,7 @@
 mod attempt;
 mod balance;
 mod boundary;
+mod chemistry;
 mod continuation;
 mod enthalpy;
 mod error;
@@ -13,7 +14,9 @@ mod outer;
 mod pressure;
 mod species;
 mod state;
+mod stirring;
 mod transport;
+mod turbulence;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -34,8 +37,10 @@ pub use error::NativeError;
 use outer::Equations;
 use state::State;
 pub(crate) use state::{flat, vectors};
+use turbulence::{Eddies, KEpsilonEquations, Step};
 
 use crate::numerics::grid::Grid;
+use crate::numerics::matrix::Matrix;
 use crate::numerics::parallel::fill;
 
 /// Name of the state file in a checkpoint's folder.
@@ -50,6 +55,8 @@ pub struct NativeGas {
     setup: GasSetup,
     boundaries: Boundaries,
     equations: Equations,
+    /// Of a turbulent gas.
+    eddies: Option<KEpsilonEquations>,
     committed: State,
     /// True once a window is committed; before, the bed of an attempt says how much gas there is.
     started: bool,
@@ -59,6 +66,8 @@ pub struct NativeGas {
     /// Index and attempt of the window that `now` is of, as long as it is not committed.
     attempted: Option<(u64, u32)>,
     window: Option<Window>,
+    /// Motion span in s of the attempt that a commit takes.
+    span: f64,
     void_fraction: Vec<f64>,
     /// Share of −∇p and ρ g that the gas of each cell takes.
     pressure_share: Vec<f64>,
@@ -87,6 +96,7 @@ impl NativeGas {
             },
             mesh,
             equations: Equations::new(&grid),
+            eddies: eddies(setup, &grid, &boundaries),
             grid,
             setup: setup.clone(),
             boundaries,
@@ -96,6 +106,7 @@ impl NativeGas {
             started: false,
             taken_over: None,
             window: None,
+            span: 0.0,
             void_fraction: Vec::new(),
             pressure_share: Vec::new(),
             exchange: CellExchange::default(),
@@ -134,6 +145,23 @@ impl NativeGas {
 
     fn failure(&self, kind: FailureKind, message: impl Into<String>) -> PartError {
         PartError::new(self.about.name.clone(), kind, message)
+    }
+
+    /// Eddies over the motion span of the window that is committed.
+    fn advance_eddies(&mut self) -> Result<(), String> {
+        let Some(eddies) = &mut self.eddies else {
+            return Ok(());
+        };
+        let step = Step {
+            grid: &self.grid,
+            boundary: &self.boundaries,
+            gas: &self.setup.properties,
+            viscosity: &self.equations.material.viscosity,
+            gradients: self.equations.momentum.gradients(),
+            span: self.span,
+            tolerance: self.setup.controls.linear_tolerance,
+        };
+        eddies.advance(&step, &mut self.equations.krylov, &mut self.now)
     }
 
     fn check_inputs(&self, bed: &Bed, exchange: &CellExchange) -> Result<(), String> {
@@ -212,6 +240,8 @@ impl Part for NativeGas {
     }
 
     fn commit(&mut self) -> Result<(), PartError> {
+        self.advance_eddies()
+            .map_err(|words| self.failure(FailureKind::Diverged, words))?;
         self.committed.take(&self.now);
         self.started = !self.committed.mass.is_empty();
         self.attempted = None;
@@ -252,6 +282,7 @@ impl Gas for NativeGas {
             composition: &self.now.composition,
             velocity: &self.now.velocity,
             pressure_gradient: &self.now.pressure_gradient,
+            turbulence: self.now.turbulence.fields(),
         }
     }
 
@@ -305,6 +336,8 @@ impl Gas for NativeGas {
             boundary: &self.boundaries,
             properties: &self.setup.properties,
             schmidt: self.setup.schmidt,
+            chemistry: &self.setup.chemistry,
+            turbulence: &self.setup.turbulence,
             convection: self.setup.controls.convection,
             gravity: self.setup.gravity,
             void_fraction: &self.void_fraction,
@@ -338,6 +371,7 @@ impl Gas for NativeGas {
                 self.setup.controls.outer_tolerance
             );
         }
+        self.span = spans.0;
         let taken = &enthalpy.taken;
         balance::receive(
             &frame, material, momentum, taken, species, &self.now, received,
@@ -347,10 +381,19 @@ impl Gas for NativeGas {
     }
 }
 
+/// The equations of a turbulent gas.
+fn eddies(setup: &GasSetup, grid: &Arc<Grid>, boundary: &Boundaries) -> Option<KEpsilonEquations> {
+    let turbulent = !setup.turbulence.is_laminar();
+    turbulent.then(|| KEpsilonEquations::new(Matrix::new(grid.clone()), boundary))
+}
+
 /// The state at the start of a run, before anything is known of the bed.
 fn start(setup: &GasSetup, cells: usize, faces: usize) -> State {
     let gas = &setup.properties;
+    let mut turbulence = Eddies::default();
+    turbulence.begin(&setup.turbulence, cells);
     State {
+        turbulence,
         enthalpy: vec![gas.enthalpy(setup.temperature, &setup.composition); cells],
         temperature: vec![setup.temperature; cells],
         composition: setup.composition.repeat(cells),

@@ -64,7 +64,7 @@ pub fn given_velocity(frame: &Frame<'_>, index: usize) -> Option<Vec3> {
     }
 }
 
-/// Viscous conductance of a face in kg/s, and on the boundary only where the velocity is given.
+/// Viscous conductance of a face in kg/s, eddies included, and on the boundary only where the velocity is given.
 #[inline]
 fn viscous(frame: &Frame<'_>, material: &Material, now: &State, index: usize) -> f64 {
     let face = &frame.grid.faces[index];
@@ -73,20 +73,32 @@ fn viscous(frame: &Frame<'_>, material: &Material, now: &State, index: usize) ->
     }
     let pores = frame.void_fraction[face.owner];
     match frame.boundary.at(index) {
-        Value::Inlet { gas, .. } => conductance(face, pores * gas.viscosity),
+        Value::Inlet { gas, .. } => {
+            conductance(face, pores * gas.viscosity + frame.eddies_at(index))
+        }
         Value::Wall {
             sticks: Some(_),
             heat: Heat::Temperature(temperature),
         } => {
             let composition = now.composition_of(face.owner, frame.species());
             let viscosity = frame.properties.viscosity(temperature, composition);
-            conductance(face, pores * viscosity)
+            conductance(face, pores * viscosity + frame.eddies_at(index))
         }
         Value::Wall {
             sticks: Some(_), ..
-        } => conductance(face, material.viscosity[face.owner]),
+        } => {
+            let laminar = laminar(frame, material, face.owner);
+            conductance(face, laminar + frame.eddies_at(index))
+        }
         Value::Wall { sticks: None, .. } | Value::Outlet { .. } => 0.0,
     }
+}
+
+/// Void fraction × viscosity of a cell without that of eddies in Pa s.
+#[inline]
+fn laminar(frame: &Frame<'_>, material: &Material, cell: usize) -> f64 {
+    let eddies = frame.old.turbulence.viscosity.get(cell);
+    material.viscosity[cell] - eddies.copied().unwrap_or(0.0)
 }
 
 impl Momentum {
@@ -254,7 +266,13 @@ impl Momentum {
         -flux * carried + self.viscous[index] * (velocity - inner) - self.explicit[index]
     }
 
-    fn update_gradients(&mut self, frame: &Frame<'_>, velocity: &[Vec3]) {
+    /// ∂u_i/∂x_j of each cell in 1/s, as made last.
+    pub fn gradients(&self) -> &[Matrix3<f64>] {
+        &self.gradients
+    }
+
+    /// Makes the gradients of a velocity.
+    pub fn update_gradients(&mut self, frame: &Frame<'_>, velocity: &[Vec3]) {
         let grid = frame.grid;
         if grid.orthogonal {
             let value = |index: usize, face: &Face| face_velocity(frame, index, face, velocity);

@@ -6,6 +6,7 @@ use calcine_coupler::part::Convergence;
 use calcine_coupler::setup::GasControls;
 
 use super::attempt::{Frame, Material};
+use super::chemistry::{self, Chemistry};
 use super::enthalpy::Enthalpy;
 use super::guard;
 use super::momentum::Momentum;
@@ -24,6 +25,9 @@ const SCALARS: f64 = 1e-2;
 /// From this outer iteration on, what limiters leave to the last iterate follows it half way only: their
 /// switching may otherwise lead from one iterate to another and back for ever.
 const FOLLOWED: u32 = 8;
+
+/// Pseudo-steps of reacting species and enthalpy in an outer iteration at most.
+const PSEUDO_STEPS: u32 = 5;
 
 /// When the solve of a scalar ends: where its residual is below either.
 #[derive(Clone, Copy, Debug)]
@@ -45,9 +49,12 @@ pub struct Equations {
     pub enthalpy: Enthalpy,
     /// Species.
     pub species: Species,
+    /// Reactions of the gas with itself.
+    pub chemistry: Chemistry,
     /// Properties at the last temperature.
     pub material: Material,
-    krylov: Krylov,
+    /// Memory of the linear solvers.
+    pub krylov: Krylov,
     /// How far what is taken explicitly from the last iterate follows it, as a share.
     share: f64,
 }
@@ -61,6 +68,7 @@ impl Equations {
             pressure: Pressure::new(matrix.clone()),
             enthalpy: Enthalpy::new(matrix.clone()),
             species: Species::new(matrix),
+            chemistry: Chemistry::default(),
             material: Material::default(),
             krylov: Krylov::default(),
             share: 1.0,
@@ -83,10 +91,11 @@ impl Equations {
             self.enthalpy.begin();
             self.species.begin(frame);
         }
+        self.chemistry.begin(frame)?;
         self.share = 1.0;
-        self.assess(frame, now);
+        self.assess(frame, now)?;
         for outer in 1..=controls.outer_iterations.max(1) {
-            convergence.linear_iterations += self.iterate(frame, controls, now);
+            convergence.linear_iterations += self.iterate(frame, controls, now)?;
             convergence.outer_iterations = outer;
             if outer >= FOLLOWED {
                 self.share = 0.5;
@@ -96,25 +105,30 @@ impl Equations {
             if let Some(words) = guard::nonsense(now, &frame.grid.centre) {
                 return Err(words);
             }
-            convergence.residual = self.assess(frame, now);
+            convergence.residual = self.assess(frame, now)?;
             if convergence.residual <= controls.outer_tolerance {
                 convergence.converged = true;
                 break;
             }
         }
-        convergence.linear_iterations += self.scalars(frame, controls.linear_tolerance, 0.0, now);
+        convergence.linear_iterations += self.close(frame, controls.linear_tolerance, now);
         if let Some(words) = guard::complaint(now, &frame.grid.centre) {
             return Err(words);
         }
         convergence.volume_residual = self.volume_residual(frame, now);
+        if !frame.turbulence.is_laminar() {
+            self.momentum.update_gradients(frame, &now.velocity);
+        }
         Ok(convergence)
     }
 
     /// Assembles momentum and enthalpy with the fields at hand; how far these are from solving
     /// all equations at once: the largest scaled residual.
-    fn assess(&mut self, frame: &Frame<'_>, now: &mut State) -> f64 {
-        let material = &mut self.material;
-        material.update(frame, now);
+    fn assess(&mut self, frame: &Frame<'_>, now: &mut State) -> Result<f64, String> {
+        self.material.update(frame, now);
+        self.chemistry.follow(frame, now)?;
+        self.react(frame, false, now);
+        let material = &self.material;
         self.momentum.assemble(frame, material, self.share, now);
         let carried = &self.species.carried;
         self.enthalpy
@@ -123,11 +137,17 @@ impl Equations {
         let continuity = pressure::residual(frame, material, now);
         let enthalpy = self.enthalpy.residual(now);
         let species = self.species.residual(frame, material, self.share, now);
-        momentum.max(continuity).max(enthalpy).max(species)
+        let largest = momentum.max(continuity).max(enthalpy).max(species);
+        Ok(largest.max(self.chemistry.change))
     }
 
     /// One outer iteration, on the momentum equation as assembled; returns linear iterations.
-    fn iterate(&mut self, frame: &Frame<'_>, controls: &GasControls, now: &mut State) -> u32 {
+    fn iterate(
+        &mut self,
+        frame: &Frame<'_>,
+        controls: &GasControls,
+        now: &mut State,
+    ) -> Result<u32, String> {
         let tolerance = controls.linear_tolerance;
         let (krylov, material) = (&mut self.krylov, &self.material);
         let mut iterations = self.momentum.predict(frame, krylov, tolerance, now);
@@ -139,7 +159,58 @@ impl Equations {
                     .correct(frame, material, &self.momentum, krylov, tolerance, now);
         }
         pressure::advance_mass(frame, now);
-        iterations + self.scalars(frame, tolerance, SCALARS, now)
+        if !chemistry::is_dual(frame) {
+            return Ok(iterations + self.scalars(frame, tolerance, SCALARS, now));
+        }
+        for _ in 0..PSEUDO_STEPS {
+            iterations += self.pseudo_step(frame, tolerance, now)?;
+            if self.chemistry.change <= controls.outer_tolerance {
+                break;
+            }
+        }
+        Ok(iterations)
+    }
+
+    /// Gives species and enthalpy what reacts.
+    fn react(&mut self, frame: &Frame<'_>, pseudo: bool, now: &State) {
+        let sources = [&mut self.species.reactions, &mut self.enthalpy.reactions];
+        self.chemistry
+            .apply(frame, &self.material, pseudo, now, sources);
+    }
+
+    /// A pseudo-step of species and enthalpy, with the rates of its start.
+    fn pseudo_step(
+        &mut self,
+        frame: &Frame<'_>,
+        tolerance: f64,
+        now: &mut State,
+    ) -> Result<u32, String> {
+        self.chemistry.follow(frame, now)?;
+        self.react(frame, true, now);
+        let iterations = self.scalars(frame, tolerance, SCALARS, now);
+        self.chemistry.spoil();
+        if let Some(words) = guard::nonsense(now, &frame.grid.centre) {
+            return Err(words);
+        }
+        self.material.update(frame, now);
+        let sources = [&self.species.reactions, &self.enthalpy.reactions];
+        let heat = &self.material.heat_capacity;
+        self.chemistry.measure(frame, sources, heat, now);
+        Ok(iterations)
+    }
+
+    /// Species and enthalpy once more to the linear tolerance, with the rates at hand.
+    fn close(&mut self, frame: &Frame<'_>, tolerance: f64, now: &mut State) -> u32 {
+        if !chemistry::is_dual(frame) {
+            return self.scalars(frame, tolerance, 0.0, now);
+        }
+        // The last pseudo-step's inertia goes, with what it took.
+        self.react(frame, true, now);
+        let sources = [&mut self.species.reactions, &mut self.enthalpy.reactions];
+        if let Some(gas) = frame.chemistry.reacting() {
+            self.chemistry.conclude(frame, gas, now, sources);
+        }
+        self.scalars(frame, tolerance, 0.0, now)
     }
 
     /// Species and enthalpy with the fluxes and masses at hand, to a tolerance relative to what moves or a

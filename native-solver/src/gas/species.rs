@@ -1,8 +1,8 @@
 //! Species of the gas, as mass fractions Y_k, with exactly the fluxes and masses of continuity, per cell:
 //!
-//! (m Y − m_old Y_old)/Δτ + Σ φ_f Y_f − Σ (εμ)_f/Sc ∇Y·S = S − C Y
+//! (m Y − m_old Y_old)/Δτ + Σ φ_f Y_f − Σ (εμ/Sc + μ_t/Sc_t)_f ∇Y·S = S − C Y + m w
 //!
-//! with what particles give and take, S − C Y (continuity has their sum),
+//! with what particles give and take, S − C Y (continuity has their sum), and what reactions make (chemistry.rs),
 //! (requirements SPC-1; all species diffuse alike, so that Fick's fluxes sum to zero). Implicit Euler,
 //! Y_f upwind, what a second-order value has beyond it explicitly from the last iterate, with one limiter
 //! for all species, so that the fractions go on summing to one. The last species is what the others leave.
@@ -13,6 +13,7 @@ use calcine_coupler::setup::Convection;
 
 use super::attempt::{Frame, Material};
 use super::boundary::{Heat, Value};
+use super::chemistry::Source;
 use super::outer::Goal;
 use super::state::State;
 use crate::numerics::convection::{beyond_upwind, limited, limiter};
@@ -42,6 +43,8 @@ pub struct Species {
     /// Flow of each species out of the owner of each face in kg/s, of what is taken explicitly.
     explicit: Vec<Vec<f64>>,
     source: Vec<f64>,
+    /// What reactions of the gas add.
+    pub reactions: Source,
     /// Enthalpy that species carry out of the owner of each face in W beyond what the upwind cell's enthalpy
     /// does: by diffusion, Σ_k h_k J_k, and by second-order convection, φ (h(T_f, Y_f) − h_up). The latter
     /// follows temperature and fractions at the face apart: a limited enthalpy would heat gas where
@@ -66,6 +69,7 @@ impl Species {
             faces: Vec::new(),
             explicit: Vec::new(),
             source: Vec::new(),
+            reactions: Source::default(),
             carried: Vec::new(),
             temperature_gradients: Vec::new(),
             boundary: Vec::new(),
@@ -190,12 +194,13 @@ impl Species {
         fill(&mut self.diffusion, |index| {
             let face = &grid.faces[index];
             if index < grid.internal {
-                return conductance(face, interpolate(face, &material.viscosity) / frame.schmidt);
+                return conductance(face, interpolate(face, &material.diffusivity));
             }
             match frame.boundary.at(index) {
                 Value::Inlet { gas, .. } => {
                     let pores = frame.void_fraction[face.owner];
-                    conductance(face, pores * gas.viscosity / frame.schmidt)
+                    let laminar = pores * gas.viscosity / frame.schmidt;
+                    conductance(face, laminar + frame.species_eddies_at(index))
                 }
                 Value::Wall { .. } | Value::Outlet { .. } => 0.0,
             }
@@ -207,8 +212,9 @@ impl Species {
         let (grid, species) = (frame.grid, frame.species());
         let diffusion = &self.diffusion;
         let given = &frame.exchange.species;
+        let reactions = &self.reactions;
         self.matrix.assemble(|cell, diagonal, neighbours| {
-            *diagonal = frame.old.mass[cell] / frame.storage_span;
+            *diagonal = frame.old.mass[cell] / frame.storage_span + reactions.inertia(cell);
             if !given.is_none() {
                 *diagonal += frame.mass_source(now, cell) + given.coefficient[cell * species + k];
             }
@@ -272,9 +278,11 @@ impl Species {
     fn fill_source(&mut self, frame: &Frame<'_>, now: &State, k: usize) {
         let (grid, species) = (frame.grid, frame.species());
         let (diffusion, explicit) = (&self.diffusion, &self.explicit[k]);
+        let reactions = &self.reactions;
         fill(&mut self.source, |cell| {
             let old = frame.old.composition[cell * species + k];
-            let mut source = frame.old.mass[cell] * old / frame.storage_span;
+            let mut source = frame.old.mass[cell] * old / frame.storage_span
+                + reactions.explicit(cell, cell * species + k);
             if let Some(given) = frame.exchange.species.source.get(cell * species + k) {
                 source += given;
             }
@@ -431,13 +439,21 @@ impl Species {
                     [given.source[at] - given.coefficient[at] * now.composition[at]]
                 })[0],
             };
+            let [made, made_magnitude] = match self.reactions.is_none() {
+                true => [0.0; 2],
+                false => sums(now.mass.len(), |cell| {
+                    let made = self.reactions.gain(cell * species + k);
+                    [made, made.abs()]
+                }),
+            };
             balances.push(Balance {
+                source: made * frame.storage_span,
+                source_magnitude: made_magnitude * frame.storage_span,
                 exchange: exchanged * frame.storage_span,
                 stored,
                 stored_magnitude,
                 boundary: inflow * frame.storage_span,
                 boundary_magnitude: magnitude * frame.storage_span,
-                ..Balance::default()
             });
         }
     }

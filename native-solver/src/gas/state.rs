@@ -5,6 +5,8 @@ use std::path::Path;
 use calcine_coupler::checkpoint::{StateFile, StateFileError};
 use calcine_coupler::physics::Vec3;
 
+use super::turbulence::Eddies;
+
 /// The fields of the gas; an attempt makes new ones from the committed ones.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct State {
@@ -29,6 +31,8 @@ pub struct State {
     pub flux: Vec<f64>,
     /// Void fraction.
     pub void_fraction: Vec<f64>,
+    /// Eddies.
+    pub turbulence: Eddies,
 }
 
 impl State {
@@ -50,6 +54,7 @@ impl State {
         self.pressure_gradient.clone_from(&other.pressure_gradient);
         self.flux.clone_from(&other.flux);
         self.void_fraction.clone_from(&other.void_fraction);
+        self.turbulence.take(&other.turbulence);
     }
 
     /// Writes the state.
@@ -65,6 +70,7 @@ impl State {
         file.set_f64s("pressure_gradient", &flat(&self.pressure_gradient));
         file.set_f64s("flux", &self.flux);
         file.set_f64s("void_fraction", &self.void_fraction);
+        self.turbulence.write(&mut file);
         file.write(path)
     }
 
@@ -89,6 +95,7 @@ impl State {
             pressure_gradient: vectors(file.f64s_of("pressure_gradient", 3 * cells)?),
             flux: file.f64s_of("flux", faces)?.to_vec(),
             void_fraction: file.f64s_of("void_fraction", placed)?.to_vec(),
+            turbulence: Eddies::read(&file, cells)?,
         })
     }
 }

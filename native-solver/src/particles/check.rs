@@ -1,6 +1,6 @@
 //! Setups that the native particles cannot take.
 
-use calcine_coupler::motion::{Change, ContactForce, Contacts, Motion, Wall, WallShape};
+use calcine_coupler::motion::{Change, ContactForce, Contacts, Motion, Resized, Wall, WallShape};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 
@@ -264,4 +264,20 @@ pub fn change(change: &Change, id: &[u64], populations: usize) -> Result<Vec<usi
         )?;
     }
     Ok(rows)
+}
+
+/// Checks the particles that get another size; their rows with what they become.
+pub fn resized<'a>(
+    change: &'a Change,
+    id: &[u64],
+) -> Result<Vec<(usize, &'a Resized)>, NativeError> {
+    let row = |new: &'a Resized| {
+        let place = || format!("particle {}", new.id);
+        positive("the radius", new.radius, "m", place)?;
+        positive("the mass", new.mass, "kg", place)?;
+        let row = id.binary_search(&new.id);
+        let row = row.map_err(|_| NativeError::NoParticle { id: new.id })?;
+        Ok((row, new))
+    };
+    change.resize.iter().map(row).collect()
 }

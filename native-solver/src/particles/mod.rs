@@ -234,8 +234,18 @@ impl NativeParticles {
             .caused_by(error)
     }
 
+    /// Gives particles that stay another radius and mass.
+    fn resize(&mut self, change: &Change) -> Result<(), NativeError> {
+        for (row, new) in check::resized(change, &self.id)? {
+            self.radius[row] = new.radius;
+            self.mass[row] = new.mass;
+        }
+        Ok(())
+    }
+
     /// Takes particles out and puts new ones in; the others keep the memories of their contacts.
     fn exchange(&mut self, change: &Change) -> Result<(), NativeError> {
+        self.resize(change)?;
         let Some(engine) = &mut self.engine else {
             return Ok(());
         };
@@ -360,7 +370,7 @@ impl Particles for NativeParticles {
         if change.is_empty() {
             return Ok(());
         }
-        if self.engine.is_none() {
+        if self.engine.is_none() && !(change.remove.is_empty() && change.insert.is_empty()) {
             return Err(self.failure(
                 FailureKind::Protocol,
                 "a frozen bed takes no particles in or out",

@@ -143,12 +143,14 @@ pub fn setup(patches: &[(&str, GasPatch)]) -> GasSetup {
         mixture: "air".into(),
         properties: AIR.into(),
         schmidt: 1.0,
+        chemistry: Default::default(),
         composition: Vec::new(),
         storage: GasStorage::Process,
         temperature: 300.0,
         pressure: ATMOSPHERE,
         velocity: Vec3::zeros(),
         gravity: Vec3::zeros(),
+        turbulence: Default::default(),
         momentum: Default::default(),
         patches: patches
             .iter()
@@ -256,7 +258,15 @@ impl Driver {
     /// All fields as bits.
     pub fn bits(&self) -> Vec<u64> {
         let fields = self.gas.fields();
-        let scalars = [fields.temperature, fields.pressure, fields.density];
+        let eddies = fields.turbulence;
+        let scalars = [
+            fields.temperature,
+            fields.pressure,
+            fields.density,
+            eddies.energy,
+            eddies.dissipation,
+            eddies.viscosity,
+        ];
         let vectors = [fields.velocity, fields.pressure_gradient];
         scalars
             .iter()

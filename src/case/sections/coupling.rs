@@ -114,6 +114,11 @@ pub(super) fn check_stock(
         let help = "leave `laws.drag.model` out, or leave `openfoam.solver` out";
         section.fail("solver", rule, help);
     }
+    if !gas.turbulence.is_laminar() {
+        let rule = format!("names {name}, which takes no `gas.turbulence`");
+        let help = "take the model from `openfoam.template`, or leave `openfoam.solver` out";
+        section.fail("solver", rule, help);
+    }
     if let Some(why) = refusal(openfoam.solver, gas, splits) {
         section.fail("solver", format!("names {name}, but {why}"), other);
     }

@@ -1,5 +1,8 @@
 //! `[gas]`.
 
+use std::path::{Path, PathBuf};
+
+use calcine_coupler::gas_chemistry::Combustion;
 use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
@@ -8,17 +11,28 @@ use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{Convection, GasControls, GasSetup};
 use calcine_coupler::time::GasStorage;
 
+use super::chemistry::{Around, chemistry};
 use super::composition::fractions;
 use super::gas_patch::boundary;
+use super::turbulence::turbulence;
 use crate::case::model::MeshSpec;
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
+
+/// What the section says.
+pub(super) struct GasRead {
+    pub setup: GasSetup,
+    pub held: bool,
+    /// Files of its chemistry.
+    pub files: Vec<PathBuf>,
+}
 
 pub(super) fn read(
     root: &Reader<'_>,
     mesh: Option<&MeshSpec>,
     storage: Option<GasStorage>,
-) -> Option<(GasSetup, bool)> {
+    folder: &Path,
+) -> Option<GasRead> {
     let section = root.required_table("gas", "[gas] with mixture = \"air\"")?;
     let mixture = section.required_text("mixture", "\"air\"");
     let properties = properties(&section, mixture);
@@ -28,25 +42,49 @@ pub(super) fn read(
         .vector("gravity", Dimension::ACCELERATION)
         .unwrap_or([0.0; 3]);
     let held = section.truth("held").unwrap_or(false);
-    let patches = boundary(&section, mesh, properties.as_ref());
+    let turbulence = turbulence(&section);
+    let turbulent = turbulence.map(|model| !model.is_laminar());
+    let patches = boundary(&section, mesh, properties.as_ref(), turbulent);
     let controls = controls(&section);
+    let around = Around {
+        gas: properties.as_ref(),
+        initial: initial.as_ref().map_or(&[], |initial| &initial.3),
+        patches: patches.as_deref().unwrap_or_default(),
+    };
+    let chemistry = chemistry(&section, &around, folder);
     section.finish();
     let (temperature, pressure, velocity, composition) = initial?;
+    let (reacting, files) = chemistry?;
+    let stirred = reacting
+        .reacting()
+        .is_some_and(|gas| gas.combustion != Combustion::Laminar);
+    if stirred && turbulent == Some(false) {
+        let help = "state [gas.turbulence], or write model = \"laminar\"";
+        let rule = "has the model `pasr`, but the gas has no eddies to mix it";
+        section.fail("chemistry", rule, help);
+    }
+    if held && reacting.reacting().is_some() {
+        let help = "leave `gas.held` out, or `gas.chemistry`";
+        let rule = "reacts, but `gas.held` leaves the gas as it is at the start";
+        section.fail("chemistry", rule, help);
+    }
     let setup = GasSetup {
         mixture: mixture?.into(),
         properties: properties?,
         schmidt: schmidt?,
+        chemistry: reacting,
         storage: storage.unwrap_or_default(),
         temperature,
         composition,
         pressure,
         velocity,
         gravity: Vec3::from(gravity),
+        turbulence: turbulence?,
         momentum: MomentumModel::default(), // `laws.drag.model` says
         patches: patches?,
         controls,
     };
-    Some((setup, held))
+    Some(GasRead { setup, held, files })
 }
 
 /// A built-in mixture, or the properties of `[gas.properties]` or `[gas.constant]`.

@@ -9,22 +9,24 @@ use calcine_coupler::setup::{
 
 use super::composition::{EXAMPLE, fractions};
 use super::patches;
+use super::turbulence::of_inlet;
 use crate::case::model::MeshSpec;
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
 
-/// Conditions of all patches, for a gas; one of constant density cannot flow into a closed domain.
+/// Conditions of all patches, for a gas, turbulent or not; one of constant density cannot flow into a closed domain.
 pub(super) fn boundary(
     section: &Reader<'_>,
     mesh: Option<&MeshSpec>,
     gas: Option<&GasModel>,
+    turbulent: Option<bool>,
 ) -> Option<Vec<(String, GasPatch)>> {
     let table = section.required_table("patch", "[gas.patch.bottom]")?;
     let named = table.named();
     let mut made = Vec::new();
     let mut complete = true;
     for (name, reader) in &named {
-        match patch(reader, gas) {
+        match patch(reader, gas, turbulent) {
             Some(patch) => made.push((name.clone(), patch)),
             None => complete = false,
         }
@@ -63,7 +65,7 @@ pub(super) fn boundary(
     complete.then_some(made)
 }
 
-fn patch(reader: &Reader<'_>, gas: Option<&GasModel>) -> Option<GasPatch> {
+fn patch(reader: &Reader<'_>, gas: Option<&GasModel>, turbulent: Option<bool>) -> Option<GasPatch> {
     let kinds = ["inlet", "outlet", "wall", "symmetry"];
     let mut given = kinds.iter().filter(|kind| reader.has(kind));
     let (kind, more) = (given.next(), given.next());
@@ -74,7 +76,7 @@ fn patch(reader: &Reader<'_>, gas: Option<&GasModel>) -> Option<GasPatch> {
     };
     let table = reader.table(kind)?;
     let made = match *kind {
-        "inlet" => inlet(&table, gas),
+        "inlet" => inlet(&table, gas, turbulent),
         "outlet" => table
             .pressures("pressure")
             .map(|pressure| GasPatch::Outlet { pressure }),
@@ -85,9 +87,10 @@ fn patch(reader: &Reader<'_>, gas: Option<&GasModel>) -> Option<GasPatch> {
     made
 }
 
-fn inlet(table: &Reader<'_>, gas: Option<&GasModel>) -> Option<GasPatch> {
+fn inlet(table: &Reader<'_>, gas: Option<&GasModel>, turbulent: Option<bool>) -> Option<GasPatch> {
     let flow = flow(table);
     let temperature = table.temperatures("temperature");
+    let turbulence = of_inlet(table, turbulent);
     Some(GasPatch::Inlet {
         flow: flow?,
         temperature: temperature?,
@@ -95,6 +98,7 @@ fn inlet(table: &Reader<'_>, gas: Option<&GasModel>) -> Option<GasPatch> {
             Some(GasModel::Mixture(mixture)) => Some(composition(table, mixture)?),
             _ => None,
         },
+        turbulence: turbulence?,
     })
 }
 

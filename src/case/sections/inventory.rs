@@ -3,6 +3,7 @@
 use calcine_coupler::interior::reacting::{Rate, Reaction};
 use calcine_coupler::physics::solids::SolidSpecies;
 
+use super::conversion;
 use crate::case::model::{Material, ReactionSpec};
 
 /// Reactions with the solids of the case; a material that does not say what it is made of is one solid that
@@ -53,8 +54,12 @@ pub(super) fn inventory(
         }
     }
     let kept = solids.into_iter().zip(&used).filter(|(_, used)| **used);
+    let solids: Vec<SolidSpecies> = kept.map(|(solid, _)| solid).collect();
+    let own = materials.iter().zip(&compositions);
+    let sizes = own.map(|(material, start)| conversion::size(material, start, &solids, &used));
     ReactionSpec {
-        solids: kept.map(|(solid, _)| solid).collect(),
+        sizes: sizes.collect(),
+        solids,
         reactions,
         compositions,
     }

@@ -7,7 +7,7 @@ use calcine_coupler::physics::Vec3;
 use toml_edit::Value;
 
 use super::existing;
-use super::zone::refinements;
+use super::zone::{openings, refinements};
 use crate::case::model::MeshSpec;
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
@@ -51,6 +51,7 @@ fn cylinder(section: &Reader<'_>) -> Option<MeshSpec> {
     let cells = cylinder.wholes::<2>("cells");
     let grading = gradings(&cylinder, ["z"], cells.map(|cells| [cells[1]]));
     let refine = refinements(&cylinder);
+    let openings = openings(&cylinder, &["side", "bottom", "top"].map(String::from));
     cylinder.finish();
     let (diameter, length, cells, [grading]) = (diameter?, length?, cells?, grading?);
     if !(3..=20_000).contains(&cells[0])
@@ -67,6 +68,7 @@ fn cylinder(section: &Reader<'_>) -> Option<MeshSpec> {
         cells,
         grading,
         refine,
+        openings,
     })
 }
 
@@ -107,6 +109,7 @@ fn cuboid(section: &Reader<'_>) -> Option<MeshSpec> {
             six
         }
     };
+    let openings = openings(&cuboid, patches.as_ref().map_or(&[][..], |six| &six[..]));
     cuboid.finish();
     let (size, cells, grading, patches) = (size?, cells?, grading?, patches?);
     if size.iter().any(|&length| length <= 0.0) {
@@ -131,6 +134,7 @@ fn cuboid(section: &Reader<'_>) -> Option<MeshSpec> {
         cells,
         grading,
         refine,
+        openings,
         patches,
     })
 }

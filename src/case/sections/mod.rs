@@ -1,6 +1,8 @@
 //! The sections of a case file, one file each.
 
+mod chemistry;
 mod composition;
+mod conversion;
 mod coupling;
 mod gas;
 mod gas_patch;
@@ -19,11 +21,15 @@ mod sizes;
 mod solids;
 mod time;
 mod traffic;
+mod turbulence;
 mod walls;
 mod zone;
 
 use std::path::{Path, PathBuf};
 
+use calcine_coupler::mesh::openings::Opening;
+
+use self::gas::GasRead;
 use super::model::{Case, MeshSpec};
 use super::table::Reader;
 
@@ -55,6 +61,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         root,
         mesh.as_ref(),
         time.as_ref().map(|(_, storage)| *storage),
+        folder,
     );
     let particles = particles::populations(root, &materials, mesh.as_ref(), folder);
     let feeds = traffic::feeds(root, particles.as_deref());
@@ -68,15 +75,21 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     if let (Some(laws), Some(particles)) = (&laws, &particles) {
         heat::need_properties(root, laws, &materials, particles, &walls);
     }
-    let reactions = reactions::reactions(root, &solids, gas.as_ref().map(|(gas, _)| gas));
+    let reactions = reactions::reactions(root, &solids, gas.as_ref().map(|gas| &gas.setup));
     let chemistry = inventory::inventory(solids, reactions, &materials);
-    if let (Some(laws), Some(particles)) = (&laws, &particles) {
-        reactions::fits(root, &chemistry, laws, particles, openfoam.solver);
+    if let Some(particles) = &particles {
+        conversion::fits(root, &chemistry, &materials, particles);
+    }
+    if let Some(laws) = &laws {
+        reactions::fits(root, &chemistry, laws, openfoam.solver);
     }
     let output = output::output(root);
+    if let (Some(gas), Some(output)) = (&gas, &output) {
+        turbulence::fits(root, &gas.setup.turbulence, gas.held, output);
+    }
     let probes = probes::probes(root);
     let quantities = {
-        let species = gas.as_ref().map(|(gas, _)| gas.properties.species());
+        let species = gas.as_ref().map(|gas| gas.setup.properties.species());
         let known = quantities::Known {
             mesh: mesh.as_ref(),
             populations: particles.as_deref(),
@@ -84,13 +97,13 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
             walls: &walls,
             species: species.unwrap_or_default(),
             solids: &chemistry.solids,
-            gravity: gas.as_ref().map(|(gas, _)| gas.gravity),
+            gravity: gas.as_ref().map(|gas| gas.setup.gravity),
         };
         quantities::quantities(root, &known)
     };
     let (walls, wall_temperatures): (Vec<_>, Vec<_>) = walls.into_iter().unzip();
-    if let (Some((gas, _)), Some((time, _))) = (&gas, &time) {
-        coupling::check_stock(root, &openfoam, gas, time, laws.as_ref());
+    if let (Some(gas), Some((time, _))) = (&gas, &time) {
+        coupling::check_stock(root, &openfoam, &gas.setup, time, laws.as_ref());
     }
     if let Some(particles) = &particles {
         coupling::check_script(root, &liggghts, particles);
@@ -109,7 +122,11 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         }
     }
     let (time, _) = time?;
-    let (mut gas, gas_held) = gas?;
+    let GasRead {
+        setup: mut gas,
+        held: gas_held,
+        files: gas_files,
+    } = gas?;
     let laws = laws?;
     gas.momentum = laws.momentum;
     Some(Case {
@@ -130,6 +147,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         motion,
         gas,
         gas_held,
+        gas_files,
         particles: particles?,
         feeds,
         outlets,
@@ -143,16 +161,32 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     })
 }
 
+/// Names of openings, each once.
+fn opened(openings: &[Opening]) -> impl Iterator<Item = &str> {
+    let name = |index: usize| openings[index].name.as_str();
+    (0..openings.len())
+        .filter(move |&k| (0..k).all(|before| name(before) != name(k)))
+        .map(name)
+}
+
 /// The patch names of a mesh, where the case itself knows them.
 fn patches(mesh: Option<&MeshSpec>) -> Option<Vec<&str>> {
     match mesh? {
-        MeshSpec::Box { patches, .. } => {
-            let mut names: Vec<&str> = patches.iter().map(String::as_str).collect();
+        MeshSpec::Box {
+            patches, openings, ..
+        } => {
+            let sides = patches.iter().map(String::as_str);
+            let mut names: Vec<&str> = sides.chain(opened(openings)).collect();
             names.sort_unstable();
             names.dedup();
             Some(names)
         }
-        MeshSpec::Cylinder { .. } => Some(vec!["bottom", "side", "top"]),
+        MeshSpec::Cylinder { openings, .. } => {
+            let sides = ["bottom", "side", "top"].into_iter();
+            let mut names: Vec<&str> = sides.chain(opened(openings)).collect();
+            names.dedup();
+            Some(names)
+        }
         MeshSpec::PolyMesh(_) => None,
     }
 }

@@ -5,13 +5,14 @@ use crate::case::model::Output;
 use crate::case::table::Reader;
 
 /// Gas fields of the snapshots.
-const GAS: [&str; 6] = [
+const GAS: [&str; 7] = [
     "temperature",
     "velocity",
     "pressure",
     "density",
     "void_fraction",
     "mass_fractions",
+    "turbulence",
 ];
 /// Particle fields of the snapshots.
 const PARTICLES: [&str; 8] = [

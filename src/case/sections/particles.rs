@@ -8,6 +8,7 @@ use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::physics::thermo::Nasa7;
 
+use super::conversion;
 use super::place::place;
 use super::reactions::{composition, mixed};
 use super::sizes::sizes;
@@ -46,6 +47,7 @@ fn material(name: String, table: &Reader<'_>, solids: &[SolidSpecies]) -> Materi
         name,
         density: positive("density", Dimension::DENSITY),
         heat_capacity,
+        size: conversion::read(table, solids),
         composition,
         conductivity: conductivity(table),
         emissivity: table.quantity("emissivity", Dimension::NONE),

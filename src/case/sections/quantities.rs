@@ -66,7 +66,7 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
         "density" => (Dimension::DENSITY, "kg/m^3"),
         "speed" => (Dimension::VELOCITY, "m/s"),
         "void_fraction" => (Dimension::NONE, "1"),
-        "height" => (Dimension::LENGTH, "m"),
+        "height" | "diameter" => (Dimension::LENGTH, "m"),
         "wall_heat" => (Dimension::POWER, "W"),
         "mass" => (Dimension::MASS, "kg"),
         "mass_fraction" => (Dimension::NONE, "1"),
@@ -187,11 +187,12 @@ const GAS: [(&str, &str); 6] = [
     ("mass_fraction", "mass_fraction"),
 ];
 /// Fields of particles.
-const PARTICLES: [(&str, &str); 5] = [
+const PARTICLES: [(&str, &str); 6] = [
     ("temperature", "temperature"),
     ("speed", "speed"),
     ("height", "height"),
     ("mass", "mass"),
+    ("diameter", "diameter"),
     ("mass_fraction", "mass_fraction"),
 ];
 

@@ -10,7 +10,7 @@ use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::physics::thermo::{Element, Mixture};
 use calcine_coupler::setup::{GasPatch, GasSetup};
 
-use crate::case::model::{HeatLaw, Laws, Motion, Population, ReactionSpec};
+use crate::case::model::{HeatLaw, Laws, ReactionSpec};
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
 
@@ -198,7 +198,7 @@ fn equation(table: &Reader<'_>, text: &str, known: &Known<'_>) -> Option<(Equati
     }
     balanced(table, &parts, known)?;
     if parts.solids.is_empty() {
-        let help = "reactions among gases alone are not computed";
+        let help = "reactions among gases alone go into [gas.chemistry]";
         table.fail("equation", "has no solid", help);
         return None;
     }
@@ -247,7 +247,7 @@ fn balanced(table: &Reader<'_>, parts: &Parts, known: &Known<'_>) -> Option<()> 
 }
 
 /// Factor, exponent and activation energy of a rate constant.
-fn arrhenius(table: &Reader<'_>, unit: Option<Dimension>) -> Option<Arrhenius> {
+pub(super) fn arrhenius(table: &Reader<'_>, unit: Option<Dimension>) -> Option<Arrhenius> {
     let factor = table.required_positive("factor", unit.unwrap_or(Dimension::NONE));
     let exponent = table.quantity("exponent", Dimension::NONE).unwrap_or(0.0);
     let energy = table
@@ -363,17 +363,26 @@ fn absent(
         return Some("is used up by the reaction");
     }
     let setup = known.setup?;
-    if setup.composition.get(k).is_some_and(|y| *y <= 0.0) {
+    lacking(k, &setup.composition, &setup.patches)
+}
+
+/// Where a gas of this index is missing at the start or flows in without it.
+pub(super) fn lacking(
+    k: usize,
+    initial: &[f64],
+    patches: &[(String, GasPatch)],
+) -> Option<&'static str> {
+    if initial.get(k).is_some_and(|y| *y <= 0.0) {
         return Some("is not in `gas.initial`");
     }
-    let lacking = |patch: &GasPatch| match patch {
+    let lacks = |patch: &GasPatch| match patch {
         GasPatch::Inlet {
             composition: Some(composition),
             ..
         } => composition.0.iter().any(|(_, y)| y[k] <= 0.0),
         _ => false,
     };
-    let somewhere = setup.patches.iter().any(|(_, patch)| lacking(patch));
+    let somewhere = patches.iter().any(|(_, patch)| lacks(patch));
     somewhere.then_some("is not in the gas of an inlet")
 }
 
@@ -424,7 +433,11 @@ fn agrees(table: &Reader<'_>, heat: f64, made: &Reaction, known: &Known<'_>) -> 
     let Ok(chemistry) = Chemistry::new(known.solids.to_vec(), gas, Vec::new()) else {
         return true;
     };
-    let own = chemistry.heat_of(made);
+    heat_agrees(table, heat, chemistry.heat_of(made))
+}
+
+/// True where a stated heat in J/mol is that of the enthalpies.
+pub(super) fn heat_agrees(table: &Reader<'_>, heat: f64, own: f64) -> bool {
     if (heat - own).abs() <= HEAT * own.abs().max(1e3) {
         return true;
     }
@@ -439,13 +452,7 @@ fn agrees(table: &Reader<'_>, heat: f64, made: &Reaction, known: &Known<'_>) -> 
 }
 
 /// Errors where reactions do not go with the rest of the case.
-pub(super) fn fits(
-    root: &Reader<'_>,
-    chemistry: &ReactionSpec,
-    laws: &Laws,
-    particles: &[Population],
-    solver: Solver,
-) {
+pub(super) fn fits(root: &Reader<'_>, chemistry: &ReactionSpec, laws: &Laws, solver: Solver) {
     if !chemistry.exchanges() {
         return;
     }
@@ -464,10 +471,5 @@ pub(super) fn fits(
             "names a stock solver, which takes no gas from particles",
             help,
         );
-    }
-    if particles.iter().any(|one| one.motion == Motion::Free) {
-        let help = "write motion = \"frozen\"";
-        let rule = "exchange gas with particles that move, whose mass is fixed so far";
-        root.fail("reactions", rule, help);
     }
 }

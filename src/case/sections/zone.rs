@@ -1,5 +1,6 @@
 //! Parts of space: zones of a mesh that are refined, or excluded from the smoother.
 
+use calcine_coupler::mesh::openings::Opening;
 use calcine_coupler::mesh::refine::{MOST_LEVELS, Refinement};
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::physics::Vec3;
@@ -77,6 +78,24 @@ pub(super) fn refinements(mesh: &Reader<'_>) -> Vec<Refinement> {
             zone: zone?,
             levels,
         })
+    };
+    tables.iter().filter_map(one).collect()
+}
+
+/// The parts of a generated mesh's boundary that have patches of their own, beside those of its sides.
+pub(super) fn openings(mesh: &Reader<'_>, sides: &[String]) -> Vec<Opening> {
+    let tables = mesh.tables("openings");
+    let one = |table: &Reader<'_>| {
+        let name = table.required_text("name", "\"burners\"");
+        let zone = zone(table);
+        table.finish();
+        let name = name?.to_owned();
+        if sides.contains(&name) {
+            let rule = format!("is \"{name}\", a side of the mesh");
+            table.fail("name", rule, "an opening needs a name of its own");
+            return None;
+        }
+        Some(Opening { name, zone: zone? })
     };
     tables.iter().filter_map(one).collect()
 }

@@ -153,6 +153,20 @@ impl<'a> Reader<'a> {
         Some(found)
     }
 
+    /// All quantities of a table whose keys are names of the user's.
+    pub fn quantities(&self, dimension: Dimension) -> Option<Vec<(String, f64)>> {
+        let mut found = Vec::new();
+        for (name, item) in self.table.iter() {
+            self.known.borrow_mut().push(name.into());
+            let Some(value) = item.as_value() else {
+                self.wrong_type(name, "a quantity", item);
+                return None;
+            };
+            found.push((name.to_owned(), self.value(name, value, dimension)?));
+        }
+        Some(found)
+    }
+
     fn below(
         &self,
         place: String,

@@ -61,6 +61,23 @@ pub fn a_message_arrives_with_its_header_and_aligned_words(mut ends: Ends) {
     }
 }
 
+/// A solver holds a message until it asks for the next; meanwhile the next is written, larger than any before or
+/// as large. Measured against 255, the segments that iceoryx2 may ever make for a link.
+pub fn messages_grow_while_the_last_is_held_and_then_go_on(mut ends: Ends) {
+    for count in 0..600_u32 {
+        let words = 2000_usize << (count / 20).min(9);
+        let payload = ends.coordinator.loan(Header::of(Kind::Start), words);
+        let payload = payload.unwrap_or_else(|error| panic!("message {count}: {error}"));
+        payload[words - 1] = u64::from(count);
+        ends.coordinator.send().unwrap();
+        assert!(ends.solver.receive(SOON).unwrap());
+        assert_eq!(
+            ends.solver.received().unwrap().1[words - 1],
+            u64::from(count)
+        );
+    }
+}
+
 pub fn nothing_arrives_within_the_patience_and_no_earlier(mut ends: Ends) {
     let begun = Instant::now();
     assert!(!ends.solver.receive(Duration::from_millis(120)).unwrap());
@@ -128,6 +145,7 @@ macro_rules! conformance {
     ($transport:ident) => {
         conformance!($transport:
             a_message_arrives_with_its_header_and_aligned_words,
+            messages_grow_while_the_last_is_held_and_then_go_on,
             nothing_arrives_within_the_patience_and_no_earlier,
             a_commit_and_the_next_start_may_wait_together_in_order,
             a_full_buffer_fails_instead_of_hanging,

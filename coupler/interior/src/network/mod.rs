@@ -15,6 +15,8 @@ mod meeting;
 mod radiation;
 mod solver;
 
+use std::f64::consts::PI;
+
 use calcine_physics::conduction::{
     Conduction, Conductivity, Contact, ContactArea, Gap, GasGap, Stiffness,
 };
@@ -142,14 +144,23 @@ impl Network {
         }
     }
 
-    /// Particles that go, by their rows in ascending order, and come; all contacts and views are forgotten.
+    /// Particles that go, by their rows in ascending order, and come; all contacts are forgotten. Views of those that
+    /// stay hold; those that come see nobody until views are found anew.
     pub fn change(&mut self, gone: &[usize], new: &[Newcomer]) {
+        let come: Vec<(f64, f64)> = new
+            .iter()
+            .map(|one| {
+                let of = &self.materials[one.material];
+                let radius = (0.75 * one.mass / (PI * of.density)).cbrt();
+                (radius, of.emissivity)
+            })
+            .collect();
+        self.radiation.change(gone, &come);
         without(&mut self.material, gone);
         self.material.extend(new.iter().map(|one| one.material));
         self.heat = vec![0.0; self.material.len()];
         self.touches.clear();
         self.wall_touches.clear();
-        self.radiation = Radiation::default();
     }
 
     /// Takes up what the particles meet at their present places.

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use calcine_physics::radiation::linear;
 
 use super::Views;
+use crate::without;
 
 /// Exchange areas between surfaces, and emissivities.
 #[derive(Debug, Default)]
@@ -42,6 +43,48 @@ impl Radiation {
         self.share = (0..views.surface.len())
             .map(|p| share(p, diameter(p)))
             .collect();
+    }
+
+    /// Drops the views of particles that go, by their rows in ascending order, and takes in those that come,
+    /// each of a radius in m and an emissivity, which see only themselves.
+    pub fn change(&mut self, gone: &[usize], come: &[(f64, f64)]) {
+        if self.is_empty() {
+            *self = Self::default();
+            return;
+        }
+        let views = &mut self.views;
+        // Where each row comes to, if it stays.
+        let mut next = 0;
+        let to: Vec<Option<usize>> = (0..views.surface.len())
+            .map(|row| {
+                let stays = gone.binary_search(&row).is_err();
+                let place = stays.then_some(next);
+                next += usize::from(stays);
+                place
+            })
+            .collect();
+        views.pairs.retain_mut(|(rows, _)| {
+            let moved = rows.map(|row| to[row]);
+            *rows = moved.map(Option::unwrap_or_default);
+            moved.iter().all(Option::is_some)
+        });
+        views.reservoirs.retain_mut(|([row, _], _)| {
+            let moved = to[*row];
+            *row = moved.unwrap_or_default();
+            moved.is_some()
+        });
+        without(&mut views.own, gone);
+        without(&mut views.surface, gone);
+        without(&mut self.emissivity, gone);
+        for &(radius, emissivity) in come {
+            let absorbs = if views.radiosity { 1.0 } else { emissivity };
+            let surface = 4.0 * PI * radius * radius * absorbs;
+            views.own.push(surface);
+            views.surface.push(surface);
+            self.emissivity.push(emissivity);
+        }
+        self.grey = views.radiosity && self.emissivity.iter().any(|e| *e < 1.0);
+        self.share.clear();
     }
 
     fn of(&self, particle: usize) -> f64 {

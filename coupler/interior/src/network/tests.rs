@@ -130,6 +130,22 @@ fn black_surfaces_exchange_the_difference_of_fourth_powers() {
 }
 
 #[test]
+fn views_of_those_that_stay_hold_while_others_go_and_come() {
+    let mut network = enclosure([1.0; 3]);
+    let new = Newcomer {
+        mass: 1.0,
+        material: 0,
+        temperature: 900.0,
+    };
+    network.change(&[1], &[new]);
+    let old = [1000.0, 300.0, 900.0];
+    step(&mut network, 1e15, &old, &still(3), &still(3), &[]);
+    let flux = STEFAN_BOLTZMANN * (1000.0f64.powi(4) - 300.0f64.powi(4));
+    assert!((network.heat[1] / flux - 1.0).abs() < 1e-9);
+    assert_eq!((network.heat[0], network.heat[2]), (-network.heat[1], 0.0));
+}
+
+#[test]
 fn grey_surfaces_exchange_through_resistances_in_series() {
     // Concentric or any two surfaces that see only each other: Q = σ ΔT⁴/((1−e₁)/(e₁A₁) + 1/(A₁F) + …).
     let laws = HeatLaws {

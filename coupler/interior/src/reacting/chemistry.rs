@@ -75,6 +75,9 @@ pub struct Around<'a> {
     pub film: &'a [f64],
     /// Radius of the particle in m.
     pub radius: f64,
+    /// Volumes in m³/mol that its solids take up; `None`: its diameter stays, and layers share the room by what
+    /// they were made of.
+    pub volumes: Option<&'a [f64]>,
 }
 
 /// Rates of all reactions of a particle in mol/s, and how each changes with the mole fraction of its
@@ -327,7 +330,11 @@ impl Chemistry {
     ) {
         let count = layers.solids.len() - 1;
         let mut radius = [0.0; MOST_INTERFACES];
-        let weighed = |k: usize| layers.weights[k] * there.amounts[layers.solids[k]].max(0.0);
+        let weighed = |k: usize| {
+            let solid = layers.solids[k];
+            let room = around.volumes.map_or(layers.weights[k], |each| each[solid]);
+            room * there.amounts[solid].max(0.0)
+        };
         let all: f64 = (0..=count).map(weighed).sum();
         if all <= 0.0 {
             return;

@@ -15,11 +15,13 @@ pub mod chemistry;
 pub mod layers;
 mod model;
 pub mod ode;
+pub mod size;
 mod step;
 
 pub use book::Booking;
 pub use chemistry::{Chemistry, Rate, Reaction};
 pub use layers::{LayerDiffusivity, LayersError};
+pub use size::Size;
 pub use step::{ReactError, Surroundings};
 
 use crate::network::Network;
@@ -44,6 +46,8 @@ pub struct Reacting {
     channels: Vec<Channel>,
     /// Amounts in mol of each solid in a kilogram of each material.
     composition: Vec<Vec<f64>>,
+    /// How the particles of each material take up room.
+    sizes: Vec<Size>,
     /// Index of the material of each particle.
     material: Vec<usize>,
     /// Amounts in mol, solid by solid within each particle.
@@ -114,6 +118,7 @@ impl Reacting {
         let mut made = Self {
             chemistry,
             channels,
+            sizes: vec![Size::Constant; composition.len()],
             composition,
             material,
             now: committed.clone(),

@@ -176,6 +176,43 @@ impl Reacting {
         (mass, elements)
     }
 
+    /// Mass in kg of each element that particles of these rows hold at the last commit, in the order of
+    /// [`calcine_physics::thermo::Element::ALL`].
+    pub fn elements(&self, rows: impl Iterator<Item = usize>) -> Vec<f64> {
+        let solids = self.chemistry.solids.len();
+        let mut held = vec![0.0; solids];
+        for row in rows {
+            let amounts = &self.committed.amount[row * solids..(row + 1) * solids];
+            for (sum, n) in held.iter_mut().zip(amounts) {
+                *sum += n;
+            }
+        }
+        self.elements_of(&held)
+    }
+
+    /// The same of particles as they come in.
+    pub fn elements_brought(&self, new: &[Newcomer]) -> Vec<f64> {
+        let mut brought = vec![0.0; self.chemistry.solids.len()];
+        for one in new {
+            for (sum, n) in brought.iter_mut().zip(&self.composition[one.material]) {
+                *sum += n * one.mass;
+            }
+        }
+        self.elements_of(&brought)
+    }
+
+    fn elements_of(&self, amounts: &[f64]) -> Vec<f64> {
+        use calcine_physics::thermo::Element;
+        let atoms = |element: &Element| -> f64 {
+            let parts = self.chemistry.solids.iter().zip(amounts);
+            parts
+                .map(|(solid, n)| n * solid.atoms()[*element as usize])
+                .sum()
+        };
+        let masses = Element::ALL.iter().map(|one| atoms(one) * one.molar_mass());
+        masses.collect()
+    }
+
     /// Mass in kg of each particle at the last commit.
     pub fn masses(&self, out: &mut Vec<f64>) {
         let solids = self.chemistry.solids.len();

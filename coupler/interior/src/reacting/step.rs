@@ -180,12 +180,14 @@ impl Reacting {
                 *fraction = fraction.max(0.0);
             }
         }
-        let near = Around {
+        let size = self.size(p);
+        let mut near = Around {
             temperature: hot,
             pressure: around.pressure[p],
             fractions,
             film: &around.film[p * species..(p + 1) * species],
             radius: around.radius[p],
+            volumes: size.volumes(),
         };
         let begin = self.committed.temperature[p];
         // The heat of a reaction follows temperature so slowly that a line will do here; what is booked is exact.
@@ -211,6 +213,7 @@ impl Reacting {
                     amounts[s] += n * extent;
                 }
             }
+            near.radius = size.radius(amounts).unwrap_or(near.radius);
             chemistry.rates(&near, amounts, y[count], rates);
             chemistry.heat_capacity(amounts, y[count])
         };

@@ -1,5 +1,7 @@
 //! Conductivity of solids.
 
+use crate::points::linear;
+
 /// Thermal conductivity of a solid, linear in temperature between given points and constant outside them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conductivity {
@@ -21,18 +23,7 @@ impl Conductivity {
 
     /// Conductivity in W/m/K at a temperature in K.
     pub fn at(&self, temperature: f64) -> f64 {
-        let next = self
-            .points
-            .partition_point(|&(from, _)| from <= temperature);
-        match (next.checked_sub(1), self.points.get(next)) {
-            (Some(before), Some(after)) => {
-                let before = self.points[before];
-                let share = (temperature - before.0) / (after.0 - before.0);
-                before.1 + share * (after.1 - before.1)
-            }
-            (Some(last), None) => self.points[last].1,
-            (None, _) => self.points[0].1,
-        }
+        linear(&self.points, temperature)
     }
 }
 

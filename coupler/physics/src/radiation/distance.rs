@@ -1,5 +1,7 @@
 //! What share of an open view is left over a distance in a random bed.
 
+use crate::points::linear;
+
 /// Share of the open view of two equal spheres that other spheres leave in a random bed, over the distance of
 /// the centres in radii.
 ///
@@ -21,20 +23,11 @@ pub fn wall_visibility(distance: f64) -> f64 {
 
 /// Between points linear, beyond the last by an exponential of a rate per radius.
 fn left(points: &[(f64, f64)], distance: f64, rate: f64) -> f64 {
-    let next = points.partition_point(|&(from, _)| from <= distance);
-    let (Some(before), Some(after)) = (
-        next.checked_sub(1).and_then(|k| points.get(k)),
-        points.get(next),
-    ) else {
-        return match next {
-            0 => points[0].1,
-            _ => {
-                let (from, share) = points[points.len() - 1];
-                share * (-rate * (distance - from)).exp()
-            }
-        };
-    };
-    before.1 + (after.1 - before.1) * (distance - before.0) / (after.0 - before.0)
+    let (end, share) = points[points.len() - 1];
+    if distance > end {
+        return share * (-rate * (distance - end)).exp();
+    }
+    linear(points, distance)
 }
 
 const PAIRS: [(f64, f64); 20] = [

@@ -39,6 +39,16 @@ pub enum EquationError {
 impl Equation {
     /// Reads an equation.
     pub fn parse(text: &str) -> Result<Self, EquationError> {
+        Self::read(text, false)
+    }
+
+    /// Reads an equation in which a species may stand twice on one side, such as `H + H => H2`: its numbers
+    /// are added.
+    pub fn parse_adding(text: &str) -> Result<Self, EquationError> {
+        Self::read(text, true)
+    }
+
+    fn read(text: &str, adding: bool) -> Result<Self, EquationError> {
         let (arrow, reversible) = if text.contains("<=>") {
             ("<=>", true)
         } else {
@@ -52,8 +62,8 @@ impl Equation {
             return Err(EquationError::Arrow { text: text.into() });
         }
         Ok(Self {
-            left: side(left)?,
-            right: side(right)?,
+            left: side(left, adding)?,
+            right: side(right, adding)?,
             reversible,
         })
     }
@@ -73,14 +83,15 @@ impl Equation {
     }
 }
 
-fn side(text: &str) -> Result<Vec<(f64, String)>, EquationError> {
+fn side(text: &str, adding: bool) -> Result<Vec<(f64, String)>, EquationError> {
     let mut terms: Vec<(f64, String)> = Vec::new();
     for term in text.split(" + ") {
         let (n, name) = self::term(term)?;
-        if terms.iter().any(|(_, other)| *other == name) {
-            return Err(EquationError::Twice { name });
+        match terms.iter_mut().find(|(_, other)| *other == name) {
+            Some((sum, _)) if adding => *sum += n,
+            Some(_) => return Err(EquationError::Twice { name }),
+            None => terms.push((n, name)),
         }
-        terms.push((n, name));
     }
     Ok(terms)
 }
@@ -124,6 +135,12 @@ mod tests {
     fn the_net_of_a_species_on_both_sides_is_its_difference() {
         let net = Equation::parse("C + 2 CO => 3 CO").unwrap().net();
         assert_eq!(net, [("C".into(), -1.0), ("CO".into(), 1.0)]);
+    }
+
+    #[test]
+    fn numbers_are_added_where_a_species_may_stand_twice() {
+        let one = Equation::parse_adding("H + H + 2 O => H2 + O2").unwrap();
+        assert_eq!(one.left, [(2.0, "H".into()), (2.0, "O".into())]);
     }
 
     #[test]

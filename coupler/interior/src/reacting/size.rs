@@ -1,0 +1,136 @@
+//! How the volume of a particle follows its conversion (requirements RXN-1, 2).
+
+use std::f64::consts::PI;
+
+use calcine_physics::solids::SolidSpecies;
+
+use super::Reacting;
+
+/// The law by which a particle of a material takes up room.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Size {
+    /// The diameter stays, and the density follows the mass: pores open or close.
+    #[default]
+    Constant,
+    /// Each solid takes its own volume V_s in m³/mol, V = Σ n_s V_s, and the diameter follows.
+    Volumes {
+        /// V_s of each solid in m³/mol.
+        each: Vec<f64>,
+        /// Radius in m below which no particle shrinks; from there on its density follows.
+        least_radius: f64,
+    },
+}
+
+impl Size {
+    /// The density of the whole stays, in kg/m³: a particle that loses mass shrinks.
+    pub fn of_density(density: f64, solids: &[SolidSpecies], least_radius: f64) -> Self {
+        let each = solids.iter().map(|solid| solid.molar_mass() / density);
+        Self::Volumes {
+            each: each.collect(),
+            least_radius,
+        }
+    }
+
+    /// Each solid has its own density in kg/m³ in the particle, pores included; all are scaled by one factor
+    /// such that the start, of mass fractions `start`, has exactly the material's density in kg/m³.
+    pub fn of_densities(
+        densities: &[f64],
+        (density, start): (f64, &[f64]),
+        solids: &[SolidSpecies],
+        least_radius: f64,
+    ) -> Self {
+        let scale = 1.0 / (density * specific_volume(densities, start));
+        let pairs = solids.iter().zip(densities);
+        let each = pairs.map(|(solid, own)| scale * solid.molar_mass() / own);
+        Self::Volumes {
+            each: each.collect(),
+            least_radius,
+        }
+    }
+
+    /// Volumes in m³/mol of the solids; `None` where the diameter stays.
+    pub fn volumes(&self) -> Option<&[f64]> {
+        match self {
+            Self::Constant => None,
+            Self::Volumes { each, .. } => Some(each),
+        }
+    }
+
+    /// Radius in m of a particle of amounts in mol; `None` where it stays as it is.
+    pub fn radius(&self, amounts: &[f64]) -> Option<f64> {
+        let Self::Volumes { each, least_radius } = self else {
+            return None;
+        };
+        let parts = each.iter().zip(amounts);
+        let volume: f64 = parts.map(|(volume, n)| volume * n.max(0.0)).sum();
+        Some((0.75 * volume / PI).cbrt().max(*least_radius))
+    }
+}
+
+/// Volume in m³/kg of mass fractions of solids of these densities in kg/m³.
+pub fn specific_volume(densities: &[f64], fractions: &[f64]) -> f64 {
+    let held = fractions.iter().zip(densities).filter(|(y, _)| **y > 0.0);
+    held.map(|(y, density)| y / density).sum()
+}
+
+impl Reacting {
+    /// The same particles with a law of size for each material; without it diameters stay.
+    pub fn with_sizes(mut self, sizes: Vec<Size>) -> Self {
+        debug_assert!(sizes.len() == self.composition.len());
+        self.sizes = sizes;
+        self
+    }
+
+    /// True where some particle may get another radius.
+    pub fn changes_sizes(&self) -> bool {
+        self.sizes.iter().any(|size| *size != Size::Constant)
+    }
+
+    pub(super) fn size(&self, row: usize) -> &Size {
+        &self.sizes[self.material[row]]
+    }
+
+    /// Radius in m that a particle has come to at the last commit; `None` where its diameter stays.
+    pub fn radius(&self, row: usize) -> Option<f64> {
+        let solids = self.chemistry.solids.len();
+        self.size(row)
+            .radius(&self.committed.amount[row * solids..(row + 1) * solids])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn solids() -> Vec<SolidSpecies> {
+        ["CaCO3", "CaO"]
+            .map(|name| SolidSpecies::built_in(name).unwrap())
+            .to_vec()
+    }
+
+    #[test]
+    fn a_particle_of_constant_density_shrinks_with_the_cube_root_of_its_mass() {
+        let (solids, radius) = (solids(), 8e-3);
+        let size = Size::of_density(2700.0, &solids, 1e-3);
+        let mass = 2700.0 * 4.0 / 3.0 * PI * 8e-3f64.powi(3);
+        let amount = mass / solids[0].molar_mass();
+        assert!((size.radius(&[amount, 0.0]).unwrap() / radius - 1.0).abs() < 1e-14);
+        // CaO weighs 56.077 of 100.086 g.
+        let burnt = size.radius(&[0.0, amount]).unwrap();
+        assert!((burnt / radius - (56.077f64 / 100.086).cbrt()).abs() < 1e-5);
+        assert_eq!(size.radius(&[1e-12, 0.0]), Some(1e-3), "the least radius");
+        assert_eq!(Size::Constant.radius(&[amount, 0.0]), None);
+    }
+
+    #[test]
+    fn product_densities_give_the_start_its_density_and_the_end_its_volume() {
+        let solids = solids();
+        // Lime of 1600 kg/m³ takes 56.077/100.086 · 2700/1600 = 0.9455 of the stone's volume.
+        let size = Size::of_densities(&[2713.0, 1608.0], (2700.0, &[1.0, 0.0]), &solids, 0.0);
+        let amount = 2700.0 / solids[0].molar_mass() * 4.0 / 3.0 * PI;
+        assert!((size.radius(&[amount, 0.0]).unwrap() - 1.0).abs() < 1e-14);
+        let end = size.radius(&[0.0, amount]).unwrap();
+        let share = 56.077 / 100.086 * 2713.0 / 1608.0;
+        assert!((end - f64::cbrt(share)).abs() < 1e-5, "{end}");
+    }
+}

@@ -1,0 +1,22 @@
+//! Reactions among gases: a [`Mechanism`] over the species of a mixture says how fast each is made, a
+//! [`Reactor`] integrates one parcel of gas over a time, [`pasr`] says what share of it reacts where turbulence mixes it.
+//!
+//! Equations, rate constants and powers are those of [`crate::reaction`].
+
+pub mod elements;
+pub mod error;
+pub mod falloff;
+pub mod jones_lindstedt;
+pub mod mechanism;
+pub mod number;
+pub mod pasr;
+pub mod reactor;
+pub mod statement;
+pub mod step;
+
+pub use error::KineticsError;
+pub use falloff::{Broadening, RateConstant};
+pub use mechanism::{Mechanism, State};
+pub use reactor::{Outcome, Reactor, Tolerances};
+pub use statement::{Collider, Statement};
+pub use step::Step;

@@ -1,0 +1,314 @@
+//! A parcel of gas that reacts at constant pressure.
+
+use diffsol::{NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverMethod, OdeSolverStopReason, Vector};
+
+use super::elements::Elements;
+use super::error::KineticsError;
+use super::mechanism::{Mechanism, State};
+use super::number::{Dual, Number};
+use crate::gas::GAS_CONSTANT;
+use crate::thermo::mixture::MOST_SPECIES;
+
+type Matrix = NalgebraMat<f64>;
+
+/// How exactly a reactor integrates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerances {
+    /// Error of a step relative to each mass fraction and the temperature.
+    pub relative: f64,
+    /// Error of a step in a mass fraction that counts as none.
+    pub fraction: f64,
+    /// Error of a step in the temperature that counts as none, in K.
+    pub temperature: f64,
+    /// Change of a mass fraction over the time, at the rates of the start, below which nothing is integrated and
+    /// nothing changes.
+    pub negligible: f64,
+    /// Most steps.
+    pub steps: usize,
+}
+
+impl Default for Tolerances {
+    fn default() -> Self {
+        Self {
+            relative: 1e-6,
+            fraction: 1e-10,
+            temperature: 1e-3,
+            negligible: 1e-12,
+            steps: 100_000,
+        }
+    }
+}
+
+/// What an integration did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// Steps it took; zero where nothing reacts.
+    pub steps: usize,
+}
+
+/// A parcel of gas at constant pressure, adiabatic or of fixed temperature:
+///
+/// dY_i/dt = w_i/ρ;  dT/dt = −Σ h_i w_i/(ρ c_p), or 0,
+///
+/// by diffsol's backward differentiation formulas of variable order with the exact Jacobian (Martin Robinson, diffsol, JOSS
+/// 2026). At the end negative fractions are set to zero and the elements kept ([`Elements::restore`]), and the adiabatic temperature
+/// follows from the mixture's enthalpy with that of formation, which is kept exactly.
+#[derive(Clone, Debug)]
+pub struct Reactor {
+    mechanism: Mechanism,
+    tolerances: Tolerances,
+    elements: Elements,
+    rates: Vec<f64>,
+}
+
+impl Reactor {
+    /// A reactor of this mechanism. One serves one thread.
+    pub fn new(mechanism: &Mechanism, tolerances: Tolerances) -> Self {
+        Self {
+            elements: Elements::new(mechanism.mixture()),
+            rates: vec![0.0; mechanism.species()],
+            mechanism: mechanism.clone(),
+            tolerances,
+        }
+    }
+
+    /// Its mechanism.
+    pub fn mechanism(&self) -> &Mechanism {
+        &self.mechanism
+    }
+
+    /// Lets an adiabatic parcel react over a time in s at a pressure in Pa: mass fractions and temperature in K
+    /// become those at its end. In error they stay.
+    pub fn advance(
+        &mut self,
+        pressure: f64,
+        temperature: &mut f64,
+        fractions: &mut [f64],
+        time: f64,
+    ) -> Result<Outcome, KineticsError> {
+        self.run(pressure, temperature, fractions, time, true)
+    }
+
+    /// The same at a fixed temperature in K: what heat is set free is taken away.
+    pub fn advance_isothermal(
+        &mut self,
+        pressure: f64,
+        temperature: f64,
+        fractions: &mut [f64],
+        time: f64,
+    ) -> Result<Outcome, KineticsError> {
+        let mut fixed = temperature;
+        self.run(pressure, &mut fixed, fractions, time, false)
+    }
+
+    fn run(
+        &mut self,
+        pressure: f64,
+        temperature: &mut f64,
+        fractions: &mut [f64],
+        time: f64,
+        adiabatic: bool,
+    ) -> Result<Outcome, KineticsError> {
+        self.sound(pressure, *temperature, fractions, time)?;
+        let mixture = self.mechanism.mixture();
+        let state = State {
+            pressure,
+            temperature: *temperature,
+            fractions,
+        };
+        self.mechanism.rates(state, &mut self.rates);
+        let density = mixture.density(pressure, *temperature, fractions);
+        let fastest = self.rates.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
+        if fastest * time <= self.tolerances.negligible * density {
+            return Ok(Outcome { steps: 0 });
+        }
+        let masses = self.elements.of(fractions);
+        let enthalpy = |t: f64, y: &[f64]| mixture.enthalpy(t, y) + mixture.formation_enthalpy(y);
+        let kept = enthalpy(*temperature, fractions);
+        let (mut reached, steps) =
+            self.integrate(pressure, *temperature, fractions, time, adiabatic)?;
+        let count = fractions.len();
+        self.elements.restore(&masses, &mut reached[..count]);
+        if adiabatic {
+            let new = &reached[..count];
+            let sensible = kept - mixture.formation_enthalpy(new);
+            let found = mixture.temperature(sensible, new, reached[count]);
+            *temperature = found.map_err(|error| KineticsError::Integration {
+                state: self.words(pressure, *temperature, fractions),
+                reached: time,
+                time,
+                why: error.to_string(),
+            })?;
+        }
+        fractions.copy_from_slice(&reached[..count]);
+        Ok(Outcome { steps })
+    }
+
+    /// Mass fractions and temperature after the time, and how many steps it took.
+    fn integrate(
+        &self,
+        pressure: f64,
+        temperature: f64,
+        fractions: &[f64],
+        time: f64,
+        adiabatic: bool,
+    ) -> Result<(Vec<f64>, usize), KineticsError> {
+        let count = fractions.len();
+        let fail = |reached: f64, why: String| KineticsError::Integration {
+            state: self.words(pressure, temperature, fractions),
+            reached,
+            time,
+            why,
+        };
+        let law = Equations {
+            mechanism: &self.mechanism,
+            pressure,
+            adiabatic,
+        };
+        let mut absolute = vec![self.tolerances.fraction; count + 1];
+        absolute[count] = self.tolerances.temperature;
+        let mut problem = OdeBuilder::<Matrix>::new()
+            .rtol(self.tolerances.relative)
+            .atol(absolute)
+            .h0(time)
+            .rhs_implicit(
+                |x: &[f64], _: &[f64], _, out: &mut [f64]| law.slope(x, out),
+                |x: &[f64], _: &[f64], _, v: &[f64], out: &mut [f64]| law.directional(x, v, out),
+            )
+            .init(
+                |_: &[f64], _, y: &mut [f64]| {
+                    y[..count].copy_from_slice(fractions);
+                    y[count] = temperature;
+                },
+                count + 1,
+            )
+            .build()
+            .map_err(|error| fail(0.0, error.to_string()))?;
+        problem.ode_options.min_timestep = time * f64::EPSILON;
+        let mut solver = problem
+            .bdf::<NalgebraLU<f64>>()
+            .map_err(|error| fail(0.0, error.to_string()))?;
+        solver
+            .set_stop_time(time)
+            .map_err(|error| fail(0.0, error.to_string()))?;
+        for step in 1..=self.tolerances.steps {
+            match solver.step() {
+                Ok(OdeSolverStopReason::TstopReached) => {
+                    let reached = solver.state().y.clone_as_vec();
+                    if reached.iter().all(|x| x.is_finite()) {
+                        return Ok((reached, step));
+                    }
+                    return Err(fail(time, "a value is not finite".into()));
+                }
+                Ok(_) => {}
+                Err(error) => return Err(fail(solver.state().t, error.to_string())),
+            }
+        }
+        let why = format!("it took more than {} steps", self.tolerances.steps);
+        Err(fail(solver.state().t, why))
+    }
+
+    /// Refuses a state in which nothing can be said.
+    fn sound(
+        &self,
+        pressure: f64,
+        temperature: f64,
+        fractions: &[f64],
+        time: f64,
+    ) -> Result<(), KineticsError> {
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        let right = positive(pressure)
+            && positive(temperature)
+            && time >= 0.0
+            && time.is_finite()
+            && fractions.len() == self.mechanism.species()
+            && fractions.iter().all(|y| y.is_finite())
+            && fractions.iter().any(|y| *y > 0.0);
+        if right {
+            return Ok(());
+        }
+        let state = self.words(pressure, temperature, fractions);
+        let state = format!("{state} over {time} s");
+        Err(KineticsError::State { state })
+    }
+
+    fn words(&self, pressure: f64, temperature: f64, fractions: &[f64]) -> String {
+        let names = self.mechanism.mixture().names().iter();
+        let parts: Vec<String> = names
+            .zip(fractions)
+            .filter(|(_, y)| **y != 0.0)
+            .map(|(name, y)| format!("{name} {y:.4e}"))
+            .collect();
+        format!(
+            "{temperature:.2} K, {pressure:.6e} Pa, mass fractions {}",
+            parts.join(", ")
+        )
+    }
+}
+
+/// The equations of a parcel; the unknowns are the mass fractions and the temperature.
+struct Equations<'a> {
+    mechanism: &'a Mechanism,
+    pressure: f64,
+    adiabatic: bool,
+}
+
+impl Equations<'_> {
+    fn slope(&self, x: &[f64], out: &mut [f64]) {
+        self.evaluate(|k| x[k], out);
+    }
+
+    fn directional(&self, x: &[f64], v: &[f64], out: &mut [f64]) {
+        let mut both = [Dual::constant(0.0); MOST_SPECIES + 1];
+        let at = |k: usize| Dual {
+            value: x[k],
+            slope: v[k],
+        };
+        self.evaluate(at, &mut both[..x.len()]);
+        for (y, dual) in out.iter_mut().zip(both) {
+            *y = dual.slope;
+        }
+    }
+
+    /// Slopes of the unknowns in 1/s and K/s.
+    fn evaluate<N: Number>(&self, at: impl Fn(usize) -> N, out: &mut [N]) {
+        let species = self.mechanism.mixture().species();
+        let count = species.len();
+        let temperature = at(count);
+        let t = temperature.value();
+        // Amounts in mol/kg; they may be a little below zero.
+        let mut amounts = [N::constant(0.0); MOST_SPECIES];
+        let mut sum = N::constant(0.0);
+        for (k, one) in species.iter().enumerate() {
+            amounts[k] = at(k).times(1.0 / one.molar_mass());
+            sum = sum + amounts[k];
+        }
+        let density = N::constant(self.pressure / GAS_CONSTANT) / (temperature * sum);
+        for amount in &mut amounts[..count] {
+            *amount = *amount * density;
+        }
+        let (rates, last) = out.split_at_mut(count);
+        self.mechanism.mass_rates(temperature, &amounts, rates);
+        let mut heating = N::constant(0.0);
+        let mut capacity = N::constant(0.0);
+        for (k, one) in species.iter().enumerate() {
+            rates[k] = rates[k] / density;
+            if self.adiabatic {
+                let law = one.polynomial();
+                let (h, c_p) = (law.enthalpy(t), law.heat_capacity(t));
+                let slope = law.heat_capacity_slope(t);
+                let per_mass = 1.0 / one.molar_mass();
+                heating = heating - rates[k] * temperature.through(h, c_p).times(per_mass);
+                capacity = capacity + at(k) * temperature.through(c_p, slope).times(per_mass);
+            }
+        }
+        last[0] = if self.adiabatic {
+            heating / capacity
+        } else {
+            N::constant(0.0)
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests;

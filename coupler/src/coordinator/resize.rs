@@ -1,0 +1,150 @@
+//! Particles that react become lighter, heavier, larger or smaller; the solver that moves them has them as
+//! they are.
+//!
+//! What a particle gives to the gas takes its own velocity along, and what it takes comes with it: only the
+//! mass of a particle changes, not how fast it moves.
+
+use calcine_physics::contact::time_step::rayleigh;
+use std::f64::consts::PI;
+use thiserror::Error;
+
+use super::{Run, RunError};
+use crate::motion::{Change, Contacts, Elastic, Resized};
+use crate::supervisor::Supervisor;
+
+/// Radii and masses count as the same within this share.
+const SAME: f64 = 1e-12;
+/// Share of Rayleigh's time above which a contact solver's step is too long.
+const LONGEST: f64 = 0.5;
+
+/// What bounds the time step of particles that move.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pace {
+    /// The step in s of motion time.
+    pub step: f64,
+    /// Elastic constants of each population.
+    pub elastic: Vec<Elastic>,
+}
+
+impl Pace {
+    /// That of a contact solver.
+    pub fn of(contacts: &Contacts) -> Self {
+        let of = contacts.material_of.iter();
+        Self {
+            step: contacts.step,
+            elastic: of.map(|&material| contacts.materials[material]).collect(),
+        }
+    }
+
+    /// An error where a particle of a population has become too small or light for the step.
+    fn bears(&self, population: u32, new: &Resized) -> Result<(), TooLight> {
+        let Some(elastic) = self.elastic.get(population as usize) else {
+            return Ok(());
+        };
+        let density = new.mass / (4.0 / 3.0 * PI * new.radius.powi(3));
+        let time = rayleigh(new.radius, density, elastic.young, elastic.poisson);
+        // A time that is no number is no bound to keep either.
+        if self.step <= LONGEST * time {
+            return Ok(());
+        }
+        Err(TooLight {
+            id: new.id,
+            radius: new.radius,
+            mass: new.mass,
+            step: self.step,
+            time,
+        })
+    }
+}
+
+/// A particle of which reactions have left too little.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[error(
+    "particle {id} has come to a radius of {radius} m and {mass} kg by what reacted in it: a surface wave \
+     crosses it in {time} s, and the time step of contacts is {step} s; write a shorter `motion.motion_step`, \
+     or a larger `least_diameter` in the size of its material"
+)]
+pub struct TooLight {
+    /// Its id.
+    pub id: u64,
+    /// Its radius in m.
+    pub radius: f64,
+    /// Its mass in kg.
+    pub mass: f64,
+    /// The step in s.
+    pub step: f64,
+    /// Rayleigh's time in s.
+    pub time: f64,
+}
+
+impl Run<'_> {
+    /// Tells the solver of the particles what the last window has made of them. A bed that is held only
+    /// needs to know where a radius has changed.
+    pub(super) fn resize(&mut self, supervisor: &Supervisor) -> Result<(), RunError> {
+        let Some(reacting) = self.parts.interior.reactions() else {
+            return Ok(());
+        };
+        let fields = self.parts.particles.fields();
+        let off = |now: f64, before: f64| (now - before).abs() > SAME * before;
+        let held = self.plan.free.is_empty();
+        let (mut change, mut asked, mut turned) = (Change::default(), 0.0, 0.0);
+        for row in 0..fields.len() {
+            let mass = self.work.particle_mass[row];
+            let radius = reacting.radius(row).unwrap_or(fields.radius[row]);
+            let heavier = off(mass, fields.mass[row]) && !held;
+            if !heavier && !off(radius, fields.radius[row]) {
+                continue;
+            }
+            let new = Resized {
+                id: fields.id[row],
+                radius,
+                mass,
+            };
+            if let Some(pace) = self.plan.pace.as_ref().filter(|_| self.work.free[row]) {
+                pace.bears(fields.population[row], &new)?;
+            }
+            asked += mass - fields.mass[row];
+            turned += (mass - fields.mass[row]).abs();
+            change.resize.push(new);
+        }
+        if change.is_empty() {
+            return Ok(());
+        }
+        let before = fields.mass.to_vec();
+        self.parts.particles.change(supervisor, &change)?;
+        let pairs = self.parts.particles.fields().mass.iter().zip(&before);
+        let done: f64 = pairs.map(|(now, before)| now - before).sum();
+        self.ledger.particle_mass.book(done - asked, turned);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_particle_may_become_as_light_as_half_of_rayleighs_time_allows() {
+        let pace = |step: f64| Pace {
+            step,
+            elastic: vec![Elastic {
+                young: 5e7,
+                poisson: 0.22,
+            }],
+        };
+        // 3.802 817 5e-5 s at 1 mm and 2500 kg/m³ (see the law).
+        let new = Resized {
+            id: 7,
+            radius: 1e-3,
+            mass: 2500.0 * 4.0 / 3.0 * PI * 1e-9,
+        };
+        assert!(pace(1.90e-5).bears(0, &new).is_ok());
+        let error = pace(1.91e-5).bears(0, &new).unwrap_err().to_string();
+        assert!(
+            error.contains("particle 7") && error.contains("0.00003802"),
+            "{error}"
+        );
+        let nothing = Resized { mass: 0.0, ..new };
+        assert!(pace(1e-9).bears(0, &nothing).is_err());
+    }
+}

@@ -1,0 +1,57 @@
+//! Eddies of the gas outside the bed, as a case states them.
+
+use calcine_physics::turbulence::{KEpsilon, energy_of_intensity};
+
+/// Solid fraction above which a cell belongs to the bed, where eddies are neither made nor carry anything
+/// (requirements FLO-2).
+pub const BED: f64 = 0.1;
+
+/// True where a cell of this void fraction is free of the bed.
+#[inline]
+pub fn is_free(void_fraction: f64) -> bool {
+    1.0 - void_fraction <= BED
+}
+
+/// Eddies outside the bed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Turbulence {
+    /// None.
+    #[default]
+    Laminar,
+    /// The standard k-epsilon model with wall functions ([`KEpsilon::STANDARD`]).
+    KEpsilon {
+        /// k at the start in m²/s².
+        energy: f64,
+        /// Length scale of the eddies at the start in m, see [`KEpsilon::dissipation`].
+        length_scale: f64,
+        /// Turbulent Prandtl number: eddies carry heat with c_p μ_t/Pr_t.
+        prandtl: f64,
+        /// Turbulent Schmidt number: eddies carry species with μ_t/Sc_t.
+        schmidt: f64,
+    },
+}
+
+impl Turbulence {
+    /// True where there are no eddies.
+    pub fn is_laminar(&self) -> bool {
+        matches!(self, Self::Laminar)
+    }
+}
+
+/// Eddies in the gas that flows in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InletTurbulence {
+    /// Root mean square of one component's fluctuation over the mean (interstitial) speed.
+    pub intensity: f64,
+    /// Length scale in m, see [`KEpsilon::dissipation`].
+    pub length_scale: f64,
+}
+
+impl InletTurbulence {
+    /// k in m²/s² and ε in m²/s³ at an interstitial speed in m/s.
+    pub fn state(&self, speed: f64) -> [f64; 2] {
+        let energy = energy_of_intensity(self.intensity, speed);
+        let dissipation = KEpsilon::STANDARD.dissipation(energy, self.length_scale);
+        [energy, dissipation]
+    }
+}

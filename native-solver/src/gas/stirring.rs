@@ -1,0 +1,36 @@
+//! The partially stirred reactor (requirement COR-16): eddies mix a share of a cell finely enough to react.
+
+use calcine_coupler::gas_chemistry::{Combustion, ReactingGas};
+use calcine_coupler::physics::kinetics::{State, pasr};
+use calcine_coupler::turbulence::is_free;
+
+use super::attempt::Frame;
+
+/// Share of a cell's gas that reacts, by the eddies of the window's start; 1 by laminar rates, and in the bed, which has
+/// no eddies and whose pores mix.
+pub fn reacting_share(frame: &Frame<'_>, gas: &ReactingGas, cell: usize, state: State<'_>) -> f64 {
+    let Combustion::Pasr { mixing_constant } = gas.combustion else {
+        return 1.0;
+    };
+    let void_fraction = frame.void_fraction[cell];
+    let eddies = &frame.old.turbulence;
+    if eddies.is_laminar() || !is_free(void_fraction) {
+        return 1.0;
+    }
+    let State {
+        pressure,
+        temperature,
+        fractions,
+    } = state;
+    let density = frame.properties.density(pressure, temperature, fractions);
+    let viscosity =
+        frame.properties.viscosity(temperature, fractions) + eddies.viscosity[cell] / void_fraction;
+    let mixing = pasr::mixing_time(
+        mixing_constant,
+        viscosity,
+        density,
+        eddies.dissipation[cell],
+    );
+    let chemical = pasr::chemical_time(&gas.mechanism, state);
+    pasr::reacting_fraction(chemical, mixing)
+}

@@ -1,0 +1,441 @@
+//! The equations of ε_t and k over a window, one after the other. Implicit Euler; convection upwind whatever that
+//! of the other fields is; what is destroyed is linear in the new value, what is made explicit.
+//!
+//! k and ε_t stay positive without being bounded: what is made, inflow and the old value are not negative, the
+//! matrices are M-matrices, and where skewed cells take more by diffusion along faces than they get, that is
+//! a sink in proportion to the new value (Patankar 1980, Numerical Heat Transfer and Fluid Flow, section 7.2-2). So
+//! no solution is below what a cell would have if nothing came from its neighbours; the linear solver's rounding
+//! is cut there, and only there.
+
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::gas_model::GasModel;
+use calcine_coupler::physics::turbulence::KEpsilon;
+use calcine_coupler::turbulence::is_free;
+use nalgebra::Matrix3;
+
+use super::wall::{self, WallFace, WallLaw, wall_faces};
+use super::{Eddies, update_viscosity};
+use crate::gas::boundary::{Boundaries, Value};
+use crate::gas::state::State;
+use crate::numerics::grid::{Grid, Link};
+use crate::numerics::krylov::{Krylov, Target};
+use crate::numerics::matrix::Matrix;
+use crate::numerics::operators::{conductance, displacement, face_values, gradient, outflow};
+use crate::numerics::parallel::{fill, largest, update};
+use crate::numerics::preconditioner::{Incomplete, Preconditioner};
+
+/// Iterations of a solve at most.
+const ITERATIONS: u32 = 1000;
+
+/// What a step of the eddies looks at, beside the state that it advances.
+#[derive(Clone, Copy, Debug)]
+pub struct Step<'a> {
+    /// Faces and links.
+    pub grid: &'a Grid,
+    /// Boundary values.
+    pub boundary: &'a Boundaries,
+    /// Properties of the gas.
+    pub gas: &'a GasModel,
+    /// Void fraction × viscosity of each cell in Pa s, that of the eddies at hand included.
+    pub viscosity: &'a [f64],
+    /// ∂u_i/∂x_j of each cell in 1/s.
+    pub gradients: &'a [Matrix3<f64>],
+    /// Motion span Δt in s.
+    pub span: f64,
+    /// Tolerance of the linear solver, relative to the terms of its equation.
+    pub tolerance: f64,
+}
+
+/// The two equations and their scratch memory.
+#[derive(Debug)]
+pub struct KEpsilonEquations {
+    model: KEpsilon,
+    law: WallLaw,
+    walls: Vec<WallFace>,
+    matrix: Matrix,
+    preconditioner: Incomplete,
+    source: Vec<f64>,
+    /// M/Δt of each cell in kg/s.
+    inertia: Vec<f64>,
+    /// P of each cell in 1/s²; zero in the bed.
+    strain: Vec<f64>,
+    /// ∇·u of each cell in 1/s.
+    divergence: Vec<f64>,
+    /// ε_t of cells at walls in m²/s³; zero elsewhere.
+    at_wall: Vec<f64>,
+    /// k that is made in each cell in W.
+    made: Vec<f64>,
+    /// Diffusive conductance of each face in kg/s.
+    diffusion: Vec<f64>,
+    /// What diffusion along faces brings to each cell.
+    along: Vec<f64>,
+    gradients: Vec<Vec3>,
+    faces: Vec<f64>,
+}
+
+/// One of the two scalars, as its equation sees it.
+struct Scalar<'a, S> {
+    /// σ.
+    prandtl: f64,
+    /// Values before.
+    old: &'a [f64],
+    /// Value on an inlet's face.
+    inlet: fn([f64; 2]) -> f64,
+    /// What is made in a cell, and the coefficient of what is destroyed, both per time.
+    rates: S,
+    /// The value of a cell that is given.
+    given: &'a [f64],
+}
+
+impl KEpsilonEquations {
+    /// Empty equations on a matrix's graph.
+    pub fn new(matrix: Matrix, boundary: &Boundaries) -> Self {
+        let grid = matrix.grid().clone();
+        let (cells, faces) = (grid.cells(), grid.faces.len());
+        let zeros = || vec![0.0; cells];
+        Self {
+            model: KEpsilon::STANDARD,
+            law: WallLaw::new(),
+            walls: wall_faces(&grid, boundary),
+            matrix,
+            preconditioner: Incomplete::default(),
+            source: zeros(),
+            inertia: zeros(),
+            strain: zeros(),
+            divergence: zeros(),
+            at_wall: zeros(),
+            made: zeros(),
+            diffusion: vec![0.0; faces],
+            along: zeros(),
+            gradients: vec![Vec3::zeros(); cells],
+            faces: vec![0.0; faces],
+        }
+    }
+
+    /// Advances k, ε_t and the eddy viscosities of a state by the step; the words of what diverged otherwise.
+    pub fn advance(
+        &mut self,
+        step: &Step<'_>,
+        krylov: &mut Krylov,
+        now: &mut State,
+    ) -> Result<(), String> {
+        self.measure(step, now);
+        let mut eddies = std::mem::take(&mut now.turbulence);
+        let dissipation = self.dissipation(step, krylov, now, &eddies);
+        let energy = self.energy(step, krylov, now, &eddies, &dissipation);
+        (eddies.energy, eddies.dissipation) = (energy, dissipation);
+        now.turbulence = eddies;
+        update_viscosity(step.grid, step.boundary, step.gas, now);
+        complaint(step.grid, &now.turbulence).map_or(Ok(()), Err)
+    }
+
+    /// What velocity and walls do to both: P, ∇·u, and the values of cells at walls.
+    fn measure(&mut self, step: &Step<'_>, now: &State) {
+        let grid = step.grid;
+        let (mass, flux) = (&now.mass, &now.flux);
+        fill(&mut self.inertia, |cell| {
+            mass[cell] / step.span + outflow(grid, flux, cell)
+        });
+        fill(&mut self.strain, |cell| {
+            if is_free(now.void_fraction[cell]) {
+                strain(&step.gradients[cell])
+            } else {
+                0.0
+            }
+        });
+        let held = |cell: usize| mass[cell] / grid.volume[cell];
+        fill(&mut self.divergence, |cell| {
+            let volume = |sum: f64, link: &Link| {
+                let index = link.face as usize;
+                let face = &grid.faces[index];
+                let density = if link.is_boundary() {
+                    held(cell)
+                } else {
+                    let weight = face.owner_weight();
+                    weight * held(face.owner) + (1.0 - weight) * held(face.neighbour)
+                };
+                sum + link.sign * flux[index] / density
+            };
+            grid.links(cell).iter().fold(0.0, volume) / grid.volume[cell]
+        });
+        let Eddies {
+            energy,
+            viscosity,
+            boundary,
+            ..
+        } = &now.turbulence;
+        let strain = &self.strain;
+        fill(&mut self.made, |cell| {
+            viscosity[cell] * strain[cell] * grid.volume[cell]
+        });
+        for wall in &self.walls {
+            (self.at_wall[wall.cell], self.made[wall.cell]) = (0.0, 0.0);
+        }
+        for wall in &self.walls {
+            let &WallFace { face, cell, share } = wall;
+            let distance = grid.faces[face].distance();
+            self.at_wall[cell] += share * self.law.dissipation(energy[cell], distance);
+            let Value::Wall {
+                sticks: Some(velocity),
+                ..
+            } = step.boundary.at(face)
+            else {
+                continue;
+            };
+            if is_free(now.void_fraction[cell]) {
+                let laminar = wall::viscosity(step.boundary, step.gas, now, face, cell);
+                let stress = (laminar + boundary[face - grid.internal])
+                    * (now.velocity[cell] - velocity).norm()
+                    / distance;
+                let shear = self.law.shear(energy[cell], distance);
+                self.made[cell] += share * stress * shear * grid.volume[cell];
+            }
+        }
+    }
+
+    fn dissipation(
+        &mut self,
+        step: &Step<'_>,
+        krylov: &mut Krylov,
+        now: &State,
+        eddies: &Eddies,
+    ) -> Vec<f64> {
+        let model = self.model;
+        let (strain, divergence) = (
+            std::mem::take(&mut self.strain),
+            std::mem::take(&mut self.divergence),
+        );
+        let given = std::mem::take(&mut self.at_wall);
+        let Eddies {
+            energy,
+            dissipation: old,
+            ..
+        } = eddies;
+        let expansion = 2.0 / 3.0 * model.production;
+        let rates = |cell: usize| {
+            let mass = now.mass[cell];
+            let made = model.production * model.viscosity * energy[cell] * strain[cell];
+            let squeezed = expansion * (-divergence[cell]).max(0.0) * old[cell];
+            let destroyed = model.destruction * old[cell] / energy[cell]
+                + expansion * divergence[cell].max(0.0);
+            [mass * (made + squeezed), mass * destroyed]
+        };
+        let scalar = Scalar {
+            prandtl: model.dissipation_prandtl,
+            old,
+            inlet: |[_, dissipation]| dissipation,
+            rates,
+            given: &given,
+        };
+        let new = self.solve(step, krylov, now, eddies, &scalar);
+        (self.strain, self.divergence, self.at_wall) = (strain, divergence, given);
+        new
+    }
+
+    fn energy(
+        &mut self,
+        step: &Step<'_>,
+        krylov: &mut Krylov,
+        now: &State,
+        eddies: &Eddies,
+        dissipation: &[f64],
+    ) -> Vec<f64> {
+        let model = self.model;
+        let (made, divergence) = (
+            std::mem::take(&mut self.made),
+            std::mem::take(&mut self.divergence),
+        );
+        let old = &eddies.energy;
+        let rates = |cell: usize| {
+            let mass = now.mass[cell];
+            let squeezed = 2.0 / 3.0 * (-divergence[cell]).max(0.0) * old[cell];
+            let destroyed = dissipation[cell] / old[cell] + 2.0 / 3.0 * divergence[cell].max(0.0);
+            [made[cell] + mass * squeezed, mass * destroyed]
+        };
+        let scalar = Scalar {
+            prandtl: model.energy_prandtl,
+            old,
+            inlet: |[energy, _]| energy,
+            rates,
+            given: &[],
+        };
+        let new = self.solve(step, krylov, now, eddies, &scalar);
+        (self.made, self.divergence) = (made, divergence);
+        new
+    }
+
+    /// Solves the equation of a scalar; its new values.
+    fn solve<S: Fn(usize) -> [f64; 2] + Sync>(
+        &mut self,
+        step: &Step<'_>,
+        krylov: &mut Krylov,
+        now: &State,
+        eddies: &Eddies,
+        scalar: &Scalar<'_, S>,
+    ) -> Vec<f64> {
+        let (grid, boundary) = (step.grid, step.boundary);
+        let inlet = |index: usize| match boundary.at(index) {
+            Value::Inlet {
+                superficial_velocity,
+                ..
+            } if superficial_velocity > 0.0 => {
+                let pores = now.void_fraction[grid.faces[index].owner];
+                Some((scalar.inlet)(boundary.eddies(index, pores)))
+            }
+            _ => None,
+        };
+        self.update_diffusion(step, now, eddies, scalar.prandtl);
+        self.update_along(grid, scalar.old, inlet);
+        let (inertia, diffusion, along) = (&self.inertia, &self.diffusion, &self.along);
+        let given = |cell: usize| scalar.given.get(cell).is_some_and(|value| *value > 0.0);
+        self.matrix.assemble(|cell, diagonal, neighbours| {
+            *diagonal = inertia[cell];
+            if given(cell) {
+                return;
+            }
+            *diagonal += (scalar.rates)(cell)[1] + (-along[cell]).max(0.0) / scalar.old[cell];
+            for link in grid.links(cell) {
+                let index = link.face as usize;
+                let weight = (-link.sign * now.flux[index]).max(0.0) + diffusion[index];
+                if !link.is_boundary() {
+                    neighbours[link.slot as usize] -= weight;
+                    *diagonal += weight;
+                } else if inlet(index).is_some() {
+                    *diagonal += weight;
+                }
+            }
+        });
+        fill(&mut self.source, |cell| {
+            if given(cell) {
+                return inertia[cell] * scalar.given[cell];
+            }
+            let mut source =
+                inertia[cell] * scalar.old[cell] + (scalar.rates)(cell)[0] + along[cell].max(0.0);
+            for link in grid.links(cell).iter().filter(|link| link.is_boundary()) {
+                let index = link.face as usize;
+                if let Some(value) = inlet(index) {
+                    let weight = (-link.sign * now.flux[index]).max(0.0) + diffusion[index];
+                    source += weight * value;
+                }
+            }
+            source
+        });
+        let target = Target {
+            absolute: 0.0,
+            of_terms: step.tolerance,
+            relative: 0.0,
+            iterations: ITERATIONS,
+        };
+        let mut new = scalar.old.to_vec();
+        self.preconditioner.update(&self.matrix);
+        let Self {
+            matrix,
+            preconditioner,
+            source,
+            ..
+        } = self;
+        krylov.general(matrix, preconditioner, source, &mut new, target);
+        // Exactly solved none is lower: see above.
+        let diagonal = matrix.diagonal();
+        update(&mut new, |cell, value| {
+            *value = value.max(source[cell] / diagonal[cell]);
+        });
+        new
+    }
+
+    fn update_diffusion(&mut self, step: &Step<'_>, now: &State, eddies: &Eddies, prandtl: f64) {
+        let grid = step.grid;
+        // The eddies' share of the viscosity counts with 1/σ.
+        let less = 1.0 - 1.0 / prandtl;
+        let coefficient = |cell: usize| step.viscosity[cell] - less * eddies.viscosity[cell];
+        fill(&mut self.diffusion, |index| {
+            let face = &grid.faces[index];
+            if index < grid.internal {
+                let weight = face.owner_weight();
+                let mean =
+                    weight * coefficient(face.owner) + (1.0 - weight) * coefficient(face.neighbour);
+                return conductance(face, mean);
+            }
+            match step.boundary.at(index) {
+                Value::Inlet { gas, .. } => {
+                    let laminar = now.void_fraction[face.owner] * gas.viscosity;
+                    let eddy = eddies.boundary[index - grid.internal] / prandtl;
+                    conductance(face, laminar + eddy)
+                }
+                Value::Wall { .. } | Value::Outlet { .. } => 0.0,
+            }
+        });
+    }
+
+    /// What diffusion along skewed faces brings to each cell, from the old values.
+    fn update_along(
+        &mut self,
+        grid: &Grid,
+        old: &[f64],
+        inlet: impl Fn(usize) -> Option<f64> + Sync,
+    ) {
+        if grid.orthogonal {
+            return;
+        }
+        let boundary = |index: usize, inner: f64| inlet(index).unwrap_or(inner);
+        let (gradients, faces) = (&mut self.gradients, &mut self.faces);
+        fill(gradients, |_| Vec3::zeros());
+        face_values(grid, old, gradients, boundary, faces);
+        fill(gradients, |cell| gradient(grid, faces, cell));
+        let (gradients, diffusion) = (&self.gradients, &self.diffusion);
+        fill(&mut self.along, |cell| {
+            let one = |sum: f64, link: &Link| {
+                let index = link.face as usize;
+                if diffusion[index] == 0.0 {
+                    return sum;
+                }
+                let face = &grid.faces[index];
+                sum - link.sign * diffusion[index] * displacement(grid, face, gradients)
+            };
+            grid.links(cell).iter().fold(0.0, one)
+        });
+    }
+}
+
+/// P = ∇u : (∇u + ∇uᵀ − ⅔ ∇·u) in 1/s², zero or above.
+#[inline]
+fn strain(gradient: &Matrix3<f64>) -> f64 {
+    let twice = gradient + gradient.transpose();
+    let trace = gradient.trace();
+    0.5 * twice.norm_squared() - 2.0 / 3.0 * trace * trace
+}
+
+/// What is wrong with eddies, in words; `None` where nothing is.
+fn complaint(grid: &Grid, eddies: &Eddies) -> Option<String> {
+    let (cell, strangeness) = largest(grid.cells(), |cell| {
+        let [k, rate] = [eddies.energy[cell], eddies.dissipation[cell]];
+        if k > 0.0 && rate > 0.0 && (k + rate + eddies.viscosity[cell]).is_finite() {
+            0.0
+        } else {
+            1.0
+        }
+    });
+    if strangeness == 0.0 {
+        return None;
+    }
+    let place = grid.centre[cell];
+    Some(format!(
+        "diverged: turbulent energy of {} m^2/s^2 with a dissipation of {} m^2/s^3 in cell {cell} at \
+         ({:.6}, {:.6}, {:.6}) m; a shorter `motion_window` may help",
+        eddies.energy[cell], eddies.dissipation[cell], place.x, place.y, place.z
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shear_counts_once_expansion_not_at_all() {
+        let shear = Matrix3::new(0.0, 3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+        assert!((strain(&shear) - 9.0).abs() < 1e-14);
+        assert!(strain(&(2.0 * Matrix3::identity())).abs() < 1e-14);
+        let rotation = shear - shear.transpose();
+        assert_eq!(strain(&rotation), 0.0);
+    }
+}

@@ -1,0 +1,89 @@
+//! Who computes what: the backends and their pairings.
+
+use clap::ValueEnum;
+
+/// Who computes the gas.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum GasBackend {
+    /// Calcine's own finite-volume solver.
+    #[default]
+    Native,
+    /// calcineGasFoam on Debian's OpenFOAM.
+    Openfoam,
+}
+
+/// Who computes the particles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum ParticleBackend {
+    /// Calcine's own.
+    #[default]
+    Native,
+    /// Debian's LIGGGHTS as a library.
+    Liggghts,
+}
+
+/// A gas and a particle backend.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Pairing {
+    /// The gas.
+    pub gas: GasBackend,
+    /// The particles.
+    pub particles: ParticleBackend,
+}
+
+impl Pairing {
+    /// All four pairings.
+    pub const ALL: [Pairing; 4] = [
+        Pairing {
+            gas: GasBackend::Native,
+            particles: ParticleBackend::Native,
+        },
+        Pairing {
+            gas: GasBackend::Native,
+            particles: ParticleBackend::Liggghts,
+        },
+        Pairing {
+            gas: GasBackend::Openfoam,
+            particles: ParticleBackend::Native,
+        },
+        Pairing {
+            gas: GasBackend::Openfoam,
+            particles: ParticleBackend::Liggghts,
+        },
+    ];
+
+    /// The name as `compare --pairings` takes it, for example `openfoam+native`.
+    pub fn name(self) -> String {
+        format!("{}+{}", self.gas.name(), self.particles.name())
+    }
+
+    /// The pairing of a name.
+    pub fn parse(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|pairing| pairing.name() == name)
+    }
+
+    /// True where no external solver takes part.
+    pub fn is_native(self) -> bool {
+        self == Self::default()
+    }
+}
+
+impl GasBackend {
+    /// The name as users write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            GasBackend::Native => "native",
+            GasBackend::Openfoam => "openfoam",
+        }
+    }
+}
+
+impl ParticleBackend {
+    /// The name as users write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            ParticleBackend::Native => "native",
+            ParticleBackend::Liggghts => "liggghts",
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! What the coordinator is told of a case: its plan and its laws.
+
+use calcine_coupler::closures::Closures;
+use calcine_coupler::coordinator::{CheckpointPaths, Pace, Plan};
+use calcine_coupler::motion::Motion;
+use calcine_coupler::paths::{HeatWall, PathsSetup};
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::traffic::{Feed, Traffic};
+
+use super::prepared::{Prepared, method};
+use crate::case::model::Case;
+use crate::laws;
+
+pub(super) fn plan(case: &Case, prepared: &Prepared, checkpoint: CheckpointPaths) -> Plan {
+    Plan {
+        end: case.time.end,
+        motion_window: case.time.motion_window,
+        acceleration: case.time.acceleration.clone(),
+        storage: case.time.storage,
+        checkpoint_every: case.time.checkpoint_every,
+        checkpoint_wall: case.time.checkpoint_wall,
+        mapping: method(case),
+        exchange_tolerance: case.coupling.exchange_tolerance,
+        exchange_attempts: case.coupling.exchange_attempts,
+        repeats: true,
+        case_hash: case.hash.clone(),
+        checkpoint,
+        free: match &prepared.particles.motion {
+            Motion::Frozen => Vec::new(),
+            Motion::Free(contacts) => contacts.held.iter().map(|held| !held).collect(),
+        },
+        gravity: case.gas.gravity,
+        traffic: traffic(case, prepared),
+        substance: case.particles.iter().map(|one| one.material).collect(),
+        paths: paths(case, prepared),
+        pace: match &prepared.particles.motion {
+            Motion::Frozen => None,
+            Motion::Free(contacts) => Some(Pace::of(contacts)),
+        },
+    }
+}
+
+/// Feeds and outlets of the case; ids go on after those of the start.
+fn traffic(case: &Case, prepared: &Prepared) -> Traffic {
+    let feeds = case.feeds.iter().map(|feed| {
+        let population = &case.particles[feed.population];
+        Feed {
+            name: feed.name.clone(),
+            population: u32::try_from(feed.population).unwrap_or(u32::MAX),
+            zone: feed.zone,
+            rate: feed.rate,
+            batch: feed.batch,
+            sizes: population.sizes.clone(),
+            density: case.materials[population.material].density,
+            velocity: feed.velocity,
+            temperature: feed.temperature,
+            seed: feed.seed,
+        }
+    });
+    let up = (-case.gas.gravity).try_normalize(0.0).unwrap_or(Vec3::z());
+    let next = prepared.particles.id.last().map_or(1, |last| last + 1);
+    Traffic::new(feeds.collect(), case.outlets.clone(), up, next)
+}
+
+/// Heat between particles and to walls, as the coordinator finds it.
+fn paths(case: &Case, prepared: &Prepared) -> PathsSetup {
+    let Some(laws) = laws::heat(case) else {
+        return PathsSetup::default();
+    };
+    let radii = &prepared.particles.radius;
+    let fed = case
+        .feeds
+        .iter()
+        .map(|feed| 0.5 * case.particles[feed.population].sizes.largest());
+    let largest = radii.iter().copied().chain(fed).fold(0.0, f64::max);
+    let emissivity = |material: usize| case.materials[material].emissivity.unwrap_or(1.0);
+    let walls = case.walls.iter().zip(&case.wall_temperatures);
+    let radiation = case.laws.radiation.as_ref();
+    PathsSetup {
+        walls: walls
+            .map(|(wall, temperature)| HeatWall {
+                name: wall.name.clone(),
+                shape: wall.shape.clone(),
+                temperature: temperature.clone(),
+                emissivity: emissivity(wall.material),
+            })
+            .collect(),
+        emissivity: case
+            .particles
+            .iter()
+            .map(|one| emissivity(one.material))
+            .collect(),
+        gap: laws.reach(largest),
+        sight: radiation.map(|one| one.sight),
+        surroundings: radiation.and_then(|one| one.surroundings.clone()),
+        refresh: radiation.map_or(0.0, |one| one.refresh),
+    }
+}
+
+pub(super) fn closures(case: &Case) -> Closures {
+    Closures {
+        gas: case.gas.properties.clone(),
+        drag: laws::drag(case.laws.drag),
+        momentum: case.gas.momentum,
+        heat_transfer: laws::heat_transfer(case.laws.heat_transfer),
+        mass_transfer: laws::heat_transfer(case.laws.mass_transfer),
+    }
+}

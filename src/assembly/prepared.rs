@@ -1,0 +1,123 @@
+//! Mesh, particles and smoother of a case.
+
+use std::sync::Arc;
+
+use calcine_coupler::coordinator::RunError;
+use calcine_coupler::mapping::{Mapper, Method};
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::mesh::zone::Zone;
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::ParticleSetup;
+use calcine_coupler::smoother::{Settings as Smoothing, Smoother};
+
+use super::AssemblyError;
+use crate::case::model::{Case, Mapping};
+use crate::case::sizes;
+use crate::case::{PlaceError, Placed, contacts, mesh, particles};
+
+/// What does not change during a run, made from a case: mesh and particles at the start.
+#[derive(Debug)]
+pub struct Prepared {
+    /// The gas mesh.
+    pub mesh: Arc<Mesh>,
+    /// The particles at the start.
+    pub particles: ParticleSetup,
+    /// Their temperatures in K.
+    pub temperature: Vec<f64>,
+}
+
+impl Prepared {
+    /// Generates or reads the mesh and places the particles.
+    pub fn new(case: &Case) -> Result<Self, AssemblyError> {
+        sizes::fits(case)?;
+        let Placed {
+            mut setup,
+            temperature,
+        } = particles(case)?;
+        let mesh = Arc::new(mesh(&case.mesh)?);
+        setup.motion = contacts::motion(case, &mesh, &setup).map_err(PlaceError::from)?;
+        Ok(Self {
+            mesh,
+            particles: setup,
+            temperature,
+        })
+    }
+
+    /// Mean void fraction that the particles see, mapped and smoothed as in a run.
+    pub fn void_fraction(&self, case: &Case) -> Result<f64, AssemblyError> {
+        let particles = &self.particles;
+        let volume = |r: &f64| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3);
+        let volumes: Vec<f64> = particles.radius.iter().map(volume).collect();
+        let mapper = Mapper::new(&self.mesh);
+        let weights = mapper
+            .fill(method(case), &particles.position, &particles.radius)
+            .map_err(RunError::from)?;
+        let smoother = smoother(case, self)?;
+        let operator = smoother
+            .operator(weights, &volumes)
+            .map_err(RunError::from)?;
+        let mut seen = vec![0.0; volumes.len()];
+        operator.sample(operator.solid_fraction(), &mut seen);
+        Ok(1.0 - seen.iter().sum::<f64>() / seen.len() as f64)
+    }
+}
+
+/// The smoother, which leaves the case's excluded zones alone.
+pub(super) fn smoother(case: &Case, prepared: &Prepared) -> Result<Smoother, AssemblyError> {
+    let (mesh, zones) = (&prepared.mesh, &case.coupling.excluded);
+    for (index, zone) in zones.iter().enumerate() {
+        if !mesh.cell_centre().iter().any(|&centre| zone.holds(centre)) {
+            return Err(AssemblyError::Excluded { index });
+        }
+    }
+    let settings = smoothing(case, prepared);
+    let made = Smoother::with_excluded(mesh, settings, &Zone::cells(zones, mesh));
+    Ok(made.map_err(RunError::from)?)
+}
+
+/// Settings of the smoother. Where the case does not state the diffusion's length, it is half the
+/// mean diameter where particles are larger than a third of the cells about them (requirements VFS-6): without
+/// it a particle that spans several cells would give heat to cells that have nothing to give.
+fn smoothing(case: &Case, prepared: &Prepared) -> Smoothing {
+    let radii = &prepared.particles.radius;
+    let diameter = 2.0 * radii.iter().sum::<f64>() / radii.len() as f64;
+    let large = diameter > cell_size(prepared) / 3.0;
+    let length = case
+        .coupling
+        .diffusion_length
+        .unwrap_or(if large { 0.5 * diameter } else { 0.0 });
+    Smoothing {
+        max_solid_fraction: case.coupling.max_solid_fraction,
+        tolerance: case.coupling.smoother_tolerance,
+        diffusion_length: (length > 0.0).then_some(length),
+    }
+}
+
+/// Mean size in m of the cells in the box about the particles' centres, or of all where none lies there.
+fn cell_size(prepared: &Prepared) -> f64 {
+    let (mesh, centres) = (&prepared.mesh, &prepared.particles.position);
+    let (mut low, mut high) = (Vec3::repeat(f64::MAX), Vec3::repeat(f64::MIN));
+    for centre in centres {
+        (low, high) = (low.inf(centre), high.sup(centre));
+    }
+    let within = |centre: &Vec3| (0..3).all(|i| (low[i]..=high[i]).contains(&centre[i]));
+    let cells = mesh.cell_volume().iter().zip(mesh.cell_centre());
+    let (count, volume) = cells
+        .filter(|(_, centre)| within(centre))
+        .fold((0.0, 0.0), |(count, sum), (volume, _)| {
+            (count + 1.0, sum + volume)
+        });
+    if count > 0.0 {
+        f64::cbrt(volume / count)
+    } else {
+        (mesh.cell_volume().iter().sum::<f64>() / mesh.cells() as f64).cbrt()
+    }
+}
+
+pub(super) fn method(case: &Case) -> Method {
+    match case.coupling.mapping {
+        Mapping::Centroid => Method::Centroid,
+        Mapping::Divided => Method::Divided,
+        Mapping::Overlap => Method::Overlap,
+    }
+}

@@ -1,0 +1,245 @@
+//! The solvers of a run: native ones made, external ones started, their inputs.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use calcine_adapters::launch::Launcher;
+use calcine_adapters::liggghts::inputs::Inputs;
+use calcine_adapters::liggghts::template::Template;
+use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch, LiggghtsParticles};
+use calcine_adapters::openfoam::case::OpenfoamCase;
+use calcine_adapters::openfoam::{LIBRARY, OpenfoamGas, OpenfoamLaunch};
+use calcine_coupler::error::{FailureKind, PartError};
+use calcine_coupler::held::HeldGas;
+use calcine_coupler::motion::Motion;
+use calcine_coupler::part::{Gas, Particles};
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::supervisor::Supervisor;
+use calcine_native::gas::NativeGas;
+use calcine_native::particles::NativeParticles;
+
+use super::pairing::{GasBackend, Pairing, ParticleBackend};
+use super::prepared::Prepared;
+use super::{AssemblyError, Settings};
+use crate::case::model::Case;
+
+/// How an external solver is started.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Start {
+    /// Number of ranks.
+    pub ranks: u32,
+    /// Who starts them.
+    pub launcher: Launcher,
+}
+
+impl Default for Start {
+    fn default() -> Self {
+        Self {
+            ranks: 1,
+            launcher: Launcher::default(),
+        }
+    }
+}
+
+/// How the external solvers of a run are started; natively it does not matter.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Starts {
+    /// That of the gas.
+    pub gas: Start,
+    /// That of the particles.
+    pub particles: Start,
+}
+
+impl Starts {
+    /// As many ranks as the case says, started by Calcine.
+    pub fn of(case: &Case) -> Self {
+        let start = |ranks: u32| Start {
+            ranks: ranks.max(1),
+            ..Start::default()
+        };
+        Self {
+            gas: start(case.openfoam.ranks),
+            particles: start(case.liggghts.ranks),
+        }
+    }
+}
+
+/// Writes the inputs of the external solvers of a pairing, as a run would, into `openfoam/` and
+/// `liggghts/` below a folder; returns what was written.
+pub fn write_inputs(
+    case: &Case,
+    prepared: &Prepared,
+    pairing: Pairing,
+    folder: &Path,
+) -> Result<Vec<std::path::PathBuf>, AssemblyError> {
+    let starts = Starts::of(case);
+    let mut written = Vec::new();
+    if pairing.gas == GasBackend::Openfoam {
+        let target = folder.join("openfoam");
+        OpenfoamCase {
+            setup: &case.gas,
+            mesh: &prepared.mesh,
+            template: case.openfoam.template.as_deref(),
+            start: case.openfoam.start.as_deref(),
+            solver: case.openfoam.solver,
+            library: Path::new(LIBRARY),
+            case_hash: &case.hash,
+            ranks: starts.gas.ranks,
+        }
+        .write(&target)?;
+        written.push(target);
+    }
+    if pairing.particles == ParticleBackend::Liggghts {
+        let target = folder.join("liggghts");
+        let template = own_script(case)?;
+        let inputs = liggghts_inputs(case, prepared, template.as_ref(), starts.particles.ranks);
+        inputs.write(&target)?;
+        written.push(target);
+    }
+    Ok(written)
+}
+
+/// The user's own script of the particles, where the case names one.
+fn own_script(case: &Case) -> Result<Option<Template>, PartError> {
+    let Some(path) = &case.liggghts.template else {
+        return Ok(None);
+    };
+    let populations = case.particles.iter().map(|one| one.name.clone()).collect();
+    let materials = case.materials.iter().map(|one| one.name.clone()).collect();
+    let read = Template::read(path, populations, materials);
+    read.map(Some).map_err(|error| {
+        let message = format!("the script {} cannot be used", path.display());
+        PartError::new("LIGGGHTS (particles)", FailureKind::NotStarted, message).caused_by(error)
+    })
+}
+
+/// What LIGGGHTS would not take of the user's own script, for `calcine check`.
+pub fn check_own_script(case: &Case, prepared: &Prepared) -> Result<(), PartError> {
+    let template = own_script(case)?;
+    let inputs = liggghts_inputs(
+        case,
+        prepared,
+        template.as_ref(),
+        case.liggghts.ranks.max(1),
+    );
+    inputs.script().map(|_| ())
+}
+
+/// What LIGGGHTS is told of the particles, in the box of the mesh's points.
+fn liggghts_inputs<'a>(
+    case: &Case,
+    prepared: &'a Prepared,
+    template: Option<&'a Template>,
+    ranks: u32,
+) -> Inputs<'a> {
+    let points = &prepared.mesh.topology().points;
+    let bounds = points.iter().fold(
+        (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)),
+        |(low, high), point| (low.inf(point), high.sup(point)),
+    );
+    Inputs {
+        setup: &prepared.particles,
+        bounds,
+        step: match &prepared.particles.motion {
+            Motion::Frozen => FROZEN_STEP,
+            Motion::Free(contacts) => contacts.step,
+        },
+        ranks,
+        wall_impulse: case.liggghts.wall_impulse,
+        template,
+    }
+}
+
+/// What the builders of the parts share.
+pub(super) struct Assembly<'a> {
+    pub(super) case: &'a Case,
+    pub(super) prepared: &'a Prepared,
+    pub(super) settings: &'a Settings<'a>,
+    pub(super) from: Option<&'a Path>,
+}
+
+impl Assembly<'_> {
+    pub(super) fn gas(&self, supervisor: &mut Supervisor) -> Result<Box<dyn Gas>, AssemblyError> {
+        let from = self.from.map(|folder| folder.join("gas"));
+        if self.case.gas_held {
+            let mesh = Arc::clone(&self.prepared.mesh);
+            return Ok(Box::new(HeldGas::new(mesh, &self.case.gas)));
+        }
+        match self.settings.pairing.gas {
+            GasBackend::Native => {
+                let mut gas = NativeGas::new(Arc::clone(&self.prepared.mesh), &self.case.gas)?;
+                if let Some(folder) = from {
+                    gas.restore(&folder)?;
+                } else if let Some(origin) = self.settings.from {
+                    gas.take_over(&origin.path.join("gas"))?;
+                }
+                Ok(Box::new(gas))
+            }
+            GasBackend::Openfoam => {
+                let launch = OpenfoamLaunch {
+                    setup: &self.case.gas,
+                    mesh: Arc::clone(&self.prepared.mesh),
+                    template: self.case.openfoam.template.as_deref(),
+                    start: self.case.openfoam.start.as_deref(),
+                    solver: self.case.openfoam.solver,
+                    case_hash: self.case.hash.clone(),
+                    folder: self.absolute("solvers/openfoam")?,
+                    log: self.absolute("log/openfoam.log")?,
+                    from: match (&from, self.settings.from) {
+                        (None, Some(origin)) => Some(origin.path.join("gas")),
+                        _ => None,
+                    },
+                    ranks: self.settings.starts.gas.ranks,
+                    launcher: self.settings.starts.gas.launcher.clone(),
+                    resume: from,
+                    deadline: self.case.coupling.deadline,
+                };
+                Ok(Box::new(OpenfoamGas::launch(launch, supervisor)?))
+            }
+        }
+    }
+
+    pub(super) fn particles(
+        &self,
+        supervisor: &mut Supervisor,
+    ) -> Result<Box<dyn Particles>, AssemblyError> {
+        let from = self.from.map(|folder| folder.join("particles"));
+        let setup = &self.prepared.particles;
+        match self.settings.pairing.particles {
+            ParticleBackend::Native => {
+                let mut particles = NativeParticles::new(setup)?;
+                if let Some(folder) = from {
+                    particles.restore(&folder)?;
+                }
+                Ok(Box::new(particles))
+            }
+            ParticleBackend::Liggghts => {
+                let start = &self.settings.starts.particles;
+                let template = own_script(self.case)?;
+                let inputs =
+                    liggghts_inputs(self.case, self.prepared, template.as_ref(), start.ranks);
+                let launch = LiggghtsLaunch {
+                    inputs,
+                    launcher: start.launcher.clone(),
+                    case_hash: self.case.hash.clone(),
+                    folder: self.absolute("solvers/liggghts")?,
+                    log: self.absolute("log/liggghts.log")?,
+                    resume: from,
+                    deadline: self.case.coupling.deadline,
+                };
+                Ok(Box::new(LiggghtsParticles::launch(launch, supervisor)?))
+            }
+        }
+    }
+
+    /// A path in the results folder that holds whatever the working directory of a solver is.
+    fn absolute(&self, below: &str) -> Result<std::path::PathBuf, AssemblyError> {
+        let path = self.settings.results.join(below);
+        std::path::absolute(&path).map_err(|cause| {
+            let message = format!("{} has no absolute path", path.display());
+            PartError::new("calcine", FailureKind::Io, message)
+                .caused_by(cause)
+                .into()
+        })
+    }
+}

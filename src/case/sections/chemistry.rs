@@ -1,0 +1,342 @@
+//! `[gas.chemistry]`: reactions of the gas with itself.
+
+use std::path::{Path, PathBuf};
+
+use calcine_coupler::gas_chemistry::{Combustion, GasChemistry, ReactingGas};
+use calcine_coupler::physics::gas_model::GasModel;
+use calcine_coupler::physics::kinetics::{
+    Collider, KineticsError, Mechanism, RateConstant, Statement, Step, Tolerances,
+};
+use calcine_coupler::physics::reaction::Equation;
+use calcine_coupler::physics::thermo::Mixture;
+use calcine_coupler::setup::GasPatch;
+
+use super::existing;
+use super::reactions::{arrhenius, heat_agrees, lacking};
+use crate::case::table::Reader;
+use crate::case::units::Dimension;
+use crate::mechanism;
+
+/// Gas at the start and at the boundary, in which species may be missing.
+pub(super) struct Around<'a> {
+    pub gas: Option<&'a GasModel>,
+    /// Mass fractions at the start.
+    pub initial: &'a [f64],
+    pub patches: &'a [(String, GasPatch)],
+}
+
+/// What the gas does by itself, and the files that say so.
+pub(super) fn chemistry(
+    gas: &Reader<'_>,
+    around: &Around<'_>,
+    folder: &Path,
+) -> Option<(GasChemistry, Vec<PathBuf>)> {
+    let Some(table) = gas.table("chemistry") else {
+        return Some((GasChemistry::None, Vec::new()));
+    };
+    let combustion = combustion(&table);
+    let tolerances = tolerances(&table);
+    let own = table.has("reactions");
+    let named = table.has("mechanism");
+    let Some(GasModel::Mixture(mixture)) = around.gas else {
+        if around.gas.is_some() {
+            let help = "state `gas.species`, those that do not react too";
+            table.fail_whole("stands beside a single gas", help);
+        }
+        return None;
+    };
+    let found = match (named, own) {
+        (true, false) => file(&table, mixture, folder),
+        (false, true) if table.has("thermo") => {
+            let help = "remove it: the case's own reactions take Calcine's thermodynamics";
+            table.fail("thermo", "stands beside reactions of the case's own", help);
+            None
+        }
+        (false, true) => reactions(&table, mixture, around).map(|made| (made, Vec::new())),
+        _ => {
+            let help = "for example mechanism = \"jones-lindstedt\"";
+            table.fail_whole("needs exactly one of mechanism and reactions", help);
+            None
+        }
+    };
+    table.finish();
+    let (mechanism, files) = found?;
+    let key = if named { "mechanism" } else { "reactions" };
+    if !last_rests(&table, key, &mechanism) {
+        return None;
+    }
+    for step in mechanism.steps() {
+        // Those of the case's own reactions are told at their orders.
+        for &(k, order) in step.orders.iter().filter(|_| named) {
+            if order < 0.0
+                && let Some(why) = absent(k, &step.net, around)
+            {
+                let name = &mixture.names()[k];
+                let rule = format!(
+                    "has {}, whose order of {name} is {order}, but {name} {why}: the rate would be infinite",
+                    step.name
+                );
+                table.fail(key, rule, "use a mechanism without negative orders");
+                return None;
+            }
+        }
+    }
+    let reacting = ReactingGas {
+        mechanism,
+        tolerances,
+        combustion: combustion?,
+    };
+    Some((GasChemistry::Reacting(Box::new(reacting)), files))
+}
+
+fn combustion(table: &Reader<'_>) -> Option<Combustion> {
+    let stirred = table.choice("model", &[("laminar", false), ("pasr", true)]);
+    let stirred = match table.has("model") {
+        true => stirred?,
+        false => false,
+    };
+    let constant = table.positive("mixing_constant", Dimension::NONE);
+    if stirred {
+        return Some(Combustion::Pasr {
+            mixing_constant: constant.unwrap_or(1.0),
+        });
+    }
+    if constant.is_some() {
+        let help = "write model = \"pasr\", or remove it";
+        table.fail("mixing_constant", "stands beside the laminar model", help);
+        return None;
+    }
+    Some(Combustion::Laminar)
+}
+
+fn tolerances(table: &Reader<'_>) -> Tolerances {
+    let default = Tolerances::default();
+    let number = |key| table.positive(key, Dimension::NONE);
+    Tolerances {
+        relative: number("tolerance").unwrap_or(default.relative),
+        fraction: number("fraction_tolerance").unwrap_or(default.fraction),
+        negligible: number("negligible").unwrap_or(default.negligible),
+        ..default
+    }
+}
+
+/// A built-in mechanism, or that of a file.
+fn file(table: &Reader<'_>, mixture: &Mixture, folder: &Path) -> Option<(Mechanism, Vec<PathBuf>)> {
+    let name = table.text("mechanism")?;
+    let built_in = match name {
+        "jones-lindstedt" => Some(Mechanism::jones_lindstedt(mixture)),
+        "jones-lindstedt-original" => Some(Mechanism::jones_lindstedt_original(mixture)),
+        _ => None,
+    };
+    if let Some(made) = built_in {
+        if table.has("thermo") {
+            let help = "remove it: a built-in mechanism takes Calcine's own";
+            table.fail("thermo", "stands beside a built-in mechanism", help);
+        }
+        return match made {
+            Ok(made) => Some((made, Vec::new())),
+            Err(error) => {
+                let help = "add the species to `gas.species`";
+                table.fail("mechanism", format!("is refused: {error}"), help);
+                None
+            }
+        };
+    }
+    let path = existing(table, "mechanism", folder);
+    let thermo = match table.has("thermo") {
+        true => Some(existing(table, "thermo", folder)?),
+        false => None,
+    };
+    let path = path?;
+    let read = mechanism::read(&path, thermo.as_deref()).and_then(|file| file.over(mixture));
+    match read {
+        Ok(made) => Some((made, [path].into_iter().chain(thermo).collect())),
+        Err(error) => {
+            let place = error.file.file_name().unwrap_or_default().to_string_lossy();
+            let line = error
+                .line
+                .map_or(String::new(), |line| format!(", line {line}"));
+            let rule = format!("is refused: {place}{line}: {}", error.what);
+            let help = "docs/case-file.md says what of Cantera's and CHEMKIN's files is read";
+            table.fail("mechanism", rule, help);
+            None
+        }
+    }
+}
+
+fn reactions(table: &Reader<'_>, mixture: &Mixture, around: &Around<'_>) -> Option<Mechanism> {
+    let tables = table.tables("reactions");
+    let mut statements: Vec<Statement> = Vec::new();
+    for table in &tables {
+        let Some(made) = reaction(table, mixture, around) else {
+            continue;
+        };
+        if statements.iter().any(|other| other.name == made.name) {
+            let rule = format!("is \"{}\" a second time", made.name);
+            table.fail("name", rule, "names of reactions must differ");
+        }
+        statements.push(made);
+    }
+    if statements.len() < tables.len() {
+        return None;
+    }
+    match Mechanism::new(mixture, &statements) {
+        Ok(made) if !statements.is_empty() => Some(made),
+        Ok(_) => {
+            table.fail("reactions", "is an empty list", "remove [gas.chemistry]");
+            None
+        }
+        Err(error) => {
+            let help = "correct the reactions";
+            table.fail("reactions", format!("are refused: {error}"), help);
+            None
+        }
+    }
+}
+
+fn reaction(table: &Reader<'_>, mixture: &Mixture, around: &Around<'_>) -> Option<Statement> {
+    let name = table.required_text("name", "\"shift\"");
+    let text = table.required_text("equation", "\"CO + H2O <=> CO2 + H2\"");
+    let example = "rate = { factor = 2.75e6, activation_energy = \"83.6 kJ/mol\" }";
+    let rate = table.required_table("rate", example);
+    let (mut constant, mut orders) = (None, None);
+    if let Some(rate) = &rate {
+        constant = arrhenius(rate, None);
+        orders = rate.table("orders").map(|table| {
+            let numbers = table.numbers();
+            (table, numbers)
+        });
+        rate.finish();
+    }
+    let collider = match table.table("third_body") {
+        Some(body) => Some(third_body(&body, mixture)?),
+        None => None,
+    };
+    let heat = table.quantity("heat", Dimension::MOLAR_ENERGY);
+    table.finish();
+    let equation = match Equation::parse(text?) {
+        Ok(equation) => equation,
+        Err(error) => {
+            let help = "for example \"CO + H2O <=> CO2 + H2\"";
+            table.fail("equation", format!("cannot be read: {error}"), help);
+            return None;
+        }
+    };
+    let mut statement = Statement {
+        name: name?.into(),
+        equation,
+        orders: None,
+        rate: RateConstant::Arrhenius(constant?),
+        collider,
+    };
+    // The equation by itself, before its orders.
+    let alone = match Mechanism::new(mixture, std::slice::from_ref(&statement)) {
+        Ok(alone) => alone,
+        Err(error) => {
+            let (rule, help) = equation_error(&error);
+            table.fail("equation", rule, help);
+            return None;
+        }
+    };
+    let net = &alone.steps().first()?.net;
+    if let Some((table, numbers)) = orders {
+        let numbers = numbers?;
+        for (species, order) in &numbers {
+            let Some(k) = mixture.names().iter().position(|one| one == species) else {
+                let help = format!("the species of the gas are {}", mixture.names().join(", "));
+                table.fail(species, "is no species of the gas", help);
+                return None;
+            };
+            if *order < 0.0
+                && let Some(why) = absent(k, net, around)
+            {
+                let rule = format!("is {order}, but {species} {why}: the rate would be infinite");
+                let help = "write an order of zero or above, or see to it that the species is always there";
+                table.fail(species, rule, help);
+                return None;
+            }
+        }
+        statement.orders = Some(numbers);
+    }
+    let species = mixture.species();
+    let formation = |k: usize| species[k].formation_enthalpy() * species[k].molar_mass();
+    let own: f64 = net.iter().map(|&(k, n)| n * formation(k)).sum();
+    heat.is_none_or(|heat| heat_agrees(table, heat, own))
+        .then_some(statement)
+}
+
+fn third_body(table: &Reader<'_>, mixture: &Mixture) -> Option<Collider> {
+    let others = table.quantity("others", Dimension::NONE).unwrap_or(1.0);
+    let stated = table.table("efficiencies");
+    let efficiencies = stated.as_ref().map_or(Some(Vec::new()), Reader::numbers);
+    table.finish();
+    let efficiencies = efficiencies?;
+    for (species, efficiency) in &efficiencies {
+        let table = stated.as_ref()?;
+        if !mixture.names().contains(species) {
+            let help = format!("the species of the gas are {}", mixture.names().join(", "));
+            table.fail(species, "is no species of the gas", help);
+            return None;
+        }
+        if *efficiency < 0.0 {
+            table.fail(
+                species,
+                format!("is {efficiency}"),
+                "efficiencies are not negative",
+            );
+            return None;
+        }
+    }
+    if others < 0.0 {
+        table.fail(
+            "others",
+            format!("is {others}"),
+            "efficiencies are not negative",
+        );
+        return None;
+    }
+    Some(Collider {
+        efficiencies,
+        others,
+    })
+}
+
+fn equation_error(error: &KineticsError) -> (String, String) {
+    match error {
+        KineticsError::UnknownSpecies { species, known, .. } => (
+            format!("names {species}, which is no species of the gas"),
+            format!("the species of the gas are {known} (`gas.species`)"),
+        ),
+        KineticsError::Unbalanced { off, .. } => (
+            format!("is not balanced: {off}"),
+            "write numbers of moles by which each element is the same on both sides".into(),
+        ),
+        other => (
+            format!("is refused: {other}"),
+            "correct the reaction".into(),
+        ),
+    }
+}
+
+/// Where a species of a negative order may be missing.
+fn absent(k: usize, net: &[(usize, f64)], around: &Around<'_>) -> Option<&'static str> {
+    if net.iter().any(|&(i, n)| i == k && n < 0.0) {
+        return Some("is used up by the reaction");
+    }
+    lacking(k, around.initial, around.patches)
+}
+
+/// True where the last species, which is what the others leave, reacts in none.
+fn last_rests(table: &Reader<'_>, key: &str, mechanism: &Mechanism) -> bool {
+    let last = mechanism.species() - 1;
+    let reacts = |step: &&Step| step.net.iter().any(|one| one.0 == last);
+    let Some(step) = mechanism.steps().iter().find(reacts) else {
+        return true;
+    };
+    let name = &mechanism.mixture().names()[last];
+    let rule = format!("has {} with {name}, the last of `gas.species`", step.name);
+    let help =
+        "the last species is what the others leave: put one last that does not react, such as N2";
+    table.fail(key, rule, help);
+    false
+}

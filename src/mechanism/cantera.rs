@@ -1,0 +1,369 @@
+//! Cantera's YAML: species with NASA's seven coefficients; elementary, three-body and falloff reactions (Lindemann, Troe).
+
+use calcine_coupler::physics::kinetics::{Broadening, Collider, RateConstant, Statement};
+use calcine_coupler::physics::reaction::{Arrhenius, Equation};
+use calcine_coupler::physics::thermo::{Element, Nasa7};
+
+use super::equation::{self, Body};
+use super::units::{self, Units};
+use super::yaml::{self, Node, Value};
+use super::{Fault, MechanismFile, Stated, Thermo, fault};
+
+/// Keys of a reaction that are read.
+const REACTION: &[&str] = &[
+    "equation",
+    "type",
+    "rate-constant",
+    "low-P-rate-constant",
+    "high-P-rate-constant",
+    "Troe",
+    "efficiencies",
+    "default-efficiency",
+    "orders",
+    "nonreactant-orders",
+    "negative-orders",
+    "negative-A",
+    "duplicate",
+    "id",
+    "note",
+];
+
+/// Reads a file.
+pub fn parse(text: &str) -> Result<MechanismFile, Fault> {
+    let root = yaml::parse(text)?;
+    root.map("the file")?;
+    let units = match root.get("units") {
+        Some(node) => self::units(node)?,
+        None => Units::CANTERA,
+    };
+    let mut file = MechanismFile::default();
+    if let Some(species) = root.get("species") {
+        for node in species.list("species")? {
+            if let Some(thermo) = thermo(node)? {
+                file.thermo.push(thermo);
+            }
+        }
+    }
+    for (name, node) in root.map("the file")? {
+        // Phases may name lists of reactions of their own.
+        if name.ends_with("reactions") {
+            for one in node.list("reactions")? {
+                file.reactions.push(reaction(one, &units)?);
+            }
+        }
+    }
+    Ok(file)
+}
+
+fn units(node: &Node) -> Result<Units, Fault> {
+    let mut made = Units::CANTERA;
+    let mut energy = None;
+    for (key, value) in node.map("units")? {
+        let name = value.text(key)?;
+        let found = match key.as_str() {
+            "length" => units::length(name).map(|unit| made.length = unit),
+            "time" => units::time(name).map(|unit| made.time = unit),
+            "quantity" => units::quantity(name).map(|unit| made.quantity = unit),
+            "activation-energy" => units::activation_energy(name).map(|unit| energy = Some(unit)),
+            // Of nothing that is read.
+            "mass" | "pressure" | "energy" | "temperature" | "current" => Some(()),
+            _ => None,
+        };
+        if found.is_none() {
+            return fault(value.line, format!("units: {key} in {name} is not read"));
+        }
+    }
+    match energy {
+        Some(unit) => made.activation_energy = unit,
+        None if node.get("energy").is_some() || node.get("quantity").is_some() => {
+            // Cantera's rule: energy over quantity.
+            let energy = node
+                .get("energy")
+                .map_or(Ok("J"), |node| node.text("energy"))?;
+            let joules = units::activation_energy(&format!("{energy}/mol"));
+            let Some(joules) = joules else {
+                return fault(node.line, format!("units: energy in {energy} is not read"));
+            };
+            made.activation_energy = joules / made.quantity;
+        }
+        None => {}
+    }
+    Ok(made)
+}
+
+/// Thermodynamics of a species; `None` where it has elements that Calcine does not have.
+fn thermo(node: &Node) -> Result<Option<Thermo>, Fault> {
+    let name = node.required("name", "a species")?.text("name")?.to_owned();
+    let mut atoms = [0.0; Element::COUNT];
+    for (symbol, count) in node
+        .required("composition", &name)?
+        .numbers("composition")?
+    {
+        let found = Element::ALL
+            .into_iter()
+            .find(|one| one.symbol().eq_ignore_ascii_case(&symbol));
+        let Some(element) = found else {
+            return Ok(None);
+        };
+        atoms[element as usize] += count;
+    }
+    let thermo = node.required("thermo", &name)?;
+    let model = thermo.required("model", &name)?;
+    let model_name = model.text("model")?;
+    if model_name != "NASA7" {
+        return fault(
+            model.line,
+            format!("{name} has a thermo model {model_name}, which is not read; NASA7 is"),
+        );
+    }
+    let mut range = Vec::new();
+    let ranges = thermo.required("temperature-ranges", &name)?;
+    for one in ranges.list("temperature-ranges")? {
+        range.push(one.number("temperature-ranges")?);
+    }
+    let data = thermo.required("data", &name)?;
+    let mut rows = Vec::new();
+    for row in data.list("data")? {
+        let numbers = row.list("data")?.iter().map(|one| one.number("data"));
+        let numbers = numbers.collect::<Result<Vec<f64>, Fault>>()?;
+        let Ok(seven) = <[f64; 7]>::try_from(numbers) else {
+            return fault(row.line, format!("{name} has not seven coefficients"));
+        };
+        rows.push(seven);
+    }
+    let (range, low, high) = match (&range[..], &rows[..]) {
+        (&[lowest, common, highest], &[low, high]) => ([lowest, common, highest], low, high),
+        // One range: it counts as two.
+        (&[lowest, highest], &[one]) => ([lowest, 0.5 * (lowest + highest), highest], one, one),
+        _ => {
+            let what = format!("{name} has not two ranges of temperature with their coefficients");
+            return fault(data.line, what);
+        }
+    };
+    let pressure = match thermo.get("reference-pressure") {
+        Some(node) => pressure(node)?,
+        None => 101_325.0,
+    };
+    // To the entropy at 1 bar.
+    let shift = (pressure / 1e5).ln();
+    let shifted = |mut row: [f64; 7]| {
+        row[6] += shift;
+        row
+    };
+    let polynomial = Nasa7::new(range, shifted(low), shifted(high));
+    let polynomial = polynomial.map_err(|error| (Some(ranges.line), format!("{name}: {error}")))?;
+    Ok(Some(Thermo {
+        name,
+        line: node.line,
+        atoms,
+        polynomial,
+    }))
+}
+
+/// A pressure such as `1 bar` in Pa.
+fn pressure(node: &Node) -> Result<f64, Fault> {
+    let text = node.text("reference-pressure")?;
+    let (number, unit) = text.split_once(' ').unwrap_or((text, "Pa"));
+    let unit = match unit.trim() {
+        "Pa" => 1.0,
+        "kPa" => 1e3,
+        "bar" => 1e5,
+        "atm" => 101_325.0,
+        other => {
+            return fault(
+                node.line,
+                format!("a reference-pressure in {other} is not read"),
+            );
+        }
+    };
+    match number.parse::<f64>() {
+        Ok(number) if number > 0.0 => Ok(number * unit),
+        _ => fault(
+            node.line,
+            format!("the reference-pressure {text} is no pressure"),
+        ),
+    }
+}
+
+fn reaction(node: &Node, units: &Units) -> Result<Stated, Fault> {
+    let stated = node.required("equation", "a reaction")?;
+    let text = stated.text("equation")?;
+    let name = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let kind = node.get("type").map_or(Ok(""), |node| node.text("type"))?;
+    if !["", "elementary", "Arrhenius", "three-body", "falloff"].contains(&kind) {
+        return fault(
+            node.line,
+            format!(
+                "{name} is of the type {kind}, which is not read; elementary, three-body and falloff are"
+            ),
+        );
+    }
+    node.only(REACTION, &name)?;
+    let (equation, body) = equation::parse(text).map_err(|what| (Some(stated.line), what))?;
+    let orders = orders(node, &equation, &name)?;
+    let sum: f64 = match &orders {
+        Some(orders) => orders.iter().map(|(_, n)| n).sum(),
+        None => equation.left.iter().map(|(n, _)| n).sum(),
+    };
+    let falloff = matches!(body, Body::Falloff(_));
+    if (kind == "falloff") != falloff {
+        return fault(
+            node.line,
+            format!("{name} is a falloff in one of its type and equation only"),
+        );
+    }
+    if kind == "three-body" && body != Body::Three {
+        return fault(
+            node.line,
+            format!("{name} is a three-body reaction without M"),
+        );
+    }
+    let law = |key: &str, order: f64| -> Result<Arrhenius, Fault> {
+        arrhenius(node.required(key, &name)?, units, order, &name)
+    };
+    let rate = if falloff {
+        RateConstant::Falloff {
+            high: law("high-P-rate-constant", sum)?,
+            low: law("low-P-rate-constant", sum + 1.0)?,
+            broadening: broadening(node)?,
+        }
+    } else {
+        let bodies = if body == Body::Three { 1.0 } else { 0.0 };
+        RateConstant::Arrhenius(law("rate-constant", sum + bodies)?)
+    };
+    let negative = node.get("negative-A");
+    if let RateConstant::Arrhenius(law) = &rate
+        && law.factor < 0.0
+        && !negative.map_or(Ok(false), |node| node.truth("negative-A"))?
+    {
+        return fault(
+            node.line,
+            format!("{name} has a negative A without negative-A"),
+        );
+    }
+    let collider = collider(node, body, &name)?;
+    let duplicate = node
+        .get("duplicate")
+        .map_or(Ok(false), |node| node.truth("duplicate"))?;
+    Ok(Stated {
+        statement: Statement {
+            name,
+            equation,
+            orders,
+            rate,
+            collider,
+        },
+        line: node.line,
+        duplicate,
+    })
+}
+
+/// Orders where the file states some; the others keep their numbers.
+fn orders(
+    node: &Node,
+    equation: &Equation,
+    name: &str,
+) -> Result<Option<Vec<(String, f64)>>, Fault> {
+    let Some(stated) = node.get("orders") else {
+        return Ok(None);
+    };
+    if equation.reversible {
+        return fault(
+            stated.line,
+            format!("{name} goes both ways and has orders, whose way back is not defined"),
+        );
+    }
+    let flag = |key: &str| node.get(key).map_or(Ok(false), |node| node.truth(key));
+    let left = equation.left.iter();
+    let mut orders: Vec<(String, f64)> = left.map(|(n, species)| (species.clone(), *n)).collect();
+    for (species, order) in stated.numbers("orders")? {
+        if order < 0.0 && !flag("negative-orders")? {
+            let what = format!("{name} has the order {order} of {species} without negative-orders");
+            return fault(stated.line, what);
+        }
+        match orders.iter_mut().find(|(other, _)| *other == species) {
+            Some((_, n)) => *n = order,
+            None if flag("nonreactant-orders")? => orders.push((species, order)),
+            None => {
+                return fault(
+                    stated.line,
+                    format!(
+                        "{name} has an order of {species}, which does not react, without nonreactant-orders"
+                    ),
+                );
+            }
+        }
+    }
+    Ok(Some(orders))
+}
+
+fn arrhenius(node: &Node, units: &Units, order: f64, name: &str) -> Result<Arrhenius, Fault> {
+    let (factor, exponent, energy) = match &node.value {
+        Value::Map(_) => {
+            node.only(&["A", "b", "Ea"], name)?;
+            let of = |key| node.required(key, name);
+            (of("A")?, of("b")?, of("Ea")?)
+        }
+        Value::List(list) => match &list[..] {
+            [factor, exponent, energy] => (factor, exponent, energy),
+            _ => return fault(node.line, format!("{name} has not three numbers A, b, Ea")),
+        },
+        Value::Text(_) => return fault(node.line, format!("{name} has no rate constant")),
+    };
+    Ok(Arrhenius {
+        factor: units.factor(factor.number("A")?, order),
+        exponent: exponent.number("b")?,
+        activation_energy: activation_energy(energy, units)?,
+    })
+}
+
+/// A number in the units of the file, or one with its own unit.
+fn activation_energy(node: &Node, units: &Units) -> Result<f64, Fault> {
+    let text = node.text("Ea")?;
+    let Some((number, unit)) = text.trim().split_once(' ') else {
+        return Ok(node.number("Ea")? * units.activation_energy);
+    };
+    let Some(unit) = units::activation_energy(unit.trim()) else {
+        return fault(node.line, format!("Ea in {unit} is not read"));
+    };
+    match number.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number * unit),
+        _ => fault(node.line, format!("Ea is \"{text}\", which is no number")),
+    }
+}
+
+fn broadening(node: &Node) -> Result<Broadening, Fault> {
+    let Some(troe) = node.get("Troe") else {
+        return Ok(Broadening::Lindemann);
+    };
+    troe.only(&["A", "T3", "T1", "T2"], "Troe")?;
+    let of = |key: &str| troe.required(key, "Troe")?.number(key);
+    Ok(Broadening::Troe {
+        share: of("A")?,
+        third: of("T3")?,
+        first: of("T1")?,
+        second: troe.get("T2").map(|node| node.number("T2")).transpose()?,
+    })
+}
+
+fn collider(node: &Node, body: Body, name: &str) -> Result<Option<Collider>, Fault> {
+    let stated = node.get("efficiencies");
+    let others = node
+        .get("default-efficiency")
+        .map_or(Ok(1.0), |node| node.number("default-efficiency"))?;
+    let efficiencies = stated.map_or(Ok(Vec::new()), |node| node.numbers("efficiencies"))?;
+    match body {
+        Body::None => match stated {
+            Some(node) => fault(node.line, format!("{name} has efficiencies but no M")),
+            None => Ok(None),
+        },
+        Body::Falloff(Some(species)) => Ok(Some(Collider {
+            efficiencies: vec![(species, 1.0)],
+            others: 0.0,
+        })),
+        Body::Three | Body::Falloff(None) => Ok(Some(Collider {
+            efficiencies,
+            others,
+        })),
+    }
+}

@@ -1,0 +1,209 @@
+//! Files of gas reactions: subsets of Cantera's YAML and of CHEMKIN's formats. What a file has beyond them is refused by its
+//! name and line.
+
+mod cantera;
+mod chemkin;
+mod chemkin_thermo;
+mod equation;
+mod units;
+mod yaml;
+
+use std::path::{Path, PathBuf};
+
+use calcine_coupler::physics::kinetics::{Mechanism, Statement};
+use calcine_coupler::physics::thermo::{Element, Mixture, Nasa7};
+use thiserror::Error;
+
+/// A reaction of a file.
+#[derive(Clone, Debug)]
+pub struct Stated {
+    /// The reaction.
+    pub statement: Statement,
+    /// Its line.
+    pub line: usize,
+    /// True where it says that another has its equation.
+    pub duplicate: bool,
+}
+
+/// Thermodynamics of a species of a file.
+#[derive(Clone, Debug)]
+pub struct Thermo {
+    /// Its name.
+    pub name: String,
+    /// Its line.
+    pub line: usize,
+    /// Atoms in the order of [`Element::ALL`].
+    pub atoms: [f64; Element::COUNT],
+    /// Its polynomials, molar, at 1 bar.
+    pub polynomial: Nasa7,
+}
+
+/// What files say: reactions in mol, m³, s, J and the species' thermodynamics.
+#[derive(Clone, Debug, Default)]
+pub struct MechanismFile {
+    /// Where it stands.
+    pub path: PathBuf,
+    /// Its reactions.
+    pub reactions: Vec<Stated>,
+    /// Species with their thermodynamics; those with elements that Calcine does not have are left out.
+    pub thermo: Vec<Thermo>,
+    /// Where the thermodynamics stand, if in a file of their own.
+    pub thermo_path: Option<PathBuf>,
+}
+
+/// A file that cannot be used.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("{}{}: {what}", .file.display(), at(.line))]
+pub struct MechanismError {
+    /// The file.
+    pub file: PathBuf,
+    /// The line, where there is one.
+    pub line: Option<usize>,
+    /// What is wrong.
+    pub what: String,
+}
+
+fn at(line: &Option<usize>) -> String {
+    line.map_or(String::new(), |line| format!(":{line}"))
+}
+
+/// What is wrong on a line, before the file's name is added.
+type Fault = (Option<usize>, String);
+
+fn fault<T>(line: usize, what: impl Into<String>) -> Result<T, Fault> {
+    Err((Some(line), what.into()))
+}
+
+/// How far the enthalpy of formation, or the Gibbs energy at 1500 K, of a species in a file may be from that of Calcine's own, in
+/// J/mol: tables of different years differ by less.
+const CONTRADICTS: f64 = 3e3;
+
+/// Reads a mechanism, Cantera's where the name ends in `.yaml` or `.yml`, else CHEMKIN's, with a CHEMKIN file of
+/// thermodynamics beside it where there is one.
+pub fn read(path: &Path, thermo: Option<&Path>) -> Result<MechanismFile, MechanismError> {
+    let text = contents(path)?;
+    let mut file = parse(path, &text)?;
+    if let Some(thermo) = thermo {
+        let text = contents(thermo)?;
+        let found = chemkin_thermo::parse(&text, None).map_err(|fault| placed(thermo, fault))?;
+        file.thermo.extend(found);
+        file.thermo_path = Some(thermo.to_owned());
+    }
+    Ok(file)
+}
+
+fn contents(path: &Path) -> Result<String, MechanismError> {
+    let bytes = std::fs::read(path)
+        .map_err(|cause| placed(path, (None, format!("cannot be read: {cause}"))))?;
+    // Old files have comments in Latin letters of one byte.
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// Reads the text of a mechanism; `path` says which format it has and places messages.
+pub fn parse(path: &Path, text: &str) -> Result<MechanismFile, MechanismError> {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    let yaml = ending.is_some_and(|ending| ["yaml", "yml"].contains(&ending));
+    let parsed = if yaml {
+        cantera::parse(text)
+    } else {
+        chemkin::parse(text)
+    };
+    let mut file = parsed.map_err(|fault| placed(path, fault))?;
+    path.clone_into(&mut file.path);
+    repeated(&file.reactions).map_err(|fault| placed(path, fault))?;
+    Ok(file)
+}
+
+fn placed(path: &Path, (line, what): Fault) -> MechanismError {
+    MechanismError {
+        file: path.to_owned(),
+        line,
+        what,
+    }
+}
+
+/// Two reactions of one equation must both say so: else one is a slip.
+fn repeated(reactions: &[Stated]) -> Result<(), Fault> {
+    for (k, one) in reactions.iter().enumerate() {
+        let same = |other: &&Stated| {
+            other.statement.equation == one.statement.equation
+                && other.statement.collider.is_some() == one.statement.collider.is_some()
+        };
+        let Some(other) = reactions[..k].iter().find(same) else {
+            continue;
+        };
+        if !(one.duplicate && other.duplicate) {
+            return fault(
+                one.line,
+                format!(
+                    "{} stands in line {} too, and not both say that they are duplicates",
+                    one.statement.name, other.line
+                ),
+            );
+        }
+    }
+    Ok(())
+}
+
+impl MechanismFile {
+    /// The mechanism over the species of a mixture.
+    pub fn over(&self, mixture: &Mixture) -> Result<Mechanism, MechanismError> {
+        if self.reactions.is_empty() {
+            let what = "has no reactions".into();
+            return Err(placed(&self.path, (None, what)));
+        }
+        for one in &self.reactions {
+            let alone = std::slice::from_ref(&one.statement);
+            Mechanism::new(mixture, alone)
+                .map_err(|error| placed(&self.path, (Some(one.line), error.to_string())))?;
+        }
+        self.agrees(mixture)?;
+        let all: Vec<Statement> = self
+            .reactions
+            .iter()
+            .map(|one| one.statement.clone())
+            .collect();
+        Mechanism::new(mixture, &all).map_err(|error| placed(&self.path, (None, error.to_string())))
+    }
+
+    /// The mixture's own thermodynamics count; those of the file must be of the same species.
+    fn agrees(&self, mixture: &Mixture) -> Result<(), MechanismError> {
+        for species in mixture.species() {
+            let Some(stated) = self.thermo.iter().find(|one| one.name == species.name()) else {
+                continue;
+            };
+            let path = self.thermo_path.as_ref().unwrap_or(&self.path);
+            let fail = |what: String| placed(path, (Some(stated.line), what));
+            if stated.atoms != *species.atoms() {
+                return Err(fail(format!("{} is made of other atoms", stated.name)));
+            }
+            let own = species.polynomial();
+            for (what, here, there) in [
+                (
+                    "an enthalpy of formation",
+                    stated.polynomial.enthalpy(298.15),
+                    own.enthalpy(298.15),
+                ),
+                (
+                    "a Gibbs energy at 1500 K",
+                    stated.polynomial.gibbs_energy(1500.0),
+                    own.gibbs_energy(1500.0),
+                ),
+            ] {
+                if (here - there).abs() > CONTRADICTS {
+                    return Err(fail(format!(
+                        "{} has {what} of {:.2} kJ/mol, but Calcine's {} has {:.2} kJ/mol",
+                        stated.name,
+                        here / 1e3,
+                        species.name(),
+                        there / 1e3
+                    )));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;
