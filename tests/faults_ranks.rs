@@ -114,6 +114,16 @@ fn over_mpi_a_killed_rank_is_named() {
     assert_named(pid, code, &text, &["OpenFOAM (gas, rank", "died"]);
 }
 
+/// Open MPI ends a coordinator that has lost its daemon by `_exit`, which no handler of an exit sees.
+#[test]
+fn over_mpi_a_killed_daemon_is_named() {
+    let words = [&RANKS[..], &["--transport", "mpi"]].concat();
+    let (_, code, text) = strike(&words, "orted", Signal::KILL);
+    assert_eq!(code, 4, "{text}");
+    assert!(text.contains("its daemon (orted) died"), "{text}");
+    assert!(text.contains("`--resume`"), "{text}");
+}
+
 /// A rank between the start of MPI and its introduction has no launcher that would end with it.
 #[test]
 fn over_mpi_a_rank_that_dies_before_it_introduces_itself_is_named() {
@@ -162,12 +172,12 @@ fn over_mpi_a_rank_that_dies_before_it_introduces_itself_is_named() {
     }
     assert!(taken < Duration::from_secs(5), "{taken:?}");
     // What the script started is nobody's process of ours.
-    for pid in peers.into_iter().filter(|&pid| alive(pid)) {
-        let line = command_line(pid);
-        assert!(line.contains("sleep 30"), "{line}");
+    let sleeps = |pid: u32| command_line(pid).contains("sleep 30");
+    let (asleep, ours): (Vec<u32>, Vec<u32>) = peers.into_iter().partition(|&pid| sleeps(pid));
+    assert_nothing_left(coordinator, &ours);
+    for pid in asleep.into_iter().filter(|&pid| alive(pid)) {
         kill(pid);
     }
-    assert_eq!(leftovers(coordinator), Vec::<String>::new());
 }
 
 #[test]

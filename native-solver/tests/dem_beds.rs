@@ -365,6 +365,29 @@ fn a_bead_that_becomes_smaller_and_lighter_sinks_into_the_floor_as_hertz_says() 
 }
 
 #[test]
+fn unequal_spheres_of_one_class_of_sizes_lie_on_each_other() {
+    let mut contacts = contacts(1e-5);
+    contacts.gravity = Vec3::z() * -9.81;
+    contacts.walls = cuboid(Vec3::zeros(), Vec3::repeat(0.02));
+    let mut spheres = loose([8, 8, 8], 2.5e-3, 1e-3, 0.1);
+    for (k, sphere) in spheres.iter_mut().enumerate() {
+        sphere.radius = 1e-3 * (0.8 + 0.02 * ((7 * k) % 11) as f64);
+    }
+    let mut bed = Bed::new(contacts, &spheres);
+    bed.run(30_000);
+    let fields = bed.particles.fields();
+    let mut deepest = 0.0f64;
+    for a in 0..fields.len() {
+        for b in a + 1..fields.len() {
+            let apart = (fields.position[a] - fields.position[b]).norm();
+            deepest = deepest.max(fields.radius[a] + fields.radius[b] - apart);
+        }
+    }
+    // 20 mm of glass on 10 MPa press them together by far less than a hundredth of a radius.
+    assert!(deepest < 2e-5, "{deepest} m");
+}
+
+#[test]
 fn a_held_population_stays_and_carries_the_others() {
     let mut contacts = contacts(1e-5);
     contacts.gravity = Vec3::z() * -9.81;

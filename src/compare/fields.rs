@@ -4,7 +4,7 @@
 use serde::Serialize;
 
 use super::quantities::{common_times, exceeds, words};
-use super::{Agreement, CompareError, Source};
+use super::{Agreement, CompareError, Source, common};
 use crate::case::model::{Band, Case, Measure};
 use crate::report::plot::between;
 use crate::results::read::{self, Arrays};
@@ -235,6 +235,10 @@ fn snapshots(
             .iter()
             .map(|list| read::arrays(&list[number].1))
             .collect::<Result<Vec<_>, _>>()?;
+        let arrays = match per {
+            "particle" => common::particles(arrays),
+            _ => arrays,
+        };
         for name in arrays[0]
             .keys()
             .filter(|name| !GEOMETRY.contains(&name.as_str()))

@@ -1,6 +1,7 @@
 //! Comparison of runs of one case with different solvers: quantity by quantity and field by field,
 //! against the bands (`agree`) that the case states.
 
+mod common;
 pub mod deviation;
 mod fields;
 mod page;

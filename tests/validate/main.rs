@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
+mod backward_step;
 mod elastic_box;
 #[cfg(feature = "hdf5")]
 #[path = "../support/fluidised.rs"]
@@ -26,6 +27,7 @@ use calcine::results::read::Series;
 const MARK: &str = "--validate";
 /// Every validation by its name.
 const ALL: &[(&str, fn())] = &[
+    ("backward-step", backward_step::run),
     ("elastic-box", elastic_box::run),
     #[cfg(feature = "hdf5")]
     ("fluidised-bed", fluidised_bed::run),

@@ -108,10 +108,7 @@ fn peaks(series: &Series) {
         "the burners' temperature: {flame}"
     );
     assert!(gas < flame + 2.0, "{gas}");
-    assert!(
-        gas - particle > 10.0 && gas - particle < 300.0,
-        "{gas} {particle}"
-    );
+    assert!(gas - particle > 10.0, "{gas} {particle}");
     // Steady: over the last fifth of the run the mean moves by less than 1 % of the span.
     let mean = series.column("quantities.mean_temperature");
     let moved = mean[mean.len() - 1] - mean[mean.len() * 4 / 5];
@@ -130,7 +127,7 @@ fn by_height(out: &Path) -> Vec<(f64, f64)> {
         let slice = &mut slices[((place[2] / 0.05) as usize).min(13)];
         *slice = (slice.0 + 1.0, slice.1 + kelvin);
     }
-    let numbered = slices.iter().enumerate().filter(|(_, one)| one.0 > 5.0);
+    let numbered = slices.iter().enumerate().filter(|(_, one)| one.0 > 50.0);
     numbered
         .map(|(k, one)| (0.025 + 0.05 * k as f64, one.1 / one.0))
         .collect()

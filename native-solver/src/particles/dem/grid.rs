@@ -68,6 +68,7 @@ impl Grid {
     pub fn fill(&mut self, places: &[Place], (low, high): (Vec3, Vec3), gap: f64) {
         self.low = low;
         let largest = places.iter().map(|place| place.radius).fold(0.0, f64::max);
+        let alike = places.iter().all(|place| place.radius == largest);
         let class = |radius: f64| {
             let (mut class, mut bound) = (0usize, 0.5 * largest);
             while radius <= bound && class < 40 {
@@ -106,8 +107,9 @@ impl Grid {
                     self.keyed.push((key, i as u32));
                 }
             }
-            // Along the curve of a single class equal keys stand together already.
-            if count > 1 {
+            // Along the curve, whose cells are as wide as the smallest sphere, equal keys stand together already
+            // where all spheres are alike; else those of a cell may be apart, and would not be found.
+            if !alike {
                 self.keyed.sort_unstable();
             }
             self.levels[k].fill(&self.keyed);
