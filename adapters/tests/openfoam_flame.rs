@@ -1,5 +1,6 @@
-//! A premixed flame of methane on a burner with OpenFOAM's own chemistry: whatever the acceleration factor, and with a
-//! ledger that closes.
+//! A premixed flame of methane on a burner with OpenFOAM's own chemistry: bounds, balances, repeats.
+
+#![allow(clippy::unwrap_used)]
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -9,7 +10,7 @@ mod openfoam_support;
 use calcine_coupler::gas_chemistry::{Combustion, GasChemistry, ReactingGas};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
-use calcine_coupler::part::{Bed, Gas, Part};
+use calcine_coupler::part::{Balance, Bed, Gas, Part};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::kinetics::{Mechanism, Tolerances};
@@ -63,6 +64,7 @@ fn burner() -> GasSetup {
     burner.velocity = Vec3::zeros();
     burner.composition = mixture.mass_fractions(&[0.0, 0.4, 0.0, 0.0, 0.8, 1.6, 7.52]);
     burner.controls.outer_tolerance = 1e-8;
+    burner.controls.outer_iterations = 30;
     burner.chemistry = GasChemistry::Reacting(Box::new(ReactingGas {
         mechanism: Mechanism::jones_lindstedt(&mixture).unwrap(),
         tolerances: Tolerances::default(),
@@ -72,82 +74,50 @@ fn burner() -> GasSetup {
     burner
 }
 
-/// Place in m and peak in K of the steady flame, and the windows it took.
-fn steady(factor: f64, most: usize) -> (f64, f64, usize) {
+fn assert_closed(duct: &Duct) {
+    let received = &duct.received;
+    let energy = &received.energy;
+    let open = energy.stored - energy.boundary - energy.exchange - energy.source;
+    let moved = energy.stored_magnitude + energy.boundary_magnitude + energy.source_magnitude;
+    assert!(open.abs() < 1e-10 * moved, "energy {energy:?}");
+    // Of an element what species gained and brought, whatever reacted.
+    for (name, shares) in Mixture::new(SPECIES).unwrap().elements() {
+        let each = || shares.iter().zip(&received.species);
+        let open: f64 = each().map(|(s, b)| s * (b.stored - b.boundary)).sum();
+        let magnitude = |(s, b): (&f64, &Balance)| s * (b.stored_magnitude + b.boundary_magnitude);
+        let all: f64 = each().map(magnitude).sum();
+        assert!(open.abs() < 1e-10 * all, "{name}: {open:e} of {all:e} kg");
+    }
+}
+
+#[test]
+fn a_burner_with_openfoam_s_chemistry_closes_and_repeats_a_window_to_the_bit() {
     let folder = tempfile::tempdir().unwrap();
     let mut duct = Duct::launch_on(mesh(), &burner(), folder.path());
-    duct.window.span = Clocks {
-        motion: Ticks::from_seconds(WINDOW).unwrap(),
-        process: Ticks::from_seconds(WINDOW * factor).unwrap(),
-    };
     let bed = Bed {
         void_fraction: vec![1.0; CELLS],
     };
     let exchange = exchange_of_nothing(CELLS);
-    let elements = Mixture::new(SPECIES).unwrap().elements();
-    let mut before = vec![1800.0; CELLS];
-    let mut windows = 0;
-    loop {
-        let convergence = duct.advance(1, &bed, &exchange);
-        windows += 1;
-        let energy = &duct.received.energy;
-        let open = energy.stored - energy.boundary - energy.exchange - energy.source;
-        let moved = energy.stored_magnitude + energy.boundary_magnitude + energy.source_magnitude;
-        assert!(open.abs() < 1e-10 * moved, "AF {factor}: energy {energy:?}");
-        for (name, shares) in &elements {
-            let each = || shares.iter().zip(&duct.received.species);
-            let open: f64 = each().map(|(s, b)| s * (b.stored - b.boundary)).sum();
-            let all: f64 = each()
-                .map(|(s, b)| s * (b.stored_magnitude + b.boundary_magnitude))
-                .sum();
-            assert!(
-                open.abs() < 1e-10 * all,
-                "AF {factor}: {name} {open:e} of {all:e}"
-            );
-        }
-        let now = duct.gas.fields().temperature.to_vec();
-        let change = now
-            .iter()
-            .zip(&before)
-            .map(|(a, b)| (a - b).abs())
-            .fold(0.0, f64::max);
-        before = now;
-        if change < 1e-4 {
-            assert!(convergence.converged, "AF {factor}: {convergence:?}");
-            break;
-        }
-        assert!(windows < most, "AF {factor}: {change} K in a window");
+    for factor in [1.0, 50.0, 678.0, 678.0] {
+        duct.window.span = Clocks {
+            motion: Ticks::from_seconds(WINDOW).unwrap(),
+            process: Ticks::from_seconds(WINDOW * factor).unwrap(),
+        };
+        duct.attempt(&bed, &exchange);
+        assert_closed(&duct);
+        let first = duct.bits();
+        duct.attempt(&bed, &exchange);
+        assert_eq!(duct.bits(), first);
+        duct.commit();
     }
     let fields = duct.gas.fields();
-    let methane = |cell: usize| fields.composition[cell * SPECIES.len()];
-    let Some(GasPatch::Inlet {
-        composition: Some(fresh),
-        ..
-    }) = burner()
-        .patches
-        .iter()
-        .map(|(_, patch)| patch.clone())
-        .find(|patch| matches!(patch, GasPatch::Inlet { .. }))
-    else {
-        panic!("no inlet");
-    };
-    let half = 0.5 * fresh.at(0.0)[0];
-    let above = (0..CELLS).find(|&cell| methane(cell) < half).unwrap();
-    let share = (methane(above - 1) - half) / (methane(above - 1) - methane(above));
-    let peak = before.iter().copied().fold(0.0, f64::max);
+    let least = fields.composition.iter().copied().fold(0.0, f64::min);
+    assert!(least > -1e-6, "a mass fraction of {least:e}");
+    // It burns, and not hotter than without loss.
+    let peak = fields.temperature.iter().copied().fold(0.0, f64::max);
+    assert!(peak > 1850.0 && peak < 2017.2, "{peak} K");
+    // Carbon monoxide is there only where methane burns.
+    let monoxide = fields.composition.iter().skip(2).step_by(SPECIES.len());
+    assert!(monoxide.copied().fold(0.0, f64::max) > 1e-4);
     duct.gas.finish_run(&duct.supervisor).unwrap();
-    (
-        (above as f64 - 0.5 + share) * HEIGHT / CELLS as f64,
-        peak,
-        windows,
-    )
-}
-
-#[test]
-fn openfoam_s_flame_stands_where_it_stands_whatever_the_acceleration() {
-    let slow = steady(20.0, 500);
-    let fast = steady(678.0, 200);
-    println!("AF 20 {slow:?}, AF 678 {fast:?}");
-    assert!((slow.0 / fast.0 - 1.0).abs() < 1e-5, "{slow:?} {fast:?}");
-    assert!((slow.1 - fast.1).abs() < 0.02, "{slow:?} {fast:?}");
 }

@@ -1,5 +1,5 @@
 //! A premixed flame of methane on a burner: its place and its peak do not depend on the acceleration factor.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod common;
 
@@ -144,6 +144,7 @@ fn a_flame_stands_where_it_stands_whatever_the_acceleration() {
     let mut flame = burner(GasStorage::Process, 50);
     settle(&mut flame, 678.0, 60);
     let (place, peak) = place_and_peak(&flame);
+    println!("AF 678: {place} m, {peak} K after {} windows", flame.index);
     // Four cells from the inlet, hotter than what it started from; 1.7546 mm, 1930.81 K.
     let cell = HEIGHT / CELLS as f64;
     assert!((4.0..5.0).contains(&(place / cell)), "{place} m");
@@ -153,6 +154,7 @@ fn a_flame_stands_where_it_stands_whatever_the_acceleration() {
     let mut other = burner(GasStorage::Process, 50);
     settle(&mut other, 50.0, 300);
     let found = place_and_peak(&other);
+    println!("AF 50: {found:?} after {} windows", other.index);
     assert!(
         (found.0 / place - 1.0).abs() < 1e-4,
         "{found:?}, {place} m, {peak} K"
@@ -228,10 +230,15 @@ fn a_closed_box_of_fresh_gas_that_ignites_keeps_its_energy() {
     let heat = heat - mixture.formation_enthalpy(&burnt(&mixture));
     for factor in [1.0, 20.0] {
         let mut closed = Driver::new(&duct([0.01, 0.01, 0.02], [1, 1, 2]), &setup);
+        let (mut open, mut moved) = (0.0, 0.0);
         for _ in 0..(100.0 / factor) as usize {
             closed.window(2e-5, factor);
-            assert_closed(&closed, "closed box");
+            let energy = &closed.received.energy;
+            open += (energy.stored - energy.boundary - energy.exchange - energy.source).abs();
+            moved += energy.stored_magnitude + energy.source_magnitude;
         }
+        // Over all windows: before it ignites one changes so little of what is held that its round-off shows.
+        assert!(open < 1e-10 * moved, "AF {factor}: {open} J of {moved} J");
         let fields = closed.gas.fields();
         let (temperature, y) = (fields.temperature[0], &fields.composition[..SPECIES.len()]);
         assert!(temperature > 2700.0, "AF {factor}: {temperature} K");

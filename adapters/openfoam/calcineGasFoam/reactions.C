@@ -95,12 +95,20 @@ void Foam::calcine::reactions::evaluate
 
     const scalarField density(thermo_->rho()().primitiveField());
     const scalarField share(mixing_ < 0 ? scalarField() : reactingShare(turbulence));
-    forAll(Y, k)
+    // OpenFOAM's integration keeps the elements to some 1e-8 of what reacts.
+    scalarList before(Y.size()), after(Y.size());
+    forAll(density, celli)
     {
-        rates_[k] = chemistry_->RR(own_[k]).field()/density;
-        if (share.size())
+        forAll(Y, k)
         {
-            rates_[k] *= share;
+            before[k] = thermo_->composition().Y(own_[k])[celli];
+            after[k] = before[k] + span*chemistry_->RR(own_[k])[celli]/density[celli];
+        }
+        restoreElements(before, after);
+        forAll(Y, k)
+        {
+            rates_[k][celli] =
+                (share.size() ? share[celli] : 1)*(after[k] - before[k])/span;
         }
     }
 }
