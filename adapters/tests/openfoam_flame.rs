@@ -1,7 +1,5 @@
 //! A premixed flame of methane on a burner with OpenFOAM's own chemistry: bounds, balances, repeats.
 
-#![allow(clippy::unwrap_used)]
-
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 #[cfg(test)]
