@@ -112,6 +112,7 @@ fn what_two_and_three_ranks_give_each_other_cancels_while_particles_come_and_go(
             let change = Change {
                 remove: vec![ids[ids.len() / 2]],
                 insert: vec![elsewhere(100 + round, 0.01 + 0.01 * round as f64)],
+                ..Change::default()
             };
             particles.change(&bench.supervisor, &change).unwrap();
             assert_eq!(particles.fields().len(), 40);
