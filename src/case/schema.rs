@@ -181,6 +181,9 @@ impl Node {
             "list of pairs" => pairs(quantity(1), plain()),
             "band" => json!({"type": "string", "pattern": plain()["pattern"]}),
             _ if words.starts_with('`') => json!({"enum": choices_of(words)}),
+            _ if words.starts_with("table of ") => {
+                json!({"type": "object", "additionalProperties": quantity(1)})
+            }
             _ if words.starts_with("three ") => quantity(3),
             _ => quantity(1),
         }
