@@ -1,7 +1,12 @@
 //! Spheres that touch across LIGGGHTS' ranks, while others come and go: springs stay with their contacts, and
 //! what the two ranks of a pair give each other cancels.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![allow(
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic
+)]
 
 #[path = "liggghts_support/mod.rs"]
 mod support;
