@@ -322,28 +322,16 @@ impl Plane {
 
     /// The area inside the disc, and the solid angle outside it.
     fn outside(&self, stretch: Stretch) -> Part {
-        let ends = stretch.ends;
-        let turn = self.turn(ends[0], ends[1]);
-        if turn == 0.0 {
-            return Part::default();
-        }
-        if stretch.in_disc {
-            return Part {
-                area: 0.5 * turn,
-                angle: 0.0,
-            };
-        }
-        let triangle = self.triangle(ends, turn);
-        if self.disc <= 0.0 {
-            return Part {
-                area: 0.0,
-                angle: triangle,
-            };
-        }
-        let sector = self.sector(ends, turn);
+        let [p, q] = stretch.ends;
+        let whole = self.triangle([p, q], self.turn(p, q));
+        let inside = if self.disc > 0.0 {
+            self.inside(stretch)
+        } else {
+            Part::default()
+        };
         Part {
-            area: sector.area,
-            angle: triangle - sector.angle,
+            area: inside.area,
+            angle: whole - inside.angle,
         }
     }
 }
