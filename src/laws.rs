@@ -54,12 +54,14 @@ pub fn heat(case: &Case) -> Option<HeatLaws> {
     let area = match laws.area {
         Area::Overlap => ContactArea::Overlap,
         Area::Load { force, within } => ContactArea::Load { force, within },
-        Area::Force => ContactArea::Force(match case.motion.map(|motion| motion.law.force) {
-            Some(ContactForce::Linear {
-                characteristic_speed: speed,
-            }) => ElasticLaw::Linear { speed },
-            _ => ElasticLaw::Hertz,
-        }),
+        Area::Force => {
+            ContactArea::Force(match case.motion.as_ref().map(|motion| motion.law.force) {
+                Some(ContactForce::Linear {
+                    characteristic_speed: speed,
+                }) => ElasticLaw::Linear { speed },
+                _ => ElasticLaw::Hertz,
+            })
+        }
     };
     let gap: Box<dyn GasGap> = match laws.gap {
         Gap::None => Box::new(NoGap),

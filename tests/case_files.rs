@@ -37,8 +37,13 @@ fn expected(text: &str) -> Vec<(usize, String)> {
 
 #[test]
 fn every_good_case_is_read() {
-    let all = [files("cases"), files("tests/inputs/good")].concat();
-    assert!(all.len() >= 2, "{all:?}");
+    let all = [
+        files("cases"),
+        files("cases/full-size"),
+        files("tests/inputs/good"),
+    ]
+    .concat();
+    assert!(all.len() >= 35, "{all:?}");
     for path in all {
         if let Err(errors) = read(&path, &[]) {
             panic!("{errors}");
@@ -124,6 +129,31 @@ fn set_changes_values_and_refuses_what_it_does_not_know() {
 }
 
 #[test]
+fn eddies_and_the_stirred_reactor_have_their_documented_numbers_where_a_case_has_none() {
+    use calcine_coupler::gas_chemistry::Combustion;
+    use calcine_coupler::setup::Turbulence;
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let path = &folder.join("tests/inputs/good/gas-mechanism.toml");
+    let text = fs::read_to_string(path).unwrap();
+    let without = text.replace("mixing_constant = 0.5\n", "");
+    assert!(without.len() < text.len() && !text.contains("prandtl"));
+    let gas = parse(path, &without, &[]).unwrap().gas;
+    let Turbulence::KEpsilon {
+        prandtl, schmidt, ..
+    } = gas.turbulence
+    else {
+        panic!("{:?}", gas.turbulence)
+    };
+    assert_eq!((prandtl, schmidt), (0.85, 0.7));
+    assert_eq!(
+        gas.chemistry.reacting().unwrap().combustion,
+        Combustion::Pasr {
+            mixing_constant: 1.0
+        }
+    );
+}
+
+#[test]
 fn spacing_order_and_comments_do_not_change_the_hash() {
     let path = &Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/heated-bed.toml");
     let text = fs::read_to_string(path).unwrap();
@@ -186,7 +216,13 @@ proptest! {
 /// Dotted keys of a table, without the names that users choose and the places in lists.
 fn keys(table: &toml::Table, place: &str, found: &mut Vec<String>) {
     for (key, value) in table {
-        let chosen = ["materials", "solids", "gas.patch"].contains(&place);
+        let chosen = [
+            "materials",
+            "solids",
+            "gas.patch",
+            "gas.species_data.transport",
+        ]
+        .contains(&place);
         let below = match (place.is_empty(), chosen) {
             (_, true) => place.to_owned(),
             (true, _) => key.clone(),
@@ -261,7 +297,13 @@ fn places(
     match value {
         toml::Value::Table(table) => {
             for (name, inner) in table {
-                let chosen = ["materials", "solids", "gas.patch"].contains(&key);
+                let chosen = [
+                    "materials",
+                    "solids",
+                    "gas.patch",
+                    "gas.species_data.transport",
+                ]
+                .contains(&key);
                 let below = match (key, chosen) {
                     (_, true) => format!("{key}.NAME"),
                     ("", _) => name.clone(),

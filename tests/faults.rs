@@ -10,7 +10,7 @@ use std::fs;
 use std::io::Read;
 use std::path::Path;
 use std::process::{Child, Command};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use processes::{
     alive, belonging, case, command_line, descendants, kill, leftovers, start, start_with,
@@ -184,4 +184,21 @@ fn when_the_coordinator_is_killed_both_solvers_say_so_and_nothing_stays_behind()
         .status()
         .unwrap();
     assert!(status.success(), "{status}");
+}
+
+/// A moment of a few milliseconds, in which only the run's guard is there to remove its files.
+#[test]
+fn when_the_coordinator_is_killed_before_it_has_a_solver_nothing_stays_behind() {
+    for _ in 0..5 {
+        let directory = tempfile::tempdir().unwrap();
+        let mut run = start(&directory.path().join("run"));
+        let coordinator = run.id();
+        let begun = Instant::now();
+        while leftovers(coordinator).is_empty() && begun.elapsed() < PATIENCE {
+            std::thread::sleep(Duration::from_micros(100));
+        }
+        kill(coordinator);
+        run.wait().unwrap();
+        assert_all_gone(coordinator, &[]);
+    }
 }

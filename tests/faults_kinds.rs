@@ -16,8 +16,8 @@ use calcine_wire::record::VERSION;
 use calcine_wire::shared_memory::End;
 use calcine_wire::{Header, Kind, LinkAddress, SharedMemory, Transport};
 use processes::{
-    alive, belonging, case, descendants, leftovers, signal, start_with, wait_for_windows,
-    wait_until,
+    alive, belonging, case, descendants, is_solver, leftovers, signal, start_with,
+    wait_for_windows, wait_until,
 };
 use rustix::process::Signal;
 
@@ -38,10 +38,12 @@ fn words(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// No process and no file of a run is left.
+/// No process and no file of a run is left, at the latest after [`LIMIT`].
 fn assert_clean(coordinator: u32, peers: &[u32]) {
     wait_until(LIMIT, || {
-        !peers.iter().any(|&pid| alive(pid)) && leftovers(coordinator).is_empty()
+        !peers.iter().any(|&pid| alive(pid))
+            && belonging(coordinator).is_empty()
+            && leftovers(coordinator).is_empty()
     });
     assert!(!peers.iter().any(|&pid| alive(pid)));
     assert_eq!(belonging(coordinator), Vec::<u32>::new());
@@ -427,7 +429,8 @@ fn a_second_ctrl_c_ends_a_run_whose_solver_hangs() {
     let coordinator = run.id();
     wait_for_windows(&mut run, &out);
     let peers = descendants(coordinator);
-    signal(peers[0], Signal::STOP);
+    let solver = peers.iter().find(|&&pid| is_solver(pid)).unwrap();
+    signal(*solver, Signal::STOP);
     std::thread::sleep(Duration::from_millis(300));
     signal(coordinator, Signal::INT);
     std::thread::sleep(Duration::from_millis(300));

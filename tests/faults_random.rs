@@ -21,7 +21,7 @@ use std::process::{Child, Command, ExitCode, Stdio};
 use std::time::{Duration, Instant};
 
 use by_name::{Orders, orders};
-use processes::{alive, belonging, command_line, descendants, leftovers, wait_until};
+use processes::{alive, belonging, command_line, descendants, is_solver, leftovers, wait_until};
 use random::Random;
 use rustix::process::{Pid, Signal, kill_process};
 
@@ -329,15 +329,6 @@ fn strike(out: &Path, scratch: &Path, kind: Kind, random: &mut Random) -> Story 
 fn load() -> String {
     let text = fs::read_to_string("/proc/loadavg").unwrap_or_default();
     text.split(' ').next().unwrap_or_default().to_owned()
-}
-
-/// True for a rank of a solver, not for what starts it.
-fn is_solver(pid: u32) -> bool {
-    let line = command_line(pid);
-    let program = line.split(' ').next().unwrap_or_default();
-    ["calcineGasFoam", "calcine-liggghts"]
-        .iter()
-        .any(|name| program.ends_with(name))
 }
 
 /// Files of a run, and whatever lies in its own folder for scratch.

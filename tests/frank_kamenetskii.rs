@@ -9,10 +9,12 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+#[path = "support/program.rs"]
+mod program;
+
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 use std::path::Path;
-use std::process::Command;
 
 use calcine::results::Summary;
 use calcine::results::read::Series;
@@ -277,9 +279,7 @@ measure = {{ particles = "temperature", statistic = "max" }}
 
 /// Runs a case; false where its reactions went faster than could be followed.
 fn run(case: &Path, out: &Path) -> bool {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
-    command.arg("run").arg(case).arg("--quiet");
-    let output = command.arg("--out").arg(out).output().unwrap();
+    let output = program::command(case, out, &[], &[""; 0]).output().unwrap();
     let text = String::from_utf8_lossy(&output.stderr);
     let fast = text.contains("the rates could not be followed");
     assert!(output.status.success() || fast, "{text}");

@@ -10,7 +10,6 @@ mod lattice;
 mod program;
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use calcine::results::Summary;
 use calcine::results::read::Series;
@@ -234,19 +233,11 @@ fn a_random_bed_conducts_as_zehner_bauer_and_schluender_say_from_300_to_1500_kel
 #[test]
 fn liggghts_particles_exchange_the_same_heat() {
     let directory = tempfile::tempdir().unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_calcine"))
-        .args([
-            "compare",
-            "--pairings",
-            "native+native,native+liggghts",
-            "--quiet",
-        ])
-        .arg(case(STACK))
-        .arg("--out")
-        .arg(directory.path().join("out"))
-        .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&output.stdout);
-    println!("{text}{}", String::from_utf8_lossy(&output.stderr));
-    assert!(output.status.success(), "{text}");
+    let out = directory.path().join("out");
+    program::compare(
+        &case(STACK),
+        &out,
+        "native+native,native+liggghts",
+        &[""; 0],
+    );
 }

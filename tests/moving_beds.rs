@@ -18,12 +18,16 @@ use std::time::{Duration, Instant};
 
 use calcine::results::Summary;
 use calcine::results::read::Series;
+use calcine_coupler::ledger::STORAGE_CLOCK;
 use fluidised::{Hold, examine};
 use moving::{case, command, run};
 
 fn closed(directory: &Path, within: f64) {
     let summary = Summary::read(directory).unwrap();
-    for (name, line) in &summary.ledger.lines {
+    // What two clocks owe is no error.
+    let lines = summary.ledger.lines.iter();
+    for (name, line) in lines.filter(|(name, _)| *name != STORAGE_CLOCK) {
+        // As far as the outer loop of the gas solves it.
         let limit = if name == "gas_momentum" { 1e-6 } else { within };
         assert!(line.relative_error < limit, "{name}: {line:?}");
     }

@@ -8,13 +8,9 @@ mod program;
 #[path = "support/schiller_naumann.rs"]
 mod schiller_naumann;
 
-use std::fs;
-use std::process::Command;
-
 use calcine::results::read::Series;
 use program::shipped;
 use schiller_naumann::Sphere;
-use serde_json::Value;
 
 /// The series of a native run with settings.
 fn run(name: &str, set: &[&str]) -> Series {
@@ -115,18 +111,13 @@ fn a_drum_carries_its_bed_the_higher_the_rougher_it_is() {
 #[test]
 fn a_drum_has_one_slope_in_native_particles_and_in_liggghts() {
     let out = tempfile::tempdir().unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_calcine"))
-        .arg("compare")
-        .arg(shipped("rotating-drum"))
-        .args(["--pairings", "native+native,native+liggghts", "--quiet"])
-        .args(["--set", "time.end=2 s", "--out"])
-        .arg(out.path())
-        .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{text}");
-    let text = fs::read_to_string(out.path().join("compare.json")).unwrap();
-    let comparison: Value = serde_json::from_str(&text).unwrap();
+    let pairings = "native+native,native+liggghts";
+    let comparison = program::compare(
+        &shipped("rotating-drum"),
+        out.path(),
+        pairings,
+        &["time.end=2 s"],
+    );
     let all = comparison["quantities"].as_array().unwrap();
     let angle = all
         .iter()

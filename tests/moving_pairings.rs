@@ -7,29 +7,21 @@
     clippy::print_stdout
 )]
 
+#[path = "support/program.rs"]
+mod program;
+
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
+use program::shipped;
 use serde_json::Value;
 
 #[test]
 fn a_moving_bed_is_heated_alike_by_native_particles_and_by_liggghts() {
     let directory = tempfile::tempdir().unwrap();
     let out = directory.path().join("comparison");
-    let output = Command::new(env!("CARGO_BIN_EXE_calcine"))
-        .arg("compare")
-        .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/moving-bed.toml"))
-        .args(["--pairings", "native+native,native+liggghts", "--quiet"])
-        .args(["--set", "time.end=40 s"])
-        .arg("--out")
-        .arg(&out)
-        .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{text}");
-    let text = fs::read_to_string(out.join("compare.json")).unwrap();
-    let comparison: Value = serde_json::from_str(&text).unwrap();
+    let pairings = "native+native,native+liggghts";
+    let comparison = program::compare(&shipped("moving-bed"), &out, pairings, &["time.end=40 s"]);
     for run in comparison["runs"].as_array().unwrap() {
         assert_eq!(run["complete"], true);
         assert!(run["ledger_error"].as_f64().unwrap() < 1e-10, "{run}");
@@ -46,18 +38,8 @@ fn a_moving_bed_is_heated_alike_by_native_particles_and_by_liggghts() {
 /// The summary of the moving bed with options and settings.
 fn run(directory: &Path, name: &str, options: &[&str], set: &[&str]) -> Value {
     let out = directory.join(name);
-    let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
-    command
-        .arg("run")
-        .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/moving-bed.toml"))
-        .args(["--particles", "liggghts", "--quiet"])
-        .args(options);
-    for setting in set {
-        command.args(["--set", setting]);
-    }
-    let output = command.arg("--out").arg(&out).output().unwrap();
-    let text = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{name}: {text}");
+    let words = [&["--particles", "liggghts"], options].concat();
+    program::run(&shipped("moving-bed"), &out, &words, set);
     let text = fs::read_to_string(out.join("summary.json")).unwrap();
     serde_json::from_str(&text).unwrap()
 }

@@ -1,6 +1,6 @@
 //! Reacting beds through the program: the ledger, the order in the window, mass against oxygen, resuming.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 #[path = "support/program.rs"]
 mod program;
@@ -110,4 +110,38 @@ fn ore_is_reduced_step_by_step_and_its_oxygen_leaves_with_the_gas() {
     assert!(value(&summary, "magnetite") > value(&summary, "wustite"));
     assert!(value(&summary, "wustite") > value(&summary, "iron"));
     assert!(value(&summary, "iron") > 1e-3);
+}
+
+/// From the case file to the ledger: the built-in mechanism, one of CHEMKIN's form with PaSR and k-epsilon, and
+/// reactions that the case states.
+#[test]
+fn gas_that_reacts_with_itself_runs_and_closes() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, settings) in [
+        (
+            "flame",
+            &[
+                "time.acceleration=678",
+                "time.end=220 ms",
+                "gas.controls.outer_tolerance=1e-8",
+            ][..],
+        ),
+        ("gas-mechanism", &[]),
+        ("gas-reactions", &[]),
+    ] {
+        let case = format!("tests/inputs/good/{name}.toml");
+        let out = folder.path().join(name);
+        let summary = run(&case, &out, settings);
+        closes(&summary);
+        for element in ["C", "H", "O", "N"] {
+            let moved = summary.ledger.elements[element].throughput;
+            assert!(moved > 0.0, "{name}: {element}");
+        }
+        if name == "flame" {
+            // As native-solver/tests/flame.rs has it, built without a case file.
+            let peak = value(&summary, "peak");
+            println!("flame: {peak:.2} K");
+            assert!((peak - 1930.8).abs() < 0.5, "{peak}");
+        }
+    }
 }

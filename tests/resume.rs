@@ -3,78 +3,35 @@
 #![cfg(feature = "hdf5")]
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/results_equal.rs"]
-mod results_equal;
+#[path = "support/killed.rs"]
+mod killed;
+#[path = "support/program.rs"]
+mod program;
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::path::Path;
+use std::process::Command;
+
+use killed::results_equal;
+use program::shipped;
 
 /// A run with checkpoints each 2 s of process time; long enough to be killed in its middle.
 fn command(pairing: [&str; 2], out: &Path, end: &str) -> Command {
-    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/heated-column.toml");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
-    command
-        .arg("run")
-        .arg(case)
-        .args(["--gas", pairing[0], "--particles", pairing[1], "--quiet"])
-        .args([
-            "--set",
-            "time.acceleration=5",
-            "--set",
-            &format!("time.end={end}"),
-        ])
-        .args(["--set", "time.checkpoint.every=2 s"])
-        .args([
-            "--set",
-            "output.every=7 s",
-            "--set",
-            "output.series_every=0.1 s",
-        ])
-        .arg("--out")
-        .arg(out)
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped());
-    command
+    let end = format!("time.end={end}");
+    let set = [
+        "time.acceleration=5",
+        end.as_str(),
+        "time.checkpoint.every=2 s",
+        "output.every=7 s",
+        "output.series_every=0.1 s",
+    ];
+    let words = ["--gas", pairing[0], "--particles", pairing[1]];
+    program::command(&shipped("heated-column"), out, &words, &set)
 }
 
-/// Kills a run when its series is so many rows long, resumes it, and compares.
 fn killed_and_resumed(pairing: [&str; 2], end: &str, rows: &[usize]) {
     let directory = tempfile::tempdir().unwrap();
-    let whole = directory.path().join("whole");
-    assert!(command(pairing, &whole, end).status().unwrap().success());
-    for &limit in rows {
-        let out: PathBuf = directory.path().join(format!("killed-{limit}"));
-        let mut run = command(pairing, &out, end).spawn().unwrap();
-        let begun = Instant::now();
-        loop {
-            let written =
-                fs::read_to_string(out.join("series.csv")).map_or(0, |text| text.lines().count());
-            let ready = out.join("checkpoint/coordinator.state").is_file();
-            if (written >= limit && ready) || run.try_wait().unwrap().is_some() {
-                break;
-            }
-            assert!(
-                begun.elapsed() < Duration::from_secs(120),
-                "no checkpoint in time"
-            );
-            std::thread::sleep(Duration::from_micros(200));
-        }
-        let killed = run.kill().is_ok();
-        let status = run.wait().unwrap();
-        println!("{pairing:?}: killed after {limit} rows: {killed}, {status}");
-        let mut resumed = command(pairing, &out, end);
-        let output = resumed.arg("--resume").output().unwrap();
-        assert!(
-            output.status.success(),
-            "{}",
-            String::from_utf8_lossy(&output.stderr)
-        );
-        let differing = results_equal::differences(&whole, &out);
-        assert!(differing.is_empty(), "after {limit} rows: {differing:?}");
-    }
+    killed::resumes_to_the_same_bits(directory.path(), rows, |out| command(pairing, out, end));
 }
 
 #[test]

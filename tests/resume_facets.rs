@@ -4,14 +4,15 @@
 #![cfg(feature = "hdf5")]
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/results_equal.rs"]
-mod results_equal;
+#[path = "support/killed.rs"]
+mod killed;
+#[path = "support/program.rs"]
+mod program;
 
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::Command;
 
 use calcine::results::Summary;
 
@@ -65,33 +66,16 @@ fn case(folder: &Path) -> PathBuf {
 }
 
 fn command(case: &Path, ranks: &str, out: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
-    command.arg("run").arg(case);
-    command.args(["--particles", "liggghts", "--ranks-particles", ranks]);
-    for setting in [
+    let set = [
         "time.end=0.15 s",
         "time.checkpoint.every=20 ms",
         "output.every=50 ms",
         "particles[0].place.region.from=60 mm",
         "particles[0].place.region.to=76 mm",
         "particles[0].place.solid_fraction=0.4",
-    ] {
-        command.args(["--set", setting]);
-    }
-    command
-        .args(["--quiet", "--out"])
-        .arg(out)
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped());
-    command
-}
-
-/// Runs to the end; what it said is shown where that fails.
-fn finish(mut command: Command) {
-    let output = command.output().unwrap();
-    let text = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{text}");
+    ];
+    let words = ["--particles", "liggghts", "--ranks-particles", ranks];
+    program::command(case, out, &words, &set)
 }
 
 #[test]
@@ -99,8 +83,9 @@ fn a_stream_through_a_funnel_of_triangles_resumes_to_the_same_bits_on_one_rank_a
     for ranks in ["1", "2"] {
         let directory = tempfile::tempdir().unwrap();
         let case = case(directory.path());
-        let whole = directory.path().join("whole");
-        finish(command(&case, ranks, &whole));
+        let whole = killed::resumes_to_the_same_bits(directory.path(), &[16], |out| {
+            command(&case, ranks, out)
+        });
         let summary = Summary::read(&whole).unwrap();
         for name in ["particle_mass", "particle_momentum"] {
             let line = &summary.ledger.lines[name];
@@ -111,27 +96,5 @@ fn a_stream_through_a_funnel_of_triangles_resumes_to_the_same_bits_on_one_rank_a
                 "{ranks} ranks, {name}: {line:?}"
             );
         }
-
-        let killed = directory.path().join("killed");
-        let mut run = command(&case, ranks, &killed).spawn().unwrap();
-        let begun = Instant::now();
-        let rows = || {
-            let text = fs::read_to_string(killed.join("series.csv"));
-            text.map_or(0, |text| text.lines().count())
-        };
-        while rows() < 16 || !killed.join("checkpoint/coordinator.state").is_file() {
-            let patience = Duration::from_secs(120);
-            assert!(begun.elapsed() < patience, "no checkpoint in time");
-            let ended = run.try_wait().unwrap();
-            assert!(ended.is_none(), "it ended before it was killed");
-            std::thread::sleep(Duration::from_millis(1));
-        }
-        run.kill().unwrap();
-        run.wait().unwrap();
-        let mut resumed = command(&case, ranks, &killed);
-        resumed.arg("--resume");
-        finish(resumed);
-        let differing = results_equal::differences(&whole, &killed);
-        assert!(differing.is_empty(), "{ranks} ranks: {differing:?}");
     }
 }

@@ -4,87 +4,43 @@
 #![cfg(feature = "hdf5")]
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/results_equal.rs"]
-mod results_equal;
+#[path = "support/killed.rs"]
+mod killed;
+#[path = "support/program.rs"]
+mod program;
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::path::Path;
+use std::process::Command;
+
+use program::shipped;
 
 /// The moving bed with a turbulence model, on two ranks each: 24 windows, a checkpoint each four.
 fn command(template: &Path, out: &Path) -> Command {
-    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/moving-bed.toml");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
-    command
-        .arg("run")
-        .arg(case)
-        .args(["--gas", "openfoam", "--ranks-gas", "2"])
-        .args([
-            "--particles",
-            "liggghts",
-            "--ranks-particles",
-            "2",
-            "--quiet",
-        ])
-        .args([
-            "--set",
-            &format!("openfoam.template={}", template.display()),
-        ]);
-    for setting in [
+    let template = format!("openfoam.template={}", template.display());
+    let set = [
+        template.as_str(),
         "time.end=12 s",
         "time.checkpoint.every=2 s",
         "output.every=5 s",
         "output.series_every=0.5 s",
         "feeds[0].mass_rate=4 g/s",
         "outlets[0].mass_rate=4 g/s",
-    ] {
-        command.args(["--set", setting]);
-    }
-    command
-        .arg("--out")
-        .arg(out)
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped());
-    command
+    ];
+    let gas = ["--gas", "openfoam", "--ranks-gas", "2"];
+    let particles = ["--particles", "liggghts", "--ranks-particles", "2"];
+    let words = [gas, particles].concat();
+    program::command(&shipped("moving-bed"), out, &words, &set)
 }
 
 fn resumes_to_the_same_bits(template: &Path, field: &str, directory: &Path) {
-    let whole = directory.join("whole");
-    let output = command(template, &whole).output().unwrap();
-    let text = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{text}");
+    let whole = killed::resumes_to_the_same_bits(directory, &[12], |out| command(template, out));
     let kept = fs::read(whole.join("checkpoint/gas/calcineModels.1")).unwrap();
     let mark = format!("\n{field}\n");
     assert!(
         kept.windows(mark.len())
             .any(|window| window == mark.as_bytes())
     );
-    let out: PathBuf = directory.join("killed");
-    let mut run = command(template, &out).spawn().unwrap();
-    let begun = Instant::now();
-    loop {
-        let rows =
-            fs::read_to_string(out.join("series.csv")).map_or(0, |text| text.lines().count());
-        let ready = out.join("checkpoint/coordinator.state").is_file();
-        if rows >= 12 && ready || run.try_wait().unwrap().is_some() {
-            break;
-        }
-        assert!(
-            begun.elapsed() < Duration::from_secs(120),
-            "no checkpoint in time"
-        );
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    run.kill().unwrap();
-    let status = run.wait().unwrap();
-    assert!(!status.success(), "it had ended before it was killed");
-    let output = command(template, &out).arg("--resume").output().unwrap();
-    let text = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{text}");
-    let differing = results_equal::differences(&whole, &out);
-    assert!(differing.is_empty(), "{differing:?}");
 }
 
 #[test]

@@ -47,7 +47,12 @@ fn the_schema_accepts_every_good_case_and_finds_what_an_editor_can_know_to_be_wr
     let directory = tempfile::tempdir().unwrap();
     let file = directory.path().join("case.schema.json");
     std::fs::write(&file, calcine(directory.path(), &["schema"])).unwrap();
-    let good = [cases("cases"), cases("tests/inputs/good")].concat();
+    let good = [
+        cases("cases"),
+        cases("cases/full-size"),
+        cases("tests/inputs/good"),
+    ]
+    .concat();
     let bad = cases("tests/inputs/bad");
     let found = checked(&file, &[good.clone(), bad.clone()].concat());
     assert_eq!(
@@ -79,7 +84,6 @@ fn the_schema_accepts_every_good_case_and_finds_what_an_editor_can_know_to_be_wr
         ("inlet-flow-twice", "inlet"),
         ("vector-too-short", ""),
         ("probe-points-without-unit", "points"),
-        ("species-unknown", "species"),
         ("schmidt-missing", "gas"),
         ("diameters-without-share", "diameter"),
     ] {

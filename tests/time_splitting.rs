@@ -203,7 +203,10 @@ fn a_case_larger_than_the_machine_is_refused_before_anything_is_built() {
     let output = calcine("check", &shipped("heated-column"), &huge, &[]);
     assert_eq!(output.status.code(), Some(2));
     let text = String::from_utf8(output.stderr).unwrap();
-    assert!(text.contains("needs about 4.0 TB (2.000e9 cells"), "{text}");
+    assert!(
+        text.contains("needs about 10.2 TB (2.000e9 cells"),
+        "{text}"
+    );
     let output = calcine("check", &shipped("heated-column"), &[], &[]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("about 1 MB or less"), "{text}");

@@ -204,6 +204,7 @@ pub fn spawn(
     address: &LinkAddress,
     log: &Path,
     patience: Duration,
+    is_over: &dyn Fn() -> bool,
 ) -> Result<Vec<Box<dyn Transport + Send>>, WireError> {
     let failed = |source| WireError::File {
         path: log.to_owned(),
@@ -219,6 +220,7 @@ pub fn spawn(
         &["/bin/sh".into(), "-c".into(), line.into()],
         ranks,
         patience,
+        is_over,
     )
 }
 
@@ -401,8 +403,8 @@ impl Drop for Processes {
             if matches!(self.look(), Ok(Some(_)) | Err(_)) {
                 break;
             }
-            // Stopped ranks do not hear their launcher; nor do those that wait for one that is gone.
-            if begun.elapsed() > GRACE / 8 {
+            // Stopped ranks do not hear their launcher; nor do those that wait for one that is gone, or have none.
+            if self.child.is_none() || begun.elapsed() > GRACE / 8 {
                 self.kill_ranks();
             }
             std::thread::sleep(Duration::from_millis(5));

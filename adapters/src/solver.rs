@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use calcine_coupler::error::{FailureKind, PartError};
-use calcine_coupler::supervisor::{Supervisor, log_end};
+use calcine_coupler::supervisor::{Supervisor, Waited, log_end};
 use calcine_coupler::time::Window;
 use calcine_wire::shared_memory::End;
 use calcine_wire::{Header, Hello, Kind, Link, Network, Record, Run, SharedMemory, WireError};
@@ -52,7 +52,7 @@ pub struct ExternalSolver {
     links: Vec<Link>,
     // Dropped in this order: processes end before the run's files go.
     processes: Processes,
-    _run: Option<Run>,
+    run: Option<Run>,
     /// Where MPI spawned the ranks: told when they have ended well.
     network: Option<Arc<dyn Network>>,
     peer: Peer,
@@ -60,6 +60,9 @@ pub struct ExternalSolver {
     /// By rank: the cells of the whole mesh that it has; empty for particles.
     owned: Arc<[Vec<usize>]>,
     deadline: Duration,
+    /// What the run has waited for solvers, and had when this one was asked or answered last.
+    waited: Waited,
+    asked: Duration,
     /// Processor time of the ranks of this machine when they were ready.
     used_at_start: Duration,
 }
@@ -167,13 +170,14 @@ impl Peer {
         part.with_log(log)
     }
 
-    /// Waits until every link holds a message of a kind.
+    /// Waits until every link holds a message of a kind, which it was asked for when the supervisor had waited `asked`.
     fn wait(
         &self,
         links: &mut [Link],
         supervisor: &Supervisor,
         window: Option<&Window>,
         kind: Kind,
+        asked: Duration,
     ) -> Result<(), PartError> {
         let mut arrived = vec![false; links.len()];
         let mut poll = |slice: Duration| {
@@ -197,7 +201,7 @@ impl Peer {
             }
             Ok(arrived.iter().all(|&arrived| arrived).then_some(()))
         };
-        let waited = supervisor.wait(&self.name, window, &mut poll);
+        let waited = supervisor.wait_since(asked, &self.name, window, &mut poll);
         match waited {
             // The last word of a solver that ended says more than its end.
             Err(death) if death.kind == FailureKind::Died => match poll(Duration::ZERO) {
@@ -240,8 +244,13 @@ impl ExternalSolver {
                 &address,
                 &launch.log,
                 launch.handshake,
+                &|| supervisor.check(None).is_err(),
             );
             let ends = ends.map_err(|error| {
+                // Who dies takes those with it that MPI is starting.
+                if let Err(death) = supervisor.check(None) {
+                    return death;
+                }
                 let message = "its ranks cannot be spawned by MPI";
                 let error =
                     PartError::new(&launch.name, FailureKind::NotStarted, message).caused_by(error);
@@ -278,7 +287,7 @@ impl ExternalSolver {
         let mut solver = Self {
             links,
             processes,
-            _run: run,
+            run,
             network: match launch.launcher {
                 Launcher::Network(Spawner(network)) => Some(network),
                 _ => None,
@@ -287,6 +296,8 @@ impl ExternalSolver {
             hello: launch.hello,
             owned: Arc::default(),
             deadline: launch.deadline,
+            waited: supervisor.waited().clone(),
+            asked: Duration::ZERO,
             used_at_start: Duration::ZERO,
         };
         solver.shake_hands(supervisor)?;
@@ -310,8 +321,13 @@ impl ExternalSolver {
         }
         let mut own = Supervisor::new(self.deadline, supervisor.interrupts().clone());
         self.peer.watch(&mut own, &local)?;
-        self.peer.own = own;
         self.peer.watch(supervisor, &local)?;
+        let daemon = self.network.as_ref().and_then(|network| network.daemon());
+        if let Some((name, pid)) = daemon {
+            own.watch(&name, pid, Some(&self.peer.log))?;
+            supervisor.watch(&name, pid, Some(&self.peer.log))?;
+        }
+        self.peer.own = own;
         if ours.catalogue.of(Record::Owned).next().is_some() {
             self.wait_alone(Kind::Owned)?;
             let owned = self.claims();
@@ -406,6 +422,7 @@ impl ExternalSolver {
         count: impl Fn(usize) -> usize,
         fill: impl Fn(usize, &mut Link) -> Result<(), WireError>,
     ) -> Result<(), PartError> {
+        self.asked = self.waited.so_far();
         for (rank, link) in self.links.iter_mut().enumerate() {
             let sent = link
                 .loan(header, count(rank))
@@ -424,12 +441,16 @@ impl ExternalSolver {
         kind: Kind,
     ) -> Result<(), PartError> {
         self.peer
-            .wait(&mut self.links, supervisor, Some(window), kind)
+            .wait(&mut self.links, supervisor, Some(window), kind, self.asked)?;
+        self.asked = self.waited.so_far();
+        Ok(())
     }
 
     /// The same outside windows, watching this solver only.
     fn wait_alone(&mut self, kind: Kind) -> Result<(), PartError> {
-        self.peer.wait(&mut self.links, &self.peer.own, None, kind)
+        let own = &self.peer.own;
+        let asked = own.waited().so_far();
+        self.peer.wait(&mut self.links, own, None, kind, asked)
     }
 
     /// Tells every rank to take the last attempt as the new start; there is no answer.
@@ -450,8 +471,9 @@ impl ExternalSolver {
     /// Has particles taken out and put in, as told in a text; afterwards each link holds a `Changed`.
     pub fn change(&mut self, supervisor: &Supervisor, text: &str) -> Result<(), PartError> {
         self.send_text(Kind::Change, text)?;
+        let links = &mut self.links;
         self.peer
-            .wait(&mut self.links, supervisor, None, Kind::Changed)
+            .wait(links, supervisor, None, Kind::Changed, self.asked)
     }
 
     /// Ends the solver in an orderly way.
@@ -466,10 +488,14 @@ impl ExternalSolver {
         if let Some(network) = &self.network {
             network.goodbye();
         }
+        if let Some(run) = &mut self.run {
+            run.end();
+        }
         Ok(())
     }
 
     fn send_text(&mut self, kind: Kind, text: &str) -> Result<(), PartError> {
+        self.asked = self.waited.so_far();
         for (rank, link) in self.links.iter_mut().enumerate() {
             let sent = link.send_text(Header::of(kind), text);
             sent.map_err(|error| self.peer.failure(Some(rank), None, error))?;

@@ -206,6 +206,42 @@ fn after_a_checkpoint_the_resumed_run_takes_the_same_path_as_the_one_that_went_o
 }
 
 #[test]
+fn a_run_goes_on_from_its_checkpoint_when_all_of_the_first_population_or_all_particles_have_left() {
+    let mut bench = Bench::new();
+    let mut contacts = contacts(Vec3::new(0.0, 0.0, -9.81));
+    contacts.held = vec![false, false];
+    let mut setup = setup_with(contacts, &heap());
+    setup.population[20..].fill(1);
+    let mut particles = bench.launch(&setup, "a", None);
+    let mut left = 40;
+    for (round, gone) in [1..=20, 21..=40].into_iter().enumerate() {
+        bench
+            .window(&mut particles, 1e-3, &vec![Vec3::zeros(); left])
+            .unwrap();
+        let change = Change {
+            remove: gone.collect(),
+            ..Change::default()
+        };
+        particles.change(&bench.supervisor, &change).unwrap();
+        left -= 20;
+        let checkpoint = bench.path(&format!("checkpoint{round}"));
+        std::fs::create_dir_all(&checkpoint).unwrap();
+        particles.checkpoint(&checkpoint).unwrap();
+        let (index, start) = (bench.index, bench.start);
+        let path = |bench: &mut Bench, particles: &mut LiggghtsParticles| {
+            (bench.index, bench.start) = (index, start);
+            bench
+                .window(particles, 1e-3, &vec![Vec3::zeros(); left])
+                .unwrap();
+            particles.fields().position.to_vec()
+        };
+        let went_on = path(&mut bench, &mut particles);
+        let mut resumed = bench.launch(&setup, &format!("b{round}"), Some(checkpoint));
+        assert_eq!(went_on, path(&mut bench, &mut resumed));
+    }
+}
+
+#[test]
 fn a_particle_that_gets_another_size_moves_by_its_new_mass_and_keeps_it_in_checkpoints() {
     let mut bench = Bench::new();
     let at = |x: f64| (Vec3::new(x, 0.05, 0.05), Vec3::zeros());
@@ -243,6 +279,35 @@ fn a_particle_that_gets_another_size_moves_by_its_new_mass_and_keeps_it_in_check
         assert_eq!(fields.radius[1].to_bits(), new.radius.to_bits());
         assert_eq!(fields.mass[1].to_bits(), new.mass.to_bits());
     }
+}
+
+#[test]
+fn what_comes_to_rest_keeps_the_springs_of_its_contacts() {
+    let mut bench = Bench::new();
+    let mut sloped = contacts(Vec3::new(0.2 * 9.81, 0.0, -9.81));
+    // No dashpot: springs alone decide how fast it gets.
+    sloped.pairs[0].restitution = 1.0;
+    let start = (Vec3::new(0.05, 0.05, 0.0025), Vec3::zeros());
+    let mut particles = bench.launch(&setup(sloped, &[start]), "a", None);
+    let speed = |bench: &mut Bench, particles: &mut LiggghtsParticles, span: f64| {
+        bench.window(particles, span, &[Vec3::zeros()]).unwrap();
+        particles.fields().velocity[0]
+    };
+    let before = speed(&mut bench, &mut particles, 2e-4);
+    let step = speed(&mut bench, &mut particles, 1e-6) - before;
+    let place = particles.fields().position[0];
+    let rest = Change {
+        rest: true,
+        ..Change::default()
+    };
+    particles.change(&bench.supervisor, &rest).unwrap();
+    let fields = particles.fields();
+    let speeds = [fields.velocity[0], fields.angular_velocity[0]];
+    assert_eq!((fields.position[0], speeds), (place, [Vec3::zeros(); 2]));
+    let off = (speed(&mut bench, &mut particles, 1e-6) - step).norm() / step.norm();
+    // Without its spring it would feel the full slope.
+    let slope = 0.2 * 9.81e-6;
+    assert!(off < 0.02 && step.x < 0.9 * slope, "{off}: {step}");
 }
 
 #[test]

@@ -2,6 +2,9 @@
 
 use calcine_physics::Vec3;
 
+/// Name of the line that is no error: see [`Ledger::storage_clock`].
+pub const STORAGE_CLOCK: &str = "storage_clock";
+
 /// One line: the sum of |Σ terms| over the windows, against the sum of Σ|terms|.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Line {
@@ -84,6 +87,9 @@ pub struct Ledger {
     pub momentum_exchange: Line,
     /// The gas' own momentum balance (residual of pressure and momentum solves), in N s.
     pub gas_momentum: Line,
+    /// The momentum of that balance that two clocks make, Σ u (1 − 1/AF) Δ(ε ρ V) (requirements TSM-8), in N s: no
+    /// error, but what the balance would leave open without it.
+    pub storage_clock: Line,
     /// Particle mass in kg: what the particles hold against what feeds and outlets moved.
     pub particle_mass: Line,
     /// Momentum of the particles that move, in N s: its change against what the gas, gravity, walls, held
@@ -97,13 +103,14 @@ pub struct Ledger {
 
 impl Ledger {
     /// Lines by their stable names, those of elements apart.
-    pub fn lines(&self) -> [(&'static str, &'static str, Line); 7] {
+    pub fn lines(&self) -> [(&'static str, &'static str, Line); 8] {
         [
             ("mass", "kg", self.mass),
             ("energy", "J", self.energy),
             ("energy_exchange", "J", self.energy_exchange),
             ("momentum", "N s", self.momentum_exchange),
             ("gas_momentum", "N s", self.gas_momentum),
+            (STORAGE_CLOCK, "N s", self.storage_clock),
             ("particle_mass", "kg", self.particle_mass),
             ("particle_momentum", "N s", self.particle_momentum),
         ]
@@ -117,6 +124,7 @@ impl Ledger {
             &mut self.energy_exchange,
             &mut self.momentum_exchange,
             &mut self.gas_momentum,
+            &mut self.storage_clock,
             &mut self.particle_mass,
             &mut self.particle_momentum,
         ];

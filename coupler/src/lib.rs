@@ -8,6 +8,7 @@ pub mod error;
 pub mod exchange;
 pub mod gas_chemistry;
 pub mod held;
+pub mod hold;
 pub mod ledger;
 pub mod mapping;
 pub mod mesh;

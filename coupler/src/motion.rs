@@ -190,7 +190,7 @@ pub enum WallMotion {
     },
 }
 
-/// Particles that come and go between two windows, or become others by what reacts in them. The
+/// Particles that come and go between two windows, become others by what reacts in them, or are held. The
 /// coordinator decides on them, so that they are the same for every backend.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Change {
@@ -201,12 +201,20 @@ pub struct Change {
     /// Those that stay with another radius or mass, in ascending id; none of those that go. They keep place,
     /// velocity and the memories of their contacts.
     pub resize: Vec<Resized>,
+    /// All that were there come to rest where they are, and keep the memories of their contacts.
+    pub rest: bool,
 }
 
 impl Change {
     /// True where nothing changes.
     pub fn is_empty(&self) -> bool {
-        self.remove.is_empty() && self.insert.is_empty() && self.resize.is_empty()
+        let Self {
+            remove,
+            insert,
+            resize,
+            rest,
+        } = self;
+        remove.is_empty() && insert.is_empty() && resize.is_empty() && !rest
     }
 }
 

@@ -77,26 +77,6 @@ pub struct TurbulenceFields<'a> {
     pub viscosity: &'a [f64],
 }
 
-/// How fast eddies mix within a cell.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mixing {
-    /// Void fraction × eddy viscosity in Pa s.
-    pub viscosity: f64,
-    /// Dissipation in m²/s³.
-    pub dissipation: f64,
-}
-
-impl TurbulenceFields<'_> {
-    /// What mixes in a cell; `None` in the bed and in a laminar gas.
-    pub fn mixing(&self, cell: usize) -> Option<Mixing> {
-        let viscosity = *self.viscosity.get(cell)?;
-        (viscosity > 0.0).then(|| Mixing {
-            viscosity,
-            dissipation: self.dissipation[cell],
-        })
-    }
-}
-
 /// What the gas is told of the bed, one value per cell, valid at the end of the window.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bed {
@@ -208,6 +188,9 @@ pub struct CellReceived {
     pub energy: Balance,
     /// Gas momentum along x, y, z in N s.
     pub momentum: [Balance; 3],
+    /// What the form of the momentum equation gives the gas in N s because it stores mass over another span than
+    /// momentum (requirements TSM-8), Σ u (1 − Δt/Δτ) Δ(ε ρ V); a part of the momentum's sources.
+    pub storage_clock: Vec3,
 }
 
 /// How well the gas solved an attempt.

@@ -1,11 +1,12 @@
 //! The supervisor: the one place that waits. It holds every peer's pidfd, the deadline and the
 //! user's interrupts, so that the death of one solver is noticed while another computes.
 
+use std::fmt;
 use std::fs;
 use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
@@ -45,12 +46,30 @@ impl Interrupts {
     }
 }
 
+/// How long a run has waited for its solvers so far, one after the other: while one answers, the others have had
+/// that time too. What the coordinator computes by itself does not count.
+#[derive(Clone, Debug, Default)]
+pub struct Waited(Arc<AtomicU64>);
+
+impl Waited {
+    /// All of it.
+    pub fn so_far(&self) -> Duration {
+        Duration::from_nanos(self.0.load(Ordering::SeqCst))
+    }
+
+    fn add(&self, more: Duration) {
+        let nanos = u64::try_from(more.as_nanos()).unwrap_or(u64::MAX);
+        self.0.fetch_add(nanos, Ordering::SeqCst);
+    }
+}
+
 /// Holds the peers' pidfds, the deadline and the interrupts.
 #[derive(Debug)]
 pub struct Supervisor {
     peers: Vec<Peer>,
     deadline: Duration,
     interrupts: Interrupts,
+    waited: Waited,
 }
 
 impl Supervisor {
@@ -60,7 +79,13 @@ impl Supervisor {
             peers: Vec::new(),
             deadline,
             interrupts,
+            waited: Waited::default(),
         }
+    }
+
+    /// What this supervisor has waited.
+    pub fn waited(&self) -> &Waited {
+        &self.waited
     }
 
     /// Interrupts so far.
@@ -68,8 +93,11 @@ impl Supervisor {
         &self.interrupts
     }
 
-    /// Watches a process from now on. `name` as in "OpenFOAM (gas, rank 0)".
+    /// Watches a process from now on, if it is not watched already. `name` as in "OpenFOAM (gas, rank 0)".
     pub fn watch(&mut self, name: &str, pid: u32, log: Option<&Path>) -> Result<(), PartError> {
+        if self.peers.iter().any(|peer| peer.pid == pid) {
+            return Ok(());
+        }
         let gone = |message: String| {
             PartError::new(label(name, pid), FailureKind::Died, message)
                 .with_log(log.map(log_end).unwrap_or_default())
@@ -95,16 +123,19 @@ impl Supervisor {
     }
 
     /// An error that names the peers found dead, with the end of the first one's log. Which of them was
-    /// the first to die cannot be known: MPI ends all ranks soon after one.
+    /// the first to die cannot be known, since MPI ends all ranks soon after one; but one that a signal ended did
+    /// not follow others.
     pub fn check(&self, window: Option<&Window>) -> Result<(), PartError> {
-        let dead = |peer: &&Peer| has_ended(&peer.pidfd, Duration::ZERO);
-        let mut dead = self.peers.iter().filter(dead);
-        let Some(peer) = dead.next() else {
+        let is_dead = |peer: &&Peer| has_ended(&peer.pidfd, Duration::ZERO);
+        let dead = self.peers.iter().filter(is_dead);
+        let mut dead: Vec<(&Peer, Ending)> = dead.map(|peer| (peer, ending(&peer.pidfd))).collect();
+        dead.sort_by_key(|(_, how)| !matches!(how, Ending::Signal(_)));
+        let Some(((peer, how), others)) = dead.split_first() else {
             return Ok(());
         };
-        let mut message = format!("died: {}", ending(&peer.pidfd));
-        for other in dead {
-            let (who, how) = (label(&other.name, other.pid), ending(&other.pidfd));
+        let mut message = format!("died: {how}");
+        for (other, how) in others {
+            let who = label(&other.name, other.pid);
             message.push_str(&format!("; so did {who}: {how}"));
         }
         let who = label(&peer.name, peer.pid);
@@ -120,11 +151,24 @@ impl Supervisor {
         &self,
         who: &str,
         window: Option<&Window>,
+        poll: impl FnMut(Duration) -> Result<Option<T>, PartError>,
+    ) -> Result<T, PartError> {
+        self.wait_since(self.waited.so_far(), who, window, poll)
+    }
+
+    /// The same, for the answer to what was asked when [`Supervisor::waited`] was `asked`.
+    pub fn wait_since<T>(
+        &self,
+        asked: Duration,
+        who: &str,
+        window: Option<&Window>,
         mut poll: impl FnMut(Duration) -> Result<Option<T>, PartError>,
     ) -> Result<T, PartError> {
-        let begun = Instant::now();
         loop {
-            if let Some(value) = poll(SLICE)? {
+            let begun = Instant::now();
+            let answer = poll(SLICE);
+            self.waited.add(begun.elapsed());
+            if let Some(value) = answer? {
                 return Ok(value);
             }
             self.check(window)?;
@@ -136,7 +180,7 @@ impl Supervisor {
                     "interrupted".into(),
                 ));
             }
-            if begun.elapsed() > self.deadline {
+            if self.waited.so_far().saturating_sub(asked) > self.deadline {
                 let message = format!("silent for {} s", self.deadline.as_secs_f64());
                 return Err(self.failure(who, window, FailureKind::Silent, message));
             }
@@ -176,18 +220,34 @@ pub fn has_ended(pidfd: &OwnedFd, patience: Duration) -> bool {
     matches!(poll(&mut fds, Some(&timeout)), Ok(ready) if ready > 0)
 }
 
-/// How a process ended, in words; only a child's status can be read.
-fn ending(pidfd: &OwnedFd) -> String {
+/// How a process ended.
+#[derive(Clone, Copy, Debug)]
+enum Ending {
+    Code(i32),
+    Signal(i32),
+    /// Only a child's status can be read.
+    Unknown,
+}
+
+impl fmt::Display for Ending {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Code(code) => write!(f, "exit code {code}"),
+            Self::Signal(signal) => write!(f, "signal {signal} ({})", signal_name(signal)),
+            Self::Unknown => f.write_str("its process has ended"),
+        }
+    }
+}
+
+fn ending(pidfd: &OwnedFd) -> Ending {
     use std::os::fd::AsFd;
     let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
-    match waitid(WaitId::PidFd(pidfd.as_fd()), options) {
-        Ok(Some(status)) => match (status.exit_status(), status.terminating_signal()) {
-            (Some(code), _) => format!("exit code {code}"),
-            (None, Some(signal)) => format!("signal {signal} ({})", signal_name(signal)),
-            (None, None) => "its process has ended".into(),
-        },
-        _ => "its process has ended".into(),
-    }
+    let Ok(Some(status)) = waitid(WaitId::PidFd(pidfd.as_fd()), options) else {
+        return Ending::Unknown;
+    };
+    let signal = || status.terminating_signal().map(Ending::Signal);
+    let code = status.exit_status().map(Ending::Code);
+    code.or_else(signal).unwrap_or(Ending::Unknown)
 }
 
 fn signal_name(signal: i32) -> &'static str {
@@ -249,6 +309,68 @@ mod tests {
         assert!(text.contains("Time = 3"), "{text}");
         assert_eq!(error.kind, FailureKind::Died);
         child.wait().unwrap();
+    }
+
+    #[test]
+    fn a_peer_that_a_signal_ended_is_named_before_those_that_ended_after_it() {
+        let mut supervisor = Supervisor::new(Duration::from_secs(30), Interrupts::default());
+        let start = |line: &str| Command::new("sh").args(["-c", line]).spawn().unwrap();
+        let mut follower = start("exit 3");
+        let mut daemon = start("kill -9 $$");
+        // Watching what is watched already changes nothing.
+        for (name, pid) in [
+            ("rank", follower.id()),
+            ("daemon", daemon.id()),
+            ("daemon again", daemon.id()),
+        ] {
+            supervisor.watch(name, pid, None).unwrap();
+        }
+        for peer in &supervisor.peers {
+            assert!(has_ended(&peer.pidfd, Duration::from_secs(20)));
+        }
+        let text = supervisor.check(None).unwrap_err().to_string();
+        let (first, second) = text.split_once("; so did ").unwrap();
+        assert!(
+            first.contains(&format!("daemon, pid {}", daemon.id())),
+            "{text}"
+        );
+        assert!(first.contains("signal 9 (SIGKILL)"), "{text}");
+        assert!(
+            second.contains(&format!("rank, pid {}: exit code 3", follower.id())),
+            "{text}"
+        );
+        assert!(!second.contains("so did"), "{text}");
+        follower.wait().unwrap();
+        daemon.wait().unwrap();
+    }
+
+    #[test]
+    fn what_was_waited_for_another_peer_counts_as_silence_too() {
+        let supervisor = Supervisor::new(Duration::from_secs(60), Interrupts::default());
+        let asked = supervisor.waited().so_far();
+        // What another answer took.
+        supervisor.waited.add(Duration::from_secs(61));
+        let nothing = |_| Ok(None::<()>);
+        let error = supervisor.wait_since(asked, "particles", None, nothing);
+        assert_eq!(error.unwrap_err().kind, FailureKind::Silent);
+        // One that is asked now has its time.
+        let mut polls = 0;
+        let late = |_| {
+            polls += 1;
+            Ok((polls > 3).then_some(polls))
+        };
+        assert_eq!(supervisor.wait("particles", None, late).unwrap(), 4);
+        // An answer that is there is taken, however long ago it was asked for.
+        let answer = supervisor.wait_since(asked, "particles", None, |_| Ok(Some(7)));
+        assert_eq!(answer.unwrap(), 7);
+        // What is polled is waited.
+        let before = supervisor.waited().so_far();
+        let sleeps = |slice| {
+            std::thread::sleep(slice);
+            Ok(Some(()))
+        };
+        supervisor.wait("gas", None, sleeps).unwrap();
+        assert!(supervisor.waited().so_far() >= before + SLICE);
     }
 
     #[test]

@@ -55,3 +55,13 @@ impl InletTurbulence {
         [energy, dissipation]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tenth_of_solids_is_the_last_that_is_free_of_the_bed() {
+        assert!(is_free(0.9001) && !is_free(0.8995));
+    }
+}

@@ -113,8 +113,8 @@ fn place_and_peak(burner: &Driver) -> (f64, f64) {
     (place, peak)
 }
 
-/// A window; the largest change of a temperature in K.
-fn window(burner: &mut Driver, factor: f64) -> f64 {
+/// A window; the largest change of a temperature in K, and whether it converged.
+fn window(burner: &mut Driver, factor: f64) -> (f64, bool) {
     let what = format!("AF {factor}");
     let before = burner.gas.fields().temperature.to_vec();
     let convergence = burner.window(WINDOW, factor);
@@ -129,12 +129,17 @@ fn window(burner: &mut Driver, factor: f64) -> f64 {
         );
     }
     let changes = fields.temperature.iter().zip(&before);
-    changes.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    let most = changes.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    (most, convergence.converged)
 }
 
 /// Runs windows until one that converges changes no temperature by more than 1e-4 K.
 fn settle(burner: &mut Driver, factor: f64, most: u64) {
-    while window(burner, factor) > 1e-4 {
+    loop {
+        let (change, converged) = window(burner, factor);
+        if converged && change <= 1e-4 {
+            return;
+        }
         assert!(burner.index < most, "AF {factor}: not steady");
     }
 }
@@ -145,10 +150,10 @@ fn a_flame_stands_where_it_stands_whatever_the_acceleration() {
     settle(&mut flame, 678.0, 60);
     let (place, peak) = place_and_peak(&flame);
     println!("AF 678: {place} m, {peak} K after {} windows", flame.index);
-    // Four cells from the inlet, hotter than what it started from; 1.7546 mm, 1930.81 K.
-    let cell = HEIGHT / CELLS as f64;
-    assert!((4.0..5.0).contains(&(place / cell)), "{place} m");
-    assert!(peak > 1900.0 && peak < adiabatic(&mixture()), "{peak} K");
+    // Four cells from the inlet, below the adiabatic temperature; what this mesh gave at first.
+    assert!((place / 1.7546e-3 - 1.0).abs() < 1e-3, "{place} m");
+    assert!((peak - 1930.81).abs() < 0.1, "{peak} K");
+    assert!(peak < adiabatic(&mixture()), "{peak} K");
 
     // Found from the same start at another factor; the slowest of it takes some hundred pseudo-steps to die away.
     let mut other = burner(GasStorage::Process, 50);

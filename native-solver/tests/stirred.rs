@@ -1,5 +1,5 @@
-//! The partially stirred reactor against its law: what reacts in a window is the laminar change times the share that
-//! eddies mix.
+//! Eddies and species: the partially stirred reactor against its law (what reacts in a window is the laminar change
+//! times the share that eddies mix), and what eddies carry.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -10,7 +10,9 @@ use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::kinetics::{Mechanism, State, Tolerances, pasr};
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::physics::turbulence::KEpsilon;
-use calcine_coupler::setup::Turbulence;
+use calcine_coupler::setup::{
+    CompositionSchedule, GasPatch, InletFlow, InletTurbulence, Schedule, Turbulence,
+};
 use common::*;
 
 const SPECIES: [&str; 7] = ["CH4", "O2", "CO", "H2", "H2O", "CO2", "N2"];
@@ -64,7 +66,7 @@ fn the_share_that_eddies_mix_reacts() {
     let viscosity = gas.viscosity(1500.0, &y) + eddies;
     let mixing = pasr::mixing_time(MIXING, viscosity, density, dissipation);
     let jl4 = Mechanism::jones_lindstedt(&gas).unwrap();
-    let share = pasr::reacting_fraction(pasr::chemical_time(&jl4, state), mixing);
+    let share = pasr::reacting_fraction(jl4.chemical_time(state), mixing);
     assert!(share > 0.2 && share < 0.8, "{share}");
     let stirred = Combustion::Pasr {
         mixing_constant: MIXING,
@@ -76,4 +78,47 @@ fn the_share_that_eddies_mix_reacts() {
     // The bed has no eddies: its pores mix.
     let ratio = taken(stirred, 0.5) / taken(Combustion::Laminar, 0.5);
     assert!((ratio - 1.0).abs() < 1e-6, "{ratio}");
+}
+
+/// Nitrogen along a duct of still carbon monoxide into which it flows, after a window, with eddies of a length
+/// scale in m and a turbulent Schmidt number.
+fn carried(length_scale: f64, schmidt: f64) -> Vec<f64> {
+    let bottom = GasPatch::Inlet {
+        flow: InletFlow::SuperficialVelocity(Schedule::constant(0.1)),
+        temperature: Schedule::constant(300.0),
+        composition: Some(CompositionSchedule(vec![(0.0, vec![1.0, 0.0])])),
+        turbulence: Some(InletTurbulence {
+            intensity: 1.0,
+            length_scale,
+        }),
+    };
+    let mut setup = setup(&[("side", slip()), ("bottom", bottom), ("top", outlet())]);
+    setup.turbulence = Turbulence::KEpsilon {
+        energy: 0.015,
+        length_scale,
+        prandtl: 0.85,
+        schmidt,
+    };
+    setup.properties = GasModel::Mixture(Mixture::new(["N2", "CO"]).unwrap());
+    setup.schmidt = 0.7;
+    setup.composition = vec![0.0, 1.0];
+    let mut driver = Driver::new(&duct([0.01, 0.01, 0.1], [1, 1, 20]), &setup);
+    driver.window(0.05, 1.0);
+    let fields = driver.gas.fields();
+    fields.composition.iter().step_by(2).copied().collect()
+}
+
+#[test]
+fn eddies_carry_species_with_their_viscosity_over_the_turbulent_schmidt_number() {
+    // μ_t = ρ C_μ^¼ √k L over Sc_t: both doubled carry the same, one of them does not.
+    let once = carried(5e-3, 0.7);
+    let both = carried(1e-2, 1.4);
+    let apart = |a: &[f64], b: &[f64]| {
+        let pairs = a.iter().zip(b);
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    assert!(once[0] > 0.2 && once[10] > 1e-6, "{once:?}");
+    assert!(apart(&once, &both) < 1e-9, "{once:?} {both:?}");
+    let less = carried(5e-3, 0.707);
+    assert!(apart(&once, &less) > 1e-4, "{once:?} {less:?}");
 }

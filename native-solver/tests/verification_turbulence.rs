@@ -176,15 +176,19 @@ fn friction_in_a_channel_follows_the_correlation_of_dean_and_velocity_the_law_of
         let found = 2.0 * (friction / SPEED).powi(2);
         let fields = channel.driver.gas.fields();
         let law = LogLaw::SMOOTH;
+        let limit = law.laminar_limit();
         let mut worst: f64 = 0.0;
         for cell in channel.section(10) {
             let y = channel.mesh.cell_centre()[cell].x;
             let plus = DENSITY * friction * y / VISCOSITY;
             let speed = fields.velocity[cell].z / friction;
             if plus > 30.0 && y < 0.3 * HALF {
-                worst = worst.max((speed / law.speed(plus) - 1.0).abs());
+                worst = worst.max((speed / law.speed(plus, limit) - 1.0).abs());
             }
-            println!("y+ {plus:7.1} u+ {speed:.2} law {:.2}", law.speed(plus));
+            println!(
+                "y+ {plus:7.1} u+ {speed:.2} law {:.2}",
+                law.speed(plus, limit)
+            );
         }
         let first = DENSITY * friction * 0.5 * HALF / across as f64 / VISCOSITY;
         println!(

@@ -2,6 +2,7 @@
 
 use calcine_coupler::closures::Closures;
 use calcine_coupler::coordinator::{CheckpointPaths, Pace, Plan};
+use calcine_coupler::hold::Holds;
 use calcine_coupler::motion::Motion;
 use calcine_coupler::paths::{HeatWall, PathsSetup};
 use calcine_coupler::physics::Vec3;
@@ -29,6 +30,10 @@ pub(super) fn plan(case: &Case, prepared: &Prepared, checkpoint: CheckpointPaths
             Motion::Frozen => Vec::new(),
             Motion::Free(contacts) => contacts.held.iter().map(|held| !held).collect(),
         },
+        holds: case
+            .motion
+            .as_ref()
+            .map_or_else(Holds::default, |motion| motion.held.clone()),
         gravity: case.gas.gravity,
         traffic: traffic(case, prepared),
         substance: case.particles.iter().map(|one| one.material).collect(),

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 
-use calcine_adapters::openfoam::chemistry;
+use calcine_adapters::openfoam::{chemistry, turbulence};
 use calcine_coupler::gas_chemistry::Combustion;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::gas_model::GasModel;
@@ -125,32 +125,31 @@ fn honoured(text: &mut String, case: &Case) {
 /// What an OpenFOAM gas makes of the case, and what its template alone states.
 fn openfoam(case: &Case) -> String {
     let mut text = String::from("every key");
+    let mut stated = stated(case);
     if let (Some(gas), GasModel::Mixture(mixture)) =
         (case.gas.chemistry.reacting(), &case.gas.properties)
     {
-        if case.openfoam.solver.is_stock() {
-            return "not this case: a stock solver (`openfoam.solver`) does not take reactions of the gas".into();
+        match chemistry::files(&case.gas, mixture, gas) {
+            Ok(files) => stated.extend(files.into_iter().map(|file| file.0.to_owned())),
+            Err(error) => return format!("not this case: {error}"),
         }
-        if let Err(error) = chemistry::files(&case.gas, mixture, gas) {
-            return format!("not this case: {error}");
-        }
+        text += " but `gas.chemistry.fraction_tolerance` and `gas.chemistry.negligible`, in whose place OpenFOAM's \
+                 integration has numbers of its own";
     }
     if case.openfoam.solver.is_stock() {
         text += ", approximately: a stock solver (`openfoam.solver`) has no void fraction in its storage; \
                  see docs/stock-solvers.md";
     }
     if let Some(template) = &case.openfoam.template {
-        // What the case states is written over a template's.
-        let stated = ["U", "T", "p", "p_rgh", "g", "thermophysicalProperties"];
         let mut names = Vec::new();
         for folder in ["0", "constant", "system"] {
             let Ok(entries) = std::fs::read_dir(template.join(folder)) else {
                 continue;
             };
             for entry in entries.filter_map(Result::ok) {
-                let name = entry.file_name().to_string_lossy().into_owned();
-                if entry.path().is_file() && !stated.contains(&name.as_str()) {
-                    names.push(format!("{folder}/{name}"));
+                let name = format!("{folder}/{}", entry.file_name().to_string_lossy());
+                if entry.path().is_file() && !stated.contains(&name) {
+                    names.push(name);
                 }
             }
         }
@@ -162,6 +161,27 @@ fn openfoam(case: &Case) -> String {
         );
     }
     text
+}
+
+/// Files of a template over which OpenFOAM's case is written, without those of reactions.
+fn stated(case: &Case) -> Vec<String> {
+    let always = [
+        "0/U",
+        "0/T",
+        "0/p",
+        "0/p_rgh",
+        "constant/g",
+        "constant/thermophysicalProperties",
+    ];
+    let eddies = turbulence::files(&case.gas, "").into_iter();
+    let eddies = eddies
+        .map(|file| file.0)
+        // A template's own options stay beside.
+        .filter(|name| *name != "constant/fvOptions");
+    let species = case.gas.properties.species().iter();
+    let species = species.map(|name| format!("0/{name}"));
+    let names = always.into_iter().chain(eddies).map(str::to_owned);
+    names.chain(species).collect()
 }
 
 /// R, the error of process storage, and the window against the drag's own time.
@@ -246,4 +266,52 @@ fn local(case: &Case, eps: f64, density: f64) -> Option<LocalGas> {
         heat_capacity: gas.heat_capacity(case.gas.temperature, &case.gas.composition),
         slip: fastest / eps,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn good(name: &str, template: &std::path::Path) -> Case {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let path = folder.join(format!("tests/inputs/good/{name}.toml"));
+        let template = format!("openfoam.template={}", template.display());
+        crate::case::read(&path, &[template]).unwrap()
+    }
+
+    #[test]
+    fn a_template_adds_what_the_case_does_not_write_itself() {
+        let template = tempfile::tempdir().unwrap();
+        for name in [
+            "0/U",
+            "0/k",
+            "0/alphat",
+            "0/G",
+            "constant/turbulenceProperties",
+            "constant/fvOptions",
+            "system/fvSchemes",
+        ] {
+            let path = template.path().join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, "").unwrap();
+        }
+        let added = |name: &str| {
+            let text = openfoam(&good(name, template.path()));
+            text.split_once(" adds ").unwrap().1.to_owned()
+        };
+        let turbulent = "0/G, constant/fvOptions, system/fvSchemes";
+        assert_eq!(added("turbulent-duct"), turbulent);
+        assert_eq!(
+            added("two-populations"),
+            "0/G, 0/alphat, 0/k, constant/fvOptions, constant/turbulenceProperties, system/fvSchemes"
+        );
+    }
+
+    #[test]
+    fn tolerances_that_openfoam_does_not_take_are_told_of_a_gas_that_reacts() {
+        let template = tempfile::tempdir().unwrap();
+        let said = |name: &str| openfoam(&good(name, template.path()));
+        assert!(said("gas-mechanism").contains("but `gas.chemistry.fraction_tolerance` and"));
+        assert!(said("turbulent-duct").starts_with("every key; "));
+    }
 }

@@ -3,19 +3,22 @@
 use std::f64::consts::PI;
 
 use calcine_adapters::liggghts::moving;
+use calcine_coupler::coordinator::LONGEST_STEP;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::motion::{
     ContactForce, Contacts, Elastic, Motion as Told, Pair, Wall, WallMotion,
 };
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::contact::time_step;
 use calcine_coupler::setup::ParticleSetup;
+use calcine_coupler::time::Ticks;
 use thiserror::Error;
 
 use super::model::{Case, FreeMotion, Material, Motion, MotionKind};
 use super::units::shown;
 
 /// A step above this share of Rayleigh's time gets a warning, above the second it is refused.
-const RAYLEIGH: [f64; 2] = [0.2, 0.5];
+const RAYLEIGH: [f64; 2] = [0.2, LONGEST_STEP];
 /// The same for the duration of a Hertzian impact.
 const HERTZ: [f64; 2] = [0.1, 0.25];
 /// Shares by which a step is chosen where the case states none.
@@ -46,21 +49,35 @@ pub enum ContactsError {
     /// Walls that move over a changing acceleration factor.
     #[error(
         "wall \"{wall}\" moves, but `time.acceleration` changes: its speed on the motion clock would \
-         change too; write one factor"
+         change too; write one factor, or hold the bed where it is another"
     )]
     Schedule {
         /// Its name.
         wall: String,
+    },
+    /// A time between two in which the bed is held that is shorter than a step.
+    #[error(
+        "between two times of `motion.held` the bed moves from {from} to {to}, which is {} s of motion time, less \
+         than the step of {} s; hold it less often, or lower `motion.motion_step`", shown(*.motion), shown(*.step)
+    )]
+    Short {
+        /// Begin of the process time in which it moves.
+        from: Ticks,
+        /// Its end.
+        to: Ticks,
+        /// Motion time between them in s.
+        motion: f64,
+        /// The step in s.
+        step: f64,
     },
 }
 
 /// Times that limit the step of a contact solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Time in s that a Rayleigh wave takes around the smallest particle:
-    /// π R √(ρ/G)/(0.1631 ν + 0.8766) (Thornton, Randall 1988).
+    /// Shortest [Rayleigh time](time_step::rayleigh) in s of a particle.
     pub rayleigh: f64,
-    /// Shortest duration in s of an impact at `speed`: 2.87 (m*²/(R* E*² v))^(1/5) (Hertz).
+    /// Shortest [duration of an impact](time_step::hertz_collision) in s at `speed`.
     pub hertz: f64,
     /// Speed in m/s: of the start, of walls, or of a fall through the mesh, whichever is largest.
     pub speed: f64,
@@ -102,10 +119,10 @@ impl Limits {
 /// How the particles of a case move, on the motion clock.
 pub fn motion(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Result<Told, ContactsError> {
     let free = case.particles.iter().any(|one| one.motion == Motion::Free);
-    let Some(motion) = case.motion.filter(|_| free) else {
+    let Some(motion) = case.motion.as_ref().filter(|_| free) else {
         return Ok(Told::Frozen);
     };
-    let limits = limits(case, &motion, mesh, setup);
+    let limits = limits(case, motion, mesh, setup);
     let window = case.time.motion_window.seconds();
     let step = match motion.step {
         Some(step) => step,
@@ -114,6 +131,18 @@ pub fn motion(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Result<Told, C
     };
     if let Some(error) = limits.refuse(step) {
         return Err(error);
+    }
+    let moving = motion.held.moving(&case.time.acceleration, case.time.end);
+    for &([from, to], factor) in moving.iter().filter(|_| !motion.held.is_none()) {
+        let motion = to.since(from).seconds() / factor;
+        if motion < step {
+            return Err(ContactsError::Short {
+                from,
+                to,
+                motion,
+                step,
+            });
+        }
     }
     // The reader asks for the elastic constants of what touches; others are never used.
     let elastic = |material: &Material| Elastic {
@@ -133,7 +162,7 @@ pub fn motion(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Result<Told, C
             .collect(),
         law: motion.law,
         pairs: pairs(case),
-        walls: walls(case)?,
+        walls: walls(case, moving.iter().map(|one| one.1))?,
     })))
 }
 
@@ -160,10 +189,11 @@ fn pairs(case: &Case) -> Vec<Pair> {
     pairs
 }
 
-/// The walls; what users write of their speed is process time.
-fn walls(case: &Case) -> Result<Vec<Wall>, ContactsError> {
-    let factor = case.time.acceleration.largest();
-    let changes = case.time.acceleration.steps().len() > 1;
+/// The walls; what users write of their speed is process time, of which so many pass in one of motion time while
+/// the bed moves.
+fn walls(case: &Case, mut factors: impl Iterator<Item = f64>) -> Result<Vec<Wall>, ContactsError> {
+    let factor = factors.next().unwrap_or(1.0);
+    let changes = factors.any(|one| one != factor);
     let quicker = |wall: &Wall| {
         let motion = match wall.motion {
             WallMotion::Still => WallMotion::Still,
@@ -236,13 +266,11 @@ pub fn limits(case: &Case, motion: &FreeMotion, mesh: &Mesh, setup: &ParticleSet
             true => smallest,
             false => 0.5 * population.sizes.largest(),
         };
-        let shear = young / (2.0 * (1.0 + poisson));
-        let wave = 0.1631 * poisson + 0.8766;
-        let rayleigh = PI * radius * (material.density / shear).sqrt() / wave;
+        let rayleigh = time_step::rayleigh(radius, material.density, young, poisson);
         // Two equal spheres: m* = m/2, R* = R/2, E* = E/(2(1 − ν²)).
         let mass = 2.0 / 3.0 * PI * radius.powi(3) * material.density;
         let stiff = young / (2.0 * (1.0 - poisson * poisson));
-        let hertz = 2.87 * (mass * mass / (0.5 * radius * stiff * stiff * limits.speed)).powf(0.2);
+        let hertz = time_step::hertz_collision(0.5 * radius, mass, stiff, limits.speed);
         limits.rayleigh = limits.rayleigh.min(rayleigh);
         limits.hertz = limits.hertz.min(hertz);
     }
@@ -269,6 +297,20 @@ pub fn report(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Option<String>
         limits.hertz,
         limits.speed
     );
+    if !motion.held.is_none() {
+        let end = case.time.end;
+        let moving = motion.held.moving(&case.time.acceleration, end);
+        let moves: f64 = moving
+            .iter()
+            .map(|one| one.0[1].since(one.0[0]).seconds())
+            .sum();
+        text.push_str(&format!(
+            "    held {} times, {} s of process time altogether; it moves for {} s\n",
+            motion.held.spans().len(),
+            shown(end.seconds() - moves),
+            shown(moves)
+        ));
+    }
     if let Some(warning) = limits.warning(step) {
         text.push_str(&format!("    warning: {warning}\n"));
     }
@@ -290,12 +332,12 @@ mod tests {
         let case = crate::case::read(&path, &[]).unwrap();
         let mesh = crate::case::mesh(&case.mesh).unwrap();
         let setup = crate::case::particles(&case).unwrap().setup;
-        let mut motion = case.motion.unwrap();
+        let mut motion = case.motion.clone().unwrap();
         motion.law.force = ContactForce::Linear {
             characteristic_speed: 1.0,
         };
         let limits = limits(&case, &motion, &mesh, &setup);
-        // π 1e-3 √(2500/2e9)/(0.1631·0.25 + 0.8766) and 2.87 (m*²/(R* E*² v))^0.2 with
+        // π 1e-3 √(2500/2e9)/(0.1631·0.25 + 0.8766) and 2.868266 (m*²/(R* E*² v))^0.2 with
         // m* = 5.235988e-6 kg, R* = 0.5 mm, E* = 2.666667 GPa.
         assert!(
             (limits.rayleigh / 3.828_7e-6 - 1.0).abs() < 1e-4,
@@ -303,7 +345,7 @@ mod tests {
             limits.rayleigh
         );
         assert!(
-            (limits.hertz / 1.719_1e-5 - 1.0).abs() < 1e-3,
+            (limits.hertz / 1.718_06e-5 - 1.0).abs() < 1e-5,
             "{}",
             limits.hertz
         );

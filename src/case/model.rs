@@ -1,27 +1,30 @@
 //! A checked case: plain SI values, nothing left to parse.
 
+mod laws;
+mod material;
+mod mesh;
+mod particles;
+mod quantity;
+
 use std::path::PathBuf;
 use std::time::Duration;
 
 use calcine_adapters::openfoam::stock::Solver;
+use calcine_coupler::hold::Holds;
 use calcine_coupler::interior::reacting::{Reaction, Size};
-use calcine_coupler::mesh::grading::Stretch;
-use calcine_coupler::mesh::openings::Opening;
-use calcine_coupler::mesh::refine::Refinement;
 use calcine_coupler::mesh::zone::Zone;
-use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::motion::{ContactLaw, Wall};
-use calcine_coupler::packing::Sizes;
-use calcine_coupler::packing::regular::Lattice;
 pub use calcine_coupler::paths::SURROUNDINGS;
-use calcine_coupler::physics::Vec3;
-use calcine_coupler::physics::conduction::Conductivity;
-use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::setup::{GasSetup, Schedule};
-use calcine_coupler::sight::Sight;
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
 use calcine_coupler::traffic::Outlet;
+
+pub use laws::{Area, Conduction, ConductionLaw, DragLaw, Gap, HeatLaw, Laws, Radiation};
+pub use material::{Material, SizeLaw};
+pub use mesh::MeshSpec;
+pub use particles::{FeedSpec, Motion, Place, Population};
+pub use quantity::{Band, Expect, GasPlace, Measure, ParticlePlace, Probe, Quantity, Statistic};
 
 /// A checked case.
 #[derive(Clone, Debug)]
@@ -100,48 +103,6 @@ pub struct Time {
     pub checkpoint_wall: Option<Duration>,
 }
 
-/// Where the gas mesh comes from.
-#[derive(Clone, Debug, PartialEq)]
-#[allow(clippy::large_enum_variant, reason = "there is one a case")]
-pub enum MeshSpec {
-    /// A box, generated. Patches by default `side` (x−, x+, y−, y+), `bottom` (z−), `top` (z+).
-    Box {
-        /// Corner with the smallest coordinates in m.
-        origin: Vec3,
-        /// Edge lengths in m.
-        size: Vec3,
-        /// Cells along x, y, z.
-        cells: [usize; 3],
-        /// How cell sizes change along x, y, z; empty for equal ones.
-        grading: [Vec<Stretch>; 3],
-        /// Zones in which cells are split.
-        refine: Vec<Refinement>,
-        /// Parts of the boundary with patches of their own.
-        openings: Vec<Opening>,
-        /// Patch names of x−, x+, y−, y+, z−, z+; equal names make one patch.
-        patches: [String; 6],
-    },
-    /// An upright cylinder, generated as an O-grid. Patches `side`, `bottom`, `top`.
-    Cylinder {
-        /// Centre of the bottom in m.
-        origin: Vec3,
-        /// Diameter in m.
-        diameter: f64,
-        /// Length along z in m.
-        length: f64,
-        /// Cells across the diameter, and along z.
-        cells: [usize; 2],
-        /// How cell sizes change along z; empty for equal ones.
-        grading: Vec<Stretch>,
-        /// Zones in which cells are split.
-        refine: Vec<Refinement>,
-        /// Parts of the boundary with patches of their own.
-        openings: Vec<Opening>,
-    },
-    /// An OpenFOAM polyMesh folder (absolute path).
-    PolyMesh(PathBuf),
-}
-
 /// Solids and reactions of particles; empty where nothing reacts.
 #[derive(Clone, Debug, Default)]
 pub struct ReactionSpec {
@@ -162,51 +123,6 @@ impl ReactionSpec {
     }
 }
 
-/// A solid material.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Material {
-    /// Name.
-    pub name: String,
-    /// Density in kg/m³.
-    pub density: f64,
-    /// Specific heat capacity over temperature; of a material with a composition that of its solids.
-    pub heat_capacity: HeatCapacity,
-    /// Mass fractions of all solids that there are; `None` where it is not said what it is made of.
-    pub composition: Option<Vec<f64>>,
-    /// How its particles take up room while they react.
-    pub size: SizeLaw,
-    /// Thermal conductivity over temperature.
-    pub conductivity: Option<Conductivity>,
-    /// Emissivity of its surface.
-    pub emissivity: Option<f64>,
-    /// Young's modulus in Pa, as contacts are computed.
-    pub young: Option<f64>,
-    /// Young's modulus in Pa of the real material, where the other one is softened.
-    pub real_young: Option<f64>,
-    /// Poisson's ratio.
-    pub poisson: Option<f64>,
-}
-
-/// How particles of a material take up room while they react.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum SizeLaw {
-    /// The diameter stays.
-    #[default]
-    Constant,
-    /// The density stays.
-    ConstantDensity {
-        /// Radius in m below which none shrinks.
-        least_radius: f64,
-    },
-    /// Each solid has its own density in the particle.
-    Densities {
-        /// In kg/m³, of all solids that there are; `None` where it is not said.
-        densities: Vec<Option<f64>>,
-        /// Radius in m below which none shrinks.
-        least_radius: f64,
-    },
-}
-
 /// Contact properties of a pair of materials.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contact {
@@ -225,7 +141,7 @@ pub struct Contact {
 }
 
 /// `[motion]`: how particles that are free move.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FreeMotion {
     /// Which clock the motion belongs to.
     pub kind: MotionKind,
@@ -233,6 +149,8 @@ pub struct FreeMotion {
     pub step: Option<f64>,
     /// Law of contacts.
     pub law: ContactLaw,
+    /// When the bed is held.
+    pub held: Holds,
 }
 
 /// Which clock the motion of particles belongs to (requirements TSM-7).
@@ -244,232 +162,10 @@ pub enum MotionKind {
     Accelerated,
 }
 
-/// Particles of one kind.
-#[derive(Clone, Debug)]
-pub struct Population {
-    /// Name.
-    pub name: String,
-    /// Index into `Case::materials`.
-    pub material: usize,
-    /// Diameters; a file of particles may state its own.
-    pub sizes: Sizes,
-    /// Seed by which diameters that differ are drawn.
-    pub size_seed: u64,
-    /// How the particles move.
-    pub motion: Motion,
-    /// Velocity at the start in m/s of motion time.
-    pub velocity: Vec3,
-    /// Where they are at the start.
-    pub place: Place,
-    /// Start temperature in K; a file of particles may state its own.
-    pub temperature: f64,
-}
-
-/// Particles that come in.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FeedSpec {
-    /// Name.
-    pub name: String,
-    /// Index of their population, which gives material and sizes.
-    pub population: usize,
-    /// Where they appear.
-    pub zone: Zone,
-    /// Mass flow in kg/s.
-    pub rate: f64,
-    /// Mass in kg at the start.
-    pub batch: f64,
-    /// Their velocity in m/s of process time.
-    pub velocity: Vec3,
-    /// Their temperature in K.
-    pub temperature: f64,
-    /// Equal seeds give equal particles.
-    pub seed: u64,
-}
-
-/// How particles move.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Motion {
-    /// They stay where they are.
-    Frozen,
-    /// They move by gravity, contacts and the force of the gas.
-    Free,
-}
-
-/// Where particles are at the start.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Place {
-    /// A regular stacking: `counts` particles along x, y, z from `first` on.
-    Grid {
-        /// Centre of the first particle in m.
-        first: Vec3,
-        /// Distances between centres along x, y, z in m.
-        spacing: Vec3,
-        /// Number along x, y, z.
-        counts: [usize; 3],
-    },
-    /// A random packing in a layer of a box or cylinder mesh, from wall to wall.
-    Random {
-        /// Lowest and highest z of the layer in m.
-        layer: [f64; 2],
-        /// Volume of spheres over the filled space, layers at the walls included.
-        solid_fraction: f64,
-        /// Equal seeds give equal packings.
-        seed: u64,
-    },
-    /// A regular stacking in a layer of a box or cylinder mesh, from wall to wall.
-    Regular {
-        /// The stacking.
-        lattice: Lattice,
-        /// Lowest and highest z of the layer in m.
-        layer: [f64; 2],
-    },
-    /// Read from a file: CSV, a LIGGGHTS dump, or VTK.
-    File {
-        /// Absolute path.
-        path: PathBuf,
-        /// The snapshot of a dump; `None`: its last one.
-        timestep: Option<u64>,
-        /// Those of one type; `None`: all.
-        kind: Option<u64>,
-    },
-}
-
-/// Laws; each is stated in the case file, none has a default.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Laws {
-    /// Drag on a particle.
-    pub drag: DragLaw,
-    /// How gas and particles share their momentum.
-    pub momentum: MomentumModel,
-    /// Heat transfer between gas and particle.
-    pub heat_transfer: HeatLaw,
-    /// Heat conduction between particles.
-    pub conduction: Conduction,
-    /// Mass transfer between gas and particles that react.
-    pub mass_transfer: HeatLaw,
-    /// Radiation between particles; `None`: none.
-    pub radiation: Option<Radiation>,
-}
-
-impl Laws {
-    /// True where heat passes contacts or gaps.
-    pub fn conducts(&self) -> bool {
-        self.conduction.law != ConductionLaw::None || self.conduction.gap != Gap::None
-    }
-}
-
-/// How particles conduct heat to each other.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Conduction {
-    /// Through contacts.
-    pub law: ConductionLaw,
-    /// By which overlap.
-    pub area: Area,
-    /// Through the gas between surfaces.
-    pub gap: Gap,
-}
-
-/// The overlap by which contacts conduct.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Area {
-    /// As it is.
-    Overlap,
-    /// That of the real materials under the computed force.
-    Force,
-    /// That of the real materials under one force.
-    Load {
-        /// The force in N.
-        force: f64,
-        /// The widest gap in m that counts as a contact.
-        within: f64,
-    },
-}
-
-/// Conduction through the gas between surfaces.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Gap {
-    /// None.
-    None,
-    /// Rong and Horio 1999.
-    RongHorio {
-        /// Thickness of the film over the radius.
-        lens: f64,
-        /// Least width of a gap in m.
-        least_width: f64,
-    },
-    /// Cheng, Yu and Zulli 1999.
-    Cheng {
-        /// Radius of the cones' base over the particle's.
-        cone: f64,
-        /// Widest gap over the radius.
-        widest: f64,
-    },
-}
-
-/// How particles radiate.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Radiation {
-    /// How views are found.
-    pub sight: Sight,
-    /// True where badly conducting spheres pass on less.
-    pub inside: bool,
-    /// Temperature in K of what is seen beyond all walls; `None`: nothing leaves.
-    pub surroundings: Option<Schedule>,
-    /// Views of moving particles hold for so much process time in s.
-    pub refresh: f64,
-}
-
 /// True where a wall is the named one, or a part of it.
 pub fn belongs(wall: &str, name: &str) -> bool {
     wall.strip_prefix(name)
         .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-}
-
-/// Conduction laws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ConductionLaw {
-    /// No conduction.
-    None,
-    /// Batchelor and O'Brien 1977 (requirements COR-17).
-    BatchelorObrien,
-    /// By the circle of intersection, as LIGGGHTS has it.
-    Lens,
-}
-
-/// Drag laws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DragLaw {
-    /// No drag.
-    None,
-    /// Ergun below a void fraction of 0.8, Wen and Yu above (requirements COR-6).
-    ErgunWenYu,
-    /// Ergun 1952.
-    Ergun,
-    /// Wen and Yu 1966.
-    WenYu,
-    /// Ergun and Wen-Yu, blended.
-    Gidaspow,
-    /// Di Felice 1994.
-    DiFelice,
-    /// Koch and Hill 2001.
-    KochHill,
-    /// Beetstra, van der Hoef and Kuipers 2007.
-    Beetstra,
-}
-
-/// Heat transfer laws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum HeatLaw {
-    /// No heat transfer.
-    None,
-    /// Gunn 1978 (requirements COR-3).
-    Gunn,
-    /// Ranz and Marshall (requirements COR-1).
-    RanzMarshall,
-    /// Wakao and Kaguei 1982 (requirements COR-2).
-    Wakao,
-    /// Gnielinski 1980 (requirements COR-4).
-    Gnielinski,
 }
 
 /// Mapping, smoother, exchange.
@@ -532,145 +228,4 @@ pub struct Output {
     pub gas: Vec<String>,
     /// Particle fields of the snapshots: temperature, velocity, heat, mass, solids.
     pub particles: Vec<String>,
-}
-
-/// Points at which fields are sampled.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Probe {
-    /// Name.
-    pub name: String,
-    /// The points in m.
-    pub points: Vec<Vec3>,
-    /// Whether the gas is sampled.
-    pub gas: bool,
-    /// Whether the particles are.
-    pub particles: bool,
-}
-
-/// A quantity of interest.
-#[derive(Clone, Debug)]
-pub struct Quantity {
-    /// Name.
-    pub name: String,
-    /// How it is measured.
-    pub measure: Measure,
-    /// Which species of the gas, or solid, where the measure is of a mass fraction.
-    pub column: Option<usize>,
-    /// Unit as printed.
-    pub unit: &'static str,
-    /// Largest difference between pairings.
-    pub agree: Option<Band>,
-    /// Process time in s from which `agree` holds.
-    pub agree_from: f64,
-    /// Process time in s over which values are averaged before pairings are compared; 0: not at all.
-    pub agree_over: f64,
-    /// Expected value.
-    pub expect: Option<Expect>,
-}
-
-/// How a quantity is measured.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Measure {
-    /// Area mean on the first patch minus that on the second, of a gas field.
-    Difference {
-        /// Field: `pressure` (Pa) or `temperature` (K).
-        field: String,
-        /// The two patches.
-        patches: [String; 2],
-    },
-    /// Statistic of a gas field.
-    Gas {
-        /// Field: `temperature` (K), `pressure` (Pa), `density` (kg/m³), `speed` (m/s),
-        /// `void_fraction`.
-        field: String,
-        /// Where.
-        over: GasPlace,
-        /// `mean`, `min` or `max`.
-        statistic: Statistic,
-    },
-    /// Statistic over particles.
-    Particles {
-        /// Field: `temperature` (K).
-        field: String,
-        /// Which.
-        over: ParticlePlace,
-        /// `mean`, `min` or `max`.
-        statistic: Statistic,
-    },
-    /// Heat in W from a wall of a temperature, or from the surroundings, into the particles.
-    WallHeat {
-        /// Its name.
-        wall: String,
-    },
-    /// One particle, by its place in the order of ids, counted from 1.
-    Particle {
-        /// Field: `temperature` (K).
-        field: String,
-        /// Which one.
-        number: usize,
-    },
-    /// Angle in rad of the bed's surface in a drum: by which the centre of mass of all particles has turned
-    /// about an axis from straight below it. A surface that is flat stands across the line from the axis to the
-    /// centre of mass, so that this is its slope.
-    SurfaceAngle {
-        /// A point of the axis in m.
-        point: Vec3,
-        /// Unit vector along the axis.
-        axis: Vec3,
-        /// Unit vector along gravity.
-        down: Vec3,
-    },
-}
-
-/// Where a statistic of the gas is taken.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum GasPlace {
-    /// In all cells; the mean is over the gas' volume.
-    Everywhere,
-    /// On a patch; the mean is over its area.
-    Patch(String),
-    /// At the points of a probe.
-    Probe(String),
-}
-
-/// Of which particles a statistic is taken.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum ParticlePlace {
-    /// Of all.
-    Everywhere,
-    /// Of one population, by its index.
-    Population(u32),
-    /// Of those at the points of a probe.
-    Probe(String),
-}
-
-/// Statistics.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Statistic {
-    /// Arithmetic mean.
-    Mean,
-    /// Smallest.
-    Min,
-    /// Largest.
-    Max,
-}
-
-/// A band around a value.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Band {
-    /// Fraction of the value.
-    Relative(f64),
-    /// In the unit of the quantity.
-    Absolute(f64),
-}
-
-/// An expected value.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Expect {
-    /// Process time in s at which it holds; `None`: at the end.
-    pub at: Option<f64>,
-    /// The value, in the unit of the quantity.
-    pub value: f64,
-    /// The band.
-    pub within: Band,
 }

@@ -179,6 +179,7 @@ impl Node {
             "number" | "plain number" | "as the field measured" => plain(),
             "number, or list" => either(plain(), list(tuple(3, plain()))),
             "list of pairs" => pairs(quantity(1), plain()),
+            "list of [begin, end]" => pairs(quantity(1), quantity(1)),
             "band" => json!({"type": "string", "pattern": plain()["pattern"]}),
             _ if words.starts_with('`') => json!({"enum": choices_of(words)}),
             _ if words.starts_with("table of ") => {

@@ -3,14 +3,20 @@
 use std::f64::consts::PI;
 use std::fs;
 
+use calcine_coupler::setup::Turbulence;
 use calcine_coupler::sight::Sight;
 use thiserror::Error;
 
 use super::model::{Case, MeshSpec, Place};
 
-/// Bytes that coordinator and native gas hold per cell, and per particle, about; measured as the
-/// growth of resident memory, rounded up.
-const BYTES: [f64; 2] = [2000.0, 500.0];
+/// Bytes that coordinator and native gas hold per cell, and per frozen particle, about; measured as the growth of
+/// resident memory, rounded up: the heated bed on 14 700, 66 760 and 134 792 cells.
+const BYTES: [f64; 2] = [5100.0, 500.0];
+/// Bytes of a species in a cell, about: the purged bed with 3 and 7 species on 82 944 cells, the latter with reactions. Eddies have
+/// two scalars more.
+const BYTES_A_SCALAR: f64 = 150.0;
+/// Bytes of a particle's contacts and motion, about: the settled beds of `native-solver/benches/particles.rs`.
+const BYTES_FREE: f64 = 1000.0;
 
 /// A case larger than this machine.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -41,7 +47,13 @@ const DENSE: f64 = 0.6;
 
 /// Bytes that so many cells and particles of a case need.
 pub fn memory(case: &Case, cells: f64, particles: f64) -> f64 {
-    cells * BYTES[0] + particles * (BYTES[1] + BYTES_A_VIEW * views(case))
+    let eddies = match case.gas.turbulence {
+        Turbulence::Laminar => 0,
+        Turbulence::KEpsilon { .. } => 2,
+    };
+    let cell = BYTES[0] + BYTES_A_SCALAR * (case.gas.composition.len() + eddies) as f64;
+    let free = case.motion.as_ref().map_or(0.0, |_| BYTES_FREE);
+    cells * cell + particles * (BYTES[1] + free + BYTES_A_VIEW * views(case))
 }
 
 /// Pairs that see each other by radiation, for each particle: half of those whose centres lie within the range,
@@ -55,9 +67,7 @@ fn views(case: &Case) -> f64 {
         Place::Random { solid_fraction, .. } => Some(solid_fraction),
         _ => None,
     });
-    let solid = solid.fold(None, |most: Option<f64>, one| {
-        Some(most.unwrap_or(one).max(one))
-    });
+    let solid = solid.reduce(f64::max);
     let diameters = case.particles.iter();
     let largest = diameters
         .clone()
@@ -185,8 +195,14 @@ mod tests {
     fn memory_is_shown_in_a_unit_that_suits_it() {
         let cold = shipped("packed-column");
         assert_eq!(shown(memory(&cold, 11.0, 10.0)), "1 MB or less");
-        assert_eq!(shown(memory(&cold, 6e4, 1e3)), "120.5 MB");
-        assert_eq!(shown(memory(&cold, 2e9, 0.0)), "4.0 TB");
+        assert_eq!(shown(memory(&cold, 6e4, 1e3)), "306.5 MB");
+        assert_eq!(shown(memory(&cold, 2e9, 0.0)), "10.2 TB");
+        // Seven species and two scalars of eddies.
+        let flames = shipped("shaft-furnace");
+        let growth = memory(&flames, 1e6, 0.0) - memory(&cold, 1e6, 0.0);
+        assert!((growth / (9e6 * BYTES_A_SCALAR) - 1.0).abs() < 1e-12);
+        let free = memory(&flames, 0.0, 1.0) - BYTES_A_VIEW * views(&flames);
+        assert!((free / (BYTES[1] + BYTES_FREE) - 1.0).abs() < 1e-12);
     }
 
     fn shipped(name: &str) -> Case {

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use calcine_coupler::coordinator::{Ending, RunError};
+use calcine_coupler::ledger::STORAGE_CLOCK;
 use calcine_coupler::observer::Observer;
 use calcine_coupler::supervisor::{Interrupts, Supervisor};
 use rustix::fs::{FlockOperation, flock};
@@ -224,9 +225,13 @@ fn closing(summary: &Summary) -> String {
         .map(|(name, line)| (name.clone(), line))
         .chain(elements)
     {
+        let what = match name.as_str() {
+            STORAGE_CLOCK => "of what moved, by two clocks; no error",
+            _ => "relative error",
+        };
         let _ = writeln!(
             text,
-            "  ledger {name:17} {:>16.3e} relative error",
+            "  ledger {name:17} {:>16.3e} {what}",
             line.relative_error
         );
     }

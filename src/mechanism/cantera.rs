@@ -2,21 +2,17 @@
 
 use calcine_coupler::physics::kinetics::{Broadening, Collider, RateConstant, Statement};
 use calcine_coupler::physics::reaction::{Arrhenius, Equation};
-use calcine_coupler::physics::thermo::{Element, Nasa7};
+use calcine_coupler::physics::thermo::{Element, LennardJones, Nasa7};
 
 use super::equation::{self, Body};
 use super::units::{self, Units};
 use super::yaml::{self, Node, Value};
 use super::{Fault, MechanismFile, Stated, Thermo, fault};
 
-/// Keys of a reaction that are read.
+/// Keys of every reaction that are read.
 const REACTION: &[&str] = &[
     "equation",
     "type",
-    "rate-constant",
-    "low-P-rate-constant",
-    "high-P-rate-constant",
-    "Troe",
     "efficiencies",
     "default-efficiency",
     "orders",
@@ -27,6 +23,10 @@ const REACTION: &[&str] = &[
     "id",
     "note",
 ];
+/// Keys of a falloff besides.
+const FALLOFF: &[&str] = &["low-P-rate-constant", "high-P-rate-constant", "Troe"];
+/// Keys of every other reaction besides.
+const ONE_RATE: &[&str] = &["rate-constant"];
 
 /// Reads a file.
 pub fn parse(text: &str) -> Result<MechanismFile, Fault> {
@@ -36,14 +36,10 @@ pub fn parse(text: &str) -> Result<MechanismFile, Fault> {
         Some(node) => self::units(node)?,
         None => Units::CANTERA,
     };
-    let mut file = MechanismFile::default();
-    if let Some(species) = root.get("species") {
-        for node in species.list("species")? {
-            if let Some(thermo) = thermo(node)? {
-                file.thermo.push(thermo);
-            }
-        }
-    }
+    let mut file = MechanismFile {
+        thermo: species(&root)?,
+        ..MechanismFile::default()
+    };
     for (name, node) in root.map("the file")? {
         // Phases may name lists of reactions of their own.
         if name.ends_with("reactions") {
@@ -53,6 +49,21 @@ pub fn parse(text: &str) -> Result<MechanismFile, Fault> {
         }
     }
     Ok(file)
+}
+
+/// Reads the species of a file, whatever its reactions are.
+pub fn parse_species(text: &str) -> Result<Vec<Thermo>, Fault> {
+    let root = yaml::parse(text)?;
+    root.map("the file")?;
+    species(&root)
+}
+
+fn species(root: &Node) -> Result<Vec<Thermo>, Fault> {
+    let Some(species) = root.get("species") else {
+        return Ok(Vec::new());
+    };
+    let all = species.list("species")?.iter();
+    all.filter_map(|node| thermo(node).transpose()).collect()
 }
 
 fn units(node: &Node) -> Result<Units, Fault> {
@@ -99,10 +110,7 @@ fn thermo(node: &Node) -> Result<Option<Thermo>, Fault> {
         .required("composition", &name)?
         .numbers("composition")?
     {
-        let found = Element::ALL
-            .into_iter()
-            .find(|one| one.symbol().eq_ignore_ascii_case(&symbol));
-        let Some(element) = found else {
+        let Some(element) = Element::by_symbol(&symbol) else {
             return Ok(None);
         };
         atoms[element as usize] += count;
@@ -157,6 +165,28 @@ fn thermo(node: &Node) -> Result<Option<Thermo>, Fault> {
         line: node.line,
         atoms,
         polynomial,
+        potential: potential(node)?,
+    }))
+}
+
+/// Transport data of a species, σ in Å and ε/k in K as Cantera has them.
+fn potential(species: &Node) -> Result<Option<LennardJones>, Fault> {
+    let Some(transport) = species.get("transport") else {
+        return Ok(None);
+    };
+    let positive = |key: &str| -> Result<f64, Fault> {
+        let node = transport.required(key, "transport")?;
+        match node.number(key)? {
+            number if number > 0.0 => Ok(number),
+            number => fault(
+                node.line,
+                format!("{key} is {number}, but must be positive"),
+            ),
+        }
+    };
+    Ok(Some(LennardJones {
+        diameter: 1e-10 * positive("diameter")?,
+        well_depth: positive("well-depth")?,
     }))
 }
 
@@ -198,13 +228,7 @@ fn reaction(node: &Node, units: &Units) -> Result<Stated, Fault> {
             ),
         );
     }
-    node.only(REACTION, &name)?;
     let (equation, body) = equation::parse(text).map_err(|what| (Some(stated.line), what))?;
-    let orders = orders(node, &equation, &name)?;
-    let sum: f64 = match &orders {
-        Some(orders) => orders.iter().map(|(_, n)| n).sum(),
-        None => equation.left.iter().map(|(n, _)| n).sum(),
-    };
     let falloff = matches!(body, Body::Falloff(_));
     if (kind == "falloff") != falloff {
         return fault(
@@ -218,18 +242,22 @@ fn reaction(node: &Node, units: &Units) -> Result<Stated, Fault> {
             format!("{name} is a three-body reaction without M"),
         );
     }
+    let own = if falloff { FALLOFF } else { ONE_RATE };
+    node.only(&[REACTION, own].concat(), &name)?;
+    let stated = orders(node, &equation, &name)?;
+    let orders = equation::with_orders(&equation, &stated);
+    let order: f64 = orders.iter().map(|(_, n)| n).sum();
     let law = |key: &str, order: f64| -> Result<Arrhenius, Fault> {
         arrhenius(node.required(key, &name)?, units, order, &name)
     };
     let rate = if falloff {
         RateConstant::Falloff {
-            high: law("high-P-rate-constant", sum)?,
-            low: law("low-P-rate-constant", sum + 1.0)?,
+            high: law("high-P-rate-constant", order)?,
+            low: law("low-P-rate-constant", order + 1.0)?,
             broadening: broadening(node)?,
         }
     } else {
-        let bodies = if body == Body::Three { 1.0 } else { 0.0 };
-        RateConstant::Arrhenius(law("rate-constant", sum + bodies)?)
+        RateConstant::Arrhenius(law("rate-constant", order + body.bodies())?)
     };
     let negative = node.get("negative-A");
     if let RateConstant::Arrhenius(law) = &rate
@@ -249,7 +277,7 @@ fn reaction(node: &Node, units: &Units) -> Result<Stated, Fault> {
         statement: Statement {
             name,
             equation,
-            orders,
+            orders: (!stated.is_empty()).then_some(orders),
             rate,
             collider,
         },
@@ -258,43 +286,35 @@ fn reaction(node: &Node, units: &Units) -> Result<Stated, Fault> {
     })
 }
 
-/// Orders where the file states some; the others keep their numbers.
-fn orders(
-    node: &Node,
-    equation: &Equation,
-    name: &str,
-) -> Result<Option<Vec<(String, f64)>>, Fault> {
-    let Some(stated) = node.get("orders") else {
-        return Ok(None);
+/// Orders that the file states.
+fn orders(node: &Node, equation: &Equation, name: &str) -> Result<Vec<(String, f64)>, Fault> {
+    let Some(table) = node.get("orders") else {
+        return Ok(Vec::new());
     };
     if equation.reversible {
         return fault(
-            stated.line,
+            table.line,
             format!("{name} goes both ways and has orders, whose way back is not defined"),
         );
     }
     let flag = |key: &str| node.get(key).map_or(Ok(false), |node| node.truth(key));
-    let left = equation.left.iter();
-    let mut orders: Vec<(String, f64)> = left.map(|(n, species)| (species.clone(), *n)).collect();
-    for (species, order) in stated.numbers("orders")? {
-        if order < 0.0 && !flag("negative-orders")? {
+    let stated = table.numbers("orders")?;
+    for (species, order) in &stated {
+        if *order < 0.0 && !flag("negative-orders")? {
             let what = format!("{name} has the order {order} of {species} without negative-orders");
-            return fault(stated.line, what);
+            return fault(table.line, what);
         }
-        match orders.iter_mut().find(|(other, _)| *other == species) {
-            Some((_, n)) => *n = order,
-            None if flag("nonreactant-orders")? => orders.push((species, order)),
-            None => {
-                return fault(
-                    stated.line,
-                    format!(
-                        "{name} has an order of {species}, which does not react, without nonreactant-orders"
-                    ),
-                );
-            }
+        let reacts = equation.left.iter().any(|(_, other)| other == species);
+        if !reacts && !flag("nonreactant-orders")? {
+            return fault(
+                table.line,
+                format!(
+                    "{name} has an order of {species}, which does not react, without nonreactant-orders"
+                ),
+            );
         }
     }
-    Ok(Some(orders))
+    Ok(stated)
 }
 
 fn arrhenius(node: &Node, units: &Units, order: f64, name: &str) -> Result<Arrhenius, Fault> {
@@ -338,32 +358,16 @@ fn broadening(node: &Node) -> Result<Broadening, Fault> {
     };
     troe.only(&["A", "T3", "T1", "T2"], "Troe")?;
     let of = |key: &str| troe.required(key, "Troe")?.number(key);
-    Ok(Broadening::Troe {
-        share: of("A")?,
-        third: of("T3")?,
-        first: of("T1")?,
-        second: troe.get("T2").map(|node| node.number("T2")).transpose()?,
-    })
+    let second = troe.get("T2").map(|node| node.number("T2")).transpose()?;
+    Ok(super::troe([of("A")?, of("T3")?, of("T1")?], second))
 }
 
 fn collider(node: &Node, body: Body, name: &str) -> Result<Option<Collider>, Fault> {
     let stated = node.get("efficiencies");
-    let others = node
-        .get("default-efficiency")
-        .map_or(Ok(1.0), |node| node.number("default-efficiency"))?;
+    let others = node.get("default-efficiency");
+    let line = stated.or(others).unwrap_or(node).line;
     let efficiencies = stated.map_or(Ok(Vec::new()), |node| node.numbers("efficiencies"))?;
-    match body {
-        Body::None => match stated {
-            Some(node) => fault(node.line, format!("{name} has efficiencies but no M")),
-            None => Ok(None),
-        },
-        Body::Falloff(Some(species)) => Ok(Some(Collider {
-            efficiencies: vec![(species, 1.0)],
-            others: 0.0,
-        })),
-        Body::Three | Body::Falloff(None) => Ok(Some(Collider {
-            efficiencies,
-            others,
-        })),
-    }
+    let others = others.map(|node| node.number("default-efficiency"));
+    body.collider(efficiencies, others.transpose()?)
+        .map_err(|what| (Some(line), format!("{name} {what}")))
 }

@@ -1,6 +1,6 @@
 //! CHEMKIN's mechanisms: ELEMENTS, SPECIES, THERMO, REACTIONS; rate constants of Arrhenius, with third bodies, LOW, TROE, FORD.
 
-use calcine_coupler::physics::kinetics::{Broadening, Collider, RateConstant, Statement};
+use calcine_coupler::physics::kinetics::{Broadening, RateConstant, Statement};
 use calcine_coupler::physics::reaction::{Arrhenius, Equation};
 
 use super::equation::{self, Body};
@@ -185,9 +185,15 @@ fn auxiliary(draft: &mut Draft, bare: &str, line: usize) -> Result<(), Fault> {
                 let Ok(three) = <[f64; 3]>::try_from(values()?) else {
                     return fault(line, "LOW has not three numbers A, b, E");
                 };
-                draft.low = Some(three);
+                if draft.low.replace(three).is_some() {
+                    return fault(line, format!("{} has LOW twice", draft.name));
+                }
             }
-            "TROE" => draft.troe = Some(values()?),
+            "TROE" => {
+                if draft.troe.replace(values()?).is_some() {
+                    return fault(line, format!("{} has TROE twice", draft.name));
+                }
+            }
             "FORD" => {
                 let mut words = inner.split_whitespace();
                 let pair = (words.next(), words.next().and_then(number), words.next());
@@ -210,55 +216,39 @@ fn auxiliary(draft: &mut Draft, bare: &str, line: usize) -> Result<(), Fault> {
 
 impl Draft {
     fn finish(self, units: &Units) -> Result<Stated, Fault> {
-        let orders = self.all_orders()?;
-        let sum: f64 = match &orders {
-            Some(orders) => orders.iter().map(|(_, n)| n).sum(),
-            None => self.equation.left.iter().map(|(n, _)| n).sum(),
-        };
+        let refuse = |what: &str| fault(self.line, format!("{} {what}", self.name));
+        if !self.orders.is_empty() && self.equation.reversible {
+            return refuse("goes both ways and has FORD, whose way back is not defined");
+        }
+        let orders = equation::with_orders(&self.equation, &self.orders);
+        let order: f64 = orders.iter().map(|(_, n)| n).sum();
         let law = |[factor, exponent, energy]: [f64; 3], order: f64| Arrhenius {
             factor: units.factor(factor, order),
             exponent,
             activation_energy: energy * units.activation_energy,
         };
-        let rate = match (&self.body, self.low) {
-            (Body::Falloff(_), Some(low)) => RateConstant::Falloff {
-                high: law(self.rate, sum),
-                low: law(low, sum + 1.0),
-                broadening: self.broadening()?,
+        let rate = match (&self.body, self.low, &self.troe) {
+            (Body::Falloff(_), Some(low), troe) => RateConstant::Falloff {
+                high: law(self.rate, order),
+                low: law(low, order + 1.0),
+                broadening: self.broadening(troe.as_deref())?,
             },
-            (Body::Falloff(_), None) => {
-                return fault(self.line, format!("{} has (+M) but no LOW", self.name));
-            }
-            (_, Some(_)) => return fault(self.line, format!("{} has LOW but no (+M)", self.name)),
-            (Body::Three, None) => RateConstant::Arrhenius(law(self.rate, sum + 1.0)),
-            (Body::None, None) => RateConstant::Arrhenius(law(self.rate, sum)),
+            (Body::Falloff(_), None, _) => return refuse("has (+M) but no LOW"),
+            (_, Some(_), _) => return refuse("has LOW but no (+M)"),
+            (_, None, Some(_)) => return refuse("has TROE but no (+M)"),
+            (_, None, None) => RateConstant::Arrhenius(law(self.rate, order + self.body.bodies())),
         };
         if self.rate[0] < 0.0 && !self.duplicate {
-            let what = format!("{} has a negative A and is no DUPLICATE", self.name);
-            return fault(self.line, what);
+            return refuse("has a negative A and is no DUPLICATE");
         }
-        let collider = match self.body {
-            Body::None if self.efficiencies.is_empty() => None,
-            Body::None => {
-                return fault(
-                    self.line,
-                    format!("{} has efficiencies but no M", self.name),
-                );
-            }
-            Body::Falloff(Some(species)) => Some(Collider {
-                efficiencies: vec![(species, 1.0)],
-                others: 0.0,
-            }),
-            Body::Three | Body::Falloff(None) => Some(Collider {
-                efficiencies: self.efficiencies,
-                others: 1.0,
-            }),
-        };
+        let collider = self.body.collider(self.efficiencies, None);
+        let collider =
+            collider.map_err(|what| (Some(self.line), format!("{} {what}", self.name)))?;
         Ok(Stated {
             statement: Statement {
                 name: self.name,
                 equation: self.equation,
-                orders,
+                orders: (!self.orders.is_empty()).then_some(orders),
                 rate,
                 collider,
             },
@@ -267,50 +257,17 @@ impl Draft {
         })
     }
 
-    fn broadening(&self) -> Result<Broadening, Fault> {
-        Ok(match self.troe.as_deref() {
-            None => Broadening::Lindemann,
-            Some(&[share, third, first]) => Broadening::Troe {
-                share,
-                third,
-                first,
-                second: None,
-            },
-            Some(&[share, third, first, second]) => Broadening::Troe {
-                share,
-                third,
-                first,
-                second: Some(second),
-            },
-            Some(_) => {
-                return fault(
-                    self.line,
-                    format!("{}: TROE has not three or four numbers", self.name),
-                );
+    fn broadening(&self, troe: Option<&[f64]>) -> Result<Broadening, Fault> {
+        match troe {
+            None => Ok(Broadening::Lindemann),
+            Some(&[share, third, first]) => Ok(super::troe([share, third, first], None)),
+            Some(&[share, third, first, second]) => {
+                Ok(super::troe([share, third, first], Some(second)))
             }
-        })
-    }
-
-    /// Orders where FORD states some; the others keep their numbers.
-    fn all_orders(&self) -> Result<Option<Vec<(String, f64)>>, Fault> {
-        if self.orders.is_empty() {
-            return Ok(None);
+            Some(_) => fault(
+                self.line,
+                format!("{}: TROE has not three or four numbers", self.name),
+            ),
         }
-        if self.equation.reversible {
-            let what = format!(
-                "{} goes both ways and has FORD, whose way back is not defined",
-                self.name
-            );
-            return fault(self.line, what);
-        }
-        let left = self.equation.left.iter();
-        let mut all: Vec<(String, f64)> = left.map(|(n, species)| (species.clone(), *n)).collect();
-        for (species, order) in &self.orders {
-            match all.iter_mut().find(|(other, _)| other == species) {
-                Some((_, n)) => *n = *order,
-                None => all.push((species.clone(), *order)),
-            }
-        }
-        Ok(Some(all))
     }
 }

@@ -101,10 +101,7 @@ fn species(cards: &[(usize, &str)], common: Option<f64>) -> Result<Option<Thermo
         if symbol.is_empty() || symbol == "0" || ["", "0", "0."].contains(&count.trim()) {
             continue;
         }
-        let found = Element::ALL
-            .into_iter()
-            .find(|one| one.symbol().eq_ignore_ascii_case(symbol));
-        let Some(element) = found else {
+        let Some(element) = Element::by_symbol(symbol) else {
             return Ok(None);
         };
         atoms[element as usize] += number(&count, line, &name, "a number of atoms")?;
@@ -154,5 +151,6 @@ fn species(cards: &[(usize, &str)], common: Option<f64>) -> Result<Option<Thermo
         line,
         atoms,
         polynomial,
+        potential: None,
     }))
 }

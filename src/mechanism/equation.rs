@@ -1,5 +1,6 @@
-//! Equations as mechanisms write them: with third bodies, with or without spaces.
+//! Equations as mechanisms write them, with or without spaces; their third bodies and orders.
 
+use calcine_coupler::physics::kinetics::Collider;
 use calcine_coupler::physics::reaction::Equation;
 
 /// The third body of an equation.
@@ -11,6 +12,54 @@ pub enum Body {
     Three,
     /// `(+M)`: between two limits of pressure; with a name, that species alone.
     Falloff(Option<String>),
+}
+
+impl Body {
+    /// What it adds to the order of the rate constant.
+    pub fn bodies(&self) -> f64 {
+        match self {
+            Self::Three => 1.0,
+            Self::None | Self::Falloff(_) => 0.0,
+        }
+    }
+
+    /// The gases that it is, by the efficiencies that a file states; `others`: that of all the rest, where the file
+    /// states it. The error is of efficiencies that nothing would use.
+    pub fn collider(
+        self,
+        efficiencies: Vec<(String, f64)>,
+        others: Option<f64>,
+    ) -> Result<Option<Collider>, String> {
+        let stated = others.is_some() || !efficiencies.is_empty();
+        match self {
+            Self::None if stated => Err("has efficiencies but no M".into()),
+            Self::None => Ok(None),
+            Self::Falloff(Some(species)) if stated => {
+                Err(format!("has efficiencies beside (+{species})"))
+            }
+            Self::Falloff(Some(species)) => Ok(Some(Collider {
+                efficiencies: vec![(species, 1.0)],
+                others: 0.0,
+            })),
+            Self::Three | Self::Falloff(None) => Ok(Some(Collider {
+                efficiencies,
+                others: others.unwrap_or(1.0),
+            })),
+        }
+    }
+}
+
+/// Orders of an equation where a file states some; the others keep their numbers of the left side.
+pub fn with_orders(equation: &Equation, stated: &[(String, f64)]) -> Vec<(String, f64)> {
+    let left = equation.left.iter();
+    let mut orders: Vec<(String, f64)> = left.map(|(n, species)| (species.clone(), *n)).collect();
+    for (species, order) in stated {
+        match orders.iter_mut().find(|(other, _)| other == species) {
+            Some((_, own)) => *own = *order,
+            None => orders.push((species.clone(), *order)),
+        }
+    }
+    orders
 }
 
 /// Reads `CH4+0.5O2=>CO+2H2`, `2 O + M <=> O2 + M`, `H+CH3(+M)=CH4(+M)`; `=` goes both ways.
@@ -73,6 +122,17 @@ mod tests {
         assert_eq!(body, Body::Falloff(Some("H2O".into())));
         let (equation, body) = parse("CH4+.5O2=>CO+2H2").unwrap();
         assert_eq!((equation.left[1].0, body), (0.5, Body::None));
+    }
+
+    #[test]
+    fn orders_that_are_not_stated_are_the_numbers_of_the_left_side() {
+        let (equation, _) = parse("2A+B=>C").unwrap();
+        let name = |list: &[(&str, f64)]| -> Vec<(String, f64)> {
+            list.iter().map(|(name, n)| ((*name).into(), *n)).collect()
+        };
+        let stated = name(&[("B", 0.5), ("C", -1.0)]);
+        let wanted = name(&[("A", 2.0), ("B", 0.5), ("C", -1.0)]);
+        assert_eq!(with_orders(&equation, &stated), wanted);
     }
 
     #[test]

@@ -10,8 +10,8 @@ mod yaml;
 
 use std::path::{Path, PathBuf};
 
-use calcine_coupler::physics::kinetics::{Mechanism, Statement};
-use calcine_coupler::physics::thermo::{Element, Mixture, Nasa7};
+use calcine_coupler::physics::kinetics::{Broadening, Collider, Mechanism, Statement};
+use calcine_coupler::physics::thermo::{Element, LennardJones, Mixture, Nasa7};
 use thiserror::Error;
 
 /// A reaction of a file.
@@ -36,6 +36,8 @@ pub struct Thermo {
     pub atoms: [f64; Element::COUNT],
     /// Its polynomials, molar, at 1 bar.
     pub polynomial: Nasa7,
+    /// How its molecules meet, where the file says so.
+    pub potential: Option<LennardJones>,
 }
 
 /// What files say: reactions in mol, m³, s, J and the species' thermodynamics.
@@ -92,6 +94,22 @@ pub fn read(path: &Path, thermo: Option<&Path>) -> Result<MechanismFile, Mechani
     Ok(file)
 }
 
+/// Reads the thermodynamics of species: Cantera's where the name ends in `.yaml` or `.yml`, which may have their transport
+/// too, else CHEMKIN's cards.
+pub fn read_thermo(path: &Path) -> Result<Vec<Thermo>, MechanismError> {
+    let text = contents(path)?;
+    let parsed = match is_yaml(path) {
+        true => cantera::parse_species(&text),
+        false => chemkin_thermo::parse(&text, None),
+    };
+    parsed.map_err(|fault| placed(path, fault))
+}
+
+fn is_yaml(path: &Path) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| ["yaml", "yml"].contains(&ending))
+}
+
 fn contents(path: &Path) -> Result<String, MechanismError> {
     let bytes = std::fs::read(path)
         .map_err(|cause| placed(path, (None, format!("cannot be read: {cause}"))))?;
@@ -101,9 +119,7 @@ fn contents(path: &Path) -> Result<String, MechanismError> {
 
 /// Reads the text of a mechanism; `path` says which format it has and places messages.
 pub fn parse(path: &Path, text: &str) -> Result<MechanismFile, MechanismError> {
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    let yaml = ending.is_some_and(|ending| ["yaml", "yml"].contains(&ending));
-    let parsed = if yaml {
+    let parsed = if is_yaml(path) {
         cantera::parse(text)
     } else {
         chemkin::parse(text)
@@ -122,16 +138,62 @@ fn placed(path: &Path, (line, what): Fault) -> MechanismError {
     }
 }
 
+/// Troe's form of the numbers a, T₃, T₁ and T₂ of a file, in K. T₂ of zero leaves its term out, as it does in Cantera: the
+/// term would be one.
+fn troe([share, third, first]: [f64; 3], second: Option<f64>) -> Broadening {
+    Broadening::Troe {
+        share,
+        third,
+        first,
+        second: second.filter(|second| *second != 0.0),
+    }
+}
+
+/// What makes two reactions one: sides in any order, ways, and the third body.
+#[derive(PartialEq)]
+struct Identity<'a> {
+    left: Vec<(&'a str, f64)>,
+    right: Vec<(&'a str, f64)>,
+    reversible: bool,
+    body: Option<Option<&'a str>>,
+}
+
+impl<'a> Identity<'a> {
+    fn of(statement: &'a Statement) -> Self {
+        let sorted = |side: &'a [(f64, String)]| {
+            let mut side: Vec<_> = side.iter().map(|(n, name)| (name.as_str(), *n)).collect();
+            side.sort_by(|one, other| one.0.cmp(other.0));
+            side
+        };
+        Self {
+            left: sorted(&statement.equation.left),
+            right: sorted(&statement.equation.right),
+            reversible: statement.equation.reversible,
+            body: statement.collider.as_ref().map(alone),
+        }
+    }
+}
+
+/// The one gas that a third body is; `None` where it is several.
+fn alone(collider: &Collider) -> Option<&str> {
+    let mut some = collider.efficiencies.iter().filter(|one| one.1 != 0.0);
+    match (some.next(), some.next()) {
+        (Some((name, _)), None) if collider.others == 0.0 => Some(name),
+        _ => None,
+    }
+}
+
 /// Two reactions of one equation must both say so: else one is a slip.
 fn repeated(reactions: &[Stated]) -> Result<(), Fault> {
+    let all: Vec<_> = reactions
+        .iter()
+        .map(|one| Identity::of(&one.statement))
+        .collect();
     for (k, one) in reactions.iter().enumerate() {
-        let same = |other: &&Stated| {
-            other.statement.equation == one.statement.equation
-                && other.statement.collider.is_some() == one.statement.collider.is_some()
-        };
-        let Some(other) = reactions[..k].iter().find(same) else {
+        let Some(other) = all[..k].iter().position(|other| *other == all[k]) else {
             continue;
         };
+        let other = &reactions[other];
         if !(one.duplicate && other.duplicate) {
             return fault(
                 one.line,

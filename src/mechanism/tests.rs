@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use calcine_coupler::physics::kinetics::State;
+use calcine_coupler::physics::kinetics::{RateConstant, State};
 use proptest::prelude::*;
 
 use super::*;
@@ -196,6 +196,30 @@ fn what_of_cantera_s_is_not_read_is_refused_by_file_line_and_name() {
             "a.yaml:2: A (+M) <=> B (+M) is a falloff in one of its type and equation only",
         ),
         (
+            "reactions:\n- equation: A => B\n  rate-constant: {A: 1, b: 0, Ea: 0}\n  Troe: {A: 1, T3: 1, T1: 1}\n",
+            "a.yaml:4: Troe of A => B is not read",
+        ),
+        (
+            "reactions:\n- equation: A + M => B + M\n  rate-constant: {A: 1, b: 0, Ea: 0}\n  low-P-rate-constant: {A: 1, b: 0, Ea: 0}\n",
+            "a.yaml:4: low-P-rate-constant of A + M => B + M is not read",
+        ),
+        (
+            "reactions:\n- equation: A (+M) => B (+M)\n  type: falloff\n  rate-constant: {A: 1, b: 0, Ea: 0}\n",
+            "a.yaml:4: rate-constant of A (+M) => B (+M) is not read",
+        ),
+        (
+            "reactions:\n- equation: A (+H2O) => B (+H2O)\n  type: falloff\n  high-P-rate-constant: [1, 0, 0]\n  low-P-rate-constant: [1, 0, 0]\n  efficiencies: {H2: 2}\n",
+            "a.yaml:6: A (+H2O) => B (+H2O) has efficiencies beside (+H2O)",
+        ),
+        (
+            "reactions:\n- equation: A => B\n  rate-constant: [1, 0, 0]\n  default-efficiency: 0\n",
+            "a.yaml:4: A => B has efficiencies but no M",
+        ),
+        (
+            "reactions:\n- {equation: 2 A + B => C, rate-constant: [1, 0, 0]}\n- {equation: B + 2 A => C, rate-constant: [2, 0, 0]}\n",
+            "a.yaml:3: B + 2 A => C stands in line 2 too",
+        ),
+        (
             "units: {length: ft}\n",
             "a.yaml:1: units: length in ft is not read",
         ),
@@ -245,6 +269,30 @@ fn what_of_chemkin_s_is_not_read_is_refused_by_file_line_and_name() {
             "a.inp:2: A=>B has efficiencies but no M",
         ),
         (
+            "REACTIONS\nA=>B 1 0 0\nTROE/0.6 100 2000/\n",
+            "a.inp:2: A=>B has TROE but no (+M)",
+        ),
+        (
+            "REACTIONS\nA+M=>B+M 1 0 0\nTROE/0.6 100 2000/\n",
+            "a.inp:2: A+M=>B+M has TROE but no (+M)",
+        ),
+        (
+            "REACTIONS\nA(+M)=>B(+M) 1 0 0\nLOW/1 0 0/\nTROE/0.6 100 2000/ TROE/0.5 100 2000/\n",
+            "a.inp:4: A(+M)=>B(+M) has TROE twice",
+        ),
+        (
+            "REACTIONS\nA(+M)=>B(+M) 1 0 0\nLOW/1 0 0/\nLOW/2 0 0/\n",
+            "a.inp:4: A(+M)=>B(+M) has LOW twice",
+        ),
+        (
+            "REACTIONS\nA(+H2O)=>B(+H2O) 1 0 0\nLOW/1 0 0/ H2/2/\n",
+            "a.inp:2: A(+H2O)=>B(+H2O) has efficiencies beside (+H2O)",
+        ),
+        (
+            "REACTIONS\nH+O2+M=>HO2+M 1 0 0\nO2+H+M=>HO2+M 2 0 0\n",
+            "a.inp:3: O2+H+M=>HO2+M stands in line 2 too",
+        ),
+        (
             "REACTIONS\nA<=>B 1 0 0\nFORD/A 2/\n",
             "a.inp:2: A<=>B goes both ways and has FORD",
         ),
@@ -273,8 +321,42 @@ fn what_of_chemkin_s_is_not_read_is_refused_by_file_line_and_name() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    let twice = "REACTIONS\nA=>B 1 0 0\nDUP\nA=>B 2 0 0\nDUPLICATE\n";
-    assert_eq!(parse(Path::new("a.inp"), twice).unwrap().reactions.len(), 2);
+    for two in [
+        "REACTIONS\nA=>B 1 0 0\nDUP\nA=>B 2 0 0\nDUPLICATE\n",
+        // One falloff by all gases, one by argon alone.
+        "REACTIONS\nA(+M)=>B(+M) 1 0 0\nLOW/1 0 0/\nA(+AR)=>B(+AR) 1 0 0\nLOW/2 0 0/\n",
+    ] {
+        assert_eq!(parse(Path::new("a.inp"), two).unwrap().reactions.len(), 2);
+    }
+}
+
+#[test]
+fn t2_of_zero_leaves_its_term_of_troe_out_in_both_formats() {
+    let chemkin = "REACTIONS\nA(+M)=>B(+M) 1 0 0\nLOW/1 0 0/ TROE/0.6 100 2000 0/\n";
+    let cantera = "reactions:\n- equation: A (+M) => B (+M)\n  type: falloff\n  high-P-rate-constant: [1, 0, 0]\n  \
+                   low-P-rate-constant: [1, 0, 0]\n  Troe: {A: 0.6, T3: 100, T1: 2000, T2: 0}\n";
+    for (name, text) in [("a.inp", chemkin), ("a.yaml", cantera)] {
+        let file = parse(Path::new(name), text).unwrap();
+        let RateConstant::Falloff { broadening, .. } = file.reactions[0].statement.rate else {
+            panic!("{name}")
+        };
+        let without = Broadening::Troe {
+            share: 0.6,
+            third: 100.0,
+            first: 2000.0,
+            second: None,
+        };
+        assert_eq!(broadening, without, "{name}");
+    }
+}
+
+#[test]
+fn a_negative_efficiency_of_a_file_is_refused_by_its_line() {
+    let text = "REACTIONS\n2H2+O2=>2H2O 1 0 0\nCO+H2O+M=>CO2+H2+M 1 0 0\nH2/-2/\n";
+    let file = parse(Path::new("a.inp"), text).unwrap();
+    let message = file.over(&gas()).unwrap_err().to_string();
+    let expected = "a.inp:3: CO+H2O+M=>CO2+H2+M: an efficiency is -2, ";
+    assert!(message.starts_with(expected), "{message}");
 }
 
 #[test]

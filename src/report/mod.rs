@@ -12,6 +12,8 @@ mod voids;
 
 use std::path::{Path, PathBuf};
 
+use calcine_coupler::ledger::STORAGE_CLOCK;
+
 use self::number::{figure, span, with_unit};
 use self::page::{Page, badge, bars, escape, table, tiles};
 use self::plot::{Curve, Plot, Stroke};
@@ -243,7 +245,10 @@ fn ledger(summary: &Summary) -> String {
     let rows: Vec<_> = lines
         .map(|(name, line)| {
             vec![
-                escape(&name.replace('_', " ")),
+                escape(&match name.as_str() {
+                    STORAGE_CLOCK => "storage clock (no error)".to_owned(),
+                    _ => name.replace('_', " "),
+                }),
                 figure(line.relative_error, 3),
                 with_unit(line.drift, 3, &line.unit),
                 with_unit(line.throughput, 4, &line.unit),

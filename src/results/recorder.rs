@@ -6,7 +6,7 @@ use std::time::Duration;
 use calcine_coupler::ledger::Line as LedgerSums;
 use calcine_coupler::observer::{Moment, Observer, ObserverError, Timing};
 use calcine_coupler::part::About;
-use calcine_coupler::time::Ticks;
+use calcine_coupler::time::{Ticks, Window};
 
 use super::probe::{self, Site};
 use super::quantities::{self, Captured};
@@ -245,7 +245,8 @@ impl Recorder {
             .output
             .series_every
             .unwrap_or(self.case.output.every);
-        if moment.window.is_some() && series::accelerated(&self.case) {
+        let moves = |window: &Window| !series::held(&self.case, window);
+        if moment.window.is_some_and(moves) && series::accelerated(&self.case) {
             let number = pace::of_bed(moment, self.case.gas.gravity);
             self.counters.pace.add(number);
         }

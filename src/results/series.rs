@@ -6,6 +6,7 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use calcine_coupler::observer::Moment;
+use calcine_coupler::time::Window;
 
 use super::probe::Site;
 use super::quantities::{evaluate, statistic};
@@ -143,6 +144,12 @@ pub(super) fn accelerated(case: &Case) -> bool {
     let kind = case.motion.as_ref().map(|motion| motion.kind);
     let moves = case.particles.iter().any(|one| one.motion == Motion::Free);
     moves && kind == Some(MotionKind::Accelerated)
+}
+
+/// True where free particles are held in a window.
+pub(super) fn held(case: &Case, window: &Window) -> bool {
+    let motion = case.motion.as_ref();
+    motion.is_some_and(|motion| motion.held.at(window.start.process).0)
 }
 
 /// One row.

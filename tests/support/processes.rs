@@ -92,6 +92,15 @@ pub fn leftovers(pid: u32) -> Vec<String> {
     names.filter(|name| name.contains(&mark)).collect()
 }
 
+/// True for a rank of a solver, not for what starts it.
+pub fn is_solver(pid: u32) -> bool {
+    let line = command_line(pid);
+    let program = line.split(' ').next().unwrap_or_default();
+    ["calcineGasFoam", "calcine-liggghts"]
+        .iter()
+        .any(|name| program.ends_with(name))
+}
+
 /// Living processes that have the run of this coordinator in their environment.
 pub fn belonging(pid: u32) -> Vec<u32> {
     let mark = format!("calcine-{pid}-");

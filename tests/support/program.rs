@@ -36,3 +36,23 @@ pub fn run_text(directory: &Path, name: &str, text: &str, words: &[&str]) -> Pat
     run(&file, &out, words, &[""; 0]);
     out
 }
+
+/// Compares pairings within the case's bands, or fails with what the program said; `compare.json`.
+pub fn compare(
+    case: &Path,
+    out: &Path,
+    pairings: &str,
+    set: &[impl AsRef<str>],
+) -> serde_json::Value {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
+    command.arg("compare").arg(case).arg("--quiet");
+    command.args(["--pairings", pairings]).arg("--out").arg(out);
+    for setting in set {
+        command.args(["--set", setting.as_ref()]);
+    }
+    let output = command.output().unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    let table = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{}: {table}{told}", case.display());
+    serde_json::from_str(&fs::read_to_string(out.join("compare.json")).unwrap()).unwrap()
+}

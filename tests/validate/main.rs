@@ -6,6 +6,7 @@
 
 mod backward_step;
 mod elastic_box;
+mod flame;
 #[cfg(feature = "hdf5")]
 #[path = "../support/fluidised.rs"]
 mod fluidised;
@@ -13,7 +14,10 @@ mod fluidised;
 mod fluidised_bed;
 mod hopper;
 mod moving_bed;
+#[path = "../support/program.rs"]
+mod program;
 mod repose;
+mod shaft_flames;
 mod shaft_furnace;
 mod voids;
 
@@ -29,11 +33,13 @@ const MARK: &str = "--validate";
 const ALL: &[(&str, fn())] = &[
     ("backward-step", backward_step::run),
     ("elastic-box", elastic_box::run),
+    ("flame", flame::run),
     #[cfg(feature = "hdf5")]
     ("fluidised-bed", fluidised_bed::run),
     ("hopper", hopper::run),
     ("moving-bed", moving_bed::run),
     ("repose", repose::run),
+    ("shaft-flames", shaft_flames::run),
     ("shaft-furnace", shaft_furnace::run),
     ("voids", voids::run),
 ];

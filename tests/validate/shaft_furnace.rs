@@ -1,5 +1,5 @@
-//! The shaft furnace in small (requirements SHF): peaks beside the paper's, counter-current profiles, nothing lost
-//! of the particles in cells smaller than they are, and AF 678 against a slower one.
+//! The shaft furnace in small (requirements SHF): peaks beside the paper's, counter-current profiles, flames that leave no fuel, nothing
+//! lost of the particles in cells smaller than they are, and AF 678 against a slower one.
 //!
 //! The paper's figures, 2243 K in the gas and 2209 K in the particles (seed of the Volume Fraction Smoother), are
 //! of a furnace whose geometry and loads it does not state: they are printed beside, not asserted.
@@ -9,8 +9,10 @@ use std::path::Path;
 
 use calcine::results::Summary;
 use calcine::results::read::{self, Series};
+use calcine_coupler::ledger::STORAGE_CLOCK;
 use calcine_coupler::physics::thermo::Species;
 
+use crate::shaft_flames::{ABOVE, LEFT, fuel};
 use crate::{run as calcine, shipped};
 
 /// What the paper reports in K: gas, particles.
@@ -22,6 +24,10 @@ const FINE: f64 = 10e-3;
 const SMALLEST: f64 = 16e-3;
 /// Between feed and burners in K: 1 % of it is what the acceleration factor may change.
 const SPAN: f64 = 1900.0;
+/// Process time in s from which on beds at two paces are compared: 0.9 s of motion at AF 678.
+const SETTLED: f64 = 600.0;
+/// Lower than this in K no burner's cell may be at its hottest: none is lit by half.
+const LIT: f64 = 1900.0;
 
 pub fn run() {
     let folder = tempfile::tempdir().unwrap();
@@ -31,27 +37,35 @@ pub fn run() {
     closes(&summary);
     peaks(&series);
     profile(&out);
+    let left = fuel(&out);
+    println!("  methane above {ABOVE} m: {left:.1e} of the gas at most");
+    assert!(left < LEFT, "{left}");
     nothing_is_lost(&case, &out);
     paces(&case, folder.path());
 }
 
 fn closes(summary: &Summary) {
-    for (name, line) in &summary.ledger.lines {
+    let (ledger, elements) = (&summary.ledger.lines, &summary.ledger.elements);
+    for (name, line) in ledger.iter().chain(elements) {
         println!(
             "  ledger, {name}: {:.1e} of {:.3e} {}",
             line.relative_error, line.throughput, line.unit
         );
+        // Momentum closes as far as the outer loop solves it, to the case's tolerance; all else to rounding.
         let limit = match name.as_str() {
-            "gas_momentum" => 1e-5,
-            _ => 1e-10,
+            "gas_momentum" => 1e-4,
+            // No error, but what two clocks owe.
+            STORAGE_CLOCK => 1.0,
+            _ => 1e-11,
         };
         assert!(line.relative_error < limit, "{name}");
     }
     if let Some(pace) = summary.pace {
-        println!(
-            "  inertial number {:.1e} in the mean",
-            pace.inertial_number_mean
-        );
+        let number = pace.inertial_number_mean;
+        println!("  inertial number {number:.1e} in the mean");
+        // Beads that fall and collide, as where contacts are lost, have some 1 and more; a bed that sinks slowly has less than 0.1
+        // (GDR MiDi 2004, doi 10.1140/epje/i2003-10153-0).
+        assert!(number < 0.1, "{number}");
     }
 }
 
@@ -103,17 +117,14 @@ fn peaks(series: &Series) {
         last(series, "quantities.off_gas"),
         last(series, "quantities.pressure_drop"),
     );
-    assert!(
-        (flame - 2190.0).abs() < 2.0,
-        "the burners' temperature: {flame}"
-    );
-    assert!(gas < flame + 2.0, "{gas}");
-    assert!(gas - particle > 10.0, "{gas} {particle}");
+    assert!(LIT < gas && gas < flame, "{gas}");
+    // Tens of kelvin at the least: a particle spans cells that are colder than the hottest.
+    assert!(gas - particle > 30.0, "{gas} {particle}");
     // Steady: over the last fifth of the run the mean moves by less than 1 % of the span.
     let mean = series.column("quantities.mean_temperature");
     let moved = mean[mean.len() - 1] - mean[mean.len() * 4 / 5];
     println!("  the mean temperature moves by {moved:.1} K in the last fifth");
-    assert!(moved.abs() < 0.02 * SPAN, "{moved}");
+    assert!(moved.abs() < 0.01 * SPAN, "{moved}");
 }
 
 /// Mean temperatures in K of particles by height, in slices of a twentieth of a metre.
@@ -186,7 +197,8 @@ fn nothing_is_lost(case: &Path, out: &Path) {
     assert!((cells / spheres - 1.0).abs() < 0.01, "{cells} {spheres}");
 }
 
-/// The same start at AF 678 and at a third of it.
+/// The same start at AF 678 and at a third of it, from when the first charge has come to rest: it falls in motion time, and
+/// so three times as fast in process time with the one as with the other.
 fn paces(case: &Path, folder: &Path) {
     let at = |factor: u32| {
         let set = [
@@ -201,7 +213,10 @@ fn paces(case: &Path, folder: &Path) {
         let times = |one: &Series| one.column("process_time").to_vec();
         let (of_fast, of_slow) = (times(&fast), times(&slow));
         let mut worst = 0.0_f64;
-        for (k, time) in of_fast.iter().enumerate().skip(1) {
+        for (k, time) in of_fast.iter().enumerate() {
+            if *time < SETTLED {
+                continue;
+            }
             let next = of_slow
                 .partition_point(|other| other < time)
                 .clamp(1, of_slow.len() - 1);
@@ -215,9 +230,6 @@ fn paces(case: &Path, folder: &Path) {
             "  AF 678 against 226, {name}: {worst:.1} K ({:.2} %)",
             100.0 * worst / SPAN
         );
-        assert!(
-            name == "hottest_particle" || worst < 0.01 * SPAN,
-            "{name}: {worst}"
-        );
+        assert!(worst < 0.01 * SPAN, "{name}: {worst}");
     }
 }

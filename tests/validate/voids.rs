@@ -1,6 +1,7 @@
 //! The void fraction of a settled bed over the distance from the wall of a cylinder of twenty diameters, against
 //! Benenati and Brosilow, AIChE J. 8 (1962) 359, doi 10.1002/aic.690080319: one at the wall, a minimum of 0.2 to
-//! 0.25 half a diameter from it, damped oscillations over four to five diameters.
+//! 0.25 half a diameter from it, damped oscillations over four to five diameters. And the void fraction of the whole bed,
+//! which is looser the rougher the beads are.
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -16,10 +17,34 @@ const RADIUS: f64 = 20e-3;
 /// Points on each surface of one distance from the wall.
 const POINTS: u32 = 6000;
 
+/// Coefficients of friction, the first of them the case's, the second that of usual beads.
+const FRICTIONS: [f64; 3] = [0.1, 0.3, 0.5];
+/// Where a settled bed of equal spheres in a wide cylinder lies.
+const USUAL: std::ops::RangeInclusive<f64> = 0.38..=0.42;
+
 pub fn run() {
+    let beds = FRICTIONS.map(settle);
+    assert!(USUAL.contains(&beds[1].whole) && USUAL.contains(&beds[1].bulk));
+    assert!(beds.windows(2).all(|pair| pair[0].bulk < pair[1].bulk));
+    assert!((0.37..0.43).contains(&beds[0].bulk), "{}", beds[0].bulk);
+    oscillates(&beds[0]);
+}
+
+/// Void fractions of a settled bed.
+struct Bed {
+    /// Over the distance from the wall, in steps of 0.08 diameters.
+    profile: Vec<f64>,
+    /// From wall to wall.
+    whole: f64,
+    /// From 5 to 8 diameters from the wall.
+    bulk: f64,
+}
+
+fn settle(friction: f64) -> Bed {
     let folder = tempfile::tempdir().unwrap();
     let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/validate/settled-cylinder.toml");
-    let (out, series) = calcine(&case, folder.path(), "cylinder", &[]);
+    let set = [format!("contacts[0].friction={friction}")];
+    let (out, series) = calcine(&case, folder.path(), "cylinder", &set);
     let speed = series.column("quantities.mean_speed");
     let speed = *speed.last().unwrap();
     let files = read::collection(&out, "particles.pvd").unwrap();
@@ -31,16 +56,15 @@ pub fn run() {
     // Away from the bottom and the top, which order the layers beside them.
     let band = [2.5 * BEAD, heights[heights.len() * 95 / 100] - 2.0 * BEAD];
     println!(
-        "  {} beads, {speed:.1e} m/s, heights of {band:.4?} m",
+        "  friction {friction}: {} beads, {speed:.1e} m/s, heights of {band:.4?} m",
         centres.len()
     );
     assert!(speed < 1e-2, "{speed} m/s");
 
     let steps = 100;
     let profile: Vec<f64> = (0..=steps)
-        .map(|k| void(&centres, RADIUS - f64::from(k) * 0.08 * BEAD, band))
+        .map(|k| void(&centres, RADIUS - at(k) * BEAD, band))
         .collect();
-    let at = |k: usize| k as f64 * 0.08;
     // The run's own profile cuts the spheres exactly, at every second of its places.
     let own = Voids::read(&out).unwrap().unwrap().wall;
     let apart = profile.iter().enumerate().map(|(k, void)| {
@@ -50,6 +74,28 @@ pub fn run() {
     let apart = apart.fold(0.0, f64::max);
     println!("  the run's own profile: {apart:.4} apart at most");
     assert!(apart < 0.015, "{apart}");
+    // Each ring counts by its circumference.
+    let rings = (0..=steps).map(|k| (profile[k], RADIUS - at(k) * BEAD));
+    let (voids, all) = rings.fold((0.0, 0.0), |(voids, all), (void, radius)| {
+        (voids + void * radius, all + radius)
+    });
+    let (whole, bulk) = (voids / all, mean(&profile, 5.0, 8.0));
+    println!(
+        "  void fraction {whole:.3} from wall to wall, {bulk:.3} from 5 to 8 diameters from it"
+    );
+    Bed {
+        profile,
+        whole,
+        bulk,
+    }
+}
+
+/// Distance from the wall in diameters.
+fn at(step: usize) -> f64 {
+    step as f64 * 0.08
+}
+
+fn oscillates(Bed { profile, bulk, .. }: &Bed) {
     let extremes: Vec<(f64, f64, bool)> = (1..profile.len() - 1)
         .filter_map(|k| {
             let low = profile[k] < profile[k - 1] && profile[k] <= profile[k + 1];
@@ -57,14 +103,11 @@ pub fn run() {
             (low || high).then(|| (at(k), profile[k], low))
         })
         .collect();
-    let bulk: f64 = mean(&profile, at, 5.0, 8.0);
-    println!("  bulk, 5 to 8 diameters from the wall: {bulk:.3}");
     println!("  | diameters from the wall | void fraction |");
     for (place, value, low) in extremes.iter().take(10) {
         let kind = if *low { "least" } else { "most" };
         println!("  | {place:>22.2}  | {value:.3} {kind} |");
     }
-    assert!((0.37..0.43).contains(&bulk), "{bulk}");
     let lows: Vec<_> = extremes.iter().filter(|one| one.2).collect();
     let (place, value, _) = *lows[0];
     assert!(
@@ -91,7 +134,7 @@ pub fn run() {
     assert!(far.fold(0.0, f64::max) < 0.06);
 }
 
-fn mean(profile: &[f64], at: impl Fn(usize) -> f64, from: f64, to: f64) -> f64 {
+fn mean(profile: &[f64], from: f64, to: f64) -> f64 {
     let inside: Vec<f64> = (0..profile.len())
         .filter(|&k| (from..=to).contains(&at(k)))
         .map(|k| profile[k])

@@ -42,8 +42,9 @@ usage: cargo xtask TASK
         [--seed S]
   faults [--kills N]      kill or stop random processes of coupled runs at random moments (500
         [--seed S]        unless told): each is named, and everything ends and is cleaned up
-  validate [NAME …]       long validations, all unless named: elastic-box, fluidised-bed, hopper,
-                          moving-bed, repose, voids";
+  validate [NAME …]       long validations, all unless named: backward-step, elastic-box, flame,
+                          fluidised-bed, hopper, moving-bed, repose, shaft-flames,
+                          shaft-furnace, voids";
 
 /// Exit code of a wrong command line, as `calcine` has it.
 const USAGE_CODE: u8 = 2;
@@ -52,9 +53,8 @@ fn main() -> ExitCode {
     let words: Vec<OsString> = env::args_os().skip(1).collect();
     let Some(task) = read(&words) else {
         say(USAGE);
-        let asked = words
-            .first()
-            .is_some_and(|word| word == "help" || word == "--help");
+        let asked = words.first().is_some_and(|word| word == "help")
+            || words.iter().any(|word| word == "--help" || word == "-h");
         return if asked {
             ExitCode::SUCCESS
         } else {
@@ -132,8 +132,18 @@ fn read(words: &[OsString]) -> Option<Task> {
     }
 }
 
-/// A test program; unless the words hold its option, with the option's usual value.
+/// A test program; unless the words hold its option, with the option's usual value. Nothing where a word is neither a name nor
+/// an option of theirs, or an option's value is no number.
 fn program(name: &'static str, needs: Needs, usual: [&str; 2], words: &[OsString]) -> Option<Task> {
+    let mut texts = words.iter();
+    while let Some(word) = texts.next() {
+        let word = word.to_str()?;
+        if word == usual[0] || word == "--seed" {
+            texts.next()?.to_str()?.parse::<u64>().ok()?;
+        } else if word.starts_with('-') {
+            return None;
+        }
+    }
     let mut words = words.to_vec();
     if !words.iter().any(|word| word == usual[0]) {
         words.extend(usual.map(OsString::from));
@@ -233,6 +243,14 @@ mod tests {
         assert_eq!(read(&words("torture")), torture);
         let faults = task("faults_random", Needs::ALL, "--kills 500");
         assert_eq!(read(&words("faults")), faults);
+        for line in [
+            "faults --help",
+            "faults --kill 3",
+            "torture --kills",
+            "fuzz --seed x",
+        ] {
+            assert_eq!(read(&words(line)), None, "{line}");
+        }
         let validate = task("validate", Needs::ALL, "--validate hopper");
         assert_eq!(read(&words("validate hopper")), validate);
     }

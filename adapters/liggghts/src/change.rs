@@ -1,13 +1,13 @@
-//! Particles that go and come between two windows, or get another size.
+//! Particles that go and come between two windows, get another size, or come to rest.
 //!
-//! The coordinator tells them as lines: `remove ID`, `insert ID TYPE x y z vx vy vz RADIUS DENSITY`, and
+//! The coordinator tells them as lines: `rest`, `remove ID`, `insert ID TYPE x y z vx vy vz RADIUS DENSITY`, and
 //! `resize ID RADIUS MASS`, in SI with every digit.
 
-use std::collections::HashMap;
 use std::f64::consts::PI;
 
 use crate::host::HostError;
 use crate::library::Liggghts;
+use crate::state::State;
 
 /// Ids in one command: LIGGGHTS' lines are limited to 2048 letters.
 const IDS_A_LINE: usize = 100;
@@ -27,7 +27,7 @@ struct New {
 
 /// One particle that gets another size.
 struct Resized {
-    id: i32,
+    id: u64,
     radius: f64,
     mass: f64,
 }
@@ -37,16 +37,19 @@ pub struct Change {
     remove: Vec<u64>,
     insert: Vec<New>,
     resize: Vec<Resized>,
+    rest: bool,
 }
 
 impl Change {
     /// Reads the lines.
     pub fn parse(text: &str) -> Result<Self, HostError> {
         let (mut remove, mut insert, mut resize) = (Vec::new(), Vec::new(), Vec::new());
+        let mut rest = false;
         for line in text.lines() {
             let refuse = || HostError::Change { line: line.into() };
             let words: Vec<&str> = line.split_ascii_whitespace().collect();
             match words[..] {
+                ["rest"] => rest = true,
                 ["remove", id] => remove.push(id.parse().map_err(|_| refuse())?),
                 ["insert", id, kind, ref rest @ ..] => {
                     let values: Result<Vec<f64>, _> =
@@ -70,17 +73,25 @@ impl Change {
             remove,
             insert,
             resize,
+            rest,
         })
     }
 
-    /// Makes the change; how many particles there must be afterwards.
+    /// Makes the change; how many particles there must be afterwards. `state`: this rank's particles since LIGGGHTS'
+    /// last command.
     ///
     /// Deleting comes first, be it of nobody. The springs of contacts lie in the list of neighbours, by the places
     /// of particles, and deleting takes them over to the particles. One that comes takes the place of a ghost: if
     /// the list were read after that, springs would be lost or those of other pairs, and different ones on the two
     /// ranks of a pair, whose forces would no more cancel.
-    pub fn apply(&self, liggghts: &mut Liggghts, before: u64) -> Result<u64, HostError> {
-        self.resize(liggghts)?;
+    pub fn apply(
+        &self,
+        liggghts: &mut Liggghts,
+        state: &State,
+        before: u64,
+    ) -> Result<u64, HostError> {
+        self.rest(liggghts)?;
+        self.resize(liggghts, state)?;
         if self.remove.is_empty() && self.insert.is_empty() {
             return Ok(before);
         }
@@ -101,22 +112,25 @@ impl Change {
         }
         Ok(before + self.insert.len() as u64 - self.remove.len() as u64)
     }
-}
 
-impl Change {
+    /// Stops this rank's particles, where they shall come to rest.
+    fn rest(&self, liggghts: &mut Liggghts) -> Result<(), HostError> {
+        let names: &[_] = if self.rest { &["v", "omega"] } else { &[] };
+        for &name in names {
+            let speeds = liggghts.vectors_mut(name);
+            speeds.ok_or(HostError::Missing { name })?.fill(0.0);
+        }
+        Ok(())
+    }
+
     /// Gives this rank's particles their new sizes; other ranks get theirs in the setup that follows.
-    fn resize(&self, liggghts: &mut Liggghts) -> Result<(), HostError> {
+    fn resize(&self, liggghts: &mut Liggghts, state: &State) -> Result<(), HostError> {
         if self.resize.is_empty() {
             return Ok(());
         }
-        let missing = |name| move || HostError::Missing { name };
-        let tags = liggghts.integers("id").ok_or_else(missing("id"))?;
-        let places: HashMap<i32, usize> = tags.iter().copied().zip(0..).collect();
-        let own: Vec<(usize, &Resized)> = self
-            .resize
-            .iter()
-            .filter_map(|new| Some((*places.get(&new.id)?, new)))
-            .collect();
+        let place = |new: &Resized| Some(state.place[state.id.binary_search(&new.id).ok()?]);
+        let own = self.resize.iter();
+        let own: Vec<(usize, &Resized)> = own.filter_map(|new| Some((place(new)?, new))).collect();
         let volume = |radius: f64| 4.0 / 3.0 * PI * radius.powi(3);
         let value = |name, new: &Resized| match name {
             "radius" => new.radius,
@@ -124,7 +138,8 @@ impl Change {
             _ => new.mass / volume(new.radius),
         };
         for name in ["radius", "rmass", "density"] {
-            let column = liggghts.scalars_mut(name).ok_or_else(missing(name))?;
+            let column = liggghts.scalars_mut(name);
+            let column = column.ok_or(HostError::Missing { name })?;
             for (place, new) in &own {
                 column[*place] = value(name, new);
             }
@@ -168,7 +183,8 @@ mod tests {
         let good = Change::parse("remove 7\ninsert 9 1 0 0 0.5 0 0 -1 1e-3 2500\n").unwrap();
         assert_eq!((good.remove[0], good.insert[0].id), (7, 9));
         assert_eq!(good.insert[0].values[2], 0.5);
-        let other = Change::parse("resize 3 2.5e-3 1.5e-4\n").unwrap();
+        let other = Change::parse("rest\nresize 3 2.5e-3 1.5e-4\n").unwrap();
+        assert!(other.rest && !good.rest);
         let Resized { id, radius, mass } = other.resize[0];
         assert_eq!((id, radius, mass), (3, 2.5e-3, 1.5e-4));
         for line in [

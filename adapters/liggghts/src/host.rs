@@ -316,7 +316,7 @@ impl Host {
     /// Takes particles out and puts new ones in, then sets everything up for them.
     fn change(&mut self, text: &str) -> Result<(), HostError> {
         let change = Change::parse(text)?;
-        self.particles = change.apply(&mut self.liggghts, self.particles)?;
+        self.particles = change.apply(&mut self.liggghts, &self.state, self.particles)?;
         // A group holds what was there when it was made: it is told again, and takes up who came.
         for line in self.script()?.lines() {
             if line.starts_with(GROUPS) {

@@ -27,7 +27,8 @@ fn main() {
         format!("{VARIABLE}={}", address.to_text()).into(),
         std::env::current_exe().unwrap().into_os_string(),
     ];
-    let ends = network.spawn(&line, 1, Duration::from_secs(60)).unwrap();
+    let patience = Duration::from_secs(60);
+    let ends = network.spawn(&line, 1, patience, &|| false).unwrap();
     let mut criterion = Criterion::default().configure_from_args();
     for solver in ends {
         trips::measure("transport: MPI", solver, &mut criterion);

@@ -1,15 +1,15 @@
 //! Spawning solvers, and how a coordinator that has spawned some comes to its end.
 
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fs;
-use std::os::unix::process::CommandExt;
-use std::path::Path;
-use std::process::{self, Child, Command, Stdio};
-use std::sync::OnceLock;
+use std::process;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
+use calcine_wire::process::parent;
 use calcine_wire::run::VARIABLE;
 use calcine_wire::{Carried, LinkAddress, Network, Run, Transport, WireError};
 use mpi::Threading;
@@ -17,55 +17,28 @@ use mpi::environment::Universe;
 
 use crate::carrier::{World, at_end, end_at_once, place_files};
 
-/// What removes the files of a coordinator that was killed while MPI started, when there is no solver yet to do
-/// it: it waits for the end of a pipe that only the coordinator holds, and looks for what MPI's daemon still leaves.
-const GUARD: &str =
-    "read -r nothing; for i in 1 2 3 4 5 6; do sleep 0.4; rm -rf -- \"$0\" \"$1\"_*; done";
-
-/// A process that outlives the coordinator where that is killed, and no longer than it otherwise.
-struct Guard(Child);
-
-impl Guard {
-    fn start(address: &LinkAddress) -> Result<Self, WireError> {
-        let child = Command::new("/bin/sh")
-            .args(["-c", GUARD])
-            .arg(&address.root)
-            .arg(Path::new("/dev/shm").join(&address.name))
-            .stdin(Stdio::piped())
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .process_group(0)
-            .spawn();
-        child.map(Self).map_err(|source| WireError::File {
-            path: "/bin/sh".into(),
-            source,
-        })
-    }
-}
-
-impl Drop for Guard {
-    fn drop(&mut self) {
-        // One that has ended is what is wanted.
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
 /// Between two looks at ranks that are starting, short enough to see one that dies at once; and how many looks
 /// make its end certain.
 const LOOK: Duration = Duration::from_millis(10);
 const CERTAIN: u32 = 20;
+
+/// What Open MPI starts beside a process that no launcher of its own has started.
+const DAEMON: &str = "orted";
 
 /// Begins the variable by which Open MPI tells a process its rank.
 const RANK: &str = "OMPI_COMM_WORLD_RANK=";
 
 /// MPI in this process, and the worlds that it has spawned.
 pub struct MpiNetwork {
-    _guard: Guard,
     run: Run,
     /// Worlds that have not ended in an orderly way.
     worlds: AtomicU32,
+    /// Ranks that were seen while they started, by the variable with their link's address.
+    seen: Mutex<BTreeMap<String, Ranks>>,
 }
+
+/// Process ids and the rank of each.
+type Ranks = BTreeMap<u32, usize>;
 
 /// Where this run's files are, and whether this process comes to its end by itself.
 static FILES: OnceLock<LinkAddress> = OnceLock::new();
@@ -73,8 +46,12 @@ static FILES: OnceLock<LinkAddress> = OnceLock::new();
 const THREADS: usize = 4;
 static ENDS: AtomicBool = AtomicBool::new(false);
 
-/// Open MPI ends its process by `exit` or `_exit` where its own daemon has died, from any thread and from several at
-/// once: the first has to say so and to clean up, the others wait for it here.
+/// How long the run has, once Open MPI ends this process, to find by itself who has died, to say so and to end.
+const ITSELF: Duration = Duration::from_millis(2500);
+
+/// Open MPI ends its process by `exit` or `_exit` a second after its own daemon has died, from any thread and from several at
+/// once. The run, which watches the daemon too, has mostly ended by then or is about to; else the first that comes here has to say so
+/// and to clean up, and the others wait for it.
 extern "C" fn ended_by_mpi() {
     static TAKEN: AtomicBool = AtomicBool::new(false);
     let Some(files) = FILES.get().filter(|_| !ENDS.load(Ordering::SeqCst)) else {
@@ -83,6 +60,10 @@ extern "C" fn ended_by_mpi() {
     if TAKEN.swap(true, Ordering::SeqCst) {
         std::thread::sleep(Duration::from_secs(5));
         return;
+    }
+    // The thread in which the run would end cannot while it is here.
+    if rustix::thread::gettid() != rustix::process::getpid() {
+        std::thread::sleep(ITSELF);
     }
     eprintln!(
         "MPI has ended this run: its daemon (orted) died, or MPI could not be started; see the logs of \
@@ -103,7 +84,6 @@ impl MpiNetwork {
     pub fn start() -> Result<(Self, Universe), WireError> {
         let run = Run::create()?;
         let address = run.address("mpi");
-        let guard = Guard::start(&address)?;
         place_files(&address.root, &address.make_mpi_memory()?);
         // A second run of this process, as in tests, keeps the first one's.
         let _ = FILES.set(address);
@@ -117,9 +97,9 @@ impl MpiNetwork {
             });
         }
         let network = Self {
-            _guard: guard,
             run,
             worlds: AtomicU32::new(0),
+            seen: Mutex::default(),
         };
         Ok((network, universe))
     }
@@ -127,6 +107,23 @@ impl MpiNetwork {
     /// True where every world that was spawned has ended in an orderly way.
     pub fn is_quiet(&self) -> bool {
         self.worlds.load(Ordering::SeqCst) == 0
+    }
+
+    /// Looks which ranks with this variable live, and keeps them in mind beyond their death.
+    fn look(&self, variable: &str) -> (usize, Ranks) {
+        let living = living_with(variable);
+        let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
+        let all = seen.entry(variable.to_owned()).or_default();
+        all.extend(&living);
+        (living.len(), all.clone())
+    }
+}
+
+impl Drop for MpiNetwork {
+    fn drop(&mut self) {
+        if self.is_quiet() {
+            self.run.end();
+        }
     }
 }
 
@@ -140,6 +137,7 @@ impl Network for MpiNetwork {
         line: &[OsString],
         ranks: u32,
         patience: Duration,
+        is_over: &dyn Fn() -> bool,
     ) -> Result<Vec<Box<dyn Transport + Send>>, WireError> {
         self.worlds.fetch_add(1, Ordering::SeqCst);
         // MPI's call comes back only when all ranks have started MPI: one that died before never does.
@@ -151,19 +149,20 @@ impl Network for MpiNetwork {
             let _ = sender.send(World::spawn(&line, ranks));
         });
         let begun = Instant::now();
-        let (mut most, mut fewer) = (0, 0);
+        let mut fewer = 0;
         let world = loop {
             match receiver.recv_timeout(LOOK) {
                 Ok(world) => break world?,
-                Err(RecvTimeoutError::Timeout) if begun.elapsed() < patience => {}
+                Err(RecvTimeoutError::Timeout) if begun.elapsed() < patience && !is_over() => {}
                 Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => {
-                    let seconds = patience.as_secs_f64();
+                    let seconds = begun.elapsed().as_secs_f64();
                     return Err(WireError::NotSpawned { ranks, seconds });
                 }
             }
-            let left = mark.as_deref().map_or(0, |mark| living_with(mark).count());
-            most = most.max(left);
-            fewer = if left < most { fewer + 1 } else { 0 };
+            let Some((left, seen)) = mark.as_deref().map(|mark| self.look(mark)) else {
+                continue;
+            };
+            fewer = if left < seen.len() { fewer + 1 } else { 0 };
             if fewer >= CERTAIN {
                 return Err(WireError::DiedStarting { ranks, left });
             }
@@ -174,17 +173,16 @@ impl Network for MpiNetwork {
 
     fn ranks_here(&self, role: &str) -> Vec<(usize, u32)> {
         let mark = format!("{VARIABLE}={}", self.address(role).to_text());
-        let rank = |(pid, environment): (u32, Vec<u8>)| {
-            let own = environment.split(|&byte| byte == 0);
-            let mut ranks = own.filter_map(|word| {
-                let text = std::str::from_utf8(word).ok()?;
-                text.strip_prefix(RANK)?.parse().ok()
-            });
-            Some((ranks.next()?, pid))
-        };
-        let mut ranks: Vec<_> = living_with(&mark).filter_map(rank).collect();
+        let (_, seen) = self.look(&mark);
+        let mut ranks: Vec<_> = seen.into_iter().map(|(pid, rank)| (rank, pid)).collect();
         ranks.sort_unstable();
         ranks
+    }
+
+    fn daemon(&self) -> Option<(String, u32)> {
+        let mut children = children().into_iter().map(number);
+        let pid = children.find(|&pid| name_of(pid).as_deref() == Some(DAEMON))?;
+        Some((format!("MPI's daemon ({DAEMON})"), pid))
     }
 
     fn goodbye(&self) {
@@ -200,17 +198,36 @@ fn address_in(line: &[OsString]) -> Option<String> {
     Some(format!("{VARIABLE}={address}"))
 }
 
-/// Processes of this machine that live and have a variable of this value, with their environments.
-fn living_with(variable: &str) -> impl Iterator<Item = (u32, Vec<u8>)> {
+/// Living ranks of this machine that have a variable of this value: what MPI's daemon started. What a rank starts
+/// in its turn inherits the variables, and may outlive it.
+fn living_with(variable: &str) -> Ranks {
+    // Where a launcher started this process, it is the daemon.
+    let launcher = rustix::process::getppid().map(number);
+    let starts = |pid: u32| Some(pid) == launcher || name_of(pid).as_deref() == Some(DAEMON);
     let entries = fs::read_dir("/proc").into_iter().flatten().flatten();
-    entries.filter_map(move |entry| {
+    let ranks = entries.filter_map(|entry| {
         let pid = entry.file_name().to_str()?.parse().ok()?;
-        let text = fs::read(entry.path().join("environ")).unwrap_or_default();
-        let has = text
-            .split(|&byte| byte == 0)
-            .any(|word| word == variable.as_bytes());
-        has.then_some((pid, text))
-    })
+        let environment = fs::read(entry.path().join("environ")).ok()?;
+        let mut words = environment.split(|&byte| byte == 0);
+        let marked = words.clone().any(|word| word == variable.as_bytes());
+        let rank = words.find_map(|word| {
+            let text = std::str::from_utf8(word).ok()?;
+            text.strip_prefix(RANK)?.parse().ok()
+        });
+        let is_rank = marked && starts(parent(pid)?);
+        Some((pid, rank.filter(|_| is_rank)?))
+    });
+    ranks.collect()
+}
+
+/// The name of a process's program, of 15 letters at most.
+fn name_of(pid: u32) -> Option<String> {
+    let name = fs::read_to_string(format!("/proc/{pid}/comm")).ok()?;
+    Some(name.trim_end().to_owned())
+}
+
+fn number(pid: rustix::process::Pid) -> u32 {
+    pid.as_raw_nonzero().get().unsigned_abs()
 }
 
 /// Ends this process: MPI first, where nothing died. After a death MPI waits for the dead, so that its

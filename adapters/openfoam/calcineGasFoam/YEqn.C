@@ -12,6 +12,7 @@
 // its own, and what diffuses carries its own enthalpy, so that gases that mix at one temperature stay there.
 #include "gas.H"
 #include "convection.H"
+#include "speciesTransport.H"
 #include "limitedSurfaceInterpolationScheme.H"
 #include "fvm.H"
 #include "fvc.H"
@@ -39,32 +40,22 @@ Foam::tmp<Foam::surfaceScalarField> Foam::calcine::gas::speciesLimiter() const
 }
 
 
-Foam::scalar Foam::calcine::gas::solveSpecies(report& result)
+Foam::calcine::gas::speciesTransport::speciesTransport(const gas& of)
+:
+    diffusion("speciesDiffusion", fvc::interpolate(of.diffusivity())),
+    limitedFlux(of.phi_*of.speciesLimiter()),
+    inertia(of.committed_.mass/of.window_.storageSpan),
+    kept(inertia - (of.outflow() - of.massSource())),
+    beyond(of.species_->Y().size())
 {
-    if (!species_)
+    const upwind<scalar> up(of.mesh_, of.phi_);
+    forAll(beyond, k)
     {
-        return 0;
-    }
-    PtrList<volScalarField>& Y = species_->Y();
-    const label last = Y.size() - 1;
-    const scalar span = window_.storageSpan;
-    const label internal = mesh_.nInternalFaces();
-    const surfaceScalarField diffusion("speciesDiffusion", fvc::interpolate(diffusivity()));
-    // Of the linear value, what the limited one has more than the upwind one, as a mass flux.
-    const upwind<scalar> up(mesh_, phi_);
-    const surfaceScalarField limitedFlux(phi_*speciesLimiter());
-    const scalarField inertia(committed_.mass/span), out(outflow() - massSource());
-
-    scalar residual = 0;
-    PtrList<surfaceScalarField> beyond(Y.size()), diffused(Y.size());
-    speciesFlow_.setSize(Y.size());
-    speciesFlow_[last] = SubField<scalar>(flux_, flux_.size() - internal, internal);
-    forAll(Y, k)
-    {
+        const volScalarField& Y = of.species_->Y()[k];
         beyond.set
         (
             k,
-            new surfaceScalarField(limitedFlux*(fvc::interpolate(Y[k]) - up.interpolate(Y[k])))
+            new surfaceScalarField(limitedFlux*(fvc::interpolate(Y) - up.interpolate(Y)))
         );
         for (surfaceScalarField::Patch& patch : beyond[k].boundaryFieldRef())
         {
@@ -74,29 +65,70 @@ Foam::scalar Foam::calcine::gas::solveSpecies(report& result)
             }
         }
     }
+}
+
+
+Foam::tmp<Foam::fvScalarMatrix> Foam::calcine::gas::speciesEquation
+(
+    label k,
+    const speciesTransport& transport,
+    const fvScalarMatrix& laplacian
+) const
+{
+    const volScalarField& Y = species_->Y()[k];
+    const fv::gaussConvectionScheme<scalar> convection
+    (
+        mesh_, phi_, tmp<surfaceInterpolationScheme<scalar>>(new upwind<scalar>(mesh_, phi_))
+    );
+    tmp<fvScalarMatrix> equation(convection.fvmDiv(phi_, Y) - laplacian);
+    fvScalarMatrix& matrix = equation.ref();
+    matrix.diag() += transport.kept + given_.speciesCoefficient[k];
+    matrix.source() += transport.inertia*committed_.composition[k]
+      - outOf(transport.beyond[k]) + given_.speciesSource[k];
+    return equation;
+}
+
+
+// As a share of what moves: through the boundary, from the particles, into storage; no closer than round-off of the terms.
+Foam::scalar Foam::calcine::gas::speciesTarget(label k, const scalarField& diagonal) const
+{
+    const scalarField& Y = species_->Y()[k].primitiveField();
+    scalar moving =
+        gSumMag(mass_*Y - committed_.mass*committed_.composition[k])/window_.storageSpan
+      + gSumMag(given_.speciesSource[k]);
+    for (const fvsPatchScalarField& flux : phi_.boundaryField())
+    {
+        moving += flux.coupled() ? 0 : gSumMag(flux);
+    }
+    return max(linearTolerance_*moving, 1e-15*gSumMag(diagonal*Y));
+}
+
+
+Foam::scalar Foam::calcine::gas::solveSpecies(report& result)
+{
+    if (!species_)
+    {
+        return 0;
+    }
+    PtrList<volScalarField>& Y = species_->Y();
+    const label last = Y.size() - 1;
+    const label internal = mesh_.nInternalFaces();
+    const speciesTransport transport(*this);
+
+    scalar residual = 0;
+    PtrList<surfaceScalarField> diffused(Y.size());
+    speciesFlow_.setSize(Y.size());
+    speciesFlow_[last] = SubField<scalar>(flux_, flux_.size() - internal, internal);
     for (label k = 0; k < last; ++k)
     {
-        const scalarField& old = committed_.composition[k];
-        const fvScalarMatrix laplacian(fvm::laplacian(diffusion, Y[k]));
-        const fv::gaussConvectionScheme<scalar> convection
-        (
-            mesh_, phi_, tmp<surfaceInterpolationScheme<scalar>>(new upwind<scalar>(mesh_, phi_))
-        );
-        fvScalarMatrix matrix(convection.fvmDiv(phi_, Y[k]) - laplacian);
-        matrix.diag() += inertia - out + given_.speciesCoefficient[k];
-        matrix.source() += inertia*old - outOf(beyond[k]) + given_.speciesSource[k];
+        const fvScalarMatrix laplacian(fvm::laplacian(transport.diffusion, Y[k]));
+        tmp<fvScalarMatrix> equation(speciesEquation(k, transport, laplacian));
+        fvScalarMatrix& matrix = equation.ref();
         addMade(k, matrix);
 
-        scalar moving = gSumMag(mass_*Y[k].primitiveField() - committed_.mass*old)/span
-          + gSumMag(given_.speciesSource[k]);
-        for (const fvsPatchScalarField& flux : phi_.boundaryField())
-        {
-            moving += flux.coupled() ? 0 : gSumMag(flux);
-        }
-        const solved solution = speciesSolver_->solve
-        (
-            matrix, scalarField(matrix.source()), linearTolerance_*moving, Y[k]
-        );
+        const scalarField source(matrix.source());
+        const solved solution =
+            speciesSolver_->solve(matrix, source, speciesTarget(k, matrix.diag()), Y[k]);
         result.linearIterations += solution.iterations;
         residual = max(residual, solution.initial/gSumMag(matrix.diag()));
 
@@ -118,14 +150,17 @@ Foam::scalar Foam::calcine::gas::solveSpecies(report& result)
     }
 
     Y[last].primitiveFieldRef() = 1;
-    diffused.set(last, new surfaceScalarField(0*diffusion*mesh_.magSf()*mesh_.deltaCoeffs()));
+    diffused.set
+    (
+        last, new surfaceScalarField(0*transport.diffusion*mesh_.magSf()*mesh_.deltaCoeffs())
+    );
     for (label k = 0; k < last; ++k)
     {
         Y[last].primitiveFieldRef() -= Y[k].primitiveField();
         diffused[last] -= diffused[k];
     }
     Y[last].correctBoundaryConditions();
-    carryEnthalpy(limitedFlux, diffused);
+    carryEnthalpy(transport.limitedFlux, diffused);
     return residual;
 }
 

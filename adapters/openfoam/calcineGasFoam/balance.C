@@ -97,20 +97,22 @@ void Foam::calcine::gas::balanceMomentum(report& result) const
     const scalar span = window_.motionSpan;
     const vectorField& u = U_.primitiveField();
     const scalarField share(pressureShare_*mesh_.cellVolumes());
-    const vectorField stored(committed_.mass*(u - committed_.velocity));
-    // Pressure, gravity, and u times the continuity residual, which the equation's form subtracts.
+    const vectorField stored(mass_*u - committed_.mass*committed_.velocity);
+    // Pressure, gravity, and u times the continuity residual of the motion clock, which the equation's form subtracts.
+    const vectorField gained((mass_ - committed_.mass)*u);
     const vectorField source
     (
-        share*(density()*gravity_ - pressureGradient_) + u*outflow_
+        span*(share*(density()*gravity_ - pressureGradient_) + u*outflow_) + gained
     );
+    result.storageClock = (1 - span/window_.storageSpan)*gSum(gained);
     for (direction axis = 0; axis < 3; ++axis)
     {
         balance& momentum = result.momentum[axis];
         momentum.stored = gSum(stored.component(axis)());
         momentum.storedMagnitude = gSumMag(stored.component(axis)());
         momentum.exchange = span*gSum(result.drag.component(axis)());
-        momentum.source = span*gSum(source.component(axis)());
-        momentum.sourceMagnitude = span*gSumMag(source.component(axis)());
+        momentum.source = gSum(source.component(axis)());
+        momentum.sourceMagnitude = gSumMag(source.component(axis)());
         forAll(mesh_.boundary(), patchi)
         {
             if (boundary_.of(patchi) == passage::within)

@@ -129,4 +129,31 @@ void Foam::fv::calcineBed::correct(volScalarField& nut)
         }
         patch == values;
     }
+    exchange(nut);
+}
+
+
+// The model goes on with what is at the border between ranks: of the field as it is now.
+void Foam::fv::calcineBed::exchange(volScalarField& field)
+{
+    auto& patches = field.boundaryFieldRef();
+    const label requests = Pstream::nRequests();
+    for (fvPatchScalarField& patch : patches)
+    {
+        if (patch.coupled())
+        {
+            patch.initEvaluate(Pstream::defaultCommsType);
+        }
+    }
+    if (Pstream::parRun() && Pstream::defaultCommsType == Pstream::commsTypes::nonBlocking)
+    {
+        Pstream::waitRequests(requests);
+    }
+    for (fvPatchScalarField& patch : patches)
+    {
+        if (patch.coupled())
+        {
+            patch.evaluate(Pstream::defaultCommsType);
+        }
+    }
 }

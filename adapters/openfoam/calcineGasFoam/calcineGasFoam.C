@@ -161,6 +161,8 @@ void send
         append(balances, species);
     }
     link.put("balances", balances);
+    const vector& clock = result.storageClock;
+    link.put("storage_clock", scalarList{clock.x(), clock.y(), clock.z()});
     const scalarList convergence
     {
         scalar(result.outerIterations), scalar(result.linearIterations), result.residual,

@@ -1,4 +1,5 @@
 #include "gas.H"
+#include "clockValue.H"
 
 namespace
 {
@@ -339,10 +340,6 @@ void Foam::calcine::gas::resume(const fileName& directory)
     thermo_->he().correctBoundaryConditions();
     thermo_->correct();
     models_->read(directory);
-    if (committed_.placed)
-    {
-        models_->setDensity(committed_.voidFraction*density());
-    }
 }
 
 
@@ -374,6 +371,8 @@ void Foam::calcine::gas::takeOver(const fileName& directory)
 
 void Foam::calcine::gas::attempt(const window& when, const exchange& given, report& result)
 {
+    const clockValue begun(true);
+    reactionTime_ = 0;
     window_ = when;
     given_ = given;
     voidFraction_.primitiveFieldRef() = given_.voidFraction;
@@ -423,7 +422,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
         }
         mass_ = committed_.mass - window_.storageSpan*(outflow() - massSource());
         setFlux();
-        result.residual = max(result.residual, solveScalars(result));
+        result.residual = max(result.residual, solveScalars(result.residual, result));
         guard(true);
         result.outerIterations = outer;
         thermo_->correct();
@@ -436,6 +435,8 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
     closeReactions(result);
     guard(false);
     finishReport(result);
+    result.wallTime = begun.elapsed();
+    result.reactionTime = reactionTime_;
 }
 
 

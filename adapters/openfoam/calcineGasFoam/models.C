@@ -26,7 +26,15 @@ Foam::calcine::models::models
 )
 :
     mesh_(mesh),
-    density_(IOobject("epsRho", mesh.time().timeName(), mesh), 1*thermo.rho()),
+    density_
+    (
+        // Kept with the fields of the models: its values at inlets are those of the window committed last.
+        IOobject
+        (
+            "epsRho", mesh.time().timeName(), mesh, IOobject::NO_READ, IOobject::AUTO_WRITE
+        ),
+        1*thermo.rho()
+    ),
     schmidt_(0.7)
 {
     if (given(mesh, turbulenceModel::propertiesName))
@@ -110,7 +118,10 @@ void Foam::calcine::models::store()
 
 Foam::tmp<Foam::volScalarField> Foam::calcine::models::eddyViscosity() const
 {
-    return turbulence_->mut();
+    tmp<volScalarField> field(turbulence_->mut());
+    // Between ranks the model's own is that of before the bed was taken out.
+    field.ref().correctBoundaryConditions();
+    return field;
 }
 
 
@@ -158,13 +169,34 @@ void Foam::calcine::models::setDensity(const scalarField& density)
 {
     density_.primitiveFieldRef() = density;
     density_.correctBoundaryConditions();
-    // Its patches are calculated ones.
+    if (!turbulent())
+    {
+        return;
+    }
+    // Its patches are calculated ones. What flows in at a velocity has the density that goes with its flux.
+    const surfaceScalarField& flux = turbulence_->alphaRhoPhi();
+    const volVectorField& velocity = turbulence_->U();
     forAll(density_.boundaryField(), patchi)
     {
         fvPatchScalarField& patch = density_.boundaryFieldRef()[patchi];
-        if (!patch.coupled())
+        if (patch.coupled())
         {
-            patch == patch.patchInternalField();
+            continue;
+        }
+        patch == patch.patchInternalField();
+        const fvPatchVectorField& u = velocity.boundaryField()[patchi];
+        if (!u.fixesValue())
+        {
+            continue;
+        }
+        const scalarField volume(u & patch.patch().Sf());
+        const scalarField& mass = flux.boundaryField()[patchi];
+        forAll(patch, facei)
+        {
+            if (mass[facei] < 0 && volume[facei] < 0)
+            {
+                patch[facei] = mass[facei]/volume[facei];
+            }
         }
     }
 }

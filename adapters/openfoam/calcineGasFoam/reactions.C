@@ -1,6 +1,17 @@
 #include "reactions.H"
+#include "gasChemistry.H"
 #include "models.H"
+#include "ode.H"
 #include "SquareMatrix.H"
+
+namespace Foam
+{
+
+typedef ode<calcine::gasChemistry> odeOfGasChemistry;
+defineTemplateTypeNameAndDebugWithName(odeOfGasChemistry, "ode<calcine>", 0);
+
+} // End namespace Foam
+
 
 namespace
 {
@@ -11,8 +22,12 @@ const char* const phase = "chemistry";
 const Foam::label mostPasses = 8;
 // Pivot, of a matrix with a unit diagonal, below which a row is a combination of earlier ones.
 const Foam::scalar dependent = 1e-13;
+// A span in s that OpenFOAM's chemistry takes for none.
+const Foam::scalar nothing = 1e-3*Foam::SMALL;
 // What an element may be off by at the end, as a share of the total mass.
 const Foam::scalar kept = 1e-15;
+// More than that is no round-off.
+const Foam::scalar roundOff = 100;
 
 Foam::word named(const char* name)
 {
@@ -50,7 +65,7 @@ Foam::calcine::reactions::reactions
     T_.primitiveFieldRef() = T.primitiveField();
     T_.correctBoundaryConditions();
     thermo_ = psiReactionThermo::New(mesh, phase);
-    chemistry_ = BasicChemistryModel<psiReactionThermo>::New(*thermo_);
+    chemistry_.reset(new ode<gasChemistry>(*thermo_));
     basicSpecieMixture& mixture = thermo_->composition();
     forAll(species, k)
     {
@@ -58,7 +73,7 @@ Foam::calcine::reactions::reactions
         // A checkpoint keeps the gas' own fractions.
         mixture.Y(own_[k]).writeOpt() = IOobject::NO_WRITE;
     }
-    firstStep_ = chemistry_->get<scalar>("initialChemicalTimeStep");
+    negligible_ = chemistry_->get<scalar>("negligible");
     mixing_ = chemistry_->lookupOrDefault<scalar>("mixingConstant", -1);
     elements_ = List<scalarList>(chemistry_->lookup("elementShares"));
 }
@@ -66,7 +81,7 @@ Foam::calcine::reactions::reactions
 
 void Foam::calcine::reactions::evaluate
 (
-    scalar span,
+    const scalarField& span,
     const volScalarField& T,
     const PtrList<volScalarField>& Y,
     const models& turbulence
@@ -88,35 +103,83 @@ void Foam::calcine::reactions::evaluate
     }
     thermo_->he() = thermo_->he(thermo_->p(), T_);
     thermo_->correct();
-    // The result must not depend on what the model did before.
-    T_.mesh().lookupObjectRef<volScalarField::Internal>(named("deltaTChem")) =
-        dimensionedScalar("firstStep", dimTime, firstStep_);
-    chemistry_->solve(span);
+    // The result must not depend on what the model did before: each integration tries the whole span first.
+    T_.mesh().lookupObjectRef<volScalarField::Internal>(named("deltaTChem")).field() = span;
+    chemistry_->calculate();
+    chemistry_->solve(spans(span));
 
     const scalarField density(thermo_->rho()().primitiveField());
     const scalarField share(mixing_ < 0 ? scalarField() : reactingShare(turbulence));
     // OpenFOAM's integration keeps the elements to some 1e-8 of what reacts.
-    scalarList before(Y.size()), after(Y.size());
+    scalarList before(Y.size()), after(Y.size()), masses(elements_.size());
     forAll(density, celli)
     {
         forAll(Y, k)
         {
             before[k] = thermo_->composition().Y(own_[k])[celli];
-            after[k] = before[k] + span*chemistry_->RR(own_[k])[celli]/density[celli];
+            after[k] = before[k] + span[celli]*chemistry_->RR(own_[k])[celli]/density[celli];
+            if (!(mag(after[k]) < GREAT))
+            {
+                FatalErrorInFunction
+                    << "the integration of reactions over " << span[celli] << " s from " << T_[celli] << " K gave "
+                    << after[k] << " for the mass fraction of " << Y[k].name() << " at "
+                    << T_.mesh().C()[celli] << " m; another solver may do: `odeCoeffs` of chemistryProperties"
+                    << exit(FatalError);
+            }
         }
-        restoreElements(before, after);
+        elementsOf(before, masses);
+        restoreElements(masses, after);
         forAll(Y, k)
         {
             rates_[k][celli] =
-                (share.size() ? share[celli] : 1)*(after[k] - before[k])/span;
+                (share.size() ? share[celli] : 1)*(after[k] - before[k])/span[celli];
         }
     }
 }
 
 
-void Foam::calcine::reactions::restoreElements
+// The span that each cell is integrated over, by the rates of its start: none to speak of where nothing reacts, as natively.
+Foam::scalarField Foam::calcine::reactions::spans(const scalarField& span) const
+{
+    const scalarField density(thermo_->rho()().primitiveField());
+    scalarField fastest(density.size(), Zero);
+    forAll(own_, k)
+    {
+        fastest = max(fastest, mag(chemistry_->RR(own_[k]).field()));
+    }
+    scalarField result(span);
+    forAll(result, celli)
+    {
+        if (fastest[celli]*span[celli] <= negligible_*density[celli])
+        {
+            // OpenFOAM's model steps over what is below SMALL, and divides by it.
+            result[celli] = nothing;
+        }
+    }
+    return result;
+}
+
+
+void Foam::calcine::reactions::elementsOf
 (
-    const scalarList& like,
+    const scalarList& fractions,
+    scalarList& masses
+) const
+{
+    forAll(elements_, e)
+    {
+        masses[e] = 0;
+        forAll(fractions, k)
+        {
+            masses[e] += elements_[e][k]*fractions[k];
+        }
+    }
+}
+
+
+bool Foam::calcine::reactions::restoreElements
+(
+    const scalarList& masses,
     scalarList& fractions
 ) const
 {
@@ -126,21 +189,19 @@ void Foam::calcine::reactions::restoreElements
     }
     const label count = elements_.size();
     scalar left = GREAT;
+    scalarList lack(count);
     for (label pass = 0; pass < mostPasses; ++pass)
     {
-        scalarList lack(count, Zero);
+        elementsOf(fractions, lack);
         scalar worst = 0;
         forAll(elements_, e)
         {
-            forAll(fractions, k)
-            {
-                lack[e] += elements_[e][k]*(like[k] - fractions[k]);
-            }
+            lack[e] = masses[e] - lack[e];
             worst = max(worst, mag(lack[e]));
         }
         if (worst <= kept || worst >= left)
         {
-            return;
+            return worst <= roundOff*kept;
         }
         left = worst;
         // sum_f (sum_k Y_k a_ek a_fk) lambda_f = lack_e, by Cholesky's factors of the matrix scaled to a unit diagonal.
@@ -210,6 +271,7 @@ void Foam::calcine::reactions::restoreElements
             fractions[k] *= max(change, scalar(0));
         }
     }
+    return left <= roundOff*kept;
 }
 
 

@@ -21,5 +21,6 @@ void Foam::calcine::windowLog::tell(const window& when, const report& result)
         << " process time " << when.processEnd << " s: outer " << result.outerIterations
         << ", linear " << result.linearIterations << ", residual " << result.residual
         << ", volume " << result.volumeResidual
+        << ", " << result.wallTime << " s (reactions " << result.reactionTime << " s)"
         << (result.converged ? "" : ", outer loop at its limit") << endl;
 }

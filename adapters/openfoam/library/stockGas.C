@@ -309,6 +309,8 @@ void Foam::calcine::stockGas::send(calcine_kind kind, bool stepped)
         stepped ? balances() : DynamicList<scalar>(List<scalar>(35, Zero))
     );
     link_.put("balances", sums);
+    // Stock solvers store over the motion span alone.
+    link_.put("storage_clock", scalarList(3, Zero));
     // Of the energy balance, what the step left open; the solver's own loops have no other measure.
     const scalar scale = sums[8] + sums[10] + mag(sums[11]) + sums[13];
     const scalar open = mag(sums[7] - sums[9] - sums[11] - sums[12]);

@@ -73,7 +73,7 @@ fn unusable(folder: &Path, error: StateFileError) -> PartError {
 
 /// A change in the host's lines, with every digit.
 fn change_text(change: &Change) -> String {
-    let mut text = String::new();
+    let mut text = String::from(if change.rest { "rest\n" } else { "" });
     for id in &change.remove {
         let _ = writeln!(text, "remove {id}");
     }

@@ -130,7 +130,16 @@ fn material_of_type(contacts: &Contacts) -> Vec<usize> {
     contacts.material_of.iter().copied().chain(walls).collect()
 }
 
+/// LIGGGHTS sets up no particles whose lowest type is not 1, as after the last of the first population has left. A
+/// distribution, by which nothing is inserted, counts as a particle of its type. Seeds are primes above 10 000, as
+/// LIGGGHTS asks for.
+const FIRST_TYPE: &str = "\
+fix calcine_first all particletemplate/sphere 10007 atom_type 1 volume_limit 1e-20 density constant 1000 radius constant 1e-6
+fix calcine_first_type all particledistribution/discrete 10009 1 calcine_first 1
+";
+
 fn properties(text: &mut String, contacts: &Contacts) {
+    text.push_str(FIRST_TYPE);
     let types = material_of_type(contacts);
     let young = contacts.materials.iter().map(|material| material.young);
     if young.clone().fold(f64::INFINITY, f64::min) < USUAL_YOUNG[0] {

@@ -125,14 +125,9 @@ impl OpenfoamCase<'_> {
         let Some(gas) = setup.chemistry.reacting() else {
             return Ok(());
         };
-        let refuse = |words: String| PartError::new(NAME, FailureKind::NotStarted, words);
-        if self.solver.is_stock() {
-            let words =
-                "a stock solver does not take Calcine's reactions of the gas; use calcineGasFoam";
-            return Err(refuse(words.into()));
-        }
-        let files = chemistry::files(setup, mixture, gas);
-        for (name, text) in files.map_err(|error| refuse(error.to_string()))? {
+        let files = chemistry::files(setup, mixture, gas)
+            .map_err(|error| PartError::new(NAME, FailureKind::NotStarted, error.to_string()))?;
+        for (name, text) in files {
             put(&folder.join(name), &text)?;
         }
         Ok(())
@@ -217,9 +212,16 @@ impl OpenfoamCase<'_> {
         )
     }
 
-    /// Every patch of the mesh needs its condition, and every condition its patch.
+    /// Every patch of the mesh needs its condition, and every condition its patch; the program must have what the
+    /// gas needs, whichever clock it runs by.
     fn check(&self) -> Result<(), PartError> {
         let refuse = |message: String| Err(PartError::new(NAME, FailureKind::NotStarted, message));
+        if self.solver.is_stock()
+            && let Some(why) = stock::refusal(self.solver, self.setup, false)
+        {
+            let name = self.solver.name();
+            return refuse(format!("{name} cannot compute this gas: {why}"));
+        }
         for (name, _) in &self.setup.patches {
             if self.mesh.patch(name).is_none() {
                 return refuse(format!("the mesh has no patch `{name}`"));

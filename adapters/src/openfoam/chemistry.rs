@@ -17,8 +17,6 @@ use super::dictionaries::{field, header, zero_gradient};
 /// Absolute tolerance of OpenFOAM's integration in kmol/m³, beside the relative one of the case: a mole fraction of
 /// about 1e-10 in a flame.
 const CONCENTRATION: f64 = 1e-12;
-/// First step of the integration of a cell in s.
-const FIRST_STEP: f64 = 1e-7;
 
 /// A reaction that OpenFOAM's chemistry cannot take.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -116,13 +114,15 @@ fn species(mixture: &Mixture) -> String {
     text
 }
 
+/// What calcineGasFoam's chemistry model, OpenFOAM's with rates that go on to where a reactant ends, integrates with and over.
 fn properties(mixture: &Mixture, gas: &ReactingGas) -> String {
     let mut text = header("dictionary", "chemistryProperties.chemistry");
-    let relative = gas.tolerances.relative;
+    let (relative, negligible) = (gas.tolerances.relative, gas.tolerances.negligible);
     let _ = write!(
         text,
-        "chemistryType\n{{\n    solver          ode;\n    method          standard;\n}}\n\nchemistry       on;\n\
-         initialChemicalTimeStep {FIRST_STEP:e};\n\nodeCoeffs\n{{\n    solver          seulex;\n    \
+        "chemistry       on;\n\
+         // What each integration tries first is the span of the window.\ninitialChemicalTimeStep 1e-7;\n\
+         // Change of a mass fraction over that span below which nothing reacts.\nnegligible      {negligible:e};\n\nodeCoeffs\n{{\n    solver          rodas34;\n    \
          absTol          {CONCENTRATION:e};\n    relTol          {relative:e};\n}}\n"
     );
     text += "\n// Mass of each element in a unit mass of each species, in the order of calcineGasFoam's own.\nelementShares\n(\n";

@@ -179,6 +179,12 @@ pub fn read(ranks: Ranks<'_>, received: &mut CellReceived) -> Result<Convergence
     received.momentum = [next(), next(), next()];
     received.species.clear();
     received.species.extend(balances);
+    let [x, y, z] = *link.column("storage_clock")? else {
+        return Err(WireError::Order {
+            what: "the column `storage_clock` has not three numbers",
+        });
+    };
+    received.storage_clock = Vec3::new(x, y, z);
     let numbers = link.column("convergence")?;
     let [outer, linear, residual, volume, converged] = *numbers else {
         return Err(WireError::Order {

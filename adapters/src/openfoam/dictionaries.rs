@@ -43,7 +43,7 @@ pub fn control(include: &str) -> String {
         + "application     calcineGasFoam;\nstartFrom       startTime;\nstartTime       0;\n\
            stopAt          endTime;\nendTime         1;\ndeltaT          1;\n\
            writeControl    timeStep;\nwriteInterval   1;\nwriteFormat     binary;\n\
-           writePrecision  8;\nwriteCompression off;\ntimeFormat      general;\n\
+           writePrecision  17;\nwriteCompression off;\ntimeFormat      general;\n\
            timePrecision   6;\nrunTimeModifiable no;\n"
 }
 

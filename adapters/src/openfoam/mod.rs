@@ -9,7 +9,7 @@ mod identity;
 mod species;
 mod start;
 pub mod stock;
-mod turbulence;
+pub mod turbulence;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};

@@ -27,7 +27,7 @@ extern "C" {
 #endif
 
 /* Version of the protocol; both sides must have the same. */
-#define CALCINE_WIRE_VERSION 2u
+#define CALCINE_WIRE_VERSION 3u
 
 /* One end of a link. */
 typedef struct calcine_link calcine_link;

@@ -137,6 +137,7 @@ state density 1 kg/m^3 item
 state velocity 3 m/s item
 state pressure_gradient 3 Pa/m item
 state balances 35 kg,J,Ns rank
+state storage_clock 3 Ns rank
 state convergence 5 1 rank";
 
 /// The standard catalogue of particles, in ascending id.

@@ -203,11 +203,12 @@ mod tests {
 
     #[test]
     fn another_protocol_version_is_refused() {
-        let text = hello().to_text().replace("protocol 2", "protocol 3");
+        let other = VERSION + 1;
+        let written = format!("protocol {VERSION}");
+        let text = hello().to_text();
+        let text = text.replace(&written, &format!("protocol {other}"));
         let error = Hello::from_text(&text).unwrap_err().to_string();
-        assert!(
-            error.contains("protocol version is 2 here, but 3"),
-            "{error}"
-        );
+        let words = format!("protocol version is {VERSION} here, but {other}");
+        assert!(error.contains(&words), "{error}");
     }
 }

@@ -16,6 +16,7 @@ pub mod transport;
 
 #[allow(unsafe_code)]
 mod c_abi;
+mod guard;
 mod watch;
 #[allow(unsafe_code)]
 mod words;

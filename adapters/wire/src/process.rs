@@ -5,8 +5,6 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-use crate::run::started;
-
 /// The key of a process in an introduction.
 const KEY: &str = "process ";
 
@@ -76,6 +74,24 @@ impl Process {
     }
 }
 
+/// When a process started, in clock ticks since boot (field 22 of /proc/PID/stat).
+pub(crate) fn started(pid: u32) -> Option<u64> {
+    field(pid, 22)?.parse().ok()
+}
+
+/// The process that started another, or that took it over (field 4).
+pub fn parent(pid: u32) -> Option<u32> {
+    field(pid, 4)?.parse().ok()
+}
+
+/// A field of /proc/PID/stat behind the name, which may have blanks, counted from 1 as in proc(5).
+fn field(pid: u32, number: usize) -> Option<String> {
+    let text = fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
+    let after_name = text.rsplit_once(')')?.1;
+    let mut fields = after_name.split_ascii_whitespace();
+    fields.nth(number.checked_sub(3)?).map(str::to_owned)
+}
+
 /// A file of one word.
 fn word(path: &str) -> String {
     fs::read_to_string(path)
@@ -113,6 +129,18 @@ mod tests {
             assert!(begun.elapsed() < Duration::from_secs(20), "it stands still");
         }
         assert!(own.processor_time() > before);
+    }
+
+    #[test]
+    fn the_parent_of_a_child_is_this_process() {
+        let mut child = std::process::Command::new("sleep")
+            .arg("60")
+            .spawn()
+            .unwrap();
+        assert_eq!(parent(child.id()), Some(std::process::id()));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        assert_eq!(parent(u32::MAX), None);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use iceoryx2::prelude::ZeroCopySend;
 /// Marks a header of this wire: "calcine" and a one.
 pub const MAGIC: u64 = u64::from_le_bytes(*b"calcine\x01");
 /// Version of the protocol; both ends must have the same.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// What a message is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

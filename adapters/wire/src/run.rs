@@ -10,7 +10,8 @@ use std::time::Duration;
 
 use rustix::fs::{FlockOperation, flock};
 
-use crate::process::machine;
+use crate::guard::Guard;
+use crate::process::{machine, started};
 use crate::transport::WireError;
 
 /// The variable that tells a solver which link to open.
@@ -180,6 +181,8 @@ pub struct Run {
     root: PathBuf,
     /// Locked while this process lives.
     _alive: File,
+    guard: Guard,
+    is_over: bool,
 }
 
 impl Run {
@@ -191,6 +194,8 @@ impl Run {
         let serial = SERIAL.fetch_add(1, Ordering::Relaxed);
         let name = format!("{NAME}{pid}-{started:x}-{serial}");
         let root = root_of(&name)?;
+        // Before there is anything to remove.
+        let guard = Guard::start(&root, &Path::new(MEMORY).join(&name))?;
         let alive_path = Path::new(MEMORY).join(format!("{name}_alive"));
         let alive = OpenOptions::new()
             .write(true)
@@ -206,6 +211,8 @@ impl Run {
             name,
             root,
             _alive: alive,
+            guard,
+            is_over: false,
         };
         flock(&run._alive, FlockOperation::NonBlockingLockExclusive).map_err(|error| {
             WireError::File {
@@ -223,6 +230,12 @@ impl Run {
         Ok(run)
     }
 
+    /// To be called where all processes of the run have ended in an orderly way: nothing makes files any more. Else what
+    /// such processes still make after this run is removed for some seconds, when this process may have ended.
+    pub fn end(&mut self) {
+        self.is_over = true;
+    }
+
     /// The address of a role's links.
     pub fn address(&self, role: &str) -> LinkAddress {
         LinkAddress {
@@ -237,6 +250,9 @@ impl Run {
 impl Drop for Run {
     fn drop(&mut self) {
         remove_files(&self.name, &self.root);
+        if self.is_over {
+            self.guard.dismiss();
+        }
     }
 }
 
@@ -261,13 +277,6 @@ fn owner_of(name: &str) -> Option<(u32, u64)> {
     let started = u64::from_str_radix(parts.next()?, 16).ok()?;
     parts.next()?.parse::<u32>().ok()?;
     parts.next().is_none().then_some((pid, started))
-}
-
-/// When a process started, in clock ticks since boot (field 22 of /proc/PID/stat).
-pub(crate) fn started(pid: u32) -> Option<u64> {
-    let text = fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
-    let after_name = text.rsplit_once(')')?.1;
-    after_name.split_ascii_whitespace().nth(19)?.parse().ok()
 }
 
 /// True where the coordinator of a run lives: its process, or its lock, which also holds across

@@ -40,16 +40,21 @@ pub trait Network: Send + Sync {
     /// The address that a role's ranks are given.
     fn address(&self, role: &str) -> LinkAddress;
 
-    /// Starts a command line on a number of ranks and gives the coordinator's ends, by rank.
+    /// Starts a command line on a number of ranks and gives the coordinator's ends, by rank; an error after `patience`, or where
+    /// `is_over` says that the run has ended meanwhile.
     fn spawn(
         &self,
         line: &[OsString],
         ranks: u32,
         patience: Duration,
+        is_over: &dyn Fn() -> bool,
     ) -> Result<Vec<Box<dyn Transport + Send>>, WireError>;
 
     /// Rank and process id of a role's ranks that run on this machine, from when they were spawned on.
     fn ranks_here(&self, role: &str) -> Vec<(usize, u32)>;
+
+    /// Name and process id of a process of this machine that all ranks end with, where there is one.
+    fn daemon(&self) -> Option<(String, u32)>;
 
     /// A solver has said goodbye: its world ends in an orderly way.
     fn goodbye(&self);

@@ -6,7 +6,8 @@ use std::time::Duration;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::process::{Pid, PidfdFlags, Signal, getpid, kill_process, pidfd_open};
 
-use crate::run::{self, LinkAddress};
+use crate::process::started;
+use crate::run::LinkAddress;
 use crate::transport::WireError;
 
 /// How long after the coordinator's death a solver may take to end by itself.
@@ -27,7 +28,7 @@ impl Watch {
         let raw = i32::try_from(pid).ok().and_then(Pid::from_raw);
         let pidfd = raw.and_then(|raw| pidfd_open(raw, PidfdFlags::empty()).ok());
         // The number may belong to a later process by now.
-        let pidfd = pidfd.filter(|_| run::started(pid) == Some(since));
+        let pidfd = pidfd.filter(|_| started(pid) == Some(since));
         if let Some(pidfd) = &pidfd {
             end_with(address, pid, pidfd)?;
         }

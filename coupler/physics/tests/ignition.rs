@@ -26,8 +26,8 @@ fn reactor() -> Reactor {
 }
 
 /// Time at which gas of 1 mole of fuel to 2/φ of oxygen is 400 K hotter than at its start.
-fn delay(reactor: &mut Reactor, phi: f64, start: f64, pressure: f64, guess: f64) -> f64 {
-    let mut hotter = |time: f64| {
+fn delay(reactor: &Reactor, phi: f64, start: f64, pressure: f64, guess: f64) -> f64 {
+    let hotter = |time: f64| {
         let (mut t, mut y) = (start, fresh(phi));
         reactor.advance(pressure, &mut t, &mut y, time).unwrap();
         t - start - 400.0
@@ -47,13 +47,13 @@ fn delay(reactor: &mut Reactor, phi: f64, start: f64, pressure: f64, guess: f64)
 
 #[test]
 fn ignition_delays_and_final_temperatures_are_cantera_s() {
-    let mut reactor = reactor();
+    let reactor = reactor();
     let mut worst = [0.0_f64; 2];
     for row in table(include_str!("reference/ignition.csv")) {
         let [phi, start, pressure, expected, end] = row[..] else {
             panic!("{row:?}")
         };
-        let found = delay(&mut reactor, phi, start, pressure, expected);
+        let found = delay(&reactor, phi, start, pressure, expected);
         let (mut t, mut y) = (start, fresh(phi));
         reactor.advance(pressure, &mut t, &mut y, 10.0).unwrap();
         worst[0] = worst[0].max((found / expected - 1.0).abs());
@@ -64,7 +64,7 @@ fn ignition_delays_and_final_temperatures_are_cantera_s() {
 
 #[test]
 fn burnt_gas_reaches_cantera_s_equilibrium() {
-    let mut reactor = reactor();
+    let reactor = reactor();
     let gas = gas();
     let mut worst = [0.0_f64; 2];
     for row in table(include_str!("reference/equilibrium.csv")) {

@@ -173,6 +173,7 @@ impl Run<'_> {
             .collect::<Vec<_>>();
         state.set_f64s("ledger", &ledger);
         state.set_u64s("windows_and_clocks", &clocks);
+        state.set_u64s("held", &[self.held.count().cast_unsigned()]);
         state.set_u64s("case_hash", &hash);
         state.set_f64s(
             "particle_temperature",
@@ -261,6 +262,9 @@ impl Run<'_> {
                 motion: Ticks::new(motion.cast_signed()),
                 process: Ticks::new(process.cast_signed()),
             };
+        }
+        if let [held] = *state.u64s("held")? {
+            self.held = Ticks::new(held.cast_signed());
         }
         self.paths.forget();
         self.find_contacts();

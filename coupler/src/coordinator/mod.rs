@@ -1,10 +1,12 @@
 //! The loop: windows, attempts, commits, checkpoints.
 
 mod checkpoint;
+mod hold;
 mod momentum;
 mod origin;
 mod react;
 mod resize;
+mod span;
 mod trade;
 mod window;
 
@@ -19,12 +21,13 @@ use thiserror::Error;
 
 pub use checkpoint::{CheckpointError, CheckpointPaths};
 pub use origin::{Origin, OriginError};
-pub use resize::{Pace, TooLight};
+pub use resize::{LONGEST_STEP, Pace, TooLight};
 
 use crate::checkpoint::StateFileError;
 use crate::closures::{ClosureError, Closures, Coefficients, Seen};
 use crate::error::PartError;
 use crate::exchange::{Exchange, Placement};
+use crate::hold::Holds;
 use crate::ledger::{Ledger, Line};
 use crate::mapping::{Mapper, MappingError, Method};
 use crate::mesh::Mesh;
@@ -67,6 +70,8 @@ pub struct Plan {
     pub checkpoint: CheckpointPaths,
     /// True for each population that moves; empty where none does.
     pub free: Vec<bool>,
+    /// When those that move are held.
+    pub holds: Holds,
     /// Gravity in m/s².
     pub gravity: Vec3,
     /// Feeds and outlets.
@@ -179,6 +184,8 @@ struct Workspace {
     /// All but drag that acted on each particle in the last window, in N.
     other: Vec<Vec3>,
     free: Vec<bool>,
+    /// As many as `free`, and none of them free.
+    still: Vec<bool>,
     /// Heat of the last window from walls and surroundings into the particles in W.
     reservoir_heat: Vec<f64>,
 }
@@ -193,6 +200,8 @@ pub struct Run<'m> {
     parts: Parts,
     mapped: Mapped,
     clocks: Clocks,
+    /// Motion time for which the bed has been held so far.
+    held: Ticks,
     windows: u64,
     ledger: Ledger,
     timing: Timing,
@@ -235,6 +244,7 @@ impl<'m> Run<'m> {
             parts,
             mapped,
             clocks: Clocks::default(),
+            held: Ticks::ZERO,
             windows: 0,
             ledger: Ledger {
                 elements: elements.map(|name| (name, Line::default())).collect(),
@@ -269,9 +279,10 @@ impl<'m> Run<'m> {
         let mut last = None;
         while self.clocks.process < self.plan.end {
             let window = self.next_window()?;
-            self.resize(supervisor)?;
+            self.bring_to_rest(supervisor, &window)?;
             self.trade(supervisor, &window)?;
             self.advance(supervisor, &window)?;
+            self.resize(supervisor)?;
             last = Some(window);
 
             let output = Instant::now();

@@ -24,15 +24,19 @@ impl Workspace {
 impl Run<'_> {
     /// Makes of the coefficients of drag what acts over the window.
     pub(super) fn relax_drag(&mut self, window: &Window) {
+        let still = self.holds(window);
         let particles = self.parts.particles.fields();
+        let work = &mut self.work;
+        work.still.clear();
+        work.still.resize(work.free.len(), false);
         let inertia = Inertia {
             mass: particles.mass,
-            free: &self.work.free,
-            other: &self.work.other,
+            free: if still { &work.still } else { &work.free },
+            other: &work.other,
             span: window.span.motion.seconds(),
             acceleration: window.acceleration(),
         };
-        self.work.coefficients.relax(&inertia);
+        work.coefficients.relax(&inertia);
     }
 
     /// Remembers the velocities from which the particles start.
@@ -61,8 +65,12 @@ impl Run<'_> {
         self.ledger.particle_momentum.book(left.norm(), moved);
     }
 
-    /// What acted on each particle besides drag, contacts included: from its change of momentum.
+    /// What acted on each particle besides drag, contacts included: from its change of momentum. While the bed
+    /// is held that stays as it was: contacts go on from there.
     pub(super) fn note_forces(&mut self, window: &Window) {
+        if self.holds(window) {
+            return;
+        }
         self.book_momentum();
         let span = window.span.motion.seconds();
         let fields = self.parts.particles.fields();

@@ -30,7 +30,7 @@ impl Run<'_> {
         );
     }
 
-    /// Follows the reactions over the window with the gas as it is, and tells the exchange of them.
+    /// Follows the reactions over the window with the gas as it is.
     pub(super) fn react(&mut self, window: &Window) -> Result<(), RunError> {
         let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
         let Some(reacting) = self.parts.interior.reacting() else {
@@ -53,7 +53,16 @@ impl Run<'_> {
                 window: window.index,
                 cause,
             }
-        })?;
+        })
+    }
+
+    /// Tells the exchange what reacts, where something does.
+    pub(super) fn tell_rates(&mut self, window: &Window) {
+        let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
+        let Some(reacting) = self.parts.interior.reacting() else {
+            return;
+        };
+        let gas = self.parts.gas.fields();
         timed(&mut timing.exchange, || {
             let told = &mut work.exchange.cells.species;
             let properties = &self.closures.gas;
@@ -62,9 +71,9 @@ impl Run<'_> {
                 .linearise(operator, reacting, &gas, properties, told);
         });
         let conductance = &work.coefficients.conductance;
+        let span = window.span.process.seconds();
         let interior = &self.parts.interior;
         interior.eliminated(conductance, span, &mut work.exchange.conductance);
-        Ok(())
     }
 
     /// How far what reacts, by the gas of the attempt, is from what it was before.

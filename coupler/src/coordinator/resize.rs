@@ -1,13 +1,17 @@
 //! Particles that react become lighter, heavier, larger or smaller; the solver that moves them has them as
 //! they are.
 //!
-//! What a particle gives to the gas takes its own velocity along, and what it takes comes with it: only the
-//! mass of a particle changes, not how fast it moves.
+//! Only the mass of a particle changes, not how fast it moves: what it gives takes its own velocity v along. In the gas
+//! it has the velocity u of the gas from the start ([`SpeciesExchange`](crate::part::SpeciesExchange)): the
+//! momentum ṁ (u − v) that this takes is not counted.
 
-use calcine_physics::contact::time_step::rayleigh;
 use std::f64::consts::PI;
+
+use calcine_physics::Vec3;
+use calcine_physics::contact::time_step::rayleigh;
 use thiserror::Error;
 
+use super::trade::momentum;
 use super::{Run, RunError};
 use crate::motion::{Change, Contacts, Elastic, Resized};
 use crate::supervisor::Supervisor;
@@ -15,7 +19,7 @@ use crate::supervisor::Supervisor;
 /// Radii and masses count as the same within this share.
 const SAME: f64 = 1e-12;
 /// Share of Rayleigh's time above which a contact solver's step is too long.
-const LONGEST: f64 = 0.5;
+pub const LONGEST_STEP: f64 = 0.5;
 
 /// What bounds the time step of particles that move.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +48,7 @@ impl Pace {
         let density = new.mass / (4.0 / 3.0 * PI * new.radius.powi(3));
         let time = rayleigh(new.radius, density, elastic.young, elastic.poisson);
         // A time that is no number is no bound to keep either.
-        if self.step <= LONGEST * time {
+        if self.step <= LONGEST_STEP * time {
             return Ok(());
         }
         Err(TooLight {
@@ -78,7 +82,7 @@ pub struct TooLight {
 }
 
 impl Run<'_> {
-    /// Tells the solver of the particles what the last window has made of them. A bed that is held only
+    /// Tells the solver of the particles what the window has made of them. A bed that is held only
     /// needs to know where a radius has changed.
     pub(super) fn resize(&mut self, supervisor: &Supervisor) -> Result<(), RunError> {
         let Some(reacting) = self.parts.interior.reactions() else {
@@ -88,6 +92,7 @@ impl Run<'_> {
         let off = |now: f64, before: f64| (now - before).abs() > SAME * before;
         let held = self.plan.free.is_empty();
         let (mut change, mut asked, mut turned) = (Change::default(), 0.0, 0.0);
+        let mut carried = Vec3::zeros();
         for row in 0..fields.len() {
             let mass = self.work.particle_mass[row];
             let radius = reacting.radius(row).unwrap_or(fields.radius[row]);
@@ -105,16 +110,23 @@ impl Run<'_> {
             }
             asked += mass - fields.mass[row];
             turned += (mass - fields.mass[row]).abs();
+            carried += (mass - fields.mass[row]) * fields.velocity[row];
             change.resize.push(new);
         }
         if change.is_empty() {
             return Ok(());
         }
         let before = fields.mass.to_vec();
+        let momentum_before = momentum(&fields);
         self.parts.particles.change(supervisor, &change)?;
-        let pairs = self.parts.particles.fields().mass.iter().zip(&before);
+        let fields = self.parts.particles.fields();
+        let pairs = fields.mass.iter().zip(&before);
         let done: f64 = pairs.map(|(now, before)| now - before).sum();
+        let left = momentum(&fields) - momentum_before - carried;
         self.ledger.particle_mass.book(done - asked, turned);
+        self.ledger
+            .particle_momentum
+            .book(left.norm(), carried.norm());
         Ok(())
     }
 }

@@ -12,13 +12,13 @@ use crate::time::Window;
 use crate::traffic::Moment;
 
 impl Run<'_> {
-    /// Lets feeds and outlets act before a window, and books what they moved.
+    /// Lets feeds and outlets act before a window, and books what they moved. They stand while the bed is held.
     pub(super) fn trade(
         &mut self,
         supervisor: &Supervisor,
         window: &Window,
     ) -> Result<(), RunError> {
-        if self.plan.traffic.is_none() {
+        if self.plan.traffic.is_none() || self.holds(window) {
             return Ok(());
         }
         let moment = Moment {
@@ -129,7 +129,7 @@ fn book_elements(
 }
 
 /// Momentum of all particles in N s.
-fn momentum(fields: &ParticleFields<'_>) -> Vec3 {
+pub(super) fn momentum(fields: &ParticleFields<'_>) -> Vec3 {
     let pairs = fields.mass.iter().zip(fields.velocity);
     pairs.map(|(mass, velocity)| *mass * velocity).sum()
 }

@@ -9,6 +9,7 @@ use calcine_physics::gas_model::GasModel;
 use calcine_physics::thermo::Element;
 use rustix::time::{ClockId, clock_gettime};
 
+use super::span::next_span;
 use super::{Mapped, Run, RunError};
 use crate::exchange::{Placement, Setting};
 use crate::ledger::Ledger;
@@ -17,7 +18,7 @@ use crate::observer::Timing;
 use crate::part::{Balance, Bed, CellReceived, Particles};
 use crate::smoother::Smoother;
 use crate::supervisor::Supervisor;
-use crate::time::{Acceleration, Clocks, Ticks, TimeError, Window};
+use crate::time::Window;
 
 /// Adds the time that a stage takes to its account.
 pub(super) fn timed<T>(account: &mut Duration, stage: impl FnOnce() -> T) -> T {
@@ -78,11 +79,12 @@ pub(super) fn map(
 impl Run<'_> {
     pub(super) fn next_window(&self) -> Result<Window, RunError> {
         let plan = &self.plan;
+        let (_, change) = plan.holds.at(self.clocks.process);
         let span = next_span(
             &plan.acceleration,
             self.clocks,
             plan.motion_window,
-            plan.end,
+            change.map_or(plan.end, |time| time.min(plan.end)),
         )?;
         Ok(Window {
             index: self.windows,
@@ -243,12 +245,13 @@ impl Run<'_> {
     /// is conducted. Conduction takes the heat of reactions from the attempt before; a first attempt has none,
     /// and looks twice: heat that is set free would leave a window late.
     fn look_at_particles(&mut self, window: &Window) -> Result<(), RunError> {
-        if window.attempt == 0 && self.reacts() && self.parts.interior.conducts() {
+        let twice = window.attempt == 0 && self.reacts() && self.parts.interior.conducts();
+        for _ in 0..=u8::from(twice) {
             self.conduct(window);
             self.react(window)?;
         }
-        self.conduct(window);
-        self.react(window)
+        self.tell_rates(window);
+        Ok(())
     }
 
     /// Fixes the heat between particles and to walls.
@@ -328,11 +331,17 @@ impl Run<'_> {
             &mut work.pressure_force,
             &mut work.push,
         );
+        self.timing.exchange += begun.elapsed();
+        if self.holds(window) {
+            self.hold(window);
+            return Ok(());
+        }
+        let own = self.own_window(window);
         let (particles, timing) = (&mut self.parts.particles, &mut self.timing);
-        timing.exchange += begun.elapsed();
+        let work = &mut self.work;
         let accounts = (&mut timing.particles, &mut timing.particles_processor);
         metered(accounts.0, accounts.1, || {
-            particles.start(window, &work.push)?;
+            particles.start(&own, &work.push)?;
             particles.finish(supervisor, &mut work.particle_received)
         })?;
         Ok(())
@@ -348,6 +357,9 @@ impl Run<'_> {
         self.work.reservoir_heat.extend_from_slice(heat);
         self.parts.interior.commit();
         self.weigh();
+        if self.holds(window) {
+            self.held = self.held.checked_add(window.span.motion)?;
+        }
         self.clocks = window.end()?;
         self.windows += 1;
         Ok(())
@@ -388,9 +400,10 @@ impl Run<'_> {
         ledger
             .momentum_exchange
             .book((drag_on_gas + drag_on_particles).norm(), 2.0 * moved);
-        for balance in &received.momentum {
+        for (balance, clock) in received.momentum.iter().zip(&received.storage_clock) {
             let (sum, magnitude) = open(balance);
             ledger.gas_momentum.book(sum, magnitude);
+            ledger.storage_clock.book(*clock, magnitude);
         }
     }
 }
@@ -475,87 +488,4 @@ fn book_energy(
     ledger
         .energy_exchange
         .book(to_gas + to_particles, exchanged);
-}
-
-/// How far the next window goes. The schedule shortens a window that would cross its change or the
-/// run's end; what is left before either never becomes a sliver: the last two windows share it
-/// evenly, and an overhang of round-off is taken up by the last. Over a sliver the gas would turn
-/// its tolerance in mass, divided by the span, into velocity, and that into pressure: a final
-/// window of 1e-5 of the others gave a pressure drop of 8372 Pa instead of 17.4 Pa.
-fn next_span(
-    acceleration: &Acceleration,
-    clocks: Clocks,
-    motion_window: Ticks,
-    end: Ticks,
-) -> Result<Clocks, TimeError> {
-    const ROUND_OFF: i64 = 1_000_000;
-    let span = acceleration.span(clocks, motion_window, end)?;
-    let (factor, change) = acceleration.at(clocks.process);
-    let left = change
-        .map_or(end, |time| time.min(end))
-        .since(clocks.process);
-    let after = left.since(span.process);
-    let process = if after == Ticks::ZERO || after >= span.process {
-        return Ok(span);
-    } else if after.count() <= span.process.count() / ROUND_OFF {
-        left
-    } else {
-        Ticks::new(left.count() / 2)
-    };
-    let motion = Ticks::from_seconds(process.seconds() / factor)?;
-    Ok(Clocks { motion, process })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn ticks(seconds: f64) -> Ticks {
-        Ticks::from_seconds(seconds).unwrap()
-    }
-
-    fn spans(acceleration: &Acceleration, end: f64) -> Vec<Clocks> {
-        let (mut clocks, mut spans) = (Clocks::default(), Vec::new());
-        while clocks.process < ticks(end) {
-            let span = next_span(acceleration, clocks, ticks(1e-3), ticks(end)).unwrap();
-            clocks = clocks.advanced(span).unwrap();
-            spans.push(span);
-        }
-        assert_eq!(clocks.process, ticks(end));
-        spans
-    }
-
-    #[test]
-    fn no_window_is_a_sliver_where_the_end_is_no_multiple_of_the_window() {
-        for factor in [1.0, 33.333_333_333_3, 33.333_333, 50.0, 333.333_3, 678.0] {
-            let acceleration = Acceleration::constant(factor).unwrap();
-            for end in [2.0, 2.025, 2.000_000_5, 3.000_37] {
-                for span in spans(&acceleration, end) {
-                    let share = span.motion.seconds() / 1e-3;
-                    assert!(
-                        (0.499..1.000_002).contains(&share),
-                        "a window of {share} windows at AF {factor}, end {end} s"
-                    );
-                    let kept = span.process.seconds() / span.motion.seconds() / factor;
-                    assert!((kept - 1.0).abs() < 1e-8, "AF {factor} became {kept} of it");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn no_window_is_a_sliver_before_the_acceleration_changes() {
-        let steps = vec![(Ticks::ZERO, 1.0), (ticks(1.000_000_1), 50.0)];
-        let acceleration = Acceleration::schedule(steps).unwrap();
-        let spans = spans(&acceleration, 3.0);
-        assert!(spans.iter().all(|span| span.motion >= ticks(0.499e-3)));
-    }
-
-    #[test]
-    fn windows_that_fit_are_all_alike() {
-        let acceleration = Acceleration::constant(50.0).unwrap();
-        let spans = spans(&acceleration, 2.0);
-        assert_eq!(spans.len(), 40);
-        assert!(spans.iter().all(|span| *span == spans[0]));
-    }
 }

@@ -1,5 +1,6 @@
 //! The base mapping W₀: which share of each particle lies in which cell.
 
+mod disc;
 mod overlap;
 mod satellites;
 mod weights;
@@ -12,8 +13,9 @@ pub use weights::Weights;
 
 use crate::mesh::Mesh;
 use crate::mesh::locate::Locator;
-use overlap::Overlap;
+use overlap::{Overlap, Scratch};
 pub(crate) use weights::Amount;
+use weights::Piece;
 
 /// Particles that cannot be mapped.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -76,6 +78,8 @@ pub struct Mapper<'m> {
 impl<'m> Mapper<'m> {
     /// Shares below this are round-off, not overlap.
     const ROUND_OFF: f64 = 1e-14;
+    /// Particles that one thread takes at a time.
+    const PIECE: usize = 256;
 
     /// The mapper of a mesh.
     pub fn new(mesh: &'m Mesh) -> Self {
@@ -98,24 +102,41 @@ impl<'m> Mapper<'m> {
                 radii: radii.len(),
             });
         }
-        let rows: Vec<_> = positions
-            .par_iter()
-            .zip(radii)
-            .enumerate()
-            .map(|(particle, (&position, &radius))| self.row(method, particle, position, radius))
+        let cells = self.locator.mesh().cells();
+        // Neighbours one after the other: they need the same cells, which memory is slow to give.
+        let mut order: Vec<(usize, u32)> = positions
+            .iter()
+            .zip(0..)
+            .map(|(&position, particle)| (self.locator.bin(position), particle))
             .collect();
-        // Collected one after the other, so that the first error is the one reported.
-        let rows = rows.into_iter().collect::<Result<Vec<_>, _>>()?;
-        Weights::new(self.locator.mesh().cells(), rows)
+        order.sort_unstable();
+        let pieces: Vec<Piece> = order
+            .par_chunks(Self::PIECE)
+            .map_init(Memory::default, |memory, particles| {
+                let mut piece = Piece::default();
+                for &(_, particle) in particles {
+                    let index = particle as usize;
+                    let (position, radius) = (positions[index], radii[index]);
+                    match self.row(method, index, position, radius, memory) {
+                        Ok(()) => piece.push(particle, &mut memory.row, cells),
+                        Err(error) => piece.fail(particle, error),
+                    }
+                }
+                piece
+            })
+            .collect();
+        Weights::from_pieces(cells, positions.len(), &pieces)
     }
 
+    /// Leaves the cells of a particle, ascending, and its share in each in `memory.row`.
     fn row(
         &self,
         method: Method,
         particle: usize,
         position: Vec3,
         radius: f64,
-    ) -> Result<Vec<(u32, f64)>, MappingError> {
+        memory: &mut Memory,
+    ) -> Result<(), MappingError> {
         if !(radius >= 0.0 && radius.is_finite()) {
             return Err(MappingError::Radius { particle, radius });
         }
@@ -123,42 +144,51 @@ impl<'m> Mapper<'m> {
             .locator
             .cell_and_depth(position)
             .ok_or(MappingError::Outside { particle, position })?;
-        if depth >= radius {
-            return Ok(vec![(home as u32, 1.0)]);
+        memory.row.clear();
+        match method {
+            Method::Divided if depth < radius => self.by_satellites(position, radius, memory),
+            Method::Overlap if depth < radius => self.by_overlap(position, radius, memory),
+            _ => {}
         }
-        Ok(match method {
-            Method::Centroid => vec![(home as u32, 1.0)],
-            Method::Divided => self.by_satellites(position, radius),
-            Method::Overlap => self.by_overlap(home, position, radius),
-        })
+        // All of it lies in one cell; a ball too small for its volume to be a number is a point.
+        if memory.row.is_empty() {
+            memory.row.push((home as u32, 1.0));
+        }
+        Ok(())
     }
 
-    fn by_satellites(&self, position: Vec3, radius: f64) -> Vec<(u32, f64)> {
-        let mut cells: Vec<u32> = satellites::points(position, radius)
+    fn by_satellites(&self, position: Vec3, radius: f64, memory: &mut Memory) {
+        let cells = satellites::points(position, radius)
             .filter_map(|point| self.locator.cell_at(point))
-            .map(|cell| cell as u32)
-            .collect();
-        cells.sort_unstable();
-        cells
-            .chunk_by(|a, b| a == b)
-            .map(|same| (same[0], same.len() as f64))
-            .collect()
+            .map(|cell| cell as u32);
+        memory.cells.clear();
+        memory.cells.extend(cells);
+        memory.cells.sort_unstable();
+        let shares = memory.cells.chunk_by(|a, b| a == b);
+        let shares = shares.map(|same| (same[0], same.len() as f64));
+        memory.row.extend(shares);
     }
 
-    fn by_overlap(&self, home: usize, position: Vec3, radius: f64) -> Vec<(u32, f64)> {
+    fn by_overlap(&self, position: Vec3, radius: f64, memory: &mut Memory) {
+        let Memory {
+            cells,
+            scratch,
+            row,
+        } = memory;
         let ball = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
-        let cells = self.locator.cells_near(position, radius);
-        let locator = &self.locator;
-        let volumes = self.overlap.volumes(locator, &cells, position, radius);
-        let shares: Vec<_> = cells
-            .into_iter()
-            .zip(volumes.into_iter().map(|volume| volume / ball))
-            .filter(|&(_, share)| share > Self::ROUND_OFF)
-            .collect();
-        // A ball too small for its volume to be a number is a point.
-        if shares.is_empty() {
-            return vec![(home as u32, 1.0)];
-        }
-        shares
+        self.locator.cells_near(position, radius, cells);
+        let mesh = self.locator.mesh();
+        let volumes = self.overlap.volumes(mesh, cells, position, radius, scratch);
+        let shares = volumes.iter().map(|volume| volume / ball);
+        let shares = cells.iter().copied().zip(shares);
+        row.extend(shares.filter(|&(_, share)| share > Self::ROUND_OFF));
     }
+}
+
+/// What the rows of one thread are made in.
+#[derive(Default)]
+struct Memory {
+    cells: Vec<u32>,
+    scratch: Scratch,
+    row: Vec<(u32, f64)>,
 }

@@ -1,9 +1,11 @@
 //! Exact overlap of a ball and a polyhedron.
 
 use std::f64::consts::PI;
+use std::ops::Range;
 
 use calcine_physics::Vec3;
 
+use super::disc::{Plane, Point};
 use crate::mesh::Mesh;
 use crate::mesh::locate::Locator;
 
@@ -20,11 +22,47 @@ use crate::mesh::locate::Locator;
 /// of its cells.
 #[derive(Clone, Debug)]
 pub(super) struct Overlap {
-    /// Largest distance in m of each face's points from its centre, and of each cell's from its own.
-    face_reach: Vec<f64>,
-    cell_reach: Vec<f64>,
+    faces: Vec<Face>,
+    /// Corners of all plane faces, each in its face's axes from its centre.
+    corners: Vec<Point>,
+    /// Largest distance in m of each cell's points from its centre.
+    reach: Vec<f64>,
     /// Cells of plane faces, behind each of which all their points lie.
     convex: Vec<bool>,
+}
+
+/// What a plane face is to balls, in one piece of memory.
+#[derive(Clone, Debug)]
+struct Face {
+    centre: Vec3,
+    /// Unit normal, out of the owner, and two axes of the plane.
+    axes: Axes,
+    /// Largest distance in m of its points from its centre.
+    reach: f64,
+    /// Its corners among all; none of a face that is not plane.
+    corners: Range<u32>,
+}
+
+/// A plane's unit normal and two axes in it, right-handed.
+#[derive(Clone, Copy, Debug)]
+struct Axes {
+    normal: Vec3,
+    along: [Vec3; 2],
+}
+
+impl Axes {
+    fn of(normal: Vec3) -> Self {
+        // Across the axis that the normal has least of.
+        let first = normal.cross(&Vec3::ith(normal.iamin(), 1.0)).normalize();
+        Self {
+            normal,
+            along: [first, normal.cross(&first)],
+        }
+    }
+
+    fn in_plane(&self, place: Vec3) -> Point {
+        Point::new(self.along[0].dot(&place), self.along[1].dot(&place))
+    }
 }
 
 /// How a cell's share of a ball is found.
@@ -36,6 +74,13 @@ enum Way {
     Cut { inside: bool },
     /// By the cones over all faces.
     Cones,
+}
+
+/// Memory that one ball leaves to the next.
+#[derive(Default)]
+pub(super) struct Scratch {
+    ways: Vec<Way>,
+    volumes: Vec<f64>,
 }
 
 /// Below this height of the centre over a face, as a share of the radius, its side is not certain.
@@ -58,7 +103,7 @@ impl Overlap {
         // Points to the precision at which a face counts as plane.
         let behind = |cell: usize, face: usize| {
             let (normal, centre) = (locator.normal(face), mesh.face_centre()[face]);
-            let outwards = locator.side(cell, face) * normal;
+            let outwards = mesh.side(cell, face) * normal;
             corners(cell).all(|p| outwards.dot(&(p - centre)) <= 1e-9 * (p - centre).norm())
         };
         let convex = |cell: usize| {
@@ -67,11 +112,24 @@ impl Overlap {
                 .into_iter()
                 .all(|face| locator.warp(face) == 0.0 && behind(cell, face))
         };
+        let mut all = Vec::new();
+        let mut face = |face: usize| {
+            let (centre, axes) = (mesh.face_centre()[face], Axes::of(locator.normal(face)));
+            let first = all.len() as u32;
+            if locator.warp(face) == 0.0 {
+                all.extend(points(face).map(|p| axes.in_plane(p - centre)));
+            }
+            Face {
+                centre,
+                axes,
+                reach: farthest(centre, &mut points(face)),
+                corners: first..all.len() as u32,
+            }
+        };
         Self {
-            face_reach: (0..mesh.faces())
-                .map(|face| farthest(mesh.face_centre()[face], &mut points(face)))
-                .collect(),
-            cell_reach: (0..mesh.cells())
+            faces: (0..mesh.faces()).map(&mut face).collect(),
+            corners: all,
+            reach: (0..mesh.cells())
                 .map(|cell| farthest(mesh.cell_centre()[cell], &mut corners(cell)))
                 .collect(),
             convex: (0..mesh.cells()).map(convex).collect(),
@@ -79,39 +137,40 @@ impl Overlap {
     }
 
     /// Volumes in m³ that the ball shares with cells, which ascend, to round-off of the ball's own volume.
-    pub fn volumes(
+    pub fn volumes<'s>(
         &self,
-        locator: &Locator<'_>,
+        mesh: &Mesh,
         cells: &[u32],
         centre: Vec3,
         radius: f64,
-    ) -> Vec<f64> {
-        let mesh = locator.mesh();
-        let ways: Vec<Way> = cells
-            .iter()
-            .map(|&cell| self.way(locator, cell as usize, centre, radius))
-            .collect();
-        let mut volumes = vec![0.0; cells.len()];
+        scratch: &'s mut Scratch,
+    ) -> &'s [f64] {
+        let Scratch { ways, volumes } = scratch;
+        let way = |&cell: &u32| self.way(mesh, cell as usize, centre, radius);
+        ways.clear();
+        ways.extend(cells.iter().map(way));
+        volumes.clear();
+        volumes.resize(cells.len(), 0.0);
         for (place, &cell) in cells.iter().enumerate() {
             let cell = cell as usize;
             let faces = mesh.faces_of(cell).iter().map(|&face| face as usize);
             match ways[place] {
                 Way::Whole => volumes[place] = mesh.cell_volume()[cell],
                 Way::Cones => {
-                    let cone =
-                        |face| locator.side(cell, face) * cone(locator, face, centre, radius);
+                    let cone = |face| mesh.side(cell, face) * self.cone(mesh, face, centre, radius);
                     volumes[place] = faces.map(cone).sum();
                 }
                 Way::Cut { inside } => {
                     if inside {
                         volumes[place] += 4.0 / 3.0 * PI * radius.powi(3);
                     }
-                    for face in faces {
-                        let plane = Plane::of(locator, face, centre, radius);
-                        if plane.disc <= 0.0 {
+                    for index in faces {
+                        let face = &self.faces[index];
+                        let plane = face.plane(centre, radius);
+                        if plane.disc() <= 0.0 {
                             continue;
                         }
-                        let other = mesh.across(cell, face).and_then(|other| {
+                        let other = mesh.across(cell, index).and_then(|other| {
                             let place = cells.binary_search(&(other as u32)).ok()?;
                             matches!(ways[place], Way::Cut { .. }).then_some(place)
                         });
@@ -119,8 +178,7 @@ impl Overlap {
                         if other.is_some_and(|other| other < place) {
                             continue;
                         }
-                        let within = self.within(mesh, face, centre, &plane);
-                        let within = locator.side(cell, face) * within;
+                        let within = mesh.side(cell, index) * self.within(face, centre, &plane);
                         volumes[place] += within;
                         if let Some(other) = other {
                             volumes[other] -= within;
@@ -132,207 +190,74 @@ impl Overlap {
         volumes
     }
 
-    fn way(&self, locator: &Locator<'_>, cell: usize, centre: Vec3, radius: f64) -> Way {
+    fn way(&self, mesh: &Mesh, cell: usize, centre: Vec3, radius: f64) -> Way {
         if !self.convex[cell] {
             return Way::Cones;
         }
-        let mesh = locator.mesh();
-        if (mesh.cell_centre()[cell] - centre).norm() + self.cell_reach[cell] <= radius {
+        if (mesh.cell_centre()[cell] - centre).norm() + self.reach[cell] <= radius {
             return Way::Whole;
         }
         let mut inside = true;
-        for &face in mesh.faces_of(cell) {
-            let face = face as usize;
-            let away = mesh.face_centre()[face] - centre;
-            let height = locator.side(cell, face) * locator.normal(face).dot(&away);
+        for &index in mesh.faces_of(cell) {
+            let height = self.faces[index as usize].height(centre);
             if height.abs() < GRAZING * radius {
                 return Way::Cones;
             }
-            inside &= height > 0.0;
+            inside &= mesh.side(cell, index as usize) * height > 0.0;
         }
         Way::Cut { inside }
     }
 
     /// What a plane face takes of the ball: h/3 · area(F ∩ D) − sign(h) R³/3 · Ω(F ∩ D).
-    fn within(&self, mesh: &Mesh, face: usize, centre: Vec3, plane: &Plane) -> f64 {
-        let away = mesh.face_centre()[face] - centre;
-        let from_foot = away.norm_squared() - plane.height * plane.height;
-        let span = plane.disc.max(0.0).sqrt() + self.face_reach[face];
-        if plane.disc <= 0.0 || from_foot >= span * span {
+    fn within(&self, face: &Face, centre: Vec3, plane: &Plane) -> f64 {
+        let foot = face.axes.in_plane(centre - face.centre);
+        let span = plane.disc().sqrt() + face.reach;
+        if foot.norm_squared() >= span * span {
             return 0.0;
         }
-        let points = mesh.face_points(face);
-        let at = |i: usize| mesh.topology().points[points[i % points.len()] as usize] - centre;
-        let parts = (0..points.len()).map(|i| plane.edge(at(i), at(i + 1), Plane::inside));
-        plane.cone(parts, -1.0)
+        plane.inside(self.corners_of(face), foot)
     }
-}
 
-/// Signed volume of ball ∩ cone over one face, positive where the face's normal points away.
-fn cone(locator: &Locator<'_>, face: usize, centre: Vec3, radius: f64) -> f64 {
-    let mesh = locator.mesh();
-    let points = mesh.face_points(face);
-    let count = points.len();
-    let at = |i: usize| mesh.topology().points[points[i % count] as usize] - centre;
-    if locator.warp(face) == 0.0 {
-        let plane = Plane::of(locator, face, centre, radius);
-        let parts = (0..count).map(|i| plane.edge(at(i), at(i + 1), Plane::outside));
-        return plane.cone(parts, 1.0);
+    fn corners_of(&self, face: &Face) -> &[Point] {
+        &self.corners[face.corners.start as usize..face.corners.end as usize]
     }
-    let middle = (0..count).map(at).sum::<Vec3>() / count as f64;
-    let triangle = |i: usize| {
-        let corners = [middle, at(i), at(i + 1)];
-        let area = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
-        if area.norm() == 0.0 {
-            return 0.0;
+
+    /// Signed volume of ball ∩ cone over one face, positive where the face's normal points away.
+    fn cone(&self, mesh: &Mesh, index: usize, centre: Vec3, radius: f64) -> f64 {
+        let face = &self.faces[index];
+        let corners = self.corners_of(face);
+        if !corners.is_empty() {
+            let foot = face.axes.in_plane(centre - face.centre);
+            let plane = face.plane(centre, radius);
+            return plane.cone(corners, foot);
         }
-        let normal = area.normalize();
-        let plane = Plane::new(normal, normal.dot(&middle), radius);
-        let edge = |k: usize| plane.edge(corners[k], corners[(k + 1) % 3], Plane::outside);
-        plane.cone((0..3).map(edge), 1.0)
-    };
-    (0..count).map(triangle).sum()
-}
-
-/// A plane seen from the ball's centre.
-struct Plane {
-    normal: Vec3,
-    /// Signed height h of the plane over the centre in m.
-    height: f64,
-    radius: f64,
-    /// ρ² in m²; not positive where the ball does not reach the plane.
-    disc: f64,
-}
-
-/// What the triangle (foot, edge) has of the disc.
-#[derive(Default)]
-struct Part {
-    /// Area in m² inside.
-    area: f64,
-    /// Solid angle, of what lies inside or outside.
-    angle: f64,
-}
-
-/// A stretch of an edge: its ends in the plane from the foot, and whether it lies in the disc.
-struct Stretch {
-    ends: [Vec3; 2],
-    in_disc: bool,
-}
-
-impl Plane {
-    /// That of a plane face.
-    fn of(locator: &Locator<'_>, face: usize, centre: Vec3, radius: f64) -> Self {
-        let normal = locator.normal(face);
-        let height = normal.dot(&(locator.mesh().face_centre()[face] - centre));
-        Self::new(normal, height, radius)
-    }
-
-    fn new(normal: Vec3, height: f64, radius: f64) -> Self {
-        Self {
-            normal,
-            height,
-            radius,
-            disc: (radius - height) * (radius + height),
-        }
-    }
-
-    /// The volume of areas and solid angles, the latter counted with a sign.
-    fn cone(&self, parts: impl Iterator<Item = Part>, sign: f64) -> f64 {
-        let (mut area, mut angle) = (0.0, 0.0);
-        for part in parts {
-            area += part.area;
-            angle += part.angle;
-        }
-        let angle = sign * self.height.signum() * angle;
-        self.height * area / 3.0 + self.radius.powi(3) * angle / 3.0
-    }
-
-    /// The contribution of an edge from `a` to `b`, both relative to the ball's centre, stretch by stretch.
-    fn edge(&self, a: Vec3, b: Vec3, of: impl Fn(&Self, Stretch) -> Part) -> Part {
-        let in_plane = |p: Vec3| p - self.normal * self.normal.dot(&p);
-        let (a, b) = (in_plane(a), in_plane(b));
-        let along = b - a;
-        let (square, slope) = (along.norm_squared(), a.dot(&along));
-        let root = slope * slope - square * (a.norm_squared() - self.disc);
-        let stretch = |p: Vec3, q: Vec3, in_disc: bool| {
-            let ends = [p, q];
-            of(self, Stretch { ends, in_disc })
+        let points = mesh.face_points(index);
+        let count = points.len();
+        let at = |i: usize| mesh.topology().points[points[i % count] as usize] - centre;
+        let middle = (0..count).map(at).sum::<Vec3>() / count as f64;
+        let triangle = |i: usize| {
+            let corners = [middle, at(i), at(i + 1)];
+            let area = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
+            if area.norm() == 0.0 {
+                return 0.0;
+            }
+            let axes = Axes::of(area.normalize());
+            let plane = Plane::new(axes.normal.dot(&middle), radius);
+            let corners = corners.map(|corner| axes.in_plane(corner));
+            plane.cone(&corners, Point::zeros())
         };
-        if self.disc <= 0.0 || square == 0.0 || root <= 0.0 {
-            return stretch(a, b, false);
-        }
-        let enter = ((-slope - root.sqrt()) / square).clamp(0.0, 1.0);
-        let leave = ((-slope + root.sqrt()) / square).clamp(0.0, 1.0);
-        let (p, q) = (a + along * enter, a + along * leave);
-        let mut sum = stretch(p, q, true);
-        // An edge that ends in the disc has no stretch beyond it.
-        for (from, to) in [
-            (enter > 0.0).then_some((a, p)),
-            (leave < 1.0).then_some((q, b)),
-        ]
-        .into_iter()
-        .flatten()
-        {
-            let part = stretch(from, to, false);
-            sum.area += part.area;
-            sum.angle += part.angle;
-        }
-        sum
+        (0..count).map(triangle).sum()
+    }
+}
+
+impl Face {
+    /// Signed height in m of the face's plane over a place.
+    fn height(&self, place: Vec3) -> f64 {
+        self.axes.normal.dot(&(self.centre - place))
     }
 
-    /// p × q along the normal.
-    fn turn(&self, p: Vec3, q: Vec3) -> f64 {
-        self.normal.dot(&p.cross(&q))
-    }
-
-    /// Solid angle of the triangle (foot, p, q). Van Oosterom and Strackee, doi:10.1109/TBME.1983.325207, with
-    /// one corner at the foot.
-    fn triangle(&self, [p, q]: [Vec3; 2], turn: f64) -> f64 {
-        let height = self.height.abs();
-        let far = |p: Vec3| (height * height + p.norm_squared()).sqrt();
-        let (far_p, far_q) = (far(p), far(q));
-        let denominator = far_p * far_q + height * (far_p + far_q) + height * height + p.dot(&q);
-        2.0 * turn.atan2(denominator)
-    }
-
-    /// Area and solid angle of the disc's sector before a stretch beyond it: ρ²/2 · θ and θ (1 − h/R).
-    fn sector(&self, [p, q]: [Vec3; 2], turn: f64) -> Part {
-        let angle = turn.atan2(p.dot(&q));
-        Part {
-            area: 0.5 * self.disc * angle,
-            angle: angle * (1.0 - self.height.abs() / self.radius),
-        }
-    }
-
-    /// What the triangle (foot, stretch) has inside the disc.
-    fn inside(&self, stretch: Stretch) -> Part {
-        let ends = stretch.ends;
-        let turn = self.turn(ends[0], ends[1]);
-        if turn == 0.0 {
-            return Part::default();
-        }
-        if stretch.in_disc {
-            return Part {
-                area: 0.5 * turn,
-                angle: self.triangle(ends, turn),
-            };
-        }
-        self.sector(ends, turn)
-    }
-
-    /// The area inside the disc, and the solid angle outside it.
-    fn outside(&self, stretch: Stretch) -> Part {
-        let [p, q] = stretch.ends;
-        let whole = self.triangle([p, q], self.turn(p, q));
-        let inside = if self.disc > 0.0 {
-            self.inside(stretch)
-        } else {
-            Part::default()
-        };
-        Part {
-            area: inside.area,
-            angle: whole - inside.angle,
-        }
+    fn plane(&self, centre: Vec3, radius: f64) -> Plane {
+        Plane::new(self.height(centre), radius)
     }
 }
 
@@ -370,7 +295,11 @@ mod tests {
     fn volumes(mesh: &Mesh, centre: Vec3, radius: f64) -> Vec<f64> {
         let locator = Locator::new(mesh);
         let cells: Vec<u32> = (0..mesh.cells() as u32).collect();
-        Overlap::new(&locator).volumes(&locator, &cells, centre, radius)
+        let overlap = Overlap::new(&locator);
+        let mut scratch = Scratch::default();
+        overlap
+            .volumes(mesh, &cells, centre, radius, &mut scratch)
+            .to_vec()
     }
 
     fn ball(radius: f64) -> f64 {

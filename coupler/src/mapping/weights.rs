@@ -46,17 +46,31 @@ impl Amount for calcine_physics::Vec3 {
 }
 
 impl Rows {
-    pub fn from_rows(rows: impl IntoIterator<Item = Vec<(u32, f64)>>) -> Self {
-        let mut matrix = Self {
-            offsets: vec![0],
-            ..Self::default()
-        };
-        for row in rows {
-            matrix.columns.extend(row.iter().map(|&(column, _)| column));
-            matrix.values.extend(row.iter().map(|&(_, value)| value));
-            matrix.offsets.push(matrix.columns.len());
+    /// Rows in the order of particles.
+    fn from_pieces(particles: usize, pieces: &[Piece]) -> Self {
+        let mut offsets = vec![0; particles + 1];
+        for &(particle, length) in pieces.iter().flat_map(|piece| &piece.rows) {
+            offsets[particle as usize + 1] = length;
         }
-        matrix
+        for particle in 0..particles {
+            offsets[particle + 1] += offsets[particle];
+        }
+        let mut columns = vec![0; offsets[particles]];
+        let mut values = vec![0.0; offsets[particles]];
+        for piece in pieces {
+            let mut first = 0;
+            for &(particle, length) in &piece.rows {
+                let (from, to) = (first..first + length, offsets[particle as usize]);
+                columns[to..to + length].copy_from_slice(&piece.columns[from.clone()]);
+                values[to..to + length].copy_from_slice(&piece.values[from]);
+                first += length;
+            }
+        }
+        Self {
+            offsets,
+            columns,
+            values,
+        }
     }
 
     pub fn len(&self) -> usize {
@@ -119,21 +133,70 @@ impl Rows {
     }
 }
 
+/// Rows of some particles, in any order, one after the other.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Piece {
+    /// Each particle and the length of its row.
+    rows: Vec<(u32, usize)>,
+    columns: Vec<u32>,
+    values: Vec<f64>,
+    /// The first particle that has none.
+    failed: Option<(u32, MappingError)>,
+}
+
+impl Piece {
+    /// Takes the shares of a particle in some of `cells` cells, scaled to the sum 1.
+    pub fn push(&mut self, particle: u32, row: &mut [(u32, f64)], cells: usize) {
+        let total: f64 = row.iter().map(|&(_, share)| share).sum();
+        let valid = |&(cell, share): &(u32, f64)| (cell as usize) < cells && share >= 0.0;
+        if !(total > 0.0 && total.is_finite() && row.iter().all(valid)) {
+            let index = particle as usize;
+            let error = MappingError::Shares {
+                particle: index,
+                total,
+            };
+            return self.fail(particle, error);
+        }
+        row.sort_unstable_by_key(|&(cell, _)| cell);
+        self.rows.push((particle, row.len()));
+        self.columns.extend(row.iter().map(|&(cell, _)| cell));
+        self.values
+            .extend(row.iter().map(|&(_, share)| share / total));
+    }
+
+    /// Notes that a particle has no row.
+    pub fn fail(&mut self, particle: u32, error: MappingError) {
+        if self
+            .failed
+            .as_ref()
+            .is_none_or(|(first, _)| particle < *first)
+        {
+            self.failed = Some((particle, error));
+        }
+    }
+}
+
 impl Weights {
     /// Weights of a mesh of `cells` cells from shares by particle, scaled to the sum 1.
     pub fn new(cells: usize, mut by_particle: Vec<Vec<(u32, f64)>>) -> Result<Self, MappingError> {
-        for (particle, row) in by_particle.iter_mut().enumerate() {
-            let total: f64 = row.iter().map(|&(_, share)| share).sum();
-            let valid = |&(cell, share): &(u32, f64)| (cell as usize) < cells && share >= 0.0;
-            if !(total > 0.0 && total.is_finite() && row.iter().all(valid)) {
-                return Err(MappingError::Shares { particle, total });
-            }
-            row.sort_unstable_by_key(|&(cell, _)| cell);
-            for (_, share) in row.iter_mut() {
-                *share /= total;
-            }
+        let mut piece = Piece::default();
+        for (row, particle) in by_particle.iter_mut().zip(0..) {
+            piece.push(particle, row, cells);
         }
-        let by_particle = Rows::from_rows(by_particle);
+        Self::from_pieces(cells, by_particle.len(), &[piece])
+    }
+
+    /// Weights from pieces that have each particle once; the error is the first particle's.
+    pub(super) fn from_pieces(
+        cells: usize,
+        particles: usize,
+        pieces: &[Piece],
+    ) -> Result<Self, MappingError> {
+        let failed = pieces.iter().filter_map(|piece| piece.failed.as_ref());
+        if let Some((_, error)) = failed.min_by_key(|(particle, _)| *particle) {
+            return Err(error.clone());
+        }
+        let by_particle = Rows::from_pieces(particles, pieces);
         Ok(Self {
             by_cell: by_particle.transposed(cells),
             by_particle,

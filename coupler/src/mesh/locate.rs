@@ -1,5 +1,6 @@
 //! Finding cells by position, for general polyhedra.
 
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 use calcine_physics::Vec3;
@@ -60,15 +61,6 @@ impl<'m> Locator<'m> {
         self.normal[face]
     }
 
-    /// 1 where a face's normal points out of the cell, −1 where it points in.
-    pub fn side(&self, cell: usize, face: usize) -> f64 {
-        if self.mesh.owner()[face] as usize == cell {
-            1.0
-        } else {
-            -1.0
-        }
-    }
-
     /// The cell that holds a position; `None` outside the mesh. A position on a face belongs to
     /// one of its cells.
     pub fn cell_at(&self, position: Vec3) -> Option<usize> {
@@ -79,7 +71,7 @@ impl<'m> Locator<'m> {
     pub fn cell_and_depth(&self, position: Vec3) -> Option<(usize, f64)> {
         let candidates = self.bins.at(position)?;
         let mut best: Option<(usize, f64)> = None;
-        for &cell in candidates {
+        for &cell in candidates.iter() {
             let cell = cell as usize;
             // Within round-off of coordinates, so that a position on a wall lies inside.
             let [lower, upper] = self.boxes[cell];
@@ -115,22 +107,26 @@ impl<'m> Locator<'m> {
         for &face in self.mesh.faces_of(cell) {
             let face = face as usize;
             let away = self.mesh.face_centre()[face] - position;
-            let height = self.side(cell, face) * self.normal[face].dot(&away);
+            let height = self.mesh.side(cell, face) * self.normal[face].dot(&away);
             least = least.min(height - self.warp[face]);
         }
         least
     }
 
-    /// The cells whose bounding boxes reach into a ball, ascending.
-    pub fn cells_near(&self, centre: Vec3, radius: f64) -> Vec<u32> {
+    /// The number of a region of space that holds a position, or is nearest to it: neighbours have the same.
+    pub fn bin(&self, position: Vec3) -> usize {
+        self.bins.place(position)
+    }
+
+    /// Sets `cells` to those whose bounding boxes reach into a ball, ascending.
+    pub fn cells_near(&self, centre: Vec3, radius: f64, cells: &mut Vec<u32>) {
         let reach = Vec3::repeat(radius);
-        let mut cells = self.bins.between(centre - reach, centre + reach);
+        self.bins.between(centre - reach, centre + reach, cells);
         cells.retain(|&cell| {
             let [lower, upper] = self.boxes[cell as usize];
             let nearest = centre.sup(&lower).inf(&upper);
-            (nearest - centre).norm() < radius
+            (nearest - centre).norm_squared() < radius * radius
         });
-        cells
     }
 
     /// Whether the faces of a cell wind around a position, or around one within round-off of it
@@ -150,11 +146,7 @@ impl<'m> Locator<'m> {
                 self.mesh.topology().points[points[i % points.len()] as usize] - position
             };
             let middle = (0..points.len()).map(at).sum::<Vec3>() / points.len() as f64;
-            let sign = if self.mesh.owner()[face] as usize == cell {
-                1.0
-            } else {
-                -1.0
-            };
+            let sign = self.mesh.side(cell, face);
             for i in 0..points.len() {
                 angle += sign * solid_angle(middle, at(i), at(i + 1));
             }
@@ -209,9 +201,14 @@ struct Bins {
     cells: Vec<u32>,
     /// Grids of the crowded bins, by ascending bin.
     finer: Vec<(usize, Bins)>,
+    /// How far in m from a bin a cell may lie that reaches into it by its box only by round-off.
+    slack: f64,
 }
 
-/// Cells of a bin from which on it gets a finer grid; with equal cells a bin reaches into 27.
+/// Boxes count without this share of their edges at their sides: those that a bin only touches, 26 for a bin as large as
+/// equal cells, are none of its cells.
+const WITHIN: f64 = 1e-10;
+/// Cells of a bin from which on it gets a finer grid; a bin may lie across eight equal cells.
 const CROWDED: usize = 64;
 /// Grids inside one another at most.
 const DEPTH: usize = 4;
@@ -219,7 +216,16 @@ const DEPTH: usize = 4;
 impl Bins {
     fn new(boxes: &[[Vec3; 2]]) -> Self {
         let all: Vec<u32> = (0..boxes.len() as u32).collect();
-        Self::over(bounds(boxes.iter().flatten().copied()), &all, boxes, 1)
+        let inner = |&[lower, upper]: &[Vec3; 2]| {
+            let within = (upper - lower) * WITHIN;
+            [lower + within, upper - within]
+        };
+        let inner: Vec<_> = boxes.iter().map(inner).collect();
+        let largest = boxes.iter().map(|[lower, upper]| (upper - lower).max());
+        Self {
+            slack: 2.0 * WITHIN * largest.fold(0.0, f64::max),
+            ..Self::over(bounds(boxes.iter().flatten().copied()), &all, &inner, 1)
+        }
     }
 
     fn over([lower, upper]: [Vec3; 2], cells: &[u32], boxes: &[[Vec3; 2]], depth: usize) -> Self {
@@ -233,6 +239,7 @@ impl Bins {
             offsets: Vec::new(),
             cells: Vec::new(),
             finer: Vec::new(),
+            slack: 0.0,
         };
         let mut lists = vec![Vec::new(); bins.count.iter().product()];
         for &cell in cells {
@@ -290,32 +297,44 @@ impl Bins {
     }
 
     /// Cells that may hold a position; `None` beyond the mesh (and for NaN).
-    fn at(&self, position: Vec3) -> Option<&[u32]> {
+    fn at(&self, position: Vec3) -> Option<Cow<'_, [u32]>> {
         let margin = 1e-12 * (self.upper - self.lower).norm();
         let inside = |axis: usize| {
             position[axis] >= self.lower[axis] - margin
                 && position[axis] <= self.upper[axis] + margin
         };
-        (0..3).all(inside).then(|| self.near(position))
+        let slack = Vec3::repeat(self.slack);
+        (0..3)
+            .all(inside)
+            .then(|| self.around(position - slack, position + slack))
     }
 
-    /// Cells of the bin of a position, or of the nearest bin.
-    fn near(&self, position: Vec3) -> &[u32] {
+    /// The bin of a position, or the nearest one.
+    fn place(&self, position: Vec3) -> usize {
         let [i, j, k] = [0, 1, 2].map(|axis| self.index(axis, position[axis]));
-        let bin = i + self.count[0] * (j + self.count[1] * k);
+        i + self.count[0] * (j + self.count[1] * k)
+    }
+
+    /// Cells of the bins of a small box, or of the nearest bins.
+    fn around(&self, low: Vec3, high: Vec3) -> Cow<'_, [u32]> {
+        let bin = self.place(low);
+        if bin != self.place(high) {
+            let mut cells = Vec::new();
+            self.between(low, high, &mut cells);
+            return Cow::Owned(cells);
+        }
         match self.finer(bin) {
-            Some(finer) => finer.near(position),
-            None => &self.cells[self.offsets[bin]..self.offsets[bin + 1]],
+            Some(finer) => finer.around(low, high),
+            None => Cow::Borrowed(&self.cells[self.offsets[bin]..self.offsets[bin + 1]]),
         }
     }
 
-    /// Cells of all bins of a box, ascending, each once.
-    fn between(&self, low: Vec3, high: Vec3) -> Vec<u32> {
-        let mut cells = Vec::new();
-        self.gather(low, high, &mut cells);
+    /// Sets `cells` to those of all bins of a box, ascending, each once.
+    fn between(&self, low: Vec3, high: Vec3, cells: &mut Vec<u32>) {
+        cells.clear();
+        self.gather(low, high, cells);
         cells.sort_unstable();
         cells.dedup();
-        cells
     }
 
     fn gather(&self, low: Vec3, high: Vec3, cells: &mut Vec<u32>) {

@@ -242,10 +242,16 @@ impl Mesh {
 
     /// Area vector of a cell's face, out of the cell, in m².
     pub fn outward(&self, cell: usize, face: usize) -> Vec3 {
+        self.side(cell, face) * self.face_area[face]
+    }
+
+    /// 1 where a face's normal points out of the cell, −1 where it points in.
+    #[inline]
+    pub fn side(&self, cell: usize, face: usize) -> f64 {
         if self.topology.owner[face] as usize == cell {
-            self.face_area[face]
+            1.0
         } else {
-            -self.face_area[face]
+            -1.0
         }
     }
 

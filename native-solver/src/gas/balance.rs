@@ -32,6 +32,7 @@ pub fn receive(
     species.balances(frame, now, &mut received.species);
     received.energy = energy(frame, taken, &received.species, now);
     received.momentum = momenta(frame, material, momentum, now, &received.drag);
+    received.storage_clock = storage_clock(frame, now);
 }
 
 /// Sums of a boundary term and of its magnitude over all boundary faces.
@@ -96,8 +97,9 @@ fn energy(frame: &Frame<'_>, taken: &Taken, species: &[Balance], now: &State) ->
     }
 }
 
-/// All three components. The source is pressure, gravity, and u times the continuity residual,
-/// which the form of the equation subtracts.
+/// All three components. The source is pressure, gravity, and what the form of the equation subtracts: u times the
+/// continuity residual of the motion clock, in which gas of particles, which comes and goes with u, and
+/// [`storage_clock`] are.
 fn momenta(
     frame: &Frame<'_>,
     material: &Material,
@@ -107,10 +109,13 @@ fn momenta(
 ) -> [Balance; 3] {
     let (grid, old, span) = (frame.grid, frame.old, frame.motion_span);
     let cells: [f64; 15] = sums(grid.cells(), |cell| {
-        let stored = old.mass[cell] * (now.velocity[cell] - old.velocity[cell]);
+        let velocity = now.velocity[cell];
+        let stored = now.mass[cell] * velocity - old.mass[cell] * old.velocity[cell];
         let share = frame.pressure_share[cell] * grid.volume[cell];
-        let source = share * (material.density[cell] * frame.gravity - now.pressure_gradient[cell])
-            + outflow(grid, &now.flux, cell) * now.velocity[cell];
+        let force = share * (material.density[cell] * frame.gravity - now.pressure_gradient[cell]);
+        let gained = now.mass[cell] - old.mass[cell];
+        let residual = span * outflow(grid, &now.flux, cell) + gained;
+        let source = span * force + residual * velocity;
         side_by_side([stored, stored.abs(), drag[cell], source, source.abs()])
     });
     let faces: [f64; 6] = sums(grid.faces.len() - grid.internal, |face| {
@@ -121,11 +126,22 @@ fn momenta(
         stored: cells[axis],
         stored_magnitude: cells[3 + axis],
         exchange: cells[6 + axis] * span,
-        source: cells[9 + axis] * span,
-        source_magnitude: cells[12 + axis] * span,
+        source: cells[9 + axis],
+        source_magnitude: cells[12 + axis],
         boundary: faces[axis] * span,
         boundary_magnitude: faces[3 + axis] * span,
     })
+}
+
+/// Σ u (1 − Δt/Δτ) Δ(ε ρ V): what momentum on the motion clock and mass on the storage clock leave between them
+/// (requirements TSM-8).
+fn storage_clock(frame: &Frame<'_>, now: &State) -> Vec3 {
+    let share = 1.0 - frame.motion_span / frame.storage_span;
+    let sum: [f64; 3] = sums(frame.grid.cells(), |cell| {
+        let gained = now.mass[cell] - frame.old.mass[cell];
+        (share * gained * now.velocity[cell]).into()
+    });
+    sum.into()
 }
 
 /// The components of vectors, one vector after the other.

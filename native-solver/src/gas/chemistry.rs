@@ -9,14 +9,18 @@
 //! start once, and its first half is the reactor itself: what reacts is there, whatever the rates.
 //!
 //! Where it stores over a longer span Δτ, such a source would take more than there is. Then the equations with
-//! the rates of their own end are iterated in pseudo-steps of Δt (dual time stepping),
+//! the rates of their own end are iterated in pseudo-steps δ (dual time stepping),
 //!
-//! m (Y − Y°)/Δt + (m Y − m_old Y_old)/Δτ + transport = m w(Y°),
+//! m (Y − Y°)/δ + (m Y − m_old Y_old)/Δτ + transport = m w(Y°),   w = (R(Y°, T°; δ) − Y°)/δ,
 //!
-//! whose right side with m Y°/Δt is m R(Y°)/Δt, not negative. A converged window, and so a steady flame, has the same w
+//! whose right side with m Y°/δ is m R(Y°)/δ, not negative. A converged window, and so a steady flame, has the same w
 //! at any Δτ: its place does not depend on AF. After the last pseudo-step the equations are solved once more without
-//! it, with m (R′ − Y)/Δt in place of m w, which is what that step took in all, R′ being R(Y°) with the elements of the new Y:
+//! it, with m (R′ − Y)/δ in place of m w, which is what that step took in all, R′ being R(Y°) with the elements of the new Y:
 //! so energy and every element close whatever the iteration did, and no cell gives what it does not have.
+//!
+//! δ is Δt, or a quarter of the time in which the gas that leaves a cell empties it where that is shorter: over a Δt in which the gas
+//! passes many cells mean rates would spread a flame over all of them. What reacts at once is then used up to a fifth in the
+//! cell that it comes into, to a twenty-fifth in the next.
 
 use calcine_coupler::gas_chemistry::ReactingGas;
 use calcine_coupler::physics::kinetics::elements::Elements;
@@ -29,6 +33,8 @@ use super::state::State;
 use super::stirring::reacting_share;
 use crate::numerics::parallel::{fill, largest};
 
+/// A pseudo-step is no longer than this share of the time in which the gas that leaves a cell empties it.
+const RESIDENCE: f64 = 0.25;
 /// Cells that a thread takes at a time: a reactor costs some ten to hundred microseconds.
 const GRAIN: usize = 16;
 /// A span is longer than the motion span beyond this share: less is round-off of clocks.
@@ -78,10 +84,16 @@ impl Source {
 pub struct Chemistry {
     /// w of the fields last evaluated in 1/s, species by species within each cell.
     rates: Vec<f64>,
-    /// R of the start of the last pseudo-step, likewise.
+    /// Spans over which they are, cell by cell, in s.
+    spans: Vec<f64>,
+    /// R of the start of the last pseudo-step, in the order of the rates.
     reached: Vec<f64>,
+    /// Inertia of the last pseudo-step of each cell in kg/s.
+    inertia: Vec<f64>,
     /// Enthalpies of formation in J/kg.
     formation: Vec<f64>,
+    /// What no reaction changes; where something reacts.
+    elements: Option<Elements>,
     /// True while the rates are those of the fields at hand.
     fresh: bool,
     /// Largest change by the last pseudo-step: of a mass fraction, or of an enthalpy over c_p T.
@@ -94,18 +106,24 @@ pub fn is_dual(frame: &Frame<'_>) -> bool {
 }
 
 impl Chemistry {
-    /// Takes up the start of an attempt.
-    pub fn begin(&mut self, frame: &Frame<'_>) -> Result<(), String> {
+    /// Takes up the start of an attempt, which may continue the one before: rates of the window's start are the
+    /// same in all its attempts.
+    pub fn begin(&mut self, frame: &Frame<'_>, continues: bool) -> Result<(), String> {
         self.fresh = false;
         self.change = 0.0;
         let Some(gas) = frame.chemistry.reacting() else {
             return Ok(());
         };
-        let species = frame.species();
-        let formation = |k| frame.properties.formation_enthalpy(k);
-        self.formation = (0..species).map(formation).collect();
+        if !continues {
+            let formation = |k| frame.properties.formation_enthalpy(k);
+            self.formation = (0..frame.species()).map(formation).collect();
+            self.elements = Some(Elements::new(gas.mechanism.mixture()));
+        }
         if is_dual(frame) {
             self.change = f64::INFINITY;
+            return Ok(());
+        }
+        if continues {
             return Ok(());
         }
         self.evaluate(frame, gas, frame.old)
@@ -126,10 +144,16 @@ impl Chemistry {
 
     fn evaluate(&mut self, frame: &Frame<'_>, gas: &ReactingGas, at: &State) -> Result<(), String> {
         let species = frame.species();
-        let span = frame.motion_span;
+        let dual = is_dual(frame);
+        self.spans.resize(frame.grid.cells(), 0.0);
+        fill(&mut self.spans, |cell| match dual {
+            true => pseudo_step(frame, at, cell),
+            false => frame.motion_span,
+        });
+        let spans = &self.spans;
         self.rates.resize(frame.grid.cells() * species, 0.0);
-        let new = || Reactor::new(&gas.mechanism, gas.tolerances);
-        let one = |reactor: &mut Reactor, cell: usize, rates: &mut [f64]| {
+        let reactor = Reactor::new(&gas.mechanism, gas.tolerances);
+        let one = |cell: usize, rates: &mut [f64]| {
             let mut before = [0.0; MOST_SPECIES];
             let before = &mut before[..species];
             before.copy_from_slice(at.composition_of(cell, species));
@@ -145,6 +169,7 @@ impl Chemistry {
                 fractions: before,
             };
             let share = reacting_share(frame, gas, cell, state);
+            let span = spans[cell];
             let reacted = reactor.advance(pressure, &mut temperature, after, span);
             for (rate, (after, before)) in rates.iter_mut().zip(after.iter().zip(before.iter())) {
                 *rate = share * (after - before) / span;
@@ -161,9 +186,9 @@ impl Chemistry {
             .rates
             .par_chunks_mut(GRAIN * species)
             .enumerate()
-            .map_init(new, |reactor, (k, rates)| {
+            .map(|(k, rates)| {
                 let mut cells = rates.chunks_mut(species).enumerate();
-                cells.try_for_each(|(i, rates)| one(reactor, k * GRAIN + i, rates))
+                cells.try_for_each(|(i, rates)| one(k * GRAIN + i, rates))
             })
             .filter_map(Result::err)
             .collect();
@@ -188,9 +213,8 @@ impl Chemistry {
         }
         let (cells, species) = (frame.grid.cells(), frame.species());
         let dual = is_dual(frame);
-        // In an early iterate the masses of continuity may be no masses of a gas.
         let mass = |cell: usize| match dual {
-            true => material.density[cell] * frame.void_fraction[cell] * frame.grid.volume[cell],
+            true => held(frame, material, cell),
             false => frame.old.mass[cell],
         };
         composition.gain.resize(cells * species, 0.0);
@@ -203,11 +227,28 @@ impl Chemistry {
             source.inertia.clear();
             source.before.clear();
             if pseudo {
-                let inertia = |cell| mass(cell) / frame.motion_span;
+                // Where nothing reacts nothing need be held back.
+                let rates = |cell: usize| &self.rates[cell * species..(cell + 1) * species];
+                let inertia = |cell: usize| match rates(cell).iter().all(|rate| *rate == 0.0) {
+                    true => 0.0,
+                    false => mass(cell) / self.spans[cell],
+                };
                 source.inertia.extend((0..cells).map(inertia));
                 source.before.extend_from_slice(values);
             }
         }
+    }
+
+    /// What no reaction changes, where pseudo-steps are taken.
+    pub fn elements(&self) -> Option<&Elements> {
+        self.elements.as_ref()
+    }
+
+    /// Source of the enthalpy by what is made of each species in kg/s.
+    pub fn source_of(&self, species: usize, made: &[f64]) -> Source {
+        let mut source = Source::default();
+        self.heat(species, made, &mut source.gain);
+        source
     }
 
     /// Heat of what is made, in W.
@@ -223,24 +264,25 @@ impl Chemistry {
     pub fn conclude(
         &self,
         frame: &Frame<'_>,
-        gas: &ReactingGas,
+        elements: &Elements,
         now: &State,
         [composition, enthalpy]: [&mut Source; 2],
     ) {
-        let species = frame.species();
-        let elements = Elements::new(gas.mechanism.mixture());
-        for (cell, inertia) in composition.inertia.iter().enumerate() {
+        let (cells, species) = (frame.grid.cells(), frame.species());
+        let one = |(cell, gain): (usize, &mut [f64])| {
+            let inertia = self.inertia[cell];
             let here = now.composition_of(cell, species);
-            let own = cell * species..(cell + 1) * species;
             let mut reached = [0.0; MOST_SPECIES];
             let reached = &mut reached[..species];
-            reached.copy_from_slice(&self.reached[own.clone()]);
+            reached.copy_from_slice(&self.reached[cell * species..][..species]);
             elements.restore(&elements.of(here), reached);
-            let gain = &mut composition.gain[own];
             for (gain, (after, before)) in gain.iter_mut().zip(reached.iter().zip(here)) {
                 *gain = inertia * (after - before);
             }
-        }
+        };
+        composition.gain.resize(cells * species, 0.0);
+        let gains = composition.gain.par_chunks_mut(species);
+        gains.enumerate().for_each(one);
         self.heat(species, &composition.gain, &mut enthalpy.gain);
         for source in [composition, enthalpy] {
             source.inertia.clear();
@@ -249,17 +291,13 @@ impl Chemistry {
     }
 
     /// Books what the pseudo-step changed, and what its reactors reached.
-    pub fn measure(
-        &mut self,
-        frame: &Frame<'_>,
-        [composition, enthalpy]: [&Source; 2],
-        heat: &[f64],
-        now: &State,
-    ) {
+    pub fn measure(&mut self, [composition, enthalpy]: [&Source; 2], heat: &[f64], now: &State) {
         self.reached.resize(self.rates.len(), 0.0);
-        let rates = &self.rates;
+        self.inertia.clone_from(&composition.inertia);
+        let (rates, spans) = (&self.rates, &self.spans);
+        let species = rates.len() / spans.len();
         fill(&mut self.reached, |at| {
-            composition.before[at] + rates[at] * frame.motion_span
+            composition.before[at] + rates[at] * spans[at / species]
         });
         let fractions = |at: usize| (now.composition[at] - composition.before[at]).abs();
         let warmth = |cell: usize| {
@@ -269,6 +307,29 @@ impl Chemistry {
         let (_, changed) = largest(now.composition.len(), fractions);
         let (_, warmed) = largest(now.enthalpy.len(), warmth);
         self.change = changed.max(warmed);
+    }
+}
+
+/// Gas of a cell in kg by the equation of state: in an early iterate the masses of continuity may be no masses of a gas.
+fn held(frame: &Frame<'_>, material: &Material, cell: usize) -> f64 {
+    material.density[cell] * frame.void_fraction[cell] * frame.grid.volume[cell]
+}
+
+/// Span of a cell's pseudo-step in s, for the fluxes at hand.
+fn pseudo_step(frame: &Frame<'_>, now: &State, cell: usize) -> f64 {
+    let composition = now.composition_of(cell, frame.species());
+    let density = frame
+        .properties
+        .density(now.base_pressure, now.temperature[cell], composition);
+    let links = frame.grid.links(cell).iter();
+    let leaving = links.fold(0.0, |sum, link| {
+        sum + (link.sign * now.flux[link.face as usize]).max(0.0)
+    });
+    let held = RESIDENCE * density * frame.void_fraction[cell] * frame.grid.volume[cell];
+    if leaving * frame.motion_span > held {
+        held / leaving
+    } else {
+        frame.motion_span
     }
 }
 

@@ -63,11 +63,9 @@ pub struct NativeGas {
     /// Fields of another run to start from, their velocity superficial.
     taken_over: Option<State>,
     now: State,
-    /// Index and attempt of the window that `now` is of, as long as it is not committed.
-    attempted: Option<(u64, u32)>,
+    /// The attempt that `now` is of, as long as it is not committed.
+    attempted: Option<Window>,
     window: Option<Window>,
-    /// Motion span in s of the attempt that a commit takes.
-    span: f64,
     void_fraction: Vec<f64>,
     /// Share of −∇p and ρ g that the gas of each cell takes.
     pressure_share: Vec<f64>,
@@ -106,7 +104,6 @@ impl NativeGas {
             started: false,
             taken_over: None,
             window: None,
-            span: 0.0,
             void_fraction: Vec::new(),
             pressure_share: Vec::new(),
             exchange: CellExchange::default(),
@@ -147,9 +144,9 @@ impl NativeGas {
         PartError::new(self.about.name.clone(), kind, message)
     }
 
-    /// Eddies over the motion span of the window that is committed.
+    /// Eddies over the motion span of the window that is committed, if there is one.
     fn advance_eddies(&mut self) -> Result<(), String> {
-        let Some(eddies) = &mut self.eddies else {
+        let (Some(eddies), Some(window)) = (&mut self.eddies, self.attempted) else {
             return Ok(());
         };
         let step = Step {
@@ -158,7 +155,7 @@ impl NativeGas {
             gas: &self.setup.properties,
             viscosity: &self.equations.material.viscosity,
             gradients: self.equations.momentum.gradients(),
-            span: self.span,
+            span: window.span.motion.seconds(),
             tolerance: self.setup.controls.linear_tolerance,
         };
         eddies.advance(&step, &mut self.equations.krylov, &mut self.now)
@@ -324,12 +321,13 @@ impl Gas for NativeGas {
             self.place();
         }
         // A repeated attempt takes what the one before found as its first guess; old is what is committed.
-        let continues =
-            window.attempt > 0 && self.attempted == Some((window.index, window.attempt - 1));
+        let continues = self
+            .attempted
+            .is_some_and(|last| last.index == window.index && last.attempt + 1 == window.attempt);
         if !continues {
             self.now.take(&self.committed);
         }
-        self.attempted = Some((window.index, window.attempt));
+        self.attempted = Some(window);
         self.now.void_fraction.clone_from(&self.void_fraction);
         let frame = Frame {
             grid: &self.grid,
@@ -371,7 +369,6 @@ impl Gas for NativeGas {
                 self.setup.controls.outer_tolerance
             );
         }
-        self.span = spans.0;
         let taken = &enthalpy.taken;
         balance::receive(
             &frame, material, momentum, taken, species, &self.now, received,

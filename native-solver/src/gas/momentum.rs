@@ -13,8 +13,9 @@ use calcine_coupler::setup::Convection;
 use nalgebra::Matrix3;
 
 use super::attempt::{Frame, Material};
-use super::boundary::{Heat, Value};
+use super::boundary::Value;
 use super::state::State;
+use super::turbulence::wall;
 use crate::numerics::convection::vector_beyond_upwind;
 use crate::numerics::grid::{Face, Grid};
 use crate::numerics::krylov::{Krylov, Target};
@@ -77,28 +78,13 @@ fn viscous(frame: &Frame<'_>, material: &Material, now: &State, index: usize) ->
             conductance(face, pores * gas.viscosity + frame.eddies_at(index))
         }
         Value::Wall {
-            sticks: Some(_),
-            heat: Heat::Temperature(temperature),
-        } => {
-            let composition = now.composition_of(face.owner, frame.species());
-            let viscosity = frame.properties.viscosity(temperature, composition);
-            conductance(face, pores * viscosity + frame.eddies_at(index))
-        }
-        Value::Wall {
             sticks: Some(_), ..
         } => {
-            let laminar = laminar(frame, material, face.owner);
+            let laminar = wall::viscosity(frame.boundary, frame.properties, now, index, face.owner);
             conductance(face, laminar + frame.eddies_at(index))
         }
         Value::Wall { sticks: None, .. } | Value::Outlet { .. } => 0.0,
     }
-}
-
-/// Void fraction × viscosity of a cell without that of eddies in Pa s.
-#[inline]
-fn laminar(frame: &Frame<'_>, material: &Material, cell: usize) -> f64 {
-    let eddies = frame.old.turbulence.viscosity.get(cell);
-    material.viscosity[cell] - eddies.copied().unwrap_or(0.0)
 }
 
 impl Momentum {

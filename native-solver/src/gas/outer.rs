@@ -29,6 +29,9 @@ const FOLLOWED: u32 = 8;
 /// Pseudo-steps of reacting species and enthalpy in an outer iteration at most.
 const PSEUDO_STEPS: u32 = 5;
 
+/// They need not change a value by less than this share of the residual of momentum and continuity, whose fluxes they take.
+const CLOSER: f64 = 0.1;
+
 /// When the solve of a scalar ends: where its residual is below either.
 #[derive(Clone, Copy, Debug)]
 pub struct Goal {
@@ -57,6 +60,8 @@ pub struct Equations {
     pub krylov: Krylov,
     /// How far what is taken explicitly from the last iterate follows it, as a share.
     share: f64,
+    /// Residual of momentum and continuity.
+    flow: f64,
 }
 
 impl Equations {
@@ -72,6 +77,7 @@ impl Equations {
             material: Material::default(),
             krylov: Krylov::default(),
             share: 1.0,
+            flow: f64::INFINITY,
         }
     }
 
@@ -91,7 +97,7 @@ impl Equations {
             self.enthalpy.begin();
             self.species.begin(frame);
         }
-        self.chemistry.begin(frame)?;
+        self.chemistry.begin(frame, continues)?;
         self.share = 1.0;
         self.assess(frame, now)?;
         for outer in 1..=controls.outer_iterations.max(1) {
@@ -137,8 +143,13 @@ impl Equations {
         let continuity = pressure::residual(frame, material, now);
         let enthalpy = self.enthalpy.residual(now);
         let species = self.species.residual(frame, material, self.share, now);
-        let largest = momentum.max(continuity).max(enthalpy).max(species);
-        Ok(largest.max(self.chemistry.change))
+        let change = self.chemistry.change;
+        tracing::debug!(
+            "residuals: momentum {momentum:.1e}, continuity {continuity:.1e}, enthalpy {enthalpy:.1e}, species \
+             {species:.1e}, pseudo-step {change:.1e}"
+        );
+        self.flow = momentum.max(continuity);
+        Ok(self.flow.max(enthalpy).max(species).max(change))
     }
 
     /// One outer iteration, on the momentum equation as assembled; returns linear iterations.
@@ -164,7 +175,7 @@ impl Equations {
         }
         for _ in 0..PSEUDO_STEPS {
             iterations += self.pseudo_step(frame, tolerance, now)?;
-            if self.chemistry.change <= controls.outer_tolerance {
+            if self.chemistry.change <= controls.outer_tolerance.max(CLOSER * self.flow) {
                 break;
             }
         }
@@ -185,9 +196,10 @@ impl Equations {
         tolerance: f64,
         now: &mut State,
     ) -> Result<u32, String> {
+        let mut iterations = self.conserve(frame, tolerance, now)?;
         self.chemistry.follow(frame, now)?;
         self.react(frame, true, now);
-        let iterations = self.scalars(frame, tolerance, SCALARS, now);
+        iterations += self.scalars(frame, tolerance, SCALARS, now);
         self.chemistry.spoil();
         if let Some(words) = guard::nonsense(now, &frame.grid.centre) {
             return Err(words);
@@ -195,7 +207,40 @@ impl Equations {
         self.material.update(frame, now);
         let sources = [&self.species.reactions, &self.enthalpy.reactions];
         let heat = &self.material.heat_capacity;
-        self.chemistry.measure(frame, sources, heat, now);
+        self.chemistry.measure(sources, heat, now);
+        Ok(iterations)
+    }
+
+    /// Elements, and the enthalpy with the heat of what has to be made; returns linear iterations.
+    fn conserve(
+        &mut self,
+        frame: &Frame<'_>,
+        absolute: f64,
+        now: &mut State,
+    ) -> Result<u32, String> {
+        let Some(elements) = self.chemistry.elements() else {
+            return Ok(0);
+        };
+        let relative = SCALARS;
+        let goal = Goal { absolute, relative };
+        let (krylov, material) = (&mut self.krylov, &self.material);
+        let solve = (goal, self.share);
+        let solved = self
+            .species
+            .conserve(frame, material, krylov, solve, elements, now);
+        let Some((made, iterations)) = solved else {
+            return Ok(0);
+        };
+        self.enthalpy.reactions = self.chemistry.source_of(frame.species(), &made);
+        let carried = &self.species.carried;
+        self.enthalpy
+            .assemble(frame, material, carried, self.share, now);
+        let iterations = iterations + self.enthalpy.solve(frame, krylov, goal, now);
+        self.chemistry.spoil();
+        if let Some(words) = guard::nonsense(now, &frame.grid.centre) {
+            return Err(words);
+        }
+        self.material.update(frame, now);
         Ok(iterations)
     }
 
@@ -205,10 +250,9 @@ impl Equations {
             return self.scalars(frame, tolerance, 0.0, now);
         }
         // The last pseudo-step's inertia goes, with what it took.
-        self.react(frame, true, now);
         let sources = [&mut self.species.reactions, &mut self.enthalpy.reactions];
-        if let Some(gas) = frame.chemistry.reacting() {
-            self.chemistry.conclude(frame, gas, now, sources);
+        if let Some(elements) = self.chemistry.elements() {
+            self.chemistry.conclude(frame, elements, now, sources);
         }
         self.scalars(frame, tolerance, 0.0, now)
     }

@@ -7,6 +7,8 @@
 //! Y_f upwind, what a second-order value has beyond it explicitly from the last iterate, with one limiter
 //! for all species, so that the fractions go on summing to one. The last species is what the others leave.
 
+mod conserved;
+
 use calcine_coupler::part::Balance;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::Convection;

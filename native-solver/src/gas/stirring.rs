@@ -31,6 +31,6 @@ pub fn reacting_share(frame: &Frame<'_>, gas: &ReactingGas, cell: usize, state: 
         density,
         eddies.dissipation[cell],
     );
-    let chemical = pasr::chemical_time(&gas.mechanism, state);
+    let chemical = gas.mechanism.chemical_time(state);
     pasr::reacting_fraction(chemical, mixing)
 }

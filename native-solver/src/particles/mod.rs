@@ -249,6 +249,10 @@ impl NativeParticles {
         let Some(engine) = &mut self.engine else {
             return Ok(());
         };
+        if change.rest {
+            self.velocity.fill(Vec3::zeros());
+            self.angular_velocity.fill(Vec3::zeros());
+        }
         let (mut pairs, mut walls) = engine.memories();
         let populations = engine
             .contacts()

@@ -233,8 +233,8 @@ fn reaction(table: &Reader<'_>, mixture: &Mixture, around: &Around<'_>) -> Optio
     let alone = match Mechanism::new(mixture, std::slice::from_ref(&statement)) {
         Ok(alone) => alone,
         Err(error) => {
-            let (rule, help) = equation_error(&error);
-            table.fail("equation", rule, help);
+            let (key, rule, help) = statement_error(&error);
+            table.fail(key, rule, help);
             return None;
         }
     };
@@ -271,29 +271,13 @@ fn third_body(table: &Reader<'_>, mixture: &Mixture) -> Option<Collider> {
     let efficiencies = stated.as_ref().map_or(Some(Vec::new()), Reader::numbers);
     table.finish();
     let efficiencies = efficiencies?;
-    for (species, efficiency) in &efficiencies {
+    for (species, _) in &efficiencies {
         let table = stated.as_ref()?;
         if !mixture.names().contains(species) {
             let help = format!("the species of the gas are {}", mixture.names().join(", "));
             table.fail(species, "is no species of the gas", help);
             return None;
         }
-        if *efficiency < 0.0 {
-            table.fail(
-                species,
-                format!("is {efficiency}"),
-                "efficiencies are not negative",
-            );
-            return None;
-        }
-    }
-    if others < 0.0 {
-        table.fail(
-            "others",
-            format!("is {others}"),
-            "efficiencies are not negative",
-        );
-        return None;
     }
     Some(Collider {
         efficiencies,
@@ -301,17 +285,33 @@ fn third_body(table: &Reader<'_>, mixture: &Mixture) -> Option<Collider> {
     })
 }
 
-fn equation_error(error: &KineticsError) -> (String, String) {
+/// Where a statement of an equation, a rate that was read, and a third body is wrong, the rule, and the remedy.
+fn statement_error(error: &KineticsError) -> (&'static str, String, String) {
     match error {
         KineticsError::UnknownSpecies { species, known, .. } => (
+            "equation",
             format!("names {species}, which is no species of the gas"),
             format!("the species of the gas are {known} (`gas.species`)"),
         ),
         KineticsError::Unbalanced { off, .. } => (
+            "equation",
             format!("is not balanced: {off}"),
             "write numbers of moles by which each element is the same on both sides".into(),
         ),
+        KineticsError::Value {
+            quantity, value, ..
+        } => (
+            "third_body",
+            format!("has {quantity} of {value}"),
+            "efficiencies are finite and not negative".into(),
+        ),
+        KineticsError::NoCollider { .. } => (
+            "third_body",
+            "has no gas with an efficiency above zero".into(),
+            "state one above zero, or remove `third_body`".into(),
+        ),
         other => (
+            "equation",
             format!("is refused: {other}"),
             "correct the reaction".into(),
         ),

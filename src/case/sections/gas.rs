@@ -7,13 +7,13 @@ use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
 use calcine_coupler::physics::gas_model::{ConstantGas, GasModel};
-use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{Convection, GasControls, GasSetup};
 use calcine_coupler::time::GasStorage;
 
 use super::chemistry::{Around, chemistry};
 use super::composition::fractions;
 use super::gas_patch::boundary;
+use super::species_data;
 use super::turbulence::turbulence;
 use crate::case::model::MeshSpec;
 use crate::case::table::Reader;
@@ -35,7 +35,10 @@ pub(super) fn read(
 ) -> Option<GasRead> {
     let section = root.required_table("gas", "[gas] with mixture = \"air\"")?;
     let mixture = section.required_text("mixture", "\"air\"");
-    let properties = properties(&section, mixture);
+    let (properties, mut files) = match properties(&section, mixture, folder) {
+        Some((gas, files)) => (Some(gas), files),
+        None => (None, Vec::new()),
+    };
     let schmidt = schmidt(&section, properties.as_ref());
     let initial = initial(&section, properties.as_ref());
     let gravity = section
@@ -54,7 +57,8 @@ pub(super) fn read(
     let chemistry = chemistry(&section, &around, folder);
     section.finish();
     let (temperature, pressure, velocity, composition) = initial?;
-    let (reacting, files) = chemistry?;
+    let (reacting, more) = chemistry?;
+    files.extend(more);
     let stirred = reacting
         .reacting()
         .is_some_and(|gas| gas.combustion != Combustion::Laminar);
@@ -88,17 +92,27 @@ pub(super) fn read(
 }
 
 /// A built-in mixture, or the properties of `[gas.properties]` or `[gas.constant]`.
-fn properties(section: &Reader<'_>, mixture: Option<&str>) -> Option<GasModel> {
+fn properties(
+    section: &Reader<'_>,
+    mixture: Option<&str>,
+    folder: &Path,
+) -> Option<(GasModel, Vec<PathBuf>)> {
     if let Some(species) = section.texts("species") {
-        return match Mixture::new(species.iter().map(String::as_str)) {
-            Ok(mixture) => Some(GasModel::Mixture(mixture)),
-            Err(error) => {
-                let help = "write at least one species, each once";
-                section.fail("species", format!("makes no mixture: {error}"), help);
-                None
-            }
-        };
+        let made = species_data::mixture(section, &species, folder);
+        return made.map(|(mixture, files)| (GasModel::Mixture(mixture), files));
     }
+    if let Some(table) = section.table("species_data") {
+        table.fail_whole(
+            "stands beside a gas without species",
+            "state `gas.species`, or remove it",
+        );
+        return None;
+    }
+    single(section, mixture).map(|gas| (gas, Vec::new()))
+}
+
+/// A gas without species.
+fn single(section: &Reader<'_>, mixture: Option<&str>) -> Option<GasModel> {
     if let Some(table) = section.table("constant") {
         let density = table.required_positive("density", Dimension::DENSITY);
         let heat_capacity = table.required_positive("heat_capacity", Dimension::HEAT_CAPACITY);

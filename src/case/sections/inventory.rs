@@ -4,22 +4,26 @@ use calcine_coupler::interior::reacting::{Rate, Reaction};
 use calcine_coupler::physics::solids::SolidSpecies;
 
 use super::conversion;
-use crate::case::model::{Material, ReactionSpec};
+use crate::case::model::{Material, Population, ReactionSpec};
 
-/// Reactions with the solids of the case; a material that does not say what it is made of is one solid that
+/// Reactions with the solids of the case; a material of particles that does not say what it is made of is one solid that
 /// does not react. Nothing where no reaction is.
 pub(super) fn inventory(
     mut solids: Vec<SolidSpecies>,
     mut reactions: Vec<Reaction>,
     materials: &[Material],
+    particles: &[Population],
 ) -> ReactionSpec {
     if reactions.is_empty() {
         return ReactionSpec::default();
     }
     let mut compositions: Vec<Vec<f64>> = Vec::new();
-    for material in materials {
+    for (index, material) in materials.iter().enumerate() {
+        let has_particles = particles.iter().any(|one| one.material == index);
         compositions.push(match &material.composition {
             Some(fractions) => fractions.clone(),
+            // Walls are of it.
+            None if !has_particles => Vec::new(),
             None => {
                 let law = material.heat_capacity.clone();
                 solids.push(SolidSpecies::inert(&material.name, law));

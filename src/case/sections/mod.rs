@@ -7,6 +7,7 @@ mod coupling;
 mod gas;
 mod gas_patch;
 mod heat;
+mod hold;
 mod inventory;
 mod laws;
 mod mesh;
@@ -19,6 +20,7 @@ mod quantities;
 mod reactions;
 mod sizes;
 mod solids;
+mod species_data;
 mod time;
 mod traffic;
 mod turbulence;
@@ -26,8 +28,6 @@ mod walls;
 mod zone;
 
 use std::path::{Path, PathBuf};
-
-use calcine_coupler::mesh::openings::Opening;
 
 use self::gas::GasRead;
 use super::model::{Case, MeshSpec};
@@ -68,7 +68,7 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     let outlets = traffic::outlets(root);
     let laws = laws::read(root);
     let walls = walls::walls(root, &materials, mesh.as_ref(), folder);
-    let motion = motion::motion(root);
+    let motion = motion::motion(root, time.as_ref().map(|(time, _)| time));
     let coupling = coupling::read(root);
     let openfoam = coupling::external(root, "openfoam", folder);
     let liggghts = coupling::external(root, "liggghts", folder);
@@ -76,7 +76,8 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
         heat::need_properties(root, laws, &materials, particles, &walls);
     }
     let reactions = reactions::reactions(root, &solids, gas.as_ref().map(|gas| &gas.setup));
-    let chemistry = inventory::inventory(solids, reactions, &materials);
+    let populations = particles.as_deref().unwrap_or_default();
+    let chemistry = inventory::inventory(solids, reactions, &materials, populations);
     if let Some(particles) = &particles {
         conversion::fits(root, &chemistry, &materials, particles);
     }
@@ -161,34 +162,19 @@ pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String
     })
 }
 
-/// Names of openings, each once.
-fn opened(openings: &[Opening]) -> impl Iterator<Item = &str> {
-    let name = |index: usize| openings[index].name.as_str();
-    (0..openings.len())
-        .filter(move |&k| (0..k).all(|before| name(before) != name(k)))
-        .map(name)
-}
-
 /// The patch names of a mesh, where the case itself knows them.
 fn patches(mesh: Option<&MeshSpec>) -> Option<Vec<&str>> {
-    match mesh? {
+    let (mut names, openings): (Vec<&str>, _) = match mesh? {
         MeshSpec::Box {
             patches, openings, ..
-        } => {
-            let sides = patches.iter().map(String::as_str);
-            let mut names: Vec<&str> = sides.chain(opened(openings)).collect();
-            names.sort_unstable();
-            names.dedup();
-            Some(names)
-        }
-        MeshSpec::Cylinder { openings, .. } => {
-            let sides = ["bottom", "side", "top"].into_iter();
-            let mut names: Vec<&str> = sides.chain(opened(openings)).collect();
-            names.dedup();
-            Some(names)
-        }
-        MeshSpec::PolyMesh(_) => None,
-    }
+        } => (patches.iter().map(String::as_str).collect(), openings),
+        MeshSpec::Cylinder { openings, .. } => (vec!["bottom", "side", "top"], openings),
+        MeshSpec::PolyMesh(_) => return None,
+    };
+    names.extend(openings.iter().map(|one| one.name.as_str()));
+    names.sort_unstable();
+    names.dedup();
+    Some(names)
 }
 
 /// A path of the case file, absolute; an error where there is nothing.

@@ -2,6 +2,7 @@
 
 use calcine_coupler::motion::{Cohesion, ContactForce, ContactLaw, Rolling, Wall};
 
+use super::hold;
 use crate::case::model::{Contact, FreeMotion, Material, Motion, MotionKind, Population, Time};
 use crate::case::table::Reader;
 use crate::case::units::Dimension;
@@ -17,7 +18,7 @@ enum Law {
     Linear,
 }
 
-pub(super) fn motion(root: &Reader<'_>) -> Option<FreeMotion> {
+pub(super) fn motion(root: &Reader<'_>, time: Option<&Time>) -> Option<FreeMotion> {
     let section = root.table("motion")?;
     let kinds = [
         ("real-time", MotionKind::RealTime),
@@ -35,6 +36,7 @@ pub(super) fn motion(root: &Reader<'_>) -> Option<FreeMotion> {
     let rolling = law(&section, "rolling", &rollings);
     let cohesions = [("none", Cohesion::None), ("sjkr", Cohesion::Sjkr)];
     let cohesion = law(&section, "cohesion", &cohesions);
+    let held = hold::holds(&section, time);
     section.finish();
     Some(FreeMotion {
         kind: kind?,
@@ -45,6 +47,7 @@ pub(super) fn motion(root: &Reader<'_>) -> Option<FreeMotion> {
             rolling: rolling?,
             cohesion: cohesion?,
         },
+        held,
     })
 }
 
@@ -93,7 +96,9 @@ pub(super) fn fits(
     time: &Time,
     particles: &[Population],
 ) {
-    if particles.iter().all(|one| one.motion == Motion::Frozen) {
+    let frozen = particles.iter().all(|one| one.motion == Motion::Frozen);
+    hold::fits(root, motion, time, frozen);
+    if frozen {
         return;
     }
     if let (true, Some(clock)) = (time.process_step.is_some(), root.table("time")) {
@@ -107,7 +112,8 @@ pub(super) fn fits(
     let (Some(motion), Some(section)) = (motion, root.table("motion")) else {
         return;
     };
-    let factor = time.acceleration.largest();
+    let moving = motion.held.moving(&time.acceleration, time.end);
+    let factor = moving.iter().map(|one| one.1).fold(1.0, f64::max);
     if motion.kind == MotionKind::RealTime && factor > 1.0 && time.process_step.is_none() {
         let rule = format!(
             "is \"real-time\", but `time.acceleration` reaches {factor}: a bed that moves in process \

@@ -4,10 +4,10 @@ use calcine_adapters::openfoam::stock::Solver;
 use calcine_coupler::interior::reacting::{Chemistry, LayerDiffusivity, Rate, Reaction};
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::reaction::equilibrium::GibbsLine;
-use calcine_coupler::physics::reaction::{Arrhenius, Equation, Equilibrium, PowerLaw};
+use calcine_coupler::physics::reaction::{Arrhenius, Equation, Equilibrium, PowerLaw, imbalance};
 use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::physics::solids::SolidSpecies;
-use calcine_coupler::physics::thermo::{Element, Mixture};
+use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{GasPatch, GasSetup};
 
 use crate::case::model::{HeatLaw, Laws, ReactionSpec};
@@ -18,8 +18,6 @@ use crate::case::units::Dimension;
 const SLACK: f64 = 1e-3;
 /// How far a stated heat may be from that of the enthalpies.
 const HEAT: f64 = 0.02;
-/// Atoms that a mole of a balanced reaction may lose.
-const BALANCED: f64 = 1e-9;
 
 /// Mass fractions of the solids that `{ mass = { … } }` or `{ mole = { … } }` states.
 pub(super) fn composition(table: &Reader<'_>, solids: &[SolidSpecies]) -> Option<Vec<f64>> {
@@ -214,8 +212,7 @@ fn equation(table: &Reader<'_>, text: &str, known: &Known<'_>) -> Option<(Equati
 }
 
 fn balanced(table: &Reader<'_>, parts: &Parts, known: &Known<'_>) -> Option<()> {
-    let mut off = Vec::new();
-    for element in Element::ALL {
+    let off = imbalance(|element| {
         let at = element as usize;
         let solids = parts.solids.iter();
         let solids = solids.map(|&(s, n)| n * known.solids[s].atoms()[at]);
@@ -224,25 +221,13 @@ fn balanced(table: &Reader<'_>, parts: &Parts, known: &Known<'_>) -> Option<()> 
                 .gas
                 .map_or(0.0, |gas| n * gas.species()[g].atoms()[at])
         });
-        let sum: f64 = solids.chain(gases).sum();
-        if sum.abs() > BALANCED {
-            let side = if sum > 0.0 { "right" } else { "left" };
-            off.push(format!(
-                "{:.6} {} more on the {side}",
-                sum.abs(),
-                element.symbol()
-            ));
-        }
-    }
-    if off.is_empty() {
+        solids.chain(gases).sum()
+    });
+    let Some(off) = off else {
         return Some(());
-    }
+    };
     let help = "write numbers of moles by which each element is the same on both sides";
-    table.fail(
-        "equation",
-        format!("is not balanced: {}", off.join(", ")),
-        help,
-    );
+    table.fail("equation", format!("is not balanced: {off}"), help);
     None
 }
 

@@ -37,7 +37,8 @@ static void state(calcine_kind kind, double heat)
     need(calcine_link_loan(wire, kind, 3));
     fill("heat", heat);
     for (const char* name : {"drag", "temperature", "pressure", "density", "velocity",
-                             "pressure_gradient", "balances", "convergence"})
+                             "pressure_gradient", "balances", "storage_clock",
+                             "convergence"})
         fill(name, 1.0);
     need(calcine_link_send(wire));
 }

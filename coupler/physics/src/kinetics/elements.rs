@@ -29,6 +29,11 @@ impl Elements {
         }
     }
 
+    /// Number of elements.
+    pub fn count(&self) -> usize {
+        self.rows.len()
+    }
+
     /// Mass fractions of the elements.
     pub fn of(&self, fractions: &[f64]) -> [f64; Element::COUNT] {
         let mut masses = [0.0; Element::COUNT];

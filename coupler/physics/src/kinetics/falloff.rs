@@ -37,9 +37,9 @@ pub enum Broadening {
     Troe {
         /// a.
         share: f64,
-        /// T₃ in K.
+        /// T₃ in K; the term of a temperature of zero is zero.
         third: f64,
-        /// T₁ in K.
+        /// T₁ in K, as T₃.
         first: f64,
         /// T₂ in K; without it the last term is zero.
         second: Option<f64>,
@@ -93,7 +93,11 @@ impl Broadening {
         else {
             return N::constant(1.0);
         };
-        let decay = |scale: f64| temperature.times(-1.0 / scale).exp();
+        // At a scale of zero −1/scale is infinite, and its product with a slope of zero no number.
+        let decay = |scale: f64| match scale == 0.0 {
+            true => N::constant(0.0),
+            false => temperature.times(-1.0 / scale).exp(),
+        };
         let mut centre = decay(third).times(1.0 - share) + decay(first).times(share);
         if let Some(second) = second {
             centre = centre + (N::constant(-second) / temperature).exp();
@@ -187,9 +191,40 @@ mod tests {
         assert!(k > 0.0 && k < 1e-60, "{k:e}");
     }
 
+    /// T₃, and T₁, of zero.
+    const WITHOUT: [Broadening; 2] = [
+        Broadening::Troe {
+            share: 0.783,
+            third: 0.0,
+            first: 2941.0,
+            second: None,
+        },
+        Broadening::Troe {
+            share: 0.783,
+            third: 740.0,
+            first: 0.0,
+            second: Some(6964.0),
+        },
+    ];
+
+    #[test]
+    fn a_temperature_of_zero_leaves_its_term_out() {
+        // In Python from the doc's equations without the term, as above.
+        for (broadening, expected) in WITHOUT.into_iter().zip([5_091_294.421_79, 384_299.142_576]) {
+            let k: f64 = methyl(broadening).at(1500.0, 8.1);
+            assert!((k / expected - 1.0).abs() < 1e-9, "{k:e}");
+        }
+    }
+
     #[test]
     fn derivatives_are_the_difference_quotients() {
-        for law in [methyl(TROE), methyl(Broadening::Lindemann)] {
+        let [without_third, without_first] = WITHOUT.map(methyl);
+        for law in [
+            methyl(TROE),
+            methyl(Broadening::Lindemann),
+            without_third,
+            without_first,
+        ] {
             let at = |t: f64, m: f64| -> f64 { law.at(t, m) };
             let dual = law.at(
                 Dual {

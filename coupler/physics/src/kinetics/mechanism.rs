@@ -81,11 +81,6 @@ impl Mechanism {
         &self.steps
     }
 
-    /// Names of the reactions.
-    pub fn names(&self) -> impl ExactSizeIterator<Item = &str> {
-        self.steps.iter().map(|one| one.name.as_str())
-    }
-
     /// How fast each species is made, in kg/m³/s.
     pub fn rates(&self, state: State<'_>, out: &mut [f64]) {
         let mut concentrations = [0.0; MOST_SPECIES];
@@ -93,16 +88,7 @@ impl Mechanism {
         self.mass_rates(state.temperature, &concentrations, out);
     }
 
-    /// Heat that rates in kg/m³/s set free at a temperature in K, in W/m³: −Σ h_i w_i with the enthalpies of
-    /// formation in h.
-    pub fn heat(&self, temperature: f64, rates: &[f64]) -> f64 {
-        let species = self.mixture.species().iter().zip(rates);
-        -species
-            .map(|(one, w)| w * one.polynomial().enthalpy(temperature) / one.molar_mass())
-            .sum::<f64>()
-    }
-
-    /// Rates of progress forth and back of every reaction in mol/m³/s, in the order of the names.
+    /// Rates of progress forth and back of every reaction in mol/m³/s, in the order of the steps.
     pub fn progress(&self, state: State<'_>) -> Vec<(f64, f64)> {
         let mut concentrations = [0.0; MOST_SPECIES];
         self.concentrations(&state, &mut concentrations);
@@ -125,8 +111,10 @@ impl Mechanism {
         out.iter_mut().for_each(|c| *c *= factor);
     }
 
-    /// Time scale of the reactions in s as OpenFOAM's PaSR takes it: see [`super::pasr`].
-    pub(super) fn turnover(&self, state: State<'_>) -> f64 {
+    /// Chemical time in s as OpenFOAM's PaSR defines it: t_c = n Σ_i c_i/Σ_r (Σ_j ν_j,r) q_r with the number n of
+    /// reactions, the concentrations, the numbers ν of the right sides and the rates of progress forth q. Infinite where
+    /// nothing reacts.
+    pub fn chemical_time(&self, state: State<'_>) -> f64 {
         let mut concentrations = [0.0; MOST_SPECIES];
         self.concentrations(&state, &mut concentrations);
         let mut made = 0.0;

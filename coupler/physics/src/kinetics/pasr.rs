@@ -1,7 +1,5 @@
 //! The partially stirred reactor: turbulence mixes only a part of a cell finely enough to react.
 
-use super::mechanism::{Mechanism, State};
-
 /// Time in s in which turbulence mixes down to the molecules,
 ///
 /// t_k = C_mix √(μ_eff/(ρ ε_t)),
@@ -32,15 +30,10 @@ pub fn reacting_fraction(t_chem: f64, t_mix: f64) -> f64 {
     }
 }
 
-/// Chemical time in s as OpenFOAM defines it: t_c = n Σ_i c_i/Σ_r (Σ_j ν_j,r) q_r with the number n of reactions, the
-/// concentrations, the numbers ν of the right sides and the rates of progress forth q. Infinite where nothing reacts.
-pub fn chemical_time(mechanism: &Mechanism, state: State<'_>) -> f64 {
-    mechanism.turnover(state)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kinetics::{Mechanism, State};
     use crate::thermo::Mixture;
 
     #[test]
@@ -77,12 +70,12 @@ mod tests {
             .map(|((forth, _), n)| n * forth)
             .sum();
         let total = 101_325.0 / (crate::gas::GAS_CONSTANT * 1600.0);
-        let time = chemical_time(&jl4, state);
+        let time = jl4.chemical_time(state);
         assert!((time / (4.0 * total / made) - 1.0).abs() < 1e-12);
         let inert = State {
             fractions: &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
             ..state
         };
-        assert_eq!(chemical_time(&jl4, inert), f64::INFINITY);
+        assert_eq!(jl4.chemical_time(inert), f64::INFINITY);
     }
 }

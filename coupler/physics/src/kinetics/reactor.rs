@@ -58,15 +58,13 @@ pub struct Reactor {
     mechanism: Mechanism,
     tolerances: Tolerances,
     elements: Elements,
-    rates: Vec<f64>,
 }
 
 impl Reactor {
-    /// A reactor of this mechanism. One serves one thread.
+    /// A reactor of this mechanism.
     pub fn new(mechanism: &Mechanism, tolerances: Tolerances) -> Self {
         Self {
             elements: Elements::new(mechanism.mixture()),
-            rates: vec![0.0; mechanism.species()],
             mechanism: mechanism.clone(),
             tolerances,
         }
@@ -80,7 +78,7 @@ impl Reactor {
     /// Lets an adiabatic parcel react over a time in s at a pressure in Pa: mass fractions and temperature in K
     /// become those at its end. In error they stay.
     pub fn advance(
-        &mut self,
+        &self,
         pressure: f64,
         temperature: &mut f64,
         fractions: &mut [f64],
@@ -91,7 +89,7 @@ impl Reactor {
 
     /// The same at a fixed temperature in K: what heat is set free is taken away.
     pub fn advance_isothermal(
-        &mut self,
+        &self,
         pressure: f64,
         temperature: f64,
         fractions: &mut [f64],
@@ -102,7 +100,7 @@ impl Reactor {
     }
 
     fn run(
-        &mut self,
+        &self,
         pressure: f64,
         temperature: &mut f64,
         fractions: &mut [f64],
@@ -116,9 +114,11 @@ impl Reactor {
             temperature: *temperature,
             fractions,
         };
-        self.mechanism.rates(state, &mut self.rates);
+        let mut rates = [0.0; MOST_SPECIES];
+        let rates = &mut rates[..fractions.len()];
+        self.mechanism.rates(state, rates);
         let density = mixture.density(pressure, *temperature, fractions);
-        let fastest = self.rates.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
+        let fastest = rates.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
         if fastest * time <= self.tolerances.negligible * density {
             return Ok(Outcome { steps: 0 });
         }

@@ -1,16 +1,13 @@
 //! One reaction of a mechanism, by indices of species.
 
 use super::error::KineticsError;
-use super::falloff::RateConstant;
+use super::falloff::{Broadening, RateConstant};
 use super::statement::Statement;
-use crate::reaction::Arrhenius;
-use crate::thermo::{Element, Mixture};
+use crate::reaction::{Arrhenius, imbalance};
+use crate::thermo::Mixture;
 
-/// Atoms that a mole of a balanced reaction may lose: printed coefficients have few digits.
-const BALANCED: f64 = 1e-9;
-
-/// A in messages.
-const FACTOR: &str = "a factor A";
+/// An efficiency of a third body in messages.
+const EFFICIENCY: &str = "an efficiency";
 
 /// A reaction of a mechanism; species by their index in the mixture, numbers of moles as in its equation.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,61 +119,77 @@ fn orders_back(forth: &[(usize, f64)], net: &[(usize, f64)]) -> Vec<(usize, f64)
 }
 
 fn balanced(mixture: &Mixture, name: &str, net: &[(usize, f64)]) -> Result<(), KineticsError> {
-    let mut off = Vec::new();
-    for element in Element::ALL {
+    let off = imbalance(|element| {
         let atoms = |k: usize| mixture.species()[k].atoms()[element as usize];
-        let sum: f64 = net.iter().map(|&(k, n)| n * atoms(k)).sum();
-        if sum.abs() > BALANCED {
-            let side = if sum > 0.0 { "right" } else { "left" };
-            off.push(format!(
-                "{:.6} {} more on the {side}",
-                sum.abs(),
-                element.symbol()
-            ));
-        }
-    }
-    if off.is_empty() {
-        return Ok(());
-    }
-    Err(KineticsError::Unbalanced {
-        reaction: name.to_owned(),
-        off: off.join(", "),
+        net.iter().map(|&(k, n)| n * atoms(k)).sum()
+    });
+    off.map_or(Ok(()), |off| {
+        Err(KineticsError::Unbalanced {
+            reaction: name.to_owned(),
+            off,
+        })
     })
 }
 
+/// Every number of a reaction is finite; factors of a falloff are positive, and efficiencies not negative.
 fn finite(stated: &Statement) -> Result<(), KineticsError> {
+    let refuse = |(quantity, value): (&'static str, f64)| KineticsError::Value {
+        reaction: stated.name.clone(),
+        quantity,
+        value,
+    };
     let mut numbers = Vec::new();
     let mut law = |law: &Arrhenius| {
-        numbers.push((FACTOR, law.factor));
+        numbers.push(("a factor A", law.factor));
         numbers.push(("an exponent b", law.exponent));
         numbers.push(("an activation energy E in J/mol", law.activation_energy));
     };
     match &stated.rate {
         RateConstant::Arrhenius(one) => law(one),
-        RateConstant::Falloff { high, low, .. } => {
-            law(high);
-            law(low);
+        RateConstant::Falloff {
+            high,
+            low,
+            broadening,
+        } => {
+            for one in [high, low] {
+                law(one);
+                if one.factor <= 0.0 {
+                    return Err(refuse(("a factor A of a falloff", one.factor)));
+                }
+            }
+            numbers.extend(troe(broadening));
         }
-    }
-    let falloff = matches!(stated.rate, RateConstant::Falloff { .. });
-    let negative = numbers.iter().find(|one| one.0 == FACTOR && one.1 <= 0.0);
-    if let Some(&(_, value)) = negative.filter(|_| falloff) {
-        return Err(KineticsError::Value {
-            reaction: stated.name.clone(),
-            quantity: "a factor A of a falloff",
-            value,
-        });
     }
     let orders = stated.orders.iter().flatten();
     numbers.extend(orders.map(|(_, order)| ("an order", *order)));
-    for (quantity, value) in numbers {
-        if !value.is_finite() {
-            return Err(KineticsError::Value {
-                reaction: stated.name.clone(),
-                quantity,
-                value,
-            });
+    if let Some(collider) = &stated.collider {
+        let named = collider.efficiencies.iter().map(|one| one.1);
+        for value in named.chain([collider.others]) {
+            numbers.push((EFFICIENCY, value));
+            if value < 0.0 {
+                return Err(refuse((EFFICIENCY, value)));
+            }
         }
     }
-    Ok(())
+    let none = numbers.into_iter().find(|(_, value)| !value.is_finite());
+    none.map_or(Ok(()), |one| Err(refuse(one)))
+}
+
+/// Troe's numbers.
+fn troe(broadening: &Broadening) -> Vec<(&'static str, f64)> {
+    let Broadening::Troe {
+        share,
+        third,
+        first,
+        second,
+    } = *broadening
+    else {
+        return Vec::new();
+    };
+    vec![
+        ("Troe's a", share),
+        ("Troe's T3 in K", third),
+        ("Troe's T1 in K", first),
+        ("Troe's T2 in K", second.unwrap_or(0.0)),
+    ]
 }

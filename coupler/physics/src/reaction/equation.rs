@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::thermo::Element;
+
 /// An equation such as `3 Fe2O3 + CO => 2 Fe3O4 + CO2`, or with `<=>` where it goes both ways.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equation {
@@ -81,6 +83,22 @@ impl Equation {
         }
         net
     }
+}
+
+/// Atoms that a mole of a balanced reaction may lose: printed coefficients have few digits.
+const BALANCED: f64 = 1e-9;
+
+/// Says of each element how many atoms more one side has, from what the right side has more than the left; `None` of a
+/// balanced reaction.
+pub fn imbalance(more_on_the_right: impl Fn(Element) -> f64) -> Option<String> {
+    let off = Element::ALL.into_iter().filter_map(|element| {
+        let sum = more_on_the_right(element);
+        let side = if sum > 0.0 { "right" } else { "left" };
+        (sum.abs() > BALANCED)
+            .then(|| format!("{:.6} {} more on the {side}", sum.abs(), element.symbol()))
+    });
+    let off: Vec<String> = off.collect();
+    (!off.is_empty()).then(|| off.join(", "))
 }
 
 fn side(text: &str, adding: bool) -> Result<Vec<(f64, String)>, EquationError> {

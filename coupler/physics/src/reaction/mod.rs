@@ -8,7 +8,7 @@ pub mod power_law;
 pub mod shrinking_core;
 
 pub use arrhenius::Arrhenius;
-pub use equation::{Equation, EquationError};
+pub use equation::{Equation, EquationError, imbalance};
 pub use equilibrium::Equilibrium;
 pub use power_law::PowerLaw;
 pub use shrinking_core::Interface;

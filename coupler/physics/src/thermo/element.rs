@@ -45,6 +45,12 @@ impl Element {
         Self::S,
     ];
 
+    /// The element of a symbol in capital or small letters, `AR` or `Ar`; `None` where it is none of these.
+    pub fn by_symbol(symbol: &str) -> Option<Self> {
+        let own = |one: &Self| one.symbol().eq_ignore_ascii_case(symbol);
+        Self::ALL.into_iter().find(own)
+    }
+
     /// Its symbol.
     pub fn symbol(self) -> &'static str {
         match self {
@@ -89,7 +95,10 @@ mod tests {
     fn the_list_has_every_element_once_in_its_own_place() {
         for (k, element) in Element::ALL.into_iter().enumerate() {
             assert_eq!(element as usize, k, "{}", element.symbol());
+            let capital = element.symbol().to_ascii_uppercase();
+            assert_eq!(Element::by_symbol(&capital), Some(element));
         }
+        assert_eq!(Element::by_symbol("He"), None);
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Fuller, Schettler and Giddings 1966.
 
+use super::Element;
+
 /// The part A in m² Pa/s/K^1.75 of the diffusivity D = A T^1.75/p of two gases that depends on the
 /// pair alone; molar masses M in kg/mol, diffusion volumes v as tabulated.
 ///
@@ -21,6 +23,28 @@ pub fn pair_coefficient(molar_masses: [f64; 2], volumes: [f64; 2]) -> f64 {
     in_bar_and_cm2 * 1e5 * 1e-4
 }
 
+/// Diffusion volumes of atoms in molecules, by symbol: those of the same book's table 11-1.
+const ATOMS: [(Element, f64); 5] = [
+    (Element::C, 15.9),
+    (Element::H, 2.31),
+    (Element::O, 6.11),
+    (Element::N, 4.54),
+    (Element::S, 22.9),
+];
+
+/// Diffusion volume of a molecule of these atoms, in the order of [`Element::ALL`]: the sum of theirs; `None` where the
+/// table lacks one. It takes off 18.3 for each aromatic ring, of which atoms do not tell.
+pub fn volume_of(atoms: &[f64; Element::COUNT]) -> Option<f64> {
+    let mut sum = 0.0;
+    for (element, count) in Element::ALL.into_iter().zip(atoms) {
+        if *count > 0.0 {
+            let own = ATOMS.iter().find(|(one, _)| *one == element)?;
+            sum += count * own.1;
+        }
+    }
+    Some(sum)
+}
+
 /// T^1.75/p in K^1.75/Pa, the part of the diffusivity that all pairs share.
 pub fn state_factor(pressure: f64, temperature: f64) -> f64 {
     // T^1.75 = T √T √√T: no general power.
@@ -38,6 +62,19 @@ mod tests {
         let pair = pair_coefficient([28.014e-3, 2.016e-3], [18.5, 6.12]);
         let d = pair * state_factor(2e5, 500.0);
         assert!((d / 9.737621034878057e-5 - 1.0).abs() < 1e-12, "{d:e}");
+    }
+
+    #[test]
+    fn volumes_of_atoms_add_up_where_all_are_tabulated() {
+        // Methane's volume of the table of species is such a sum; ethene by hand: 2 · 15.9 + 4 · 2.31.
+        let methane = crate::thermo::Species::built_in("CH4").unwrap();
+        assert_eq!(volume_of(methane.atoms()), Some(methane.diffusion_volume()));
+        let mut ethene = [0.0; Element::COUNT];
+        ethene[Element::C as usize] = 2.0;
+        ethene[Element::H as usize] = 4.0;
+        assert!((volume_of(&ethene).unwrap() - 41.04).abs() < 1e-12);
+        ethene[Element::Fe as usize] = 1.0;
+        assert_eq!(volume_of(&ethene), None);
     }
 
     #[test]

@@ -8,6 +8,7 @@ pub mod error;
 pub mod eucken;
 pub mod fuller;
 mod inverse;
+pub mod lennard_jones;
 pub mod mixture;
 pub mod nasa7;
 pub mod species;
@@ -17,6 +18,7 @@ pub mod wilke;
 
 pub use element::Element;
 pub use error::ThermoError;
+pub use lennard_jones::LennardJones;
 pub use mixture::{Mixture, Transport};
 pub use nasa7::Nasa7;
 pub use species::Species;

@@ -1,7 +1,7 @@
 //! Species of a gas.
 
 use super::table::{RECORDS, Record};
-use super::{Element, Nasa7, Sutherland, ThermoError, eucken};
+use super::{Element, LennardJones, Nasa7, Sutherland, ThermoError, eucken};
 use crate::gas::{GAS_CONSTANT, REFERENCE_TEMPERATURE};
 
 /// A species of an ideal gas: what it is made of and its properties.
@@ -54,6 +54,21 @@ impl Species {
             }
         }
         Ok(species)
+    }
+
+    /// A species whose viscosity follows from how its molecules meet: by Sutherland's law nearest to
+    /// [`LennardJones`]'s viscosity, as the built-in ones.
+    pub fn of_molecules(
+        name: &str,
+        atoms: [f64; Element::COUNT],
+        polynomial: Nasa7,
+        potential: LennardJones,
+        diffusion_volume: f64,
+    ) -> Result<Self, ThermoError> {
+        let weighed = Element::ALL.iter().zip(atoms);
+        let molar_mass: f64 = weighed.map(|(element, n)| n * element.molar_mass()).sum();
+        let viscosity = potential.sutherland(molar_mass);
+        Self::new(name, atoms, polynomial, viscosity, diffusion_volume)
     }
 
     fn assemble(

@@ -32,16 +32,18 @@ impl LogLaw {
     /// plain difference of velocities gives the law's stress; `limit` is [`Self::laminar_limit`].
     #[inline]
     pub fn eddy_ratio(&self, y_plus: f64, limit: f64) -> f64 {
-        if y_plus > limit {
-            y_plus * self.karman / (self.roughness * y_plus).ln() - 1.0
+        // Below the limit exactly zero.
+        if y_plus > 0.0 {
+            y_plus / self.speed(y_plus, limit) - 1.0
         } else {
             0.0
         }
     }
 
-    /// u⁺ at y⁺.
-    pub fn speed(&self, y_plus: f64) -> f64 {
-        if y_plus > self.laminar_limit() {
+    /// u⁺ at y⁺; `limit` is [`Self::laminar_limit`].
+    #[inline]
+    pub fn speed(&self, y_plus: f64, limit: f64) -> f64 {
+        if y_plus > limit {
             (self.roughness * y_plus).ln() / self.karman
         } else {
             y_plus
@@ -64,7 +66,7 @@ mod tests {
     fn agrees_with_an_independent_evaluation_at_y_plus_of_100() {
         // ln(980)/0.41 = 16.798909, and y+/u+ - 1.
         let law = LogLaw::SMOOTH;
-        assert!((law.speed(100.0) - 16.798_909).abs() < 1e-5);
+        assert!((law.speed(100.0, law.laminar_limit()) - 16.798_909).abs() < 1e-5);
         let ratio = law.eddy_ratio(100.0, law.laminar_limit());
         assert!((ratio - (100.0 / 16.798_909 - 1.0)).abs() < 1e-5);
     }
@@ -75,6 +77,6 @@ mod tests {
         let limit = law.laminar_limit();
         assert_eq!(law.eddy_ratio(11.0, limit), 0.0);
         assert!(law.eddy_ratio(limit + 1e-3, limit) < 1e-4);
-        assert_eq!(law.speed(5.0), 5.0);
+        assert_eq!(law.speed(5.0, limit), 5.0);
     }
 }

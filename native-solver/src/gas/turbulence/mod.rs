@@ -13,7 +13,7 @@
 //! a face between bed and free gas the coefficients are the mean of both sides, as at any other face.
 
 mod equations;
-mod wall;
+pub mod wall;
 
 use calcine_coupler::checkpoint::{StateFile, StateFileError};
 use calcine_coupler::part::TurbulenceFields;
@@ -151,9 +151,14 @@ fn fill_viscosity(
             return 0.0;
         }
         match boundary.at(index) {
-            Value::Inlet { .. } => {
+            Value::Inlet {
+                superficial_velocity,
+                mass_flux,
+                ..
+            } if superficial_velocity > 0.0 => {
                 let [energy, dissipation] = boundary.eddies(index, pores);
-                held(cell) * model.eddy_viscosity(energy, dissipation)
+                let density = pores * mass_flux / superficial_velocity;
+                density * model.eddy_viscosity(energy, dissipation)
             }
             Value::Wall {
                 sticks: Some(_), ..
@@ -161,7 +166,9 @@ fn fill_viscosity(
                 let laminar = wall::viscosity(boundary, gas, state, index, cell);
                 laminar * law.eddy_ratio(energy[cell], face.distance(), laminar / held(cell))
             }
-            Value::Wall { sticks: None, .. } | Value::Outlet { .. } => viscosity[cell],
+            Value::Inlet { .. } | Value::Wall { sticks: None, .. } | Value::Outlet { .. } => {
+                viscosity[cell]
+            }
         }
     });
 }

@@ -42,7 +42,7 @@ impl WallLaw {
     /// ε_t in m²/s³ of a first cell.
     #[inline]
     pub fn dissipation(&self, energy: f64, distance: f64) -> f64 {
-        self.root.powi(3) * energy * energy.sqrt() / (self.law.karman * distance)
+        KEpsilon::STANDARD.dissipation(energy, self.law.karman * distance)
     }
 
     /// The velocity gradient in 1/s at the centre of a first cell, by which the stress produces k.

@@ -1,10 +1,13 @@
 //! A block of neighbouring particles with the contacts that it owns.
 
+use std::hint::black_box;
+use std::ops::Range;
+
 use calcine_coupler::motion::Rolling;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{Area, ContactLaw};
 
-use super::contact::{History, Meeting, evaluate};
+use super::contact::{Meeting, evaluate};
 use super::energy::Budget;
 use super::lanes;
 use super::rules::Rules;
@@ -30,8 +33,10 @@ pub fn size(count: usize) -> usize {
 pub struct Candidates {
     /// Indices of the two spheres; the first is of the block.
     pub pair: Vec<[u32; 2]>,
-    /// Tangential springs.
-    pub history: Vec<History>,
+    /// Elongations of tangential springs in m; what does not touch has none, whatever stands here.
+    pub shift: Vec<Vec3>,
+    /// Those that touched in the last evaluation.
+    pub touched: Vec<bool>,
     /// Torques of rolling springs in N m.
     pub rolling: Vec<Vec3>,
     /// What the law prepared.
@@ -42,9 +47,36 @@ impl Candidates {
     /// Forgets all; keeps the memory.
     pub fn clear(&mut self) {
         self.pair.clear();
-        self.history.clear();
+        self.shift.clear();
+        self.touched.clear();
         self.rolling.clear();
         self.prepared.clear();
+    }
+}
+
+/// A candidate that touches: its index, and whether it did in the evaluation before.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Touch(u32);
+
+impl Touch {
+    /// The bit beside the index.
+    const KEPT: u32 = 1 << 31;
+
+    #[inline(always)]
+    fn new(index: usize, kept: bool) -> Self {
+        Self(index as u32 | u32::from(kept) << 31)
+    }
+
+    /// Index of the candidate.
+    #[inline(always)]
+    pub fn index(self) -> usize {
+        (self.0 & !Self::KEPT) as usize
+    }
+
+    /// True where it touched before: its spring goes on.
+    #[inline(always)]
+    pub fn kept(self) -> bool {
+        self.0 & Self::KEPT != 0
     }
 }
 
@@ -64,7 +96,7 @@ pub struct Block {
     /// Loads from other blocks: block, slot, particle.
     pub incoming: Vec<[u32; 3]>,
     /// Candidates that touch, of the list at hand.
-    pub touching: Vec<u32>,
+    pub touching: Vec<Touch>,
     /// Energies of its contacts.
     pub budget: Budget,
     /// Force of all walls on its particles in the last evaluation, in N.
@@ -97,6 +129,7 @@ impl Block {
         scene: &Scene<'_, L>,
         outgoing: &mut [Load],
     ) {
+        ahead(scene.spheres, self.begin..self.begin + self.load.len());
         let held = std::mem::take(&mut self.budget.elastic_tangential);
         self.budget.elastic_normal = 0.0;
         self.load.fill(Load::default());
@@ -135,7 +168,7 @@ impl Block {
             });
             return;
         }
-        let found = touching_of(&inner.pair, &scene.spheres.place, touching);
+        let found = touching_of(inner, &scene.spheres.place, touching);
         pairs::<L, BUDGET>(
             scene,
             inner,
@@ -146,7 +179,7 @@ impl Block {
                 load[j - begin].add(&other);
             },
         );
-        let found = touching_of(&cross.pair, &scene.spheres.place, touching);
+        let found = touching_of(cross, &scene.spheres.place, touching);
         pairs::<L, BUDGET>(
             scene,
             cross,
@@ -173,7 +206,7 @@ struct Plain<'a, 'b, L> {
     scene: &'a Scene<'b, L>,
     begin: usize,
     lists: [&'a mut Candidates; 2],
-    touching: &'a mut [u32],
+    touching: &'a mut [Touch],
     load: &'a mut [Load],
     outgoing: &'a mut [Load],
 }
@@ -191,7 +224,7 @@ impl<L: ContactLaw> pulp::WithSimd for Plain<'_, '_, L> {
             load,
             outgoing,
         } = self;
-        let found = touching_of(&inner.pair, &scene.spheres.place, touching);
+        let found = touching_of(inner, &scene.spheres.place, touching);
         lanes::pairs(
             scene,
             inner,
@@ -202,7 +235,10 @@ impl<L: ContactLaw> pulp::WithSimd for Plain<'_, '_, L> {
                 load[j - begin].add(&other);
             },
         );
-        let found = touching_of(&cross.pair, &scene.spheres.place, touching);
+        let found = touching_of(cross, &scene.spheres.place, touching);
+        let moves = &scene.spheres.moves;
+        let beyond = |touch: &Touch| moves[cross.pair[touch.index()][1] as usize].inverse_mass;
+        black_box(touching[..found].iter().map(beyond).sum::<f64>());
         lanes::pairs(
             scene,
             cross,
@@ -216,16 +252,27 @@ impl<L: ContactLaw> pulp::WithSimd for Plain<'_, '_, L> {
     }
 }
 
-/// Lists the candidates that touch, without a branch that could be guessed wrong; returns their number.
+/// Reads the particles of a block in a row: contacts ask for them here and there, and would wait for memory each
+/// time where many particles are more than caches hold.
+fn ahead(spheres: &Spheres, own: Range<usize>) {
+    let (place, moves) = (&spheres.place[own.clone()], &spheres.moves[own]);
+    black_box(place.iter().map(|place| place.radius).sum::<f64>());
+    black_box(moves.iter().map(|moves| moves.inverse_mass).sum::<f64>());
+}
+
+/// Lists the candidates that touch, without a branch that could be guessed wrong, and notes which they are;
+/// returns their number.
 #[inline(always)]
-fn touching_of(pairs: &[[u32; 2]], place: &[Place], touching: &mut [u32]) -> usize {
+fn touching_of(candidates: &mut Candidates, place: &[Place], touching: &mut [Touch]) -> usize {
     let mut found = 0;
-    for (k, &[i, j]) in pairs.iter().enumerate() {
+    let pairs = candidates.pair.iter().zip(&mut candidates.touched);
+    for (k, (&[i, j], touched)) in pairs.enumerate() {
         let (a, b) = (&place[i as usize], &place[j as usize]);
         let reach = a.radius + b.radius;
         let apart = (a.centre - b.centre).norm_squared();
-        touching[found] = k as u32;
-        found += usize::from(apart < reach * reach);
+        touching[found] = Touch::new(k, *touched);
+        *touched = apart < reach * reach;
+        found += usize::from(*touched);
     }
     found
 }
@@ -234,25 +281,24 @@ fn touching_of(pairs: &[[u32; 2]], place: &[Place], touching: &mut [u32]) -> usi
 fn pairs<L: ContactLaw, const BUDGET: bool>(
     scene: &Scene<'_, L>,
     candidates: &mut Candidates,
-    touching: &[u32],
+    touching: &[Touch],
     budget: &mut Budget,
     mut sink: impl FnMut([usize; 2], Load, Load, usize),
 ) {
     let spheres = scene.spheres;
     let mut unused = Vec3::zeros();
-    for &k in touching {
-        let k = k as usize;
+    for touch in touching {
+        let k = touch.index();
         let [i, j] = candidates.pair[k].map(|index| index as usize);
         let (a, b) = (&spheres.place[i], &spheres.place[j]);
         let (va, vb) = (&spheres.moves[i], &spheres.moves[j]);
-        let history = &mut candidates.history[k];
-        if history.stamp + 1 != scene.stamp {
-            history.shift = Vec3::zeros();
+        let shift = &mut candidates.shift[k];
+        if !touch.kept() {
+            *shift = Vec3::zeros();
             if let Some(torque) = candidates.rolling.get_mut(k) {
                 *torque = Vec3::zeros();
             }
         }
-        history.stamp = scene.stamp;
         let (meeting, arms) = meet(scene.rules, a, b, va, vb);
         let pair = scene.rules.pair(spheres.material[i], spheres.material[j]);
         let prepared = candidates.prepared.get(k).copied().unwrap_or(0.0);
@@ -262,7 +308,7 @@ fn pairs<L: ContactLaw, const BUDGET: bool>(
             scene.rules,
             (pair, prepared),
             &meeting,
-            &mut history.shift,
+            shift,
             torque,
             scene.step,
             budget,

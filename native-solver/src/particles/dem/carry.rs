@@ -4,7 +4,6 @@
 use calcine_coupler::physics::Vec3;
 
 use super::block::Block;
-use super::contact::History;
 use super::sphere::Spheres;
 use super::walls::group::Slot;
 
@@ -55,20 +54,20 @@ impl Carry {
         }
     }
 
-    /// Takes the memories of all contacts that touched in evaluation `stamp`.
+    /// Takes the memories of all contacts that touched in the last evaluation, `stamp`.
     pub fn collect(&mut self, blocks: &[Block], spheres: &Spheres, stamp: u64) {
         self.pairs.clear();
         self.walls.clear();
         for block in blocks {
             for candidates in [&block.inner, &block.cross] {
-                for (k, history) in candidates.history.iter().enumerate() {
-                    if history.stamp == stamp {
+                for (k, shift) in candidates.shift.iter().enumerate() {
+                    if candidates.touched[k] {
                         let [i, j] = candidates.pair[k].map(|index| spheres.row[index as usize]);
                         let rolling = candidates.rolling.get(k).copied().unwrap_or_default();
                         let sign = if i < j { 1.0 } else { -1.0 };
                         self.pairs.push(Carried {
                             rows: [i.min(j), i.max(j)],
-                            shift: sign * history.shift,
+                            shift: sign * shift,
                             rolling: sign * rolling,
                         });
                     }
@@ -129,15 +128,6 @@ impl Carry {
                 rolling: one.rolling,
                 stamp,
             };
-        }
-    }
-
-    /// A pair's memory as a candidate begins with it.
-    #[inline]
-    pub fn history(&self, first: u32, second: u32, stamp: u64) -> (History, Vec3) {
-        match self.pair(first, second) {
-            Some((shift, rolling)) => (History { shift, stamp }, rolling),
-            None => (History::default(), Vec3::zeros()),
         }
     }
 }

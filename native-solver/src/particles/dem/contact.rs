@@ -10,16 +10,6 @@ use calcine_coupler::physics::contact::{
 use super::energy::Budget;
 use super::rules::Rules;
 
-/// The memory of a contact.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(align(32))]
-pub struct History {
-    /// Elongation of the tangential spring in m.
-    pub shift: Vec3,
-    /// The evaluation in which it touched last; one that did not touch in the last one is new.
-    pub stamp: u64,
-}
-
 /// Two surfaces that overlap.
 pub struct Meeting {
     /// Unit normal from the other body to the sphere.

@@ -1,11 +1,13 @@
 //! The solver: steps of velocity Verlet, and when to find candidates anew.
 
+mod pass;
+
 use calcine_coupler::motion::{ContactForce, Contacts};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{ContactLaw, HertzMindlin, Linear, SpringSliderDashpot};
 use rayon::prelude::*;
 
-use super::block::{Block, Scene, size};
+use super::block::{Block, size};
 use super::carry::{Carried, CarriedWall, Carry};
 use super::energy::{Budget, Energy};
 use super::motion::{self, Kick};
@@ -70,6 +72,8 @@ pub struct Engine {
     spheres: Spheres,
     blocks: Vec<Block>,
     outgoing: Vec<Vec<Load>>,
+    /// Loads of the block at hand, of steps that go block by block.
+    spare: Vec<Load>,
     search: Search,
     smallest: f64,
     skin: f64,
@@ -98,6 +102,7 @@ impl Engine {
             spheres: Spheres::default(),
             blocks: Vec::new(),
             outgoing: Vec::new(),
+            spare: Vec::new(),
             search: Search::default(),
             smallest: 0.0,
             skin: 0.0,
@@ -245,8 +250,8 @@ impl Engine {
             return Ok(());
         }
         let step = self.contacts.step;
+        let mut fastest = self.drift(1);
         for k in 0..steps {
-            let fastest = self.drift(if k == 0 { 1 } else { 2 });
             self.pose(done + k + 1);
             self.gone += fastest * step;
             self.wall_gone += step * self.walls.iter().map(|wall| wall.speed).fold(0.0, f64::max);
@@ -261,7 +266,15 @@ impl Engine {
                 carry.collect(&self.blocks, &self.spheres, self.stamp);
                 self.find();
             }
-            self.evaluate(step);
+            fastest = if k + 1 == steps {
+                self.evaluate(step);
+                0.0
+            } else if self.sweeps() {
+                self.sweep(step)
+            } else {
+                self.evaluate(step);
+                self.drift(2)
+            };
         }
         self.take_up();
         self.close();
@@ -411,62 +424,5 @@ impl Engine {
         );
         (self.gone, self.wall_gone, self.age) = (0.0, 0.0, 0);
         self.searches += 1;
-    }
-
-    /// Forces of all contacts; memories are brought up to date over a time in s.
-    fn evaluate(&mut self, step: f64) {
-        self.stamp += 1;
-        match (self.contacts.law.force, self.counting) {
-            (ContactForce::HertzMindlin, false) => {
-                self.evaluate_with::<_, false>(&HertzMindlin, step)
-            }
-            (ContactForce::HertzMindlin, true) => {
-                self.evaluate_with::<_, true>(&HertzMindlin, step)
-            }
-            (ContactForce::SpringSliderDashpot, false) => {
-                self.evaluate_with::<_, false>(&SpringSliderDashpot, step);
-            }
-            (ContactForce::SpringSliderDashpot, true) => {
-                self.evaluate_with::<_, true>(&SpringSliderDashpot, step);
-            }
-            (
-                ContactForce::Linear {
-                    characteristic_speed: speed,
-                },
-                false,
-            ) => self.evaluate_with::<_, false>(&Linear { speed }, step),
-            (
-                ContactForce::Linear {
-                    characteristic_speed: speed,
-                },
-                true,
-            ) => self.evaluate_with::<_, true>(&Linear { speed }, step),
-        }
-    }
-
-    fn evaluate_with<L: ContactLaw, const BUDGET: bool>(&mut self, law: &L, step: f64) {
-        let parallel = self.parallel();
-        let scene = Scene {
-            law,
-            rules: &self.rules,
-            spheres: &self.spheres,
-            walls: &self.walls,
-            step,
-            stamp: self.stamp,
-        };
-        let work = |(block, outgoing): (&mut Block, &mut Vec<Load>)| {
-            block.evaluate::<L, BUDGET>(&scene, outgoing);
-        };
-        if parallel {
-            self.blocks
-                .par_iter_mut()
-                .zip(&mut self.outgoing)
-                .for_each(work);
-        } else {
-            self.blocks
-                .iter_mut()
-                .zip(&mut self.outgoing)
-                .for_each(work);
-        }
     }
 }

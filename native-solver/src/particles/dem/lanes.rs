@@ -2,10 +2,12 @@
 //! cohesion), eight at a time: the same operations in the same order as `contact::evaluate`, and the same
 //! bits, in loops over lanes that the compiler turns into vector instructions.
 
+use std::ops::Range;
+
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{ContactLaw, PairConstants};
 
-use super::block::{Candidates, Scene};
+use super::block::{Candidates, Scene, Touch};
 use super::sphere::Load;
 
 /// Contacts at a time.
@@ -39,22 +41,23 @@ struct Batch {
 pub fn pairs<L: ContactLaw>(
     scene: &Scene<'_, L>,
     candidates: &mut Candidates,
-    touching: &[u32],
+    touching: &[Touch],
     mut sink: impl FnMut([usize; 2], Load, Load, usize),
 ) {
     let mut batch = Batch::default();
+    if let Some(pair) = scene.rules.single() {
+        batch.fill(0..LANES, pair);
+    }
     for chunk in touching.chunks(LANES) {
         for lane in 0..LANES {
             // Lanes beyond the last contact repeat it.
-            let k = chunk[lane.min(chunk.len() - 1)] as usize;
-            batch.gather(lane, k, scene, candidates);
+            let touch = chunk[lane.min(chunk.len() - 1)];
+            batch.gather(lane, touch, scene, candidates);
         }
         batch.evaluate(scene);
-        for (lane, &k) in chunk.iter().enumerate() {
-            let k = k as usize;
-            let history = &mut candidates.history[k];
-            history.shift = at(&batch.shift, lane);
-            history.stamp = scene.stamp;
+        for (lane, touch) in chunk.iter().enumerate() {
+            let k = touch.index();
+            candidates.shift[k] = at(&batch.shift, lane);
             let (force, twist) = (at(&batch.force, lane), at(&batch.twist, lane));
             let one = Load {
                 force,
@@ -102,8 +105,14 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 
 impl Batch {
     #[inline(always)]
-    fn gather<L>(&mut self, lane: usize, k: usize, scene: &Scene<'_, L>, candidates: &Candidates) {
-        let spheres = scene.spheres;
+    fn gather<L>(
+        &mut self,
+        lane: usize,
+        touch: Touch,
+        scene: &Scene<'_, L>,
+        candidates: &Candidates,
+    ) {
+        let (spheres, k) = (scene.spheres, touch.index());
         let [i, j] = candidates.pair[k].map(|index| index as usize);
         let (a, b) = (&spheres.place[i], &spheres.place[j]);
         let (va, vb) = (&spheres.moves[i], &spheres.moves[j]);
@@ -114,20 +123,30 @@ impl Batch {
         self.radius[0][lane] = a.radius;
         self.radius[1][lane] = b.radius;
         self.inverse_mass[lane] = va.inverse_mass + vb.inverse_mass;
-        let history = &candidates.history[k];
-        let keeps = history.stamp + 1 == scene.stamp;
-        put(
-            &mut self.shift,
-            lane,
-            if keeps { history.shift } else { Vec3::zeros() },
-        );
-        let pair = scene.rules.pair(spheres.material[i], spheres.material[j]);
-        self.young[lane] = pair.young;
-        self.shear[lane] = pair.shear;
-        self.stiffness_root[lane] = pair.stiffness_root;
-        self.damping[lane] = pair.damping;
-        self.friction[lane] = pair.friction;
-        self.prepared[lane] = candidates.prepared.get(k).copied().unwrap_or(0.0);
+        let shift = match touch.kept() {
+            true => candidates.shift[k],
+            false => Vec3::zeros(),
+        };
+        put(&mut self.shift, lane, shift);
+        if scene.rules.single().is_none() {
+            let pair = scene.rules.pair(spheres.material[i], spheres.material[j]);
+            self.fill(lane..lane + 1, pair);
+        }
+        if !candidates.prepared.is_empty() {
+            self.prepared[lane] = candidates.prepared[k];
+        }
+    }
+
+    /// Constants of a pair of materials.
+    #[inline(always)]
+    fn fill(&mut self, lanes: Range<usize>, pair: &PairConstants) {
+        for lane in lanes {
+            self.young[lane] = pair.young;
+            self.shear[lane] = pair.shear;
+            self.stiffness_root[lane] = pair.stiffness_root;
+            self.damping[lane] = pair.damping;
+            self.friction[lane] = pair.friction;
+        }
     }
 
     // Components of several arrays side by side: an index reads better than zips.

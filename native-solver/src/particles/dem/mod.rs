@@ -16,7 +16,6 @@ mod motion;
 mod rebuild;
 mod rules;
 mod sphere;
-pub mod step;
 mod walls;
 
 pub use carry::{Carried, CarriedWall};

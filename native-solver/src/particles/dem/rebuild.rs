@@ -4,7 +4,7 @@ use calcine_coupler::motion::WallShape;
 use calcine_coupler::physics::contact::{ContactLaw, PairConstants};
 use rayon::prelude::*;
 
-use super::block::{Block, Candidates, size};
+use super::block::{Block, Candidates, Touch, size};
 use super::carry::Carry;
 use super::grid::{self, Around, Grid};
 use super::rules::Rules;
@@ -21,6 +21,8 @@ pub struct Search {
     pub grid: Grid,
     /// Memories of contacts on their way from the old candidates to the new.
     pub carry: Carry,
+    /// True where each block has loads for particles of blocks behind it only.
+    pub forward: bool,
     keys: Vec<(u64, u32, u32)>,
     order: Vec<u32>,
     spare: Spheres,
@@ -73,7 +75,7 @@ impl Search {
             let most = block.inner.pair.len().max(block.cross.pair.len());
             block.touching.clear();
             // One more: the place after the last that touches is written to.
-            block.touching.resize(most + 1, 0);
+            block.touching.resize(most + 1, Touch::default());
             outgoing.clear();
             outgoing.resize(block.cross.pair.len(), Load::default());
         };
@@ -86,7 +88,7 @@ impl Search {
         } else {
             blocks.iter_mut().zip(outgoing).enumerate().for_each(list);
         }
-        deliver(blocks, size);
+        self.forward = deliver(blocks, size);
     }
 
     fn sort<L>(&mut self, task: &Task<'_, L>, spheres: &mut Spheres) {
@@ -149,11 +151,11 @@ impl Search {
         i: usize,
         j: usize,
     ) {
-        let (history, rolling) = self
-            .carry
-            .history(spheres.row[i], spheres.row[j], task.stamp);
+        let memory = self.carry.pair(spheres.row[i], spheres.row[j]);
+        let (shift, rolling) = memory.unwrap_or_default();
         list.pair.push([i as u32, j as u32]);
-        list.history.push(history);
+        list.shift.push(shift);
+        list.touched.push(memory.is_some());
         if task.rules.rolling == Rolling::ElasticPlastic {
             list.rolling.push(rolling);
         }
@@ -256,17 +258,21 @@ impl Search {
     }
 }
 
-/// Tells each block which loads of others are for its particles, in the order of blocks and slots.
-fn deliver(blocks: &mut [Block], size: usize) {
+/// Tells each block which loads of others are for its particles, in the order of blocks and slots; true where all
+/// of them come from blocks before it.
+fn deliver(blocks: &mut [Block], size: usize) -> bool {
+    let mut forward = true;
     for block in blocks.iter_mut() {
         block.incoming.clear();
     }
     for source in 0..blocks.len() {
         for slot in 0..blocks[source].cross.pair.len() {
             let particle = blocks[source].cross.pair[slot][1] as usize;
+            forward &= source < particle / size;
             let target = &mut blocks[particle / size];
             let own = (particle % size) as u32;
             target.incoming.push([source as u32, slot as u32, own]);
         }
     }
+    forward
 }

@@ -45,6 +45,15 @@ impl Rules {
         }
     }
 
+    /// Constants of all pairs, where there is one material only.
+    #[inline(always)]
+    pub fn single(&self) -> Option<&PairConstants> {
+        match &self.pairs[..] {
+            [only] => Some(only),
+            _ => None,
+        }
+    }
+
     /// Constants of a pair of materials.
     #[inline(always)]
     pub fn pair(&self, a: u32, b: u32) -> &PairConstants {

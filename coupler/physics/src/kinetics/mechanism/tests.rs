@@ -1,6 +1,7 @@
 //! What holds of every mechanism.
 
 use super::*;
+use crate::kinetics::Broadening;
 use crate::kinetics::number::Dual;
 use crate::kinetics::statement::Collider;
 use crate::reaction::{Arrhenius, Equation};
@@ -36,8 +37,8 @@ fn state(fractions: &[f64]) -> State<'_> {
 }
 
 #[test]
-fn the_four_steps_at_unit_concentrations_are_their_rate_constants() {
-    // q of the first step in Python: 4.4e11 · exp(−1.26e8/8314.462618/1600) · (c_CH4/1000)^0.5 · (c_O2/1000)^1.25 · 1000.
+fn the_first_step_is_its_tables_rate() {
+    // 4.4e11 · exp(−1.26e8/8314.462618/1600) · (c_CH4/1000)^0.5 · (c_O2/1000)^1.25 · 1000.
     let jl4 = Mechanism::jones_lindstedt(&gas()).unwrap();
     let mut c = [0.0; MOST_SPECIES];
     jl4.concentrations(&state(&FRACTIONS), &mut c);
@@ -51,7 +52,7 @@ fn the_four_steps_at_unit_concentrations_are_their_rate_constants() {
 }
 
 #[test]
-fn the_original_third_step_is_its_table_s_and_runs_back_by_the_equilibrium() {
+fn the_original_third_step_is_its_tables_and_runs_back_by_the_equilibrium() {
     let jl4 = Mechanism::jones_lindstedt_original(&gas()).unwrap();
     let mut c = [0.0; MOST_SPECIES];
     jl4.concentrations(&state(&FRACTIONS), &mut c);
@@ -83,17 +84,6 @@ fn elements_and_mass_are_neither_made_nor_lost() {
             assert!(made.abs() < 1e-13 * scale, "{name}");
         }
     }
-}
-
-#[test]
-fn heat_is_what_the_enthalpies_lose() {
-    // Only CO + H2O → CO2 + H2 at 298.15 K: 393.51 − 110.53 − 241.83 = 41.15 kJ/mol (CODATA).
-    let shift = Mechanism::new(&gas(), &[stated("CO + H2O => CO2 + H2")]).unwrap();
-    let mut rates = [0.0; 7];
-    shift.rates(state(&FRACTIONS), &mut rates);
-    let moles = rates[3] / gas().species()[3].molar_mass();
-    let heat = shift.heat(298.15, &rates) / moles;
-    assert!((heat / 41.15e3 - 1.0).abs() < 1e-3, "{heat}");
 }
 
 #[test]
@@ -248,7 +238,53 @@ fn what_is_no_mechanism_says_why() {
     alone.rate = RateConstant::Falloff {
         high: law,
         low: law,
-        broadening: crate::kinetics::Broadening::Lindemann,
+        broadening: Broadening::Lindemann,
     };
     assert!(message(&gas(), alone).contains("needs a third body"));
+}
+
+#[test]
+fn numbers_that_no_third_body_and_no_falloff_can_have_are_refused() {
+    let said = |rate: RateConstant, efficiencies: [f64; 2]| {
+        let mut wrong = stated("CO + H2O => CO2 + H2");
+        wrong.rate = rate;
+        wrong.collider = Some(Collider {
+            // Helium is no gas here, and its number is still wrong.
+            efficiencies: vec![("HE".into(), efficiencies[0])],
+            others: efficiencies[1],
+        });
+        match Mechanism::new(&gas(), &[wrong]) {
+            Ok(_) => String::new(),
+            Err(error) => error.to_string(),
+        }
+    };
+    let RateConstant::Arrhenius(law) = stated("CO + H2O => CO2 + H2").rate else {
+        unreachable!()
+    };
+    let falloff = |factor: f64, first: f64| RateConstant::Falloff {
+        high: law,
+        low: Arrhenius { factor, ..law },
+        broadening: Broadening::Troe {
+            share: 0.5,
+            third: 100.0,
+            first,
+            second: None,
+        },
+    };
+    assert_eq!(said(falloff(1.0, 1e3), [2.0, 1.0]), "");
+    for (rate, efficiencies, what) in [
+        (falloff(1.0, 1e3), [-1.0, 1.0], "an efficiency is -1,"),
+        (falloff(1.0, 1e3), [1.0, -2.0], "an efficiency is -2,"),
+        (falloff(1.0, 1e3), [f64::NAN, 1.0], "an efficiency is NaN,"),
+        (
+            falloff(1.0, f64::INFINITY),
+            [1.0; 2],
+            "Troe's T1 in K is inf,",
+        ),
+        (falloff(0.0, 1e3), [1.0; 2], "a factor A of a falloff is 0,"),
+        (falloff(f64::NAN, 1e3), [1.0; 2], "a factor A is NaN,"),
+    ] {
+        let message = said(rate, efficiencies);
+        assert!(message.contains(what), "{message}: {what}");
+    }
 }

@@ -42,7 +42,7 @@ fn one_first_order_reaction_decays_by_its_exponential() {
             fraction: 1e-14,
             ..Tolerances::default()
         };
-        let mut reactor = Reactor::new(&mechanism, tolerances);
+        let reactor = Reactor::new(&mechanism, tolerances);
         let mut y = [0.0, 0.0, 0.2, 0.0, 0.5, 0.0, 0.3];
         let outcome = reactor
             .advance_isothermal(1e5, 1000.0, &mut y, 0.1)
@@ -58,7 +58,7 @@ fn one_first_order_reaction_decays_by_its_exponential() {
 #[test]
 fn elements_and_enthalpy_are_kept_through_ignition() {
     let gas = gas();
-    let mut reactor = reactor();
+    let reactor = reactor();
     let (mut t, mut y) = (1500.0, fresh());
     let before = (gas.element_fractions(&y), total(&gas, t, &y));
     for _ in 0..50 {
@@ -91,7 +91,7 @@ fn what_is_left_out_as_negligible_is_below_the_bound() {
             negligible,
             ..Tolerances::default()
         };
-        let mut reactor = Reactor::new(reactor().mechanism(), tolerances);
+        let reactor = Reactor::new(reactor().mechanism(), tolerances);
         let (mut t, mut y) = (700.0, fresh());
         let steps = reactor
             .advance(101_325.0, &mut t, &mut y, 1e-7)
@@ -124,7 +124,7 @@ fn two_halves_of_a_time_are_the_whole() {
 #[test]
 fn the_original_set_comes_through_where_hydrogen_ends() {
     let original = Mechanism::jones_lindstedt_original(&gas()).unwrap();
-    let mut reactor = Reactor::new(&original, Tolerances::default());
+    let reactor = Reactor::new(&original, Tolerances::default());
     let (mut t, mut y) = (1500.0, fresh());
     reactor.advance(101_325.0, &mut t, &mut y, 0.1).unwrap();
     assert!(t > 2500.0, "{t}");
@@ -133,7 +133,7 @@ fn the_original_set_comes_through_where_hydrogen_ends() {
 #[test]
 fn a_parcel_that_cannot_be_is_refused_with_its_state() {
     let mut y = fresh();
-    let mut reactor = reactor();
+    let reactor = reactor();
     for (p, t, time) in [
         (-1.0, 1500.0, 1e-3),
         (1e5, f64::NAN, 1e-3),
@@ -156,7 +156,7 @@ fn an_integration_that_is_cut_short_says_where_it_came_from_and_leaves_the_gas()
         steps: 3,
         ..Tolerances::default()
     };
-    let mut short = Reactor::new(reactor().mechanism(), tolerances);
+    let short = Reactor::new(reactor().mechanism(), tolerances);
     let (mut t, mut y) = (1500.0, fresh());
     let error = short.advance(101_325.0, &mut t, &mut y, 1.0).unwrap_err();
     let message = error.to_string();

@@ -1,0 +1,166 @@
+// Elements before species, as in Calcine's native gas. A pseudo-step (chemistry.C) holds back what reacts, and with it what no
+// reaction changes, which would then need many pseudo-steps through every cell. But elements obey the equation of the species
+// without w, as all species diffuse alike. So they are solved first, over the whole window at once; the species take them over,
+// in proportion to what is there. What then has to be made of each, A Y - S, is the heat by which the enthalpy follows. Where the
+// equations are solved nothing of this changes anything.
+#include "gas.H"
+#include "speciesTransport.H"
+#include "fvm.H"
+
+namespace
+{
+
+// An element that a cell lacks by less than this share of its gas is there.
+const Foam::scalar noLack = 1e-9;
+
+} // End anonymous namespace
+
+
+// Each particle gives and takes by a law of its own, which no matrix of all species has.
+bool Foam::calcine::gas::particlesExchangeGas() const
+{
+    scalar exchanged = gSumMag(given_.speciesHeat);
+    forAll(given_.speciesSource, k)
+    {
+        exchanged += gSumMag(given_.speciesSource[k])
+          + gSumMag(given_.speciesCoefficient[k]) + gSumMag(given_.speciesTaken[k]);
+    }
+    return exchanged > 0;
+}
+
+
+Foam::scalar Foam::calcine::gas::conserveElements(report& result)
+{
+    if (particlesExchangeGas_)
+    {
+        return 0;
+    }
+    PtrList<volScalarField>& Y = species_->Y();
+    const speciesTransport transport(*this);
+    PtrList<fvScalarMatrix> laplacians(Y.size()), equations(Y.size());
+    forAll(Y, k)
+    {
+        laplacians.set(k, fvm::laplacian(transport.diffusion, Y[k]).ptr());
+        equations.set(k, speciesEquation(k, transport, laplacians[k]).ptr());
+    }
+    List<scalarField> masses;
+    scalar residual = solveElements(equations, masses, result);
+    giveElements(masses);
+
+    heatMade_ = scalarField(mesh_.nCells(), Zero);
+    pseudoInertia_.clear();
+    PtrList<surfaceScalarField> diffused(Y.size());
+    forAll(Y, k)
+    {
+        Y[k].correctBoundaryConditions();
+        const scalarField made(-linear::residual(equations[k], Y[k]));
+        heatMade_ -= species_->mixture()[k].formationEnthalpy()*made;
+        diffused.set(k, (-laplacians[k].flux()).ptr());
+    }
+    carryEnthalpy(transport.limitedFlux, diffused);
+    residual = max(residual, solveEnthalpy(result));
+    guard(true);
+    thermo_->correct();
+    return residual;
+}
+
+
+// Mass of each element in a unit mass of gas at the end of the window, from the equations of the species.
+Foam::scalar Foam::calcine::gas::solveElements
+(
+    const PtrList<fvScalarMatrix>& equations,
+    List<scalarField>& masses,
+    report& result
+)
+{
+    const PtrList<volScalarField>& Y = species_->Y();
+    // Conditions of all species are of the same kinds, and so they have one matrix.
+    fvScalarMatrix matrix(equations[0]);
+    List<scalarField> given(Y.size());
+    forAll(Y, k)
+    {
+        given[k] = equations[k].source();
+        forAll(mesh_.boundary(), patchi)
+        {
+            const fvPatch& patch = mesh_.boundary()[patchi];
+            if (patch.coupled())
+            {
+                continue;
+            }
+            const scalarField& inflow = equations[k].boundaryCoeffs()[patchi];
+            forAll(patch, i)
+            {
+                given[k][patch.faceCells()[i]] += inflow[i];
+            }
+            matrix.boundaryCoeffs()[patchi] = Zero;
+        }
+    }
+
+    scalar residual = 0;
+    const scalar content = gSumMag(matrix.diag());
+    const scalar target = speciesTarget(Y.size() - 1, matrix.diag());
+    volScalarField element("element", Y[0]);
+    masses.setSize(reactions_->elements().size());
+    forAll(masses, e)
+    {
+        const scalarList& shares = reactions_->elements()[e];
+        scalarField source(mesh_.nCells(), Zero), before(mesh_.nCells(), Zero);
+        forAll(Y, k)
+        {
+            source += shares[k]*given[k];
+            before += shares[k]*Y[k].primitiveField();
+        }
+        element.primitiveFieldRef() = before;
+        element.correctBoundaryConditions();
+        const solved solution = speciesSolver_->solve(matrix, source, target, element);
+        result.linearIterations += solution.iterations;
+        residual = max(residual, solution.initial/content);
+        masses[e] = element.primitiveField();
+    }
+    return residual;
+}
+
+
+// The species of each cell take these masses of elements over, in proportion to what is there. Negative fractions stay, which
+// corrections of diffusion leave beside steep gradients on skewed meshes: cut and made again they would never settle.
+void Foam::calcine::gas::giveElements(const List<scalarField>& masses)
+{
+    PtrList<volScalarField>& Y = species_->Y();
+    scalarList fractions(Y.size()), below(Y.size());
+    scalarList wanted(masses.size()), found(masses.size());
+    forAll(mass_, celli)
+    {
+        forAll(Y, k)
+        {
+            fractions[k] = Y[k].primitiveField()[celli];
+        }
+        reactions_->elementsOf(fractions, found);
+        scalar lack = 0;
+        forAll(masses, e)
+        {
+            wanted[e] = masses[e][celli];
+            lack = max(lack, mag(wanted[e] - found[e]));
+        }
+        if (lack < noLack)
+        {
+            continue;
+        }
+        forAll(Y, k)
+        {
+            below[k] = min(fractions[k], scalar(0));
+            fractions[k] -= below[k];
+        }
+        reactions_->elementsOf(below, found);
+        forAll(masses, e)
+        {
+            wanted[e] -= found[e];
+        }
+        reactions_->restoreElements(wanted, fractions);
+        // Elements that no species there could give are still on their way.
+        const scalar all = sum(fractions) + sum(below);
+        forAll(Y, k)
+        {
+            Y[k].primitiveFieldRef()[celli] = (fractions[k] + below[k])/all;
+        }
+    }
+}

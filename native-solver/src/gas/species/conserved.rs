@@ -1,0 +1,107 @@
+//! Elements before species. A pseudo-step (see [`crate::gas::chemistry`]) holds back what reacts, and with it what no reaction
+//! changes, which would then need many pseudo-steps through every cell. But elements obey the equation of the species
+//! without w, as all species diffuse alike. So they are solved first, over the whole window at once; the species
+//! take them over, in proportion to what is there. What then has to be made of each, A Y − S, is the heat by which the enthalpy
+//! follows. Where the equations are solved nothing of this changes anything.
+
+use calcine_coupler::physics::kinetics::elements::Elements;
+use calcine_coupler::physics::thermo::Element;
+
+use super::{ITERATIONS, Species};
+use crate::gas::attempt::{Frame, Material};
+use crate::gas::chemistry::Source;
+use crate::gas::outer::Goal;
+use crate::gas::state::State;
+use crate::numerics::krylov::{Krylov, Target};
+use crate::numerics::parallel::{fill, update};
+use crate::numerics::preconditioner::Preconditioner;
+
+/// An element that a cell lacks by less than this share of its gas is there. Then even negative fractions stay, which corrections
+/// of diffusion leave beside steep gradients on skewed meshes: cut and made again they would never settle.
+const NO_LACK: f64 = 1e-9;
+
+impl Species {
+    /// Solves for the elements and gives them to the species; what is made of each species in kg/s, species by species within
+    /// each cell, and the linear iterations. Nothing where particles exchange gases, each by a law of its own.
+    pub fn conserve(
+        &mut self,
+        frame: &Frame<'_>,
+        material: &Material,
+        krylov: &mut Krylov,
+        (goal, share): (Goal, f64),
+        elements: &Elements,
+        now: &mut State,
+    ) -> Option<(Vec<f64>, u32)> {
+        if !frame.exchange.species.is_none() {
+            return None;
+        }
+        let (cells, species) = (frame.grid.cells(), frame.species());
+        self.reactions = Source::default();
+        self.update_diffusion(frame, material);
+        self.assemble(frame, now, 0);
+        self.update_explicit(frame, share, now);
+        self.preconditioner.update(&self.matrix);
+        let mut sources = vec![0.0; cells * species];
+        for k in 0..species {
+            self.fill_source(frame, now, k);
+            let own = &self.source;
+            let given = sources.iter_mut().skip(k).step_by(species);
+            given.zip(own).for_each(|(given, own)| *given = *own);
+        }
+        let target = Target {
+            absolute: goal.absolute * self.throughput(frame, now, species - 1),
+            of_terms: 0.0,
+            relative: goal.relative,
+            iterations: ITERATIONS,
+        };
+        let mut iterations = 0;
+        let mut masses = vec![[0.0; Element::COUNT]; cells];
+        let mut solution = vec![0.0; cells];
+        let of = |values: &[f64]| -> Vec<_> {
+            let cells = values.chunks_exact(species);
+            cells.map(|one| elements.of(one)).collect()
+        };
+        let (given, there) = (of(&sources), of(&now.composition));
+        for e in 0..elements.count() {
+            fill(&mut self.source, |cell| given[cell][e]);
+            fill(&mut solution, |cell| there[cell][e]);
+            let solved = krylov.general(
+                &self.matrix,
+                &mut self.preconditioner,
+                &self.source,
+                &mut solution,
+                target,
+            );
+            iterations += solved.iterations;
+            masses
+                .iter_mut()
+                .zip(&solution)
+                .for_each(|(m, z)| m[e] = *z);
+        }
+        for (fractions, masses) in now.composition.chunks_mut(species).zip(&masses) {
+            let found = elements.of(fractions);
+            let lack = found
+                .iter()
+                .zip(masses)
+                .map(|(found, mass)| (found - mass).abs());
+            if lack.fold(0.0, f64::max) < NO_LACK {
+                continue;
+            }
+            elements.restore(masses, fractions);
+            // Elements that no species there could give are still on their way.
+            let sum: f64 = fractions.iter().sum();
+            fractions.iter_mut().for_each(|y| *y /= sum);
+        }
+        let composition = &now.composition;
+        for (k, fractions) in self.fractions.iter_mut().enumerate() {
+            fill(fractions, |cell| composition[cell * species + k]);
+        }
+        let (matrix, fractions) = (&self.matrix, &self.fractions);
+        update(&mut sources, |at, made| {
+            *made = matrix.row_times(at / species, &fractions[at % species]) - *made;
+        });
+        self.record(frame, now);
+        self.update_carried(frame, now);
+        Some((sources, iterations))
+    }
+}

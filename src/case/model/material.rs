@@ -1,0 +1,49 @@
+//! Materials.
+
+use calcine_coupler::physics::conduction::Conductivity;
+use calcine_coupler::physics::solid::HeatCapacity;
+
+/// A solid material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Name.
+    pub name: String,
+    /// Density in kg/m³.
+    pub density: f64,
+    /// Specific heat capacity over temperature; of a material with a composition that of its solids.
+    pub heat_capacity: HeatCapacity,
+    /// Mass fractions of all solids that there are; `None` where it is not said what it is made of.
+    pub composition: Option<Vec<f64>>,
+    /// How its particles take up room while they react.
+    pub size: SizeLaw,
+    /// Thermal conductivity over temperature.
+    pub conductivity: Option<Conductivity>,
+    /// Emissivity of its surface.
+    pub emissivity: Option<f64>,
+    /// Young's modulus in Pa, as contacts are computed.
+    pub young: Option<f64>,
+    /// Young's modulus in Pa of the real material, where the other one is softened.
+    pub real_young: Option<f64>,
+    /// Poisson's ratio.
+    pub poisson: Option<f64>,
+}
+
+/// How particles of a material take up room while they react.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum SizeLaw {
+    /// The diameter stays.
+    #[default]
+    Constant,
+    /// The density stays.
+    ConstantDensity {
+        /// Radius in m below which none shrinks.
+        least_radius: f64,
+    },
+    /// Each solid has its own density in the particle.
+    Densities {
+        /// In kg/m³, of all solids that there are; `None` where it is not said.
+        densities: Vec<Option<f64>>,
+        /// Radius in m below which none shrinks.
+        least_radius: f64,
+    },
+}

@@ -1,0 +1,98 @@
+//! Populations, where they are, and what comes in.
+
+use std::path::PathBuf;
+
+use calcine_coupler::mesh::zone::Zone;
+use calcine_coupler::packing::Sizes;
+use calcine_coupler::packing::regular::Lattice;
+use calcine_coupler::physics::Vec3;
+
+/// Particles of one kind.
+#[derive(Clone, Debug)]
+pub struct Population {
+    /// Name.
+    pub name: String,
+    /// Index into `Case::materials`.
+    pub material: usize,
+    /// Diameters; a file of particles may state its own.
+    pub sizes: Sizes,
+    /// Seed by which diameters that differ are drawn.
+    pub size_seed: u64,
+    /// How the particles move.
+    pub motion: Motion,
+    /// Velocity at the start in m/s of motion time.
+    pub velocity: Vec3,
+    /// Where they are at the start.
+    pub place: Place,
+    /// Start temperature in K; a file of particles may state its own.
+    pub temperature: f64,
+}
+
+/// Particles that come in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FeedSpec {
+    /// Name.
+    pub name: String,
+    /// Index of their population, which gives material and sizes.
+    pub population: usize,
+    /// Where they appear.
+    pub zone: Zone,
+    /// Mass flow in kg/s.
+    pub rate: f64,
+    /// Mass in kg at the start.
+    pub batch: f64,
+    /// Their velocity in m/s of process time.
+    pub velocity: Vec3,
+    /// Their temperature in K.
+    pub temperature: f64,
+    /// Equal seeds give equal particles.
+    pub seed: u64,
+}
+
+/// How particles move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// They stay where they are.
+    Frozen,
+    /// They move by gravity, contacts and the force of the gas.
+    Free,
+}
+
+/// Where particles are at the start.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Place {
+    /// A regular stacking: `counts` particles along x, y, z from `first` on.
+    Grid {
+        /// Centre of the first particle in m.
+        first: Vec3,
+        /// Distances between centres along x, y, z in m.
+        spacing: Vec3,
+        /// Number along x, y, z.
+        counts: [usize; 3],
+    },
+    /// A random packing in a layer of a box or cylinder mesh, from wall to wall.
+    Random {
+        /// Lowest and highest z of the layer in m.
+        layer: [f64; 2],
+        /// Volume of spheres over the filled space, layers at the walls included.
+        solid_fraction: f64,
+        /// Equal seeds give equal packings.
+        seed: u64,
+    },
+    /// A regular stacking in a layer of a box or cylinder mesh, from wall to wall.
+    Regular {
+        /// The stacking.
+        lattice: Lattice,
+        /// Lowest and highest z of the layer in m.
+        layer: [f64; 2],
+    },
+    /// Read from a file: CSV, a LIGGGHTS dump, or VTK.
+    File {
+        /// Absolute path.
+        path: PathBuf,
+        /// The snapshot of a dump; `None`: its last one.
+        timestep: Option<u64>,
+        /// Those of one type; `None`: all.
+        kind: Option<u64>,
+    },
+}

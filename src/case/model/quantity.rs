@@ -1,0 +1,144 @@
+//! Probes and quantities of interest.
+
+use calcine_coupler::physics::Vec3;
+
+/// Points at which fields are sampled.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe {
+    /// Name.
+    pub name: String,
+    /// The points in m.
+    pub points: Vec<Vec3>,
+    /// Whether the gas is sampled.
+    pub gas: bool,
+    /// Whether the particles are.
+    pub particles: bool,
+}
+
+/// A quantity of interest.
+#[derive(Clone, Debug)]
+pub struct Quantity {
+    /// Name.
+    pub name: String,
+    /// How it is measured.
+    pub measure: Measure,
+    /// Which species of the gas, or solid, where the measure is of a mass fraction.
+    pub column: Option<usize>,
+    /// Unit as printed.
+    pub unit: &'static str,
+    /// Largest difference between pairings.
+    pub agree: Option<Band>,
+    /// Process time in s from which `agree` holds.
+    pub agree_from: f64,
+    /// Process time in s over which values are averaged before pairings are compared; 0: not at all.
+    pub agree_over: f64,
+    /// Expected value.
+    pub expect: Option<Expect>,
+}
+
+/// How a quantity is measured.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Measure {
+    /// Area mean on the first patch minus that on the second, of a gas field.
+    Difference {
+        /// Field: `pressure` (Pa) or `temperature` (K).
+        field: String,
+        /// The two patches.
+        patches: [String; 2],
+    },
+    /// Statistic of a gas field.
+    Gas {
+        /// Field: `temperature` (K), `pressure` (Pa), `density` (kg/m³), `speed` (m/s),
+        /// `void_fraction`.
+        field: String,
+        /// Where.
+        over: GasPlace,
+        /// `mean`, `min` or `max`.
+        statistic: Statistic,
+    },
+    /// Statistic over particles.
+    Particles {
+        /// Field: `temperature` (K).
+        field: String,
+        /// Which.
+        over: ParticlePlace,
+        /// `mean`, `min` or `max`.
+        statistic: Statistic,
+    },
+    /// Heat in W from a wall of a temperature, or from the surroundings, into the particles.
+    WallHeat {
+        /// Its name.
+        wall: String,
+    },
+    /// One particle, by its place in the order of ids, counted from 1.
+    Particle {
+        /// Field: `temperature` (K).
+        field: String,
+        /// Which one.
+        number: usize,
+    },
+    /// Angle in rad of the bed's surface in a drum: by which the centre of mass of all particles has turned
+    /// about an axis from straight below it. A surface that is flat stands across the line from the axis to the
+    /// centre of mass, so that this is its slope.
+    SurfaceAngle {
+        /// A point of the axis in m.
+        point: Vec3,
+        /// Unit vector along the axis.
+        axis: Vec3,
+        /// Unit vector along gravity.
+        down: Vec3,
+    },
+}
+
+/// Where a statistic of the gas is taken.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum GasPlace {
+    /// In all cells; the mean is over the gas' volume.
+    Everywhere,
+    /// On a patch; the mean is over its area.
+    Patch(String),
+    /// At the points of a probe.
+    Probe(String),
+}
+
+/// Of which particles a statistic is taken.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ParticlePlace {
+    /// Of all.
+    Everywhere,
+    /// Of one population, by its index.
+    Population(u32),
+    /// Of those at the points of a probe.
+    Probe(String),
+}
+
+/// Statistics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Statistic {
+    /// Arithmetic mean.
+    Mean,
+    /// Smallest.
+    Min,
+    /// Largest.
+    Max,
+}
+
+/// A band around a value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Band {
+    /// Fraction of the value.
+    Relative(f64),
+    /// In the unit of the quantity.
+    Absolute(f64),
+}
+
+/// An expected value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expect {
+    /// Process time in s at which it holds; `None`: at the end.
+    pub at: Option<f64>,
+    /// The value, in the unit of the quantity.
+    pub value: f64,
+    /// The band.
+    pub within: Band,
+}

@@ -1,0 +1,104 @@
+//! Flames in the shaft furnace (requirements SHF-1): premixed burners whose fuel burns in the bed, natively and with OpenFOAM and
+//! LIGGGHTS, within the case's bands, and against the same burners that let in burnt gas.
+
+use std::path::Path;
+
+use calcine::results::Summary;
+use calcine::results::read::{self, Series};
+use calcine_coupler::ledger::STORAGE_CLOCK;
+
+use crate::{program, run as calcine, shipped};
+
+/// What methane and air of 300 K at λ = 1.1 reach without loss and dissociation, in K, as `shaft_furnace` finds it.
+const COMPLETE: f64 = 2190.0;
+/// Lower than this in K no burner's cell may be at its hottest: none is lit by half.
+const LIT: f64 = 1900.0;
+/// 1 % of what lies between feed and burners in K: what it may matter to the particles how burners are described.
+const ALIKE: f64 = 19.0;
+/// Height in m above which no fuel may be left: two cells above the burners, in which it is some 1e-6 of the gas.
+pub const ABOVE: f64 = 0.34;
+/// The largest mass fraction that counts as none.
+pub const LEFT: f64 = 1e-5;
+
+pub fn run() {
+    let folder = tempfile::tempdir().unwrap();
+    let end = "time.end=600 s";
+    let both = folder.path().join("both");
+    let pairings = ["native+native", "openfoam+liggghts"];
+    let case = shipped("shaft-furnace");
+    let compared = program::compare(&case, &both, &pairings.join(","), &[end]);
+    for quantity in compared["quantities"].as_array().unwrap() {
+        let (largest, end) = (&quantity["largest"]["difference"], &quantity["end_values"]);
+        println!(
+            "  {}: apart by {largest}, at the end {end}",
+            quantity["name"]
+        );
+    }
+    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/validate/shaft-burnt.toml");
+    let burnt = calcine(&case, folder.path(), "burnt", &[end.to_owned()]);
+    for pairing in pairings {
+        println!("  {pairing}");
+        flames(&both.join(pairing), &burnt.1);
+    }
+}
+
+/// Asserts what a run with flames found, beside one with burnt gas.
+fn flames(out: &Path, burnt: &Series) {
+    let (summary, flames) = (Summary::read(out).unwrap(), Series::read(out).unwrap());
+    let (gas, wall) = (&summary.convergence, &summary.wall_time_s);
+    println!(
+        "  {} of {} windows unconverged, {:.1} outer iterations an attempt, gas {:.0} of {:.0} s",
+        gas.unconverged_windows,
+        summary.windows,
+        gas.outer_iterations as f64 / summary.windows as f64,
+        wall.gas,
+        wall.total
+    );
+    let (ledger, elements) = (&summary.ledger.lines, &summary.ledger.elements);
+    for (name, line) in ledger.iter().chain(elements) {
+        println!("  ledger, {name}: {:.1e}", line.relative_error);
+        let limit = match name.as_str() {
+            // Momentum closes as far as the outer loop solves it.
+            "gas_momentum" => 1e-4,
+            // No error, but what two clocks owe.
+            STORAGE_CLOCK => 1.0,
+            _ => 1e-10,
+        };
+        assert!(line.relative_error < limit, "{name}");
+    }
+    let left = fuel(out);
+    println!("  methane above {ABOVE} m: {left:.1e} of the gas at most");
+    assert!(left < LEFT, "{left}");
+
+    let last =
+        |series: &Series, name: &str| *series.column(&format!("quantities.{name}")).last().unwrap();
+    for name in ["hottest_gas", "hottest_particle", "mean_temperature"] {
+        let (one, other) = (last(&flames, name), last(burnt, name));
+        println!("  {name}: {one:.1} K by flames, {other:.1} K by burnt gas");
+        assert!(
+            name == "hottest_gas" || (one - other).abs() < ALIKE,
+            "{name}: {one} {other}"
+        );
+    }
+    let hottest = last(&flames, "hottest_gas");
+    assert!(LIT < hottest && hottest < COMPLETE, "{hottest}");
+}
+
+/// Largest mass fraction of methane above the burners at the end.
+pub fn fuel(out: &Path) -> f64 {
+    let files = read::collection(out, "gas.pvd").unwrap();
+    let arrays = read::arrays(&files.last().unwrap().1).unwrap();
+    let points = arrays["points"].values.as_chunks::<3>().0;
+    let corners = &arrays["connectivity"].values;
+    let mut begin = 0;
+    let mut most = 0.0_f64;
+    for (end, methane) in arrays["offsets"].values.iter().zip(&arrays["CH4"].values) {
+        let end = *end as usize;
+        let heights = corners[begin..end].iter().map(|k| points[*k as usize][2]);
+        if heights.fold(f64::MAX, f64::min) > ABOVE - 1e-6 {
+            most = most.max(*methane);
+        }
+        begin = end;
+    }
+    most
+}
