@@ -13,7 +13,7 @@ use crate::runs;
 use crate::steps::{Outcome, Stop, loud_step, say, visibly};
 use crate::table::{Table, short};
 use crate::tasks;
-use crate::workspace::{Profile, Workspace};
+use crate::workspace::Workspace;
 
 /// Packages that may have benchmarks, by their folders.
 const FOLDERS: [&str; 8] = [
@@ -57,7 +57,7 @@ pub fn run(workspace: &Workspace, choice: &Choice) -> Outcome<()> {
     packages::install(needs, &workspace.logs)?;
     let everything = choice.words.is_empty();
     if everything {
-        tasks::build_parts(workspace, needs, Profile::Release)?;
+        tasks::build_parts(workspace, needs, tasks::Parts::OfRuns)?;
     }
     let folders = if choice.runs_only { &[][..] } else { &FOLDERS };
     for &folder in folders {

@@ -17,7 +17,7 @@ pub fn set_up(workspace: &Workspace, needs: Needs, build: bool) -> Outcome<()> {
     let _lock = workspace.lock()?;
     packages::install(needs, &workspace.logs)?;
     if build {
-        build_parts(workspace, needs, Profile::Release)?;
+        build_parts(workspace, needs, Parts::OfRuns)?;
     } else if needs.openfoam {
         headers::prepare(&workspace.openfoam, &workspace.logs)?;
     }
@@ -49,7 +49,7 @@ pub fn test(workspace: &Workspace, native: bool, words: &[OsString]) -> Outcome<
     {
         let _lock = workspace.lock()?;
         packages::install(needs, &workspace.logs)?;
-        build_parts(workspace, needs, Profile::Dev)?;
+        build_parts(workspace, needs, Parts::OfTests(&["--tests"]))?;
     }
     let mut command = workspace.cargo("test");
     command.arg("--no-fail-fast");
@@ -61,13 +61,19 @@ pub fn test(workspace: &Workspace, native: bool, words: &[OsString]) -> Outcome<
 
 /// Runs one of the test programs of the package `calcine` that have words of their own.
 pub fn program(workspace: &Workspace, name: &str, needs: Needs, words: &[OsString]) -> Outcome<()> {
+    let all = needs.openfoam && needs.liggghts && needs.mpi;
     packages::install(needs, &workspace.logs)?;
-    if needs.openfoam || needs.liggghts {
+    if all {
         let _lock = workspace.lock()?;
-        build_parts(workspace, needs, Profile::Dev)?;
+        build_parts(workspace, needs, Parts::OfTests(&["--test", name]))?;
     }
     let mut command = workspace.cargo("test");
-    command.args(["-p", "calcine", "--test", name, "--"]);
+    command.args(if all {
+        &["--workspace"][..]
+    } else {
+        &["-p", "calcine"]
+    });
+    command.args(["--test", name, "--"]);
     loud_step(name, || visibly(command.args(words)))
 }
 
@@ -100,30 +106,48 @@ pub fn install(workspace: &Workspace, prefix: &Path, needs: Needs) -> Outcome<()
     Ok(())
 }
 
+/// What is built.
+#[derive(Clone, Copy)]
+pub enum Parts<'a> {
+    /// The programs of a run, in the profile for runs.
+    OfRuns,
+    /// Everything, in the profile for tests, with these test programs.
+    OfTests(&'a [&'a str]),
+}
+
 /// One call of Cargo for all packages, so that shared dependencies are built once, then the C++.
-pub fn build_parts(workspace: &Workspace, needs: Needs, profile: Profile) -> Outcome<()> {
+pub fn build_parts(workspace: &Workspace, needs: Needs, parts: Parts<'_>) -> Outcome<()> {
     let adapter = needs
         .openfoam
         .then(|| OpenfoamAdapter::new(workspace))
         .transpose()?;
+    let profile = match parts {
+        Parts::OfRuns => Profile::Release,
+        Parts::OfTests(_) => Profile::Dev,
+    };
     let mut command = workspace.cargo("build");
     command.args(["--profile", profile.name()]);
-    if profile == Profile::Dev {
-        // The C ABI's test links the static library, which only `cargo build` leaves in place.
-        command.args((needs.liggghts && needs.mpi).then_some("--workspace"));
-    } else {
-        command.args(["-p", "calcine"]);
-        if adapter
-            .as_ref()
-            .is_some_and(|adapter| !adapter.is_current())
-        {
-            command.args(["-p", "calcine-wire"]);
+    match parts {
+        Parts::OfTests(tests) => {
+            // The C ABI's test links the static library, which only `cargo build` leaves in place. Test programs, because
+            // with what they need libraries have other features: each would be built twice.
+            command.args((needs.liggghts && needs.mpi).then_some("--workspace"));
+            command.args(["--lib", "--bins"]).args(tests);
         }
-        if needs.liggghts {
-            command.args(["-p", "calcine-liggghts"]);
-        }
-        if needs.mpi {
-            command.args(["-p", "calcine-mpi"]);
+        Parts::OfRuns => {
+            command.args(["-p", "calcine"]);
+            if adapter
+                .as_ref()
+                .is_some_and(|adapter| !adapter.is_current())
+            {
+                command.args(["-p", "calcine-wire"]);
+            }
+            if needs.liggghts {
+                command.args(["-p", "calcine-liggghts"]);
+            }
+            if needs.mpi {
+                command.args(["-p", "calcine-mpi"]);
+            }
         }
     }
     loud_step("build the Rust parts", || visibly(&mut command))?;
