@@ -121,10 +121,16 @@ pub fn build_parts(workspace: &Workspace, needs: Needs, parts: Parts<'_>) -> Out
         .openfoam
         .then(|| OpenfoamAdapter::new(workspace))
         .transpose()?;
-    let profile = match parts {
-        Parts::OfRuns => Profile::Release,
-        Parts::OfTests(_) => Profile::Dev,
+    let (profile, megabytes) = match parts {
+        Parts::OfRuns => (Profile::Release, 1000),
+        Parts::OfTests(_) => (Profile::Dev, 3000),
     };
+    if let Some(free) = workspace.free_megabytes().filter(|free| *free < megabytes) {
+        let target = workspace.target.display();
+        say(&format!(
+            "only {free} MB are free on the disk of {target}; from nothing this takes {megabytes} MB"
+        ));
+    }
     let mut command = workspace.cargo("build");
     command.args(["--profile", profile.name()]);
     match parts {

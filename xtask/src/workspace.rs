@@ -6,7 +6,7 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::steps::{Outcome, Stop};
+use crate::steps::{Outcome, Stop, output};
 
 /// Places of this clone.
 #[derive(Debug)]
@@ -72,6 +72,17 @@ impl Workspace {
         file.lock().map_err(|cause| Stop::io(&path, &cause))?;
         Ok(file)
     }
+
+    /// Megabytes that are free where the target folder is; `None` where `df` cannot say.
+    pub fn free_megabytes(&self) -> Option<u64> {
+        let told = output(Command::new("df").args(["-Pm"]).arg(&self.target))?;
+        available(&told)
+    }
+}
+
+/// The fourth column below the heading of POSIX `df`.
+fn available(told: &str) -> Option<u64> {
+    told.lines().nth(1)?.split_whitespace().nth(3)?.parse().ok()
 }
 
 /// A Cargo profile.
@@ -98,5 +109,17 @@ impl Profile {
             Self::Dev => "dev",
             Self::Release => "release",
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn free_room_is_read_from_df() {
+        let told = "Filesystem 1048576-blocks Used Available Capacity Mounted on\n/dev/vda 257933 14683 82000 16% /\n";
+        assert_eq!(available(told), Some(82000));
+        assert_eq!(available("df: no such file\n"), None);
     }
 }
