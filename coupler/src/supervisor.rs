@@ -1,6 +1,7 @@
 //! The supervisor: the one place that waits. It holds every peer's pidfd, the deadline and the
 //! user's interrupts, so that the death of one solver is noticed while another computes.
 
+use std::cell::Cell;
 use std::fmt;
 use std::fs;
 use std::os::fd::OwnedFd;
@@ -17,6 +18,10 @@ use crate::time::Window;
 
 /// How long one slice of a wait may last before every peer is looked at again.
 const SLICE: Duration = Duration::from_millis(20);
+/// What a slice counts at most: it is longer only where the whole run was suspended (Ctrl-Z, a queue).
+const LONGEST_SLICE: Duration = Duration::from_secs(1);
+/// How often peers are looked at for whether they are stopped.
+const LOOK: Duration = Duration::from_millis(200);
 /// How many lines of a log an error shows.
 const LOG_LINES: usize = 12;
 
@@ -27,6 +32,16 @@ struct Peer {
     pid: u32,
     pidfd: OwnedFd,
     log: Option<PathBuf>,
+    /// What had been waited when it was first seen stopped; `None` while it is not.
+    stopped: Cell<Option<Duration>>,
+}
+
+impl Peer {
+    /// True where a signal has stopped it and none let it go on.
+    fn is_stopped(&self) -> bool {
+        let status = fs::read_to_string(format!("/proc/{}/status", self.pid));
+        status.is_ok_and(|text| text.lines().any(|line| line.starts_with("State:\tT")))
+    }
 }
 
 /// Interrupts of the user, counted by a signal handler: one asks for a checkpoint at the end of
@@ -70,6 +85,8 @@ pub struct Supervisor {
     deadline: Duration,
     interrupts: Interrupts,
     waited: Waited,
+    /// What had been waited when peers were looked at last.
+    looked: Cell<Duration>,
 }
 
 impl Supervisor {
@@ -80,6 +97,7 @@ impl Supervisor {
             deadline,
             interrupts,
             waited: Waited::default(),
+            looked: Cell::default(),
         }
     }
 
@@ -113,6 +131,7 @@ impl Supervisor {
             pid,
             pidfd,
             log: log.map(Path::to_owned),
+            stopped: Cell::new(None),
         });
         Ok(())
     }
@@ -167,11 +186,12 @@ impl Supervisor {
         loop {
             let begun = Instant::now();
             let answer = poll(SLICE);
-            self.waited.add(begun.elapsed());
+            self.waited.add(begun.elapsed().min(LONGEST_SLICE));
             if let Some(value) = answer? {
                 return Ok(value);
             }
             self.check(window)?;
+            self.check_stopped(window)?;
             if self.interrupts.count() >= 2 {
                 return Err(self.failure(
                     who,
@@ -185,6 +205,28 @@ impl Supervisor {
                 return Err(self.failure(who, window, FailureKind::Silent, message));
             }
         }
+    }
+
+    /// An error that names a peer that has been stopped for longer than the deadline, whoever is waited for: others
+    /// that work may answer again and again before its own answer is due.
+    fn check_stopped(&self, window: Option<&Window>) -> Result<(), PartError> {
+        let now = self.waited.so_far();
+        if now.saturating_sub(self.looked.get()) < LOOK {
+            return Ok(());
+        }
+        self.looked.set(now);
+        for peer in &self.peers {
+            let since = peer.stopped.get().unwrap_or(now);
+            peer.stopped.set(peer.is_stopped().then_some(since));
+            if peer.stopped.get().is_some() && now - since > self.deadline {
+                let message = format!(
+                    "silent for {} s: the process is stopped (SIGSTOP)",
+                    self.deadline.as_secs_f64()
+                );
+                return Err(self.failure(&peer.name, window, FailureKind::Silent, message));
+            }
+        }
+        Ok(())
     }
 
     fn failure(
@@ -371,6 +413,46 @@ mod tests {
         };
         supervisor.wait("gas", None, sleeps).unwrap();
         assert!(supervisor.waited().so_far() >= before + SLICE);
+    }
+
+    #[test]
+    fn a_stopped_peer_is_named_whoever_is_waited_for_and_one_that_went_on_is_not() {
+        let mut child = Command::new("sleep").arg("60").spawn().unwrap();
+        let deadline = Duration::from_secs(5);
+        let mut supervisor = Supervisor::new(deadline, Interrupts::default());
+        supervisor.watch("particles", child.id(), None).unwrap();
+        let pid = Pid::from_child(&child);
+        let signal = |signal| rustix::process::kill_process(pid, signal).unwrap();
+        let is_stopped = |wanted| {
+            while supervisor.peers[0].is_stopped() != wanted {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+        };
+        let look = |later: Duration| {
+            supervisor.waited.add(later);
+            supervisor.check_stopped(None)
+        };
+        signal(rustix::process::Signal::STOP);
+        is_stopped(true);
+        look(LOOK).unwrap();
+        look(deadline).unwrap();
+        signal(rustix::process::Signal::CONT);
+        is_stopped(false);
+        look(LOOK).unwrap();
+        signal(rustix::process::Signal::STOP);
+        is_stopped(true);
+        look(deadline).unwrap();
+        look(deadline).unwrap();
+        let error = look(LOOK).unwrap_err();
+        assert_eq!(error.kind, FailureKind::Silent);
+        let text = error.to_string();
+        assert!(
+            text.contains(&format!("particles, pid {}", child.id())),
+            "{text}"
+        );
+        assert!(text.contains("stopped"), "{text}");
+        child.kill().unwrap();
+        child.wait().unwrap();
     }
 
     #[test]
