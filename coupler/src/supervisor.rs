@@ -456,6 +456,22 @@ mod tests {
     }
 
     #[test]
+    fn time_in_which_the_whole_run_was_suspended_is_no_silence() {
+        let deadline = LONGEST_SLICE + Duration::from_millis(50);
+        let supervisor = Supervisor::new(deadline, Interrupts::default());
+        let mut polls = 0;
+        let suspended = |_| {
+            polls += 1;
+            if polls == 1 {
+                std::thread::sleep(deadline + Duration::from_millis(50));
+            }
+            Ok((polls > 1).then_some(()))
+        };
+        supervisor.wait("gas", None, suspended).unwrap();
+        assert_eq!(supervisor.waited().so_far().as_secs(), 1);
+    }
+
+    #[test]
     fn a_silent_peer_and_a_second_interrupt_end_a_wait() {
         let supervisor = Supervisor::new(Duration::from_millis(50), Interrupts::default());
         let silent = |slice| {
