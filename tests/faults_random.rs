@@ -54,16 +54,17 @@ const KINDS: [Kind; 10] = [
 ];
 
 fn main() -> ExitCode {
-    let Some(Orders { kills, seed }) = orders("faults_random", FEW, SEED) else {
+    let Some(orders) = orders("faults_random", FEW, SEED) else {
         return ExitCode::SUCCESS;
     };
+    let Orders { kills, seed, .. } = orders;
     println!("faults: seed {seed}, {kills} blows");
     // A short path: the wire's sockets lie in it. Nothing else is in it, so that whatever stays is seen.
     let scratch = tempfile::Builder::new().prefix("c").rand_bytes(4).tempdir();
     let scratch = scratch.unwrap();
     let results = tempfile::tempdir().unwrap();
     let mut tally = Tally::default();
-    for number in 0..kills {
+    for number in orders.numbers() {
         let mut random = Random::of(seed, number);
         let kind = KINDS[number as usize % KINDS.len()];
         let out = results.path().join(format!("run-{number}"));

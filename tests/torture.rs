@@ -31,9 +31,10 @@ const FEW: u64 = 4;
 const PATIENCE: Duration = Duration::from_secs(300);
 
 fn main() -> ExitCode {
-    let Some(Orders { kills, seed }) = orders("torture", FEW, SEED) else {
+    let Some(orders) = orders("torture", FEW, SEED) else {
         return ExitCode::SUCCESS;
     };
+    let Orders { kills, seed, .. } = orders;
     let scratch = tempfile::tempdir().unwrap();
     let bed = Bed::new(scratch.path());
     let whole = scratch.path().join("whole");
@@ -47,7 +48,7 @@ fn main() -> ExitCode {
     );
     let mut failed = 0;
     let mut counts = Counts::default();
-    for number in 0..kills {
+    for number in orders.numbers() {
         let out = scratch.path().join(format!("killed-{number}"));
         let mut random = Random::of(seed, number);
         let story = kill(&bed, &out, length, number, &mut random, &mut counts);

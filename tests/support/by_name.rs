@@ -4,13 +4,21 @@
 pub struct Orders {
     pub kills: u64,
     pub seed: u64,
+    /// Number of the first one: with its seed and number a blow is dealt again.
+    pub first: u64,
 }
 
-/// What to do; nothing where `cargo test` lists tests or asks for others. `few` blows and `seed` unless
-/// `--kills` and `--seed` say otherwise.
+impl Orders {
+    pub fn numbers(&self) -> std::ops::Range<u64> {
+        self.first..self.first.saturating_add(self.kills)
+    }
+}
+
+/// What to do; nothing where `cargo test` lists tests or asks for others. `few` blows and `seed`, from
+/// the first on, unless `--kills`, `--seed` and `--from` say otherwise.
 pub fn orders(name: &str, few: u64, seed: u64) -> Option<Orders> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let value = |option: &str| {
+    let value = |option: &str| -> Option<u64> {
         let at = words.iter().position(|word| word == option)?;
         words.get(at + 1)?.parse().ok()
     };
@@ -23,5 +31,6 @@ pub fn orders(name: &str, few: u64, seed: u64) -> Option<Orders> {
     Some(Orders {
         kills: value("--kills").unwrap_or(few),
         seed: value("--seed").unwrap_or(seed),
+        first: value("--from").unwrap_or(0),
     })
 }

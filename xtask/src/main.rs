@@ -39,9 +39,10 @@ usage: cargo xtask TASK
   fuzz [--minutes N]      fuzz what reads users' files, ten minutes each unless told
         [--seed S] [case|polymesh]
   torture [--kills N]     kill -9 at random moments, resume, compare every bit (50 unless told)
-        [--seed S]
+        [--seed S]        from a seed; [--from K] begins with the K-th kill, to deal one again
   faults [--kills N]      kill or stop random processes of coupled runs at random moments (500
         [--seed S]        unless told): each is named, and everything ends and is cleaned up
+        [--from K]
   validate [NAME …]       long validations, all unless named: backward-step, elastic-box, flame,
                           fluidised-bed, hopper, moving-bed, repose, shaft-flames,
                           shaft-furnace, voids";
@@ -138,7 +139,7 @@ fn program(name: &'static str, needs: Needs, usual: [&str; 2], words: &[OsString
     let mut texts = words.iter();
     while let Some(word) = texts.next() {
         let word = word.to_str()?;
-        if word == usual[0] || word == "--seed" {
+        if word == usual[0] || word == "--seed" || word == "--from" {
             texts.next()?.to_str()?.parse::<u64>().ok()?;
         } else if word.starts_with('-') {
             return None;
