@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::{Agreement, Source};
 use crate::case::model::{Band, Case, Quantity};
+use crate::report::number::{figure, span, with_unit};
 use crate::report::plot::between;
 use crate::results::quantities::allowance;
 
@@ -108,7 +109,7 @@ fn difference(quantity: &Quantity, sources: &[Source]) -> QuantityDifference {
             let band = words(band, quantity.unit);
             match quantity.agree_from {
                 0.0 => band,
-                from => format!("{band} from {from} s on"),
+                from => format!("{band} from {} on", span(from)),
             }
         }),
         multiple,
@@ -164,17 +165,27 @@ pub(super) fn extremes(values: &[f64]) -> (f64, f64) {
         })
 }
 
-/// A band as the case writes it.
+/// A band in words.
 pub(super) fn words(band: Band, unit: &str) -> String {
     match band {
-        Band::Relative(share) => format!("{} %", 100.0 * share),
-        Band::Absolute(distance) => format!("{distance} {unit}"),
+        Band::Relative(share) => format!("{} %", figure(100.0 * share, 3)),
+        Band::Absolute(distance) => with_unit(distance, 3, unit),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bands_read_as_other_numbers_do() {
+        assert_eq!(words(Band::Relative(0.07), "K"), "7 %");
+        assert_eq!(
+            words(Band::Absolute(1.5f64.to_radians()), "rad"),
+            "0.0262 rad"
+        );
+        assert_eq!(words(Band::Absolute(0.01), "1"), "0.01");
+    }
 
     #[test]
     fn a_mean_is_over_what_was_recorded_in_the_time_before() {
