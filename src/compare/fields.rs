@@ -92,8 +92,12 @@ impl Sums {
         }
     }
 
+    /// Norms; of nothing that was compared they are no numbers.
     fn finish(mut self) -> Norms {
-        self.norms.l2 = (self.squares / self.count.max(1.0)).sqrt();
+        self.norms.l2 = (self.squares / self.count).sqrt();
+        if self.count == 0.0 {
+            self.norms.maximum = f64::NAN;
+        }
         self.norms
     }
 }
@@ -143,14 +147,21 @@ fn tracks(case: &Case, sources: &[Source]) -> Option<FieldDifference> {
             for &value in &values {
                 (low, high) = (low.min(value), high.max(value));
             }
-            for (first, second, sum) in &mut sums {
-                let squared = (values[*first] - values[*second]).powi(2);
-                sum.add(squared, id.parse().unwrap_or(place as u64), time);
-            }
+            add_track(&values, id.parse().unwrap_or(place as u64), time, &mut sums);
         }
     }
     let field = finish("particles.temperature", "particle", "K", sums, (low, high));
     Some(judged(field, single_particle_band(case)))
+}
+
+/// Adds the temperatures that the runs give one particle at one time; a run that no longer has it has none (NaN).
+fn add_track(values: &[f64], id: u64, time: f64, sums: &mut [(usize, usize, Sums)]) {
+    for (first, second, sum) in sums {
+        let (a, b) = (values[*first], values[*second]);
+        if !(a.is_nan() || b.is_nan()) {
+            sum.add((a - b).powi(2), id, time);
+        }
+    }
 }
 
 fn single_particle_band(case: &Case) -> Option<f64> {
@@ -329,5 +340,23 @@ fn unit(field: &str) -> &'static str {
         "dissipation" => "m^2/s^3",
         "eddy_viscosity" => "Pa s",
         _ => "1",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_particle_that_one_run_no_longer_has_is_not_compared_there() {
+        let mut sums = vec![(0, 1, Sums::default()), (0, 2, Sums::default())];
+        add_track(&[300.0, 303.0, 300.5], 7, 1.0, &mut sums);
+        add_track(&[400.0, f64::NAN, 401.0], 7, 2.0, &mut sums);
+        let norms: Vec<Norms> = sums.into_iter().map(|(_, _, sum)| sum.finish()).collect();
+        assert_eq!((norms[0].maximum, norms[0].at_s), (3.0, 1.0));
+        assert_eq!(norms[0].l2, 3.0);
+        assert_eq!((norms[1].maximum, norms[1].at_s), (1.0, 2.0));
+        let nothing = Sums::default().finish();
+        assert!(nothing.maximum.is_nan() && nothing.l2.is_nan());
     }
 }
