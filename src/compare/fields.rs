@@ -119,6 +119,10 @@ pub(super) fn differences(
     Ok(list)
 }
 
+/// Columns of the series over all particles: their mean is no number where one of them has no temperature.
+const MEAN: &str = "particles.temperature_mean";
+const LARGEST: &str = "particles.temperature_max";
+
 /// The temperature of each particle at all times of the series; `None` where the runs have none.
 ///
 /// The band is the tightest that the case states for the temperature of a single particle: what it
@@ -134,6 +138,11 @@ fn tracks(case: &Case, sources: &[Source]) -> Option<FieldDifference> {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let mut sums = pairs(sources);
     for time in common_times(sources) {
+        let sound = |source: &Source| {
+            // Of no particles the mean is no number, and the largest is none either.
+            !at(source, MEAN, time).is_nan() || at(source, LARGEST, time).is_nan()
+        };
+        let sound: Vec<bool> = sources.iter().map(sound).collect();
         for (place, (id, _)) in runs[0].iter().enumerate() {
             let values: Vec<f64> = sources
                 .iter()
@@ -147,19 +156,32 @@ fn tracks(case: &Case, sources: &[Source]) -> Option<FieldDifference> {
             for &value in &values {
                 (low, high) = (low.min(value), high.max(value));
             }
-            add_track(&values, id.parse().unwrap_or(place as u64), time, &mut sums);
+            let gone: Vec<bool> = values
+                .iter()
+                .zip(&sound)
+                .map(|(value, sound)| value.is_nan() && *sound)
+                .collect();
+            let id = id.parse().unwrap_or(place as u64);
+            add_track(&values, &gone, id, time, &mut sums);
         }
     }
     let field = finish("particles.temperature", "particle", "K", sums, (low, high));
     Some(judged(field, single_particle_band(case)))
 }
 
-/// Adds the temperatures that the runs give one particle at one time; a run that no longer has it has none (NaN).
-fn add_track(values: &[f64], id: u64, time: f64, sums: &mut [(usize, usize, Sums)]) {
+/// A column of a run at a time; no number where it has none.
+fn at(source: &Source, column: &str, time: f64) -> f64 {
+    match source.series.column(column) {
+        [] => f64::NAN,
+        values => between(source.series.column("process_time"), values, time),
+    }
+}
+
+/// Adds the temperatures that the runs give one particle at one time, but for runs that no longer have it.
+fn add_track(values: &[f64], gone: &[bool], id: u64, time: f64, sums: &mut [(usize, usize, Sums)]) {
     for (first, second, sum) in sums {
-        let (a, b) = (values[*first], values[*second]);
-        if !(a.is_nan() || b.is_nan()) {
-            sum.add((a - b).powi(2), id, time);
+        if !(gone[*first] || gone[*second]) {
+            sum.add((values[*first] - values[*second]).powi(2), id, time);
         }
     }
 }
@@ -349,13 +371,19 @@ mod tests {
 
     #[test]
     fn a_particle_that_one_run_no_longer_has_is_not_compared_there() {
+        let there = [false; 3];
         let mut sums = vec![(0, 1, Sums::default()), (0, 2, Sums::default())];
-        add_track(&[300.0, 303.0, 300.5], 7, 1.0, &mut sums);
-        add_track(&[400.0, f64::NAN, 401.0], 7, 2.0, &mut sums);
+        add_track(&[300.0, 303.0, 300.5], &there, 7, 1.0, &mut sums);
+        let gone = [false, true, false];
+        add_track(&[400.0, f64::NAN, 401.0], &gone, 7, 2.0, &mut sums);
         let norms: Vec<Norms> = sums.into_iter().map(|(_, _, sum)| sum.finish()).collect();
         assert_eq!((norms[0].maximum, norms[0].at_s), (3.0, 1.0));
         assert_eq!(norms[0].l2, 3.0);
         assert_eq!((norms[1].maximum, norms[1].at_s), (1.0, 2.0));
+        // One that is there without a temperature agrees with nothing.
+        let mut sums = vec![(0, 1, Sums::default())];
+        add_track(&[300.0, f64::NAN], &there[..2], 7, 1.0, &mut sums);
+        assert!(sums.remove(0).2.finish().maximum.is_nan());
         let nothing = Sums::default().finish();
         assert!(nothing.maximum.is_nan() && nothing.l2.is_nan());
     }
