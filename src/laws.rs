@@ -1,6 +1,6 @@
 //! The laws that a case names.
 
-use calcine_coupler::interior::{HeatLaws, Thermal};
+use calcine_coupler::interior::{HeatLaws, ThermalProperties};
 use calcine_coupler::motion::ContactForce;
 use calcine_coupler::physics::conduction::{
     BatchelorObrien, Cheng, Conduction, Conductivity, ContactArea, ElasticLaw, GasGap, Lens,
@@ -79,13 +79,13 @@ pub fn heat(case: &Case) -> Option<HeatLaws> {
 
 /// What heat between particles needs of the materials of a case. What a case does not state is not asked for:
 /// the check demands all that its laws need.
-pub fn thermal(case: &Case) -> Vec<Thermal> {
+pub fn thermal(case: &Case) -> Vec<ThermalProperties> {
     let of = |material: &crate::case::model::Material| {
         let stiffness = |young: Option<f64>| Stiffness {
             young: young.unwrap_or(f64::NAN),
             poisson: material.poisson.unwrap_or(f64::NAN),
         };
-        Thermal {
+        ThermalProperties {
             conductivity: material
                 .conductivity
                 .clone()

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use calcine_coupler::observer::{Moment, Observer, ObserverError};
+use calcine_coupler::observer::{CommittedState, Observer, ObserverError};
 use calcine_coupler::time::Ticks;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -47,7 +47,7 @@ impl Progress {
         self.bar.finish_and_clear();
     }
 
-    fn draw(&mut self, moment: &Moment<'_>) {
+    fn draw(&mut self, moment: &CommittedState<'_>) {
         let done = moment.clocks.process.seconds() / self.end.seconds();
         self.bar.set_position((done * LENGTH as f64) as u64);
         let factor = moment.window.map_or(1.0, |window| window.acceleration());
@@ -59,24 +59,24 @@ impl Progress {
 }
 
 impl Observer for Progress {
-    fn start(&mut self, moment: &Moment<'_>) -> Result<(), ObserverError> {
+    fn start(&mut self, moment: &CommittedState<'_>) -> Result<(), ObserverError> {
         self.draw(moment);
         self.bar.reset_eta();
         Ok(())
     }
 
-    fn window(&mut self, moment: &Moment<'_>) -> Result<(), ObserverError> {
+    fn window(&mut self, moment: &CommittedState<'_>) -> Result<(), ObserverError> {
         if self.drawn.elapsed() >= EVERY {
             self.draw(moment);
         }
         Ok(())
     }
 
-    fn checkpoint(&mut self, _: &Moment<'_>, _: &Path) -> Result<(), ObserverError> {
+    fn checkpoint(&mut self, _: &CommittedState<'_>, _: &Path) -> Result<(), ObserverError> {
         Ok(())
     }
 
-    fn finish(&mut self, moment: &Moment<'_>) -> Result<(), ObserverError> {
+    fn finish(&mut self, moment: &CommittedState<'_>) -> Result<(), ObserverError> {
         self.draw(moment);
         Ok(())
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use calcine_coupler::error::{FailureKind, PartError};
-use calcine_coupler::supervisor::{Supervisor, Waited, log_end};
+use calcine_coupler::supervisor::{SolverWait, Supervisor, log_end};
 use calcine_coupler::time::Window;
 use calcine_wire::shared_memory::End;
 use calcine_wire::{Header, Hello, Kind, Link, Network, Record, Run, SharedMemory, WireError};
@@ -61,7 +61,7 @@ pub struct ExternalSolver {
     owned: Arc<[Vec<usize>]>,
     deadline: Duration,
     /// What the run has waited for solvers, and had when this one was asked or answered last.
-    waited: Waited,
+    waited: SolverWait,
     asked: Duration,
     /// Processor time of the ranks of this machine when they were ready.
     used_at_start: Duration,

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use calcine_adapters::liggghts::LiggghtsParticles;
 use calcine_coupler::motion::{
-    Change, ContactForce, Contacts, NewParticle, Resized, Wall, WallMotion, WallShape,
+    ContactForce, Contacts, NewParticle, ParticleChanges, Resized, Wall, WallMotion, WallShape,
 };
 use calcine_coupler::part::{Part, Particles};
 use calcine_coupler::physics::Vec3;
@@ -123,10 +123,10 @@ fn particles_come_and_go_with_the_ids_they_are_given_and_the_others_do_not_notic
         density: 2000.0,
     };
     // The highest ids go; those that come go on behind them, with a gap.
-    let change = Change {
+    let change = ParticleChanges {
         remove: vec![3, 39, 40],
         insert: vec![new(41, 0.01), new(57, 0.02)],
-        ..Change::default()
+        ..ParticleChanges::default()
     };
     particles.change(&bench.supervisor, &change).unwrap();
     let fields = particles.fields();
@@ -154,10 +154,10 @@ fn particles_come_and_go_with_the_ids_they_are_given_and_the_others_do_not_notic
     assert!(speeds.fold(0.0, f64::max) < 0.2);
     // All may be replaced, again and again.
     let all = particles.fields().id.to_vec();
-    let change = Change {
+    let change = ParticleChanges {
         remove: all,
         insert: vec![new(100, 0.03)],
-        ..Change::default()
+        ..ParticleChanges::default()
     };
     particles.change(&bench.supervisor, &change).unwrap();
     assert_eq!(particles.fields().id, [100]);
@@ -175,10 +175,10 @@ fn after_a_checkpoint_the_resumed_run_takes_the_same_path_as_the_one_that_went_o
     for _ in 0..5 {
         bench.window(&mut particles, 1e-3, &push).unwrap();
     }
-    let remove = Change {
+    let remove = ParticleChanges {
         remove: vec![7],
         insert: Vec::new(),
-        ..Change::default()
+        ..ParticleChanges::default()
     };
     particles.change(&bench.supervisor, &remove).unwrap();
     let checkpoint = bench.path("checkpoint");
@@ -220,9 +220,9 @@ fn a_run_goes_on_from_its_checkpoint_when_all_of_the_first_population_or_all_par
         bench
             .window(&mut particles, 1e-3, &vec![Vec3::zeros(); left])
             .unwrap();
-        let change = Change {
+        let change = ParticleChanges {
             remove: gone.collect(),
-            ..Change::default()
+            ..ParticleChanges::default()
         };
         particles.change(&bench.supervisor, &change).unwrap();
         left -= 20;
@@ -257,9 +257,9 @@ fn a_particle_that_gets_another_size_moves_by_its_new_mass_and_keeps_it_in_check
         radius: 0.0021,
         mass: 0.4 * MASS,
     };
-    let change = Change {
+    let change = ParticleChanges {
         resize: vec![new],
-        ..Change::default()
+        ..ParticleChanges::default()
     };
     particles.change(&bench.supervisor, &change).unwrap();
     let fields = particles.fields();
@@ -299,9 +299,9 @@ fn what_comes_to_rest_keeps_the_springs_of_its_contacts() {
     let before = speed(&mut bench, &mut particles, 2e-4);
     let step = speed(&mut bench, &mut particles, 1e-6) - before;
     let place = particles.fields().position[0];
-    let rest = Change {
+    let rest = ParticleChanges {
         rest: true,
-        ..Change::default()
+        ..ParticleChanges::default()
     };
     particles.change(&bench.supervisor, &rest).unwrap();
     let fields = particles.fields();

@@ -12,7 +12,7 @@
 mod support;
 
 use calcine_adapters::liggghts::LiggghtsParticles;
-use calcine_coupler::motion::{Change, NewParticle};
+use calcine_coupler::motion::{NewParticle, ParticleChanges};
 use calcine_coupler::part::Particles;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
@@ -46,7 +46,7 @@ fn press(particles: &LiggghtsParticles) -> Vec<Vec3> {
 }
 
 /// Velocities after 15 ms in which the heap comes to rest on itself, a change, and 1 ms more; of the heap.
-fn after(change: &Change) -> Vec<Vec3> {
+fn after(change: &ParticleChanges) -> Vec<Vec3> {
     let mut bench = Bench::new();
     let mut particles = bench.launch(&heap_and_one(), "a", None);
     let push = press(&particles);
@@ -63,10 +63,10 @@ fn after(change: &Change) -> Vec<Vec3> {
 
 #[test]
 fn springs_stay_with_their_contacts_where_others_come_and_go() {
-    let change = |remove: &[u64], insert: &[u64]| Change {
+    let change = |remove: &[u64], insert: &[u64]| ParticleChanges {
         remove: remove.to_vec(),
         insert: insert.iter().map(|&id| elsewhere(id, 0.09)).collect(),
-        ..Change::default()
+        ..ParticleChanges::default()
     };
     // One that comes takes the last place: nobody moves.
     let undisturbed = after(&change(&[], &[50]));
@@ -114,10 +114,10 @@ fn what_two_and_three_ranks_give_each_other_cancels_while_particles_come_and_go(
             let left = momentum(&particles) - before - pushed - weight - support;
             worst = worst.max(left.norm() / weight.norm());
             let ids = particles.fields().id;
-            let change = Change {
+            let change = ParticleChanges {
                 remove: vec![ids[ids.len() / 2]],
                 insert: vec![elsewhere(100 + round, 0.01 + 0.01 * round as f64)],
-                ..Change::default()
+                ..ParticleChanges::default()
             };
             particles.change(&bench.supervisor, &change).unwrap();
             assert_eq!(particles.fields().len(), 40);

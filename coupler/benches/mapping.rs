@@ -10,7 +10,7 @@ use calcine_coupler::mapping::{Mapper, Method};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::smoother::{Operator, Settings, Smoother};
+use calcine_coupler::smoother::{Operator, Smoother, SmootherSettings};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 
 /// Particles along an edge of the cube.
@@ -84,10 +84,10 @@ fn operator(mesh: &Mesh, most: f64, diffusion: bool) -> Operator {
     let (centres, radii) = spheres();
     let volume: Vec<f64> = radii.iter().map(|r| 4.0 / 3.0 * PI * r.powi(3)).collect();
     let weights = Mapper::new(mesh).fill(Method::Overlap, &centres, &radii);
-    let settings = Settings {
+    let settings = SmootherSettings {
         max_solid_fraction: most,
         diffusion_length: diffusion.then(|| 2.0 * radii[0]),
-        ..Settings::default()
+        ..SmootherSettings::default()
     };
     let smoother = Smoother::new(mesh, settings).unwrap();
     smoother.operator(weights.unwrap(), &volume).unwrap()

@@ -18,7 +18,7 @@ use calcine_coupler::mapping::{Mapper, Method, Weights};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::smoother::{Operator, Settings, Smoother};
+use calcine_coupler::smoother::{Operator, Smoother, SmootherSettings};
 use criterion::measurement::WallTime;
 use criterion::{
     BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main,
@@ -206,10 +206,10 @@ fn group<'c>(criterion: &'c mut Criterion, name: &str) -> BenchmarkGroup<'c, Wal
     group
 }
 
-fn settings() -> Settings {
-    Settings {
+fn settings() -> SmootherSettings {
+    SmootherSettings {
         max_solid_fraction: THRESHOLD,
-        ..Settings::default()
+        ..SmootherSettings::default()
     }
 }
 

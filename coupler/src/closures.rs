@@ -64,7 +64,7 @@ pub enum ClosureError {
 
 /// The gas that each particle sees: Wᵀ applied to the gas.
 #[derive(Clone, Debug, Default)]
-pub struct Seen {
+pub struct SampledGas {
     /// Temperature in K.
     pub temperature: Vec<f64>,
     /// Density in kg/m³.
@@ -77,7 +77,7 @@ pub struct Seen {
     pub void_fraction: Vec<f64>,
 }
 
-impl Seen {
+impl SampledGas {
     /// Samples all that the laws need.
     pub fn sample(&mut self, operator: &Operator, gas: &GasFields<'_>, bed: &Bed) {
         let particles = operator.particles();
@@ -112,7 +112,7 @@ impl Seen {
 
 /// Coefficients per particle, fixed over the window.
 #[derive(Clone, Debug, Default)]
-pub struct Coefficients {
+pub struct CouplingCoefficients {
     /// Mass transfer coefficient of each species in m/s, species by species within each particle; empty where
     /// none reacts.
     pub film: Vec<f64>,
@@ -125,13 +125,13 @@ pub struct Coefficients {
     /// Conductivity of the gas in W/m/K.
     pub gas_conductivity: Vec<f64>,
     /// Share of the other forces in N that drag holds back within the window (requirements
-    /// DRG-2, see [`Coefficients::relax`]); zero, or empty, where particles are held.
+    /// DRG-2, see [`CouplingCoefficients::relax`]); zero, or empty, where particles are held.
     pub held_back: Vec<Vec3>,
 }
 
 /// What particles are to their drag besides their velocity, one value each.
 #[derive(Clone, Copy, Debug)]
-pub struct Inertia<'a> {
+pub struct DragInertia<'a> {
     /// Masses in kg.
     pub mass: &'a [f64],
     /// True for those that move.
@@ -144,7 +144,7 @@ pub struct Inertia<'a> {
     pub acceleration: f64,
 }
 
-impl Coefficients {
+impl CouplingCoefficients {
     /// Stiff drag (requirements DRG-2). The force on a particle is constant over a window; it is the
     /// mean of what acts on one that moves by drag and by all else as in the last window:
     /// m dv/dt = K (u − v/AF) + F. With a = K Δt/(m AF) and φ = (1 − e^−a)/a that mean is
@@ -153,7 +153,7 @@ impl Coefficients {
     ///
     /// with the velocity v at the window's start. A free particle relaxes without overshoot however
     /// long the window; one that contacts hold has F = −K u at rest and feels its full drag K u.
-    pub fn relax(&mut self, inertia: &Inertia<'_>) {
+    pub fn relax(&mut self, inertia: &DragInertia<'_>) {
         self.held_back.clear();
         for (p, drag) in self.drag.iter_mut().enumerate() {
             if !inertia.free[p] {
@@ -186,11 +186,11 @@ impl Closures {
     /// Evaluates mass transfer at these pressures in Pa, for particles that react.
     pub fn evaluate_films(
         &self,
-        seen: &Seen,
+        seen: &SampledGas,
         particles: &ParticleFields<'_>,
         pressure: &[f64],
         acceleration: f64,
-        coefficients: &mut Coefficients,
+        coefficients: &mut CouplingCoefficients,
     ) {
         let GasModel::Mixture(mixture) = &self.gas else {
             coefficients.film.clear();
@@ -226,10 +226,10 @@ impl Closures {
     /// Evaluates all laws. Slip is u − v/AF (requirements TSM-7).
     pub fn evaluate(
         &self,
-        seen: &Seen,
+        seen: &SampledGas,
         particles: &ParticleFields<'_>,
         acceleration: f64,
-        coefficients: &mut Coefficients,
+        coefficients: &mut CouplingCoefficients,
     ) -> Result<(), ClosureError> {
         let count = particles.len();
         let species = self.gas.species().len();

@@ -1,9 +1,9 @@
 //! Which spheres are near each other, and which overlap.
 
-use calcine_interior::{Touch, WallTouch};
+use calcine_interior::{NeighbourPair, NeighbourWall};
 use calcine_physics::Vec3;
 
-use crate::sight::Surface;
+use crate::sight::WallSurface;
 
 /// All pairs of spheres whose surfaces are nearer than `gap` in m, found by cells over a box (its lowest
 /// corner and its size in m; what lies outside counts to the nearest cell). The first of a pair is the
@@ -92,12 +92,12 @@ pub fn pairs_around(radii: &[f64], centres: &[Vec3], reach: f64) -> Vec<[u32; 2]
 }
 
 /// Pairs of spheres that overlap, or whose surfaces are nearer than `gap` in m, in the order of their indices.
-pub fn touching(radii: &[f64], centres: &[Vec3], gap: f64) -> Vec<Touch> {
+pub fn touching(radii: &[f64], centres: &[Vec3], gap: f64) -> Vec<NeighbourPair> {
     let touch = |[a, b]: [u32; 2]| {
         let particles = [a as usize, b as usize];
         let radius = particles.map(|p| radii[p]);
         let distance = (centres[particles[1]] - centres[particles[0]]).norm();
-        Touch {
+        NeighbourPair {
             particles,
             radius,
             overlap: radius[0] + radius[1] - distance,
@@ -112,15 +112,15 @@ pub fn touching(radii: &[f64], centres: &[Vec3], gap: f64) -> Vec<Touch> {
 pub fn touching_walls<'w>(
     radii: &[f64],
     centres: &[Vec3],
-    walls: impl Iterator<Item = (usize, &'w Surface)>,
+    walls: impl Iterator<Item = (usize, &'w WallSurface)>,
     gap: f64,
-) -> Vec<WallTouch> {
+) -> Vec<NeighbourWall> {
     let mut found = Vec::new();
     for (reservoir, surface) in walls {
         for (particle, (&radius, &centre)) in radii.iter().zip(centres).enumerate() {
             let overlap = radius - surface.distance(centre, radius + gap);
             if overlap > -gap {
-                found.push(WallTouch {
+                found.push(NeighbourWall {
                     particle,
                     reservoir,
                     radius,
@@ -191,7 +191,7 @@ mod tests {
         assert!(touching(&[1.0; 2], &centres, 0.4).is_empty());
         assert_eq!(pairs_around(&[1.0; 2], &centres, 2.51), [[0, 1]]);
         assert!(pairs_around(&[1.0; 2], &centres, 2.5).is_empty());
-        let floor = Surface::new(&crate::motion::WallShape::Plane {
+        let floor = WallSurface::new(&crate::motion::WallShape::Plane {
             point: Vec3::zeros(),
             normal: Vec3::z(),
         });

@@ -21,7 +21,7 @@
 //! is not linear in T) is credited to the particles of the cell by their share W_cp K_p/H_c,
 //! H_c = Σ_p W_cp K_p. Drag acts cell by cell too, W_cp K_A (v/AF − u_c); the velocity of particles
 //! is given over a window, so that nothing ties its cells (for stiff drag K_A is what
-//! `Coefficients::relax` makes of it).
+//! `CouplingCoefficients::relax` makes of it).
 //!
 //! Momentum is exchanged by model A or B (requirements DRG-1, [`crate::momentum_model`]): the coefficients
 //! here are those that the model makes of the laws' K_A, and `push` adds what else the gas does to a
@@ -29,14 +29,14 @@
 
 use calcine_physics::Vec3;
 
-use crate::closures::Coefficients;
+use crate::closures::CouplingCoefficients;
 use crate::momentum_model::MomentumModel;
 use crate::part::{CellExchange, CellReceived, GasFields, ParticleFields, ParticlePush};
 use crate::smoother::Operator;
 
 /// How well the attempts of a window placed what they exchanged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Placement {
+pub struct ExchangeConvergence {
     /// Attempts of the window.
     pub attempts: u32,
     /// Share of the heat that the last attempt left in the wrong cells of a particle.
@@ -47,13 +47,13 @@ pub struct Placement {
 
 /// What does not change between the attempts of a window.
 #[derive(Clone, Copy, Debug)]
-pub struct Setting<'a> {
+pub struct ExchangeInputs<'a> {
     /// The operator W.
     pub operator: &'a Operator,
     /// The particles at the start of the window.
     pub particles: ParticleFields<'a>,
     /// Coefficients of drag and heat.
-    pub coefficients: &'a Coefficients,
+    pub coefficients: &'a CouplingCoefficients,
     /// The acceleration factor.
     pub acceleration: f64,
 }
@@ -103,7 +103,7 @@ impl Exchange {
 
     /// Begins the attempts with one set of laws: looks at the gas and spreads the drag, which no
     /// attempt changes.
-    pub fn begin(&mut self, setting: &Setting<'_>, gas: &GasFields<'_>) {
+    pub fn begin(&mut self, setting: &ExchangeInputs<'_>, gas: &GasFields<'_>) {
         let operator = setting.operator;
         self.resize(operator.cells(), operator.particles());
         self.iterate.temperature.clear();
@@ -126,7 +126,7 @@ impl Exchange {
 
     /// Fills what the gas is told of heat, linearised about the last iterate. The exchange starts
     /// from these particle temperatures in K.
-    pub fn linearise(&mut self, setting: &Setting<'_>, temperature: &[f64]) {
+    pub fn linearise(&mut self, setting: &ExchangeInputs<'_>, temperature: &[f64]) {
         let (operator, iterate) = (setting.operator, &mut self.iterate);
         // K_p, g_p and the source side by side: three components cost little more than one.
         for (p, kelvin) in temperature.iter().enumerate() {
@@ -151,7 +151,7 @@ impl Exchange {
     /// set free and take.
     pub fn credit_heat(
         &mut self,
-        setting: &Setting<'_>,
+        setting: &ExchangeInputs<'_>,
         temperature: &[f64],
         gas: &GasFields<'_>,
         received: &CellReceived,
@@ -190,7 +190,7 @@ impl Exchange {
     /// Gives each particle the drag that the gas reports.
     pub fn credit_drag(
         &mut self,
-        setting: &Setting<'_>,
+        setting: &ExchangeInputs<'_>,
         gas: &GasFields<'_>,
         received: &CellReceived,
     ) {

@@ -9,7 +9,7 @@ use calcine_physics::gas_model::GasModel;
 use crate::error::PartError;
 use crate::mesh::Mesh;
 use crate::part::{
-    About, Balance, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part,
+    Balance, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
     TurbulenceFields,
 };
 use crate::setup::GasSetup;
@@ -21,7 +21,7 @@ use crate::time::Window;
 /// balances.
 #[derive(Debug)]
 pub struct HeldGas {
-    about: About,
+    about: SolverInfo,
     mesh: Arc<Mesh>,
     superficial: Vec3,
     properties: GasModel,
@@ -46,7 +46,7 @@ impl HeldGas {
         let origin = mesh.cell_centre().first().copied().unwrap_or_default();
         let centres = mesh.cell_centre().iter();
         Self {
-            about: About {
+            about: SolverInfo {
                 name: "held gas".into(),
                 version: env!("CARGO_PKG_VERSION").into(),
                 ranks: 1,
@@ -70,7 +70,7 @@ impl HeldGas {
 }
 
 impl Part for HeldGas {
-    fn about(&self) -> &About {
+    fn about(&self) -> &SolverInfo {
         &self.about
     }
 

@@ -7,7 +7,7 @@ pub const STORAGE_CLOCK: &str = "storage_clock";
 
 /// One line: the sum of |Σ terms| over the windows, against the sum of Σ|terms|.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Line {
+pub struct BalanceLine {
     /// Signed sum over the windows of what did not close.
     pub drift: f64,
     /// Sum over the windows of |Σ terms|.
@@ -16,7 +16,7 @@ pub struct Line {
     pub throughput: f64,
 }
 
-impl Line {
+impl BalanceLine {
     /// Books one window: `sum` of the signed terms, `magnitude` the sum of their magnitudes.
     pub fn book(&mut self, sum: f64, magnitude: f64) {
         self.drift += sum;
@@ -36,7 +36,7 @@ impl Line {
 
 /// What particles carried in or out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Moved {
+pub struct CarriedInventory {
     /// Number of particles.
     pub particles: u64,
     /// Their mass in kg.
@@ -47,7 +47,7 @@ pub struct Moved {
     pub momentum: Vec3,
 }
 
-impl Moved {
+impl CarriedInventory {
     /// Adds one particle.
     pub fn add(&mut self, mass: f64, enthalpy: f64, velocity: Vec3) {
         self.particles += 1;
@@ -78,32 +78,32 @@ impl Moved {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ledger {
     /// Gas mass in kg; where none passes the boundary, relative to what circulates within.
-    pub mass: Line,
+    pub mass: BalanceLine,
     /// Gas and particle energy together, in J.
-    pub energy: Line,
+    pub energy: BalanceLine,
     /// What one side gave against what the other took, in J.
-    pub energy_exchange: Line,
+    pub energy_exchange: BalanceLine,
     /// The impulse of drag on the gas against that on the particles, in N s.
-    pub momentum_exchange: Line,
+    pub momentum_exchange: BalanceLine,
     /// The gas' own momentum balance (residual of pressure and momentum solves), in N s.
-    pub gas_momentum: Line,
+    pub gas_momentum: BalanceLine,
     /// The momentum of that balance that two clocks make, Σ u (1 − 1/AF) Δ(ε ρ V) (requirements TSM-8), in N s: no
     /// error, but what the balance would leave open without it.
-    pub storage_clock: Line,
+    pub storage_clock: BalanceLine,
     /// Particle mass in kg: what the particles hold against what feeds and outlets moved.
-    pub particle_mass: Line,
+    pub particle_mass: BalanceLine,
     /// Momentum of the particles that move, in N s: its change against what the gas, gravity, walls, held
     /// particles, feeds and outlets gave, where the solver counts the impulse of walls.
-    pub particle_momentum: Line,
+    pub particle_momentum: BalanceLine,
     /// What feeds brought and outlets took so far.
-    pub traffic: [Moved; 2],
+    pub traffic: [CarriedInventory; 2],
     /// Mass of each element of a gas mixture in kg, by its symbol.
-    pub elements: Vec<(String, Line)>,
+    pub elements: Vec<(String, BalanceLine)>,
 }
 
 impl Ledger {
     /// Lines by their stable names, those of elements apart.
-    pub fn lines(&self) -> [(&'static str, &'static str, Line); 8] {
+    pub fn lines(&self) -> [(&'static str, &'static str, BalanceLine); 8] {
         [
             ("mass", "kg", self.mass),
             ("energy", "J", self.energy),
@@ -117,7 +117,7 @@ impl Ledger {
     }
 
     /// All lines in one order, elements last, to be restored from a checkpoint.
-    pub fn lines_mut(&mut self) -> Vec<&mut Line> {
+    pub fn lines_mut(&mut self) -> Vec<&mut BalanceLine> {
         let mut lines = vec![
             &mut self.mass,
             &mut self.energy,
@@ -133,8 +133,8 @@ impl Ledger {
     }
 
     /// All lines, in the order of `lines_mut`.
-    pub fn all(&self) -> Vec<Line> {
-        let mut lines: Vec<Line> = self.lines().iter().map(|&(_, _, line)| line).collect();
+    pub fn all(&self) -> Vec<BalanceLine> {
+        let mut lines: Vec<BalanceLine> = self.lines().iter().map(|&(_, _, line)| line).collect();
         lines.extend(self.elements.iter().map(|&(_, line)| line));
         lines
     }

@@ -193,7 +193,7 @@ pub enum WallMotion {
 /// Particles that come and go between two windows, become others by what reacts in them, or are held. The
 /// coordinator decides on them, so that they are the same for every backend.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Change {
+pub struct ParticleChanges {
     /// Ids of those that go.
     pub remove: Vec<u64>,
     /// Those that come, with ids that were never used before, ascending.
@@ -205,7 +205,7 @@ pub struct Change {
     pub rest: bool,
 }
 
-impl Change {
+impl ParticleChanges {
     /// True where nothing changes.
     pub fn is_empty(&self) -> bool {
         let Self {

@@ -6,10 +6,10 @@ use std::time::Duration;
 use calcine_physics::Vec3;
 use thiserror::Error;
 
-use crate::exchange::Placement;
+use crate::exchange::ExchangeConvergence;
 use crate::ledger::Ledger;
 use crate::mesh::Mesh;
-use crate::part::{About, Bed, Convergence, GasFields, ParticleFields};
+use crate::part::{Bed, Convergence, GasFields, ParticleFields, SolverInfo};
 use crate::time::{Clocks, Window};
 
 /// Wall time spent in each stage since this process began the run, and processor time of the two solvers.
@@ -41,7 +41,7 @@ pub struct Timing {
 
 /// What each particle had of the gas in the last window, in the order of the particles.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Felt<'a> {
+pub struct ParticleGasExchange<'a> {
     /// Force of the gas on each in N, constant over the window; zero before the first.
     pub force: &'a [Vec3],
     /// Void fraction that the laws saw.
@@ -52,7 +52,7 @@ pub struct Felt<'a> {
 
 /// The state of the run after a commit.
 #[derive(Clone, Copy, Debug)]
-pub struct Moment<'a> {
+pub struct CommittedState<'a> {
     /// Windows committed so far.
     pub windows: u64,
     /// Both clocks now.
@@ -77,7 +77,7 @@ pub struct Moment<'a> {
     /// none does.
     pub solid_fractions: &'a [f64],
     /// What else the particles had of the gas.
-    pub felt: Felt<'a>,
+    pub felt: ParticleGasExchange<'a>,
     /// Names of walls and surroundings that give heat to the particles.
     pub reservoirs: &'a [String],
     /// Mean heat from each of these into the particles over the window in W; empty where there is none.
@@ -87,11 +87,11 @@ pub struct Moment<'a> {
     /// Convergence of the gas in the window.
     pub convergence: &'a Convergence,
     /// Attempts of the window, and what they left misplaced.
-    pub placement: &'a Placement,
+    pub placement: &'a ExchangeConvergence,
     /// Wall times by stage.
     pub timing: &'a Timing,
     /// The two solvers.
-    pub about: [&'a About; 2],
+    pub about: [&'a SolverInfo; 2],
 }
 
 /// An observer that could not do its work, for example because a disk is full.
@@ -109,15 +109,19 @@ pub struct ObserverError {
 pub trait Observer {
     /// Called once before the first window of this process: at the start of a run
     /// (`windows` is 0) or after a resume.
-    fn start(&mut self, moment: &Moment<'_>) -> Result<(), ObserverError>;
+    fn start(&mut self, moment: &CommittedState<'_>) -> Result<(), ObserverError>;
 
     /// Called after each committed window.
-    fn window(&mut self, moment: &Moment<'_>) -> Result<(), ObserverError>;
+    fn window(&mut self, moment: &CommittedState<'_>) -> Result<(), ObserverError>;
 
     /// Called while a checkpoint is written: what the observer needs to go on from here goes into
     /// `directory`.
-    fn checkpoint(&mut self, moment: &Moment<'_>, directory: &Path) -> Result<(), ObserverError>;
+    fn checkpoint(
+        &mut self,
+        moment: &CommittedState<'_>,
+        directory: &Path,
+    ) -> Result<(), ObserverError>;
 
     /// Called once after the last window.
-    fn finish(&mut self, moment: &Moment<'_>) -> Result<(), ObserverError>;
+    fn finish(&mut self, moment: &CommittedState<'_>) -> Result<(), ObserverError>;
 }

@@ -10,13 +10,13 @@ use calcine_physics::Vec3;
 
 use crate::error::PartError;
 use crate::mesh::Mesh;
-use crate::motion::Change;
+use crate::motion::ParticleChanges;
 use crate::supervisor::Supervisor;
 use crate::time::Window;
 
 /// What a part says of itself.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct About {
+pub struct SolverInfo {
     /// Name, for example "OpenFOAM".
     pub name: String,
     /// Version as the solver prints it.
@@ -28,7 +28,7 @@ pub struct About {
 /// What every participant can do.
 pub trait Part {
     /// Name, version, ranks.
-    fn about(&self) -> &About;
+    fn about(&self) -> &SolverInfo;
 
     /// Takes the last attempt as the new start of attempts.
     fn commit(&mut self) -> Result<(), PartError>;
@@ -308,7 +308,11 @@ pub trait Particles: Part {
 
     /// Takes particles out, puts new ones in and gives others another size, between two windows and after a
     /// commit. A held bed only has to take sizes.
-    fn change(&mut self, supervisor: &Supervisor, change: &Change) -> Result<(), PartError>;
+    fn change(
+        &mut self,
+        supervisor: &Supervisor,
+        change: &ParticleChanges,
+    ) -> Result<(), PartError>;
 
     /// Starts the window; does not wait.
     fn start(&mut self, window: &Window, push: &ParticlePush) -> Result<(), PartError>;

@@ -1,13 +1,13 @@
 //! Ways of heat beside the gas: which walls and surroundings particles exchange heat with, what they touch
 //! and whom they see. The same for every backend of the particles, from their places alone.
 
-use calcine_interior::{Meeting, Views};
+use calcine_interior::{ExchangeAreas, Neighbours};
 
 use crate::contacts::{touching, touching_walls};
 use crate::motion::WallShape;
 use crate::part::ParticleFields;
 use crate::setup::Schedule;
-use crate::sight::{Mirror, Scene, Sight, Surface, views};
+use crate::sight::{RadiationScene, RadiationWall, ViewFactors, WallSurface, views};
 
 /// Name of the surroundings among the reservoirs.
 pub const SURROUNDINGS: &str = "surroundings";
@@ -36,7 +36,7 @@ pub struct PathsSetup {
     /// radius in m.
     pub gap: f64,
     /// How particles see each other; `None`: they do not radiate.
-    pub sight: Option<Sight>,
+    pub sight: Option<ViewFactors>,
     /// Temperature in K of what is seen beyond all walls, over process time in s; `None`: nothing leaves.
     pub surroundings: Option<Schedule>,
     /// Views of moving particles hold for so much process time in s.
@@ -47,7 +47,7 @@ pub struct PathsSetup {
 #[derive(Debug, Default)]
 pub struct Paths {
     setup: PathsSetup,
-    mirrors: Vec<Mirror>,
+    mirrors: Vec<RadiationWall>,
     names: Vec<String>,
     /// Process time in s at which views were found last.
     seen_at: Option<f64>,
@@ -61,8 +61,8 @@ impl Paths {
         let mut reservoirs = 0..;
         let warm = setup.walls.iter().filter(|wall| wall.temperature.is_some());
         let beyond = setup.surroundings.as_ref();
-        let mirror = |wall: &HeatWall| Mirror {
-            surface: Surface::new(&wall.shape),
+        let mirror = |wall: &HeatWall| RadiationWall {
+            surface: WallSurface::new(&wall.shape),
             absorbs: wall
                 .temperature
                 .as_ref()
@@ -109,7 +109,7 @@ impl Paths {
         &mut self,
         particles: &ParticleFields<'_>,
         time: f64,
-        tell: impl FnOnce(&Meeting<'_>),
+        tell: impl FnOnce(&Neighbours<'_>),
     ) {
         let (radii, centres) = (particles.radius, particles.position);
         let gap = self.setup.gap;
@@ -122,11 +122,11 @@ impl Paths {
         let due = self
             .seen_at
             .is_none_or(|at| time - at >= self.setup.refresh * (1.0 - 1e-9));
-        let found: Option<Views> = self.setup.sight.filter(|_| due).map(|sight| {
+        let found: Option<ExchangeAreas> = self.setup.sight.filter(|_| due).map(|sight| {
             let reservoirs = self.mirrors.iter().filter(|m| m.absorbs.is_some()).count();
             let own = |k: &u32| self.setup.emissivity.get(*k as usize).copied();
             let emissivity = particles.population.iter().map(|k| own(k).unwrap_or(1.0));
-            let scene = Scene {
+            let scene = RadiationScene {
                 radii,
                 centres,
                 emissivity: &emissivity.collect::<Vec<f64>>(),
@@ -139,7 +139,7 @@ impl Paths {
         if found.is_some() {
             self.seen_at = Some(time);
         }
-        tell(&Meeting {
+        tell(&Neighbours {
             touches: &touches,
             walls: &walls,
             views: found.as_ref(),

@@ -64,9 +64,9 @@ impl Interrupts {
 /// How long a run has waited for its solvers so far, one after the other: while one answers, the others have had
 /// that time too. What the coordinator computes by itself does not count.
 #[derive(Clone, Debug, Default)]
-pub struct Waited(Arc<AtomicU64>);
+pub struct SolverWait(Arc<AtomicU64>);
 
-impl Waited {
+impl SolverWait {
     /// All of it.
     pub fn so_far(&self) -> Duration {
         Duration::from_nanos(self.0.load(Ordering::SeqCst))
@@ -84,7 +84,7 @@ pub struct Supervisor {
     peers: Vec<Peer>,
     deadline: Duration,
     interrupts: Interrupts,
-    waited: Waited,
+    waited: SolverWait,
     /// What had been waited when peers were looked at last.
     looked: Cell<Duration>,
 }
@@ -96,13 +96,13 @@ impl Supervisor {
             peers: Vec::new(),
             deadline,
             interrupts,
-            waited: Waited::default(),
+            waited: SolverWait::default(),
             looked: Cell::default(),
         }
     }
 
     /// What this supervisor has waited.
-    pub fn waited(&self) -> &Waited {
+    pub fn waited(&self) -> &SolverWait {
         &self.waited
     }
 

@@ -7,7 +7,7 @@ use calcine_physics::Vec3;
 
 use crate::checkpoint::{StateFile, StateFileError};
 use crate::mesh::zone::Zone;
-use crate::motion::{Change, NewParticle};
+use crate::motion::{NewParticle, ParticleChanges};
 use crate::packing::random::SplitMix64;
 use crate::packing::{PackingError, Sizes};
 use crate::part::ParticleFields;
@@ -53,7 +53,7 @@ pub struct Outlet {
 
 /// All feeds and outlets of a run, and how far they are.
 #[derive(Clone, Debug, Default)]
-pub struct Traffic {
+pub struct FeedsAndOutlets {
     /// What comes.
     pub feeds: Vec<Feed>,
     /// What goes.
@@ -70,9 +70,9 @@ pub struct Traffic {
 
 /// What is to be done before a window.
 #[derive(Clone, Debug, Default)]
-pub struct Trade {
+pub struct PopulationChange {
     /// The change of the particles.
-    pub change: Change,
+    pub change: ParticleChanges,
     /// Temperature in K of each that comes.
     pub temperature: Vec<f64>,
     /// Rows of those that go, in the order of the particles.
@@ -81,7 +81,7 @@ pub struct Trade {
 
 /// A window's place in time.
 #[derive(Clone, Copy, Debug)]
-pub struct Moment {
+pub struct WindowSpan {
     /// Windows before this one.
     pub window: u64,
     /// Its process span in s.
@@ -90,7 +90,7 @@ pub struct Moment {
     pub acceleration: f64,
 }
 
-impl Traffic {
+impl FeedsAndOutlets {
     /// Feeds and outlets of a run whose first particles have ids below `next_id`.
     pub fn new(feeds: Vec<Feed>, outlets: Vec<Outlet>, up: Vec3, next_id: u64) -> Self {
         let owed = feeds.iter().map(|feed| feed.batch).collect();
@@ -112,16 +112,21 @@ impl Traffic {
     /// Decides what goes and comes before a window.
     pub fn decide(
         &mut self,
-        moment: Moment,
+        moment: WindowSpan,
         particles: &ParticleFields<'_>,
-    ) -> Result<Trade, PackingError> {
-        let mut trade = Trade::default();
+    ) -> Result<PopulationChange, PackingError> {
+        let mut trade = PopulationChange::default();
         self.take_out(moment, particles, &mut trade);
         self.bring_in(moment, particles, &mut trade)?;
         Ok(trade)
     }
 
-    fn take_out(&mut self, moment: Moment, particles: &ParticleFields<'_>, trade: &mut Trade) {
+    fn take_out(
+        &mut self,
+        moment: WindowSpan,
+        particles: &ParticleFields<'_>,
+        trade: &mut PopulationChange,
+    ) {
         let mut gone = vec![false; particles.len()];
         for (outlet, due) in self.outlets.iter().zip(&mut self.due[1]) {
             let inside = |&row: &usize| !gone[row] && outlet.zone.holds(particles.position[row]);
@@ -155,9 +160,9 @@ impl Traffic {
 
     fn bring_in(
         &mut self,
-        moment: Moment,
+        moment: WindowSpan,
         particles: &ParticleFields<'_>,
-        trade: &mut Trade,
+        trade: &mut PopulationChange,
     ) -> Result<(), PackingError> {
         let mut gone = vec![false; particles.len()];
         trade.rows.iter().for_each(|&row| gone[row] = true);
@@ -333,8 +338,8 @@ mod tests {
         }
     }
 
-    fn moment(window: u64) -> Moment {
-        Moment {
+    fn moment(window: u64) -> WindowSpan {
+        WindowSpan {
             window,
             span: 0.01,
             acceleration: 5.0,
@@ -345,7 +350,8 @@ mod tests {
     fn a_feed_keeps_its_mass_flow_and_its_particles_touch_nothing() {
         let bed = Bed::stack(3);
         let mass = 4.0 / 3.0 * PI * 0.005f64.powi(3) * 2000.0;
-        let mut traffic = Traffic::new(vec![feed(40.0 * mass, 0.0)], Vec::new(), Vec3::z(), 4);
+        let mut traffic =
+            FeedsAndOutlets::new(vec![feed(40.0 * mass, 0.0)], Vec::new(), Vec3::z(), 4);
         let mut ids = Vec::new();
         for window in 0..100 {
             let trade = traffic.decide(moment(window), &bed.fields()).unwrap();
@@ -371,7 +377,7 @@ mod tests {
         let bed = Bed::stack(0);
         let mass = 4.0 / 3.0 * PI * 0.005f64.powi(3) * 2000.0;
         let make = || {
-            Traffic::new(
+            FeedsAndOutlets::new(
                 vec![feed(300.0 * mass, 20.0 * mass)],
                 Vec::new(),
                 Vec3::z(),
@@ -403,11 +409,11 @@ mod tests {
             zone,
             rate,
         };
-        let mut all = Traffic::new(Vec::new(), vec![outlet(None)], Vec3::z(), 11);
+        let mut all = FeedsAndOutlets::new(Vec::new(), vec![outlet(None)], Vec3::z(), 11);
         let trade = all.decide(moment(0), &bed.fields()).unwrap();
         assert_eq!(trade.change.remove, [1, 2, 3, 4, 5]);
         // 0.2 kg/s over 10 ms are two particles of 1 g.
-        let mut slow = Traffic::new(Vec::new(), vec![outlet(Some(0.2))], Vec3::z(), 11);
+        let mut slow = FeedsAndOutlets::new(Vec::new(), vec![outlet(Some(0.2))], Vec3::z(), 11);
         for window in 0..3 {
             let trade = slow.decide(moment(window), &bed.fields()).unwrap();
             assert_eq!(trade.change.remove, [1, 2]);

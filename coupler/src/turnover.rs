@@ -18,7 +18,7 @@ use crate::smoother::Operator;
 
 /// The exchange of species of one window, with its scratch memory.
 #[derive(Debug, Default)]
-pub struct Turnover {
+pub struct SpeciesCoupling {
     /// Mean rate of each channel of each particle in mol/s, channel by channel within each particle.
     pub rates: Vec<f64>,
     /// Sensible heat in W that exchanged gases bring into each particle.
@@ -37,7 +37,7 @@ pub struct Turnover {
     seen: Vec<f64>,
 }
 
-impl Turnover {
+impl SpeciesCoupling {
     /// Tells the gas the lines, about its present fields.
     pub fn linearise(
         &mut self,

@@ -4,15 +4,15 @@
 
 #![allow(clippy::unwrap_used)]
 
-use calcine_coupler::closures::Coefficients;
-use calcine_coupler::exchange::{Exchange, Setting};
+use calcine_coupler::closures::CouplingCoefficients;
+use calcine_coupler::exchange::{Exchange, ExchangeInputs};
 use calcine_coupler::interior::{ParticleModel, Thin};
 use calcine_coupler::mapping::{Mapper, Method};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
 use calcine_coupler::part::{CellReceived, GasFields, ParticleFields};
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::smoother::{Operator, Settings, Smoother};
+use calcine_coupler::smoother::{Operator, Smoother, SmootherSettings};
 
 /// A gas of cells that only store heat and momentum: c dT/dt = S − H T, m du/dt = S_u − K u.
 struct StillGas {
@@ -109,7 +109,7 @@ impl Bench {
         let weights = Mapper::new(&mesh)
             .fill(Method::Overlap, &position, &radius)
             .unwrap();
-        let settings = Settings {
+        let settings = SmootherSettings {
             max_solid_fraction: 0.9,
             tolerance: 1e-6,
             diffusion_length: None,
@@ -155,10 +155,10 @@ fn attempts(
     let bench = Bench::new();
     let mut gas = StillGas::new(8);
     let mut thin = Thin::of_heat_capacity(vec![5e-3, 8e-3], vec![400.0, 350.0]);
-    let coefficients = Coefficients {
+    let coefficients = CouplingCoefficients {
         drag: vec![1e-3, 2e-3],
         conductance: vec![conductance; 2],
-        ..Coefficients::default()
+        ..CouplingCoefficients::default()
     };
     let mut exchange = Exchange::default();
     exchange.conductance.resize(2, 0.0);
@@ -167,7 +167,7 @@ fn attempts(
     let mut shares = Vec::new();
     for _ in 0..count {
         let temperature = thin.committed_temperature().to_vec();
-        let setting = Setting {
+        let setting = ExchangeInputs {
             operator: &bench.operator,
             particles: bench.fields(),
             coefficients: &coefficients,
@@ -249,18 +249,18 @@ fn a_stiff_particle_relaxes_without_overshoot() {
 
 #[test]
 fn stiff_drag_relaxes_a_free_particle_and_leaves_a_held_one_its_full_drag() {
-    use calcine_coupler::closures::Inertia;
+    use calcine_coupler::closures::DragInertia;
     let (mass, drag, span) = (1e-6, 1e-3, 1e-2);
     // One is free under its weight alone, one lies on others that take up its drag, one is frozen.
     let wind = Vec3::new(0.0, 0.0, 0.4);
     let weight = Vec3::new(0.0, 0.0, -9.81e-6);
     let held = -drag * wind;
-    let mut coefficients = Coefficients {
+    let mut coefficients = CouplingCoefficients {
         drag: vec![drag; 3],
         conductance: vec![0.0; 3],
-        ..Coefficients::default()
+        ..CouplingCoefficients::default()
     };
-    coefficients.relax(&Inertia {
+    coefficients.relax(&DragInertia {
         mass: &[mass; 3],
         free: &[true, true, false],
         other: &[weight, held, weight],

@@ -6,7 +6,7 @@ use calcine_coupler::mapping::{Mapper, Method, Weights};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::smoother::{Operator, Settings, Smoother};
+use calcine_coupler::smoother::{Operator, Smoother, SmootherSettings};
 use proptest::prelude::*;
 
 /// A box of cubes of 1 mm.
@@ -22,8 +22,8 @@ fn cubes(cells: [usize; 3]) -> Mesh {
 
 const CUBE: f64 = 1e-9;
 
-fn settings() -> Settings {
-    Settings::default()
+fn settings() -> SmootherSettings {
+    SmootherSettings::default()
 }
 
 fn operator_of(mesh: &Mesh, rows: Vec<Vec<(u32, f64)>>, solid: &[f64]) -> Operator {
@@ -103,7 +103,7 @@ fn spread_and_sample_are_adjoint_to_round_off() {
     for diffusion_length in [None, Some(1.3e-3)] {
         let smoother = Smoother::new(
             &mesh,
-            Settings {
+            SmootherSettings {
                 diffusion_length,
                 ..settings()
             },
@@ -151,7 +151,7 @@ fn the_operator_is_a_partition_of_unity() {
     let (rows, solid) = rough_bed(&mesh, 90);
     let smoother = Smoother::new(
         &mesh,
-        Settings {
+        SmootherSettings {
             diffusion_length: Some(0.8e-3),
             ..settings()
         },
@@ -361,7 +361,7 @@ fn diffusion_widens_by_twice_its_length_squared_and_makes_no_new_maximum() {
     let length = 1.4e-3;
     let smoother = Smoother::new(
         &mesh,
-        Settings {
+        SmootherSettings {
             diffusion_length: Some(length),
             ..settings()
         },

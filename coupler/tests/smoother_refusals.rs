@@ -6,7 +6,7 @@ use calcine_coupler::mapping::Weights;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::smoother::{Settings, Smoother, SmootherError};
+use calcine_coupler::smoother::{Smoother, SmootherError, SmootherSettings};
 
 /// A box of cubes of 1 mm.
 fn cubes(cells: [usize; 3]) -> Mesh {
@@ -21,8 +21,8 @@ fn cubes(cells: [usize; 3]) -> Mesh {
 
 const CUBE: f64 = 1e-9;
 
-fn settings() -> Settings {
-    Settings::default()
+fn settings() -> SmootherSettings {
+    SmootherSettings::default()
 }
 
 #[test]
@@ -71,18 +71,18 @@ fn nothing_is_moved_into_excluded_cells() {
 
 #[test]
 fn the_defaults_are_random_close_packing_and_an_excess_of_one_in_ten_thousand() {
-    let expected = Settings {
+    let expected = SmootherSettings {
         max_solid_fraction: 0.64,
         tolerance: 1e-4,
         diffusion_length: None,
     };
-    assert_eq!(Settings::default(), expected);
+    assert_eq!(SmootherSettings::default(), expected);
 }
 
 #[test]
 fn settings_outside_their_range_are_refused() {
     let mesh = cubes([2, 2, 2]);
-    let refused = |change: fn(&mut Settings)| {
+    let refused = |change: fn(&mut SmootherSettings)| {
         let mut settings = settings();
         change(&mut settings);
         Smoother::new(&mesh, settings).unwrap_err()
@@ -101,7 +101,7 @@ fn settings_outside_their_range_are_refused() {
         let diffusion_length = Some(length);
         Smoother::new(
             &mesh,
-            Settings {
+            SmootherSettings {
                 diffusion_length,
                 ..settings()
             },

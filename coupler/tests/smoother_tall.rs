@@ -7,7 +7,7 @@ use calcine_coupler::mapping::Weights;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::smoother::{Operator, Settings, Smoother};
+use calcine_coupler::smoother::{Operator, Smoother, SmootherSettings};
 
 const CUBE: f64 = 1e-9;
 
@@ -49,7 +49,7 @@ fn spiky(shape: [usize; 3], mean: f64, tilt: f64) -> Vec<f64> {
 fn smoothed(mesh: &Mesh, solid: &[f64]) -> Operator {
     let rows = (0..mesh.cells()).map(|cell| vec![(cell as u32, 1.0)]);
     let weights = Weights::new(mesh.cells(), rows.collect()).unwrap();
-    let smoother = Smoother::new(mesh, Settings::default()).unwrap();
+    let smoother = Smoother::new(mesh, SmootherSettings::default()).unwrap();
     smoother.operator(weights, solid).unwrap()
 }
 
@@ -271,7 +271,7 @@ fn a_tall_bed_of_flat_cells_around_a_duct_is_smoothed_like_any_other() {
 
     let rows = (0..mesh.cells()).map(|cell| vec![(cell as u32, 1.0)]);
     let weights = Weights::new(mesh.cells(), rows.collect()).unwrap();
-    let smoother = Smoother::with_excluded(&mesh, Settings::default(), &excluded).unwrap();
+    let smoother = Smoother::with_excluded(&mesh, SmootherSettings::default(), &excluded).unwrap();
     let operator = smoother.operator(weights, &solid).unwrap();
     assert!(operator.is_multigrid());
     let mut after = vec![0.0; mesh.cells()];

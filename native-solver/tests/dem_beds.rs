@@ -6,7 +6,7 @@ mod grains;
 use std::f64::consts::PI;
 
 use calcine_coupler::motion::{
-    Change, Cohesion, ContactForce, Contacts, Resized, Rolling, WallMotion, WallShape,
+    Cohesion, ContactForce, Contacts, ParticleChanges, Resized, Rolling, WallMotion, WallShape,
 };
 use calcine_coupler::part::{Part, Particles};
 use calcine_coupler::physics::Vec3;
@@ -292,9 +292,9 @@ fn what_comes_to_rest_keeps_the_springs_of_its_contacts() {
     let before = bed.velocity(0);
     bed.run(1);
     let (step, place) = (bed.velocity(0) - before, bed.place(0));
-    let rest = Change {
+    let rest = ParticleChanges {
         rest: true,
-        ..Change::default()
+        ..ParticleChanges::default()
     };
     bed.change(&rest).unwrap();
     assert_eq!((bed.velocity(0), bed.spin(0)), Default::default());
@@ -317,10 +317,10 @@ fn particles_come_and_go_and_the_others_do_not_notice() {
     let mut bed = Bed::new(contacts, &spheres);
     alone.run(300);
     bed.run(300);
-    let change = Change {
+    let change = ParticleChanges {
         remove: vec![5, 2],
         insert: vec![at(6, 0.03), at(9, 0.04)],
-        ..Change::default()
+        ..ParticleChanges::default()
     };
     bed.change(&change).unwrap();
     let fields = bed.particles.fields();
@@ -338,15 +338,15 @@ fn particles_come_and_go_and_the_others_do_not_notice() {
     assert!((bed.place(0) - alone.place(0)).norm() < 1e-9);
     assert!(bed.particles.events().is_empty());
     for wrong in [
-        Change {
+        ParticleChanges {
             remove: vec![7],
             insert: vec![],
-            ..Change::default()
+            ..ParticleChanges::default()
         },
-        Change {
+        ParticleChanges {
             remove: vec![],
             insert: vec![at(4, 0.0)],
-            ..Change::default()
+            ..ParticleChanges::default()
         },
     ] {
         assert!(bed.change(&wrong).is_err());
@@ -372,9 +372,9 @@ fn a_bead_that_becomes_smaller_and_lighter_sinks_into_the_floor_as_hertz_says() 
         radius: 0.5e-3,
         mass: 0.25 * mass,
     };
-    let change = Change {
+    let change = ParticleChanges {
         resize: vec![new],
-        ..Change::default()
+        ..ParticleChanges::default()
     };
     bed.change(&change).unwrap();
     let fields = bed.particles.fields();
@@ -384,9 +384,9 @@ fn a_bead_that_becomes_smaller_and_lighter_sinks_into_the_floor_as_hertz_says() 
     // 4/3 E* √R δ^1.5 = m g: δ goes by (m²/R)^(1/3), here (1/16 · 2)^(1/3) = 1/2.
     let after = overlap(&bed);
     assert!((after / before - 0.5).abs() < 1e-3, "{before} {after}");
-    let nobody = Change {
+    let nobody = ParticleChanges {
         resize: vec![Resized { id: 7, ..new }],
-        ..Change::default()
+        ..ParticleChanges::default()
     };
     assert!(bed.change(&nobody).is_err());
 }

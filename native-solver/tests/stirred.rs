@@ -7,7 +7,7 @@ mod common;
 use calcine_coupler::gas_chemistry::{Combustion, GasChemistry, ReactingGas};
 use calcine_coupler::part::Gas;
 use calcine_coupler::physics::gas_model::GasModel;
-use calcine_coupler::physics::kinetics::{Mechanism, State, Tolerances, pasr};
+use calcine_coupler::physics::kinetics::{Mechanism, MixtureState, Tolerances, pasr};
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::physics::turbulence::KEpsilon;
 use calcine_coupler::setup::{
@@ -55,7 +55,7 @@ fn taken(combustion: Combustion, void_fraction: f64) -> f64 {
 fn the_share_that_eddies_mix_reacts() {
     let gas = mixture();
     let y = fresh();
-    let state = State {
+    let state = MixtureState {
         pressure: ATMOSPHERE,
         temperature: 1500.0,
         fractions: &y,

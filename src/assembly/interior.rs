@@ -1,7 +1,7 @@
 //! The interior of the particles of a case.
 
-use calcine_coupler::interior::reacting::Chemistry;
-use calcine_coupler::interior::{Network, ParticleModel, Reacting, Thin};
+use calcine_coupler::interior::reacting::SolidChemistry;
+use calcine_coupler::interior::{HeatNetwork, ParticleModel, Reacting, Thin};
 use calcine_coupler::part::ParticleFields;
 use calcine_coupler::physics::gas_model::GasModel;
 
@@ -27,7 +27,7 @@ pub(super) fn interior(
     let network = laws::heat(case).map(|laws| {
         let walls = case.walls.iter().zip(&case.wall_temperatures);
         let warm = walls.filter(|(_, temperature)| temperature.is_some());
-        Network::new(
+        HeatNetwork::new(
             laws,
             laws::thermal(case),
             all.clone().map(material).collect(),
@@ -57,7 +57,7 @@ pub(super) fn interior(
 }
 
 /// The reactions of a case.
-pub fn chemistry(case: &Case) -> Result<Chemistry, AssemblyError> {
+pub fn chemistry(case: &Case) -> Result<SolidChemistry, AssemblyError> {
     let gas = match &case.gas.properties {
         GasModel::Mixture(mixture) => Some(mixture.clone()),
         GasModel::Perfect(_) | GasModel::Constant(_) => None,
@@ -65,5 +65,5 @@ pub fn chemistry(case: &Case) -> Result<Chemistry, AssemblyError> {
     let ReactionSpec {
         solids, reactions, ..
     } = case.chemistry.clone();
-    Ok(Chemistry::new(solids, gas, reactions)?)
+    Ok(SolidChemistry::new(solids, gas, reactions)?)
 }

@@ -8,7 +8,7 @@ mod solvers;
 
 use std::path::Path;
 
-use calcine_coupler::coordinator::{CheckpointPaths, Origin, Parts, Run, RunError};
+use calcine_coupler::coordinator::{CheckpointPaths, CoupledRun, Origin, RunError, RunParts};
 use calcine_coupler::error::PartError;
 use calcine_coupler::interior::reacting::LayersError;
 use calcine_coupler::supervisor::Supervisor;
@@ -80,7 +80,7 @@ pub fn assemble<'m>(
     prepared: &'m Prepared,
     settings: &Settings<'_>,
     supervisor: &mut Supervisor,
-) -> Result<Run<'m>, AssemblyError> {
+) -> Result<CoupledRun<'m>, AssemblyError> {
     if let Some(origin) = settings.from {
         let species = case.gas.properties.species();
         origin.check(&prepared.mesh, species, &prepared.particles)?;
@@ -96,7 +96,7 @@ pub fn assemble<'m>(
     let gas = assembly.gas(supervisor)?;
     let particles = assembly.particles(supervisor)?;
     let interior = interior::interior(case, prepared, &particles.fields())?;
-    let parts = Parts {
+    let parts = RunParts {
         gas,
         particles,
         interior,
@@ -109,7 +109,7 @@ pub fn assemble<'m>(
         plan.exchange_attempts = 1;
         plan.repeats = false;
     }
-    let mut run = Run::new(plan, &prepared.mesh, smoother, plan::closures(case), parts)?;
+    let mut run = CoupledRun::new(plan, &prepared.mesh, smoother, plan::closures(case), parts)?;
     if settings.resume {
         run.resume()?;
     } else if let Some(origin) = settings.from {

@@ -1,12 +1,12 @@
 //! What the coordinator is told of a case: its plan and its laws.
 
 use calcine_coupler::closures::Closures;
-use calcine_coupler::coordinator::{CheckpointPaths, Pace, Plan};
+use calcine_coupler::coordinator::{CheckpointPaths, ContactStepLimit, Plan};
 use calcine_coupler::hold::Holds;
 use calcine_coupler::motion::Motion;
 use calcine_coupler::paths::{HeatWall, PathsSetup};
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::traffic::{Feed, Traffic};
+use calcine_coupler::traffic::{Feed, FeedsAndOutlets};
 
 use super::prepared::{Prepared, method};
 use crate::case::model::Case;
@@ -40,13 +40,13 @@ pub(super) fn plan(case: &Case, prepared: &Prepared, checkpoint: CheckpointPaths
         paths: paths(case, prepared),
         pace: match &prepared.particles.motion {
             Motion::Frozen => None,
-            Motion::Free(contacts) => Some(Pace::of(contacts)),
+            Motion::Free(contacts) => Some(ContactStepLimit::of(contacts)),
         },
     }
 }
 
 /// Feeds and outlets of the case; ids go on after those of the start.
-fn traffic(case: &Case, prepared: &Prepared) -> Traffic {
+fn traffic(case: &Case, prepared: &Prepared) -> FeedsAndOutlets {
     let feeds = case.feeds.iter().map(|feed| {
         let population = &case.particles[feed.population];
         Feed {
@@ -64,7 +64,7 @@ fn traffic(case: &Case, prepared: &Prepared) -> Traffic {
     });
     let up = (-case.gas.gravity).try_normalize(0.0).unwrap_or(Vec3::z());
     let next = prepared.particles.id.last().map_or(1, |last| last + 1);
-    Traffic::new(feeds.collect(), case.outlets.clone(), up, next)
+    FeedsAndOutlets::new(feeds.collect(), case.outlets.clone(), up, next)
 }
 
 /// Heat between particles and to walls, as the coordinator finds it.

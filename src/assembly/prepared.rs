@@ -8,7 +8,7 @@ use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
-use calcine_coupler::smoother::{Settings as Smoothing, Smoother};
+use calcine_coupler::smoother::{Smoother, SmootherSettings as Smoothing};
 
 use super::AssemblyError;
 use crate::case::model::{Case, Mapping};

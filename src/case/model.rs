@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use calcine_adapters::openfoam::stock::Solver;
 use calcine_coupler::hold::Holds;
-use calcine_coupler::interior::reacting::{Reaction, Size};
+use calcine_coupler::interior::reacting::{Reaction, SizeChange};
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::motion::{ContactLaw, Wall};
 pub use calcine_coupler::paths::SURROUNDINGS;
@@ -113,7 +113,7 @@ pub struct ReactionSpec {
     /// Mass fractions of the solids in each material.
     pub compositions: Vec<Vec<f64>>,
     /// How particles of each material take up room.
-    pub sizes: Vec<Size>,
+    pub sizes: Vec<SizeChange>,
 }
 
 impl ReactionSpec {

@@ -1,7 +1,7 @@
 //! Particles of different populations must not overlap.
 
 use calcine_coupler::contacts::touching;
-use calcine_coupler::interior::Touch;
+use calcine_coupler::interior::NeighbourPair;
 use calcine_coupler::setup::ParticleSetup;
 
 /// Two particles that overlap.
@@ -29,7 +29,7 @@ pub(super) fn between_populations(setup: &ParticleSetup) -> Option<Overlap> {
     {
         return None;
     }
-    let foreign = |touch: &Touch| {
+    let foreign = |touch: &NeighbourPair| {
         let [a, b] = touch.particles;
         let radii = touch.radius[0] + touch.radius[1];
         setup.population[a] != setup.population[b] && touch.overlap > radii * PRESSED

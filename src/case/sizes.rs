@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::fs;
 
 use calcine_coupler::setup::Turbulence;
-use calcine_coupler::sight::Sight;
+use calcine_coupler::sight::ViewFactors;
 use thiserror::Error;
 
 use super::model::{Case, MeshSpec, Place};
@@ -62,7 +62,7 @@ fn views(case: &Case) -> f64 {
     let Some(radiation) = &case.laws.radiation else {
         return 0.0;
     };
-    let (Sight::Rays { range, .. } | Sight::Distance { range }) = radiation.sight;
+    let (ViewFactors::Rays { range, .. } | ViewFactors::Distance { range }) = radiation.sight;
     let solid = case.particles.iter().filter_map(|one| match one.place {
         Place::Random { solid_fraction, .. } => Some(solid_fraction),
         _ => None,
@@ -78,8 +78,8 @@ fn views(case: &Case) -> f64 {
     // 4/3 π (range d_max)³ times the solid fraction, over π/6 d³; each pair once.
     let within = 0.5 * 8.0 * solid.unwrap_or(DENSE) * (range * largest / mean).powi(3);
     match radiation.sight {
-        Sight::Rays { .. } => within.min(IN_SIGHT),
-        Sight::Distance { .. } => within,
+        ViewFactors::Rays { .. } => within.min(IN_SIGHT),
+        ViewFactors::Distance { .. } => within,
     }
 }
 
@@ -213,15 +213,15 @@ mod tests {
     #[test]
     fn particles_that_radiate_need_memory_for_whom_they_see() {
         let mut hot = shipped("bed-conductivity");
-        let mut seen = |sight: Sight| {
+        let mut seen = |sight: ViewFactors| {
             hot.laws.radiation.as_mut().unwrap().sight = sight;
             views(&hot)
         };
         // 8 · 0.57 · 27 neighbours within three diameters, each pair once.
-        let near = seen(Sight::Distance { range: 3.0 });
+        let near = seen(ViewFactors::Distance { range: 3.0 });
         assert!((near - 61.56).abs() < 1e-9, "{near}");
-        assert!((seen(Sight::Distance { range: 6.0 }) / near - 8.0).abs() < 1e-12);
-        let rays = |range: f64| Sight::Rays { rays: 1000, range };
+        assert!((seen(ViewFactors::Distance { range: 6.0 }) / near - 8.0).abs() < 1e-12);
+        let rays = |range: f64| ViewFactors::Rays { rays: 1000, range };
         assert_eq!(seen(rays(6.0)), IN_SIGHT);
         assert!((seen(rays(2.0)) - 18.24).abs() < 1e-9);
         let both = memory(&hot, 0.0, 1e6);

@@ -1,6 +1,6 @@
 //! Cantera's YAML: species with NASA's seven coefficients; elementary, three-body and falloff reactions (Lindemann, Troe).
 
-use calcine_coupler::physics::kinetics::{Broadening, Collider, RateConstant, Statement};
+use calcine_coupler::physics::kinetics::{Broadening, Collider, RateConstant, ReactionStatement};
 use calcine_coupler::physics::reaction::{Arrhenius, Equation};
 use calcine_coupler::physics::thermo::{Element, LennardJones, Nasa7};
 
@@ -274,7 +274,7 @@ fn reaction(node: &Node, units: &Units) -> Result<Stated, Fault> {
         .get("duplicate")
         .map_or(Ok(false), |node| node.truth("duplicate"))?;
     Ok(Stated {
-        statement: Statement {
+        statement: ReactionStatement {
             name,
             equation,
             orders: (!stated.is_empty()).then_some(orders),

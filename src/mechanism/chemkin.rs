@@ -1,6 +1,6 @@
 //! CHEMKIN's mechanisms: ELEMENTS, SPECIES, THERMO, REACTIONS; rate constants of Arrhenius, with third bodies, LOW, TROE, FORD.
 
-use calcine_coupler::physics::kinetics::{Broadening, RateConstant, Statement};
+use calcine_coupler::physics::kinetics::{Broadening, RateConstant, ReactionStatement};
 use calcine_coupler::physics::reaction::{Arrhenius, Equation};
 
 use super::equation::{self, Body};
@@ -245,7 +245,7 @@ impl Draft {
         let collider =
             collider.map_err(|what| (Some(self.line), format!("{} {what}", self.name)))?;
         Ok(Stated {
-            statement: Statement {
+            statement: ReactionStatement {
                 name: self.name,
                 equation: self.equation,
                 orders: (!self.orders.is_empty()).then_some(orders),

@@ -10,7 +10,7 @@ mod yaml;
 
 use std::path::{Path, PathBuf};
 
-use calcine_coupler::physics::kinetics::{Broadening, Collider, Mechanism, Statement};
+use calcine_coupler::physics::kinetics::{Broadening, Collider, Mechanism, ReactionStatement};
 use calcine_coupler::physics::thermo::{Element, LennardJones, Mixture, Nasa7};
 use thiserror::Error;
 
@@ -18,7 +18,7 @@ use thiserror::Error;
 #[derive(Clone, Debug)]
 pub struct Stated {
     /// The reaction.
-    pub statement: Statement,
+    pub statement: ReactionStatement,
     /// Its line.
     pub line: usize,
     /// True where it says that another has its equation.
@@ -159,7 +159,7 @@ struct Identity<'a> {
 }
 
 impl<'a> Identity<'a> {
-    fn of(statement: &'a Statement) -> Self {
+    fn of(statement: &'a ReactionStatement) -> Self {
         let sorted = |side: &'a [(f64, String)]| {
             let mut side: Vec<_> = side.iter().map(|(n, name)| (name.as_str(), *n)).collect();
             side.sort_by(|one, other| one.0.cmp(other.0));
@@ -220,7 +220,7 @@ impl MechanismFile {
                 .map_err(|error| placed(&self.path, (Some(one.line), error.to_string())))?;
         }
         self.agrees(mixture)?;
-        let all: Vec<Statement> = self
+        let all: Vec<ReactionStatement> = self
             .reactions
             .iter()
             .map(|one| one.statement.clone())

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use calcine_coupler::physics::kinetics::{RateConstant, State};
+use calcine_coupler::physics::kinetics::{MixtureState, RateConstant};
 use proptest::prelude::*;
 
 use super::*;
@@ -33,7 +33,7 @@ fn as_cantera(mechanism: &Mechanism, name: &str, tolerance: f64) {
         let [temperature, pressure, reaction, forth, back] = row[..] else {
             panic!("{line}")
         };
-        let state = State {
+        let state = MixtureState {
             pressure,
             temperature,
             fractions: &y,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use calcine_coupler::mesh::Mesh;
-use calcine_coupler::observer::Moment;
+use calcine_coupler::observer::CommittedState;
 
 use super::ResultsError;
 use super::probe::{Sample, Site};
@@ -41,7 +41,7 @@ impl Store {
     pub fn snapshot(
         &mut self,
         _number: usize,
-        _moment: &Moment<'_>,
+        _moment: &CommittedState<'_>,
         _gas: &[Field<'_>],
         _particles: &[Field<'_>],
         _samples: &[Sample<'_>],

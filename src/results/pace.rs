@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use calcine_coupler::contacts;
 use calcine_coupler::mesh::Mesh;
-use calcine_coupler::observer::Moment;
+use calcine_coupler::observer::CommittedState;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::inertial_number::inertial_number;
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,7 @@ pub const QUASI_STATIC: f64 = 1e-2;
 /// rate of a pair is its relative velocity across the line of centres over their distance; the pressure is
 /// the weight of all particles from its lower one up, less what the gas lifts of it, over the mean
 /// cross-section of the mesh. Zero where none touch.
-pub(super) fn of_bed(moment: &Moment<'_>, gravity: Vec3) -> f64 {
+pub(super) fn of_bed(moment: &CommittedState<'_>, gravity: Vec3) -> f64 {
     let bed = moment.particles;
     let Some(up) = (-gravity).try_normalize(0.0) else {
         return f64::NAN;

@@ -1,7 +1,7 @@
 //! Quantities of interest: how each is measured at a moment, and its verdict.
 
 use calcine_coupler::mesh::Mesh;
-use calcine_coupler::observer::Moment;
+use calcine_coupler::observer::CommittedState;
 use calcine_coupler::physics::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -59,7 +59,7 @@ pub(super) fn check(quantity: &Quantity, mesh: &Mesh) -> Result<(), ResultsError
 
 /// The quantity at a moment, in its unit; NaN where it does not exist: a particle that is gone, a
 /// pressure before the first window, when none is solved yet.
-pub(super) fn evaluate(quantity: &Quantity, moment: &Moment<'_>, sites: &[Site]) -> f64 {
+pub(super) fn evaluate(quantity: &Quantity, moment: &CommittedState<'_>, sites: &[Site]) -> f64 {
     match &quantity.measure {
         Measure::Difference { field, .. } | Measure::Gas { field, .. }
             if field == "pressure" && moment.windows == 0 =>
@@ -137,7 +137,7 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &Moment<'_>, sites: &[Site])
 }
 
 /// A field of all particles; speeds are those of process time.
-fn of_particles(moment: &Moment<'_>, (field, column): Field<'_>) -> Vec<f64> {
+fn of_particles(moment: &CommittedState<'_>, (field, column): Field<'_>) -> Vec<f64> {
     let bed = moment.particles;
     match field {
         "speed" => {
@@ -194,7 +194,7 @@ fn weighted(which: Statistic, pairs: &[(f64, f64)]) -> f64 {
 type Field<'a> = (&'a str, Option<usize>);
 
 /// A gas field in a cell.
-fn in_cell(moment: &Moment<'_>, (field, column): Field<'_>, cell: usize) -> f64 {
+fn in_cell(moment: &CommittedState<'_>, (field, column): Field<'_>, cell: usize) -> f64 {
     let gas = moment.gas;
     match field {
         "pressure" => gas.pressure[cell],
@@ -212,7 +212,7 @@ fn in_cell(moment: &Moment<'_>, (field, column): Field<'_>, cell: usize) -> f64 
 }
 
 /// A gas field in all cells, each with its volume of gas in m³.
-fn in_cells(moment: &Moment<'_>, field: Field<'_>) -> Vec<(f64, f64)> {
+fn in_cells(moment: &CommittedState<'_>, field: Field<'_>) -> Vec<(f64, f64)> {
     let volumes = moment.mesh.cell_volume().iter().enumerate();
     volumes
         .map(|(cell, volume)| {
@@ -225,7 +225,7 @@ fn in_cells(moment: &Moment<'_>, field: Field<'_>) -> Vec<(f64, f64)> {
 /// A gas field on the faces of a patch, each with its area in m²: the pressure is carried from the
 /// cell to the face centre with the cell's gradient, p_f = p_c + ∇p·(x_f − x_c); others are the
 /// cell's.
-fn on_patch(moment: &Moment<'_>, field: Field<'_>, patch: &str) -> Vec<(f64, f64)> {
+fn on_patch(moment: &CommittedState<'_>, field: Field<'_>, patch: &str) -> Vec<(f64, f64)> {
     let mesh = moment.mesh;
     let Some(patch) = mesh.patch(patch) else {
         return Vec::new();
@@ -260,7 +260,7 @@ impl Captured {
 
     /// Takes the value of each quantity at the first moment at or after its time; a quantity
     /// without a time keeps its latest value where `latest` is set.
-    pub fn take(&mut self, case: &Case, moment: &Moment<'_>, sites: &[Site], latest: bool) {
+    pub fn take(&mut self, case: &Case, moment: &CommittedState<'_>, sites: &[Site], latest: bool) {
         let time = moment.clocks.process.seconds();
         for (slot, quantity) in self.values.iter_mut().zip(&case.quantities) {
             let wanted = match expected_at(quantity) {

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use calcine_coupler::ledger::Line as LedgerSums;
-use calcine_coupler::observer::{Moment, Observer, ObserverError, Timing};
-use calcine_coupler::part::About;
+use calcine_coupler::ledger::BalanceLine as LedgerSums;
+use calcine_coupler::observer::{CommittedState, Observer, ObserverError, Timing};
+use calcine_coupler::part::SolverInfo;
 use calcine_coupler::time::{Ticks, Window};
 
 use super::probe::{self, Site};
@@ -121,7 +121,7 @@ impl Recorder {
         self.watch.replace(status)
     }
 
-    fn begin(&mut self, moment: &Moment<'_>) -> Result<(), ResultsError> {
+    fn begin(&mut self, moment: &CommittedState<'_>) -> Result<(), ResultsError> {
         self.watch = Watch::new(&self.directory, moment.clocks.process.seconds());
         for quantity in &self.case.quantities {
             quantities::check(quantity, moment.mesh)?;
@@ -159,7 +159,7 @@ impl Recorder {
         self.summarise(moment, Verdict::Running)
     }
 
-    fn advance(&mut self, moment: &Moment<'_>) -> Result<(), ResultsError> {
+    fn advance(&mut self, moment: &CommittedState<'_>) -> Result<(), ResultsError> {
         self.count(moment);
         let now = moment.clocks.process;
         if self.counters.captured.is_due(&self.case, now.seconds()) {
@@ -183,7 +183,7 @@ impl Recorder {
         Ok(())
     }
 
-    fn save(&mut self, moment: &Moment<'_>, directory: &Path) -> Result<(), ResultsError> {
+    fn save(&mut self, moment: &CommittedState<'_>, directory: &Path) -> Result<(), ResultsError> {
         self.flush()?;
         let mut counters = self.counters.clone();
         counters.wall = self.wall(moment.timing);
@@ -192,7 +192,7 @@ impl Recorder {
         self.summarise(moment, Verdict::Running)
     }
 
-    fn end(&mut self, moment: &Moment<'_>) -> Result<(), ResultsError> {
+    fn end(&mut self, moment: &CommittedState<'_>) -> Result<(), ResultsError> {
         let now = Some(moment.clocks.process.count());
         if self.counters.last_row != now {
             self.row(moment)?;
@@ -220,7 +220,7 @@ impl Recorder {
     }
 
     /// Adds the window's convergence.
-    fn count(&mut self, moment: &Moment<'_>) {
+    fn count(&mut self, moment: &CommittedState<'_>) {
         let (sums, window) = (&mut self.counters.convergence, moment.convergence);
         sums.unconverged_windows += u64::from(!window.converged);
         sums.unsettled_windows += u64::from(!moment.placement.settled);
@@ -232,7 +232,7 @@ impl Recorder {
         sums.largest_volume_residual = sums.largest_volume_residual.max(window.volume_residual);
     }
 
-    fn row(&mut self, moment: &Moment<'_>) -> Result<(), ResultsError> {
+    fn row(&mut self, moment: &CommittedState<'_>) -> Result<(), ResultsError> {
         let acceleration = match moment.window {
             Some(window) => window.acceleration(),
             None => self.case.time.acceleration.at(moment.clocks.process).0,
@@ -261,7 +261,7 @@ impl Recorder {
         open.keep(row)
     }
 
-    fn snapshot(&mut self, moment: &Moment<'_>) -> Result<(), ResultsError> {
+    fn snapshot(&mut self, moment: &CommittedState<'_>) -> Result<(), ResultsError> {
         let gas = snapshot::gas(
             &self.case.output,
             self.case.gas.properties.species(),
@@ -337,7 +337,7 @@ impl Recorder {
         }
     }
 
-    fn status(&self, moment: &Moment<'_>, verdict: Verdict) -> Status {
+    fn status(&self, moment: &CommittedState<'_>, verdict: Verdict) -> Status {
         let (now, end) = (moment.clocks.process, self.case.time.end);
         Status {
             state: verdict.word().into(),
@@ -351,7 +351,11 @@ impl Recorder {
         }
     }
 
-    fn summarise(&mut self, moment: &Moment<'_>, verdict: Verdict) -> Result<(), ResultsError> {
+    fn summarise(
+        &mut self,
+        moment: &CommittedState<'_>,
+        verdict: Verdict,
+    ) -> Result<(), ResultsError> {
         let case = &self.case;
         let over = verdict != Verdict::Running;
         let mut captured = self.counters.captured.clone();
@@ -463,7 +467,7 @@ fn status_of(summary: &Summary) -> Status {
     }
 }
 
-fn solver(about: &About) -> Solver {
+fn solver(about: &SolverInfo) -> Solver {
     Solver {
         name: about.name.clone(),
         version: about.version.clone(),
@@ -482,19 +486,23 @@ fn ledger_line(unit: &str, line: LedgerSums) -> LedgerLine {
 }
 
 impl Observer for Recorder {
-    fn start(&mut self, moment: &Moment<'_>) -> Result<(), ObserverError> {
+    fn start(&mut self, moment: &CommittedState<'_>) -> Result<(), ObserverError> {
         Ok(self.begin(moment)?)
     }
 
-    fn window(&mut self, moment: &Moment<'_>) -> Result<(), ObserverError> {
+    fn window(&mut self, moment: &CommittedState<'_>) -> Result<(), ObserverError> {
         Ok(self.advance(moment)?)
     }
 
-    fn checkpoint(&mut self, moment: &Moment<'_>, directory: &Path) -> Result<(), ObserverError> {
+    fn checkpoint(
+        &mut self,
+        moment: &CommittedState<'_>,
+        directory: &Path,
+    ) -> Result<(), ObserverError> {
         Ok(self.save(moment, directory)?)
     }
 
-    fn finish(&mut self, moment: &Moment<'_>) -> Result<(), ObserverError> {
+    fn finish(&mut self, moment: &CommittedState<'_>) -> Result<(), ObserverError> {
         Ok(self.end(moment)?)
     }
 }

@@ -5,7 +5,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use calcine_coupler::observer::Moment;
+use calcine_coupler::observer::CommittedState;
 use calcine_coupler::time::Window;
 
 use super::probe::Site;
@@ -50,7 +50,7 @@ impl Column {
 }
 
 /// The columns of a case, particles apart.
-pub(super) fn columns(case: &Case, moment: &Moment<'_>) -> Vec<Column> {
+pub(super) fn columns(case: &Case, moment: &CommittedState<'_>) -> Vec<Column> {
     let mut list = vec![
         Column::new("", "process_time", "s", "process (real) time"),
         Column::new("", "motion_time", "s", "motion time"),
@@ -164,7 +164,7 @@ pub(super) struct Row {
 /// The row of a moment, in the order of [`columns`].
 pub(super) fn row(
     case: &Case,
-    moment: &Moment<'_>,
+    moment: &CommittedState<'_>,
     acceleration: f64,
     tracked: &[u64],
     sites: &[Site],

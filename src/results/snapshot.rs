@@ -1,6 +1,6 @@
 //! Fields of a snapshot: the columns that the case asks for, with unit and description.
 
-use calcine_coupler::observer::Moment;
+use calcine_coupler::observer::CommittedState;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::solids::SolidSpecies;
 
@@ -91,7 +91,7 @@ pub(super) const SOLIDS: &str = "solids";
 pub(super) fn gas<'a>(
     output: &Output,
     species: &'a [String],
-    moment: &Moment<'a>,
+    moment: &CommittedState<'a>,
 ) -> Result<Vec<Field<'a>>, ResultsError> {
     use Values::{Scalar, Vector};
     let gas = moment.gas;
@@ -169,7 +169,7 @@ pub(super) fn gas<'a>(
 pub(super) fn particles<'a>(
     output: &Output,
     solids: &'a [SolidSpecies],
-    moment: &Moment<'a>,
+    moment: &CommittedState<'a>,
 ) -> Result<Vec<Field<'a>>, ResultsError> {
     use Values::{Scalar, Small, Vector, Whole};
     let bed = moment.particles;

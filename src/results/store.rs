@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use calcine_coupler::mesh::Mesh;
-use calcine_coupler::observer::Moment;
+use calcine_coupler::observer::CommittedState;
 use calcine_coupler::physics::Vec3;
 use hdf5::types::VarLenUnicode;
 use hdf5::{Dataset, File, FileBuilder, Group, H5Type, Location};
@@ -136,7 +136,7 @@ impl Store {
     pub fn snapshot(
         &mut self,
         number: usize,
-        moment: &Moment<'_>,
+        moment: &CommittedState<'_>,
         gas: &[Field<'_>],
         particles: &[Field<'_>],
         samples: &[Sample<'_>],

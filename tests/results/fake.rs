@@ -7,11 +7,11 @@ use std::time::Duration;
 
 use calcine::case::model::*;
 use calcine::results::{Recorder, RunInfo};
-use calcine_coupler::exchange::Placement;
+use calcine_coupler::exchange::ExchangeConvergence;
 use calcine_coupler::ledger::Ledger;
 use calcine_coupler::mesh::Mesh;
-use calcine_coupler::observer::{Moment, Observer, Timing};
-use calcine_coupler::part::{About, Bed, Convergence, GasFields, ParticleFields};
+use calcine_coupler::observer::{CommittedState, Observer, Timing};
+use calcine_coupler::part::{Bed, Convergence, GasFields, ParticleFields, SolverInfo};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
 use calcine_coupler::setup::{Convection, GasControls, GasSetup};
@@ -24,7 +24,7 @@ fn seconds(time: f64) -> Ticks {
 }
 
 /// An exchange that the first attempt settled.
-const SETTLED: Placement = Placement {
+const SETTLED: ExchangeConvergence = ExchangeConvergence {
     attempts: 1,
     misplaced: 1e-7,
     settled: true,
@@ -210,7 +210,7 @@ pub struct World {
     heat: Vec<f64>,
     convergence: Convergence,
     timing: Timing,
-    about: [About; 2],
+    about: [SolverInfo; 2],
     /// Temperature added to every particle, to make two runs differ.
     pub shift: f64,
 }
@@ -231,7 +231,7 @@ impl World {
 
     pub fn on(mesh: Mesh) -> Self {
         let cells = mesh.cells();
-        let about = |name: &str| About {
+        let about = |name: &str| SolverInfo {
             name: name.into(),
             version: "0.1.0".into(),
             ranks: 1,
@@ -334,8 +334,8 @@ impl World {
     }
 
     /// The world as an observer sees it.
-    pub fn moment(&self) -> Moment<'_> {
-        Moment {
+    pub fn moment(&self) -> CommittedState<'_> {
+        CommittedState {
             windows: self.windows,
             clocks: self.clocks,
             window: self.window.as_ref(),

@@ -13,7 +13,7 @@ use calcine::results::read::Series;
 use calcine_coupler::mapping::{Mapper, Method};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::smoother::{Operator, Settings, Smoother};
+use calcine_coupler::smoother::{Operator, Smoother, SmootherSettings};
 
 /// The bed of cases/fluidised-bed.toml in SI.
 const DIAMETER: f64 = 2e-3;
@@ -116,7 +116,7 @@ pub fn examine(case: &Path, set: &[String], out: &Path, moving: &[Hold], packed:
     let case = read(case, set).unwrap();
     let prepared = Prepared::new(&case).unwrap();
     let mesh: &Mesh = &prepared.mesh;
-    let smoother = Settings {
+    let smoother = SmootherSettings {
         max_solid_fraction: case.coupling.max_solid_fraction,
         tolerance: case.coupling.smoother_tolerance,
         diffusion_length: case.coupling.diffusion_length,

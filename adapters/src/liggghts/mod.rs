@@ -11,9 +11,9 @@ use std::time::Duration;
 
 use calcine_coupler::checkpoint::{StateFile, StateFileError};
 use calcine_coupler::error::{FailureKind, PartError};
-use calcine_coupler::motion::{Change, Motion};
+use calcine_coupler::motion::{Motion, ParticleChanges};
 use calcine_coupler::part::{
-    About, Part, ParticleEvent, ParticleFields, ParticlePush, ParticleReceived, Particles,
+    Part, ParticleEvent, ParticleFields, ParticlePush, ParticleReceived, Particles, SolverInfo,
 };
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::supervisor::Supervisor;
@@ -72,7 +72,7 @@ fn unusable(folder: &Path, error: StateFileError) -> PartError {
 }
 
 /// A change in the host's lines, with every digit.
-fn change_text(change: &Change) -> String {
+fn change_text(change: &ParticleChanges) -> String {
     let mut text = String::from(if change.rest { "rest\n" } else { "" });
     for id in &change.remove {
         let _ = writeln!(text, "remove {id}");
@@ -113,7 +113,7 @@ struct State {
 /// The particles of a running LIGGGHTS.
 pub struct LiggghtsParticles {
     solver: ExternalSolver,
-    about: About,
+    about: SolverInfo,
     committed: State,
     attempt: State,
     window: Window,
@@ -175,7 +175,7 @@ impl LiggghtsParticles {
             },
             supervisor,
         )?;
-        let about = About {
+        let about = SolverInfo {
             name: solver.hello().name.clone(),
             version: solver.hello().version.clone(),
             ranks: ranks as usize,
@@ -291,7 +291,7 @@ impl State {
 }
 
 impl Part for LiggghtsParticles {
-    fn about(&self) -> &About {
+    fn about(&self) -> &SolverInfo {
         &self.about
     }
 
@@ -340,7 +340,11 @@ impl Particles for LiggghtsParticles {
         &[]
     }
 
-    fn change(&mut self, supervisor: &Supervisor, change: &Change) -> Result<(), PartError> {
+    fn change(
+        &mut self,
+        supervisor: &Supervisor,
+        change: &ParticleChanges,
+    ) -> Result<(), PartError> {
         if change.is_empty() {
             return Ok(());
         }

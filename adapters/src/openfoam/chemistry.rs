@@ -6,8 +6,8 @@ use std::fmt::Write;
 
 use calcine_coupler::gas_chemistry::{Combustion, ReactingGas};
 use calcine_coupler::physics::gas::GAS_CONSTANT;
+use calcine_coupler::physics::kinetics::MechanismReaction;
 use calcine_coupler::physics::kinetics::RateConstant;
-use calcine_coupler::physics::kinetics::Step;
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::GasSetup;
 use thiserror::Error;
@@ -140,7 +140,7 @@ fn properties(mixture: &Mixture, gas: &ReactingGas) -> String {
     text
 }
 
-fn reactions(mixture: &Mixture, steps: &[Step]) -> Result<String, Inexpressible> {
+fn reactions(mixture: &Mixture, steps: &[MechanismReaction]) -> Result<String, Inexpressible> {
     let mut text = header("dictionary", "reactions");
     let _ = write!(
         text,
@@ -154,7 +154,11 @@ fn reactions(mixture: &Mixture, steps: &[Step]) -> Result<String, Inexpressible>
 }
 
 /// A reaction as a dictionary.
-fn reaction(number: usize, step: &Step, names: &[String]) -> Result<String, Inexpressible> {
+fn reaction(
+    number: usize,
+    step: &MechanismReaction,
+    names: &[String],
+) -> Result<String, Inexpressible> {
     let RateConstant::Arrhenius(law) = &step.rate else {
         return Err(Inexpressible::Falloff {
             reaction: step.name.clone(),
@@ -194,7 +198,7 @@ fn reaction(number: usize, step: &Step, names: &[String]) -> Result<String, Inex
 
 /// A side of an equation with its orders, as OpenFOAM writes it: `0.5O2^1.25`.
 fn side(
-    step: &Step,
+    step: &MechanismReaction,
     way: &'static str,
     side: &[(usize, f64)],
     orders: &[(usize, f64)],
@@ -237,8 +241,8 @@ mod tests {
         Mixture::new(["CH4", "O2", "CO", "H2", "H2O", "CO2", "N2"]).unwrap()
     }
 
-    fn texts(steps: &[Step]) -> Vec<String> {
-        let one = |step: &Step| reaction(1, step, mixture().names()).unwrap();
+    fn texts(steps: &[MechanismReaction]) -> Vec<String> {
+        let one = |step: &MechanismReaction| reaction(1, step, mixture().names()).unwrap();
         steps.iter().map(one).collect()
     }
 

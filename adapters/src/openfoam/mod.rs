@@ -19,7 +19,7 @@ use std::time::Duration;
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::part::{
-    About, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part,
+    Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
 };
 use calcine_coupler::setup::GasSetup;
 use calcine_coupler::supervisor::Supervisor;
@@ -80,7 +80,7 @@ pub struct OpenfoamLaunch<'a> {
 /// The gas of a running calcineGasFoam.
 pub struct OpenfoamGas {
     solver: ExternalSolver,
-    about: About,
+    about: SolverInfo,
     mesh: Arc<Mesh>,
     storage: GasStorage,
     /// Number of species; zero for a single gas.
@@ -184,7 +184,7 @@ impl OpenfoamGas {
             },
             supervisor,
         )?;
-        let about = About {
+        let about = SolverInfo {
             name: solver.hello().name.clone(),
             version: solver.hello().version.clone(),
             ranks: launch.ranks as usize,
@@ -270,7 +270,7 @@ fn environment(folder: &Path) -> Vec<(OsString, OsString)> {
 }
 
 impl Part for OpenfoamGas {
-    fn about(&self) -> &About {
+    fn about(&self) -> &SolverInfo {
         &self.about
     }
 

@@ -6,7 +6,10 @@ pub mod reacting;
 mod thin;
 
 pub use model::{Newcomer, ParticleModel};
-pub use network::{Beside, HeatLaws, Meeting, Network, Thermal, Touch, Views, WallTouch};
+pub use network::{
+    ExchangeAreas, HeatLaws, HeatNetwork, NeighbourPair, NeighbourWall, Neighbours,
+    NetworkSurroundings, ThermalProperties,
+};
 pub use reacting::Reacting;
 pub use thin::Thin;
 

@@ -1,6 +1,6 @@
 //! The trait behind which particles are thermally thin or resolved along the radius.
 
-use crate::network::{Beside, Meeting};
+use crate::network::{Neighbours, NetworkSurroundings};
 use crate::reacting::Reacting;
 
 /// A particle that comes in.
@@ -36,12 +36,12 @@ pub trait ParticleModel: Send {
     fn conducts(&self) -> bool;
 
     /// Takes up which particles and walls meet at the present places.
-    fn meet(&mut self, meeting: &Meeting<'_>);
+    fn meet(&mut self, meeting: &Neighbours<'_>);
 
     /// Fixes the heat that particles exchange with each other and with walls in the coming attempt: that
     /// of an implicit step over a process span in s in which each particle also exchanges heat with the
     /// gas beside it.
-    fn conduct(&mut self, beside: &Beside<'_>, span: f64);
+    fn conduct(&mut self, beside: &NetworkSurroundings<'_>, span: f64);
 
     /// Heat in W that each reservoir, a wall or the surroundings, gives to the particles in the attempt.
     fn reservoir_heat(&self) -> &[f64];

@@ -2,7 +2,7 @@
 
 use calcine_physics::solid::HeatCapacity;
 
-use crate::network::{Beside, Meeting, Network};
+use crate::network::{HeatNetwork, Neighbours, NetworkSurroundings};
 use crate::{Newcomer, ParticleModel, without};
 
 /// Particles of uniform temperature: m dh(T)/dτ = Q, h the enthalpy of the material. Good for Biot
@@ -20,7 +20,7 @@ pub struct Thin {
     temperature: Vec<f64>,
     /// Start of the exchange with the gas where particles conduct, in K.
     start: Vec<f64>,
-    network: Option<Network>,
+    network: Option<HeatNetwork>,
 }
 
 impl Thin {
@@ -31,7 +31,7 @@ impl Thin {
         material: Vec<usize>,
         materials: Vec<HeatCapacity>,
         temperature: Vec<f64>,
-        network: Option<Network>,
+        network: Option<HeatNetwork>,
     ) -> Self {
         debug_assert!(mass.len() == temperature.len() && mass.len() == material.len());
         let mut thin = Self {
@@ -83,13 +83,13 @@ impl ParticleModel for Thin {
         self.network.is_some()
     }
 
-    fn meet(&mut self, meeting: &Meeting<'_>) {
+    fn meet(&mut self, meeting: &Neighbours<'_>) {
         if let Some(network) = &mut self.network {
             network.meet(meeting);
         }
     }
 
-    fn conduct(&mut self, beside: &Beside<'_>, span: f64) {
+    fn conduct(&mut self, beside: &NetworkSurroundings<'_>, span: f64) {
         let Some(network) = self.network.as_mut().filter(|network| !network.is_empty()) else {
             return;
         };
@@ -215,7 +215,7 @@ fn moved(law: &HeatCapacity, start: f64, energy: f64, mass: f64, heat_capacity: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::{HeatLaws, Touch, plain};
+    use crate::network::{HeatLaws, NeighbourPair, plain};
     use calcine_physics::conduction::BatchelorObrien;
 
     #[test]
@@ -264,7 +264,7 @@ mod tests {
     #[test]
     fn touching_particles_in_still_gas_relax_to_their_common_temperature() {
         let laws = HeatLaws::contacts(Box::new(BatchelorObrien));
-        let network = Network::new(laws, vec![plain(50.0)], vec![0; 2], Vec::new());
+        let network = HeatNetwork::new(laws, vec![plain(50.0)], vec![0; 2], Vec::new());
         let unit = vec![HeatCapacity::constant(1.0)];
         let mut thin = Thin::new(
             vec![1.0, 3.0],
@@ -273,8 +273,8 @@ mod tests {
             vec![300.0, 400.0],
             Some(network),
         );
-        thin.meet(&Meeting {
-            touches: &[Touch {
+        thin.meet(&Neighbours {
+            touches: &[NeighbourPair {
                 particles: [0, 1],
                 radius: [5e-3; 2],
                 overlap: 1e-6,
@@ -282,7 +282,7 @@ mod tests {
             walls: &[],
             views: None,
         });
-        let still = Beside {
+        let still = NetworkSurroundings {
             conductance: &[0.0; 2],
             temperature: &[0.0; 2],
             gas_conductivity: &[0.026; 2],

@@ -1,7 +1,7 @@
 //! Verification of gas reactions against an independent code, Cantera: `reference/references.py` made the tables.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use calcine_physics::kinetics::{Mechanism, Reactor, State, Tolerances};
+use calcine_physics::kinetics::{Mechanism, MixtureState, Reactor, Tolerances};
 use calcine_physics::thermo::Mixture;
 
 fn table(text: &str) -> Vec<Vec<f64>> {
@@ -122,7 +122,7 @@ fn rates_forth_and_back_are_cantera_s() {
         let [temperature, pressure, reaction, forth, back] = row[..] else {
             panic!("{line}")
         };
-        let state = State {
+        let state = MixtureState {
             pressure,
             temperature,
             fractions: &y,

@@ -9,9 +9,9 @@ use calcine_interior::Reacting;
 use rustix::fs::{CWD, RenameFlags, renameat_with};
 use thiserror::Error;
 
-use super::{Run, RunError};
+use super::{CoupledRun, RunError};
 use crate::checkpoint::StateFile;
-use crate::ledger::Moved;
+use crate::ledger::CarriedInventory;
 use crate::observer::Observer;
 use crate::time::{Clocks, Ticks};
 
@@ -102,7 +102,7 @@ fn sync(directory: &Path) -> io::Result<()> {
     fs::File::open(directory)?.sync_all()
 }
 
-impl Run<'_> {
+impl CoupledRun<'_> {
     /// Writes a checkpoint of all participants; each goes on from what it wrote.
     pub(super) fn checkpoint(
         &mut self,
@@ -194,7 +194,7 @@ impl Run<'_> {
             .ledger
             .traffic
             .iter()
-            .flat_map(Moved::numbers)
+            .flat_map(CarriedInventory::numbers)
             .collect();
         state.set_f64s("traffic_moved", &moved);
         self.plan.traffic.record(&mut state);
@@ -239,7 +239,7 @@ impl Run<'_> {
         let moved = state.f64s_of("traffic_moved", 12)?.chunks_exact(6);
         for (total, values) in self.ledger.traffic.iter_mut().zip(moved) {
             let numbers = <[f64; 6]>::try_from(values).unwrap_or_default();
-            *total = Moved::from_numbers(numbers);
+            *total = CarriedInventory::from_numbers(numbers);
         }
         self.plan.traffic.restore(&state)?;
         self.restore_amounts(&state)?;

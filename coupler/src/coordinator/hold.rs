@@ -1,12 +1,12 @@
 //! Windows in which the bed is held (see [`crate::hold`]). Only the coordinator knows of them: the solver of the
 //! particles is told once that they come to rest, and is not asked for steps.
 
-use super::{Run, RunError};
-use crate::motion::Change;
+use super::{CoupledRun, RunError};
+use crate::motion::ParticleChanges;
 use crate::supervisor::Supervisor;
 use crate::time::{Clocks, Window};
 
-impl Run<'_> {
+impl CoupledRun<'_> {
     /// True where particles that move are held over a window.
     pub(super) fn holds(&self, window: &Window) -> bool {
         !self.plan.free.is_empty() && self.plan.holds.at(window.start.process).0
@@ -24,9 +24,9 @@ impl Run<'_> {
         let fields = self.parts.particles.fields();
         let mut speeds = fields.velocity.iter().chain(fields.angular_velocity);
         if speeds.any(|speed| speed.iter().any(|x| *x != 0.0)) {
-            let change = Change {
+            let change = ParticleChanges {
                 rest: true,
-                ..Change::default()
+                ..ParticleChanges::default()
             };
             self.parts.particles.change(supervisor, &change)?;
         }

@@ -21,25 +21,25 @@ use thiserror::Error;
 
 pub use checkpoint::{CheckpointError, CheckpointPaths};
 pub use origin::{Origin, OriginError};
-pub use resize::{LONGEST_STEP, Pace, TooLight};
+pub use resize::{ContactStepLimit, LONGEST_STEP, TooLight};
 
 use crate::checkpoint::StateFileError;
-use crate::closures::{ClosureError, Closures, Coefficients, Seen};
+use crate::closures::{ClosureError, Closures, CouplingCoefficients, SampledGas};
 use crate::error::PartError;
-use crate::exchange::{Exchange, Placement};
+use crate::exchange::{Exchange, ExchangeConvergence};
 use crate::hold::Holds;
-use crate::ledger::{Ledger, Line};
+use crate::ledger::{BalanceLine, Ledger};
 use crate::mapping::{Mapper, MappingError, Method};
 use crate::mesh::Mesh;
-use crate::observer::{Felt, Moment, Observer, ObserverError, Timing};
+use crate::observer::{CommittedState, Observer, ObserverError, ParticleGasExchange, Timing};
 use crate::packing::PackingError;
 use crate::part::{Bed, CellReceived, Convergence, Gas, ParticlePush, ParticleReceived, Particles};
 use crate::paths::{Paths, PathsSetup};
 use crate::smoother::{Operator, Smoother, SmootherError};
 use crate::supervisor::Supervisor;
 use crate::time::{Acceleration, Clocks, GasStorage, Ticks, TimeError};
-use crate::traffic::Traffic;
-use crate::turnover::Turnover;
+use crate::traffic::FeedsAndOutlets;
+use crate::turnover::SpeciesCoupling;
 
 /// When windows, checkpoints and the run end, and how exactly a window is exchanged.
 #[derive(Clone, Debug)]
@@ -75,13 +75,13 @@ pub struct Plan {
     /// Gravity in m/s².
     pub gravity: Vec3,
     /// Feeds and outlets.
-    pub traffic: Traffic,
+    pub traffic: FeedsAndOutlets,
     /// Material of each population, for what feeds bring in.
     pub substance: Vec<usize>,
     /// Heat between particles and to walls.
     pub paths: PathsSetup,
     /// How light particles that move may become by what reacts in them; `None` where none moves.
-    pub pace: Option<Pace>,
+    pub pace: Option<ContactStepLimit>,
 }
 
 /// How a run ended without an error.
@@ -145,7 +145,7 @@ pub enum RunError {
 }
 
 /// The parts that a run is made of.
-pub struct Parts {
+pub struct RunParts {
     /// The gas.
     pub gas: Box<dyn Gas>,
     /// The particles.
@@ -166,10 +166,10 @@ struct Mapped {
 /// Memory of one window, reused.
 #[derive(Default)]
 struct Workspace {
-    seen: Seen,
-    coefficients: Coefficients,
+    seen: SampledGas,
+    coefficients: CouplingCoefficients,
     exchange: Exchange,
-    turnover: Turnover,
+    turnover: SpeciesCoupling,
     /// Pressure in Pa that each particle sees, where some react.
     pressure: Vec<f64>,
     /// Masses in kg and mass fractions of solids, for observers.
@@ -191,13 +191,13 @@ struct Workspace {
 }
 
 /// A run: the parts, the laws, the state of the loop.
-pub struct Run<'m> {
+pub struct CoupledRun<'m> {
     plan: Plan,
     mesh: &'m Mesh,
     mapper: Mapper<'m>,
     smoother: Smoother,
     closures: Closures,
-    parts: Parts,
+    parts: RunParts,
     mapped: Mapped,
     clocks: Clocks,
     /// Motion time for which the bed has been held so far.
@@ -206,19 +206,19 @@ pub struct Run<'m> {
     ledger: Ledger,
     timing: Timing,
     convergence: Convergence,
-    placement: Placement,
+    placement: ExchangeConvergence,
     work: Workspace,
     paths: Paths,
 }
 
-impl<'m> Run<'m> {
+impl<'m> CoupledRun<'m> {
     /// Maps the bed for the first time; the clocks stand at zero.
     pub fn new(
         plan: Plan,
         mesh: &'m Mesh,
         smoother: Smoother,
         closures: Closures,
-        parts: Parts,
+        parts: RunParts,
     ) -> Result<Self, RunError> {
         let mapper = Mapper::new(mesh);
         let elements = elements(&closures, &*parts.interior).into_iter();
@@ -247,14 +247,16 @@ impl<'m> Run<'m> {
             held: Ticks::ZERO,
             windows: 0,
             ledger: Ledger {
-                elements: elements.map(|name| (name, Line::default())).collect(),
+                elements: elements
+                    .map(|name| (name, BalanceLine::default()))
+                    .collect(),
                 ..Ledger::default()
             },
             timing,
             convergence: Convergence::default(),
-            placement: Placement {
+            placement: ExchangeConvergence {
                 settled: true,
-                ..Placement::default()
+                ..ExchangeConvergence::default()
             },
             work,
         };
@@ -338,8 +340,8 @@ impl<'m> Run<'m> {
                 .is_some_and(|wall| since_last >= wall)
     }
 
-    fn moment<'a>(&'a self, window: Option<&'a crate::time::Window>) -> Moment<'a> {
-        Moment {
+    fn moment<'a>(&'a self, window: Option<&'a crate::time::Window>) -> CommittedState<'a> {
+        CommittedState {
             windows: self.windows,
             clocks: self.clocks,
             window,
@@ -351,7 +353,7 @@ impl<'m> Run<'m> {
             particle_heat: &self.work.exchange.heat,
             particle_mass: &self.work.particle_mass,
             solid_fractions: &self.work.solid_fractions,
-            felt: Felt {
+            felt: ParticleGasExchange {
                 force: &self.work.push.force,
                 void_fraction: &self.work.seen.void_fraction,
                 slip: &self.work.coefficients.slip,

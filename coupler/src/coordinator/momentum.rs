@@ -2,8 +2,8 @@
 
 use calcine_physics::Vec3;
 
-use super::{Run, Workspace};
-use crate::closures::Inertia;
+use super::{CoupledRun, Workspace};
+use crate::closures::DragInertia;
 use crate::part::ParticleFields;
 use crate::time::Window;
 
@@ -21,7 +21,7 @@ impl Workspace {
     }
 }
 
-impl Run<'_> {
+impl CoupledRun<'_> {
     /// Makes of the coefficients of drag what acts over the window.
     pub(super) fn relax_drag(&mut self, window: &Window) {
         let still = self.holds(window);
@@ -29,7 +29,7 @@ impl Run<'_> {
         let work = &mut self.work;
         work.still.clear();
         work.still.resize(work.free.len(), false);
-        let inertia = Inertia {
+        let inertia = DragInertia {
             mass: particles.mass,
             free: if still { &work.still } else { &work.free },
             other: &work.other,

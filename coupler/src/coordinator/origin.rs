@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use calcine_physics::Vec3;
 use thiserror::Error;
 
-use super::{CheckpointError, CheckpointPaths, Run, RunError};
+use super::{CheckpointError, CheckpointPaths, CoupledRun, RunError};
 use crate::checkpoint::{StateFile, StateFileError};
 use crate::mesh::Mesh;
 use crate::setup::ParticleSetup;
@@ -187,7 +187,7 @@ impl Origin {
     }
 }
 
-impl Run<'_> {
+impl CoupledRun<'_> {
     /// What must be the same for another run to continue from this one's checkpoint.
     pub(super) fn record_identity(&self, state: &mut StateFile) {
         let particles = self.parts.particles.fields();

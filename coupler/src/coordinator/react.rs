@@ -1,11 +1,11 @@
 //! What a window does with particles that react.
 
 use super::window::timed;
-use super::{Run, RunError};
+use super::{CoupledRun, RunError};
 use crate::time::Window;
-use calcine_interior::reacting::{Booking, Surroundings};
+use calcine_interior::reacting::{ExchangeTotals, Surroundings};
 
-impl Run<'_> {
+impl CoupledRun<'_> {
     /// True where some particles react.
     pub(super) fn reacts(&self) -> bool {
         self.parts.interior.reactions().is_some()
@@ -111,7 +111,7 @@ impl Run<'_> {
         let operator = &self.mapped.operator;
         work.turnover
             .credit(operator, reacting, &gas, &self.closures.gas);
-        let booking = Booking {
+        let booking = ExchangeTotals {
             rates: &work.turnover.rates,
             carried: &work.turnover.carried,
         };

@@ -12,8 +12,8 @@ use calcine_physics::contact::time_step::rayleigh;
 use thiserror::Error;
 
 use super::trade::momentum;
-use super::{Run, RunError};
-use crate::motion::{Change, Contacts, Elastic, Resized};
+use super::{CoupledRun, RunError};
+use crate::motion::{Contacts, Elastic, ParticleChanges, Resized};
 use crate::supervisor::Supervisor;
 
 /// Radii and masses count as the same within this share.
@@ -23,14 +23,14 @@ pub const LONGEST_STEP: f64 = 0.5;
 
 /// What bounds the time step of particles that move.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pace {
+pub struct ContactStepLimit {
     /// The step in s of motion time.
     pub step: f64,
     /// Elastic constants of each population.
     pub elastic: Vec<Elastic>,
 }
 
-impl Pace {
+impl ContactStepLimit {
     /// That of a contact solver.
     pub fn of(contacts: &Contacts) -> Self {
         let of = contacts.material_of.iter();
@@ -81,7 +81,7 @@ pub struct TooLight {
     pub time: f64,
 }
 
-impl Run<'_> {
+impl CoupledRun<'_> {
     /// Tells the solver of the particles what the window has made of them. A bed that is held only
     /// needs to know where a radius has changed.
     pub(super) fn resize(&mut self, supervisor: &Supervisor) -> Result<(), RunError> {
@@ -91,7 +91,7 @@ impl Run<'_> {
         let fields = self.parts.particles.fields();
         let off = |now: f64, before: f64| (now - before).abs() > SAME * before;
         let held = self.plan.free.is_empty();
-        let (mut change, mut asked, mut turned) = (Change::default(), 0.0, 0.0);
+        let (mut change, mut asked, mut turned) = (ParticleChanges::default(), 0.0, 0.0);
         let mut carried = Vec3::zeros();
         for row in 0..fields.len() {
             let mass = self.work.particle_mass[row];
@@ -137,7 +137,7 @@ mod tests {
 
     #[test]
     fn a_particle_may_become_as_light_as_half_of_rayleighs_time_allows() {
-        let pace = |step: f64| Pace {
+        let pace = |step: f64| ContactStepLimit {
             step,
             elastic: vec![Elastic {
                 young: 5e7,

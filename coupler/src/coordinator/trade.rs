@@ -4,14 +4,14 @@ use calcine_interior::{Newcomer, without};
 use calcine_physics::Vec3;
 use calcine_physics::thermo::Element;
 
-use super::{Run, RunError};
+use super::{CoupledRun, RunError};
 use crate::ledger::Ledger;
 use crate::part::ParticleFields;
 use crate::supervisor::Supervisor;
 use crate::time::Window;
-use crate::traffic::Moment;
+use crate::traffic::WindowSpan;
 
-impl Run<'_> {
+impl CoupledRun<'_> {
     /// Lets feeds and outlets act before a window, and books what they moved. They stand while the bed is held.
     pub(super) fn trade(
         &mut self,
@@ -21,7 +21,7 @@ impl Run<'_> {
         if self.plan.traffic.is_none() || self.holds(window) {
             return Ok(());
         }
-        let moment = Moment {
+        let moment = WindowSpan {
             window: window.index,
             span: window.span.process.seconds(),
             acceleration: window.acceleration(),

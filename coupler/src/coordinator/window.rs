@@ -3,15 +3,15 @@
 use std::f64::consts::PI;
 use std::time::{Duration, Instant};
 
-use calcine_interior::{Beside, Reacting};
+use calcine_interior::{NetworkSurroundings, Reacting};
 use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
 use calcine_physics::thermo::Element;
 use rustix::time::{ClockId, clock_gettime};
 
 use super::span::next_span;
-use super::{Mapped, Run, RunError};
-use crate::exchange::{Placement, Setting};
+use super::{CoupledRun, Mapped, RunError};
+use crate::exchange::{ExchangeConvergence, ExchangeInputs};
 use crate::ledger::Ledger;
 use crate::mapping::{Mapper, Method};
 use crate::observer::Timing;
@@ -76,7 +76,7 @@ pub(super) fn map(
     })
 }
 
-impl Run<'_> {
+impl CoupledRun<'_> {
     pub(super) fn next_window(&self) -> Result<Window, RunError> {
         let plan = &self.plan;
         let (_, change) = plan.holds.at(self.clocks.process);
@@ -218,7 +218,7 @@ impl Run<'_> {
                 let span = window.span.process.seconds();
                 self.parts.interior.advance(&work.exchange.heat, span);
             });
-            self.placement = Placement {
+            self.placement = ExchangeConvergence {
                 attempts: window.attempt,
                 misplaced: if settled { misplaced.min(off) } else { off },
                 settled,
@@ -230,7 +230,7 @@ impl Run<'_> {
     /// Spreads what does not change between attempts.
     fn begin_exchange(&mut self, window: &Window) {
         let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
-        let setting = Setting {
+        let setting = ExchangeInputs {
             operator: &mapped.operator,
             particles: self.parts.particles.fields(),
             coefficients: &work.coefficients,
@@ -261,7 +261,7 @@ impl Run<'_> {
         if self.parts.interior.conducts() {
             let (work, timing) = (&self.work, &mut self.timing);
             timed(&mut timing.interior, || {
-                let beside = Beside {
+                let beside = NetworkSurroundings {
                     conductance: &work.coefficients.conductance,
                     temperature: work.exchange.seen_temperature(),
                     gas_conductivity: &work.coefficients.gas_conductivity,
@@ -275,7 +275,7 @@ impl Run<'_> {
     /// One attempt of the gas; the share of the exchange that it left misplaced.
     fn attempt(&mut self, supervisor: &Supervisor, window: &mut Window) -> Result<f64, RunError> {
         let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
-        let setting = Setting {
+        let setting = ExchangeInputs {
             operator: &mapped.operator,
             particles: self.parts.particles.fields(),
             coefficients: &work.coefficients,
@@ -307,7 +307,7 @@ impl Run<'_> {
     /// Gives the particles their drag after the last attempt.
     fn credit_drag(&mut self, window: &Window) {
         let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
-        let setting = Setting {
+        let setting = ExchangeInputs {
             operator: &mapped.operator,
             particles: self.parts.particles.fields(),
             coefficients: &work.coefficients,

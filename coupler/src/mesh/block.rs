@@ -22,7 +22,7 @@ pub struct BoxSpec {
 pub fn box_mesh(spec: &BoxSpec) -> Result<Mesh, MeshError> {
     check(spec)?;
     let [nx, ny, nz] = spec.cells;
-    let grid = Grid { cells: spec.cells };
+    let grid = SphereGrid { cells: spec.cells };
     let mut topology = Topology {
         points: points(spec),
         face_offsets: vec![0],
@@ -101,11 +101,11 @@ fn points(spec: &BoxSpec) -> Vec<Vec3> {
 }
 
 /// Numbering of the cells and points of a box.
-struct Grid {
+struct SphereGrid {
     cells: [usize; 3],
 }
 
-impl Grid {
+impl SphereGrid {
     fn all(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
         let [nx, ny, nz] = self.cells;
         (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])))
@@ -131,7 +131,7 @@ impl Grid {
     }
 }
 
-fn push_side(topology: &mut Topology, grid: &Grid, side: usize) {
+fn push_side(topology: &mut Topology, grid: &SphereGrid, side: usize) {
     let (axis, upper) = (side / 2, side % 2 == 1);
     let layer = if upper { grid.cells[axis] - 1 } else { 0 };
     for cell in grid.all().filter(|cell| cell[axis] == layer) {

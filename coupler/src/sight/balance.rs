@@ -1,6 +1,6 @@
 //! What each particle sees adds up to its surface.
 
-use calcine_interior::Views;
+use calcine_interior::ExchangeAreas;
 
 /// Relative error of a row at which the scaling ends.
 const CLOSED: f64 = 1e-13;
@@ -13,7 +13,7 @@ const ROUNDS: usize = 200;
 /// else), rows are cut down to their surface, and what they lack they see of themselves.
 ///
 /// Source: Knight, Ruiz and Uçar, SIAM J. Matrix Anal. Appl. 35 (2014) 931, doi 10.1137/110825753.
-pub fn balance(views: &mut Views) {
+pub fn balance(views: &mut ExchangeAreas) {
     let count = views.surface.len();
     let mut factor = vec![1.0; count];
     let mut row = vec![0.0; count];
@@ -64,7 +64,7 @@ pub fn balance(views: &mut Views) {
 }
 
 /// Row sums in m² with factors.
-fn sums(views: &Views, factor: &[f64], row: &mut [f64]) {
+fn sums(views: &ExchangeAreas, factor: &[f64], row: &mut [f64]) {
     for ((sum, own), factor) in row.iter_mut().zip(&views.own).zip(factor) {
         *sum = factor * factor * own;
     }
@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn rows_of_a_full_matrix_close_and_stay_reciprocal() {
-        let mut views = Views {
+        let mut views = ExchangeAreas {
             pairs: vec![
                 ([0, 1], 0.4),
                 ([0, 2], 0.7),
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn a_row_that_cannot_close_never_sees_more_than_all() {
-        let mut views = Views {
+        let mut views = ExchangeAreas {
             pairs: vec![([0, 1], 0.1), ([1, 2], 0.1)],
             reservoirs: Vec::new(),
             radiosity: false,

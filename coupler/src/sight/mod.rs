@@ -25,7 +25,7 @@ mod wall;
 
 use std::f64::consts::PI;
 
-use calcine_interior::Views;
+use calcine_interior::ExchangeAreas;
 use calcine_physics::Vec3;
 use calcine_physics::radiation::{SphereTable, sphere_to_sphere, visibility, wall_visibility};
 use nalgebra::Matrix3;
@@ -33,12 +33,12 @@ use rayon::prelude::*;
 
 use crate::contacts::pairs_around;
 use crate::packing::random::SplitMix64;
-use trace::{Grid, meets};
-pub use wall::{Hit, Surface};
+use trace::{SphereGrid, meets};
+pub use wall::{RayHit, WallSurface};
 
 /// How views are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sight {
+pub enum ViewFactors {
     /// By rays.
     Rays {
         /// Rays a particle.
@@ -55,16 +55,16 @@ pub enum Sight {
 
 /// A wall, as radiation meets it.
 #[derive(Clone, Debug)]
-pub struct Mirror {
+pub struct RadiationWall {
     /// Its shape.
-    pub surface: Surface,
+    pub surface: WallSurface,
     /// The reservoir that it is and its emissivity; `None` for a wall that reflects everything.
     pub absorbs: Option<(usize, f64)>,
 }
 
 /// Particles and what is around them.
 #[derive(Clone, Copy, Debug)]
-pub struct Scene<'a> {
+pub struct RadiationScene<'a> {
     /// Radii in m.
     pub radii: &'a [f64],
     /// Centres in m.
@@ -72,7 +72,7 @@ pub struct Scene<'a> {
     /// Emissivities.
     pub emissivity: &'a [f64],
     /// Walls.
-    pub walls: &'a [Mirror],
+    pub walls: &'a [RadiationWall],
     /// Number of the reservoirs that are walls.
     pub reservoirs: usize,
     /// The reservoir that is beyond; `None`: nothing leaves.
@@ -100,26 +100,26 @@ const FAINT: f64 = 1e-4;
 const REFLECTIONS: usize = 1000;
 
 /// View factors of all particles.
-pub fn views(scene: &Scene<'_>, sight: Sight) -> Views {
+pub fn views(scene: &RadiationScene<'_>, sight: ViewFactors) -> ExchangeAreas {
     let count = scene.centres.len();
     let whole = scene.radii.iter().map(|r| 4.0 * PI * r * r);
     let surface: Vec<f64> = match sight {
-        Sight::Rays { .. } => whole.zip(scene.emissivity).map(|(a, e)| a * e).collect(),
-        Sight::Distance { .. } => whole.collect(),
+        ViewFactors::Rays { .. } => whole.zip(scene.emissivity).map(|(a, e)| a * e).collect(),
+        ViewFactors::Distance { .. } => whole.collect(),
     };
     let largest = scene.radii.iter().copied().fold(0.0, f64::max);
-    let (Sight::Rays { range, .. } | Sight::Distance { range }) = sight;
+    let (ViewFactors::Rays { range, .. } | ViewFactors::Distance { range }) = sight;
     let reach = 2.0 * largest * range;
     let open = Open::new(scene.radii);
-    let mut made = Views {
+    let mut made = ExchangeAreas {
         own: vec![0.0; count],
-        radiosity: matches!(sight, Sight::Distance { .. }),
+        radiosity: matches!(sight, ViewFactors::Distance { .. }),
         surface,
-        ..Views::default()
+        ..ExchangeAreas::default()
     };
     match sight {
-        Sight::Rays { rays, .. } => {
-            let grid = Grid::new(scene.radii, scene.centres);
+        ViewFactors::Rays { rays, .. } => {
+            let grid = SphereGrid::new(scene.radii, scene.centres);
             let mut near: Vec<Vec<u32>> = vec![Vec::new(); count];
             for [a, b] in pairs_around(scene.radii, scene.centres, reach.min(NEAR * largest)) {
                 near[a as usize].push(b);
@@ -132,7 +132,7 @@ pub fn views(scene: &Scene<'_>, sight: Sight) -> Views {
                 .collect();
             collect(scene, &open, &seen, &mut made);
         }
-        Sight::Distance { .. } => by_distance(scene, &open, reach, &mut made),
+        ViewFactors::Distance { .. } => by_distance(scene, &open, reach, &mut made),
     }
     balance::balance(&mut made);
     made
@@ -152,7 +152,7 @@ impl Open {
     }
 
     /// Exchange area in m² of two particles with nothing between.
-    fn area(&self, scene: &Scene<'_>, a: usize, b: usize) -> f64 {
+    fn area(&self, scene: &RadiationScene<'_>, a: usize, b: usize) -> f64 {
         let (first, second) = (scene.radii[a], scene.radii[b]);
         let distance = (scene.centres[b] - scene.centres[a]).norm();
         let factor = match &self.table {
@@ -165,8 +165,8 @@ impl Open {
 
 /// The rays of one particle.
 fn look(
-    scene: &Scene<'_>,
-    grid: &Grid<'_>,
+    scene: &RadiationScene<'_>,
+    grid: &SphereGrid<'_>,
     p: usize,
     near: &[u32],
     rays: usize,
@@ -226,8 +226,8 @@ struct Ray {
 
 /// Follows a ray to where it is absorbed, by way of mirrors and grey surfaces.
 fn follow(
-    scene: &Scene<'_>,
-    grid: &Grid<'_>,
+    scene: &RadiationScene<'_>,
+    grid: &SphereGrid<'_>,
     mut ray: Ray,
     reach: f64,
     random: &mut SplitMix64,
@@ -295,7 +295,11 @@ fn lambert(normal: Vec3, random: &mut SplitMix64) -> Vec3 {
     sum.try_normalize(1e-9).unwrap_or(normal)
 }
 
-fn nearest_wall<'w>(scene: &Scene<'w>, origin: Vec3, way: Vec3) -> Option<(&'w Mirror, Hit)> {
+fn nearest_wall<'w>(
+    scene: &RadiationScene<'w>,
+    origin: Vec3,
+    way: Vec3,
+) -> Option<(&'w RadiationWall, RayHit)> {
     let hits = scene
         .walls
         .iter()
@@ -304,7 +308,7 @@ fn nearest_wall<'w>(scene: &Scene<'w>, origin: Vec3, way: Vec3) -> Option<(&'w M
 }
 
 /// Both directions of each pair become one exchange area.
-fn collect(scene: &Scene<'_>, open: &Open, seen: &[Rays], made: &mut Views) {
+fn collect(scene: &RadiationScene<'_>, open: &Open, seen: &[Rays], made: &mut ExchangeAreas) {
     let surface = &made.surface;
     let mut pairs: Vec<([u32; 2], f64)> = Vec::new();
     for (p, rays) in seen.iter().enumerate() {
@@ -345,7 +349,7 @@ fn collect(scene: &Scene<'_>, open: &Open, seen: &[Rays], made: &mut Views) {
 }
 
 /// Views by the distance alone; walls within reach take what a plane at their distance would.
-fn by_distance(scene: &Scene<'_>, open: &Open, reach: f64, made: &mut Views) {
+fn by_distance(scene: &RadiationScene<'_>, open: &Open, reach: f64, made: &mut ExchangeAreas) {
     let pairs = pairs_around(scene.radii, scene.centres, reach);
     let pair = |&[a, b]: &[u32; 2]| {
         let (a, b) = (a as usize, b as usize);

@@ -2,14 +2,14 @@ use super::*;
 use crate::motion::WallShape;
 use crate::packing::{Fill, RandomSpec, Sizes, random_in_box};
 
-fn plane(point: Vec3, normal: Vec3, absorbs: Option<(usize, f64)>) -> Mirror {
-    Mirror {
-        surface: Surface::new(&WallShape::Plane { point, normal }),
+fn plane(point: Vec3, normal: Vec3, absorbs: Option<(usize, f64)>) -> RadiationWall {
+    RadiationWall {
+        surface: WallSurface::new(&WallShape::Plane { point, normal }),
         absorbs,
     }
 }
 
-fn rows(views: &Views) -> Vec<f64> {
+fn rows(views: &ExchangeAreas) -> Vec<f64> {
     let shares = views.own.iter().zip(&views.surface);
     let mut row: Vec<f64> = shares.map(|(own, surface)| own / surface).collect();
     for &([a, b], area) in &views.pairs {
@@ -23,12 +23,12 @@ fn rows(views: &Views) -> Vec<f64> {
 }
 
 /// View factor of a pair.
-fn factor(views: &Views, a: usize, b: usize) -> f64 {
+fn factor(views: &ExchangeAreas, a: usize, b: usize) -> f64 {
     let found = views.pairs.iter().find(|pair| pair.0 == [a, b]);
     found.map_or(0.0, |pair| pair.1 / views.surface[a])
 }
 
-const RAYS: Sight = Sight::Rays {
+const RAYS: ViewFactors = ViewFactors::Rays {
     rays: 20_000,
     range: 3.0,
 };
@@ -43,7 +43,7 @@ fn two_spheres_in_the_open_see_each_other_as_tabulated_and_the_rest_is_beyond() 
         (6.0, 0.007_044),
     ] {
         let centres = [Vec3::zeros(), Vec3::new(0.3, -0.5, 0.8).normalize() * s];
-        let scene = Scene {
+        let scene = RadiationScene {
             radii: &[1.0; 2],
             centres: &centres,
             emissivity: &[1.0; 1000],
@@ -66,7 +66,7 @@ fn a_sphere_between_two_others_hides_them_from_each_other() {
     // an equal sphere half way is whole: every line between the outer two that misses it would have to leave
     // their common cylinder.
     let centres = [0.0, 2.0, 4.0].map(|x| Vec3::new(x, 0.0, 0.0));
-    let scene = Scene {
+    let scene = RadiationScene {
         radii: &[1.0; 3],
         centres: &centres,
         emissivity: &[1.0; 1000],
@@ -79,7 +79,7 @@ fn a_sphere_between_two_others_hides_them_from_each_other() {
     // A small one leaves 0.865 of the open view, by plain Monte Carlo apart from Calcine (1.5e6 rays).
     let radii = [1.0, 0.2, 1.0];
     let partly = views(
-        &Scene {
+        &RadiationScene {
             radii: &radii,
             ..scene
         },
@@ -93,7 +93,7 @@ fn a_sphere_between_two_others_hides_them_from_each_other() {
 #[test]
 fn a_sphere_over_a_floor_sees_the_half_of_it_and_the_half_of_the_sky() {
     let floor = plane(Vec3::zeros(), Vec3::z(), Some((0, 1.0)));
-    let scene = Scene {
+    let scene = RadiationScene {
         radii: &[1.0],
         centres: &[Vec3::new(0.0, 0.0, 3.0)],
         emissivity: &[1.0; 1000],
@@ -117,7 +117,7 @@ fn a_mirror_shows_the_bed_again() {
         plane(Vec3::new(0.0, 0.0, 5.0), -Vec3::z(), Some((0, 1.0))),
     ];
     let centres = [Vec3::new(0.0, 0.0, 1.5), Vec3::new(3.0, 0.0, 1.5)];
-    let scene = Scene {
+    let scene = RadiationScene {
         radii: &[1.0; 2],
         centres: &centres,
         emissivity: &[1.0; 1000],
@@ -125,7 +125,7 @@ fn a_mirror_shows_the_bed_again() {
         reservoirs: 1,
         beyond: None,
     };
-    let grid = Grid::new(scene.radii, scene.centres);
+    let grid = SphereGrid::new(scene.radii, scene.centres);
     let seen = look(&scene, &grid, 0, &[1], 200_000, 100.0);
     let mirrored: f64 = seen.others.iter().map(|one| one.1).sum();
     let image = sphere_to_sphere(1.0, 1.0, (9.0_f64 + 9.0).sqrt());
@@ -140,7 +140,7 @@ fn a_mirror_shows_the_bed_again() {
         plane(Vec3::new(0.0, 0.0, 5.0), -Vec3::z(), Some((0, 0.3))),
     ];
     let views = views(
-        &Scene {
+        &RadiationScene {
             walls: &grey,
             ..scene
         },
@@ -150,7 +150,7 @@ fn a_mirror_shows_the_bed_again() {
 }
 
 /// Spheres of 10 mm in a box of six black walls.
-fn bed() -> (Vec<Vec3>, Vec<Mirror>) {
+fn bed() -> (Vec<Vec3>, Vec<RadiationWall>) {
     let size = Vec3::new(0.07, 0.07, 0.1);
     let spec = RandomSpec {
         sizes: Sizes::Equal(0.01),
@@ -170,13 +170,13 @@ fn bed() -> (Vec<Vec3>, Vec<Mirror>) {
     (packing.centres, walls)
 }
 
-const SHARES: Sight = Sight::Distance { range: 4.0 };
+const SHARES: ViewFactors = ViewFactors::Distance { range: 4.0 };
 
 #[test]
 fn in_a_closed_bed_rows_sum_to_one_and_pairs_of_the_middle_see_what_the_fit_says() {
     let (centres, walls) = bed();
     let radii = vec![5e-3; centres.len()];
-    let scene = Scene {
+    let scene = RadiationScene {
         radii: &radii,
         centres: &centres,
         emissivity: &[1.0; 1000],
@@ -184,7 +184,7 @@ fn in_a_closed_bed_rows_sum_to_one_and_pairs_of_the_middle_see_what_the_fit_says
         reservoirs: 6,
         beyond: None,
     };
-    let rays = Sight::Rays {
+    let rays = ViewFactors::Rays {
         rays: 512,
         range: 4.0,
     };
@@ -196,7 +196,7 @@ fn in_a_closed_bed_rows_sum_to_one_and_pairs_of_the_middle_see_what_the_fit_says
     }
     // How far radiation goes: Σ F s² of a particle in the middle, which sets the bed's conductivity.
     let inner = |c: &Vec3| (0..3).all(|k| (0.025..[0.045, 0.045, 0.075][k]).contains(&c[k]));
-    let moment = |views: &Views| {
+    let moment = |views: &ExchangeAreas| {
         let of = |&([a, b], area): &([usize; 2], f64)| {
             let ends =
                 f64::from(u8::from(inner(&centres[a]))) + f64::from(u8::from(inner(&centres[b])));
@@ -213,7 +213,7 @@ fn in_a_closed_bed_rows_sum_to_one_and_pairs_of_the_middle_see_what_the_fit_says
 fn views_do_not_depend_on_the_number_of_threads() {
     let (centres, walls) = bed();
     let radii = vec![5e-3; centres.len()];
-    let scene = Scene {
+    let scene = RadiationScene {
         radii: &radii,
         centres: &centres,
         emissivity: &[1.0; 1000],
@@ -221,7 +221,7 @@ fn views_do_not_depend_on_the_number_of_threads() {
         reservoirs: 6,
         beyond: None,
     };
-    let rays = Sight::Rays {
+    let rays = ViewFactors::Rays {
         rays: 64,
         range: 3.0,
     };
@@ -239,7 +239,7 @@ fn views_do_not_depend_on_the_number_of_threads() {
 fn grey_spheres_exchange_what_is_left_after_reflections() {
     // Two spheres in the open: e₁ e₂ F, and of second order what goes to and fro.
     let centres = [Vec3::zeros(), Vec3::new(2.5, 0.0, 0.0)];
-    let grey = Scene {
+    let grey = RadiationScene {
         radii: &[1.0; 2],
         centres: &centres,
         emissivity: &[0.5, 0.8],

@@ -4,7 +4,7 @@ use calcine_physics::Vec3;
 
 /// Spheres in cells; each is listed in every cell that its box touches.
 #[derive(Debug)]
-pub struct Grid<'a> {
+pub struct SphereGrid<'a> {
     radii: &'a [f64],
     centres: &'a [Vec3],
     low: Vec3,
@@ -15,7 +15,7 @@ pub struct Grid<'a> {
     list: Vec<u32>,
 }
 
-impl<'a> Grid<'a> {
+impl<'a> SphereGrid<'a> {
     /// Cells of about the largest diameter.
     pub fn new(radii: &'a [f64], centres: &'a [Vec3]) -> Self {
         let (mut low, mut high) = (Vec3::repeat(f64::MAX), Vec3::repeat(f64::MIN));
@@ -191,7 +191,7 @@ mod tests {
             let mut place = || Vec3::new(random.unit(), 2.0 * random.unit(), 0.3 * random.unit());
             let centres: Vec<Vec3> = (0..count).map(|_| place()).collect();
             let radii: Vec<f64> = (0..count).map(|k| 0.01 + 0.002 * (k % 7) as f64).collect();
-            let grid = Grid::new(&radii, &centres);
+            let grid = SphereGrid::new(&radii, &centres);
             for ray in 0..300 {
                 let origin = 1.5 * place() - Vec3::repeat(0.2);
                 let mut way = place() - Vec3::new(0.5, 1.0, 0.15);

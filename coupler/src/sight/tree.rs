@@ -2,7 +2,7 @@
 
 use calcine_physics::Vec3;
 
-use super::wall::Hit;
+use super::wall::RayHit;
 
 /// Triangles to a leaf at most.
 const LEAF: usize = 4;
@@ -21,12 +21,12 @@ struct Node {
 
 /// Triangles, both sides of them.
 #[derive(Clone, Debug, Default)]
-pub struct Tree {
+pub struct TriangleTree {
     triangles: Vec<[Vec3; 3]>,
     nodes: Vec<Node>,
 }
 
-impl Tree {
+impl TriangleTree {
     /// Halves the triangles at the median of their centres along the longest side, again and again.
     pub fn new(triangles: &[[Vec3; 3]]) -> Self {
         let mut tree = Self {
@@ -91,7 +91,7 @@ impl Tree {
     }
 
     /// Where a ray meets a triangle first.
-    pub fn hit(&self, origin: Vec3, way: Vec3) -> Option<Hit> {
+    pub fn hit(&self, origin: Vec3, way: Vec3) -> Option<RayHit> {
         let mut best = f64::INFINITY;
         let mut normal = Vec3::zeros();
         self.visit(
@@ -120,7 +120,7 @@ impl Tree {
             },
             &mut best,
         );
-        best.is_finite().then_some(Hit {
+        best.is_finite().then_some(RayHit {
             distance: best,
             normal,
         })
@@ -227,7 +227,7 @@ mod tests {
     #[test]
     fn the_tree_finds_what_the_search_over_all_triangles_finds() {
         let (triangles, mut random) = scatter(300);
-        let tree = Tree::new(&triangles);
+        let tree = TriangleTree::new(&triangles);
         for _ in 0..200 {
             let origin = Vec3::new(random.unit(), random.unit(), random.unit());
             let way = Vec3::new(
@@ -256,7 +256,7 @@ mod tests {
     #[test]
     fn nearest_points_lie_on_faces_edges_and_corners() {
         let triangle = [Vec3::zeros(), Vec3::x(), Vec3::y()];
-        let tree = Tree::new(&[triangle]);
+        let tree = TriangleTree::new(&[triangle]);
         for (point, apart) in [
             (Vec3::new(0.2, 0.2, 0.5), 0.5),
             (Vec3::new(0.5, -3.0, 4.0), 5.0),
@@ -267,6 +267,10 @@ mod tests {
         }
         let hit = tree.hit(Vec3::new(0.2, 0.2, 1.0), -Vec3::z()).unwrap();
         assert_eq!((hit.distance, hit.normal), (1.0, Vec3::z()));
-        assert!(Tree::new(&[]).hit(Vec3::zeros(), Vec3::x()).is_none());
+        assert!(
+            TriangleTree::new(&[])
+                .hit(Vec3::zeros(), Vec3::x())
+                .is_none()
+        );
     }
 }

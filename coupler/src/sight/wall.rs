@@ -2,12 +2,12 @@
 
 use calcine_physics::Vec3;
 
-use super::tree::Tree;
+use super::tree::TriangleTree;
 use crate::motion::WallShape;
 
 /// Where a ray meets a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit {
+pub struct RayHit {
     /// Distance along the ray in m.
     pub distance: f64,
     /// Unit normal of the wall, against the ray.
@@ -16,18 +16,18 @@ pub struct Hit {
 
 /// The shape of a wall, ready to be asked.
 #[derive(Clone, Debug)]
-pub enum Surface {
+pub enum WallSurface {
     /// All shapes but triangles.
     Plain(WallShape),
     /// Triangles.
-    Mesh(Tree),
+    Mesh(TriangleTree),
 }
 
-impl Surface {
+impl WallSurface {
     /// From the shape of a wall.
     pub fn new(shape: &WallShape) -> Self {
         match shape {
-            WallShape::Mesh { triangles } => Self::Mesh(Tree::new(triangles)),
+            WallShape::Mesh { triangles } => Self::Mesh(TriangleTree::new(triangles)),
             other => Self::Plain(other.clone()),
         }
     }
@@ -56,12 +56,12 @@ impl Surface {
     }
 
     /// Where a ray from a point within the bed, along a unit vector, meets the wall first.
-    pub fn hit(&self, origin: Vec3, way: Vec3) -> Option<Hit> {
+    pub fn hit(&self, origin: Vec3, way: Vec3) -> Option<RayHit> {
         match self {
             Self::Mesh(tree) => tree.hit(origin, way),
             Self::Plain(WallShape::Plane { point, normal }) => {
                 let speed = way.dot(normal);
-                (speed < 0.0).then(|| Hit {
+                (speed < 0.0).then(|| RayHit {
                     distance: ((origin - point).dot(normal) / -speed).max(0.0),
                     normal: *normal,
                 })
@@ -80,7 +80,7 @@ impl Surface {
                 let distance = ((root.sqrt() - b) / a).max(0.0);
                 let out = from + distance * speed;
                 let normal = -out.try_normalize(0.0)?;
-                (normal.dot(&way) < 0.0).then_some(Hit { distance, normal })
+                (normal.dot(&way) < 0.0).then_some(RayHit { distance, normal })
             }
             Self::Plain(WallShape::Cone { ends, radii }) => {
                 Frustum::new(ends, radii).hit(origin, way)
@@ -123,7 +123,7 @@ impl Frustum {
         (from.dot(&self.axis), across(from, &self.axis).norm())
     }
 
-    fn hit(&self, origin: Vec3, way: Vec3) -> Option<Hit> {
+    fn hit(&self, origin: Vec3, way: Vec3) -> Option<RayHit> {
         let from = origin - self.start;
         let (rho, speed) = (across(from, &self.axis), across(way, &self.axis));
         let (x, pace) = (from.dot(&self.axis), way.dot(&self.axis));
@@ -138,7 +138,7 @@ impl Frustum {
         } else {
             [(-b - root) / a, (-b + root) / a]
         };
-        let mut best: Option<Hit> = None;
+        let mut best: Option<RayHit> = None;
         for distance in ways {
             let place = x + distance * pace;
             let here = rho + distance * speed;
@@ -146,7 +146,7 @@ impl Frustum {
             let inside = distance >= 0.0 && (0.0..=self.length).contains(&place);
             if inside && outward > 0.0 && best.is_none_or(|hit| distance < hit.distance) {
                 let out = here.try_normalize(0.0)? - self.slope * self.axis;
-                best = Some(Hit {
+                best = Some(RayHit {
                     distance,
                     normal: -out.normalize(),
                 });
@@ -166,7 +166,7 @@ mod tests {
 
     #[test]
     fn a_ray_meets_planes_cylinders_and_cones_where_geometry_says() {
-        let plane = Surface::Plain(WallShape::Plane {
+        let plane = WallSurface::Plain(WallShape::Plane {
             point: Vec3::new(0.0, 0.0, 1.0),
             normal: -Vec3::z(),
         });
@@ -174,7 +174,7 @@ mod tests {
         assert!((hit.distance - 1.25).abs() < 1e-14);
         assert!(plane.hit(Vec3::zeros(), -Vec3::z()).is_none());
         assert_eq!(plane.distance(Vec3::new(5.0, 0.0, 0.25), 1.0), 0.75);
-        let tube = Surface::Plain(WallShape::Cylinder {
+        let tube = WallSurface::Plain(WallShape::Cylinder {
             point: Vec3::new(1.0, 0.0, 0.0),
             axis: Vec3::z(),
             radius: 2.0,
@@ -183,7 +183,7 @@ mod tests {
         assert!((hit.distance - 3.0).abs() < 1e-14 && (hit.normal + Vec3::x()).norm() < 1e-14);
         assert!((tube.distance(Vec3::new(0.0, 0.0, 3.0), 1.0) - 1.0).abs() < 1e-14);
         // Radius 1 at the bottom, 2 at a height of 1: at 45° the ray out meets its parallel never.
-        let cone = Surface::Plain(WallShape::Cone {
+        let cone = WallSurface::Plain(WallShape::Cone {
             ends: [Vec3::zeros(), Vec3::z()],
             radii: [1.0, 2.0],
         });

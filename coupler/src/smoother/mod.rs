@@ -42,7 +42,7 @@ use obstacle::Care;
 
 /// What is asked of the smoother.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
+pub struct SmootherSettings {
     /// Solid volume fraction α_max that no cell may exceed, between 0 and 1.
     pub max_solid_fraction: f64,
     /// Excess that may stay: as a share of the bed's solid volume in all, and as a solid fraction
@@ -52,7 +52,7 @@ pub struct Settings {
     pub diffusion_length: Option<f64>,
 }
 
-impl Default for Settings {
+impl Default for SmootherSettings {
     /// Random close packing, 0.64, and an excess of 1e-4 (requirements VFS-1, VFS-4).
     fn default() -> Self {
         Self {
@@ -67,7 +67,7 @@ impl Default for Settings {
 /// first bed that needs more than sweeps.
 #[derive(Clone, Debug)]
 pub struct Smoother {
-    settings: Settings,
+    settings: SmootherSettings,
     graph: Arc<Graph>,
     cascade: Arc<OnceLock<Cascade>>,
     diffusion: Option<Diffusion>,
@@ -83,7 +83,7 @@ impl Smoother {
     pub const MOST_SWEEPS: u32 = 150;
 
     /// The smoother of a mesh without excluded zones.
-    pub fn new(mesh: &Mesh, settings: Settings) -> Result<Self, SmootherError> {
+    pub fn new(mesh: &Mesh, settings: SmootherSettings) -> Result<Self, SmootherError> {
         Self::with_excluded(mesh, settings, &vec![false; mesh.cells()])
     }
 
@@ -91,10 +91,10 @@ impl Smoother {
     /// (burner ducts, walls).
     pub fn with_excluded(
         mesh: &Mesh,
-        settings: Settings,
+        settings: SmootherSettings,
         excluded: &[bool],
     ) -> Result<Self, SmootherError> {
-        let Settings {
+        let SmootherSettings {
             max_solid_fraction: most,
             tolerance,
             diffusion_length,

@@ -163,7 +163,7 @@ impl Chemistry {
             after.copy_from_slice(before);
             let mut temperature = at.temperature[cell];
             let pressure = at.base_pressure;
-            let state = kinetics::State {
+            let state = kinetics::MixtureState {
                 pressure,
                 temperature,
                 fractions: before,

@@ -24,7 +24,7 @@ use std::sync::Arc;
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::part::{
-    About, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part,
+    Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
 };
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::GasSetup;
@@ -49,7 +49,7 @@ const STATE: &str = "gas.state";
 /// The native gas.
 #[derive(Debug)]
 pub struct NativeGas {
-    about: About,
+    about: SolverInfo,
     mesh: Arc<Mesh>,
     grid: Arc<Grid>,
     setup: GasSetup,
@@ -87,7 +87,7 @@ impl NativeGas {
         let (cells, faces) = (mesh.cells(), mesh.faces());
         let committed = start(setup, cells, faces);
         let mut gas = Self {
-            about: About {
+            about: SolverInfo {
                 name: "native gas".into(),
                 version: env!("CARGO_PKG_VERSION").into(),
                 ranks: 1,
@@ -232,7 +232,7 @@ impl NativeGas {
 }
 
 impl Part for NativeGas {
-    fn about(&self) -> &About {
+    fn about(&self) -> &SolverInfo {
         &self.about
     }
 

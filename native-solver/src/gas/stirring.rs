@@ -1,14 +1,19 @@
 //! The partially stirred reactor (requirement COR-16): eddies mix a share of a cell finely enough to react.
 
 use calcine_coupler::gas_chemistry::{Combustion, ReactingGas};
-use calcine_coupler::physics::kinetics::{State, pasr};
+use calcine_coupler::physics::kinetics::{MixtureState, pasr};
 use calcine_coupler::turbulence::is_free;
 
 use super::attempt::Frame;
 
 /// Share of a cell's gas that reacts, by the eddies of the window's start; 1 by laminar rates, and in the bed, which has
 /// no eddies and whose pores mix.
-pub fn reacting_share(frame: &Frame<'_>, gas: &ReactingGas, cell: usize, state: State<'_>) -> f64 {
+pub fn reacting_share(
+    frame: &Frame<'_>,
+    gas: &ReactingGas,
+    cell: usize,
+    state: MixtureState<'_>,
+) -> f64 {
     let Combustion::Pasr { mixing_constant } = gas.combustion else {
         return 1.0;
     };
@@ -17,7 +22,7 @@ pub fn reacting_share(frame: &Frame<'_>, gas: &ReactingGas, cell: usize, state: 
     if eddies.is_laminar() || !is_free(void_fraction) {
         return 1.0;
     }
-    let State {
+    let MixtureState {
         pressure,
         temperature,
         fractions,

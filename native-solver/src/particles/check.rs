@@ -1,6 +1,8 @@
 //! Setups that the native particles cannot take.
 
-use calcine_coupler::motion::{Change, ContactForce, Contacts, Motion, Resized, Wall, WallShape};
+use calcine_coupler::motion::{
+    ContactForce, Contacts, Motion, ParticleChanges, Resized, Wall, WallShape,
+};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 
@@ -225,7 +227,11 @@ fn within(
 }
 
 /// Checks a change of particles; returns the rows of those that go, ascending.
-pub fn change(change: &Change, id: &[u64], populations: usize) -> Result<Vec<usize>, NativeError> {
+pub fn change(
+    change: &ParticleChanges,
+    id: &[u64],
+    populations: usize,
+) -> Result<Vec<usize>, NativeError> {
     let mut rows = Vec::with_capacity(change.remove.len());
     for &gone in &change.remove {
         rows.push(
@@ -268,7 +274,7 @@ pub fn change(change: &Change, id: &[u64], populations: usize) -> Result<Vec<usi
 
 /// Checks the particles that get another size; their rows with what they become.
 pub fn resized<'a>(
-    change: &'a Change,
+    change: &'a ParticleChanges,
     id: &[u64],
 ) -> Result<Vec<(usize, &'a Resized)>, NativeError> {
     let row = |new: &'a Resized| {

@@ -8,9 +8,9 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use calcine_coupler::error::{FailureKind, PartError};
-use calcine_coupler::motion::{Change, Contacts, Motion};
+use calcine_coupler::motion::{Contacts, Motion, ParticleChanges};
 use calcine_coupler::part::{
-    About, Part, ParticleEvent, ParticleFields, ParticlePush, ParticleReceived, Particles,
+    Part, ParticleEvent, ParticleFields, ParticlePush, ParticleReceived, Particles, SolverInfo,
 };
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
@@ -30,7 +30,7 @@ const WHOLE: f64 = 1e-11;
 /// A bed: frozen, or in motion.
 #[derive(Debug)]
 pub struct NativeParticles {
-    about: About,
+    about: SolverInfo,
     id: Vec<u64>,
     population: Vec<u32>,
     position: Vec<Vec3>,
@@ -56,7 +56,7 @@ impl NativeParticles {
         let count = setup.id.len();
         let spheres = setup.radius.iter().zip(&setup.density);
         let mut bed = Self {
-            about: About {
+            about: SolverInfo {
                 name: "native particles".into(),
                 version: env!("CARGO_PKG_VERSION").into(),
                 ranks: 1,
@@ -235,7 +235,7 @@ impl NativeParticles {
     }
 
     /// Gives particles that stay another radius and mass.
-    fn resize(&mut self, change: &Change) -> Result<(), NativeError> {
+    fn resize(&mut self, change: &ParticleChanges) -> Result<(), NativeError> {
         for (row, new) in check::resized(change, &self.id)? {
             self.radius[row] = new.radius;
             self.mass[row] = new.mass;
@@ -244,7 +244,7 @@ impl NativeParticles {
     }
 
     /// Takes particles out and puts new ones in; the others keep the memories of their contacts.
-    fn exchange(&mut self, change: &Change) -> Result<(), NativeError> {
+    fn exchange(&mut self, change: &ParticleChanges) -> Result<(), NativeError> {
         self.resize(change)?;
         let Some(engine) = &mut self.engine else {
             return Ok(());
@@ -330,7 +330,7 @@ fn retain<T>(values: &mut Vec<T>, keep: &[bool]) {
 }
 
 impl Part for NativeParticles {
-    fn about(&self) -> &About {
+    fn about(&self) -> &SolverInfo {
         &self.about
     }
 
@@ -370,7 +370,11 @@ impl Particles for NativeParticles {
         &self.events
     }
 
-    fn change(&mut self, _supervisor: &Supervisor, change: &Change) -> Result<(), PartError> {
+    fn change(
+        &mut self,
+        _supervisor: &Supervisor,
+        change: &ParticleChanges,
+    ) -> Result<(), PartError> {
         if change.is_empty() {
             return Ok(());
         }

@@ -6,8 +6,8 @@ use std::time::Duration;
 use calcine_coupler::checkpoint::StateFile;
 use calcine_coupler::error::PartError;
 use calcine_coupler::motion::{
-    Change, Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, NewParticle, Pair,
-    Rolling, Wall, WallMotion, WallShape,
+    Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, NewParticle, Pair,
+    ParticleChanges, Rolling, Wall, WallMotion, WallShape,
 };
 use calcine_coupler::part::{Part, ParticlePush, ParticleReceived, Particles};
 use calcine_coupler::physics::Vec3;
@@ -154,7 +154,7 @@ impl Bed {
         self.try_run(steps).unwrap();
     }
 
-    pub fn change(&mut self, change: &Change) -> Result<(), PartError> {
+    pub fn change(&mut self, change: &ParticleChanges) -> Result<(), PartError> {
         self.particles.change(&self.supervisor, change)?;
         self.push.force = vec![Vec3::zeros(); self.particles.fields().len()];
         Ok(())

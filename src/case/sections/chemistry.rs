@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use calcine_coupler::gas_chemistry::{Combustion, GasChemistry, ReactingGas};
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::kinetics::{
-    Collider, KineticsError, Mechanism, RateConstant, Statement, Step, Tolerances,
+    Collider, KineticsError, Mechanism, MechanismReaction, RateConstant, ReactionStatement,
+    Tolerances,
 };
 use calcine_coupler::physics::reaction::Equation;
 use calcine_coupler::physics::thermo::Mixture;
@@ -166,7 +167,7 @@ fn file(table: &Reader<'_>, mixture: &Mixture, folder: &Path) -> Option<(Mechani
 
 fn reactions(table: &Reader<'_>, mixture: &Mixture, around: &Around<'_>) -> Option<Mechanism> {
     let tables = table.tables("reactions");
-    let mut statements: Vec<Statement> = Vec::new();
+    let mut statements: Vec<ReactionStatement> = Vec::new();
     for table in &tables {
         let Some(made) = reaction(table, mixture, around) else {
             continue;
@@ -194,7 +195,11 @@ fn reactions(table: &Reader<'_>, mixture: &Mixture, around: &Around<'_>) -> Opti
     }
 }
 
-fn reaction(table: &Reader<'_>, mixture: &Mixture, around: &Around<'_>) -> Option<Statement> {
+fn reaction(
+    table: &Reader<'_>,
+    mixture: &Mixture,
+    around: &Around<'_>,
+) -> Option<ReactionStatement> {
     let name = table.required_text("name", "\"shift\"");
     let text = table.required_text("equation", "\"CO + H2O <=> CO2 + H2\"");
     let example = "rate = { factor = 2.75e6, activation_energy = \"83.6 kJ/mol\" }";
@@ -222,7 +227,7 @@ fn reaction(table: &Reader<'_>, mixture: &Mixture, around: &Around<'_>) -> Optio
             return None;
         }
     };
-    let mut statement = Statement {
+    let mut statement = ReactionStatement {
         name: name?.into(),
         equation,
         orders: None,
@@ -329,7 +334,7 @@ fn absent(k: usize, net: &[(usize, f64)], around: &Around<'_>) -> Option<&'stati
 /// True where the last species, which is what the others leave, reacts in none.
 fn last_rests(table: &Reader<'_>, key: &str, mechanism: &Mechanism) -> bool {
     let last = mechanism.species() - 1;
-    let reacts = |step: &&Step| step.net.iter().any(|one| one.0 == last);
+    let reacts = |step: &&MechanismReaction| step.net.iter().any(|one| one.0 == last);
     let Some(step) = mechanism.steps().iter().find(reacts) else {
         return true;
     };

@@ -1,6 +1,6 @@
 //! `materials.NAME.size`: how particles take up room while they react.
 
-use calcine_coupler::interior::reacting::Size;
+use calcine_coupler::interior::reacting::SizeChange;
 use calcine_coupler::interior::reacting::size::specific_volume;
 use calcine_coupler::physics::reaction::Equilibrium;
 use calcine_coupler::physics::solids::SolidSpecies;
@@ -83,11 +83,11 @@ pub(super) fn size(
     start: &[f64],
     solids: &[SolidSpecies],
     used: &[bool],
-) -> Size {
+) -> SizeChange {
     match &material.size {
-        SizeLaw::Constant => Size::Constant,
+        SizeLaw::Constant => SizeChange::Constant,
         SizeLaw::ConstantDensity { least_radius } => {
-            Size::of_density(material.density, solids, *least_radius)
+            SizeChange::of_density(material.density, solids, *least_radius)
         }
         SizeLaw::Densities {
             densities,
@@ -97,7 +97,7 @@ pub(super) fn size(
             let kept = (0..used.len()).filter(|k| used[*k]);
             // Of what is not stated there is never any.
             let own: Vec<f64> = kept.map(|k| stated(k).unwrap_or(f64::INFINITY)).collect();
-            Size::of_densities(&own, (material.density, start), solids, *least_radius)
+            SizeChange::of_densities(&own, (material.density, start), solids, *least_radius)
         }
     }
 }
@@ -115,7 +115,7 @@ pub(super) fn fits(
         let Some(index) = found.filter(|&index| index < chemistry.sizes.len()) else {
             continue;
         };
-        let Size::Volumes { each, least_radius } = &chemistry.sizes[index] else {
+        let SizeChange::Volumes { each, least_radius } = &chemistry.sizes[index] else {
             continue;
         };
         let own = particles.iter().filter(|one| one.material == index);

@@ -2,7 +2,7 @@
 
 use calcine_coupler::motion::{Wall, WallMotion, WallShape};
 use calcine_coupler::setup::Schedule;
-use calcine_coupler::sight::Sight;
+use calcine_coupler::sight::ViewFactors;
 
 use crate::case::model::{
     Area, Conduction, ConductionLaw, Gap, Laws, Material, Population, Radiation,
@@ -145,8 +145,8 @@ pub(super) fn radiation(section: &Reader<'_>) -> Option<Option<Radiation>> {
     let rays = usize::try_from(rays?).ok()?;
     let range = range?;
     let sight = match law? {
-        1 => Sight::Rays { rays, range },
-        2 => Sight::Distance { range },
+        1 => ViewFactors::Rays { rays, range },
+        2 => ViewFactors::Distance { range },
         _ => return Some(None),
     };
     Some(Some(Radiation {

@@ -1,7 +1,7 @@
 //! `[[reactions]]`, and what materials are made of.
 
 use calcine_adapters::openfoam::stock::Solver;
-use calcine_coupler::interior::reacting::{Chemistry, LayerDiffusivity, Rate, Reaction};
+use calcine_coupler::interior::reacting::{LayerDiffusivity, Rate, Reaction, SolidChemistry};
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::reaction::equilibrium::GibbsLine;
 use calcine_coupler::physics::reaction::{Arrhenius, Equation, Equilibrium, PowerLaw, imbalance};
@@ -104,7 +104,7 @@ pub(super) fn reactions(
         made.push(reaction);
     }
     if made.len() == tables.len()
-        && let Err(error) = Chemistry::new(solids.to_vec(), gas.cloned(), made.clone())
+        && let Err(error) = SolidChemistry::new(solids.to_vec(), gas.cloned(), made.clone())
     {
         let help = "write law = \"power-law\", or change the equation";
         root.fail(
@@ -415,7 +415,7 @@ fn equilibrium(
 /// True where a stated heat is that of the enthalpies of formation.
 fn agrees(table: &Reader<'_>, heat: f64, made: &Reaction, known: &Known<'_>) -> bool {
     let gas = known.gas.cloned();
-    let Ok(chemistry) = Chemistry::new(known.solids.to_vec(), gas, Vec::new()) else {
+    let Ok(chemistry) = SolidChemistry::new(known.solids.to_vec(), gas, Vec::new()) else {
         return true;
     };
     heat_agrees(table, heat, chemistry.heat_of(made))

@@ -2,7 +2,7 @@
 
 /// Two particles whose surfaces touch or are near.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Touch {
+pub struct NeighbourPair {
     /// Their places in the order of the particles.
     pub particles: [usize; 2],
     /// Their radii in m.
@@ -13,7 +13,7 @@ pub struct Touch {
 
 /// A particle whose surface touches a wall or is near it. Walls count as flat.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WallTouch {
+pub struct NeighbourWall {
     /// The particle's place in the order of the particles.
     pub particle: usize,
     /// Index of the reservoir that the wall is.
@@ -26,7 +26,7 @@ pub struct WallTouch {
 
 /// Who sees whom: exchange areas in m², the surface of one times its view factor to the other.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Views {
+pub struct ExchangeAreas {
     /// Pairs of particles, each once: reciprocity holds by construction.
     pub pairs: Vec<([usize; 2], f64)>,
     /// Particle and reservoir.
@@ -42,18 +42,18 @@ pub struct Views {
 
 /// What particles meet at their present places.
 #[derive(Clone, Copy, Debug)]
-pub struct Meeting<'a> {
+pub struct Neighbours<'a> {
     /// Particles that touch or are near each other.
-    pub touches: &'a [Touch],
+    pub touches: &'a [NeighbourPair],
     /// Particles at walls.
-    pub walls: &'a [WallTouch],
+    pub walls: &'a [NeighbourWall],
     /// Views; `None`: those of before still hold.
-    pub views: Option<&'a Views>,
+    pub views: Option<&'a ExchangeAreas>,
 }
 
 /// What is beside the particles during an attempt.
 #[derive(Clone, Copy, Debug)]
-pub struct Beside<'a> {
+pub struct NetworkSurroundings<'a> {
     /// Conductance h A to the gas of each particle in W/K.
     pub conductance: &'a [f64],
     /// Temperature of the gas that each particle sees in K.

@@ -18,19 +18,19 @@ mod solver;
 use std::f64::consts::PI;
 
 use calcine_physics::conduction::{
-    Conduction, Conductivity, Contact, ContactArea, Gap, GasGap, Stiffness,
+    Conduction, Conductivity, ContactArea, GasGap, SphereContact, SphereGap, Stiffness,
 };
 use calcine_physics::radiation::conducted_share;
 
-pub use meeting::{Beside, Meeting, Touch, Views, WallTouch};
+pub use meeting::{ExchangeAreas, NeighbourPair, NeighbourWall, Neighbours, NetworkSurroundings};
 use radiation::Radiation;
-use solver::{Solver, System};
+use solver::{NetworkSolver, NetworkSystem};
 
 use crate::{Newcomer, without};
 
 /// What heat between particles needs to know of a material.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Thermal {
+pub struct ThermalProperties {
     /// Conductivity.
     pub conductivity: Conductivity,
     /// Emissivity of its surface, above 0 and up to 1.
@@ -83,15 +83,15 @@ impl HeatLaws {
 
 /// Conductances between particles, and to reservoirs.
 #[derive(Debug)]
-pub struct Network {
+pub struct HeatNetwork {
     laws: HeatLaws,
-    materials: Vec<Thermal>,
+    materials: Vec<ThermalProperties>,
     /// Index of the material of each particle.
     material: Vec<usize>,
     /// Index of the material of each reservoir that is a wall.
     walls: Vec<usize>,
-    touches: Vec<Touch>,
-    wall_touches: Vec<WallTouch>,
+    touches: Vec<NeighbourPair>,
+    wall_touches: Vec<NeighbourWall>,
     radiation: Radiation,
     /// Heat into each particle from the others and from reservoirs in W.
     pub heat: Vec<f64>,
@@ -103,7 +103,7 @@ pub struct Network {
 /// Scratch of an attempt.
 #[derive(Debug, Default)]
 struct Work {
-    solver: Solver,
+    solver: NetworkSolver,
     /// Pairs of nodes with their conductance in W/K; contacts first.
     bonds: Vec<([usize; 2], f64)>,
     /// Node and reservoir with their conductance in W/K; contacts first.
@@ -121,12 +121,12 @@ const SETTLED: f64 = 1e-10;
 /// Iterations at most; each shortens the change at least to a half in all but made-up cases.
 const ITERATIONS: usize = 60;
 
-impl Network {
+impl HeatNetwork {
     /// A network without contacts and views yet: laws, materials, the material of each particle and of each
     /// wall that is a reservoir.
     pub fn new(
         laws: HeatLaws,
-        materials: Vec<Thermal>,
+        materials: Vec<ThermalProperties>,
         material: Vec<usize>,
         walls: Vec<usize>,
     ) -> Self {
@@ -164,7 +164,7 @@ impl Network {
     }
 
     /// Takes up what the particles meet at their present places.
-    pub fn meet(&mut self, meeting: &Meeting<'_>) {
+    pub fn meet(&mut self, meeting: &Neighbours<'_>) {
         self.touches.clear();
         self.touches.extend_from_slice(meeting.touches);
         self.wall_touches.clear();
@@ -188,7 +188,7 @@ impl Network {
         &mut self,
         capacity: impl Fn(usize, f64) -> f64,
         old: &[f64],
-        beside: &Beside<'_>,
+        beside: &NetworkSurroundings<'_>,
     ) {
         let count = old.len();
         self.conduct(old, beside);
@@ -234,7 +234,7 @@ impl Network {
                 work.drive[node] += g * (beside.reservoirs[reservoir] - work.old[node]);
             }
             work.last.clone_from(&work.temperature);
-            let system = System {
+            let system = NetworkSystem {
                 bonds: &work.bonds,
                 capacity: &work.capacity,
                 old: &work.old,
@@ -277,7 +277,7 @@ impl Network {
     }
 
     /// Contacts and gaps at the temperatures of the start, in K.
-    fn conduct(&mut self, old: &[f64], beside: &Beside<'_>) {
+    fn conduct(&mut self, old: &[f64], beside: &NetworkSurroundings<'_>) {
         let Self {
             laws,
             materials,
@@ -320,7 +320,7 @@ impl Network {
 /// Conductance in W/K of contact and gap of two spheres.
 fn conductance(
     laws: &HeatLaws,
-    of: [&Thermal; 2],
+    of: [&ThermalProperties; 2],
     radius: [f64; 2],
     overlap: f64,
     conductivity: [f64; 2],
@@ -328,7 +328,7 @@ fn conductance(
 ) -> f64 {
     let density = of.map(|one| one.density);
     let (soft, real) = (of.map(|one| one.soft), of.map(|one| one.real));
-    let contact = Contact {
+    let contact = SphereContact {
         radius,
         overlap: laws.area.overlap(radius, overlap, density, soft, real),
         conductivity,
@@ -337,7 +337,7 @@ fn conductance(
         true => laws.conduction.conductance(&contact),
         false => 0.0,
     };
-    let gap = Gap {
+    let gap = SphereGap {
         radius,
         distance: match contact.overlap > 0.0 {
             true => -contact.overlap,
@@ -352,12 +352,12 @@ fn conductance(
 
 /// A black material of a conductivity in W/m/K.
 #[cfg(test)]
-pub(crate) fn plain(conductivity: f64) -> Thermal {
+pub(crate) fn plain(conductivity: f64) -> ThermalProperties {
     let stiffness = Stiffness {
         young: 1e9,
         poisson: 0.3,
     };
-    Thermal {
+    ThermalProperties {
         conductivity: Conductivity::constant(conductivity),
         emissivity: 1.0,
         density: 2500.0,

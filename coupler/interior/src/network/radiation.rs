@@ -4,13 +4,13 @@ use std::f64::consts::PI;
 
 use calcine_physics::radiation::linear;
 
-use super::Views;
+use super::ExchangeAreas;
 use crate::without;
 
 /// Exchange areas between surfaces, and emissivities.
 #[derive(Debug, Default)]
 pub(super) struct Radiation {
-    views: Views,
+    views: ExchangeAreas,
     emissivity: Vec<f64>,
     /// Share of the exchange of each particle that it can pass on through its inside; empty for all.
     share: Vec<f64>,
@@ -20,7 +20,7 @@ pub(super) struct Radiation {
 
 impl Radiation {
     /// Views and the emissivity of each particle.
-    pub fn new(views: &Views, emissivity: Vec<f64>) -> Self {
+    pub fn new(views: &ExchangeAreas, emissivity: Vec<f64>) -> Self {
         Self {
             views: views.clone(),
             grey: views.radiosity && emissivity.iter().any(|e| *e < 1.0),

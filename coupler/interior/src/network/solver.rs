@@ -6,7 +6,7 @@ const TOLERANCE: f64 = 1e-12;
 
 /// A symmetric network: node i holds C_i (T_i − T_i,old) = h_i (S_i − T_i) + Σ_j G_ij (T_j − T_i).
 #[derive(Clone, Copy, Debug)]
-pub struct System<'a> {
+pub struct NetworkSystem<'a> {
     /// Pairs of nodes and their conductance G in W/K.
     pub bonds: &'a [([usize; 2], f64)],
     /// Heat capacity over the span C in W/K; zero for a node that stores nothing.
@@ -21,18 +21,18 @@ pub struct System<'a> {
 
 /// Scratch of the conjugate gradients.
 #[derive(Debug, Default)]
-pub struct Solver {
+pub struct NetworkSolver {
     diagonal: Vec<f64>,
     residual: Vec<f64>,
     direction: Vec<f64>,
     product: Vec<f64>,
 }
 
-impl Solver {
+impl NetworkSolver {
     /// Solves for the temperatures in K, from those given on; preconditioned by the diagonal.
-    pub fn solve(&mut self, system: &System<'_>, temperature: &mut [f64]) {
+    pub fn solve(&mut self, system: &NetworkSystem<'_>, temperature: &mut [f64]) {
         let count = temperature.len();
-        let System {
+        let NetworkSystem {
             bonds,
             capacity,
             old,

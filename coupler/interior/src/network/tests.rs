@@ -6,16 +6,16 @@ fn still(count: usize) -> Vec<f64> {
     vec![0.0; count]
 }
 
-fn chain(count: usize) -> Network {
+fn chain(count: usize) -> HeatNetwork {
     let laws = HeatLaws::contacts(Box::new(BatchelorObrien));
-    let mut network = Network::new(laws, vec![plain(50.0)], vec![0; count], Vec::new());
-    let touch = |i: usize| Touch {
+    let mut network = HeatNetwork::new(laws, vec![plain(50.0)], vec![0; count], Vec::new());
+    let touch = |i: usize| NeighbourPair {
         particles: [i, i + 1],
         radius: [5e-3; 2],
         overlap: 1e-6,
     };
-    let touches: Vec<Touch> = (0..count - 1).map(touch).collect();
-    network.meet(&Meeting {
+    let touches: Vec<NeighbourPair> = (0..count - 1).map(touch).collect();
+    network.meet(&Neighbours {
         touches: &touches,
         walls: &[],
         views: None,
@@ -24,7 +24,7 @@ fn chain(count: usize) -> Network {
 }
 
 fn step(
-    network: &mut Network,
+    network: &mut HeatNetwork,
     capacity: f64,
     old: &[f64],
     tie: &[f64],
@@ -32,7 +32,7 @@ fn step(
     reservoirs: &[f64],
 ) {
     let gas = vec![0.03; old.len()];
-    let beside = Beside {
+    let beside = NetworkSurroundings {
         conductance: tie,
         temperature: beside,
         gas_conductivity: &gas,
@@ -86,20 +86,20 @@ fn equal_temperatures_conduct_nothing() {
 }
 
 /// Three surfaces of 2, 1 and 1 m² that see only each other: a closed enclosure.
-fn enclosure(emissivity: [f64; 3]) -> Network {
+fn enclosure(emissivity: [f64; 3]) -> HeatNetwork {
     let laws = HeatLaws {
         radiates: true,
         ..HeatLaws::contacts(Box::new(NoConduction))
     };
-    let materials = emissivity.map(|emissivity| Thermal {
+    let materials = emissivity.map(|emissivity| ThermalProperties {
         emissivity,
         ..plain(1.0)
     });
-    let mut network = Network::new(laws, materials.to_vec(), vec![0, 1, 2], Vec::new());
-    network.meet(&Meeting {
+    let mut network = HeatNetwork::new(laws, materials.to_vec(), vec![0, 1, 2], Vec::new());
+    network.meet(&Neighbours {
         touches: &[],
         walls: &[],
-        views: Some(&Views {
+        views: Some(&ExchangeAreas {
             pairs: vec![([0, 1], 1.0), ([0, 2], 1.0)],
             reservoirs: Vec::new(),
             radiosity: true,
@@ -152,15 +152,15 @@ fn grey_surfaces_exchange_through_resistances_in_series() {
         radiates: true,
         ..HeatLaws::contacts(Box::new(NoConduction))
     };
-    let grey = |emissivity| Thermal {
+    let grey = |emissivity| ThermalProperties {
         emissivity,
         ..plain(1.0)
     };
-    let mut network = Network::new(laws, vec![grey(0.8), grey(0.3)], vec![0, 1], Vec::new());
-    network.meet(&Meeting {
+    let mut network = HeatNetwork::new(laws, vec![grey(0.8), grey(0.3)], vec![0, 1], Vec::new());
+    network.meet(&Neighbours {
         touches: &[],
         walls: &[],
-        views: Some(&Views {
+        views: Some(&ExchangeAreas {
             pairs: vec![([0, 1], 2.0)],
             reservoirs: Vec::new(),
             radiosity: true,
@@ -227,11 +227,11 @@ fn an_implicit_step_of_radiation_solves_its_own_equation() {
             radiates: true,
             ..HeatLaws::contacts(Box::new(NoConduction))
         };
-        let mut network = Network::new(laws, vec![plain(1.0)], vec![0], vec![0]);
-        network.meet(&Meeting {
+        let mut network = HeatNetwork::new(laws, vec![plain(1.0)], vec![0], vec![0]);
+        network.meet(&Neighbours {
             touches: &[],
             walls: &[],
-            views: Some(&Views {
+            views: Some(&ExchangeAreas {
                 pairs: Vec::new(),
                 reservoirs: vec![([0, 0], 1.0)],
                 radiosity: true,
@@ -266,15 +266,15 @@ fn a_wall_heats_by_contact_and_through_the_gas() {
         ..HeatLaws::contacts(Box::new(BatchelorObrien))
     };
     assert!((laws.reach(5e-3) - 1e-3).abs() < 1e-18);
-    let mut network = Network::new(laws, vec![plain(50.0), plain(12.5)], vec![0], vec![1]);
-    let at = |overlap: f64| WallTouch {
+    let mut network = HeatNetwork::new(laws, vec![plain(50.0), plain(12.5)], vec![0], vec![1]);
+    let at = |overlap: f64| NeighbourWall {
         particle: 0,
         reservoir: 0,
         radius: 5e-3,
         overlap,
     };
     let mut heat = |overlap: f64| {
-        network.meet(&Meeting {
+        network.meet(&Neighbours {
             touches: &[],
             walls: &[at(overlap)],
             views: None,
@@ -283,7 +283,7 @@ fn a_wall_heats_by_contact_and_through_the_gas() {
         network.heat[0]
     };
     // r_c = √(5e-3 · 2e-6) = 1e-4, k = 2·50·12.5/62.5 = 20: G = 4e-3 W/K, and the gas from r_c on.
-    let contact = Gap {
+    let contact = SphereGap {
         radius: [5e-3, f64::INFINITY],
         distance: -2e-6,
         contact_radius: 1e-4,
@@ -292,7 +292,7 @@ fn a_wall_heats_by_contact_and_through_the_gas() {
     };
     let expected = 100.0 * (4e-3 + film.conductance(&contact));
     assert!((heat(2e-6) / expected - 1.0).abs() < 1e-9);
-    let apart = Gap {
+    let apart = SphereGap {
         distance: 1e-4,
         contact_radius: 0.0,
         ..contact

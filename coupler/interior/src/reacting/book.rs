@@ -4,7 +4,7 @@ use super::Reacting;
 
 /// What the exchange with the gas came to for all particles.
 #[derive(Clone, Copy, Debug)]
-pub struct Booking<'a> {
+pub struct ExchangeTotals<'a> {
     /// Mean rate of each channel of each particle in mol/s, limited.
     pub rates: &'a [f64],
     /// Sensible heat in W that the exchanged gases bring into each particle.
@@ -84,7 +84,7 @@ impl Reacting {
     }
 
     /// Takes up what the gas and the particles exchanged in the attempt over a span in s.
-    pub fn book(&mut self, booking: &Booking<'_>, span: f64) {
+    pub fn book(&mut self, booking: &ExchangeTotals<'_>, span: f64) {
         let (count, channels) = (self.chemistry.reactions.len(), self.channels.len());
         for p in 0..self.count() {
             for (c, channel) in self.channels.iter().enumerate() {

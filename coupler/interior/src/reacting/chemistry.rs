@@ -47,7 +47,7 @@ pub enum Rate {
 
 /// Reactions with the solids and the gas that they are of.
 #[derive(Clone, Debug)]
-pub struct Chemistry {
+pub struct SolidChemistry {
     /// The solids.
     pub solids: Vec<SolidSpecies>,
     /// The gas; none for inner reactions alone.
@@ -64,7 +64,7 @@ pub struct Chemistry {
 
 /// The surroundings of one particle.
 #[derive(Clone, Copy, Debug)]
-pub struct Around<'a> {
+pub struct ParticleSurroundings<'a> {
     /// Temperature of the gas in K.
     pub temperature: f64,
     /// Its pressure in Pa.
@@ -90,7 +90,7 @@ pub struct Rates {
     pub slope: Vec<f64>,
 }
 
-impl Chemistry {
+impl SolidChemistry {
     /// Reactions of these solids and this gas.
     pub fn new(
         solids: Vec<SolidSpecies>,
@@ -220,7 +220,13 @@ impl Chemistry {
     }
 
     /// Rates at a particle's amounts (mol) and temperature in K.
-    pub fn rates(&self, around: &Around<'_>, amounts: &[f64], temperature: f64, out: &mut Rates) {
+    pub fn rates(
+        &self,
+        around: &ParticleSurroundings<'_>,
+        amounts: &[f64],
+        temperature: f64,
+        out: &mut Rates,
+    ) {
         let count = self.reactions.len();
         for list in [&mut out.rate, &mut out.slope] {
             list.clear();
@@ -249,7 +255,7 @@ impl Chemistry {
         index: usize,
         reaction: &Reaction,
         law: &PowerLaw,
-        around: &Around<'_>,
+        around: &ParticleSurroundings<'_>,
         there: &Presence<'_>,
         (temperature, all_gas): (f64, f64),
     ) -> (f64, f64) {
@@ -307,7 +313,7 @@ impl Chemistry {
     }
 
     /// Π (p_i/p°)^ν of a reaction's gases.
-    fn quotient(&self, reaction: &Reaction, around: &Around<'_>) -> f64 {
+    fn quotient(&self, reaction: &Reaction, around: &ParticleSurroundings<'_>) -> f64 {
         if reaction.equilibrium == Equilibrium::OneWay {
             return 0.0;
         }
@@ -323,7 +329,7 @@ impl Chemistry {
     fn core(
         &self,
         layers: &Layers,
-        around: &Around<'_>,
+        around: &ParticleSurroundings<'_>,
         there: &Presence<'_>,
         (temperature, all_gas): (f64, f64),
         out: &mut Rates,
@@ -411,10 +417,10 @@ impl Chemistry {
 /// Flow of a gas into each interface in mol/s, and how it changes with the gas' mole fraction, told to `tell` with
 /// the reaction there.
 fn take(
-    path: &super::layers::Path,
+    path: &super::layers::GasPath,
     interfaces: &mut [Interface],
     (bulk, all_gas): (f64, f64),
-    around: &Around<'_>,
+    around: &ParticleSurroundings<'_>,
     mut tell: impl FnMut(usize, [f64; 2]),
 ) {
     let count = interfaces.len();

@@ -35,12 +35,12 @@ pub struct Layers {
     /// How many moles of the core's solid one mole of each solid was made of.
     pub weights: Vec<f64>,
     /// The gases.
-    pub paths: Vec<Path>,
+    pub paths: Vec<GasPath>,
 }
 
 /// What one gas does in the layers.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Path {
+pub struct GasPath {
     /// Index of the gas that diffuses in (or out, where a reaction sets it free).
     pub key: usize,
     /// Index of the gas that diffuses back, mole for mole.
@@ -204,8 +204,8 @@ fn link(
 }
 
 /// What each gas does at each interface.
-fn paths(steps: &[Vec<Link>], reactions: &[Reaction]) -> Result<Vec<Path>, LayersError> {
-    let mut paths: Vec<Path> = Vec::new();
+fn paths(steps: &[Vec<Link>], reactions: &[Reaction]) -> Result<Vec<GasPath>, LayersError> {
+    let mut paths: Vec<GasPath> = Vec::new();
     for (place, step) in steps.iter().enumerate() {
         for link in step {
             let fail = || LayersError::Path {
@@ -218,7 +218,7 @@ fn paths(steps: &[Vec<Link>], reactions: &[Reaction]) -> Result<Vec<Path>, Layer
                 None => {
                     // Until its own are known, the diffusivities of whoever makes the layers.
                     let diffusivity = steps.iter().map(|step| step[0].diffusivity).collect();
-                    paths.push(Path {
+                    paths.push(GasPath {
                         key,
                         product,
                         reactions: vec![None; steps.len()],

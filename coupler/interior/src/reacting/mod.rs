@@ -18,13 +18,13 @@ pub mod ode;
 pub mod size;
 mod step;
 
-pub use book::Booking;
-pub use chemistry::{Chemistry, Rate, Reaction};
+pub use book::ExchangeTotals;
+pub use chemistry::{Rate, Reaction, SolidChemistry};
 pub use layers::{LayerDiffusivity, LayersError};
-pub use size::Size;
+pub use size::SizeChange;
 pub use step::{ReactError, Surroundings};
 
-use crate::network::Network;
+use crate::network::HeatNetwork;
 use chemistry::Rates;
 use ode::Rosenbrock;
 
@@ -42,12 +42,12 @@ pub struct Channel {
 /// Particles that react, and the inert ones among them.
 #[derive(Debug)]
 pub struct Reacting {
-    chemistry: Chemistry,
+    chemistry: SolidChemistry,
     channels: Vec<Channel>,
     /// Amounts in mol of each solid in a kilogram of each material.
     composition: Vec<Vec<f64>>,
     /// How the particles of each material take up room.
-    sizes: Vec<Size>,
+    sizes: Vec<SizeChange>,
     /// Index of the material of each particle.
     material: Vec<usize>,
     /// Amounts in mol, solid by solid within each particle.
@@ -66,7 +66,7 @@ pub struct Reacting {
     carried: Vec<f64>,
     /// Heat of what is booked, over the window: its sum and the sum of magnitudes in J.
     released: (f64, f64),
-    network: Option<Network>,
+    network: Option<HeatNetwork>,
     capacity: Vec<f64>,
     scratch: Scratch,
 }
@@ -94,12 +94,12 @@ impl Reacting {
     /// Particles of masses in kg, each of one of the materials (each the mass fractions of the chemistry's
     /// solids), at temperatures in K.
     pub fn new(
-        chemistry: Chemistry,
+        chemistry: SolidChemistry,
         materials: &[Vec<f64>],
         mass: &[f64],
         material: Vec<usize>,
         temperature: Vec<f64>,
-        network: Option<Network>,
+        network: Option<HeatNetwork>,
     ) -> Self {
         let moles = |fractions: &Vec<f64>| {
             let parts = chemistry.solids.iter().zip(fractions);
@@ -118,7 +118,7 @@ impl Reacting {
         let mut made = Self {
             chemistry,
             channels,
-            sizes: vec![Size::Constant; composition.len()],
+            sizes: vec![SizeChange::Constant; composition.len()],
             composition,
             material,
             now: committed.clone(),
@@ -139,7 +139,7 @@ impl Reacting {
     }
 
     /// The reactions.
-    pub fn chemistry(&self) -> &Chemistry {
+    pub fn chemistry(&self) -> &SolidChemistry {
         &self.chemistry
     }
 
@@ -194,7 +194,7 @@ impl Reacting {
     }
 }
 
-fn channels(chemistry: &Chemistry) -> Vec<Channel> {
+fn channels(chemistry: &SolidChemistry) -> Vec<Channel> {
     let Some(gas) = &chemistry.gas else {
         return Vec::new();
     };

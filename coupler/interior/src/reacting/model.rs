@@ -1,7 +1,7 @@
 //! Particles that react as the coordinator sees them.
 
 use super::Reacting;
-use crate::network::{Beside, Meeting};
+use crate::network::{Neighbours, NetworkSurroundings};
 use crate::{Newcomer, ParticleModel, without};
 
 impl ParticleModel for Reacting {
@@ -25,14 +25,14 @@ impl ParticleModel for Reacting {
         self.network.is_some()
     }
 
-    fn meet(&mut self, meeting: &Meeting<'_>) {
+    fn meet(&mut self, meeting: &Neighbours<'_>) {
         if let Some(network) = &mut self.network {
             network.meet(meeting);
         }
     }
 
     /// The heat of the last attempt's reactions counts as if it had come before.
-    fn conduct(&mut self, beside: &Beside<'_>, span: f64) {
+    fn conduct(&mut self, beside: &NetworkSurroundings<'_>, span: f64) {
         let Some(network) = self.network.as_mut().filter(|network| !network.is_empty()) else {
             return;
         };

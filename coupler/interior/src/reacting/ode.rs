@@ -8,7 +8,7 @@ const STEPS: u32 = 20_000;
 /// An integration that does not come to its end.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[error("the rates could not be followed beyond {reached} s of {span} s, in {STEPS} steps")]
-pub struct Stalled {
+pub struct IntegrationStalled {
     /// How far it came in s.
     pub reached: f64,
     /// How far it was to go in s.
@@ -41,7 +41,7 @@ impl Rosenbrock {
         span: f64,
         tolerance: &[f64],
         mut follow: impl FnMut(f64, &[f64], &[f64]),
-    ) -> Result<(), Stalled> {
+    ) -> Result<(), IntegrationStalled> {
         let n = y.len();
         self.resize(n);
         let (mut time, mut step) = (0.0, span);
@@ -73,7 +73,7 @@ impl Rosenbrock {
                 break;
             }
         }
-        Err(Stalled {
+        Err(IntegrationStalled {
             reached: time,
             span,
         })

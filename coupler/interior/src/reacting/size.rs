@@ -8,7 +8,7 @@ use super::Reacting;
 
 /// The law by which a particle of a material takes up room.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub enum Size {
+pub enum SizeChange {
     /// The diameter stays, and the density follows the mass: pores open or close.
     #[default]
     Constant,
@@ -21,7 +21,7 @@ pub enum Size {
     },
 }
 
-impl Size {
+impl SizeChange {
     /// The density of the whole stays, in kg/m³: a particle that loses mass shrinks.
     pub fn of_density(density: f64, solids: &[SolidSpecies], least_radius: f64) -> Self {
         let each = solids.iter().map(|solid| solid.molar_mass() / density);
@@ -75,7 +75,7 @@ pub fn specific_volume(densities: &[f64], fractions: &[f64]) -> f64 {
 
 impl Reacting {
     /// The same particles with a law of size for each material; without it diameters stay.
-    pub fn with_sizes(mut self, sizes: Vec<Size>) -> Self {
+    pub fn with_sizes(mut self, sizes: Vec<SizeChange>) -> Self {
         debug_assert!(sizes.len() == self.composition.len());
         self.sizes = sizes;
         self
@@ -83,10 +83,10 @@ impl Reacting {
 
     /// True where some particle may get another radius.
     pub fn changes_sizes(&self) -> bool {
-        self.sizes.iter().any(|size| *size != Size::Constant)
+        self.sizes.iter().any(|size| *size != SizeChange::Constant)
     }
 
-    pub(super) fn size(&self, row: usize) -> &Size {
+    pub(super) fn size(&self, row: usize) -> &SizeChange {
         &self.sizes[self.material[row]]
     }
 
@@ -111,7 +111,7 @@ mod tests {
     #[test]
     fn a_particle_of_constant_density_shrinks_with_the_cube_root_of_its_mass() {
         let (solids, radius) = (solids(), 8e-3);
-        let size = Size::of_density(2700.0, &solids, 1e-3);
+        let size = SizeChange::of_density(2700.0, &solids, 1e-3);
         let mass = 2700.0 * 4.0 / 3.0 * PI * 8e-3f64.powi(3);
         let amount = mass / solids[0].molar_mass();
         assert!((size.radius(&[amount, 0.0]).unwrap() / radius - 1.0).abs() < 1e-14);
@@ -119,14 +119,14 @@ mod tests {
         let burnt = size.radius(&[0.0, amount]).unwrap();
         assert!((burnt / radius - (56.077f64 / 100.086).cbrt()).abs() < 1e-5);
         assert_eq!(size.radius(&[1e-12, 0.0]), Some(1e-3), "the least radius");
-        assert_eq!(Size::Constant.radius(&[amount, 0.0]), None);
+        assert_eq!(SizeChange::Constant.radius(&[amount, 0.0]), None);
     }
 
     #[test]
     fn product_densities_give_the_start_its_density_and_the_end_its_volume() {
         let solids = solids();
         // Lime of 1600 kg/m³ takes 56.077/100.086 · 2700/1600 = 0.9455 of the stone's volume.
-        let size = Size::of_densities(&[2713.0, 1608.0], (2700.0, &[1.0, 0.0]), &solids, 0.0);
+        let size = SizeChange::of_densities(&[2713.0, 1608.0], (2700.0, &[1.0, 0.0]), &solids, 0.0);
         let amount = 2700.0 / solids[0].molar_mass() * 4.0 / 3.0 * PI;
         assert!((size.radius(&[amount, 0.0]).unwrap() - 1.0).abs() < 1e-14);
         let end = size.radius(&[0.0, amount]).unwrap();

@@ -2,8 +2,8 @@
 
 use thiserror::Error;
 
-use super::chemistry::Around;
-use super::ode::Stalled;
+use super::chemistry::ParticleSurroundings;
+use super::ode::IntegrationStalled;
 use super::{Reacting, Scratch};
 
 /// Errors of extents as a share of a particle's solids, and of its temperature in K, in a step.
@@ -42,7 +42,7 @@ pub struct ReactError {
     /// That of the gas in K.
     pub gas_temperature: f64,
     /// What went wrong.
-    pub cause: Stalled,
+    pub cause: IntegrationStalled,
 }
 
 /// What a window does to one particle.
@@ -158,7 +158,7 @@ impl Reacting {
         (hot, heat, span): (f64, f64, f64),
         scratch: &mut Scratch,
         mut follow: impl FnMut(f64, &[f64]),
-    ) -> Result<Outcome, Stalled> {
+    ) -> Result<Outcome, IntegrationStalled> {
         let Scratch {
             method,
             rates,
@@ -181,7 +181,7 @@ impl Reacting {
             }
         }
         let size = self.size(p);
-        let mut near = Around {
+        let mut near = ParticleSurroundings {
             temperature: hot,
             pressure: around.pressure[p],
             fractions,

@@ -25,7 +25,7 @@ fn solid(name: &str) -> SolidSpecies {
 }
 
 /// FeO + CO => Fe + CO2 as a shrinking core with these constants (m/s and m²/s).
-fn reduction(rate_constant: f64, diffusivity: f64) -> Chemistry {
+fn reduction(rate_constant: f64, diffusivity: f64) -> SolidChemistry {
     let reaction = Reaction {
         name: "reduction".into(),
         solids: vec![(0, -1.0), (1, 1.0)],
@@ -41,11 +41,11 @@ fn reduction(rate_constant: f64, diffusivity: f64) -> Chemistry {
         equilibrium: Equilibrium::OneWay,
     };
     let gas = Mixture::new(["CO", "CO2", "N2"]).unwrap();
-    Chemistry::new(vec![solid("FeO"), solid("Fe")], Some(gas), vec![reaction]).unwrap()
+    SolidChemistry::new(vec![solid("FeO"), solid("Fe")], Some(gas), vec![reaction]).unwrap()
 }
 
 /// One particle of 1 g of the first solid.
-fn particle(chemistry: Chemistry) -> Reacting {
+fn particle(chemistry: SolidChemistry) -> Reacting {
     let mut fractions = vec![0.0; chemistry.solids.len()];
     fractions[0] = 1.0;
     Reacting::new(chemistry, &[fractions], &[1e-3], vec![0], vec![HOT], None)
@@ -86,7 +86,7 @@ fn follow(
             let heat = reacting.conductance[0] * (HOT - reacting.start[0]);
             let carried = [carried(reacting, &rates)];
             reacting.book(
-                &Booking {
+                &ExchangeTotals {
                     rates: &rates,
                     carried: &carried,
                 },
@@ -201,7 +201,7 @@ fn swelling(rate_constant: f64, diffusivity: f64, swelling: f64) -> Reacting {
     let molar = solid("Fe").molar_mass() / solid("FeO").molar_mass();
     let densities = [2.0 * own, 2.0 * own * molar / swelling];
     let start = (own, [1.0, 0.0].as_slice());
-    let size = Size::of_densities(&densities, start, &chemistry.solids, 1e-6);
+    let size = SizeChange::of_densities(&densities, start, &chemistry.solids, 1e-6);
     particle(chemistry).with_sizes(vec![size])
 }
 
@@ -289,7 +289,7 @@ fn an_inner_reaction_heats_a_closed_particle_by_its_enthalpies() {
         equilibrium: Equilibrium::OneWay,
     };
     let solids = vec![solid("FeO"), solid("Fe3O4"), solid("Fe")];
-    let chemistry = Chemistry::new(solids.clone(), None, vec![reaction]).unwrap();
+    let chemistry = SolidChemistry::new(solids.clone(), None, vec![reaction]).unwrap();
     assert!(
         chemistry
             .imbalance(&chemistry.reactions[0])
@@ -364,7 +364,7 @@ fn a_first_order_reaction_decays_as_its_exponential() {
         equilibrium: Equilibrium::OneWay,
     };
     let solids = vec![solid("FeO"), solid("Fe3O4"), solid("Fe")];
-    let chemistry = Chemistry::new(solids, None, vec![reaction]).unwrap();
+    let chemistry = SolidChemistry::new(solids, None, vec![reaction]).unwrap();
     let mut reacting = particle(chemistry);
     let amount = 1e-3 / solid("FeO").molar_mass();
     let sums = follow(&mut reacting, &[], (0.0, 0.0), 5.0, 10);
@@ -397,7 +397,7 @@ fn limestone_in_hot_gas_keeps_to_the_temperature_of_its_equilibrium() {
     };
     let gas = Mixture::new(["CO2", "N2"]).unwrap();
     let composition = gas.mass_fractions(&[0.2, 0.8]);
-    let chemistry = Chemistry::new(
+    let chemistry = SolidChemistry::new(
         vec![solid("CaCO3"), solid("CaO")],
         Some(gas),
         vec![reaction],
@@ -445,7 +445,7 @@ fn three_oxides_are_reduced_in_their_order() {
     ];
     let gas = Mixture::new(["CO", "CO2", "N2"]).unwrap();
     let composition = gas.mass_fractions(&[0.4, 0.0, 0.6]);
-    let chemistry = Chemistry::new(solids.clone(), Some(gas), reactions).unwrap();
+    let chemistry = SolidChemistry::new(solids.clone(), Some(gas), reactions).unwrap();
     for reaction in &chemistry.reactions {
         assert!(chemistry.imbalance(reaction).iter().all(|n| n.abs() < 1e-9));
     }

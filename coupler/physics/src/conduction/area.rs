@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::reduced;
-use crate::contact::{ContactLaw, HertzMindlin, Linear, PairConstants};
+use crate::contact::{ContactModel, HertzMindlin, Linear, PairConstants};
 
 /// Elastic constants of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,7 +111,7 @@ fn pair(of: [Stiffness; 2]) -> PairConstants {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::conduction::{BatchelorObrien, Conduction, Contact};
+    use crate::conduction::{BatchelorObrien, Conduction, SphereContact};
 
     const SOFT: Stiffness = Stiffness {
         young: 1e7,
@@ -142,7 +142,7 @@ mod tests {
         let hertz = |young: f64| (0.75 * force / (young * radius.sqrt())).powf(2.0 / 3.0);
         let star = |e: f64| e / (2.0 * (1.0 - 0.0625));
         let conductance = |overlap: f64| {
-            BatchelorObrien.conductance(&Contact {
+            BatchelorObrien.conductance(&SphereContact {
                 radius: [5e-3; 2],
                 overlap,
                 conductivity: [50.0; 2],

@@ -1,6 +1,6 @@
 //! Batchelor and O'Brien 1977.
 
-use super::{Conduction, Contact};
+use super::{Conduction, SphereContact};
 
 /// Conduction through the circular contact of two spheres in a poorly conducting gas.
 ///
@@ -20,7 +20,7 @@ impl Conduction for BatchelorObrien {
         "batchelor-obrien"
     }
 
-    fn conductance(&self, contact: &Contact) -> f64 {
+    fn conductance(&self, contact: &SphereContact) -> f64 {
         let radius = (contact.reduced_radius() * contact.overlap.max(0.0)).sqrt();
         2.0 * contact.conductivity() * radius
     }
@@ -32,7 +32,7 @@ mod tests {
 
     #[test]
     fn equal_spheres_conduct_by_twice_conductivity_and_contact_radius() {
-        let mut contact = Contact {
+        let mut contact = SphereContact {
             radius: [5e-3, 5e-3],
             overlap: 1e-6,
             conductivity: [50.0, 50.0],
@@ -47,14 +47,14 @@ mod tests {
 
     #[test]
     fn grows_with_the_root_of_the_overlap_and_does_not_mind_the_order() {
-        let contact = |overlap: f64, radius| Contact {
+        let contact = |overlap: f64, radius| SphereContact {
             radius,
             overlap,
             conductivity: [1.0, 3.0],
         };
         let at = |overlap| BatchelorObrien.conductance(&contact(overlap, [1e-3, 4e-3]));
         assert!((at(4e-7) / at(1e-7) - 2.0).abs() < 1e-14);
-        let swapped = Contact {
+        let swapped = SphereContact {
             conductivity: [3.0, 1.0],
             ..contact(1e-7, [4e-3, 1e-3])
         };

@@ -1,6 +1,6 @@
 //! Cheng, Yu and Zulli 1999.
 
-use super::{Gap, GasGap};
+use super::{GasGap, SphereGap};
 
 /// Conduction along parallel paths through one solid, the gas and the other solid, in series.
 ///
@@ -32,7 +32,7 @@ impl GasGap for Cheng {
         self.widest * radius[0].min(radius[1])
     }
 
-    fn conductance(&self, gap: &Gap) -> f64 {
+    fn conductance(&self, gap: &SphereGap) -> f64 {
         if gap.distance > self.reach(gap.radius) {
             return 0.0;
         }
@@ -77,8 +77,8 @@ mod tests {
         widest: 1.0,
     };
 
-    fn gap(radius: [f64; 2], distance: f64, solid: f64) -> Gap {
-        Gap {
+    fn gap(radius: [f64; 2], distance: f64, solid: f64) -> SphereGap {
+        SphereGap {
             radius,
             distance,
             contact_radius: 0.0,

@@ -6,7 +6,7 @@ use crate::quadrature::gauss;
 
 /// Two spheres with gas between them; a flat wall is one of endless radius and stands second.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gap {
+pub struct SphereGap {
     /// Radii in m.
     pub radius: [f64; 2],
     /// Shortest distance of the surfaces in m, negative where the spheres overlap.
@@ -19,7 +19,7 @@ pub struct Gap {
     pub gas_conductivity: f64,
 }
 
-impl Gap {
+impl SphereGap {
     /// Width in m of the gap at a distance r in m from the line of centres, within both radii.
     pub fn width(&self, r: f64) -> f64 {
         self.distance + sagitta(self.radius[0], r) + sagitta(self.radius[1], r)
@@ -59,7 +59,7 @@ pub trait GasGap: Debug + Send + Sync {
     fn reach(&self, radius: [f64; 2]) -> f64;
 
     /// Conductance G in W/K: the heat from the second to the first particle is G (T₂ − T₁).
-    fn conductance(&self, gap: &Gap) -> f64;
+    fn conductance(&self, gap: &SphereGap) -> f64;
 }
 
 /// The gas between particles conducts nothing.
@@ -75,7 +75,7 @@ impl GasGap for NoGap {
         0.0
     }
 
-    fn conductance(&self, _: &Gap) -> f64 {
+    fn conductance(&self, _: &SphereGap) -> f64 {
         0.0
     }
 }
@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn the_rule_integrates_rings_of_areas_and_of_gaps() {
-        let gap = Gap {
+        let gap = SphereGap {
             radius: [2.0, f64::INFINITY],
             distance: 0.1,
             contact_radius: 0.0,

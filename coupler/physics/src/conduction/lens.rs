@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{Conduction, Contact};
+use super::{Conduction, SphereContact};
 
 /// Conduction through the circle in which two spheres cut each other.
 ///
@@ -24,7 +24,7 @@ impl Conduction for Lens {
         "lens"
     }
 
-    fn conductance(&self, contact: &Contact) -> f64 {
+    fn conductance(&self, contact: &SphereContact) -> f64 {
         let [own, other] = contact.radius;
         if other.is_infinite() {
             // A plane cuts the sphere: r² = R² − (R − δ)².
@@ -46,7 +46,7 @@ mod tests {
 
     #[test]
     fn the_circle_of_equal_spheres_follows_from_pythagoras() {
-        let contact = Contact {
+        let contact = SphereContact {
             radius: [1.0, 1.0],
             overlap: 0.4,
             conductivity: [3.0, 3.0],
@@ -58,7 +58,7 @@ mod tests {
 
     #[test]
     fn a_wall_cuts_the_circle_that_the_sphere_shows_it() {
-        let mut contact = Contact {
+        let mut contact = SphereContact {
             radius: [1.0, f64::INFINITY],
             overlap: 0.2,
             conductivity: [3.0, 3.0],
@@ -71,7 +71,7 @@ mod tests {
 
     #[test]
     fn at_small_overlap_it_is_root_two_pi_times_batchelor_and_obrien() {
-        let contact = Contact {
+        let contact = SphereContact {
             radius: [5e-3, 5e-3],
             overlap: 1e-9,
             conductivity: [50.0, 50.0],

@@ -19,14 +19,14 @@ pub use area::{ContactArea, ElasticLaw, Stiffness};
 pub use batchelor_obrien::BatchelorObrien;
 pub use cheng::Cheng;
 pub use conductivity::Conductivity;
-pub use gap::{Gap, GasGap, NoGap};
+pub use gap::{GasGap, NoGap, SphereGap};
 pub use lens::Lens;
 pub use none::NoConduction;
 pub use rong_horio::RongHorio;
 
 /// Two spheres that overlap; a flat wall is one of endless radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
+pub struct SphereContact {
     /// Radii in m.
     pub radius: [f64; 2],
     /// Overlap δ in m: the sum of the radii less the distance of the centres, positive.
@@ -35,7 +35,7 @@ pub struct Contact {
     pub conductivity: [f64; 2],
 }
 
-impl Contact {
+impl SphereContact {
     /// Harmonic mean of the conductivities in W/m/K.
     pub fn conductivity(&self) -> f64 {
         let [own, other] = self.conductivity;
@@ -65,5 +65,5 @@ pub trait Conduction: Debug + Send + Sync {
     fn name(&self) -> &'static str;
 
     /// Conductance G in W/K: the heat from the second to the first particle is G (T₂ − T₁).
-    fn conductance(&self, contact: &Contact) -> f64;
+    fn conductance(&self, contact: &SphereContact) -> f64;
 }

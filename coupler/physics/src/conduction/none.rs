@@ -1,6 +1,6 @@
 //! No conduction between particles.
 
-use super::{Conduction, Contact};
+use super::{Conduction, SphereContact};
 
 /// Particles exchange no heat where they touch.
 #[derive(Clone, Copy, Debug)]
@@ -11,7 +11,7 @@ impl Conduction for NoConduction {
         "none"
     }
 
-    fn conductance(&self, _: &Contact) -> f64 {
+    fn conductance(&self, _: &SphereContact) -> f64 {
         0.0
     }
 }

@@ -1,6 +1,6 @@
 //! Rong and Horio 1999.
 
-use super::{Gap, GasGap};
+use super::{GasGap, SphereGap};
 
 /// Conduction through the lens of gas that surrounds a particle, between two surfaces of one temperature
 /// each.
@@ -25,7 +25,7 @@ pub struct RongHorio {
 }
 
 impl RongHorio {
-    fn outer(&self, gap: &Gap) -> f64 {
+    fn outer(&self, gap: &SphereGap) -> f64 {
         let [first, second] = gap.radius;
         let least = first.min(second);
         let film = |own: f64, other: f64| {
@@ -56,7 +56,7 @@ impl GasGap for RongHorio {
         self.lens * finite.fold(0.0, f64::max)
     }
 
-    fn conductance(&self, gap: &Gap) -> f64 {
+    fn conductance(&self, gap: &SphereGap) -> f64 {
         let (from, to) = (gap.contact_radius, self.outer(gap));
         // The least width holds up to the radius where the gap is as wide; beyond, the gap itself.
         let excess = self.least_width - gap.distance;
@@ -72,7 +72,7 @@ impl GasGap for RongHorio {
 }
 
 /// The distance in m from the axis where a gap has a width in m above its least, by bisection.
-fn radius_of_width(gap: &Gap, width: f64) -> f64 {
+fn radius_of_width(gap: &SphereGap, width: f64) -> f64 {
     let (mut low, mut high) = (0.0, gap.radius[0].min(gap.radius[1]));
     if gap.width(high) <= width {
         return high;
@@ -98,8 +98,8 @@ mod tests {
         least_width: 1e-6,
     };
 
-    fn gap(radius: [f64; 2], distance: f64) -> Gap {
-        Gap {
+    fn gap(radius: [f64; 2], distance: f64) -> SphereGap {
+        SphereGap {
             radius,
             distance,
             contact_radius: 0.0,

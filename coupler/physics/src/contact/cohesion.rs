@@ -6,14 +6,14 @@ use super::PairConstants;
 
 /// The circle in which a sphere cuts another sphere or a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Area {
+pub struct CohesionArea {
     /// Its area A in m².
     pub area: f64,
     /// A integrated over the overlap so far, in m³.
     pub integral: f64,
 }
 
-impl Area {
+impl CohesionArea {
     /// Of two spheres of radii in m at a distance d in m:
     /// A = −π/4 (d − r₁ − r₂)(d + r₁ − r₂)(d − r₁ + r₂)(d + r₁ + r₂)/d².
     #[inline]
@@ -46,7 +46,7 @@ impl Area {
 /// Source: LIGGGHTS' `sjkr`, after Johnson, Kendall, Roberts, Proc. R. Soc. Lond. A 324 (1971) 301,
 /// doi 10.1098/rspa.1971.0141.
 #[inline]
-pub fn sjkr(pair: &PairConstants, area: Area) -> (f64, f64) {
+pub fn sjkr(pair: &PairConstants, area: CohesionArea) -> (f64, f64) {
     (
         -pair.cohesion_energy * area.area,
         -pair.cohesion_energy * area.integral,
@@ -61,11 +61,12 @@ mod tests {
     #[test]
     fn the_area_is_that_of_the_circle_in_which_the_spheres_cut() {
         // Spheres of 3 and 4 whose centres are 5 apart cut in a circle of radius 12/5.
-        let area = Area::of_spheres(3.0, 4.0, 5.0).area;
+        let area = CohesionArea::of_spheres(3.0, 4.0, 5.0).area;
         assert!((area / (PI * 5.76) - 1.0).abs() < 1e-14);
-        assert!((Area::of_wall(5.0, 3.0).area / (PI * 16.0) - 1.0).abs() < 1e-15);
+        assert!((CohesionArea::of_wall(5.0, 3.0).area / (PI * 16.0) - 1.0).abs() < 1e-15);
         assert!(
-            (sjkr(&glass(0.5), Area::of_wall(5.0, 3.0)).0 / (-16_000.0 * PI) - 1.0).abs() < 1e-14
+            (sjkr(&glass(0.5), CohesionArea::of_wall(5.0, 3.0)).0 / (-16_000.0 * PI) - 1.0).abs()
+                < 1e-14
         );
     }
 
@@ -73,8 +74,8 @@ mod tests {
     fn the_force_is_the_slope_of_the_energy() {
         let pair = glass(0.5);
         for area in [
-            |d: f64| Area::of_spheres(1.0, 0.7, d),
-            |d: f64| Area::of_wall(1.7, d),
+            |d: f64| CohesionArea::of_spheres(1.0, 0.7, d),
+            |d: f64| CohesionArea::of_wall(1.7, d),
         ] {
             let slope = (sjkr(&pair, area(1.649)).1 - sjkr(&pair, area(1.651)).1) / 2e-3;
             assert!(

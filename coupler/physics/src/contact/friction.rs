@@ -1,6 +1,6 @@
 //! Coulomb's limit of the tangential spring.
 
-use super::{ContactLaw, Springs};
+use super::{ContactModel, Springs};
 use crate::Vec3;
 
 /// What a tangential spring does in a step.
@@ -21,7 +21,7 @@ pub struct Tangential {
 ///
 /// Source: Cundall and Strack, Géotechnique 29 (1979) 47, doi 10.1680/geot.1979.29.1.47.
 #[inline(always)]
-pub fn friction<L: ContactLaw>(
+pub fn friction<L: ContactModel>(
     shift: Vec3,
     slip: Vec3,
     springs: &Springs,

@@ -1,6 +1,6 @@
 //! Hertz, Mindlin and Tsuji.
 
-use super::{ContactLaw, PairConstants, Springs};
+use super::{ContactModel, PairConstants, Springs};
 
 /// Elastic spheres with a tangential spring and a damping that makes the restitution independent of the
 /// speed of impact.
@@ -20,7 +20,7 @@ pub struct HertzMindlin;
 /// 2 √(5/6).
 pub(super) const DAMPING: f64 = 1.825_741_858_350_553_6;
 
-impl ContactLaw for HertzMindlin {
+impl ContactModel for HertzMindlin {
     const FORGETS_ON_SLIP: bool = false;
 
     #[inline(always)]

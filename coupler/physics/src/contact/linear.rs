@@ -1,6 +1,6 @@
 //! Linear spring and dashpot.
 
-use super::{ContactLaw, PairConstants, Springs};
+use super::{ContactModel, PairConstants, Springs};
 
 /// A linear spring that overlaps as much as Hertz' law does when two spheres meet at a characteristic speed.
 ///
@@ -15,7 +15,7 @@ pub struct Linear {
     pub speed: f64,
 }
 
-impl ContactLaw for Linear {
+impl ContactModel for Linear {
     const FORGETS_ON_SLIP: bool = false;
 
     /// The stiffness k in N/m.

@@ -11,7 +11,7 @@ mod rolling;
 mod spring_slider_dashpot;
 pub mod time_step;
 
-pub use cohesion::{Area, sjkr};
+pub use cohesion::{CohesionArea, sjkr};
 pub use friction::{Tangential, friction};
 pub use hertz_mindlin::HertzMindlin;
 pub use linear::Linear;
@@ -77,7 +77,7 @@ pub struct Springs {
 }
 
 /// A law of the force between two spheres in contact; a flat wall is a sphere of endless radius and mass.
-pub trait ContactLaw: Copy + Send + Sync {
+pub trait ContactModel: Copy + Send + Sync {
     /// True where the tangential spring is forgotten when the contact slips, false where it keeps what
     /// friction can hold.
     const FORGETS_ON_SLIP: bool;

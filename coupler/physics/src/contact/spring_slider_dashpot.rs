@@ -1,7 +1,7 @@
 //! OpenFOAM's pair of spring, slider and dashpot.
 
 use super::hertz_mindlin::DAMPING;
-use super::{ContactLaw, PairConstants, Springs};
+use super::{ContactModel, PairConstants, Springs};
 
 /// OpenFOAM's `pairSpringSliderDashpot` with b = 1.5.
 ///
@@ -16,7 +16,7 @@ use super::{ContactLaw, PairConstants, Springs};
 #[derive(Clone, Copy, Debug)]
 pub struct SpringSliderDashpot;
 
-impl ContactLaw for SpringSliderDashpot {
+impl ContactModel for SpringSliderDashpot {
     const FORGETS_ON_SLIP: bool = true;
 
     #[inline(always)]

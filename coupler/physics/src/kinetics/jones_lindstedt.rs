@@ -3,7 +3,7 @@
 use super::error::KineticsError;
 use super::falloff::RateConstant;
 use super::mechanism::Mechanism;
-use super::statement::Statement;
+use super::statement::ReactionStatement;
 use crate::reaction::{Arrhenius, Equation};
 use crate::thermo::Mixture;
 
@@ -59,7 +59,7 @@ const HYDROGEN_ORIGINAL: Row = (
 /// Source: Jones and Lindstedt, Combust. Flame 73 (1988) 233, doi 10.1016/0010-2180(88)90021-1; the refined third step as
 /// requirement CHM-1 has it. Validity: methane with air, lean to moderately rich; there are no radicals, so that flames burn
 /// a little too hot.
-pub fn steps(refined: bool) -> Result<Vec<Statement>, KineticsError> {
+pub fn steps(refined: bool) -> Result<Vec<ReactionStatement>, KineticsError> {
     let hydrogen = if refined {
         HYDROGEN_REFINED
     } else {
@@ -69,13 +69,15 @@ pub fn steps(refined: bool) -> Result<Vec<Statement>, KineticsError> {
     rows.into_iter().map(statement).collect()
 }
 
-fn statement((text, factor, exponent, energy, orders): Row) -> Result<Statement, KineticsError> {
+fn statement(
+    (text, factor, exponent, energy, orders): Row,
+) -> Result<ReactionStatement, KineticsError> {
     let equation = Equation::parse(text).map_err(|error| KineticsError::Equation {
         reaction: text.into(),
         why: error.to_string(),
     })?;
     let order: f64 = orders.iter().map(|(_, n)| n).sum();
-    Ok(Statement {
+    Ok(ReactionStatement {
         name: text.into(),
         equation,
         orders: Some(

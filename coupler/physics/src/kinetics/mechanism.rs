@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::error::KineticsError;
 use super::falloff::RateConstant;
 use super::number::Number;
-use super::statement::Statement;
-use super::step::Step;
+use super::statement::ReactionStatement;
+use super::step::MechanismReaction;
 use crate::gas::GAS_CONSTANT;
 use crate::reaction::equilibrium::STANDARD_PRESSURE;
 use crate::thermo::Mixture;
@@ -18,7 +18,7 @@ pub const FLOOR: f64 = 1e-6;
 
 /// A gas at which rates are asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct State<'a> {
+pub struct MixtureState<'a> {
     /// Pressure in Pa.
     pub pressure: f64,
     /// Temperature in K.
@@ -43,17 +43,17 @@ pub struct State<'a> {
 pub struct Mechanism {
     // Shared, so that a thread's own costs nothing.
     mixture: Arc<Mixture>,
-    steps: Arc<[Step]>,
+    steps: Arc<[MechanismReaction]>,
     /// Species whose Gibbs energy is needed.
     gibbs: Arc<[usize]>,
 }
 
 impl Mechanism {
     /// A mechanism of these reactions over the species of a mixture.
-    pub fn new(mixture: &Mixture, statements: &[Statement]) -> Result<Self, KineticsError> {
+    pub fn new(mixture: &Mixture, statements: &[ReactionStatement]) -> Result<Self, KineticsError> {
         let steps = statements
             .iter()
-            .map(|one| Step::new(mixture, one))
+            .map(|one| MechanismReaction::new(mixture, one))
             .collect::<Result<Vec<_>, _>>()?;
         let both_ways = || steps.iter().filter(|one| one.back.is_some());
         let gibbs = (0..mixture.species().len())
@@ -77,19 +77,19 @@ impl Mechanism {
     }
 
     /// Its reactions.
-    pub fn steps(&self) -> &[Step] {
+    pub fn steps(&self) -> &[MechanismReaction] {
         &self.steps
     }
 
     /// How fast each species is made, in kg/m³/s.
-    pub fn rates(&self, state: State<'_>, out: &mut [f64]) {
+    pub fn rates(&self, state: MixtureState<'_>, out: &mut [f64]) {
         let mut concentrations = [0.0; MOST_SPECIES];
         self.concentrations(&state, &mut concentrations);
         self.mass_rates(state.temperature, &concentrations, out);
     }
 
     /// Rates of progress forth and back of every reaction in mol/m³/s, in the order of the steps.
-    pub fn progress(&self, state: State<'_>) -> Vec<(f64, f64)> {
+    pub fn progress(&self, state: MixtureState<'_>) -> Vec<(f64, f64)> {
         let mut concentrations = [0.0; MOST_SPECIES];
         self.concentrations(&state, &mut concentrations);
         let mut all = Vec::with_capacity(self.steps.len());
@@ -100,7 +100,7 @@ impl Mechanism {
     }
 
     /// Concentrations in mol/m³; their sum is p/(R T).
-    fn concentrations(&self, state: &State<'_>, out: &mut [f64; MOST_SPECIES]) {
+    fn concentrations(&self, state: &MixtureState<'_>, out: &mut [f64; MOST_SPECIES]) {
         let mut sum = 0.0;
         let species = self.mixture.species().iter().zip(state.fractions);
         for (c, (one, y)) in out.iter_mut().zip(species) {
@@ -114,7 +114,7 @@ impl Mechanism {
     /// Chemical time in s as OpenFOAM's PaSR defines it: t_c = n Σ_i c_i/Σ_r (Σ_j ν_j,r) q_r with the number n of
     /// reactions, the concentrations, the numbers ν of the right sides and the rates of progress forth q. Infinite where
     /// nothing reacts.
-    pub fn chemical_time(&self, state: State<'_>) -> f64 {
+    pub fn chemical_time(&self, state: MixtureState<'_>) -> f64 {
         let mut concentrations = [0.0; MOST_SPECIES];
         self.concentrations(&state, &mut concentrations);
         let mut made = 0.0;
@@ -153,7 +153,7 @@ impl Mechanism {
         &self,
         temperature: N,
         concentrations: &[N; MOST_SPECIES],
-        mut visit: impl FnMut(&Step, N, N),
+        mut visit: impl FnMut(&MechanismReaction, N, N),
     ) {
         let t = temperature.value();
         // G°/(R T) of the species, whose slope is −H/(R T²).

@@ -16,7 +16,7 @@ pub mod step;
 
 pub use error::KineticsError;
 pub use falloff::{Broadening, RateConstant};
-pub use mechanism::{Mechanism, State};
-pub use reactor::{Outcome, Reactor, Tolerances};
-pub use statement::{Collider, Statement};
-pub use step::Step;
+pub use mechanism::{Mechanism, MixtureState};
+pub use reactor::{Reactor, ReactorStatistics, Tolerances};
+pub use statement::{Collider, ReactionStatement};
+pub use step::MechanismReaction;

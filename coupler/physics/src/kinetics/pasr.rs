@@ -33,7 +33,7 @@ pub fn reacting_fraction(t_chem: f64, t_mix: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kinetics::{Mechanism, State};
+    use crate::kinetics::{Mechanism, MixtureState};
     use crate::thermo::Mixture;
 
     #[test]
@@ -58,7 +58,7 @@ mod tests {
         let gas = Mixture::new(["CH4", "O2", "CO", "H2", "H2O", "CO2", "N2"]).unwrap();
         let jl4 = Mechanism::jones_lindstedt(&gas).unwrap();
         let fractions = [0.03, 0.15, 0.02, 0.005, 0.05, 0.05, 0.695];
-        let state = State {
+        let state = MixtureState {
             pressure: 101_325.0,
             temperature: 1600.0,
             fractions: &fractions,
@@ -72,7 +72,7 @@ mod tests {
         let total = 101_325.0 / (crate::gas::GAS_CONSTANT * 1600.0);
         let time = jl4.chemical_time(state);
         assert!((time / (4.0 * total / made) - 1.0).abs() < 1e-12);
-        let inert = State {
+        let inert = MixtureState {
             fractions: &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
             ..state
         };

@@ -4,7 +4,7 @@ use diffsol::{NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverMethod, OdeSolverSto
 
 use super::elements::Elements;
 use super::error::KineticsError;
-use super::mechanism::{Mechanism, State};
+use super::mechanism::{Mechanism, MixtureState};
 use super::number::{Dual, Number};
 use crate::gas::GAS_CONSTANT;
 use crate::thermo::mixture::MOST_SPECIES;
@@ -41,7 +41,7 @@ impl Default for Tolerances {
 
 /// What an integration did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Outcome {
+pub struct ReactorStatistics {
     /// Steps it took; zero where nothing reacts.
     pub steps: usize,
 }
@@ -83,7 +83,7 @@ impl Reactor {
         temperature: &mut f64,
         fractions: &mut [f64],
         time: f64,
-    ) -> Result<Outcome, KineticsError> {
+    ) -> Result<ReactorStatistics, KineticsError> {
         self.run(pressure, temperature, fractions, time, true)
     }
 
@@ -94,7 +94,7 @@ impl Reactor {
         temperature: f64,
         fractions: &mut [f64],
         time: f64,
-    ) -> Result<Outcome, KineticsError> {
+    ) -> Result<ReactorStatistics, KineticsError> {
         let mut fixed = temperature;
         self.run(pressure, &mut fixed, fractions, time, false)
     }
@@ -106,10 +106,10 @@ impl Reactor {
         fractions: &mut [f64],
         time: f64,
         adiabatic: bool,
-    ) -> Result<Outcome, KineticsError> {
+    ) -> Result<ReactorStatistics, KineticsError> {
         self.sound(pressure, *temperature, fractions, time)?;
         let mixture = self.mechanism.mixture();
-        let state = State {
+        let state = MixtureState {
             pressure,
             temperature: *temperature,
             fractions,
@@ -120,7 +120,7 @@ impl Reactor {
         let density = mixture.density(pressure, *temperature, fractions);
         let fastest = rates.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
         if fastest * time <= self.tolerances.negligible * density {
-            return Ok(Outcome { steps: 0 });
+            return Ok(ReactorStatistics { steps: 0 });
         }
         let masses = self.elements.of(fractions);
         let enthalpy = |t: f64, y: &[f64]| mixture.enthalpy(t, y) + mixture.formation_enthalpy(y);
@@ -141,7 +141,7 @@ impl Reactor {
             })?;
         }
         fractions.copy_from_slice(&reached[..count]);
-        Ok(Outcome { steps })
+        Ok(ReactorStatistics { steps })
     }
 
     /// Mass fractions and temperature after the time, and how many steps it took.

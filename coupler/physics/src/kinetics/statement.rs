@@ -5,7 +5,7 @@ use crate::reaction::Equation;
 
 /// A reaction as a mechanism file, a case file or a table states it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Statement {
+pub struct ReactionStatement {
     /// Its name, such as its equation.
     pub name: String,
     /// Its equation, without third bodies. Where it goes both ways, the rate back follows from the

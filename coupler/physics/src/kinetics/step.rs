@@ -2,7 +2,7 @@
 
 use super::error::KineticsError;
 use super::falloff::{Broadening, RateConstant};
-use super::statement::Statement;
+use super::statement::ReactionStatement;
 use crate::reaction::{Arrhenius, imbalance};
 use crate::thermo::Mixture;
 
@@ -11,7 +11,7 @@ const EFFICIENCY: &str = "an efficiency";
 
 /// A reaction of a mechanism; species by their index in the mixture, numbers of moles as in its equation.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Step {
+pub struct MechanismReaction {
     /// Its name.
     pub name: String,
     /// Left side of its equation.
@@ -32,8 +32,11 @@ pub struct Step {
     pub collider: Option<Vec<f64>>,
 }
 
-impl Step {
-    pub(super) fn new(mixture: &Mixture, stated: &Statement) -> Result<Self, KineticsError> {
+impl MechanismReaction {
+    pub(super) fn new(
+        mixture: &Mixture,
+        stated: &ReactionStatement,
+    ) -> Result<Self, KineticsError> {
         let index = |name: &str| -> Result<usize, KineticsError> {
             let found = mixture.names().iter().position(|one| one == name);
             found.ok_or_else(|| KineticsError::UnknownSpecies {
@@ -132,7 +135,7 @@ fn balanced(mixture: &Mixture, name: &str, net: &[(usize, f64)]) -> Result<(), K
 }
 
 /// Every number of a reaction is finite; factors of a falloff are positive, and efficiencies not negative.
-fn finite(stated: &Statement) -> Result<(), KineticsError> {
+fn finite(stated: &ReactionStatement) -> Result<(), KineticsError> {
     let refuse = |(quantity, value): (&'static str, f64)| KineticsError::Value {
         reaction: stated.name.clone(),
         quantity,

@@ -8,7 +8,7 @@ use crate::gas::REFERENCE_TEMPERATURE;
 use crate::reaction::formula::{self, FormulaError};
 use crate::solid::HeatCapacity;
 use crate::thermo::Element;
-use table::{RECORDS, Record};
+use table::{RECORDS, SolidRecord};
 
 /// A pure solid: what it is made of, its enthalpy and entropy. Volumes of solids do not enter: what a
 /// particle's pores and grains do to its size is the particle's matter.
@@ -90,7 +90,7 @@ impl SolidSpecies {
         }
     }
 
-    fn of(record: &Record) -> Result<Self, SolidError> {
+    fn of(record: &SolidRecord) -> Result<Self, SolidError> {
         let atoms = formula::atoms(record.name)?;
         let weighed = Element::ALL.iter().zip(atoms);
         let molar_mass: f64 = weighed.map(|(element, n)| n * element.molar_mass()).sum();

@@ -12,7 +12,7 @@
 //! the measured one.
 
 /// What is known of a solid; its name is its formula.
-pub struct Record {
+pub struct SolidRecord {
     pub name: &'static str,
     /// J/mol at 298.15 K.
     pub formation_enthalpy: f64,
@@ -23,8 +23,8 @@ pub struct Record {
 }
 
 /// All built-in solids.
-pub static RECORDS: [Record; 9] = [
-    Record {
+pub static RECORDS: [SolidRecord; 9] = [
+    SolidRecord {
         name: "C",
         formation_enthalpy: 0.0,
         entropy: 5.734,
@@ -46,7 +46,7 @@ pub static RECORDS: [Record; 9] = [
             (2500.0, 25.976),
         ],
     },
-    Record {
+    SolidRecord {
         name: "Fe",
         formation_enthalpy: 0.0,
         entropy: 27.321,
@@ -77,7 +77,7 @@ pub static RECORDS: [Record; 9] = [
             (1665.0, 37.912),
         ],
     },
-    Record {
+    SolidRecord {
         name: "FeO",
         formation_enthalpy: -272_035.0,
         entropy: 60.754,
@@ -90,7 +90,7 @@ pub static RECORDS: [Record; 9] = [
             (1650.0, 64.327),
         ],
     },
-    Record {
+    SolidRecord {
         name: "Fe0.947O",
         formation_enthalpy: -266_270.0,
         entropy: 57.587,
@@ -103,7 +103,7 @@ pub static RECORDS: [Record; 9] = [
             (1650.0, 62.489),
         ],
     },
-    Record {
+    SolidRecord {
         name: "Fe3O4",
         formation_enthalpy: -1_119_926.0,
         entropy: 146.1,
@@ -124,7 +124,7 @@ pub static RECORDS: [Record; 9] = [
             (1800.0, 200.843),
         ],
     },
-    Record {
+    SolidRecord {
         name: "Fe2O3",
         formation_enthalpy: -825_310.0,
         entropy: 87.399,
@@ -148,7 +148,7 @@ pub static RECORDS: [Record; 9] = [
             (1700.0, 143.722),
         ],
     },
-    Record {
+    SolidRecord {
         name: "CaCO3",
         formation_enthalpy: -1_206_914.0,
         entropy: 92.901,
@@ -169,7 +169,7 @@ pub static RECORDS: [Record; 9] = [
             (1200.0, 130.569),
         ],
     },
-    Record {
+    SolidRecord {
         name: "CaO",
         formation_enthalpy: -635_090.0,
         entropy: 38.246,
@@ -184,7 +184,7 @@ pub static RECORDS: [Record; 9] = [
             (2000.0, 58.482),
         ],
     },
-    Record {
+    SolidRecord {
         name: "Al2O3",
         formation_enthalpy: -1_675_699.0,
         entropy: 50.971,

@@ -31,7 +31,7 @@ pub struct Mixture {
 
 /// Viscosity and conductivity of a gas.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Transport {
+pub struct TransportProperties {
     /// Dynamic viscosity in Pa s.
     pub viscosity: f64,
     /// Thermal conductivity in W/m/K.
@@ -236,14 +236,14 @@ impl Mixture {
     }
 
     /// Viscosity and conductivity at once, for the price of one.
-    pub fn transport(&self, temperature: f64, composition: &[f64]) -> Transport {
+    pub fn transport(&self, temperature: f64, composition: &[f64]) -> TransportProperties {
         let (weights, viscosities) = self.weigh(temperature, composition);
         let conductivity = |k: usize| {
             let one = &self.species[k];
             let heat_capacity = one.heat_capacity(temperature);
             eucken::conductivity(viscosities[k], heat_capacity, one.specific_gas_constant())
         };
-        Transport {
+        TransportProperties {
             viscosity: self.sum_of(&weights, |k| viscosities[k]),
             conductivity: self.sum_of(&weights, conductivity),
         }

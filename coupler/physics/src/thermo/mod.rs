@@ -19,7 +19,7 @@ pub mod wilke;
 pub use element::Element;
 pub use error::ThermoError;
 pub use lennard_jones::LennardJones;
-pub use mixture::{Mixture, Transport};
+pub use mixture::{Mixture, TransportProperties};
 pub use nasa7::Nasa7;
 pub use species::Species;
 pub use sutherland::Sutherland;

@@ -1,6 +1,6 @@
 //! Species of a gas.
 
-use super::table::{RECORDS, Record};
+use super::table::{RECORDS, SpeciesRecord};
 use super::{Element, LennardJones, Nasa7, Sutherland, ThermoError, eucken};
 use crate::gas::{GAS_CONSTANT, REFERENCE_TEMPERATURE};
 
@@ -92,12 +92,12 @@ impl Species {
         }
     }
 
-    fn of(record: &Record) -> Self {
+    fn of(record: &SpeciesRecord) -> Self {
         let mut atoms = [0.0; Element::COUNT];
         for (element, count) in record.atoms {
             atoms[*element as usize] = *count;
         }
-        let Record {
+        let SpeciesRecord {
             name,
             polynomial,
             viscosity,

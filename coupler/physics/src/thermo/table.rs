@@ -18,7 +18,7 @@
 use super::{Element, Nasa7, Sutherland};
 
 /// What is known of a species.
-pub struct Record {
+pub struct SpeciesRecord {
     pub name: &'static str,
     pub atoms: &'static [(Element, f64)],
     pub polynomial: Nasa7,
@@ -41,8 +41,8 @@ const fn sutherland(coefficient: f64, temperature: f64) -> Sutherland {
 const ARGON: [f64; 7] = [2.5, 0.0, 0.0, 0.0, 0.0, -745.375, 4.37967491];
 
 /// All built-in species.
-pub static RECORDS: [Record; 8] = [
-    Record {
+pub static RECORDS: [SpeciesRecord; 8] = [
+    SpeciesRecord {
         name: "N2",
         atoms: &[(Element::N, 2.0)],
         // TPIS 1978
@@ -70,7 +70,7 @@ pub static RECORDS: [Record; 8] = [
         viscosity: sutherland(1.489e-6, 133.4),
         diffusion_volume: 18.5,
     },
-    Record {
+    SpeciesRecord {
         name: "O2",
         atoms: &[(Element::O, 2.0)],
         // TPIS 1989
@@ -98,7 +98,7 @@ pub static RECORDS: [Record; 8] = [
         viscosity: sutherland(1.731e-6, 140.5),
         diffusion_volume: 16.3,
     },
-    Record {
+    SpeciesRecord {
         name: "Ar",
         atoms: &[(Element::Ar, 1.0)],
         // NASA Lewis, June 1988
@@ -107,7 +107,7 @@ pub static RECORDS: [Record; 8] = [
         viscosity: sutherland(2.05e-6, 164.1),
         diffusion_volume: 16.2,
     },
-    Record {
+    SpeciesRecord {
         name: "CO2",
         atoms: &[(Element::C, 1.0), (Element::O, 2.0)],
         // NASA Lewis, July 1988
@@ -135,7 +135,7 @@ pub static RECORDS: [Record; 8] = [
         viscosity: sutherland(1.647e-6, 268.0),
         diffusion_volume: 26.9,
     },
-    Record {
+    SpeciesRecord {
         name: "H2O",
         atoms: &[(Element::H, 2.0), (Element::O, 1.0)],
         // NASA Lewis, August 1989
@@ -163,7 +163,7 @@ pub static RECORDS: [Record; 8] = [
         viscosity: sutherland(2.495e-6, 1101.0),
         diffusion_volume: 13.1,
     },
-    Record {
+    SpeciesRecord {
         name: "CO",
         atoms: &[(Element::C, 1.0), (Element::O, 1.0)],
         // TPIS 1979
@@ -191,7 +191,7 @@ pub static RECORDS: [Record; 8] = [
         viscosity: sutherland(1.465e-6, 133.8),
         diffusion_volume: 18.0,
     },
-    Record {
+    SpeciesRecord {
         name: "H2",
         atoms: &[(Element::H, 2.0)],
         // TPIS 1978
@@ -219,7 +219,7 @@ pub static RECORDS: [Record; 8] = [
         viscosity: sutherland(6.909e-7, 108.9),
         diffusion_volume: 6.12,
     },
-    Record {
+    SpeciesRecord {
         name: "CH4",
         atoms: &[(Element::C, 1.0), (Element::H, 4.0)],
         // NASA Lewis, August 1988

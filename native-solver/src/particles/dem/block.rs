@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use calcine_coupler::motion::Rolling;
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::physics::contact::{Area, ContactLaw};
+use calcine_coupler::physics::contact::{CohesionArea, ContactModel};
 
 use super::contact::{Meeting, evaluate};
 use super::energy::Budget;
@@ -124,7 +124,7 @@ pub struct Scene<'a, L> {
 
 impl Block {
     /// Forces of all contacts that the block owns; those on other blocks' particles go to `outgoing`.
-    pub fn evaluate<L: ContactLaw, const BUDGET: bool>(
+    pub fn evaluate<L: ContactModel, const BUDGET: bool>(
         &mut self,
         scene: &Scene<'_, L>,
         outgoing: &mut [Load],
@@ -211,7 +211,7 @@ struct Plain<'a, 'b, L> {
     outgoing: &'a mut [Load],
 }
 
-impl<L: ContactLaw> pulp::WithSimd for Plain<'_, '_, L> {
+impl<L: ContactModel> pulp::WithSimd for Plain<'_, '_, L> {
     type Output = ();
 
     #[inline(always)]
@@ -278,7 +278,7 @@ fn touching_of(candidates: &mut Candidates, place: &[Place], touching: &mut [Tou
 }
 
 #[inline(always)]
-fn pairs<L: ContactLaw, const BUDGET: bool>(
+fn pairs<L: ContactModel, const BUDGET: bool>(
     scene: &Scene<'_, L>,
     candidates: &mut Candidates,
     touching: &[Touch],
@@ -351,9 +351,9 @@ fn meet(rules: &Rules, a: &Place, b: &Place, va: &Moves, vb: &Moves) -> (Meeting
             _ => 0.0,
         },
         area: if rules.cohesion {
-            Area::of_spheres(a.radius, b.radius, distance)
+            CohesionArea::of_spheres(a.radius, b.radius, distance)
         } else {
-            Area {
+            CohesionArea {
                 area: 0.0,
                 integral: 0.0,
             }

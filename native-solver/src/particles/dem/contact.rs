@@ -3,8 +3,8 @@
 use calcine_coupler::motion::Rolling;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{
-    Area, ContactLaw, PairConstants, RollingSpring, constant_torque, elastic_plastic, friction,
-    sjkr,
+    CohesionArea, ContactModel, PairConstants, RollingSpring, constant_torque, elastic_plastic,
+    friction, sjkr,
 };
 
 use super::energy::Budget;
@@ -29,7 +29,7 @@ pub struct Meeting {
     /// 7/5 of the reduced moment m R² in kg m²; read with a rolling spring only.
     pub inertia: f64,
     /// Contact area; read with cohesion only.
-    pub area: Area,
+    pub area: CohesionArea,
 }
 
 /// What the contact does to the sphere; the other body gets the opposite.
@@ -45,7 +45,7 @@ pub struct Outcome {
 /// Evaluates a contact and brings its memory up to date over a step in s.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)]
-pub fn evaluate<L: ContactLaw, const BUDGET: bool>(
+pub fn evaluate<L: ContactModel, const BUDGET: bool>(
     law: &L,
     rules: &Rules,
     (pair, prepared): (&PairConstants, f64),

@@ -4,7 +4,7 @@ mod pass;
 
 use calcine_coupler::motion::{ContactForce, Contacts};
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::physics::contact::{ContactLaw, HertzMindlin, Linear, SpringSliderDashpot};
+use calcine_coupler::physics::contact::{ContactModel, HertzMindlin, Linear, SpringSliderDashpot};
 use rayon::prelude::*;
 
 use super::block::{Block, size};
@@ -404,7 +404,7 @@ impl Engine {
         }
     }
 
-    fn find_with<L: ContactLaw>(&mut self, law: &L, prepares: bool) {
+    fn find_with<L: ContactModel>(&mut self, law: &L, prepares: bool) {
         let parallel = self.parallel();
         let task = Task {
             law,

@@ -5,7 +5,7 @@
 use std::ops::Range;
 
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::physics::contact::{ContactLaw, PairConstants};
+use calcine_coupler::physics::contact::{ContactModel, PairConstants};
 
 use super::block::{Candidates, Scene, Touch};
 use super::sphere::Load;
@@ -38,7 +38,7 @@ struct Batch {
 
 /// Evaluates the candidates that touch; the sink gets the indices, both loads and the candidate.
 #[inline(always)]
-pub fn pairs<L: ContactLaw>(
+pub fn pairs<L: ContactModel>(
     scene: &Scene<'_, L>,
     candidates: &mut Candidates,
     touching: &[Touch],
@@ -152,7 +152,7 @@ impl Batch {
     // Components of several arrays side by side: an index reads better than zips.
     #[allow(clippy::needless_range_loop)]
     #[inline(always)]
-    fn evaluate<L: ContactLaw>(&mut self, scene: &Scene<'_, L>) {
+    fn evaluate<L: ContactModel>(&mut self, scene: &Scene<'_, L>) {
         let (law, step, attractive) = (scene.law, scene.step, scene.rules.attractive);
         for l in 0..LANES {
             let pair = PairConstants {

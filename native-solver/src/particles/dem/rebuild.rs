@@ -1,7 +1,7 @@
 //! Finding candidates anew: sort the particles, fill the cells, list the pairs and walls that are near.
 
 use calcine_coupler::motion::WallShape;
-use calcine_coupler::physics::contact::{ContactLaw, PairConstants};
+use calcine_coupler::physics::contact::{ContactModel, PairConstants};
 use rayon::prelude::*;
 
 use super::block::{Block, Candidates, Touch, size};
@@ -50,7 +50,7 @@ pub struct Task<'a, L> {
 
 impl Search {
     /// Sorts the particles and lists all candidates, with the memories in `carry`.
-    pub fn run<L: ContactLaw>(
+    pub fn run<L: ContactModel>(
         &mut self,
         task: &Task<'_, L>,
         spheres: &mut Spheres,
@@ -105,7 +105,7 @@ impl Search {
         spheres.reorder(&self.order, &mut self.spare);
     }
 
-    fn pairs<L: ContactLaw>(
+    fn pairs<L: ContactModel>(
         &self,
         task: &Task<'_, L>,
         spheres: &Spheres,
@@ -143,7 +143,7 @@ impl Search {
     }
 
     #[inline]
-    fn add<L: ContactLaw>(
+    fn add<L: ContactModel>(
         &self,
         task: &Task<'_, L>,
         spheres: &Spheres,
@@ -168,7 +168,7 @@ impl Search {
         }
     }
 
-    fn walls<L: ContactLaw>(
+    fn walls<L: ContactModel>(
         &self,
         task: &Task<'_, L>,
         spheres: &Spheres,
@@ -211,7 +211,7 @@ impl Search {
     }
 
     /// Memories and prepared value of the group added last.
-    fn begin_wall<L: ContactLaw>(
+    fn begin_wall<L: ContactModel>(
         &self,
         task: &Task<'_, L>,
         spheres: &Spheres,

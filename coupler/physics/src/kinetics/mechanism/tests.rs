@@ -12,8 +12,8 @@ fn gas() -> Mixture {
     Mixture::new(SPECIES).unwrap()
 }
 
-fn stated(equation: &str) -> Statement {
-    Statement {
+fn stated(equation: &str) -> ReactionStatement {
+    ReactionStatement {
         name: equation.into(),
         equation: Equation::parse(equation).unwrap(),
         orders: None,
@@ -28,8 +28,8 @@ fn stated(equation: &str) -> Statement {
 
 const FRACTIONS: [f64; 7] = [0.03, 0.12, 0.04, 0.004, 0.09, 0.1, 0.616];
 
-fn state(fractions: &[f64]) -> State<'_> {
-    State {
+fn state(fractions: &[f64]) -> MixtureState<'_> {
+    MixtureState {
         pressure: 2e5,
         temperature: 1600.0,
         fractions,
@@ -209,7 +209,7 @@ fn negative_fractions_count_as_none() {
 #[test]
 fn what_is_no_mechanism_says_why() {
     let few = Mixture::new(["CH4", "O2", "N2"]).unwrap();
-    let message = |mixture: &Mixture, statement: Statement| {
+    let message = |mixture: &Mixture, statement: ReactionStatement| {
         Mechanism::new(mixture, &[statement])
             .unwrap_err()
             .to_string()

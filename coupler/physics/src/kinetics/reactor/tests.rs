@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::kinetics::RateConstant;
-use crate::kinetics::statement::Statement;
+use crate::kinetics::statement::ReactionStatement;
 use crate::reaction::{Arrhenius, Equation};
 use crate::thermo::Mixture;
 
@@ -24,7 +24,7 @@ fn reactor() -> Reactor {
 #[test]
 fn one_first_order_reaction_decays_by_its_exponential() {
     // CO + H2O => CO2 + H2 of the order of CO alone, no change of moles: the closed form exp(−k t) at fixed temperature.
-    let stated = Statement {
+    let stated = ReactionStatement {
         name: "shift".into(),
         equation: Equation::parse("CO + H2O => CO2 + H2").unwrap(),
         orders: Some(vec![("CO".into(), 1.0)]),

@@ -1,7 +1,7 @@
 //! The passes of a step over all contacts: forces alone, or forces and motion block by block.
 
 use calcine_coupler::motion::ContactForce;
-use calcine_coupler::physics::contact::{ContactLaw, HertzMindlin, Linear, SpringSliderDashpot};
+use calcine_coupler::physics::contact::{ContactModel, HertzMindlin, Linear, SpringSliderDashpot};
 use rayon::prelude::*;
 
 use super::super::block::{Block, Scene, size};
@@ -39,7 +39,7 @@ impl Engine {
         }
     }
 
-    fn pass_with<L: ContactLaw>(&mut self, law: &L, step: f64, moves: bool) -> f64 {
+    fn pass_with<L: ContactModel>(&mut self, law: &L, step: f64, moves: bool) -> f64 {
         match (moves, self.counting) {
             (true, true) => self.sweep_with::<L, true>(law, step),
             (true, false) => self.sweep_with::<L, false>(law, step),
@@ -48,7 +48,7 @@ impl Engine {
         }
     }
 
-    fn evaluate_with<L: ContactLaw, const BUDGET: bool>(&mut self, law: &L, step: f64) -> f64 {
+    fn evaluate_with<L: ContactModel, const BUDGET: bool>(&mut self, law: &L, step: f64) -> f64 {
         let parallel = self.parallel();
         let scene = Scene {
             law,
@@ -75,7 +75,7 @@ impl Engine {
         0.0
     }
 
-    fn sweep_with<L: ContactLaw, const BUDGET: bool>(&mut self, law: &L, step: f64) -> f64 {
+    fn sweep_with<L: ContactModel, const BUDGET: bool>(&mut self, law: &L, step: f64) -> f64 {
         let kick = self.kick(2);
         let (count, size) = (self.spheres.len(), size(self.spheres.len()));
         let mut fastest = 0.0f64;

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use calcine_coupler::motion::{Rolling, WallShape};
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::physics::contact::{Area, ContactLaw};
+use calcine_coupler::physics::contact::{CohesionArea, ContactModel};
 
 use super::super::block::Scene;
 use super::super::contact::{Meeting, evaluate};
@@ -104,7 +104,7 @@ impl WallContacts {
     }
 
     /// Forces of all contacts with walls.
-    pub fn evaluate<L: ContactLaw, const BUDGET: bool>(
+    pub fn evaluate<L: ContactModel, const BUDGET: bool>(
         &mut self,
         scene: &Scene<'_, L>,
         begin: usize,
@@ -210,7 +210,7 @@ fn memory(
 }
 
 #[allow(clippy::too_many_arguments)]
-fn contact<L: ContactLaw, const BUDGET: bool>(
+fn contact<L: ContactModel, const BUDGET: bool>(
     scene: &Scene<'_, L>,
     wall: &WallBody,
     index: usize,
@@ -245,9 +245,9 @@ fn contact<L: ContactLaw, const BUDGET: bool>(
             _ => 0.0,
         },
         area: if scene.rules.cohesion {
-            Area::of_wall(radius, distance)
+            CohesionArea::of_wall(radius, distance)
         } else {
-            Area {
+            CohesionArea {
                 area: 0.0,
                 integral: 0.0,
             }
