@@ -17,40 +17,40 @@ use grains::*;
 
 /// A material: Young's modulus in Pa, Poisson's ratio, density in kg/m³.
 #[derive(Clone, Copy)]
-struct Material {
+struct CellProperties {
     young: f64,
     poisson: f64,
     density: f64,
 }
 
 /// The paper's materials.
-const GLASS: Material = Material {
+const GLASS: CellProperties = CellProperties {
     young: 4.8e10,
     poisson: 0.2,
     density: 2800.0,
 };
-const LIMESTONE: Material = Material {
+const LIMESTONE: CellProperties = CellProperties {
     young: 2.5e10,
     poisson: 0.2,
     density: 2500.0,
 };
-const ALUMINIUM_OXIDE: Material = Material {
+const ALUMINIUM_OXIDE: CellProperties = CellProperties {
     young: 3.8e11,
     poisson: 0.23,
     density: 4000.0,
 };
-const STEEL: Material = Material {
+const STEEL: CellProperties = CellProperties {
     young: 2.08e11,
     poisson: 0.3,
     density: 7850.0,
 };
-const ALUMINIUM_ALLOY: Material = Material {
+const ALUMINIUM_ALLOY: CellProperties = CellProperties {
     young: 7e10,
     poisson: 0.33,
     density: 2700.0,
 };
 
-impl Material {
+impl CellProperties {
     /// E/(2 (1 − ν²)) and E/(4 (1 + ν)(2 − ν)), of two bodies of this material, in Pa.
     fn moduli(&self) -> [f64; 2] {
         let nu = self.poisson;
@@ -68,7 +68,7 @@ impl Material {
 /// An impact: a sphere on a plane, or on a second sphere.
 #[derive(Clone, Copy)]
 struct Impact {
-    material: Material,
+    material: CellProperties,
     radius: f64,
     /// Radius in m of the sphere that it meets; none for a plane.
     other: Option<f64>,
@@ -437,7 +437,7 @@ fn a_contact_that_sticks_to_a_linear_spring_leaves_with_the_slip_of_the_closed_f
             friction: 1e7,
             slip,
             // So stiff that the arms are radii.
-            material: Material {
+            material: CellProperties {
                 young: 1e17,
                 ..ALUMINIUM_OXIDE
             },

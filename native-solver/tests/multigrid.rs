@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use calcine_coupler::physics::Vec3;
 use calcine_native::numerics::amg::Multigrid;
-use calcine_native::numerics::grid::Grid;
-use calcine_native::numerics::krylov::{Krylov, Solved, Target};
+use calcine_native::numerics::grid::MeshGraph;
+use calcine_native::numerics::krylov::{Krylov, SolveStatistics, SolveTolerance};
 use calcine_native::numerics::matrix::Matrix;
 use calcine_native::numerics::preconditioner::Preconditioner;
 use common::*;
@@ -16,7 +16,7 @@ use common::*;
 /// Diffusion in a box, zero on the boundary at the top only, with a coefficient per cell and its
 /// harmonic mean on faces.
 fn diffusion(size: [f64; 3], cells: [usize; 3], coefficient: impl Fn(&Vec3) -> f64) -> Matrix {
-    let grid = Arc::new(Grid::new(&duct(size, cells)));
+    let grid = Arc::new(MeshGraph::new(&duct(size, cells)));
     let resistance: Vec<f64> = grid.centre.iter().map(|x| 1.0 / coefficient(x)).collect();
     let mut matrix = Matrix::new(grid.clone());
     matrix.assemble(|cell, diagonal, neighbours| {
@@ -43,14 +43,14 @@ fn jumping(x: &Vec3) -> f64 {
     if parity % 2.0 == 0.0 { 1.0 } else { 1e4 }
 }
 
-fn solve(matrix: &Matrix) -> Solved {
+fn solve(matrix: &Matrix) -> SolveStatistics {
     let cells = matrix.diagonal().len();
     let known = scatter(cells, 17);
     let (mut b, mut x) = (vec![0.0; cells], vec![0.0; cells]);
     matrix.times(&known, &mut b);
     let mut multigrid = Multigrid::default();
     multigrid.update(matrix);
-    let target = Target {
+    let target = SolveTolerance {
         absolute: 0.0,
         of_terms: 0.0,
         relative: 1e-8,

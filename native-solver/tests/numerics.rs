@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::Vec3;
-use calcine_native::numerics::grid::Grid;
-use calcine_native::numerics::krylov::{Krylov, Target};
+use calcine_native::numerics::grid::MeshGraph;
+use calcine_native::numerics::krylov::{Krylov, SolveTolerance};
 use calcine_native::numerics::matrix::Matrix;
 use calcine_native::numerics::operators::{
     conductance, displacement, face_values, gradient, outflow,
@@ -18,7 +18,7 @@ use calcine_native::numerics::parallel::sum;
 use calcine_native::numerics::preconditioner::{Incomplete, Preconditioner};
 use common::*;
 
-const TIGHT: Target = Target {
+const TIGHT: SolveTolerance = SolveTolerance {
     absolute: 0.0,
     of_terms: 0.0,
     relative: 1e-13,
@@ -40,7 +40,7 @@ fn sheared(cells: [usize; 3]) -> Mesh {
 }
 
 /// Diffusion with zero on the boundary, and an upwind convection of this strength along z.
-fn transport(grid: &Arc<Grid>, diffusion: f64, speed: f64) -> Matrix {
+fn transport(grid: &Arc<MeshGraph>, diffusion: f64, speed: f64) -> Matrix {
     let mut matrix = Matrix::new(grid.clone());
     matrix.assemble(|cell, diagonal, neighbours| {
         for link in grid.links(cell) {
@@ -58,7 +58,7 @@ fn transport(grid: &Arc<Grid>, diffusion: f64, speed: f64) -> Matrix {
 
 #[test]
 fn both_solvers_find_the_known_solution_of_a_diffusion_and_a_transport_problem() {
-    let grid = Arc::new(Grid::new(&unit_box([9, 8, 7])));
+    let grid = Arc::new(MeshGraph::new(&unit_box([9, 8, 7])));
     for speed in [0.0, 30.0] {
         let matrix = transport(&grid, 1.0, speed);
         let known = scatter(grid.cells(), 11);
@@ -84,7 +84,7 @@ fn both_solvers_find_the_known_solution_of_a_diffusion_and_a_transport_problem()
 
 #[test]
 fn the_incomplete_factorisation_solves_a_chain_of_cells_at_once() {
-    let grid = Arc::new(Grid::new(&unit_box([1, 1, 50])));
+    let grid = Arc::new(MeshGraph::new(&unit_box([1, 1, 50])));
     let matrix = transport(&grid, 1.0, 3.0);
     let known = scatter(50, 5);
     let (mut b, mut x) = (vec![0.0; 50], vec![0.0; 50]);
@@ -103,11 +103,11 @@ fn the_incomplete_factorisation_solves_a_chain_of_cells_at_once() {
 
 #[test]
 fn a_solve_that_is_cut_short_says_so() {
-    let grid = Arc::new(Grid::new(&unit_box([10, 10, 10])));
+    let grid = Arc::new(MeshGraph::new(&unit_box([10, 10, 10])));
     let matrix = transport(&grid, 1.0, 0.0);
     let mut preconditioner = Incomplete::default();
     preconditioner.update(&matrix);
-    let target = Target {
+    let target = SolveTolerance {
         iterations: 2,
         ..TIGHT
     };
@@ -119,7 +119,7 @@ fn a_solve_that_is_cut_short_says_so() {
 
 #[test]
 fn the_gradient_of_a_linear_field_is_exact_on_a_sheared_mesh() {
-    let grid = Grid::new(&sheared([4, 5, 6]));
+    let grid = MeshGraph::new(&sheared([4, 5, 6]));
     assert!(!grid.orthogonal);
     let slope = Vec3::new(2.0, -3.0, 5.0);
     let values: Vec<f64> = grid.centre.iter().map(|x| slope.dot(x)).collect();
@@ -144,7 +144,7 @@ fn the_gradient_of_a_linear_field_is_exact_on_a_sheared_mesh() {
 
 #[test]
 fn the_outflow_of_a_uniform_field_is_zero() {
-    let grid = Grid::new(&sheared([3, 4, 5]));
+    let grid = MeshGraph::new(&sheared([3, 4, 5]));
     let speed = Vec3::new(1.0, 2.0, 3.0);
     let faces = grid.faces.iter();
     let flux: Vec<f64> = faces
@@ -163,7 +163,7 @@ fn laplacian_error(n: usize, skewed: bool) -> f64 {
     } else {
         unit_box([n; 3]).as_ref().clone()
     };
-    let grid = Arc::new(Grid::new(&mesh));
+    let grid = Arc::new(MeshGraph::new(&mesh));
     let (a, b) = if skewed { (0.4, 0.2) } else { (0.0, 0.0) };
     let local = |x: &Vec3| [x.x - a * x.z, x.y - b * x.z, x.z].map(|x| PI * x);
     let exact = |x: &Vec3| local(x).map(f64::sin).iter().product::<f64>();
@@ -225,7 +225,7 @@ fn the_laplacian_converges_with_second_order_on_straight_and_sheared_meshes() {
 
 /// RMS error of convection against diffusion between x = 0 and x = 1 at a Péclet number of 5.
 fn transport_error(n: usize) -> f64 {
-    let grid = Arc::new(Grid::new(&unit_box([1, 1, n])));
+    let grid = Arc::new(MeshGraph::new(&unit_box([1, 1, n])));
     let speed = 5.0;
     let mut matrix = Matrix::new(grid.clone());
     let mut source = vec![0.0; n];
@@ -273,7 +273,7 @@ fn upwind_convection_with_diffusion_converges_with_first_order() {
 
 #[test]
 fn the_incomplete_factorisation_of_many_cells_is_symmetric_and_has_the_same_bits_on_any_threads() {
-    let grid = Arc::new(Grid::new(&unit_box([30, 30, 40])));
+    let grid = Arc::new(MeshGraph::new(&unit_box([30, 30, 40])));
     let matrix = transport(&grid, 1.0, 0.0);
     let [x, y] = [3, 4].map(|seed| scatter(grid.cells(), seed));
     let on = |threads, r: &[f64]| {

@@ -7,15 +7,15 @@ use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::{Convection, Turbulence};
 
 use super::boundary::Boundaries;
-use super::state::State;
-use crate::numerics::grid::Grid;
+use super::state::GasState;
+use crate::numerics::grid::MeshGraph;
 use crate::numerics::parallel::{fill, sums, update};
 
 /// The frame of an attempt; constant while it lasts.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame<'a> {
+pub struct AttemptFrame<'a> {
     /// Faces and links.
-    pub grid: &'a Grid,
+    pub grid: &'a MeshGraph,
     /// Boundary values at the end of the window.
     pub boundary: &'a Boundaries,
     /// Properties of the gas.
@@ -38,14 +38,14 @@ pub struct Frame<'a> {
     /// Exchange with the particles.
     pub exchange: &'a CellExchange,
     /// State at the start of the window.
-    pub old: &'a State,
+    pub old: &'a GasState,
     /// Motion span Δt in s.
     pub motion_span: f64,
     /// Storage span Δτ in s.
     pub storage_span: f64,
 }
 
-impl Frame<'_> {
+impl AttemptFrame<'_> {
     /// Number of species; zero for a single gas.
     pub fn species(&self) -> usize {
         self.properties.species().len()
@@ -77,7 +77,7 @@ impl Frame<'_> {
     }
 
     /// Mass that the gas of a cell gains from particles in kg/s.
-    pub fn mass_source(&self, now: &State, cell: usize) -> f64 {
+    pub fn mass_source(&self, now: &GasState, cell: usize) -> f64 {
         let given = &self.exchange.species;
         if given.is_none() {
             return 0.0;
@@ -88,7 +88,7 @@ impl Frame<'_> {
 
 /// Material properties of each cell at its temperature and composition.
 #[derive(Clone, Debug, Default)]
-pub struct Material {
+pub struct CellProperties {
     /// Density ρ of the equation of state in kg/m³.
     pub density: Vec<f64>,
     /// Specific heat capacity c_p in J/kg/K.
@@ -103,10 +103,10 @@ pub struct Material {
     pub diffusivity: Vec<f64>,
 }
 
-impl Material {
+impl CellProperties {
     /// Evaluates the properties of a state. In a closed domain the base pressure of the low-Mach gas
     /// first follows: the one at which the gas that is there fills the pores.
-    pub fn update(&mut self, frame: &Frame<'_>, now: &mut State) {
+    pub fn update(&mut self, frame: &AttemptFrame<'_>, now: &mut GasState) {
         let gas = frame.properties;
         let (cells, species) = (now.temperature.len(), frame.species());
         for list in [
@@ -147,7 +147,7 @@ impl Material {
         self.add_eddies(frame);
     }
 
-    fn add_eddies(&mut self, frame: &Frame<'_>) {
+    fn add_eddies(&mut self, frame: &AttemptFrame<'_>) {
         let eddies = &frame.old.turbulence.viscosity;
         let &Turbulence::KEpsilon {
             prandtl, schmidt, ..
@@ -168,7 +168,7 @@ impl Material {
 
 /// The pressure at which Σ ε ρ V is the gas that continuity leaves in a closed domain, in Pa. Densities
 /// of ideal gases are proportional to the pressure.
-fn closed_pressure(frame: &Frame<'_>, now: &State) -> f64 {
+fn closed_pressure(frame: &AttemptFrame<'_>, now: &GasState) -> f64 {
     let grid = frame.grid;
     let species = frame.species();
     let [held, at_one_pascal] = sums(grid.cells(), |cell| {
@@ -184,7 +184,7 @@ fn closed_pressure(frame: &Frame<'_>, now: &State) -> f64 {
     let [outflow] = sums(boundary, |face| {
         let index = grid.internal + face;
         match frame.boundary.at(index) {
-            super::boundary::Value::Inlet { mass_flux, .. } => {
+            super::boundary::FaceCondition::Inlet { mass_flux, .. } => {
                 [-mass_flux * grid.faces[index].area]
             }
             _ => [0.0],

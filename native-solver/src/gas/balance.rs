@@ -3,22 +3,22 @@
 use calcine_coupler::part::{Balance, CellReceived};
 use calcine_coupler::physics::Vec3;
 
-use super::attempt::{Frame, Material};
-use super::enthalpy::Taken;
+use super::attempt::{AttemptFrame, CellProperties};
+use super::enthalpy::EnthalpyFlows;
 use super::momentum::Momentum;
-use super::species::Species;
-use super::state::State;
+use super::species::SpeciesEquations;
+use super::state::GasState;
 use crate::numerics::operators::outflow;
 use crate::numerics::parallel::{fill, sums};
 
 /// What the gas took from the particles, and its balances.
 pub fn receive(
-    frame: &Frame<'_>,
-    material: &Material,
+    frame: &AttemptFrame<'_>,
+    material: &CellProperties,
     momentum: &Momentum,
-    taken: &Taken,
-    species: &Species,
-    now: &State,
+    taken: &EnthalpyFlows,
+    species: &SpeciesEquations,
+    now: &GasState,
     received: &mut CellReceived,
 ) {
     let cells = frame.grid.cells();
@@ -36,7 +36,7 @@ pub fn receive(
 }
 
 /// Sums of a boundary term and of its magnitude over all boundary faces.
-fn boundary(frame: &Frame<'_>, inflow: impl Fn(usize) -> f64 + Sync) -> [f64; 2] {
+fn boundary(frame: &AttemptFrame<'_>, inflow: impl Fn(usize) -> f64 + Sync) -> [f64; 2] {
     let internal = frame.grid.internal;
     sums(frame.grid.faces.len() - internal, |face| {
         let inflow = inflow(internal + face);
@@ -46,7 +46,7 @@ fn boundary(frame: &Frame<'_>, inflow: impl Fn(usize) -> f64 + Sync) -> [f64; 2]
 
 /// What passes the boundary; where nothing does, the magnitude is what circulates through the faces
 /// within, because the rounding of that is all that the cells of a fluid of constant density store.
-fn mass(frame: &Frame<'_>, now: &State) -> Balance {
+fn mass(frame: &AttemptFrame<'_>, now: &GasState) -> Balance {
     let [stored, stored_magnitude] = sums(frame.grid.cells(), |cell| {
         let stored = now.mass[cell] - frame.old.mass[cell];
         [stored, stored.abs()]
@@ -70,14 +70,19 @@ fn mass(frame: &Frame<'_>, now: &State) -> Balance {
 }
 
 /// Heat of the gas' own reactions in J, from what the equations of the species say that they made.
-fn reacted(frame: &Frame<'_>, species: &[Balance]) -> f64 {
+fn reacted(frame: &AttemptFrame<'_>, species: &[Balance]) -> f64 {
     let each = species.iter().enumerate();
     -each
         .map(|(k, made)| frame.properties.formation_enthalpy(k) * made.source)
         .sum::<f64>()
 }
 
-fn energy(frame: &Frame<'_>, taken: &Taken, species: &[Balance], now: &State) -> Balance {
+fn energy(
+    frame: &AttemptFrame<'_>,
+    taken: &EnthalpyFlows,
+    species: &[Balance],
+    now: &GasState,
+) -> Balance {
     let old = frame.old;
     let [stored, stored_magnitude, exchange] = sums(frame.grid.cells(), |cell| {
         let stored = now.mass[cell] * now.enthalpy[cell] - old.mass[cell] * old.enthalpy[cell];
@@ -101,10 +106,10 @@ fn energy(frame: &Frame<'_>, taken: &Taken, species: &[Balance], now: &State) ->
 /// continuity residual of the motion clock, in which gas of particles, which comes and goes with u, and
 /// [`storage_clock`] are.
 fn momenta(
-    frame: &Frame<'_>,
-    material: &Material,
+    frame: &AttemptFrame<'_>,
+    material: &CellProperties,
     momentum: &Momentum,
-    now: &State,
+    now: &GasState,
     drag: &[Vec3],
 ) -> [Balance; 3] {
     let (grid, old, span) = (frame.grid, frame.old, frame.motion_span);
@@ -135,7 +140,7 @@ fn momenta(
 
 /// Σ u (1 − Δt/Δτ) Δ(ε ρ V): what momentum on the motion clock and mass on the storage clock leave between them
 /// (requirements TSM-8).
-fn storage_clock(frame: &Frame<'_>, now: &State) -> Vec3 {
+fn storage_clock(frame: &AttemptFrame<'_>, now: &GasState) -> Vec3 {
     let share = 1.0 - frame.motion_span / frame.storage_span;
     let sum: [f64; 3] = sums(frame.grid.cells(), |cell| {
         let gained = now.mass[cell] - frame.old.mass[cell];

@@ -20,7 +20,7 @@ struct Boundary {
     /// Area in m².
     area: f64,
     condition: GasPatch,
-    value: Value,
+    value: FaceCondition,
     /// Mass fractions of the gas that flows in; empty where none does, or for a single gas.
     composition: Vec<f64>,
 }
@@ -36,7 +36,7 @@ pub struct Boundaries {
 
 /// The condition of a face at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Value {
+pub enum FaceCondition {
     /// Gas flows in.
     Inlet {
         /// Superficial velocity into the domain in m/s.
@@ -58,13 +58,13 @@ pub enum Value {
         /// Velocity of the wall that the gas sticks to in m/s; `None` where it slips.
         sticks: Option<Vec3>,
         /// Heat through it.
-        heat: Heat,
+        heat: HeatCondition,
     },
 }
 
 /// Heat through a wall at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Heat {
+pub enum HeatCondition {
     /// None.
     Adiabatic,
     /// The wall has this temperature in K.
@@ -156,9 +156,9 @@ impl Boundaries {
                     .map(|face| mesh.face_area()[face].norm())
                     .sum(),
                 condition: condition.clone(),
-                value: Value::Wall {
+                value: FaceCondition::Wall {
                     sticks: None,
-                    heat: Heat::Adiabatic,
+                    heat: HeatCondition::Adiabatic,
                 },
                 composition: Vec::new(),
             });
@@ -187,7 +187,7 @@ impl Boundaries {
 
     /// The condition of a boundary face.
     #[inline]
-    pub fn at(&self, face: usize) -> Value {
+    pub fn at(&self, face: usize) -> FaceCondition {
         self.patches[self.patch_of[face - self.internal] as usize].value
     }
 
@@ -195,7 +195,7 @@ impl Boundaries {
     #[inline]
     pub fn composition(&self, face: usize) -> Option<&[f64]> {
         let boundary = &self.patches[self.patch_of[face - self.internal] as usize];
-        matches!(boundary.value, Value::Inlet { .. }).then_some(&boundary.composition)
+        matches!(boundary.value, FaceCondition::Inlet { .. }).then_some(&boundary.composition)
     }
 
     /// k in m²/s² and its dissipation in m²/s³ of the gas that flows in through a boundary face into a cell of
@@ -203,7 +203,7 @@ impl Boundaries {
     #[inline]
     pub fn eddies(&self, face: usize, void_fraction: f64) -> [f64; 2] {
         match self.at(face) {
-            Value::Inlet {
+            FaceCondition::Inlet {
                 superficial_velocity,
                 turbulence: Some(turbulence),
                 ..
@@ -238,34 +238,36 @@ impl Boundary {
                         (flux / density, flux)
                     }
                 };
-                Value::Inlet {
+                FaceCondition::Inlet {
                     superficial_velocity,
                     mass_flux,
                     gas: BoundaryGas::at(model, temperature, &self.composition),
                     turbulence: *turbulence,
                 }
             }
-            GasPatch::Outlet { pressure } => Value::Outlet {
+            GasPatch::Outlet { pressure } => FaceCondition::Outlet {
                 pressure: pressure.at(time) - setup.pressure,
             },
-            GasPatch::Symmetry => Value::Wall {
+            GasPatch::Symmetry => FaceCondition::Wall {
                 sticks: None,
-                heat: Heat::Adiabatic,
+                heat: HeatCondition::Adiabatic,
             },
-            GasPatch::Wall { velocity, heat } => Value::Wall {
+            GasPatch::Wall { velocity, heat } => FaceCondition::Wall {
                 sticks: match velocity {
                     WallVelocity::Slip => None,
                     WallVelocity::NoSlip => Some(Vec3::zeros()),
                     WallVelocity::Moving(velocity) => Some(*velocity),
                 },
                 heat: match heat {
-                    WallHeat::Adiabatic => Heat::Adiabatic,
-                    WallHeat::Temperature(schedule) => Heat::Temperature(schedule.at(time)),
-                    WallHeat::Flux(schedule) => Heat::Flux(schedule.at(time)),
+                    WallHeat::Adiabatic => HeatCondition::Adiabatic,
+                    WallHeat::Temperature(schedule) => {
+                        HeatCondition::Temperature(schedule.at(time))
+                    }
+                    WallHeat::Flux(schedule) => HeatCondition::Flux(schedule.at(time)),
                     WallHeat::Convective {
                         coefficient,
                         ambient,
-                    } => Heat::Convective {
+                    } => HeatCondition::Convective {
                         coefficient: coefficient.at(time),
                         ambient: ambient.at(time),
                     },

@@ -28,8 +28,8 @@ use calcine_coupler::physics::kinetics::{self, Reactor};
 use calcine_coupler::physics::thermo::mixture::MOST_SPECIES;
 use rayon::prelude::*;
 
-use super::attempt::{Frame, Material};
-use super::state::State;
+use super::attempt::{AttemptFrame, CellProperties};
+use super::state::GasState;
 use super::stirring::reacting_share;
 use crate::numerics::parallel::{fill, largest};
 
@@ -42,7 +42,7 @@ const LONGER: f64 = 1e-6;
 
 /// What reactions add to an equation of a quantity x per kg of gas: gain + inertia (x° − x).
 #[derive(Clone, Debug, Default)]
-pub struct Source {
+pub struct ReactionSource {
     /// In the unit of x times kg/s, in the order of the values.
     gain: Vec<f64>,
     /// That of a pseudo-step in kg/s, cell by cell; empty outside pseudo-steps.
@@ -51,7 +51,7 @@ pub struct Source {
     before: Vec<f64>,
 }
 
-impl Source {
+impl ReactionSource {
     /// What reactions give to a value, without the pseudo-step; zero where nothing reacts.
     #[inline]
     pub fn gain(&self, at: usize) -> f64 {
@@ -81,7 +81,7 @@ impl Source {
 
 /// The rates of all cells.
 #[derive(Debug, Default)]
-pub struct Chemistry {
+pub struct CellChemistry {
     /// w of the fields last evaluated in 1/s, species by species within each cell.
     rates: Vec<f64>,
     /// Spans over which they are, cell by cell, in s.
@@ -101,14 +101,14 @@ pub struct Chemistry {
 }
 
 /// Whether the window's reactions take pseudo-steps.
-pub fn is_dual(frame: &Frame<'_>) -> bool {
+pub fn is_dual(frame: &AttemptFrame<'_>) -> bool {
     frame.chemistry.reacting().is_some() && frame.storage_span > (1.0 + LONGER) * frame.motion_span
 }
 
-impl Chemistry {
+impl CellChemistry {
     /// Takes up the start of an attempt, which may continue the one before: rates of the window's start are the
     /// same in all its attempts.
-    pub fn begin(&mut self, frame: &Frame<'_>, continues: bool) -> Result<(), String> {
+    pub fn begin(&mut self, frame: &AttemptFrame<'_>, continues: bool) -> Result<(), String> {
         self.fresh = false;
         self.change = 0.0;
         let Some(gas) = frame.chemistry.reacting() else {
@@ -135,14 +135,19 @@ impl Chemistry {
     }
 
     /// Follows the fields, where a window's reactions take pseudo-steps.
-    pub fn follow(&mut self, frame: &Frame<'_>, now: &State) -> Result<(), String> {
+    pub fn follow(&mut self, frame: &AttemptFrame<'_>, now: &GasState) -> Result<(), String> {
         match frame.chemistry.reacting() {
             Some(gas) if is_dual(frame) && !self.fresh => self.evaluate(frame, gas, now),
             _ => Ok(()),
         }
     }
 
-    fn evaluate(&mut self, frame: &Frame<'_>, gas: &ReactingGas, at: &State) -> Result<(), String> {
+    fn evaluate(
+        &mut self,
+        frame: &AttemptFrame<'_>,
+        gas: &ReactingGas,
+        at: &GasState,
+    ) -> Result<(), String> {
         let species = frame.species();
         let dual = is_dual(frame);
         self.spans.resize(frame.grid.cells(), 0.0);
@@ -202,11 +207,11 @@ impl Chemistry {
     /// Sets what the equations of species and enthalpy take, with the pseudo-step or without.
     pub fn apply(
         &self,
-        frame: &Frame<'_>,
-        material: &Material,
+        frame: &AttemptFrame<'_>,
+        material: &CellProperties,
         pseudo: bool,
-        now: &State,
-        [composition, enthalpy]: [&mut Source; 2],
+        now: &GasState,
+        [composition, enthalpy]: [&mut ReactionSource; 2],
     ) {
         if frame.chemistry.reacting().is_none() {
             return;
@@ -245,8 +250,8 @@ impl Chemistry {
     }
 
     /// Source of the enthalpy by what is made of each species in kg/s.
-    pub fn source_of(&self, species: usize, made: &[f64]) -> Source {
-        let mut source = Source::default();
+    pub fn source_of(&self, species: usize, made: &[f64]) -> ReactionSource {
+        let mut source = ReactionSource::default();
         self.heat(species, made, &mut source.gain);
         source
     }
@@ -263,10 +268,10 @@ impl Chemistry {
     /// Sets what the equations take at the end of the iteration.
     pub fn conclude(
         &self,
-        frame: &Frame<'_>,
+        frame: &AttemptFrame<'_>,
         elements: &Elements,
-        now: &State,
-        [composition, enthalpy]: [&mut Source; 2],
+        now: &GasState,
+        [composition, enthalpy]: [&mut ReactionSource; 2],
     ) {
         let (cells, species) = (frame.grid.cells(), frame.species());
         let one = |(cell, gain): (usize, &mut [f64])| {
@@ -291,7 +296,12 @@ impl Chemistry {
     }
 
     /// Books what the pseudo-step changed, and what its reactors reached.
-    pub fn measure(&mut self, [composition, enthalpy]: [&Source; 2], heat: &[f64], now: &State) {
+    pub fn measure(
+        &mut self,
+        [composition, enthalpy]: [&ReactionSource; 2],
+        heat: &[f64],
+        now: &GasState,
+    ) {
         self.reached.resize(self.rates.len(), 0.0);
         self.inertia.clone_from(&composition.inertia);
         let (rates, spans) = (&self.rates, &self.spans);
@@ -311,12 +321,12 @@ impl Chemistry {
 }
 
 /// Gas of a cell in kg by the equation of state: in an early iterate the masses of continuity may be no masses of a gas.
-fn held(frame: &Frame<'_>, material: &Material, cell: usize) -> f64 {
+fn held(frame: &AttemptFrame<'_>, material: &CellProperties, cell: usize) -> f64 {
     material.density[cell] * frame.void_fraction[cell] * frame.grid.volume[cell]
 }
 
 /// Span of a cell's pseudo-step in s, for the fluxes at hand.
-fn pseudo_step(frame: &Frame<'_>, now: &State, cell: usize) -> f64 {
+fn pseudo_step(frame: &AttemptFrame<'_>, now: &GasState, cell: usize) -> f64 {
     let composition = now.composition_of(cell, frame.species());
     let density = frame
         .properties

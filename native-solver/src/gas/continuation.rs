@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::boundary::Value;
-use super::state::State;
+use super::boundary::FaceCondition;
+use super::state::GasState;
 use super::{NativeError, NativeGas, STATE, start, turbulence};
 use crate::numerics::parallel::fill;
 
@@ -16,7 +16,7 @@ impl NativeGas {
         let gas = &self.setup.properties;
         let species = gas.species().len();
         let (cells, faces) = (self.mesh.cells(), self.mesh.faces());
-        let mut state = State::read(&directory.join(STATE), cells, faces, species)?;
+        let mut state = GasState::read(&directory.join(STATE), cells, faces, species)?;
         if !self.boundaries.closed() {
             let shift = state.base_pressure - self.setup.pressure;
             state.pressure.iter_mut().for_each(|value| *value += shift);
@@ -41,7 +41,7 @@ impl NativeGas {
     }
 
     /// The state before anything is known of the bed; its velocity is superficial.
-    pub(super) fn origin(&self) -> State {
+    pub(super) fn origin(&self) -> GasState {
         let new = || start(&self.setup, self.mesh.cells(), self.mesh.faces());
         self.taken_over.clone().unwrap_or_else(new)
     }
@@ -66,8 +66,8 @@ impl NativeGas {
         let taken_over = self.taken_over.is_some();
         fill(&mut state.flux, |index| {
             let face = &grid.faces[index];
-            let closed =
-                index >= grid.internal && matches!(boundaries.at(index), Value::Wall { .. });
+            let closed = index >= grid.internal
+                && matches!(boundaries.at(index), FaceCondition::Wall { .. });
             if closed {
                 0.0
             } else if taken_over {

@@ -14,13 +14,13 @@
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::{Convection, Turbulence};
 
-use super::attempt::{Frame, Material};
-use super::boundary::{Heat, Value};
-use super::chemistry::Source;
-use super::outer::Goal;
-use super::state::State;
+use super::attempt::{AttemptFrame, CellProperties};
+use super::boundary::{FaceCondition, HeatCondition};
+use super::chemistry::ReactionSource;
+use super::outer::ScalarTolerance;
+use super::state::GasState;
 use crate::numerics::convection::beyond_upwind;
-use crate::numerics::krylov::{Krylov, Target};
+use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{
     conductance, displacement, face_values, follow, gradient, interpolate,
@@ -37,7 +37,7 @@ pub struct Enthalpy {
     matrix: Matrix,
     source: Vec<f64>,
     /// What reactions of the gas add.
-    pub reactions: Source,
+    pub reactions: ReactionSource,
     /// Thermal conductance of each face in W/K; on the boundary to what `outer` says.
     conduction: Vec<f64>,
     /// θ of each cell in K.
@@ -54,12 +54,12 @@ pub struct Enthalpy {
     gradients: [Vec<Vec3>; 2],
     faces: Vec<f64>,
     /// What the last solve took and gave.
-    pub taken: Taken,
+    pub taken: EnthalpyFlows,
 }
 
 /// What the equation, as it was solved, took and gave.
 #[derive(Clone, Debug, Default)]
-pub struct Taken {
+pub struct EnthalpyFlows {
     /// Heat from the particles to each cell in W.
     pub heat: Vec<f64>,
     /// Flow of enthalpy into the domain in W, and the sum of its magnitudes over the faces.
@@ -70,33 +70,33 @@ pub struct Taken {
 
 /// What a boundary face exchanges heat with: its temperature in K, where it has one.
 #[inline]
-fn outer(frame: &Frame<'_>, index: usize) -> Option<f64> {
+fn outer(frame: &AttemptFrame<'_>, index: usize) -> Option<f64> {
     match frame.boundary.at(index) {
-        Value::Inlet { gas, .. } => Some(gas.temperature),
-        Value::Wall { heat, .. } => match heat {
-            Heat::Temperature(temperature) => Some(temperature),
-            Heat::Convective { ambient, .. } => Some(ambient),
-            Heat::Adiabatic | Heat::Flux(_) => None,
+        FaceCondition::Inlet { gas, .. } => Some(gas.temperature),
+        FaceCondition::Wall { heat, .. } => match heat {
+            HeatCondition::Temperature(temperature) => Some(temperature),
+            HeatCondition::Convective { ambient, .. } => Some(ambient),
+            HeatCondition::Adiabatic | HeatCondition::Flux(_) => None,
         },
-        Value::Outlet { .. } => None,
+        FaceCondition::Outlet { .. } => None,
     }
 }
 
 /// Enthalpy of the gas that flows in through a boundary face in J/kg.
 #[inline]
-fn inlet(frame: &Frame<'_>, index: usize) -> Option<f64> {
+fn inlet(frame: &AttemptFrame<'_>, index: usize) -> Option<f64> {
     match frame.boundary.at(index) {
-        Value::Inlet { gas, .. } => Some(gas.enthalpy),
-        Value::Wall { .. } | Value::Outlet { .. } => None,
+        FaceCondition::Inlet { gas, .. } => Some(gas.enthalpy),
+        FaceCondition::Wall { .. } | FaceCondition::Outlet { .. } => None,
     }
 }
 
 /// Heat that flows in through a boundary face whatever the gas does, in W.
 #[inline]
-fn imposed(frame: &Frame<'_>, index: usize) -> f64 {
+fn imposed(frame: &AttemptFrame<'_>, index: usize) -> f64 {
     match frame.boundary.at(index) {
-        Value::Wall {
-            heat: Heat::Flux(flux),
+        FaceCondition::Wall {
+            heat: HeatCondition::Flux(flux),
             ..
         } => flux * frame.grid.faces[index].area,
         _ => 0.0,
@@ -105,7 +105,12 @@ fn imposed(frame: &Frame<'_>, index: usize) -> f64 {
 
 /// Thermal conductance of a face in W/K; zero where no heat is conducted.
 #[inline]
-fn conduction(frame: &Frame<'_>, material: &Material, now: &State, index: usize) -> f64 {
+fn conduction(
+    frame: &AttemptFrame<'_>,
+    material: &CellProperties,
+    now: &GasState,
+    index: usize,
+) -> f64 {
     let face = &frame.grid.faces[index];
     if index < frame.grid.internal {
         return conductance(face, interpolate(face, &material.conductivity));
@@ -113,7 +118,7 @@ fn conduction(frame: &Frame<'_>, material: &Material, now: &State, index: usize)
     let pores = frame.void_fraction[face.owner];
     let eddies = frame.heat_eddies_at(index);
     match frame.boundary.at(index) {
-        Value::Inlet { gas, .. } => {
+        FaceCondition::Inlet { gas, .. } => {
             let carried = if eddies > 0.0 {
                 let composition = frame.boundary.composition(index).unwrap_or_default();
                 eddies * frame.properties.heat_capacity(gas.temperature, composition)
@@ -122,8 +127,8 @@ fn conduction(frame: &Frame<'_>, material: &Material, now: &State, index: usize)
             };
             conductance(face, pores * gas.conductivity + carried)
         }
-        Value::Wall { heat, .. } => match heat {
-            Heat::Temperature(temperature) => {
+        FaceCondition::Wall { heat, .. } => match heat {
+            HeatCondition::Temperature(temperature) => {
                 let composition = now.composition_of(face.owner, frame.species());
                 let gas = frame.properties;
                 let conductivity = gas.conductivity(temperature, composition);
@@ -135,19 +140,21 @@ fn conduction(frame: &Frame<'_>, material: &Material, now: &State, index: usize)
                 conductance(face, pores * conductivity + carried)
             }
             // The half cell and the wall in series.
-            Heat::Convective { coefficient, .. } if coefficient > 0.0 => {
+            HeatCondition::Convective { coefficient, .. } if coefficient > 0.0 => {
                 let gas = face.distance() / at_wall(frame, material, index, face.owner);
                 face.area / (1.0 / coefficient + gas)
             }
-            Heat::Convective { .. } | Heat::Adiabatic | Heat::Flux(_) => 0.0,
+            HeatCondition::Convective { .. }
+            | HeatCondition::Adiabatic
+            | HeatCondition::Flux(_) => 0.0,
         },
-        Value::Outlet { .. } => 0.0,
+        FaceCondition::Outlet { .. } => 0.0,
     }
 }
 
 /// Void fraction × conductivity of the gas at a wall in W/m/K, with the eddies there in place of the cell's.
 #[inline]
-fn at_wall(frame: &Frame<'_>, material: &Material, index: usize, cell: usize) -> f64 {
+fn at_wall(frame: &AttemptFrame<'_>, material: &CellProperties, index: usize, cell: usize) -> f64 {
     let Turbulence::KEpsilon { prandtl, .. } = frame.turbulence else {
         return material.conductivity[cell];
     };
@@ -162,7 +169,7 @@ impl Enthalpy {
         Self {
             matrix,
             source: vec![0.0; cells],
-            reactions: Source::default(),
+            reactions: ReactionSource::default(),
             conduction: vec![0.0; faces],
             base: vec![0.0; cells],
             heat_capacity: vec![0.0; cells],
@@ -171,7 +178,7 @@ impl Enthalpy {
             preconditioner: Incomplete::default(),
             gradients: [vec![Vec3::zeros(); cells], vec![Vec3::zeros(); cells]],
             faces: vec![0.0; faces],
-            taken: Taken::default(),
+            taken: EnthalpyFlows::default(),
         }
     }
 
@@ -187,11 +194,11 @@ impl Enthalpy {
     /// explicit a share follows the fields.
     pub fn assemble(
         &mut self,
-        frame: &Frame<'_>,
-        material: &Material,
+        frame: &AttemptFrame<'_>,
+        material: &CellProperties,
         carried: &[f64],
         share: f64,
-        now: &State,
+        now: &GasState,
     ) {
         let grid = frame.grid;
         self.heat_capacity.clone_from(&material.heat_capacity);
@@ -258,7 +265,7 @@ impl Enthalpy {
         });
     }
 
-    fn update_given(&mut self, frame: &Frame<'_>, now: &State) {
+    fn update_given(&mut self, frame: &AttemptFrame<'_>, now: &GasState) {
         let exchange = frame.exchange;
         let [given, coefficient] = &mut self.given;
         given.clone_from(&exchange.heat_source);
@@ -287,20 +294,26 @@ impl Enthalpy {
         });
     }
 
-    fn update_explicit(&mut self, frame: &Frame<'_>, species: &[f64], share: f64, now: &State) {
+    fn update_explicit(
+        &mut self,
+        frame: &AttemptFrame<'_>,
+        species: &[f64],
+        share: f64,
+        now: &GasState,
+    ) {
         let grid = frame.grid;
         let second = frame.convection == Convection::VanLeer && species.is_empty();
         if second {
             let boundary = |index: usize, inner: f64| match frame.boundary.at(index) {
-                Value::Inlet { gas, .. } => gas.enthalpy,
-                Value::Wall {
-                    heat: Heat::Temperature(temperature),
+                FaceCondition::Inlet { gas, .. } => gas.enthalpy,
+                FaceCondition::Wall {
+                    heat: HeatCondition::Temperature(temperature),
                     ..
                 } => frame.properties.enthalpy(
                     temperature,
                     now.composition_of(grid.faces[index].owner, frame.species()),
                 ),
-                Value::Wall { .. } | Value::Outlet { .. } => inner,
+                FaceCondition::Wall { .. } | FaceCondition::Outlet { .. } => inner,
             };
             let gradients = &mut self.gradients[0];
             face_values(grid, &now.enthalpy, gradients, boundary, &mut self.faces);
@@ -309,12 +322,12 @@ impl Enthalpy {
         }
         if !grid.orthogonal {
             let boundary = |index: usize, inner: f64| match frame.boundary.at(index) {
-                Value::Inlet { gas, .. } => gas.temperature,
-                Value::Wall {
-                    heat: Heat::Temperature(temperature),
+                FaceCondition::Inlet { gas, .. } => gas.temperature,
+                FaceCondition::Wall {
+                    heat: HeatCondition::Temperature(temperature),
                     ..
                 } => temperature,
-                Value::Wall { .. } | Value::Outlet { .. } => inner,
+                FaceCondition::Wall { .. } | FaceCondition::Outlet { .. } => inner,
             };
             let gradients = &mut self.gradients[1];
             face_values(grid, &now.temperature, gradients, boundary, &mut self.faces);
@@ -340,7 +353,7 @@ impl Enthalpy {
     }
 
     /// Σ over cells of the equation's residual, relative to the cells' heat contents (from 0 K).
-    pub fn residual(&self, now: &State) -> f64 {
+    pub fn residual(&self, now: &GasState) -> f64 {
         let [error, content] = sums(now.enthalpy.len(), |cell| {
             let error = self.source[cell] - self.matrix.row_times(cell, &now.enthalpy);
             let capacity = self.matrix.diagonal()[cell] * self.heat_capacity[cell];
@@ -352,12 +365,12 @@ impl Enthalpy {
     /// Solves for the enthalpy; returns the iterations.
     pub fn solve(
         &mut self,
-        frame: &Frame<'_>,
+        frame: &AttemptFrame<'_>,
         krylov: &mut Krylov,
-        goal: Goal,
-        now: &mut State,
+        goal: ScalarTolerance,
+        now: &mut GasState,
     ) -> u32 {
-        let target = Target {
+        let target = SolveTolerance {
             absolute: goal.absolute * self.throughput(frame, now),
             of_terms: 0.0,
             relative: goal.relative,
@@ -373,7 +386,7 @@ impl Enthalpy {
         );
         self.record(frame, now);
         let species = frame.species();
-        let State {
+        let GasState {
             temperature,
             enthalpy,
             composition,
@@ -390,13 +403,13 @@ impl Enthalpy {
 
     /// Heat from the particles to a cell in W, as the equation takes it.
     #[inline]
-    fn heat(&self, now: &State, cell: usize) -> f64 {
+    fn heat(&self, now: &GasState, cell: usize) -> f64 {
         let temperature = self.base[cell] + now.enthalpy[cell] / self.heat_capacity[cell];
         self.given[0][cell] - self.given[1][cell] * temperature
     }
 
     /// Energy that moves, in W: through the boundary, from the particles, into storage.
-    fn throughput(&self, frame: &Frame<'_>, now: &State) -> f64 {
+    fn throughput(&self, frame: &AttemptFrame<'_>, now: &GasState) -> f64 {
         let internal = frame.grid.internal;
         let boundary = sum(frame.grid.faces.len() - internal, |face| {
             let index = internal + face;
@@ -413,7 +426,7 @@ impl Enthalpy {
     }
 
     /// Flow of enthalpy into the domain through a boundary face in W, conduction included.
-    fn inflow(&self, frame: &Frame<'_>, now: &State, index: usize) -> f64 {
+    fn inflow(&self, frame: &AttemptFrame<'_>, now: &GasState, index: usize) -> f64 {
         let cell = frame.grid.faces[index].owner;
         let inner = now.enthalpy[cell];
         let flux = now.flux[index];
@@ -427,7 +440,7 @@ impl Enthalpy {
         imposed(frame, index) + conducted - flux * carried - self.explicit[index]
     }
 
-    fn record(&mut self, frame: &Frame<'_>, now: &State) {
+    fn record(&mut self, frame: &AttemptFrame<'_>, now: &GasState) {
         let grid = frame.grid;
         let mut taken = std::mem::take(&mut self.taken);
         taken.heat.resize(grid.cells(), 0.0);

@@ -2,7 +2,7 @@
 
 use calcine_coupler::physics::Vec3;
 
-use super::state::State;
+use super::state::GasState;
 use crate::numerics::parallel::largest;
 
 /// Above this temperature in K neither the mixture's properties nor the low-Mach model mean
@@ -13,7 +13,7 @@ const HIGHEST_SPEED: f64 = 1e4;
 
 /// What is wrong with an iterate's fields, in words: what is not a number, or a temperature that no
 /// property is defined for; `None` where nothing is.
-pub fn nonsense(now: &State, centre: &[Vec3]) -> Option<String> {
+pub fn nonsense(now: &GasState, centre: &[Vec3]) -> Option<String> {
     let (cell, strangeness) = largest(centre.len(), |cell| {
         let sum = now.temperature[cell] + now.velocity[cell].sum() + now.pressure[cell];
         if now.temperature[cell] > 0.0 && (sum + now.mass[cell]).is_finite() {
@@ -36,7 +36,7 @@ pub fn nonsense(now: &State, centre: &[Vec3]) -> Option<String> {
 }
 
 /// What is wrong with an attempt's fields, in words; `None` where nothing is.
-pub fn complaint(now: &State, centre: &[Vec3]) -> Option<String> {
+pub fn complaint(now: &GasState, centre: &[Vec3]) -> Option<String> {
     let cells = centre.len();
     let worst = |strangeness: &(dyn Fn(usize) -> f64 + Sync)| {
         let (cell, value) = largest(cells, strangeness);

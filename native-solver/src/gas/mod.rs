@@ -31,15 +31,15 @@ use calcine_coupler::setup::GasSetup;
 use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::Window;
 
-use attempt::Frame;
+use attempt::AttemptFrame;
 use boundary::Boundaries;
 pub use error::NativeError;
 use outer::Equations;
-use state::State;
+use state::GasState;
 pub(crate) use state::{flat, vectors};
-use turbulence::{Eddies, KEpsilonEquations, Step};
+use turbulence::{Eddies, KEpsilonEquations, TurbulenceStep};
 
-use crate::numerics::grid::Grid;
+use crate::numerics::grid::MeshGraph;
 use crate::numerics::matrix::Matrix;
 use crate::numerics::parallel::fill;
 
@@ -51,18 +51,18 @@ const STATE: &str = "gas.state";
 pub struct NativeGas {
     about: SolverInfo,
     mesh: Arc<Mesh>,
-    grid: Arc<Grid>,
+    grid: Arc<MeshGraph>,
     setup: GasSetup,
     boundaries: Boundaries,
     equations: Equations,
     /// Of a turbulent gas.
     eddies: Option<KEpsilonEquations>,
-    committed: State,
+    committed: GasState,
     /// True once a window is committed; before, the bed of an attempt says how much gas there is.
     started: bool,
     /// Fields of another run to start from, their velocity superficial.
-    taken_over: Option<State>,
-    now: State,
+    taken_over: Option<GasState>,
+    now: GasState,
     /// The attempt that `now` is of, as long as it is not committed.
     attempted: Option<Window>,
     window: Option<Window>,
@@ -83,7 +83,7 @@ impl NativeGas {
         let mesh = mesh.into();
         check(setup)?;
         let boundaries = Boundaries::new(&mesh, setup)?;
-        let grid = Arc::new(Grid::new(&mesh));
+        let grid = Arc::new(MeshGraph::new(&mesh));
         let (cells, faces) = (mesh.cells(), mesh.faces());
         let committed = start(setup, cells, faces);
         let mut gas = Self {
@@ -117,7 +117,7 @@ impl NativeGas {
     /// Takes up the state that a checkpoint left in a folder.
     pub fn restore(&mut self, directory: &Path) -> Result<(), NativeError> {
         let path = directory.join(STATE);
-        self.committed = State::read(
+        self.committed = GasState::read(
             &path,
             self.mesh.cells(),
             self.mesh.faces(),
@@ -149,7 +149,7 @@ impl NativeGas {
         let (Some(eddies), Some(window)) = (&mut self.eddies, self.attempted) else {
             return Ok(());
         };
-        let step = Step {
+        let step = TurbulenceStep {
             grid: &self.grid,
             boundary: &self.boundaries,
             gas: &self.setup.properties,
@@ -329,7 +329,7 @@ impl Gas for NativeGas {
         }
         self.attempted = Some(window);
         self.now.void_fraction.clone_from(&self.void_fraction);
-        let frame = Frame {
+        let frame = AttemptFrame {
             grid: &self.grid,
             boundary: &self.boundaries,
             properties: &self.setup.properties,
@@ -379,17 +379,21 @@ impl Gas for NativeGas {
 }
 
 /// The equations of a turbulent gas.
-fn eddies(setup: &GasSetup, grid: &Arc<Grid>, boundary: &Boundaries) -> Option<KEpsilonEquations> {
+fn eddies(
+    setup: &GasSetup,
+    grid: &Arc<MeshGraph>,
+    boundary: &Boundaries,
+) -> Option<KEpsilonEquations> {
     let turbulent = !setup.turbulence.is_laminar();
     turbulent.then(|| KEpsilonEquations::new(Matrix::new(grid.clone()), boundary))
 }
 
 /// The state at the start of a run, before anything is known of the bed.
-fn start(setup: &GasSetup, cells: usize, faces: usize) -> State {
+fn start(setup: &GasSetup, cells: usize, faces: usize) -> GasState {
     let gas = &setup.properties;
     let mut turbulence = Eddies::default();
     turbulence.begin(&setup.turbulence, cells);
-    State {
+    GasState {
         turbulence,
         enthalpy: vec![gas.enthalpy(setup.temperature, &setup.composition); cells],
         temperature: vec![setup.temperature; cells],
@@ -399,7 +403,7 @@ fn start(setup: &GasSetup, cells: usize, faces: usize) -> State {
         pressure: vec![0.0; cells],
         pressure_gradient: vec![Vec3::zeros(); cells],
         flux: vec![0.0; faces],
-        ..State::default()
+        ..GasState::default()
     }
 }
 

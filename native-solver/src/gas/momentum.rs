@@ -12,13 +12,13 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::Convection;
 use nalgebra::Matrix3;
 
-use super::attempt::{Frame, Material};
-use super::boundary::Value;
-use super::state::State;
+use super::attempt::{AttemptFrame, CellProperties};
+use super::boundary::FaceCondition;
+use super::state::GasState;
 use super::turbulence::wall;
 use crate::numerics::convection::vector_beyond_upwind;
-use crate::numerics::grid::{Face, Grid};
-use crate::numerics::krylov::{Krylov, Target};
+use crate::numerics::grid::{Face, MeshGraph};
+use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{conductance, follow, interpolate};
 use crate::numerics::parallel::{fill, sums, update};
@@ -53,37 +53,42 @@ pub struct Momentum {
 
 /// Velocity of the gas at a boundary face, interstitial, where it is given.
 #[inline]
-pub fn given_velocity(frame: &Frame<'_>, index: usize) -> Option<Vec3> {
+pub fn given_velocity(frame: &AttemptFrame<'_>, index: usize) -> Option<Vec3> {
     let face = &frame.grid.faces[index];
     match frame.boundary.at(index) {
-        Value::Inlet {
+        FaceCondition::Inlet {
             superficial_velocity,
             ..
         } => Some(-superficial_velocity / frame.void_fraction[face.owner] * face.normal),
-        Value::Wall { sticks, .. } => sticks,
-        Value::Outlet { .. } => None,
+        FaceCondition::Wall { sticks, .. } => sticks,
+        FaceCondition::Outlet { .. } => None,
     }
 }
 
 /// Viscous conductance of a face in kg/s, eddies included, and on the boundary only where the velocity is given.
 #[inline]
-fn viscous(frame: &Frame<'_>, material: &Material, now: &State, index: usize) -> f64 {
+fn viscous(
+    frame: &AttemptFrame<'_>,
+    material: &CellProperties,
+    now: &GasState,
+    index: usize,
+) -> f64 {
     let face = &frame.grid.faces[index];
     if index < frame.grid.internal {
         return conductance(face, interpolate(face, &material.viscosity));
     }
     let pores = frame.void_fraction[face.owner];
     match frame.boundary.at(index) {
-        Value::Inlet { gas, .. } => {
+        FaceCondition::Inlet { gas, .. } => {
             conductance(face, pores * gas.viscosity + frame.eddies_at(index))
         }
-        Value::Wall {
+        FaceCondition::Wall {
             sticks: Some(_), ..
         } => {
             let laminar = wall::viscosity(frame.boundary, frame.properties, now, index, face.owner);
             conductance(face, laminar + frame.eddies_at(index))
         }
-        Value::Wall { sticks: None, .. } | Value::Outlet { .. } => 0.0,
+        FaceCondition::Wall { sticks: None, .. } | FaceCondition::Outlet { .. } => 0.0,
     }
 }
 
@@ -111,7 +116,13 @@ impl Momentum {
 
     /// Assembles A and b for the fluxes and properties at hand.
     /// Of what is explicit a share follows the fields.
-    pub fn assemble(&mut self, frame: &Frame<'_>, material: &Material, share: f64, now: &State) {
+    pub fn assemble(
+        &mut self,
+        frame: &AttemptFrame<'_>,
+        material: &CellProperties,
+        share: f64,
+        now: &GasState,
+    ) {
         let grid = frame.grid;
         fill(&mut self.viscous, |index| {
             viscous(frame, material, now, index)
@@ -161,7 +172,7 @@ impl Momentum {
     }
 
     /// Σ over cells of |b − χ V ∇p − A u|, relative to the magnitudes of its terms.
-    pub fn residual(&self, frame: &Frame<'_>, now: &State) -> f64 {
+    pub fn residual(&self, frame: &AttemptFrame<'_>, now: &GasState) -> f64 {
         let (grid, cells) = (frame.grid, self.source.len());
         let parts = |cell: usize| {
             let own = self.matrix.diagonal()[cell] * now.velocity[cell];
@@ -192,7 +203,7 @@ impl Momentum {
 
     /// The part of a cell's diagonal that is friction and convection, in kg/s.
     #[inline]
-    pub fn transport(&self, frame: &Frame<'_>, cell: usize) -> f64 {
+    pub fn transport(&self, frame: &AttemptFrame<'_>, cell: usize) -> f64 {
         let inertia = frame.old.mass[cell] / frame.motion_span;
         self.matrix.diagonal()[cell] - inertia - frame.exchange.drag_coefficient[cell]
     }
@@ -200,10 +211,10 @@ impl Momentum {
     /// Solves for the velocity with the pressure gradient at hand; returns the iterations.
     pub fn predict(
         &mut self,
-        frame: &Frame<'_>,
+        frame: &AttemptFrame<'_>,
         krylov: &mut Krylov,
         tolerance: f64,
-        now: &mut State,
+        now: &mut GasState,
     ) -> u32 {
         self.preconditioner.update(&self.matrix);
         let mut iterations = 0;
@@ -215,7 +226,7 @@ impl Momentum {
                 source[cell][axis] - push * gradient[cell][axis]
             });
             fill(&mut self.component, |cell| velocity[cell][axis]);
-            let target = Target {
+            let target = SolveTolerance {
                 absolute: 0.0,
                 of_terms: tolerance,
                 relative: PREDICTOR,
@@ -239,7 +250,7 @@ impl Momentum {
     }
 
     /// Flow of momentum into the domain through a boundary face in N, pressure excluded.
-    pub fn inflow(&self, frame: &Frame<'_>, now: &State, index: usize) -> Vec3 {
+    pub fn inflow(&self, frame: &AttemptFrame<'_>, now: &GasState, index: usize) -> Vec3 {
         let face = &frame.grid.faces[index];
         let (inner, flux) = (now.velocity[face.owner], now.flux[index]);
         if flux == 0.0 && self.viscous[index] == 0.0 {
@@ -258,7 +269,7 @@ impl Momentum {
     }
 
     /// Makes the gradients of a velocity.
-    pub fn update_gradients(&mut self, frame: &Frame<'_>, velocity: &[Vec3]) {
+    pub fn update_gradients(&mut self, frame: &AttemptFrame<'_>, velocity: &[Vec3]) {
         let grid = frame.grid;
         if grid.orthogonal {
             let value = |index: usize, face: &Face| face_velocity(frame, index, face, velocity);
@@ -284,7 +295,13 @@ impl Momentum {
         self.scratch = last;
     }
 
-    fn update_explicit(&mut self, frame: &Frame<'_>, material: &Material, share: f64, now: &State) {
+    fn update_explicit(
+        &mut self,
+        frame: &AttemptFrame<'_>,
+        material: &CellProperties,
+        share: f64,
+        now: &GasState,
+    ) {
         let grid = frame.grid;
         let (gradients, viscous) = (&self.gradients, &self.viscous);
         let second = frame.convection == Convection::VanLeer;
@@ -292,7 +309,7 @@ impl Momentum {
             let face = &grid.faces[index];
             if index >= grid.internal {
                 let own = &gradients[face.owner];
-                return if let Value::Outlet { .. } = frame.boundary.at(index) {
+                return if let FaceCondition::Outlet { .. } = frame.boundary.at(index) {
                     let developed = own - (own * face.normal) * face.normal.transpose();
                     let area = face.area * material.viscosity[face.owner];
                     -area * transposed(&developed, &face.normal)
@@ -326,14 +343,14 @@ impl Momentum {
 /// Velocity on a face by linear interpolation; on the boundary the given or the cell's own, of which
 /// walls without friction let the tangential part pass.
 #[inline]
-fn face_velocity(frame: &Frame<'_>, index: usize, face: &Face, velocity: &[Vec3]) -> Vec3 {
+fn face_velocity(frame: &AttemptFrame<'_>, index: usize, face: &Face, velocity: &[Vec3]) -> Vec3 {
     if index < frame.grid.internal {
         let weight = face.owner_weight();
         weight * velocity[face.owner] + (1.0 - weight) * velocity[face.neighbour]
     } else {
         let own = velocity[face.owner];
         match frame.boundary.at(index) {
-            Value::Wall { sticks: None, .. } => own - own.dot(&face.normal) * face.normal,
+            FaceCondition::Wall { sticks: None, .. } => own - own.dot(&face.normal) * face.normal,
             _ => given_velocity(frame, index).unwrap_or(own),
         }
     }
@@ -341,7 +358,7 @@ fn face_velocity(frame: &Frame<'_>, index: usize, face: &Face, velocity: &[Vec3]
 
 /// Σ u_f S / V (Gauss): ∂u_i/∂x_j.
 #[inline]
-pub fn tensor(grid: &Grid, cell: usize, value: impl Fn(usize, &Face) -> Vec3) -> Matrix3<f64> {
+pub fn tensor(grid: &MeshGraph, cell: usize, value: impl Fn(usize, &Face) -> Vec3) -> Matrix3<f64> {
     let mut sum = Matrix3::zeros();
     for link in grid.links(cell) {
         let index = link.face as usize;
@@ -361,11 +378,11 @@ fn transposed(gradient: &Matrix3<f64>, normal: &Vec3) -> Vec3 {
 /// Explicit momentum flow out of the owner through a boundary face in N: skewness and the transposed
 /// stress, where the velocity is given; its normal derivative is then that of the face.
 fn explicit_at_boundary(
-    frame: &Frame<'_>,
+    frame: &AttemptFrame<'_>,
     index: usize,
     inner: &Matrix3<f64>,
     viscous: f64,
-    now: &State,
+    now: &GasState,
 ) -> Vec3 {
     let face = &frame.grid.faces[index];
     let Some(velocity) = given_velocity(frame, index) else {

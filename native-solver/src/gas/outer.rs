@@ -5,15 +5,15 @@ use std::sync::Arc;
 use calcine_coupler::part::Convergence;
 use calcine_coupler::setup::GasControls;
 
-use super::attempt::{Frame, Material};
-use super::chemistry::{self, Chemistry};
+use super::attempt::{AttemptFrame, CellProperties};
+use super::chemistry::{self, CellChemistry};
 use super::enthalpy::Enthalpy;
 use super::guard;
 use super::momentum::Momentum;
 use super::pressure::{self, Pressure};
-use super::species::Species;
-use super::state::State;
-use crate::numerics::grid::Grid;
+use super::species::SpeciesEquations;
+use super::state::GasState;
+use crate::numerics::grid::MeshGraph;
 use crate::numerics::krylov::Krylov;
 use crate::numerics::matrix::Matrix;
 use crate::numerics::parallel::largest;
@@ -34,7 +34,7 @@ const CLOSER: f64 = 0.1;
 
 /// When the solve of a scalar ends: where its residual is below either.
 #[derive(Clone, Copy, Debug)]
-pub struct Goal {
+pub struct ScalarTolerance {
     /// As a share of what moves: through the boundary, from the particles, into storage.
     pub absolute: f64,
     /// As a share of the initial residual.
@@ -51,11 +51,11 @@ pub struct Equations {
     /// Enthalpy.
     pub enthalpy: Enthalpy,
     /// Species.
-    pub species: Species,
+    pub species: SpeciesEquations,
     /// Reactions of the gas with itself.
-    pub chemistry: Chemistry,
+    pub chemistry: CellChemistry,
     /// Properties at the last temperature.
-    pub material: Material,
+    pub material: CellProperties,
     /// Memory of the linear solvers.
     pub krylov: Krylov,
     /// How far what is taken explicitly from the last iterate follows it, as a share.
@@ -66,15 +66,15 @@ pub struct Equations {
 
 impl Equations {
     /// Empty equations on a grid.
-    pub fn new(grid: &Arc<Grid>) -> Self {
+    pub fn new(grid: &Arc<MeshGraph>) -> Self {
         let matrix = Matrix::new(grid.clone());
         Self {
             momentum: Momentum::new(matrix.clone()),
             pressure: Pressure::new(matrix.clone()),
             enthalpy: Enthalpy::new(matrix.clone()),
-            species: Species::new(matrix),
-            chemistry: Chemistry::default(),
-            material: Material::default(),
+            species: SpeciesEquations::new(matrix),
+            chemistry: CellChemistry::default(),
+            material: CellProperties::default(),
             krylov: Krylov::default(),
             share: 1.0,
             flow: f64::INFINITY,
@@ -85,10 +85,10 @@ impl Equations {
     /// old state, or, where the attempt `continues` the one before, what that one found.
     pub fn solve(
         &mut self,
-        frame: &Frame<'_>,
+        frame: &AttemptFrame<'_>,
         controls: &GasControls,
         continues: bool,
-        now: &mut State,
+        now: &mut GasState,
     ) -> Result<Convergence, String> {
         let mut convergence = Convergence::default();
         if !continues {
@@ -130,7 +130,7 @@ impl Equations {
 
     /// Assembles momentum and enthalpy with the fields at hand; how far these are from solving
     /// all equations at once: the largest scaled residual.
-    fn assess(&mut self, frame: &Frame<'_>, now: &mut State) -> Result<f64, String> {
+    fn assess(&mut self, frame: &AttemptFrame<'_>, now: &mut GasState) -> Result<f64, String> {
         self.material.update(frame, now);
         self.chemistry.follow(frame, now)?;
         self.react(frame, false, now);
@@ -155,9 +155,9 @@ impl Equations {
     /// One outer iteration, on the momentum equation as assembled; returns linear iterations.
     fn iterate(
         &mut self,
-        frame: &Frame<'_>,
+        frame: &AttemptFrame<'_>,
         controls: &GasControls,
-        now: &mut State,
+        now: &mut GasState,
     ) -> Result<u32, String> {
         let tolerance = controls.linear_tolerance;
         let (krylov, material) = (&mut self.krylov, &self.material);
@@ -183,7 +183,7 @@ impl Equations {
     }
 
     /// Gives species and enthalpy what reacts.
-    fn react(&mut self, frame: &Frame<'_>, pseudo: bool, now: &State) {
+    fn react(&mut self, frame: &AttemptFrame<'_>, pseudo: bool, now: &GasState) {
         let sources = [&mut self.species.reactions, &mut self.enthalpy.reactions];
         self.chemistry
             .apply(frame, &self.material, pseudo, now, sources);
@@ -192,9 +192,9 @@ impl Equations {
     /// A pseudo-step of species and enthalpy, with the rates of its start.
     fn pseudo_step(
         &mut self,
-        frame: &Frame<'_>,
+        frame: &AttemptFrame<'_>,
         tolerance: f64,
-        now: &mut State,
+        now: &mut GasState,
     ) -> Result<u32, String> {
         let mut iterations = self.conserve(frame, tolerance, now)?;
         self.chemistry.follow(frame, now)?;
@@ -214,15 +214,15 @@ impl Equations {
     /// Elements, and the enthalpy with the heat of what has to be made; returns linear iterations.
     fn conserve(
         &mut self,
-        frame: &Frame<'_>,
+        frame: &AttemptFrame<'_>,
         absolute: f64,
-        now: &mut State,
+        now: &mut GasState,
     ) -> Result<u32, String> {
         let Some(elements) = self.chemistry.elements() else {
             return Ok(0);
         };
         let relative = SCALARS;
-        let goal = Goal { absolute, relative };
+        let goal = ScalarTolerance { absolute, relative };
         let (krylov, material) = (&mut self.krylov, &self.material);
         let solve = (goal, self.share);
         let solved = self
@@ -245,7 +245,7 @@ impl Equations {
     }
 
     /// Species and enthalpy once more to the linear tolerance, with the rates at hand.
-    fn close(&mut self, frame: &Frame<'_>, tolerance: f64, now: &mut State) -> u32 {
+    fn close(&mut self, frame: &AttemptFrame<'_>, tolerance: f64, now: &mut GasState) -> u32 {
         if !chemistry::is_dual(frame) {
             return self.scalars(frame, tolerance, 0.0, now);
         }
@@ -259,9 +259,15 @@ impl Equations {
 
     /// Species and enthalpy with the fluxes and masses at hand, to a tolerance relative to what moves or a
     /// share of their initial residuals; returns linear iterations.
-    fn scalars(&mut self, frame: &Frame<'_>, absolute: f64, relative: f64, now: &mut State) -> u32 {
+    fn scalars(
+        &mut self,
+        frame: &AttemptFrame<'_>,
+        absolute: f64,
+        relative: f64,
+        now: &mut GasState,
+    ) -> u32 {
         let (krylov, material) = (&mut self.krylov, &self.material);
-        let goal = Goal { absolute, relative };
+        let goal = ScalarTolerance { absolute, relative };
         let iterations = self
             .species
             .solve(frame, material, krylov, goal, self.share, now);
@@ -271,7 +277,7 @@ impl Equations {
         iterations + self.enthalpy.solve(frame, krylov, goal, now)
     }
 
-    fn volume_residual(&self, frame: &Frame<'_>, now: &State) -> f64 {
+    fn volume_residual(&self, frame: &AttemptFrame<'_>, now: &GasState) -> f64 {
         let density = &self.material.density;
         let (_, worst) = largest(now.mass.len(), |cell| {
             let density = density[cell];

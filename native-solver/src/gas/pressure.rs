@@ -19,14 +19,14 @@
 use calcine_coupler::physics::Vec3;
 use nalgebra::Matrix3;
 
-use super::attempt::{Frame, Material};
-use super::boundary::Value;
+use super::attempt::{AttemptFrame, CellProperties};
+use super::boundary::FaceCondition;
 use super::momentum::Momentum;
-use super::state::State;
-use super::transport::Transport;
+use super::state::GasState;
+use super::transport::FaceTransport;
 use crate::numerics::amg::Multigrid;
-use crate::numerics::grid::{Face, Grid};
-use crate::numerics::krylov::{Krylov, Target};
+use crate::numerics::grid::{Face, MeshGraph};
+use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{displacement, outflow};
 use crate::numerics::parallel::{CHUNK, fill, sums};
@@ -77,7 +77,7 @@ pub struct Pressure {
     /// What inertia adds to the force on the half cells of each face's owner and neighbour, along
     /// the face's normal, in N/m³: the face's own old flux in place of the cell's.
     inertia: Vec<[f64; 2]>,
-    transport: Transport,
+    transport: FaceTransport,
     /// Area/(d_P/b_P + d_N/b_N) of each face in m s; zero where the flux is given.
     conductance: Vec<f64>,
     /// The flux that the forces alone would drive through each face in kg/s; the flux itself
@@ -99,7 +99,7 @@ impl Pressure {
             mobility: vec![0.0; cells],
             force: vec![Vec3::zeros(); cells],
             inertia: vec![[0.0; 2]; faces],
-            transport: Transport::new(cells, faces),
+            transport: FaceTransport::new(cells, faces),
             conductance: vec![0.0; faces],
             drive: vec![0.0; faces],
             source: vec![0.0; cells],
@@ -109,7 +109,7 @@ impl Pressure {
 
     /// Takes up the old state of an attempt. What earlier attempts left in the preconditioner is
     /// dropped, so that a repeated or resumed window takes the same path.
-    pub fn begin(&mut self, frame: &Frame<'_>) {
+    pub fn begin(&mut self, frame: &AttemptFrame<'_>) {
         if let Approximation::Large(multigrid) = &mut self.preconditioner {
             multigrid.forget();
         }
@@ -134,10 +134,10 @@ impl Pressure {
     /// Assembles the matrix for the momentum equation and properties at hand.
     pub fn assemble(
         &mut self,
-        frame: &Frame<'_>,
-        material: &Material,
+        frame: &AttemptFrame<'_>,
+        material: &CellProperties,
         momentum: &Momentum,
-        now: &State,
+        now: &GasState,
     ) {
         self.transport.update(frame, material, momentum, now);
         let grid = frame.grid;
@@ -152,7 +152,7 @@ impl Pressure {
             let resistance = face.owner_distance / mobility[face.owner];
             if index < grid.internal {
                 face.area / (resistance + face.neighbour_distance / mobility[face.neighbour])
-            } else if let Value::Outlet { .. } = frame.boundary.at(index) {
+            } else if let FaceCondition::Outlet { .. } = frame.boundary.at(index) {
                 face.area / resistance
             } else {
                 0.0
@@ -181,12 +181,12 @@ impl Pressure {
     /// iterations.
     pub fn correct(
         &mut self,
-        frame: &Frame<'_>,
-        material: &Material,
+        frame: &AttemptFrame<'_>,
+        material: &CellProperties,
         momentum: &Momentum,
         krylov: &mut Krylov,
         tolerance: f64,
-        now: &mut State,
+        now: &mut GasState,
     ) -> u32 {
         let grid = frame.grid;
         let velocity = &now.velocity;
@@ -201,13 +201,13 @@ impl Pressure {
             let mut source = target(frame, material, now, cell) - outflow(grid, drive, cell);
             for link in grid.links(cell).iter().filter(|link| link.is_boundary()) {
                 let index = link.face as usize;
-                if let Value::Outlet { pressure } = frame.boundary.at(index) {
+                if let FaceCondition::Outlet { pressure } = frame.boundary.at(index) {
                     source += conductance[index] * pressure;
                 }
             }
             source
         });
-        let target = Target {
+        let target = SolveTolerance {
             absolute: 0.0,
             of_terms: tolerance,
             relative: CORRECTION,
@@ -238,15 +238,15 @@ impl Pressure {
         face.owner_distance * own + face.neighbour_distance * other
     }
 
-    fn update_drive(&mut self, frame: &Frame<'_>, gradients: &[Vec3]) {
+    fn update_drive(&mut self, frame: &AttemptFrame<'_>, gradients: &[Vec3]) {
         let mut drive = std::mem::take(&mut self.drive);
         fill(&mut drive, |index| {
             let face = &frame.grid.faces[index];
             if index >= frame.grid.internal {
                 match frame.boundary.at(index) {
-                    Value::Inlet { mass_flux, .. } => return -mass_flux * face.area,
-                    Value::Wall { .. } => return 0.0,
-                    Value::Outlet { .. } => {}
+                    FaceCondition::Inlet { mass_flux, .. } => return -mass_flux * face.area,
+                    FaceCondition::Wall { .. } => return 0.0,
+                    FaceCondition::Outlet { .. } => {}
                 }
             }
             let mut push = face.owner_distance * self.owner_force(face, index);
@@ -259,15 +259,15 @@ impl Pressure {
         self.drive = drive;
     }
 
-    fn update_flux(&mut self, frame: &Frame<'_>, now: &mut State) {
+    fn update_flux(&mut self, frame: &AttemptFrame<'_>, now: &mut GasState) {
         let grid = frame.grid;
         let outer = |index: usize, face: &Face, pressure: &[f64]| {
             if index < grid.internal {
                 return pressure[face.neighbour];
             }
             match frame.boundary.at(index) {
-                Value::Outlet { pressure } => pressure,
-                Value::Inlet { .. } | Value::Wall { .. } => 0.0,
+                FaceCondition::Outlet { pressure } => pressure,
+                FaceCondition::Inlet { .. } | FaceCondition::Wall { .. } => 0.0,
             }
         };
         let pressure = &now.pressure;
@@ -280,7 +280,7 @@ impl Pressure {
 
     /// The gradient that leaves each cell the mean of its fluxes as its velocity: without what transport
     /// adds, by which the pressures on the two sides of a face differ.
-    fn update_velocity(&self, frame: &Frame<'_>, momentum: &Momentum, now: &mut State) {
+    fn update_velocity(&self, frame: &AttemptFrame<'_>, momentum: &Momentum, now: &mut GasState) {
         let grid = frame.grid;
         let flux = &now.flux;
         // What the slopes have beyond the cell's own force F.
@@ -314,7 +314,7 @@ impl Pressure {
 }
 
 /// V (Σ A d n nᵀ)⁻¹ of each cell, the sum over its faces, d the distance of its centre from their planes.
-fn recovery(grid: &Grid) -> Vec<Matrix3<f64>> {
+fn recovery(grid: &MeshGraph) -> Vec<Matrix3<f64>> {
     if grid.orthogonal {
         return Vec::new();
     }
@@ -339,14 +339,14 @@ fn recovery(grid: &Grid) -> Vec<Matrix3<f64>> {
 
 /// The outflow that continuity asks of a cell in kg/s.
 #[inline]
-fn target(frame: &Frame<'_>, material: &Material, now: &State, cell: usize) -> f64 {
+fn target(frame: &AttemptFrame<'_>, material: &CellProperties, now: &GasState, cell: usize) -> f64 {
     let mass = frame.void_fraction[cell] * material.density[cell] * frame.grid.volume[cell];
     (frame.old.mass[cell] - mass) / frame.storage_span + frame.mass_source(now, cell)
 }
 
 /// Σ over cells of the mismatch of continuity, relative to what the cells hold and what flows
 /// through them.
-pub fn residual(frame: &Frame<'_>, material: &Material, now: &State) -> f64 {
+pub fn residual(frame: &AttemptFrame<'_>, material: &CellProperties, now: &GasState) -> f64 {
     let grid = frame.grid;
     let [error, terms] = sums(grid.cells(), |cell| {
         let (mut net, mut through) = (0.0, 0.0);
@@ -362,7 +362,7 @@ pub fn residual(frame: &Frame<'_>, material: &Material, now: &State) -> f64 {
 }
 
 /// Continuity: what each cell holds after the window.
-pub fn advance_mass(frame: &Frame<'_>, now: &mut State) {
+pub fn advance_mass(frame: &AttemptFrame<'_>, now: &mut GasState) {
     let mut mass = std::mem::take(&mut now.mass);
     fill(&mut mass, |cell| {
         let net = outflow(frame.grid, &now.flux, cell) - frame.mass_source(now, cell);

@@ -13,13 +13,13 @@ use calcine_coupler::part::Balance;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::Convection;
 
-use super::attempt::{Frame, Material};
-use super::boundary::{Heat, Value};
-use super::chemistry::Source;
-use super::outer::Goal;
-use super::state::State;
+use super::attempt::{AttemptFrame, CellProperties};
+use super::boundary::{FaceCondition, HeatCondition};
+use super::chemistry::ReactionSource;
+use super::outer::ScalarTolerance;
+use super::state::GasState;
 use crate::numerics::convection::{beyond_upwind, limited, limiter};
-use crate::numerics::krylov::{Krylov, Target};
+use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{
     conductance, displacement, face_values, follow, gradient, interpolate,
@@ -32,7 +32,7 @@ const ITERATIONS: u32 = 1000;
 
 /// The equations of all species, which share one matrix.
 #[derive(Debug)]
-pub struct Species {
+pub struct SpeciesEquations {
     matrix: Matrix,
     preconditioner: Incomplete,
     /// Diffusive conductance of each face in kg/s.
@@ -46,7 +46,7 @@ pub struct Species {
     explicit: Vec<Vec<f64>>,
     source: Vec<f64>,
     /// What reactions of the gas add.
-    pub reactions: Source,
+    pub reactions: ReactionSource,
     /// Enthalpy that species carry out of the owner of each face in W beyond what the upwind cell's enthalpy
     /// does: by diffusion, Σ_k h_k J_k, and by second-order convection, φ (h(T_f, Y_f) − h_up). The latter
     /// follows temperature and fractions at the face apart: a limited enthalpy would heat gas where
@@ -58,7 +58,7 @@ pub struct Species {
     pub boundary: Vec<[f64; 2]>,
 }
 
-impl Species {
+impl SpeciesEquations {
     /// Empty equations on a matrix's graph.
     pub fn new(matrix: Matrix) -> Self {
         Self {
@@ -71,7 +71,7 @@ impl Species {
             faces: Vec::new(),
             explicit: Vec::new(),
             source: Vec::new(),
-            reactions: Source::default(),
+            reactions: ReactionSource::default(),
             carried: Vec::new(),
             temperature_gradients: Vec::new(),
             boundary: Vec::new(),
@@ -79,7 +79,7 @@ impl Species {
     }
 
     /// Takes up the start of an attempt; what earlier attempts left is forgotten.
-    pub fn begin(&mut self, frame: &Frame<'_>) {
+    pub fn begin(&mut self, frame: &AttemptFrame<'_>) {
         let (cells, faces) = (frame.grid.cells(), frame.grid.faces.len());
         let species = frame.species();
         if species == 0 {
@@ -108,12 +108,12 @@ impl Species {
     /// Assembles and solves the equations; returns the linear iterations.
     pub fn solve(
         &mut self,
-        frame: &Frame<'_>,
-        material: &Material,
+        frame: &AttemptFrame<'_>,
+        material: &CellProperties,
         krylov: &mut Krylov,
-        goal: Goal,
+        goal: ScalarTolerance,
         share: f64,
-        now: &mut State,
+        now: &mut GasState,
     ) -> u32 {
         let species = frame.species();
         if species == 0 {
@@ -131,7 +131,7 @@ impl Species {
                 self.preconditioner.update(&self.matrix);
             }
             self.fill_source(frame, now, k);
-            let target = Target {
+            let target = SolveTolerance {
                 absolute: goal.absolute * self.throughput(frame, now, k),
                 of_terms: 0.0,
                 relative: goal.relative,
@@ -164,10 +164,10 @@ impl Species {
     /// relative to what the cells hold and what flows through them.
     pub fn residual(
         &mut self,
-        frame: &Frame<'_>,
-        material: &Material,
+        frame: &AttemptFrame<'_>,
+        material: &CellProperties,
         share: f64,
-        now: &State,
+        now: &GasState,
     ) -> f64 {
         if frame.species() == 0 {
             return 0.0;
@@ -191,7 +191,7 @@ impl Species {
         worst
     }
 
-    fn update_diffusion(&mut self, frame: &Frame<'_>, material: &Material) {
+    fn update_diffusion(&mut self, frame: &AttemptFrame<'_>, material: &CellProperties) {
         let grid = frame.grid;
         fill(&mut self.diffusion, |index| {
             let face = &grid.faces[index];
@@ -199,18 +199,18 @@ impl Species {
                 return conductance(face, interpolate(face, &material.diffusivity));
             }
             match frame.boundary.at(index) {
-                Value::Inlet { gas, .. } => {
+                FaceCondition::Inlet { gas, .. } => {
                     let pores = frame.void_fraction[face.owner];
                     let laminar = pores * gas.viscosity / frame.schmidt;
                     conductance(face, laminar + frame.species_eddies_at(index))
                 }
-                Value::Wall { .. } | Value::Outlet { .. } => 0.0,
+                FaceCondition::Wall { .. } | FaceCondition::Outlet { .. } => 0.0,
             }
         });
     }
 
     /// The matrix of a species; that of all of them where no particle exchanges gas.
-    fn assemble(&mut self, frame: &Frame<'_>, now: &State, k: usize) {
+    fn assemble(&mut self, frame: &AttemptFrame<'_>, now: &GasState, k: usize) {
         let (grid, species) = (frame.grid, frame.species());
         let diffusion = &self.diffusion;
         let given = &frame.exchange.species;
@@ -234,7 +234,7 @@ impl Species {
         });
     }
 
-    fn update_explicit(&mut self, frame: &Frame<'_>, share: f64, now: &State) {
+    fn update_explicit(&mut self, frame: &AttemptFrame<'_>, share: f64, now: &GasState) {
         let grid = frame.grid;
         let second = frame.convection == Convection::VanLeer;
         if second || !grid.orthogonal {
@@ -277,7 +277,7 @@ impl Species {
         }
     }
 
-    fn fill_source(&mut self, frame: &Frame<'_>, now: &State, k: usize) {
+    fn fill_source(&mut self, frame: &AttemptFrame<'_>, now: &GasState, k: usize) {
         let (grid, species) = (frame.grid, frame.species());
         let (diffusion, explicit) = (&self.diffusion, &self.explicit[k]);
         let reactions = &self.reactions;
@@ -303,7 +303,7 @@ impl Species {
     }
 
     /// Mass of a species that moves, in kg/s: through the boundary and into storage.
-    fn throughput(&self, frame: &Frame<'_>, now: &State, k: usize) -> f64 {
+    fn throughput(&self, frame: &AttemptFrame<'_>, now: &GasState, k: usize) -> f64 {
         let internal = frame.grid.internal;
         let boundary = sums(frame.grid.faces.len() - internal, |face| {
             [now.flux[internal + face].abs()]
@@ -319,7 +319,7 @@ impl Species {
     }
 
     /// Flow of a species into the domain through a boundary face in kg/s.
-    fn inflow(&self, frame: &Frame<'_>, now: &State, k: usize, index: usize) -> f64 {
+    fn inflow(&self, frame: &AttemptFrame<'_>, now: &GasState, k: usize, index: usize) -> f64 {
         let inner = self.fractions[k][frame.grid.faces[index].owner];
         let flux = now.flux[index];
         match frame.boundary.composition(index) {
@@ -333,7 +333,7 @@ impl Species {
         }
     }
 
-    fn record(&mut self, frame: &Frame<'_>, now: &State) {
+    fn record(&mut self, frame: &AttemptFrame<'_>, now: &GasState) {
         let internal = frame.grid.internal;
         for k in 0..frame.species() {
             self.boundary[k] = sums(frame.grid.faces.len() - internal, |face| {
@@ -344,17 +344,17 @@ impl Species {
     }
 
     /// Sets `carried`, h_k at the face's temperature.
-    fn update_carried(&mut self, frame: &Frame<'_>, now: &State) {
+    fn update_carried(&mut self, frame: &AttemptFrame<'_>, now: &GasState) {
         let grid = frame.grid;
         let second = frame.convection == Convection::VanLeer;
         let given = |index: usize| match frame.boundary.at(index) {
-            Value::Inlet { gas, .. } => Some(gas.temperature),
-            Value::Wall { .. } | Value::Outlet { .. } => None,
+            FaceCondition::Inlet { gas, .. } => Some(gas.temperature),
+            FaceCondition::Wall { .. } | FaceCondition::Outlet { .. } => None,
         };
         if second {
             let boundary = |index: usize, inner: f64| match frame.boundary.at(index) {
-                Value::Wall {
-                    heat: Heat::Temperature(temperature),
+                FaceCondition::Wall {
+                    heat: HeatCondition::Temperature(temperature),
                     ..
                 } => temperature,
                 _ => given(index).unwrap_or(inner),
@@ -385,7 +385,7 @@ impl Species {
     }
 
     /// Σ_k h_k J_k of a face in W, out of its owner, at a temperature in K.
-    fn diffused(&self, frame: &Frame<'_>, index: usize, temperature: f64) -> f64 {
+    fn diffused(&self, frame: &AttemptFrame<'_>, index: usize, temperature: f64) -> f64 {
         let face = &frame.grid.faces[index];
         let given = (index >= frame.grid.internal)
             .then(|| frame.boundary.composition(index))
@@ -399,7 +399,7 @@ impl Species {
     }
 
     /// φ (h(T_f, Y_f) − h(T_up, Y_up)) of an internal face in W, out of its owner.
-    fn convected(&self, frame: &Frame<'_>, now: &State, index: usize) -> f64 {
+    fn convected(&self, frame: &AttemptFrame<'_>, now: &GasState, index: usize) -> f64 {
         let (grid, flux) = (frame.grid, now.flux[index]);
         if flux == 0.0 {
             return 0.0;
@@ -423,7 +423,7 @@ impl Species {
     }
 
     /// The balance of each species over the window, in kg.
-    pub fn balances(&self, frame: &Frame<'_>, now: &State, balances: &mut Vec<Balance>) {
+    pub fn balances(&self, frame: &AttemptFrame<'_>, now: &GasState, balances: &mut Vec<Balance>) {
         let species = frame.species();
         balances.clear();
         for k in 0..species {

@@ -9,7 +9,7 @@ use super::turbulence::Eddies;
 
 /// The fields of the gas; an attempt makes new ones from the committed ones.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct State {
+pub struct GasState {
     /// Gas mass of each cell in kg, advanced by continuity alone; empty before the first window,
     /// because only the bed says how much gas a cell holds.
     pub mass: Vec<f64>,
@@ -35,7 +35,7 @@ pub struct State {
     pub turbulence: Eddies,
 }
 
-impl State {
+impl GasState {
     /// Mass fractions of a cell, of so many species.
     #[inline]
     pub fn composition_of(&self, cell: usize, species: usize) -> &[f64] {
@@ -43,7 +43,7 @@ impl State {
     }
 
     /// Takes the values of another state into the memory that is there.
-    pub fn take(&mut self, other: &State) {
+    pub fn take(&mut self, other: &GasState) {
         self.mass.clone_from(&other.mass);
         self.enthalpy.clone_from(&other.enthalpy);
         self.temperature.clone_from(&other.temperature);

@@ -4,12 +4,12 @@ use calcine_coupler::gas_chemistry::{Combustion, ReactingGas};
 use calcine_coupler::physics::kinetics::{MixtureState, pasr};
 use calcine_coupler::turbulence::is_free;
 
-use super::attempt::Frame;
+use super::attempt::AttemptFrame;
 
 /// Share of a cell's gas that reacts, by the eddies of the window's start; 1 by laminar rates, and in the bed, which has
 /// no eddies and whose pores mix.
 pub fn reacting_share(
-    frame: &Frame<'_>,
+    frame: &AttemptFrame<'_>,
     gas: &ReactingGas,
     cell: usize,
     state: MixtureState<'_>,

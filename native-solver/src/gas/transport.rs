@@ -16,15 +16,15 @@
 use calcine_coupler::physics::Vec3;
 use nalgebra::Matrix3;
 
-use super::attempt::{Frame, Material};
+use super::attempt::{AttemptFrame, CellProperties};
 use super::momentum::{Momentum, tensor};
-use super::state::State;
+use super::state::GasState;
 use crate::numerics::grid::Face;
 use crate::numerics::parallel::fill;
 
 /// c of the half cells at each internal face, and what it needs.
 #[derive(Debug)]
-pub struct Transport {
+pub struct FaceTransport {
     /// c of the half cells of each internal face's owner and neighbour, along its normal, in N/m³.
     pub force: Vec<[f64; 2]>,
     /// ρ ε u of each cell in kg/m²/s.
@@ -33,7 +33,7 @@ pub struct Transport {
     gradients: Vec<Matrix3<f64>>,
 }
 
-impl Transport {
+impl FaceTransport {
     /// No transport.
     pub fn new(cells: usize, faces: usize) -> Self {
         Self {
@@ -46,10 +46,10 @@ impl Transport {
     /// Evaluates c for the velocity at hand.
     pub fn update(
         &mut self,
-        frame: &Frame<'_>,
-        material: &Material,
+        frame: &AttemptFrame<'_>,
+        material: &CellProperties,
         momentum: &Momentum,
-        now: &State,
+        now: &GasState,
     ) {
         let grid = frame.grid;
         fill(&mut self.mass_velocity, |cell| {

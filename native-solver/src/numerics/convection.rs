@@ -11,11 +11,11 @@
 use calcine_coupler::physics::Vec3;
 use nalgebra::Matrix3;
 
-use super::grid::Grid;
+use super::grid::MeshGraph;
 
 /// Cells upstream and downstream of an internal face, and the weight of the latter.
 #[inline]
-fn sides(grid: &Grid, index: usize, flux: f64) -> (usize, usize, f64) {
+fn sides(grid: &MeshGraph, index: usize, flux: f64) -> (usize, usize, f64) {
     let face = &grid.faces[index];
     let weight = face.owner_weight();
     if flux >= 0.0 {
@@ -28,7 +28,7 @@ fn sides(grid: &Grid, index: usize, flux: f64) -> (usize, usize, f64) {
 /// What an internal face's value of a scalar is beyond the upwind one.
 #[inline]
 pub fn beyond_upwind(
-    grid: &Grid,
+    grid: &MeshGraph,
     index: usize,
     flux: f64,
     values: &[f64],
@@ -47,7 +47,13 @@ pub fn beyond_upwind(
 
 /// The limiter ψ of an internal face for a scalar, in [0, 2].
 #[inline]
-pub fn limiter(grid: &Grid, index: usize, flux: f64, values: &[f64], gradients: &[Vec3]) -> f64 {
+pub fn limiter(
+    grid: &MeshGraph,
+    index: usize,
+    flux: f64,
+    values: &[f64],
+    gradients: &[Vec3],
+) -> f64 {
     let (up, down, _) = sides(grid, index, flux);
     let difference = values[down] - values[up];
     let along = gradients[up].dot(&(grid.centre[down] - grid.centre[up]));
@@ -64,7 +70,7 @@ pub fn limiter(grid: &Grid, index: usize, flux: f64, values: &[f64], gradients: 
 
 /// What a limiter ψ adds to an internal face's upwind value of a scalar.
 #[inline]
-pub fn limited(grid: &Grid, index: usize, flux: f64, values: &[f64], limiter: f64) -> f64 {
+pub fn limited(grid: &MeshGraph, index: usize, flux: f64, values: &[f64], limiter: f64) -> f64 {
     let (up, down, weight) = sides(grid, index, flux);
     weight * limiter * (values[down] - values[up])
 }
@@ -74,7 +80,7 @@ pub fn limited(grid: &Grid, index: usize, flux: f64, values: &[f64], limiter: f6
 /// on the axes. `gradients[(i, j)]` is ∂u_i/∂x_j.
 #[inline]
 pub fn vector_beyond_upwind(
-    grid: &Grid,
+    grid: &MeshGraph,
     index: usize,
     flux: f64,
     values: &[Vec3],
@@ -97,14 +103,14 @@ mod tests {
     use super::*;
     use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
 
-    fn chain() -> Grid {
+    fn chain() -> MeshGraph {
         let spec = BoxSpec {
             origin: Vec3::zeros(),
             size: Vec3::new(3.0, 1.0, 1.0),
             cells: [3, 1, 1],
             patches: ["a", "b", "c", "d", "e", "f"].map(str::to_owned),
         };
-        Grid::new(&box_mesh(&spec).unwrap())
+        MeshGraph::new(&box_mesh(&spec).unwrap())
     }
 
     #[test]

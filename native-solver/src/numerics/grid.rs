@@ -44,7 +44,7 @@ impl Face {
 
 /// One face as a cell sees it.
 #[derive(Clone, Copy, Debug)]
-pub struct Link {
+pub struct CellFace {
     /// The face.
     pub face: u32,
     /// The cell on the other side; `u32::MAX` on the boundary.
@@ -55,7 +55,7 @@ pub struct Link {
     pub sign: f64,
 }
 
-impl Link {
+impl CellFace {
     /// True on the boundary.
     #[inline]
     pub fn is_boundary(&self) -> bool {
@@ -65,7 +65,7 @@ impl Link {
 
 /// Faces, links and the graph of the matrix.
 #[derive(Clone, Debug)]
-pub struct Grid {
+pub struct MeshGraph {
     /// Cell volumes in m³.
     pub volume: Vec<f64>,
     /// Cell centres in m.
@@ -77,13 +77,13 @@ pub struct Grid {
     /// True where no face needs a correction for a line between centres that misses the face's
     /// centre or is not normal to it.
     pub orthogonal: bool,
-    links: Vec<Link>,
+    links: Vec<CellFace>,
     link_offsets: Vec<u32>,
     row_offsets: Vec<u32>,
     columns: Vec<u32>,
 }
 
-impl Grid {
+impl MeshGraph {
     /// The grid of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
         let faces: Vec<Face> = (0..mesh.faces()).map(|face| measure(mesh, face)).collect();
@@ -115,7 +115,7 @@ impl Grid {
                 let owned = mesh.owner()[face as usize] as usize == cell;
                 let other = mesh.across(cell, face as usize);
                 let slot = other.and_then(|other| others.binary_search(&other).ok());
-                grid.links.push(Link {
+                grid.links.push(CellFace {
                     face,
                     other: other.map_or(u32::MAX, |cell| cell as u32),
                     slot: slot.map_or(u32::MAX, |slot| slot as u32),
@@ -135,7 +135,7 @@ impl Grid {
 
     /// Links of a cell.
     #[inline]
-    pub fn links(&self, cell: usize) -> &[Link] {
+    pub fn links(&self, cell: usize) -> &[CellFace] {
         &self.links[self.link_offsets[cell] as usize..self.link_offsets[cell + 1] as usize]
     }
 

@@ -15,7 +15,7 @@ const RESTARTS: u32 = 4;
 
 /// When a solve ends: where Σ|b − A x| is below any of these.
 #[derive(Clone, Copy, Debug)]
-pub struct Target {
+pub struct SolveTolerance {
     /// In the units of b.
     pub absolute: f64,
     /// As a share of the magnitudes of the equation's terms, Σ(|A| |x| + |b|).
@@ -28,7 +28,7 @@ pub struct Target {
 
 /// How a solve went.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Solved {
+pub struct SolveStatistics {
     /// Iterations done.
     pub iterations: u32,
     /// Σ|b − A x| before.
@@ -62,8 +62,8 @@ impl Krylov {
         preconditioner: &mut dyn Preconditioner,
         b: &[f64],
         x: &mut [f64],
-        target: Target,
-    ) -> Solved {
+        target: SolveTolerance,
+    ) -> SolveStatistics {
         self.solve(conjugate_gradients, matrix, preconditioner, b, x, target)
     }
 
@@ -74,8 +74,8 @@ impl Krylov {
         preconditioner: &mut dyn Preconditioner,
         b: &[f64],
         x: &mut [f64],
-        target: Target,
-    ) -> Solved {
+        target: SolveTolerance,
+    ) -> SolveStatistics {
         self.solve(bi_cg_stab, matrix, preconditioner, b, x, target)
     }
 
@@ -86,15 +86,15 @@ impl Krylov {
         preconditioner: &mut dyn Preconditioner,
         b: &[f64],
         x: &mut [f64],
-        target: Target,
-    ) -> Solved {
+        target: SolveTolerance,
+    ) -> SolveStatistics {
         self.resize(b.len());
         matrix.residual(x, b, &mut self.r);
         let initial = magnitude(&self.r);
-        let mut solved = Solved {
+        let mut solved = SolveStatistics {
             initial,
             residual: initial,
-            ..Solved::default()
+            ..SolveStatistics::default()
         };
         let mut goal = target.absolute.max(target.relative * initial);
         for _ in 0..RESTARTS {

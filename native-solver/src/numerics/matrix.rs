@@ -4,20 +4,20 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::grid::Grid;
+use super::grid::MeshGraph;
 use super::parallel::{self, ALONE, CHUNK};
 
 /// A matrix with one row per cell and one entry per pair of neighbours.
 #[derive(Clone, Debug)]
 pub struct Matrix {
-    grid: Arc<Grid>,
+    grid: Arc<MeshGraph>,
     diagonal: Vec<f64>,
     neighbours: Vec<f64>,
 }
 
 impl Matrix {
     /// A matrix of zeros.
-    pub fn new(grid: Arc<Grid>) -> Self {
+    pub fn new(grid: Arc<MeshGraph>) -> Self {
         let (cells, entries) = (grid.cells(), grid.columns().len());
         Self {
             grid,
@@ -27,7 +27,7 @@ impl Matrix {
     }
 
     /// The grid whose graph it has.
-    pub fn grid(&self) -> &Arc<Grid> {
+    pub fn grid(&self) -> &Arc<MeshGraph> {
         &self.grid
     }
 

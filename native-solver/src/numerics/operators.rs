@@ -5,7 +5,7 @@ use std::ops::{Add, Mul, Sub};
 
 use calcine_coupler::physics::Vec3;
 
-use super::grid::{Face, Grid};
+use super::grid::{Face, MeshGraph};
 use super::parallel::fill;
 
 /// Linear interpolation of cell values onto a face; on the boundary the cell's own value.
@@ -20,14 +20,14 @@ pub fn interpolate(face: &Face, values: &[f64]) -> f64 {
 
 /// Net outflow of a cell: Σ of the fluxes through its faces, out of the cell.
 #[inline]
-pub fn outflow(grid: &Grid, flux: &[f64], cell: usize) -> f64 {
+pub fn outflow(grid: &MeshGraph, flux: &[f64], cell: usize) -> f64 {
     let links = grid.links(cell).iter();
     links.fold(0.0, |sum, link| sum + link.sign * flux[link.face as usize])
 }
 
 /// The gradient of a cell from values on its faces (Gauss): Σ value S / V.
 #[inline]
-pub fn gradient(grid: &Grid, face_values: &[f64], cell: usize) -> Vec3 {
+pub fn gradient(grid: &MeshGraph, face_values: &[f64], cell: usize) -> Vec3 {
     let mut sum = Vec3::zeros();
     for link in grid.links(cell) {
         let face = &grid.faces[link.face as usize];
@@ -39,7 +39,7 @@ pub fn gradient(grid: &Grid, face_values: &[f64], cell: usize) -> Vec3 {
 /// Values on all faces by linear interpolation, improved by a gradient where the line between the
 /// centres misses the face's centre; `boundary(face, owner value)` on the boundary.
 pub fn face_values(
-    grid: &Grid,
+    grid: &MeshGraph,
     values: &[f64],
     gradients: &[Vec3],
     boundary: impl Fn(usize, f64) -> f64 + Sync,
@@ -64,7 +64,7 @@ pub fn face_values(
 /// Explicit part of n·∇ at a face, times the face's distance: what the plain difference across
 /// the face has too much because the centres are displaced along the face.
 #[inline]
-pub fn displacement(grid: &Grid, face: &Face, gradients: &[Vec3]) -> f64 {
+pub fn displacement(grid: &MeshGraph, face: &Face, gradients: &[Vec3]) -> f64 {
     if grid.orthogonal {
         return 0.0;
     }

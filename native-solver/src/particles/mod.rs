@@ -19,8 +19,8 @@ use calcine_coupler::time::{Ticks, Window};
 
 pub use crate::gas::NativeError;
 use check::{check, length};
-use dem::energy::Energy;
-use dem::{Carried, CarriedWall, Engine, Newcomer, Stray};
+use dem::energy::BedEnergy;
+use dem::{Engine, EscapedParticle, InsertedSphere, StoredContact, StoredWallContact};
 
 /// Steps between two looks at the user's interrupts.
 const SLICE: i64 = 200;
@@ -101,7 +101,7 @@ impl NativeParticles {
     }
 
     /// Energies of a moving bed now, as far as they are counted.
-    pub fn energy(&self) -> Energy {
+    pub fn energy(&self) -> BedEnergy {
         self.engine
             .as_ref()
             .map(|engine| engine.energy())
@@ -109,14 +109,17 @@ impl NativeParticles {
     }
 
     /// Gives all particles to the solver, with the memories of their contacts.
-    fn hand_over(&mut self, memories: (Vec<Carried>, Vec<CarriedWall>)) -> Result<(), Stray> {
+    fn hand_over(
+        &mut self,
+        memories: (Vec<StoredContact>, Vec<StoredWallContact>),
+    ) -> Result<(), EscapedParticle> {
         let Some(engine) = &mut self.engine else {
             return Ok(());
         };
         let contacts = engine.contacts();
         let particle = |row: usize| {
             let population = self.population[row] as usize;
-            Newcomer {
+            InsertedSphere {
                 centre: self.position[row],
                 velocity: self.velocity[row],
                 spin: self.angular_velocity[row],
@@ -126,7 +129,7 @@ impl NativeParticles {
                 held: contacts.held[population],
             }
         };
-        let particles: Vec<Newcomer> = (0..self.id.len()).map(particle).collect();
+        let particles: Vec<InsertedSphere> = (0..self.id.len()).map(particle).collect();
         engine.load(&particles, memories, self.steps)?;
         self.read();
         Ok(())
@@ -144,7 +147,7 @@ impl NativeParticles {
     }
 
     /// The error of a particle that left the bounds.
-    fn outside(&self, stray: Stray) -> NativeError {
+    fn outside(&self, stray: EscapedParticle) -> NativeError {
         NativeError::OutOfBounds {
             id: self.id[stray.row as usize],
             place: stray.centre.into(),

@@ -6,7 +6,7 @@ use calcine_coupler::checkpoint::StateFile;
 use calcine_coupler::physics::Vec3;
 
 use super::check::length;
-use super::dem::{Carried, CarriedWall};
+use super::dem::{StoredContact, StoredWallContact};
 use super::{NativeError, NativeParticles};
 use crate::gas::{flat, vectors};
 
@@ -38,7 +38,7 @@ impl NativeParticles {
                 .iter()
                 .flat_map(|one| [one.shift, one.rolling])
                 .collect();
-            let memory = |one: &CarriedWall| [one.point, one.shift, one.rolling];
+            let memory = |one: &StoredWallContact| [one.point, one.shift, one.rolling];
             let wall_values: Vec<Vec3> = walls.iter().flat_map(memory).collect();
             file.set_u64s("contact_rows", &rows);
             file.set_f64s("contact_memory", &flat(&values));
@@ -103,7 +103,7 @@ fn memories(
     file: &StateFile,
     count: usize,
     walls: usize,
-) -> Result<(Vec<Carried>, Vec<CarriedWall>), NativeError> {
+) -> Result<(Vec<StoredContact>, Vec<StoredWallContact>), NativeError> {
     let rows = file.u64s("contact_rows")?.as_chunks::<2>().0;
     let values = vectors(file.f64s_of("contact_memory", 6 * rows.len())?);
     let near = file.u64s("wall_rows")?.as_chunks::<2>().0;
@@ -119,12 +119,12 @@ fn memories(
             count,
         ));
     }
-    let pair = |(rows, values): (&[u64; 2], &[Vec3])| Carried {
+    let pair = |(rows, values): (&[u64; 2], &[Vec3])| StoredContact {
         rows: rows.map(|row| row as u32),
         shift: values[0],
         rolling: values[1],
     };
-    let wall = |(near, values): (&[u64; 2], &[Vec3])| CarriedWall {
+    let wall = |(near, values): (&[u64; 2], &[Vec3])| StoredWallContact {
         row: near[0] as u32,
         wall: near[1] as u32,
         point: values[0],

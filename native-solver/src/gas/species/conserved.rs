@@ -7,12 +7,12 @@
 use calcine_coupler::physics::kinetics::elements::Elements;
 use calcine_coupler::physics::thermo::Element;
 
-use super::{ITERATIONS, Species};
-use crate::gas::attempt::{Frame, Material};
-use crate::gas::chemistry::Source;
-use crate::gas::outer::Goal;
-use crate::gas::state::State;
-use crate::numerics::krylov::{Krylov, Target};
+use super::{ITERATIONS, SpeciesEquations};
+use crate::gas::attempt::{AttemptFrame, CellProperties};
+use crate::gas::chemistry::ReactionSource;
+use crate::gas::outer::ScalarTolerance;
+use crate::gas::state::GasState;
+use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::parallel::{fill, update};
 use crate::numerics::preconditioner::Preconditioner;
 
@@ -20,23 +20,23 @@ use crate::numerics::preconditioner::Preconditioner;
 /// of diffusion leave beside steep gradients on skewed meshes: cut and made again they would never settle.
 const NO_LACK: f64 = 1e-9;
 
-impl Species {
+impl SpeciesEquations {
     /// Solves for the elements and gives them to the species; what is made of each species in kg/s, species by species within
     /// each cell, and the linear iterations. Nothing where particles exchange gases, each by a law of its own.
     pub fn conserve(
         &mut self,
-        frame: &Frame<'_>,
-        material: &Material,
+        frame: &AttemptFrame<'_>,
+        material: &CellProperties,
         krylov: &mut Krylov,
-        (goal, share): (Goal, f64),
+        (goal, share): (ScalarTolerance, f64),
         elements: &Elements,
-        now: &mut State,
+        now: &mut GasState,
     ) -> Option<(Vec<f64>, u32)> {
         if !frame.exchange.species.is_none() {
             return None;
         }
         let (cells, species) = (frame.grid.cells(), frame.species());
-        self.reactions = Source::default();
+        self.reactions = ReactionSource::default();
         self.update_diffusion(frame, material);
         self.assemble(frame, now, 0);
         self.update_explicit(frame, share, now);
@@ -48,7 +48,7 @@ impl Species {
             let given = sources.iter_mut().skip(k).step_by(species);
             given.zip(own).for_each(|(given, own)| *given = *own);
         }
-        let target = Target {
+        let target = SolveTolerance {
             absolute: goal.absolute * self.throughput(frame, now, species - 1),
             of_terms: 0.0,
             relative: goal.relative,

@@ -15,10 +15,10 @@ use nalgebra::Matrix3;
 
 use super::wall::{self, WallFace, WallLaw, wall_faces};
 use super::{Eddies, update_viscosity};
-use crate::gas::boundary::{Boundaries, Value};
-use crate::gas::state::State;
-use crate::numerics::grid::{Grid, Link};
-use crate::numerics::krylov::{Krylov, Target};
+use crate::gas::boundary::{Boundaries, FaceCondition};
+use crate::gas::state::GasState;
+use crate::numerics::grid::{CellFace, MeshGraph};
+use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{conductance, displacement, face_values, gradient, outflow};
 use crate::numerics::parallel::{fill, largest, update};
@@ -29,9 +29,9 @@ const ITERATIONS: u32 = 1000;
 
 /// What a step of the eddies looks at, beside the state that it advances.
 #[derive(Clone, Copy, Debug)]
-pub struct Step<'a> {
+pub struct TurbulenceStep<'a> {
     /// Faces and links.
-    pub grid: &'a Grid,
+    pub grid: &'a MeshGraph,
     /// Boundary values.
     pub boundary: &'a Boundaries,
     /// Properties of the gas.
@@ -115,9 +115,9 @@ impl KEpsilonEquations {
     /// Advances k, ε_t and the eddy viscosities of a state by the step; the words of what diverged otherwise.
     pub fn advance(
         &mut self,
-        step: &Step<'_>,
+        step: &TurbulenceStep<'_>,
         krylov: &mut Krylov,
-        now: &mut State,
+        now: &mut GasState,
     ) -> Result<(), String> {
         self.measure(step, now);
         let mut eddies = std::mem::take(&mut now.turbulence);
@@ -130,7 +130,7 @@ impl KEpsilonEquations {
     }
 
     /// What velocity and walls do to both: P, ∇·u, and the values of cells at walls.
-    fn measure(&mut self, step: &Step<'_>, now: &State) {
+    fn measure(&mut self, step: &TurbulenceStep<'_>, now: &GasState) {
         let grid = step.grid;
         let (mass, flux) = (&now.mass, &now.flux);
         fill(&mut self.inertia, |cell| {
@@ -163,7 +163,7 @@ impl KEpsilonEquations {
             let &WallFace { face, cell, share } = wall;
             let distance = grid.faces[face].distance();
             self.at_wall[cell] += share * self.law.dissipation(energy[cell], distance);
-            let Value::Wall {
+            let FaceCondition::Wall {
                 sticks: Some(velocity),
                 ..
             } = step.boundary.at(face)
@@ -183,9 +183,9 @@ impl KEpsilonEquations {
 
     fn dissipation(
         &mut self,
-        step: &Step<'_>,
+        step: &TurbulenceStep<'_>,
         krylov: &mut Krylov,
-        now: &State,
+        now: &GasState,
         eddies: &Eddies,
     ) -> Vec<f64> {
         let model = self.model;
@@ -222,9 +222,9 @@ impl KEpsilonEquations {
 
     fn energy(
         &mut self,
-        step: &Step<'_>,
+        step: &TurbulenceStep<'_>,
         krylov: &mut Krylov,
-        now: &State,
+        now: &GasState,
         eddies: &Eddies,
         dissipation: &[f64],
     ) -> Vec<f64> {
@@ -255,15 +255,15 @@ impl KEpsilonEquations {
     /// Solves the equation of a scalar; its new values.
     fn solve<S: Fn(usize) -> [f64; 2] + Sync>(
         &mut self,
-        step: &Step<'_>,
+        step: &TurbulenceStep<'_>,
         krylov: &mut Krylov,
-        now: &State,
+        now: &GasState,
         eddies: &Eddies,
         scalar: &Scalar<'_, S>,
     ) -> Vec<f64> {
         let (grid, boundary) = (step.grid, step.boundary);
         let inlet = |index: usize| match boundary.at(index) {
-            Value::Inlet {
+            FaceCondition::Inlet {
                 superficial_velocity,
                 ..
             } if superficial_velocity > 0.0 => {
@@ -308,7 +308,7 @@ impl KEpsilonEquations {
             }
             source
         });
-        let target = Target {
+        let target = SolveTolerance {
             absolute: 0.0,
             of_terms: step.tolerance,
             relative: 0.0,
@@ -331,7 +331,13 @@ impl KEpsilonEquations {
         new
     }
 
-    fn update_diffusion(&mut self, step: &Step<'_>, now: &State, eddies: &Eddies, prandtl: f64) {
+    fn update_diffusion(
+        &mut self,
+        step: &TurbulenceStep<'_>,
+        now: &GasState,
+        eddies: &Eddies,
+        prandtl: f64,
+    ) {
         let grid = step.grid;
         // The eddies' share of the viscosity counts with 1/σ.
         let less = 1.0 - 1.0 / prandtl;
@@ -345,12 +351,12 @@ impl KEpsilonEquations {
                 return conductance(face, mean);
             }
             match step.boundary.at(index) {
-                Value::Inlet { gas, .. } => {
+                FaceCondition::Inlet { gas, .. } => {
                     let laminar = now.void_fraction[face.owner] * gas.viscosity;
                     let eddy = eddies.boundary[index - grid.internal] / prandtl;
                     conductance(face, laminar + eddy)
                 }
-                Value::Wall { .. } | Value::Outlet { .. } => 0.0,
+                FaceCondition::Wall { .. } | FaceCondition::Outlet { .. } => 0.0,
             }
         });
     }
@@ -358,7 +364,7 @@ impl KEpsilonEquations {
     /// What diffusion along skewed faces brings to each cell, from the old values.
     fn update_along(
         &mut self,
-        grid: &Grid,
+        grid: &MeshGraph,
         old: &[f64],
         inlet: impl Fn(usize) -> Option<f64> + Sync,
     ) {
@@ -372,7 +378,7 @@ impl KEpsilonEquations {
         fill(gradients, |cell| gradient(grid, faces, cell));
         let (gradients, diffusion) = (&self.gradients, &self.diffusion);
         fill(&mut self.along, |cell| {
-            let one = |sum: f64, link: &Link| {
+            let one = |sum: f64, link: &CellFace| {
                 let index = link.face as usize;
                 if diffusion[index] == 0.0 {
                     return sum;
@@ -386,9 +392,9 @@ impl KEpsilonEquations {
 }
 
 /// ∇·u of a cell in 1/s, from the fluxes: gas that flows in has the velocity of the inlet, not the cell's density.
-fn divergence(grid: &Grid, boundary: &Boundaries, now: &State, cell: usize) -> f64 {
+fn divergence(grid: &MeshGraph, boundary: &Boundaries, now: &GasState, cell: usize) -> f64 {
     let held = |cell: usize| now.mass[cell] / grid.volume[cell];
-    let volume = |sum: f64, link: &Link| {
+    let volume = |sum: f64, link: &CellFace| {
         let index = link.face as usize;
         let face = &grid.faces[index];
         if !link.is_boundary() {
@@ -397,7 +403,7 @@ fn divergence(grid: &Grid, boundary: &Boundaries, now: &State, cell: usize) -> f
             return sum + link.sign * now.flux[index] / density;
         }
         match boundary.at(index) {
-            Value::Inlet {
+            FaceCondition::Inlet {
                 superficial_velocity,
                 ..
             } => sum - superficial_velocity / now.void_fraction[cell] * face.area,
@@ -416,7 +422,7 @@ fn strain(gradient: &Matrix3<f64>) -> f64 {
 }
 
 /// What is wrong with eddies, in words; `None` where nothing is.
-fn complaint(grid: &Grid, eddies: &Eddies) -> Option<String> {
+fn complaint(grid: &MeshGraph, eddies: &Eddies) -> Option<String> {
     let (cell, strangeness) = largest(grid.cells(), |cell| {
         let [k, rate] = [eddies.energy[cell], eddies.dissipation[cell]];
         if k > 0.0 && rate > 0.0 && (k + rate + eddies.viscosity[cell]).is_finite() {
@@ -459,7 +465,7 @@ mod tests {
             patches: ["side", "side", "side", "side", "bottom", "top"].map(String::from),
         };
         let mesh = box_mesh(&spec).unwrap();
-        let grid = Arc::new(Grid::new(&mesh));
+        let grid = Arc::new(MeshGraph::new(&mesh));
         let slip = GasPatch::Wall {
             velocity: WallVelocity::Slip,
             heat: WallHeat::Adiabatic,
@@ -517,11 +523,11 @@ mod tests {
         let flow = cold * 0.01;
         // Out of their owners: up between the cells and at the top, down at the bottom.
         let through = |face: usize| flow * grid.faces[face].normal.z;
-        let now = State {
+        let now = GasState {
             mass: vec![cold / 3.0 * 1e-3; 2],
             void_fraction: vec![1.0; 2],
             flux: (0..grid.faces.len()).map(through).collect(),
-            ..State::default()
+            ..GasState::default()
         };
         let rates = [0, 1].map(|cell| divergence(&grid, &boundary, &now, cell));
         assert!((rates[0] - 20.0).abs() < 1e-9, "{rates:?}");

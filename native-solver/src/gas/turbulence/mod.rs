@@ -22,12 +22,12 @@ use calcine_coupler::physics::turbulence::KEpsilon;
 use calcine_coupler::setup::Turbulence;
 use calcine_coupler::turbulence::is_free;
 
-pub use equations::{KEpsilonEquations, Step};
+pub use equations::{KEpsilonEquations, TurbulenceStep};
 use wall::WallLaw;
 
-use super::boundary::{Boundaries, Value};
-use super::state::State;
-use crate::numerics::grid::Grid;
+use super::boundary::{Boundaries, FaceCondition};
+use super::state::GasState;
+use crate::numerics::grid::MeshGraph;
 use crate::numerics::parallel::fill;
 
 /// Eddies of a state; all lists are empty for a laminar gas.
@@ -110,7 +110,12 @@ impl Eddies {
 }
 
 /// The eddy viscosities that k and ε_t of a state stand for, with its mass, void fraction and temperature.
-pub fn update_viscosity(grid: &Grid, boundary: &Boundaries, gas: &GasModel, state: &mut State) {
+pub fn update_viscosity(
+    grid: &MeshGraph,
+    boundary: &Boundaries,
+    gas: &GasModel,
+    state: &mut GasState,
+) {
     let mut eddies = std::mem::take(&mut state.turbulence);
     if !eddies.is_laminar() {
         fill_viscosity(grid, boundary, gas, state, &mut eddies);
@@ -119,10 +124,10 @@ pub fn update_viscosity(grid: &Grid, boundary: &Boundaries, gas: &GasModel, stat
 }
 
 fn fill_viscosity(
-    grid: &Grid,
+    grid: &MeshGraph,
     boundary: &Boundaries,
     gas: &GasModel,
-    state: &State,
+    state: &GasState,
     eddies: &mut Eddies,
 ) {
     let (model, law) = (KEpsilon::STANDARD, WallLaw::new());
@@ -151,7 +156,7 @@ fn fill_viscosity(
             return 0.0;
         }
         match boundary.at(index) {
-            Value::Inlet {
+            FaceCondition::Inlet {
                 superficial_velocity,
                 mass_flux,
                 ..
@@ -160,15 +165,15 @@ fn fill_viscosity(
                 let density = pores * mass_flux / superficial_velocity;
                 density * model.eddy_viscosity(energy, dissipation)
             }
-            Value::Wall {
+            FaceCondition::Wall {
                 sticks: Some(_), ..
             } => {
                 let laminar = wall::viscosity(boundary, gas, state, index, cell);
                 laminar * law.eddy_ratio(energy[cell], face.distance(), laminar / held(cell))
             }
-            Value::Inlet { .. } | Value::Wall { sticks: None, .. } | Value::Outlet { .. } => {
-                viscosity[cell]
-            }
+            FaceCondition::Inlet { .. }
+            | FaceCondition::Wall { sticks: None, .. }
+            | FaceCondition::Outlet { .. } => viscosity[cell],
         }
     });
 }

@@ -8,9 +8,9 @@
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::turbulence::{KEpsilon, LogLaw};
 
-use crate::gas::boundary::{Boundaries, Heat, Value};
-use crate::gas::state::State;
-use crate::numerics::grid::Grid;
+use crate::gas::boundary::{Boundaries, FaceCondition, HeatCondition};
+use crate::gas::state::GasState;
+use crate::numerics::grid::MeshGraph;
 
 /// The law of the wall with what it needs evaluated once.
 #[derive(Clone, Copy, Debug)]
@@ -64,12 +64,12 @@ pub struct WallFace {
 }
 
 /// All faces on walls that gas sticks to.
-pub fn wall_faces(grid: &Grid, boundary: &Boundaries) -> Vec<WallFace> {
+pub fn wall_faces(grid: &MeshGraph, boundary: &Boundaries) -> Vec<WallFace> {
     let sticks = |index: &usize| {
         let value = boundary.at(*index);
         matches!(
             value,
-            Value::Wall {
+            FaceCondition::Wall {
                 sticks: Some(_),
                 ..
             }
@@ -95,13 +95,13 @@ pub fn wall_faces(grid: &Grid, boundary: &Boundaries) -> Vec<WallFace> {
 pub fn viscosity(
     boundary: &Boundaries,
     gas: &GasModel,
-    state: &State,
+    state: &GasState,
     index: usize,
     cell: usize,
 ) -> f64 {
     let temperature = match boundary.at(index) {
-        Value::Wall {
-            heat: Heat::Temperature(temperature),
+        FaceCondition::Wall {
+            heat: HeatCondition::Temperature(temperature),
             ..
         } => temperature,
         _ => state.temperature[cell],

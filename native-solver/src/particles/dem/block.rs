@@ -7,11 +7,11 @@ use calcine_coupler::motion::Rolling;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{CohesionArea, ContactModel};
 
-use super::contact::{Meeting, evaluate};
-use super::energy::Budget;
+use super::contact::{SurfaceOverlap, evaluate};
+use super::energy::ContactEnergy;
 use super::lanes;
-use super::rules::Rules;
-use super::sphere::{Load, Moves, Place, Spheres};
+use super::rules::ContactRules;
+use super::sphere::{SphereLoad, SphereMotion, SpherePosition, Spheres};
 use super::walls::WallBody;
 use super::walls::group::WallContacts;
 
@@ -30,7 +30,7 @@ pub fn size(count: usize) -> usize {
 
 /// Pairs that may touch, with their memory. Arrays that a run does not need are empty.
 #[derive(Clone, Debug, Default)]
-pub struct Candidates {
+pub struct CandidatePairs {
     /// Indices of the two spheres; the first is of the block.
     pub pair: Vec<[u32; 2]>,
     /// Elongations of tangential springs in m; what does not touch has none, whatever stands here.
@@ -43,7 +43,7 @@ pub struct Candidates {
     pub prepared: Vec<f64>,
 }
 
-impl Candidates {
+impl CandidatePairs {
     /// Forgets all; keeps the memory.
     pub fn clear(&mut self) {
         self.pair.clear();
@@ -56,9 +56,9 @@ impl Candidates {
 
 /// A candidate that touches: its index, and whether it did in the evaluation before.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Touch(u32);
+pub struct TouchingPair(u32);
 
-impl Touch {
+impl TouchingPair {
     /// The bit beside the index.
     const KEPT: u32 = 1 << 31;
 
@@ -86,19 +86,19 @@ pub struct Block {
     /// Index of its first particle.
     pub begin: usize,
     /// Pairs within the block.
-    pub inner: Candidates,
+    pub inner: CandidatePairs,
     /// Pairs with a sphere of another block.
-    pub cross: Candidates,
+    pub cross: CandidatePairs,
     /// Contacts with walls.
     pub walls: WallContacts,
     /// Loads on its particles.
-    pub load: Vec<Load>,
+    pub load: Vec<SphereLoad>,
     /// Loads from other blocks: block, slot, particle.
     pub incoming: Vec<[u32; 3]>,
     /// Candidates that touch, of the list at hand.
-    pub touching: Vec<Touch>,
+    pub touching: Vec<TouchingPair>,
     /// Energies of its contacts.
-    pub budget: Budget,
+    pub budget: ContactEnergy,
     /// Force of all walls on its particles in the last evaluation, in N.
     pub wall_force: Vec3,
     /// Impulse in N s that walls and held particles gave its free ones, and what of it others' free ones
@@ -107,11 +107,11 @@ pub struct Block {
 }
 
 /// What an evaluation of all forces shares.
-pub struct Scene<'a, L> {
+pub struct ForceContext<'a, L> {
     /// The contact law.
     pub law: &'a L,
     /// Constants and options.
-    pub rules: &'a Rules,
+    pub rules: &'a ContactRules,
     /// The particles.
     pub spheres: &'a Spheres,
     /// The walls where they are now.
@@ -126,13 +126,13 @@ impl Block {
     /// Forces of all contacts that the block owns; those on other blocks' particles go to `outgoing`.
     pub fn evaluate<L: ContactModel, const BUDGET: bool>(
         &mut self,
-        scene: &Scene<'_, L>,
-        outgoing: &mut [Load],
+        scene: &ForceContext<'_, L>,
+        outgoing: &mut [SphereLoad],
     ) {
         ahead(scene.spheres, self.begin..self.begin + self.load.len());
         let held = std::mem::take(&mut self.budget.elastic_tangential);
         self.budget.elastic_normal = 0.0;
-        self.load.fill(Load::default());
+        self.load.fill(SphereLoad::default());
         self.walls
             .evaluate::<L, BUDGET>(scene, self.begin, &mut self.load, &mut self.budget);
         self.wall_force = if self.walls.groups.is_empty() {
@@ -150,7 +150,7 @@ impl Block {
             ..
         } = self;
         let begin = *begin;
-        outgoing.fill(Load::default());
+        outgoing.fill(SphereLoad::default());
         // Counting energies, rolling, cohesion and looks without a step go one by one.
         let plain = !BUDGET
             && !L::FORGETS_ON_SLIP
@@ -194,7 +194,7 @@ impl Block {
     }
 
     /// Takes up the loads that other blocks left for this one's particles.
-    pub fn take_up(&mut self, outgoing: &[Vec<Load>]) {
+    pub fn take_up(&mut self, outgoing: &[Vec<SphereLoad>]) {
         for &[block, slot, particle] in &self.incoming {
             self.load[particle as usize].add(&outgoing[block as usize][slot as usize]);
         }
@@ -203,12 +203,12 @@ impl Block {
 
 /// The work of a block where its contacts are plain, compiled for each set of vector instructions.
 struct Plain<'a, 'b, L> {
-    scene: &'a Scene<'b, L>,
+    scene: &'a ForceContext<'b, L>,
     begin: usize,
-    lists: [&'a mut Candidates; 2],
-    touching: &'a mut [Touch],
-    load: &'a mut [Load],
-    outgoing: &'a mut [Load],
+    lists: [&'a mut CandidatePairs; 2],
+    touching: &'a mut [TouchingPair],
+    load: &'a mut [SphereLoad],
+    outgoing: &'a mut [SphereLoad],
 }
 
 impl<L: ContactModel> pulp::WithSimd for Plain<'_, '_, L> {
@@ -237,7 +237,8 @@ impl<L: ContactModel> pulp::WithSimd for Plain<'_, '_, L> {
         );
         let found = touching_of(cross, &scene.spheres.place, touching);
         let moves = &scene.spheres.moves;
-        let beyond = |touch: &Touch| moves[cross.pair[touch.index()][1] as usize].inverse_mass;
+        let beyond =
+            |touch: &TouchingPair| moves[cross.pair[touch.index()][1] as usize].inverse_mass;
         black_box(touching[..found].iter().map(beyond).sum::<f64>());
         lanes::pairs(
             scene,
@@ -263,14 +264,18 @@ fn ahead(spheres: &Spheres, own: Range<usize>) {
 /// Lists the candidates that touch, without a branch that could be guessed wrong, and notes which they are;
 /// returns their number.
 #[inline(always)]
-fn touching_of(candidates: &mut Candidates, place: &[Place], touching: &mut [Touch]) -> usize {
+fn touching_of(
+    candidates: &mut CandidatePairs,
+    place: &[SpherePosition],
+    touching: &mut [TouchingPair],
+) -> usize {
     let mut found = 0;
     let pairs = candidates.pair.iter().zip(&mut candidates.touched);
     for (k, (&[i, j], touched)) in pairs.enumerate() {
         let (a, b) = (&place[i as usize], &place[j as usize]);
         let reach = a.radius + b.radius;
         let apart = (a.centre - b.centre).norm_squared();
-        touching[found] = Touch::new(k, *touched);
+        touching[found] = TouchingPair::new(k, *touched);
         *touched = apart < reach * reach;
         found += usize::from(*touched);
     }
@@ -279,11 +284,11 @@ fn touching_of(candidates: &mut Candidates, place: &[Place], touching: &mut [Tou
 
 #[inline(always)]
 fn pairs<L: ContactModel, const BUDGET: bool>(
-    scene: &Scene<'_, L>,
-    candidates: &mut Candidates,
-    touching: &[Touch],
-    budget: &mut Budget,
-    mut sink: impl FnMut([usize; 2], Load, Load, usize),
+    scene: &ForceContext<'_, L>,
+    candidates: &mut CandidatePairs,
+    touching: &[TouchingPair],
+    budget: &mut ContactEnergy,
+    mut sink: impl FnMut([usize; 2], SphereLoad, SphereLoad, usize),
 ) {
     let spheres = scene.spheres;
     let mut unused = Vec3::zeros();
@@ -313,11 +318,11 @@ fn pairs<L: ContactModel, const BUDGET: bool>(
             scene.step,
             budget,
         );
-        let one = Load {
+        let one = SphereLoad {
             force: outcome.force,
             torque: outcome.rolling - arms[0] * outcome.twist,
         };
-        let other = Load {
+        let other = SphereLoad {
             force: -outcome.force,
             torque: -outcome.rolling - arms[1] * outcome.twist,
         };
@@ -327,7 +332,13 @@ fn pairs<L: ContactModel, const BUDGET: bool>(
 
 /// Two spheres that overlap, and their arms: from each centre to the middle of the overlap.
 #[inline(always)]
-fn meet(rules: &Rules, a: &Place, b: &Place, va: &Moves, vb: &Moves) -> (Meeting, [f64; 2]) {
+fn meet(
+    rules: &ContactRules,
+    a: &SpherePosition,
+    b: &SpherePosition,
+    va: &SphereMotion,
+    vb: &SphereMotion,
+) -> (SurfaceOverlap, [f64; 2]) {
     let between = a.centre - b.centre;
     let distance = between.norm();
     let sum = a.radius + b.radius;
@@ -337,8 +348,10 @@ fn meet(rules: &Rules, a: &Place, b: &Place, va: &Moves, vb: &Moves) -> (Meeting
     let inverse = va.inverse_mass + vb.inverse_mass;
     let share = 1.0 / (sum * inverse);
     let radius = a.radius * b.radius * inverse * share;
-    let moment = |place: &Place, moves: &Moves| moves.inverse_mass / (place.radius * place.radius);
-    let meeting = Meeting {
+    let moment = |place: &SpherePosition, moves: &SphereMotion| {
+        moves.inverse_mass / (place.radius * place.radius)
+    };
+    let meeting = SurfaceOverlap {
         normal: between * (1.0 / distance),
         overlap,
         radius,

@@ -5,11 +5,11 @@ use calcine_coupler::physics::Vec3;
 
 use super::block::Block;
 use super::sphere::Spheres;
-use super::walls::group::Slot;
+use super::walls::group::WallContactMemory;
 
 /// The memory of a contact of two particles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Carried {
+pub struct StoredContact {
     /// Rows of the particles among ascending ids, the smaller first.
     pub rows: [u32; 2],
     /// Elongation of the tangential spring in m, on the first.
@@ -20,7 +20,7 @@ pub struct Carried {
 
 /// The memory of a contact with a wall.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct CarriedWall {
+pub struct StoredWallContact {
     /// Row of the particle among ascending ids.
     pub row: u32,
     /// Index of the wall.
@@ -35,18 +35,18 @@ pub struct CarriedWall {
 
 /// All memories, in order of their rows.
 #[derive(Clone, Debug, Default)]
-pub struct Carry {
+pub struct StoredContacts {
     /// Of pairs.
-    pub pairs: Vec<Carried>,
+    pub pairs: Vec<StoredContact>,
     /// Of walls.
-    pub walls: Vec<CarriedWall>,
+    pub walls: Vec<StoredWallContact>,
     pair_of: Vec<u32>,
     wall_of: Vec<u32>,
 }
 
-impl Carry {
+impl StoredContacts {
     /// Memories given.
-    pub fn of(pairs: Vec<Carried>, walls: Vec<CarriedWall>) -> Self {
+    pub fn of(pairs: Vec<StoredContact>, walls: Vec<StoredWallContact>) -> Self {
         Self {
             pairs,
             walls,
@@ -65,7 +65,7 @@ impl Carry {
                         let [i, j] = candidates.pair[k].map(|index| spheres.row[index as usize]);
                         let rolling = candidates.rolling.get(k).copied().unwrap_or_default();
                         let sign = if i < j { 1.0 } else { -1.0 };
-                        self.pairs.push(Carried {
+                        self.pairs.push(StoredContact {
                             rows: [i.min(j), i.max(j)],
                             shift: sign * shift,
                             rolling: sign * rolling,
@@ -77,7 +77,7 @@ impl Carry {
                 let slots =
                     &block.walls.slots[group.slots.start as usize..group.slots.end as usize];
                 for slot in slots.iter().filter(|slot| slot.stamp == stamp) {
-                    self.walls.push(CarriedWall {
+                    self.walls.push(StoredWallContact {
                         row: spheres.row[block.begin + group.particle as usize],
                         wall: group.wall,
                         point: slot.point,
@@ -118,11 +118,11 @@ impl Carry {
     }
 
     /// Puts the memories of a row and wall into the slots of their group.
-    pub fn fill(&self, row: u32, wall: u32, slots: &mut [Slot], stamp: u64) {
+    pub fn fill(&self, row: u32, wall: u32, slots: &mut [WallContactMemory], stamp: u64) {
         let of = self.wall_of[row as usize] as usize..self.wall_of[row as usize + 1] as usize;
         let found = self.walls[of].iter().filter(|one| one.wall == wall);
         for (slot, one) in slots.iter_mut().zip(found) {
-            *slot = Slot {
+            *slot = WallContactMemory {
                 point: one.point,
                 shift: one.shift,
                 rolling: one.rolling,

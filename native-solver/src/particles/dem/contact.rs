@@ -7,11 +7,11 @@ use calcine_coupler::physics::contact::{
     friction, sjkr,
 };
 
-use super::energy::Budget;
-use super::rules::Rules;
+use super::energy::ContactEnergy;
+use super::rules::ContactRules;
 
 /// Two surfaces that overlap.
-pub struct Meeting {
+pub struct SurfaceOverlap {
     /// Unit normal from the other body to the sphere.
     pub normal: Vec3,
     /// Overlap δ in m.
@@ -33,7 +33,7 @@ pub struct Meeting {
 }
 
 /// What the contact does to the sphere; the other body gets the opposite.
-pub struct Outcome {
+pub struct ContactLoad {
     /// Force in N.
     pub force: Vec3,
     /// n × F_t in N; the torque of each body is −arm times this.
@@ -47,14 +47,14 @@ pub struct Outcome {
 #[allow(clippy::too_many_arguments)]
 pub fn evaluate<L: ContactModel, const BUDGET: bool>(
     law: &L,
-    rules: &Rules,
+    rules: &ContactRules,
     (pair, prepared): (&PairConstants, f64),
-    meeting: &Meeting,
+    meeting: &SurfaceOverlap,
     shift: &mut Vec3,
     torque: &mut Vec3,
     step: f64,
-    budget: &mut Budget,
-) -> Outcome {
+    budget: &mut ContactEnergy,
+) -> ContactLoad {
     let normal = meeting.normal;
     let springs = law.springs(
         pair,
@@ -118,7 +118,7 @@ pub fn evaluate<L: ContactModel, const BUDGET: bool>(
         budget.lost_tangential -= tangential.force.dot(&slip) * step;
         budget.lost_rolling -= rolling.dot(&meeting.rotation) * step;
     }
-    Outcome {
+    ContactLoad {
         force: push * normal + tangential.force,
         twist: normal.cross(&tangential.force),
         rolling,

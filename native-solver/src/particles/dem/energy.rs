@@ -4,7 +4,7 @@ use calcine_coupler::physics::Vec3;
 
 /// What contacts store and dissipate, in J; sums over a block or a bed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Budget {
+pub struct ContactEnergy {
     /// In normal springs and cohesion now.
     pub elastic_normal: f64,
     /// In tangential springs now.
@@ -24,9 +24,9 @@ pub struct Budget {
     pub push_work: f64,
 }
 
-impl Budget {
+impl ContactEnergy {
     /// Adds another budget.
-    pub fn add(&mut self, other: &Budget) {
+    pub fn add(&mut self, other: &ContactEnergy) {
         self.elastic_normal += other.elastic_normal;
         self.elastic_tangential += other.elastic_tangential;
         self.lost_normal += other.lost_normal;
@@ -41,7 +41,7 @@ impl Budget {
 /// The energy of a bed and what became of it since it was first counted, in J:
 /// kinetic + rotational + elastic + lost − works is constant, up to the order of the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Energy {
+pub struct BedEnergy {
     /// ½ m v², of particles that are not held.
     pub kinetic: f64,
     /// ½ I ω².
@@ -49,10 +49,10 @@ pub struct Energy {
     /// Momentum in kg m/s.
     pub momentum: Vec3,
     /// Contacts, walls, gravity and gas.
-    pub contacts: Budget,
+    pub contacts: ContactEnergy,
 }
 
-impl Energy {
+impl BedEnergy {
     /// Kinetic, rotational and elastic energy in J.
     pub fn stored(&self) -> f64 {
         let contacts = &self.contacts;

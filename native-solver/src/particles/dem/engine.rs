@@ -8,12 +8,12 @@ use calcine_coupler::physics::contact::{ContactModel, HertzMindlin, Linear, Spri
 use rayon::prelude::*;
 
 use super::block::{Block, size};
-use super::carry::{Carried, CarriedWall, Carry};
-use super::energy::{Budget, Energy};
-use super::motion::{self, Kick};
-use super::rebuild::{Search, Task};
-use super::rules::Rules;
-use super::sphere::{Load, Moves, Place, Spheres};
+use super::carry::{StoredContact, StoredContacts, StoredWallContact};
+use super::energy::{BedEnergy, ContactEnergy};
+use super::motion::{self, KickInputs};
+use super::rebuild::{NeighbourSearch, SearchInputs};
+use super::rules::ContactRules;
+use super::sphere::{SphereLoad, SphereMotion, SpherePosition, Spheres};
 use super::walls::WallBody;
 
 /// Skin at the start, in radii of the smallest sphere.
@@ -29,13 +29,16 @@ const IDLE: u64 = 500;
 
 /// A block with its share of places, motions and pushes.
 type Portion<'a> = (
-    ((&'a mut Block, &'a mut [Place]), &'a mut [Moves]),
+    (
+        (&'a mut Block, &'a mut [SpherePosition]),
+        &'a mut [SphereMotion],
+    ),
     &'a [Vec3],
 );
 
 /// A particle as it comes into the solver.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Newcomer {
+pub struct InsertedSphere {
     /// Centre in m.
     pub centre: Vec3,
     /// Velocity in m/s.
@@ -54,7 +57,7 @@ pub struct Newcomer {
 
 /// A particle out of bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stray {
+pub struct EscapedParticle {
     /// Its row among ascending ids.
     pub row: u32,
     /// Its centre in m.
@@ -67,14 +70,14 @@ pub struct Stray {
 #[derive(Clone, Debug)]
 pub struct Engine {
     contacts: Contacts,
-    rules: Rules,
+    rules: ContactRules,
     walls: Vec<WallBody>,
     spheres: Spheres,
     blocks: Vec<Block>,
-    outgoing: Vec<Vec<Load>>,
+    outgoing: Vec<Vec<SphereLoad>>,
     /// Loads of the block at hand, of steps that go block by block.
-    spare: Vec<Load>,
-    search: Search,
+    spare: Vec<SphereLoad>,
+    search: NeighbourSearch,
     smallest: f64,
     skin: f64,
     /// How far any particle may have gone since the last search, in m.
@@ -93,7 +96,7 @@ impl Engine {
     /// A solver without particles.
     pub fn new(contacts: Contacts) -> Self {
         Self {
-            rules: Rules::new(&contacts),
+            rules: ContactRules::new(&contacts),
             walls: contacts
                 .walls
                 .iter()
@@ -103,7 +106,7 @@ impl Engine {
             blocks: Vec::new(),
             outgoing: Vec::new(),
             spare: Vec::new(),
-            search: Search::default(),
+            search: NeighbourSearch::default(),
             smallest: 0.0,
             skin: 0.0,
             gone: 0.0,
@@ -125,10 +128,10 @@ impl Engine {
     /// of the run, and evaluates their forces without bringing the memories up to date.
     pub fn load(
         &mut self,
-        particles: &[Newcomer],
-        memories: (Vec<Carried>, Vec<CarriedWall>),
+        particles: &[InsertedSphere],
+        memories: (Vec<StoredContact>, Vec<StoredWallContact>),
         steps: i64,
-    ) -> Result<(), Stray> {
+    ) -> Result<(), EscapedParticle> {
         let spheres = &mut self.spheres;
         *spheres = Spheres::default();
         for (row, particle) in particles.iter().enumerate() {
@@ -137,11 +140,11 @@ impl Engine {
             } else {
                 1.0 / particle.mass
             };
-            spheres.place.push(Place {
+            spheres.place.push(SpherePosition {
                 centre: particle.centre,
                 radius: particle.radius,
             });
-            spheres.moves.push(Moves {
+            spheres.moves.push(SphereMotion {
                 velocity: if particle.held {
                     Vec3::zeros()
                 } else {
@@ -164,7 +167,7 @@ impl Engine {
         self.skin = SKIN * self.smallest;
         self.stamp = 1;
         for block in &mut self.blocks {
-            block.budget = Budget::default();
+            block.budget = ContactEnergy::default();
             block.support = Vec3::zeros();
         }
         if particles.is_empty() {
@@ -173,7 +176,7 @@ impl Engine {
         }
         self.check()?;
         self.pose(steps);
-        self.search.carry = Carry::of(memories.0, memories.1);
+        self.search.carry = StoredContacts::of(memories.0, memories.1);
         self.find();
         self.evaluate(0.0);
         self.take_up();
@@ -181,7 +184,7 @@ impl Engine {
     }
 
     /// The memories of all contacts, in order of their rows.
-    pub fn memories(&mut self) -> (Vec<Carried>, Vec<CarriedWall>) {
+    pub fn memories(&mut self) -> (Vec<StoredContact>, Vec<StoredWallContact>) {
         let carry = &mut self.search.carry;
         carry.collect(&self.blocks, &self.spheres, self.stamp);
         carry.sort(self.spheres.len());
@@ -215,14 +218,14 @@ impl Engine {
     pub fn count_energy(&mut self, on: bool) {
         self.counting = on;
         for block in &mut self.blocks {
-            block.budget = Budget::default();
+            block.budget = ContactEnergy::default();
         }
     }
 
     /// Energies now; those of contacts and works only while they are counted, and elastic ones from the
     /// first step on.
-    pub fn energy(&self) -> Energy {
-        let mut energy = Energy::default();
+    pub fn energy(&self) -> BedEnergy {
+        let mut energy = BedEnergy::default();
         for (place, moves) in self.spheres.place.iter().zip(&self.spheres.moves) {
             if moves.inverse_mass > 0.0 {
                 let mass = 1.0 / moves.inverse_mass;
@@ -245,7 +248,7 @@ impl Engine {
     }
 
     /// Takes `steps` steps after the `done` first of the run. Velocities are whole after the last one.
-    pub fn advance(&mut self, done: i64, steps: i64) -> Result<(), Stray> {
+    pub fn advance(&mut self, done: i64, steps: i64) -> Result<(), EscapedParticle> {
         if self.spheres.len() == 0 || steps <= 0 {
             return Ok(());
         }
@@ -282,12 +285,12 @@ impl Engine {
     }
 
     /// Every particle must be within the bounds.
-    fn check(&self) -> Result<(), Stray> {
+    fn check(&self) -> Result<(), EscapedParticle> {
         let (low, high) = self.contacts.bounds;
         for (k, place) in self.spheres.place.iter().enumerate() {
             let centre = place.centre;
             if !(0..3).all(|axis| centre[axis] >= low[axis] && centre[axis] <= high[axis]) {
-                return Err(Stray {
+                return Err(EscapedParticle {
                     row: self.spheres.row[k],
                     centre,
                     velocity: self.spheres.moves[k].velocity,
@@ -323,8 +326,8 @@ impl Engine {
         self.spheres.len() > ALONE && rayon::current_num_threads() > 1
     }
 
-    fn kick(&self, times: u32) -> Kick {
-        Kick {
+    fn kick(&self, times: u32) -> KickInputs {
+        KickInputs {
             half: 0.5 * self.contacts.step,
             times,
             gravity: self.contacts.gravity,
@@ -406,7 +409,7 @@ impl Engine {
 
     fn find_with<L: ContactModel>(&mut self, law: &L, prepares: bool) {
         let parallel = self.parallel();
-        let task = Task {
+        let task = SearchInputs {
             law,
             prepares,
             rules: &self.rules,

@@ -7,7 +7,7 @@
 
 use calcine_coupler::physics::Vec3;
 
-use super::sphere::Place;
+use super::sphere::SpherePosition;
 
 /// Cells along an axis that a key can hold.
 const MOST: f64 = (1u64 << 20) as f64;
@@ -37,13 +37,13 @@ struct Level {
 
 /// The spheres of 27 cells: ranges of a class' members.
 #[derive(Clone, Copy, Debug)]
-pub struct Around {
+pub struct CellNeighbourhood {
     cell: [u64; 3],
     ranges: [[u32; 2]; 27],
     count: usize,
 }
 
-impl Default for Around {
+impl Default for CellNeighbourhood {
     fn default() -> Self {
         Self {
             cell: [u64::MAX; 3],
@@ -55,7 +55,7 @@ impl Default for Around {
 
 /// All classes, the finest first.
 #[derive(Clone, Debug, Default)]
-pub struct Grid {
+pub struct SearchGrid {
     low: Vec3,
     levels: Vec<Level>,
     /// Class of each sphere.
@@ -63,9 +63,9 @@ pub struct Grid {
     keyed: Vec<(u64, u32)>,
 }
 
-impl Grid {
+impl SearchGrid {
     /// Sorts spheres into cells such that spheres whose surfaces are nearer than `gap` in m are found.
-    pub fn fill(&mut self, places: &[Place], (low, high): (Vec3, Vec3), gap: f64) {
+    pub fn fill(&mut self, places: &[SpherePosition], (low, high): (Vec3, Vec3), gap: f64) {
         self.low = low;
         let largest = places.iter().map(|place| place.radius).fold(0.0, f64::max);
         let alike = places.iter().all(|place| place.radius == largest);
@@ -131,7 +131,7 @@ impl Grid {
         &'a self,
         level: usize,
         place: Vec3,
-        memory: &'a mut Around,
+        memory: &'a mut CellNeighbourhood,
     ) -> impl Iterator<Item = u32> + 'a {
         let level = &self.levels[level];
         let cell = cell(self.low, level.cell, place);

@@ -7,8 +7,8 @@ use std::ops::Range;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{ContactModel, PairConstants};
 
-use super::block::{Candidates, Scene, Touch};
-use super::sphere::Load;
+use super::block::{CandidatePairs, ForceContext, TouchingPair};
+use super::sphere::SphereLoad;
 
 /// Contacts at a time.
 const LANES: usize = 8;
@@ -39,10 +39,10 @@ struct Batch {
 /// Evaluates the candidates that touch; the sink gets the indices, both loads and the candidate.
 #[inline(always)]
 pub fn pairs<L: ContactModel>(
-    scene: &Scene<'_, L>,
-    candidates: &mut Candidates,
-    touching: &[Touch],
-    mut sink: impl FnMut([usize; 2], Load, Load, usize),
+    scene: &ForceContext<'_, L>,
+    candidates: &mut CandidatePairs,
+    touching: &[TouchingPair],
+    mut sink: impl FnMut([usize; 2], SphereLoad, SphereLoad, usize),
 ) {
     let mut batch = Batch::default();
     if let Some(pair) = scene.rules.single() {
@@ -59,11 +59,11 @@ pub fn pairs<L: ContactModel>(
             let k = touch.index();
             candidates.shift[k] = at(&batch.shift, lane);
             let (force, twist) = (at(&batch.force, lane), at(&batch.twist, lane));
-            let one = Load {
+            let one = SphereLoad {
                 force,
                 torque: -(batch.arm[0][lane] * twist),
             };
-            let other = Load {
+            let other = SphereLoad {
                 force: -force,
                 torque: -(batch.arm[1][lane] * twist),
             };
@@ -108,9 +108,9 @@ impl Batch {
     fn gather<L>(
         &mut self,
         lane: usize,
-        touch: Touch,
-        scene: &Scene<'_, L>,
-        candidates: &Candidates,
+        touch: TouchingPair,
+        scene: &ForceContext<'_, L>,
+        candidates: &CandidatePairs,
     ) {
         let (spheres, k) = (scene.spheres, touch.index());
         let [i, j] = candidates.pair[k].map(|index| index as usize);
@@ -152,7 +152,7 @@ impl Batch {
     // Components of several arrays side by side: an index reads better than zips.
     #[allow(clippy::needless_range_loop)]
     #[inline(always)]
-    fn evaluate<L: ContactModel>(&mut self, scene: &Scene<'_, L>) {
+    fn evaluate<L: ContactModel>(&mut self, scene: &ForceContext<'_, L>) {
         let (law, step, attractive) = (scene.law, scene.step, scene.rules.attractive);
         for l in 0..LANES {
             let pair = PairConstants {

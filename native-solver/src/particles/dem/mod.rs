@@ -18,5 +18,5 @@ mod rules;
 mod sphere;
 mod walls;
 
-pub use carry::{Carried, CarriedWall};
-pub use engine::{Engine, Newcomer, Stray};
+pub use carry::{StoredContact, StoredWallContact};
+pub use engine::{Engine, EscapedParticle, InsertedSphere};

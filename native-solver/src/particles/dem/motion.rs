@@ -8,11 +8,11 @@
 use calcine_coupler::physics::Vec3;
 
 use super::block::Block;
-use super::sphere::{Moves, Place};
+use super::sphere::{SphereMotion, SpherePosition};
 
 /// What a kick needs.
 #[derive(Clone, Copy, Debug)]
-pub struct Kick {
+pub struct KickInputs {
     /// Half a step in s.
     pub half: f64,
     /// Number of half kicks: the last of one step and the first of the next are done together.
@@ -23,7 +23,7 @@ pub struct Kick {
 
 /// Kicks the particles of a block.
 #[inline(always)]
-fn kick(kick: &Kick, moves: &mut Moves, force: Vec3, torque: Vec3) {
+fn kick(kick: &KickInputs, moves: &mut SphereMotion, force: Vec3, torque: Vec3) {
     // A held particle has no inverse mass: no gravity either.
     let gravity = if moves.inverse_mass > 0.0 {
         kick.gravity
@@ -41,9 +41,9 @@ fn kick(kick: &Kick, moves: &mut Moves, force: Vec3, torque: Vec3) {
 /// Kicks and moves the particles of a block; returns the square of their largest speed in m²/s².
 pub fn drift<const BUDGET: bool>(
     block: &mut Block,
-    now: &Kick,
-    place: &mut [Place],
-    moves: &mut [Moves],
+    now: &KickInputs,
+    place: &mut [SpherePosition],
+    moves: &mut [SphereMotion],
     push: &[Vec3],
 ) -> f64 {
     let step = 2.0 * now.half;
@@ -67,7 +67,7 @@ pub fn drift<const BUDGET: bool>(
 }
 
 /// The last half kick of a window.
-pub fn close(block: &mut Block, now: &Kick, moves: &mut [Moves], push: &[Vec3]) {
+pub fn close(block: &mut Block, now: &KickInputs, moves: &mut [SphereMotion], push: &[Vec3]) {
     let mut held = Vec3::zeros();
     for ((load, moves), push) in block.load.iter().zip(moves).zip(push) {
         kick(now, moves, load.force + push, load.torque);

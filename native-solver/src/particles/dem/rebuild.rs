@@ -4,11 +4,11 @@ use calcine_coupler::motion::WallShape;
 use calcine_coupler::physics::contact::{ContactModel, PairConstants};
 use rayon::prelude::*;
 
-use super::block::{Block, Candidates, Touch, size};
-use super::carry::Carry;
-use super::grid::{self, Around, Grid};
-use super::rules::Rules;
-use super::sphere::{Load, Spheres};
+use super::block::{Block, CandidatePairs, TouchingPair, size};
+use super::carry::StoredContacts;
+use super::grid::{self, CellNeighbourhood, SearchGrid};
+use super::rules::ContactRules;
+use super::sphere::{SphereLoad, Spheres};
 use super::walls::WallBody;
 use super::walls::{shape, triangle};
 use calcine_coupler::motion::Rolling;
@@ -16,11 +16,11 @@ use calcine_coupler::physics::Vec3;
 
 /// Scratch memory of the search.
 #[derive(Clone, Debug, Default)]
-pub struct Search {
+pub struct NeighbourSearch {
     /// Cells.
-    pub grid: Grid,
+    pub grid: SearchGrid,
     /// Memories of contacts on their way from the old candidates to the new.
-    pub carry: Carry,
+    pub carry: StoredContacts,
     /// True where each block has loads for particles of blocks behind it only.
     pub forward: bool,
     keys: Vec<(u64, u32, u32)>,
@@ -31,13 +31,13 @@ pub struct Search {
 }
 
 /// What the search is told.
-pub struct Task<'a, L> {
+pub struct SearchInputs<'a, L> {
     /// The law, which may prepare values.
     pub law: &'a L,
     /// True where it does.
     pub prepares: bool,
     /// Constants and options.
-    pub rules: &'a Rules,
+    pub rules: &'a ContactRules,
     /// The walls where they are now.
     pub walls: &'a [WallBody],
     /// Bounds in m.
@@ -48,14 +48,14 @@ pub struct Task<'a, L> {
     pub stamp: u64,
 }
 
-impl Search {
+impl NeighbourSearch {
     /// Sorts the particles and lists all candidates, with the memories in `carry`.
     pub fn run<L: ContactModel>(
         &mut self,
-        task: &Task<'_, L>,
+        task: &SearchInputs<'_, L>,
         spheres: &mut Spheres,
         blocks: &mut Vec<Block>,
-        outgoing: &mut Vec<Vec<Load>>,
+        outgoing: &mut Vec<Vec<SphereLoad>>,
         parallel: bool,
     ) {
         self.sort(task, spheres);
@@ -65,19 +65,19 @@ impl Search {
         let size = size(spheres.len());
         blocks.resize_with(spheres.len().div_ceil(size), Block::default);
         outgoing.resize_with(blocks.len(), Vec::new);
-        let list = |(k, (block, outgoing)): (usize, (&mut Block, &mut Vec<Load>))| {
+        let list = |(k, (block, outgoing)): (usize, (&mut Block, &mut Vec<SphereLoad>))| {
             block.begin = k * size;
             let end = spheres.len().min(block.begin + size);
             block.load.clear();
-            block.load.resize(end - block.begin, Load::default());
+            block.load.resize(end - block.begin, SphereLoad::default());
             self.pairs(task, spheres, block, end);
             self.walls(task, spheres, block, end);
             let most = block.inner.pair.len().max(block.cross.pair.len());
             block.touching.clear();
             // One more: the place after the last that touches is written to.
-            block.touching.resize(most + 1, Touch::default());
+            block.touching.resize(most + 1, TouchingPair::default());
             outgoing.clear();
-            outgoing.resize(block.cross.pair.len(), Load::default());
+            outgoing.resize(block.cross.pair.len(), SphereLoad::default());
         };
         if parallel {
             blocks
@@ -91,7 +91,7 @@ impl Search {
         self.forward = deliver(blocks, size);
     }
 
-    fn sort<L>(&mut self, task: &Task<'_, L>, spheres: &mut Spheres) {
+    fn sort<L>(&mut self, task: &SearchInputs<'_, L>, spheres: &mut Spheres) {
         let smallest = spheres.place.iter().map(|place| place.radius);
         let size = 2.0 * smallest.fold(f64::INFINITY, f64::min) + task.skin;
         self.keys.clear();
@@ -107,14 +107,14 @@ impl Search {
 
     fn pairs<L: ContactModel>(
         &self,
-        task: &Task<'_, L>,
+        task: &SearchInputs<'_, L>,
         spheres: &Spheres,
         block: &mut Block,
         end: usize,
     ) {
         block.inner.clear();
         block.cross.clear();
-        let mut memory = vec![Around::default(); self.grid.levels()];
+        let mut memory = vec![CellNeighbourhood::default(); self.grid.levels()];
         for i in block.begin..end {
             let place = spheres.place[i];
             let own = self.grid.level(i);
@@ -145,9 +145,9 @@ impl Search {
     #[inline]
     fn add<L: ContactModel>(
         &self,
-        task: &Task<'_, L>,
+        task: &SearchInputs<'_, L>,
         spheres: &Spheres,
-        list: &mut Candidates,
+        list: &mut CandidatePairs,
         i: usize,
         j: usize,
     ) {
@@ -170,7 +170,7 @@ impl Search {
 
     fn walls<L: ContactModel>(
         &self,
-        task: &Task<'_, L>,
+        task: &SearchInputs<'_, L>,
         spheres: &Spheres,
         block: &mut Block,
         end: usize,
@@ -213,7 +213,7 @@ impl Search {
     /// Memories and prepared value of the group added last.
     fn begin_wall<L: ContactModel>(
         &self,
-        task: &Task<'_, L>,
+        task: &SearchInputs<'_, L>,
         spheres: &Spheres,
         block: &mut Block,
         i: usize,
@@ -234,7 +234,7 @@ impl Search {
     }
 
     /// Lists the triangles near each particle, in the order of particles, walls and triangles.
-    fn near_triangles<L>(&mut self, task: &Task<'_, L>, spheres: &Spheres) {
+    fn near_triangles<L>(&mut self, task: &SearchInputs<'_, L>, spheres: &Spheres) {
         self.triangles.clear();
         for (index, wall) in task.walls.iter().enumerate() {
             let WallShape::Mesh { triangles } = &wall.shape else {

@@ -5,7 +5,7 @@ use calcine_coupler::physics::contact::PairConstants;
 
 /// Options and constants of pairs.
 #[derive(Clone, Debug)]
-pub struct Rules {
+pub struct ContactRules {
     /// Row by row of the symmetric matrix of materials.
     pairs: Vec<PairConstants>,
     materials: usize,
@@ -17,7 +17,7 @@ pub struct Rules {
     pub cohesion: bool,
 }
 
-impl Rules {
+impl ContactRules {
     /// Of a setup.
     pub fn new(contacts: &Contacts) -> Self {
         let materials = contacts.materials.len();

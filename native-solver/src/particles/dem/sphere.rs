@@ -5,7 +5,7 @@ use calcine_coupler::physics::Vec3;
 /// Where a sphere is; one load for the search of contacts.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(32))]
-pub struct Place {
+pub struct SpherePosition {
     /// Centre in m.
     pub centre: Vec3,
     /// Radius in m.
@@ -15,7 +15,7 @@ pub struct Place {
 /// How a sphere moves; one cache line.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
-pub struct Moves {
+pub struct SphereMotion {
     /// Velocity in m/s.
     pub velocity: Vec3,
     /// 1/m in 1/kg; 0 for one that is held.
@@ -28,17 +28,17 @@ pub struct Moves {
 
 /// Force and torque of all contacts of a sphere.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Load {
+pub struct SphereLoad {
     /// Force in N.
     pub force: Vec3,
     /// Torque in N m.
     pub torque: Vec3,
 }
 
-impl Load {
+impl SphereLoad {
     /// Adds another load.
     #[inline(always)]
-    pub fn add(&mut self, other: &Load) {
+    pub fn add(&mut self, other: &SphereLoad) {
         self.force += other.force;
         self.torque += other.torque;
     }
@@ -48,9 +48,9 @@ impl Load {
 #[derive(Clone, Debug, Default)]
 pub struct Spheres {
     /// Places.
-    pub place: Vec<Place>,
+    pub place: Vec<SpherePosition>,
     /// Motions.
-    pub moves: Vec<Moves>,
+    pub moves: Vec<SphereMotion>,
     /// Materials.
     pub material: Vec<u32>,
     /// Force of the gas in N.

@@ -4,9 +4,9 @@ use calcine_coupler::motion::ContactForce;
 use calcine_coupler::physics::contact::{ContactModel, HertzMindlin, Linear, SpringSliderDashpot};
 use rayon::prelude::*;
 
-use super::super::block::{Block, Scene, size};
+use super::super::block::{Block, ForceContext, size};
 use super::super::motion;
-use super::super::sphere::Load;
+use super::super::sphere::SphereLoad;
 use super::Engine;
 
 impl Engine {
@@ -50,7 +50,7 @@ impl Engine {
 
     fn evaluate_with<L: ContactModel, const BUDGET: bool>(&mut self, law: &L, step: f64) -> f64 {
         let parallel = self.parallel();
-        let scene = Scene {
+        let scene = ForceContext {
             law,
             rules: &self.rules,
             spheres: &self.spheres,
@@ -58,7 +58,7 @@ impl Engine {
             step,
             stamp: self.stamp,
         };
-        let work = |(block, outgoing): (&mut Block, &mut Vec<Load>)| {
+        let work = |(block, outgoing): (&mut Block, &mut Vec<SphereLoad>)| {
             block.evaluate::<L, BUDGET>(&scene, outgoing);
         };
         if parallel {
@@ -80,7 +80,7 @@ impl Engine {
         let (count, size) = (self.spheres.len(), size(self.spheres.len()));
         let mut fastest = 0.0f64;
         for (index, block) in self.blocks.iter_mut().enumerate() {
-            let scene = Scene {
+            let scene = ForceContext {
                 law,
                 rules: &self.rules,
                 spheres: &self.spheres,
@@ -90,7 +90,7 @@ impl Engine {
             };
             let own = block.begin..count.min(block.begin + size);
             // Loads that are used up at once need no memory of each block's own.
-            self.spare.resize(own.len(), Load::default());
+            self.spare.resize(own.len(), SphereLoad::default());
             std::mem::swap(&mut self.spare, &mut block.load);
             let (before, rest) = self.outgoing.split_at_mut(index);
             block.evaluate::<L, BUDGET>(&scene, &mut rest[0]);

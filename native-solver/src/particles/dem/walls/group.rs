@@ -6,13 +6,13 @@ use calcine_coupler::motion::{Rolling, WallShape};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{CohesionArea, ContactModel};
 
-use super::super::block::Scene;
-use super::super::contact::{Meeting, evaluate};
-use super::super::energy::Budget;
-use super::super::sphere::{Load, Place};
+use super::super::block::ForceContext;
+use super::super::contact::{SurfaceOverlap, evaluate};
+use super::super::energy::ContactEnergy;
+use super::super::sphere::{SphereLoad, SpherePosition};
 use super::WallBody;
-use super::shape::{self, Nearest};
-use super::triangle::{self, MOST, Touch};
+use super::shape::{self, NearestPoint};
+use super::triangle::{self, MOST, TriangleTouch};
 
 /// Most contacts of one sphere with one mesh.
 pub const CONTACTS: usize = 8;
@@ -21,7 +21,7 @@ const SAME: f64 = 0.1;
 
 /// A wall that is near a particle.
 #[derive(Clone, Debug)]
-pub struct Group {
+pub struct NearWall {
     /// Index of the particle in its block.
     pub particle: u32,
     /// Index of the wall.
@@ -34,7 +34,7 @@ pub struct Group {
 
 /// The memory of a contact with a wall.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Slot {
+pub struct WallContactMemory {
     /// Where it touched, in the wall's own frame.
     pub point: Vec3,
     /// Elongation of the tangential spring in m.
@@ -49,18 +49,18 @@ pub struct Slot {
 #[derive(Clone, Debug, Default)]
 pub struct WallContacts {
     /// One for each particle and wall, in this order.
-    pub groups: Vec<Group>,
+    pub groups: Vec<NearWall>,
     /// Triangles of the groups.
     pub triangles: Vec<u32>,
     /// Memories of the groups.
-    pub slots: Vec<Slot>,
+    pub slots: Vec<WallContactMemory>,
     /// What the law prepared, one per group; empty where it prepares nothing.
     pub prepared: Vec<f64>,
 }
 
 /// A contact with a wall: in the wall's own frame.
 struct Found {
-    near: Nearest,
+    near: NearestPoint,
     point: Vec3,
 }
 
@@ -94,8 +94,8 @@ impl WallContacts {
         };
         let slot = self.slots.len() as u32;
         self.slots
-            .resize((slot + contacts) as usize, Slot::default());
-        self.groups.push(Group {
+            .resize((slot + contacts) as usize, WallContactMemory::default());
+        self.groups.push(NearWall {
             particle,
             wall,
             triangles: first..end,
@@ -106,10 +106,10 @@ impl WallContacts {
     /// Forces of all contacts with walls.
     pub fn evaluate<L: ContactModel, const BUDGET: bool>(
         &mut self,
-        scene: &Scene<'_, L>,
+        scene: &ForceContext<'_, L>,
         begin: usize,
-        load: &mut [Load],
-        budget: &mut Budget,
+        load: &mut [SphereLoad],
+        budget: &mut ContactEnergy,
     ) {
         for (k, group) in self.groups.iter().enumerate() {
             let wall = &scene.walls[group.wall as usize];
@@ -119,7 +119,7 @@ impl WallContacts {
             let prepared = self.prepared.get(k).copied().unwrap_or(0.0);
             let load = &mut load[group.particle as usize];
             let own = wall.own(place.centre);
-            let mut touch = |near: Nearest, slots: &mut [Slot]| {
+            let mut touch = |near: NearestPoint, slots: &mut [WallContactMemory]| {
                 let point = own - near.distance * near.normal;
                 let found = Found { near, point };
                 contact::<L, BUDGET>(scene, wall, index, found, prepared, slots, load, budget);
@@ -128,7 +128,7 @@ impl WallContacts {
                 WallShape::Mesh { triangles } => {
                     let near = &self.triangles
                         [group.triangles.start as usize..group.triangles.end as usize];
-                    let mut touches = [Touch::default(); MOST];
+                    let mut touches = [TriangleTouch::default(); MOST];
                     let found = touching(near, triangles, own, place.radius, &mut touches);
                     let touches = &mut touches[..found];
                     let kept =
@@ -137,7 +137,7 @@ impl WallContacts {
                         let distance = one.square.sqrt();
                         if distance > 0.0 {
                             let normal = (own - one.point) / distance;
-                            touch(Nearest { normal, distance }, slots);
+                            touch(NearestPoint { normal, distance }, slots);
                         }
                     }
                 }
@@ -159,14 +159,14 @@ fn touching(
     triangles: &[[Vec3; 3]],
     centre: Vec3,
     radius: f64,
-    touches: &mut [Touch; MOST],
+    touches: &mut [TriangleTouch; MOST],
 ) -> usize {
     let mut found = 0;
     for &index in near {
         let (point, face) = triangle::nearest(centre, &triangles[index as usize]);
         let square = (centre - point).norm_squared();
         if square < radius * radius && found < MOST {
-            touches[found] = Touch {
+            touches[found] = TriangleTouch {
                 point,
                 square,
                 face,
@@ -180,12 +180,12 @@ fn touching(
 
 /// The memory of a contact: of the slot that touched in the last evaluation near this point, else a free one.
 fn memory(
-    slots: &mut [Slot],
+    slots: &mut [WallContactMemory],
     point: Vec3,
     radius: f64,
     stamp: u64,
     alone: bool,
-) -> Option<&mut Slot> {
+) -> Option<&mut WallContactMemory> {
     let mut best: Option<(usize, f64)> = None;
     for (k, slot) in slots.iter().enumerate() {
         let square = (slot.point - point).norm_squared();
@@ -211,16 +211,16 @@ fn memory(
 
 #[allow(clippy::too_many_arguments)]
 fn contact<L: ContactModel, const BUDGET: bool>(
-    scene: &Scene<'_, L>,
+    scene: &ForceContext<'_, L>,
     wall: &WallBody,
     index: usize,
     found: Found,
     prepared: f64,
-    slots: &mut [Slot],
-    load: &mut Load,
-    budget: &mut Budget,
+    slots: &mut [WallContactMemory],
+    load: &mut SphereLoad,
+    budget: &mut ContactEnergy,
 ) {
-    let Place { centre, radius } = scene.spheres.place[index];
+    let SpherePosition { centre, radius } = scene.spheres.place[index];
     let moves = &scene.spheres.moves[index];
     let alone = slots.len() == 1;
     let Some(slot) = memory(slots, found.point, radius, scene.stamp, alone) else {
@@ -232,7 +232,7 @@ fn contact<L: ContactModel, const BUDGET: bool>(
     let overlap = radius - distance;
     let arm = radius - 0.5 * overlap;
     let surface = wall.velocity(centre - distance * normal);
-    let meeting = Meeting {
+    let meeting = SurfaceOverlap {
         normal,
         overlap,
         radius,
@@ -270,7 +270,7 @@ fn contact<L: ContactModel, const BUDGET: bool>(
         budget.wall_work += outcome.force.dot(&surface) * scene.step;
         budget.wall_work += outcome.rolling.dot(&wall.spin()) * scene.step;
     }
-    load.add(&Load {
+    load.add(&SphereLoad {
         force: outcome.force,
         torque: outcome.rolling - arm * outcome.twist,
     });

@@ -5,7 +5,7 @@ use calcine_coupler::physics::Vec3;
 
 /// The surface as seen from a place.
 #[derive(Clone, Copy, Debug)]
-pub struct Nearest {
+pub struct NearestPoint {
     /// Unit normal from the surface to the place (into the particles' side).
     pub normal: Vec3,
     /// Distance in m; negative behind a plane or cylinder.
@@ -15,9 +15,9 @@ pub struct Nearest {
 /// The nearest point of a shape that is not a mesh; nothing where no direction is nearest (on the axis of a
 /// cylinder), or for a mesh.
 #[inline]
-pub fn nearest(shape: &WallShape, place: Vec3) -> Option<Nearest> {
+pub fn nearest(shape: &WallShape, place: Vec3) -> Option<NearestPoint> {
     match shape {
-        WallShape::Plane { point, normal } => Some(Nearest {
+        WallShape::Plane { point, normal } => Some(NearestPoint {
             normal: *normal,
             distance: (place - point).dot(normal),
         }),
@@ -29,7 +29,7 @@ pub fn nearest(shape: &WallShape, place: Vec3) -> Option<Nearest> {
             let from = place - point;
             let out = from - from.dot(axis) * axis;
             let distance = out.norm();
-            (distance > 0.0).then(|| Nearest {
+            (distance > 0.0).then(|| NearestPoint {
                 normal: -out / distance,
                 distance: radius - distance,
             })
@@ -40,7 +40,7 @@ pub fn nearest(shape: &WallShape, place: Vec3) -> Option<Nearest> {
 }
 
 /// In the half plane of the axis the frustum is a straight line between two points.
-fn cone(place: Vec3, ends: &[Vec3; 2], radii: &[f64; 2]) -> Option<Nearest> {
+fn cone(place: Vec3, ends: &[Vec3; 2], radii: &[f64; 2]) -> Option<NearestPoint> {
     let along = ends[1] - ends[0];
     let length = along.norm();
     let axis = along / length;
@@ -64,7 +64,7 @@ fn cone(place: Vec3, ends: &[Vec3; 2], radii: &[f64; 2]) -> Option<Nearest> {
     let share = share.clamp(0.0, 1.0);
     let (up, outward) = (height - share * rise, distance - radii[0] - share * spread);
     let gap = up.hypot(outward);
-    (gap > 0.0).then(|| Nearest {
+    (gap > 0.0).then(|| NearestPoint {
         normal: (up * axis + outward * radial) / gap,
         distance: gap,
     })

@@ -4,7 +4,7 @@ use calcine_coupler::physics::Vec3;
 
 /// The nearest point of a triangle.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Touch {
+pub struct TriangleTouch {
     /// The point.
     pub point: Vec3,
     /// Square of its distance in m².
@@ -61,7 +61,7 @@ pub fn nearest(place: Vec3, corners: &[Vec3; 3]) -> (Vec3, bool) {
 /// A touch of an edge or a corner counts only where no triangle that is as near covers its point: beside a
 /// face it is the face's, on a ridge it counts once. A face counts unless another touch has its point.
 pub fn keep_distinct(
-    touches: &mut [Touch],
+    touches: &mut [TriangleTouch],
     triangles: &[[Vec3; 3]],
     radius: f64,
     most: usize,
