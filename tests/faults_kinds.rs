@@ -13,8 +13,8 @@ use std::process::{Child, ChildStderr, Command, Output, Stdio};
 use std::time::Duration;
 
 use calcine_wire::record::VERSION;
-use calcine_wire::shared_memory::End;
-use calcine_wire::{Header, Kind, LinkAddress, SharedMemory, Transport};
+use calcine_wire::shared_memory::LinkEnd;
+use calcine_wire::{Header, LinkAddress, MessageKind, SharedMemory, Transport};
 use processes::{
     alive, belonging, case, descendants, is_solver, leftovers, signal, start_with,
     wait_for_windows, wait_until,
@@ -171,12 +171,12 @@ fn a_solver_of_another_version() {
         return;
     }
     let address = LinkAddress::from_environment().unwrap();
-    let mut end = SharedMemory::open(&address, 0, End::Solver).unwrap();
+    let mut end = SharedMemory::open(&address, 0, LinkEnd::Solver).unwrap();
     let hello = b"protocol 999\nrole gas\n";
     let header = Header {
         run: address.number(),
         bytes: hello.len() as u64,
-        ..Header::of(Kind::Hello)
+        ..Header::of(MessageKind::Hello)
     };
     let mut padded = hello.to_vec();
     padded.resize(hello.len().next_multiple_of(8), 0);

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::supervisor::has_ended;
 use calcine_wire::run::VARIABLE;
-use calcine_wire::{LinkAddress, Network, Transport, WireError};
+use calcine_wire::{LinkAddress, SolverNetwork, Transport, WireError};
 use rustix::process::{Pid, PidfdFlags, Signal, kill_process_group, pidfd_open, pidfd_send_signal};
 
 /// How long processes may take to end after SIGTERM, before SIGKILL.
@@ -48,7 +48,7 @@ pub enum Launcher {
 
 /// What spawns ranks.
 #[derive(Clone)]
-pub struct Spawner(pub Arc<dyn Network>);
+pub struct Spawner(pub Arc<dyn SolverNetwork>);
 
 impl fmt::Debug for Spawner {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -198,7 +198,7 @@ pub fn find_program(variable: &str, name: &str, remedy: &str) -> Result<PathBuf,
 
 /// Has MPI start a program on every rank, its output in a log; gives the coordinator's ends.
 pub fn spawn(
-    network: &dyn Network,
+    network: &dyn SolverNetwork,
     program: &Program,
     ranks: u32,
     address: &LinkAddress,

@@ -8,8 +8,11 @@ use std::time::Duration;
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::supervisor::{SolverWait, Supervisor, log_end};
 use calcine_coupler::time::Window;
-use calcine_wire::shared_memory::End;
-use calcine_wire::{Header, Hello, Kind, Link, Network, Record, Run, SharedMemory, WireError};
+use calcine_wire::shared_memory::LinkEnd;
+use calcine_wire::{
+    ColumnSet, Header, Hello, Link, MessageKind, RunDirectory, SharedMemory, SolverNetwork,
+    WireError,
+};
 
 use crate::launch::{Launcher, Processes, Program, Spawner, spawn};
 
@@ -52,9 +55,9 @@ pub struct ExternalSolver {
     links: Vec<Link>,
     // Dropped in this order: processes end before the run's files go.
     processes: Processes,
-    run: Option<Run>,
+    run: Option<RunDirectory>,
     /// Where MPI spawned the ranks: told when they have ended well.
-    network: Option<Arc<dyn Network>>,
+    network: Option<Arc<dyn SolverNetwork>>,
     peer: Peer,
     hello: Hello,
     /// By rank: the cells of the whole mesh that it has; empty for particles.
@@ -68,7 +71,7 @@ pub struct ExternalSolver {
 }
 
 /// The header of a request in a window; times as the wire has them.
-pub fn header(kind: Kind, window: &Window) -> Header {
+pub fn header(kind: MessageKind, window: &Window) -> Header {
     Header {
         attempt: window.attempt,
         window: window.index,
@@ -81,11 +84,11 @@ pub fn header(kind: Kind, window: &Window) -> Header {
 }
 
 /// Opens the coordinator's end of every rank's link, which the ranks wait for.
-fn open_links(run: &Run, hello: &Hello) -> Result<Vec<Link>, WireError> {
+fn open_links(run: &RunDirectory, hello: &Hello) -> Result<Vec<Link>, WireError> {
     let address = run.address(&hello.role);
     (0..hello.ranks)
         .map(|rank| {
-            let transport = SharedMemory::open(&address, rank, End::Coordinator)?;
+            let transport = SharedMemory::open(&address, rank, LinkEnd::Coordinator)?;
             Ok(Link::new(Box::new(transport), address.number(), rank))
         })
         .collect()
@@ -176,7 +179,7 @@ impl Peer {
         links: &mut [Link],
         supervisor: &Supervisor,
         window: Option<&Window>,
-        kind: Kind,
+        kind: MessageKind,
         asked: Duration,
     ) -> Result<(), PartError> {
         let mut arrived = vec![false; links.len()];
@@ -264,7 +267,7 @@ impl ExternalSolver {
             processes = Processes::elsewhere();
             run = None;
         } else {
-            let own = Run::create().map_err(unopened)?;
+            let own = RunDirectory::create().map_err(unopened)?;
             // The processes first: whatever happens to this one from here on, they remove the run's files.
             processes = Processes::start(
                 &launch.name,
@@ -307,7 +310,7 @@ impl ExternalSolver {
 
     fn shake_hands(&mut self, supervisor: &mut Supervisor) -> Result<(), PartError> {
         let ours = self.hello.clone();
-        self.wait_alone(Kind::Hello)?;
+        self.wait_alone(MessageKind::Hello)?;
         let mut local = Vec::new();
         for (rank, link) in self.links.iter_mut().enumerate() {
             let answer = link.answer_greeting(&ours);
@@ -328,13 +331,13 @@ impl ExternalSolver {
             supervisor.watch(&name, pid, Some(&self.peer.log))?;
         }
         self.peer.own = own;
-        if ours.catalogue.of(Record::Owned).next().is_some() {
-            self.wait_alone(Kind::Owned)?;
+        if ours.catalogue.of(ColumnSet::Owned).next().is_some() {
+            self.wait_alone(MessageKind::Owned)?;
             let owned = self.claims();
             self.owned = owned.map_err(|error| self.failure(None, error))?.into();
             self.check_claims()?;
         }
-        self.wait_alone(Kind::State)
+        self.wait_alone(MessageKind::State)
     }
 
     /// The cells that each rank says it has.
@@ -438,7 +441,7 @@ impl ExternalSolver {
         &mut self,
         supervisor: &Supervisor,
         window: &Window,
-        kind: Kind,
+        kind: MessageKind,
     ) -> Result<(), PartError> {
         self.peer
             .wait(&mut self.links, supervisor, Some(window), kind, self.asked)?;
@@ -447,7 +450,7 @@ impl ExternalSolver {
     }
 
     /// The same outside windows, watching this solver only.
-    fn wait_alone(&mut self, kind: Kind) -> Result<(), PartError> {
+    fn wait_alone(&mut self, kind: MessageKind) -> Result<(), PartError> {
         let own = &self.peer.own;
         let asked = own.waited().so_far();
         self.peer.wait(&mut self.links, own, None, kind, asked)
@@ -455,7 +458,7 @@ impl ExternalSolver {
 
     /// Tells every rank to take the last attempt as the new start; there is no answer.
     pub fn commit(&mut self) -> Result<(), PartError> {
-        self.send_text(Kind::Commit, "")
+        self.send_text(MessageKind::Commit, "")
     }
 
     /// Has a checkpoint written into a directory; afterwards each link holds a `Checkpointed`.
@@ -464,22 +467,22 @@ impl ExternalSolver {
             let message = format!("the folder {} cannot be used", directory.display());
             PartError::new(&self.peer.name, FailureKind::Io, message).caused_by(error)
         })?;
-        self.send_text(Kind::Checkpoint, &absolute.to_string_lossy())?;
-        self.wait_alone(Kind::Checkpointed)
+        self.send_text(MessageKind::Checkpoint, &absolute.to_string_lossy())?;
+        self.wait_alone(MessageKind::Checkpointed)
     }
 
     /// Has particles taken out and put in, as told in a text; afterwards each link holds a `Changed`.
     pub fn change(&mut self, supervisor: &Supervisor, text: &str) -> Result<(), PartError> {
-        self.send_text(Kind::Change, text)?;
+        self.send_text(MessageKind::Change, text)?;
         let links = &mut self.links;
         self.peer
-            .wait(links, supervisor, None, Kind::Changed, self.asked)
+            .wait(links, supervisor, None, MessageKind::Changed, self.asked)
     }
 
     /// Ends the solver in an orderly way.
     pub fn goodbye(&mut self) -> Result<(), PartError> {
-        self.send_text(Kind::Bye, "")?;
-        match self.wait_alone(Kind::Bye) {
+        self.send_text(MessageKind::Bye, "")?;
+        match self.wait_alone(MessageKind::Bye) {
             // A solver may end before its answer is read, and the answer with it: its status tells.
             Err(death) if death.kind == FailureKind::Died => {}
             answered => answered?,
@@ -494,7 +497,7 @@ impl ExternalSolver {
         Ok(())
     }
 
-    fn send_text(&mut self, kind: Kind, text: &str) -> Result<(), PartError> {
+    fn send_text(&mut self, kind: MessageKind, text: &str) -> Result<(), PartError> {
         self.asked = self.waited.so_far();
         for (rank, link) in self.links.iter_mut().enumerate() {
             let sent = link.send_text(Header::of(kind), text);

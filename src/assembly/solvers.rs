@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use calcine_adapters::launch::Launcher;
 use calcine_adapters::liggghts::inputs::Inputs;
-use calcine_adapters::liggghts::template::Template;
+use calcine_adapters::liggghts::template::ScriptTemplate;
 use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch, LiggghtsParticles};
 use calcine_adapters::openfoam::case::OpenfoamCase;
 use calcine_adapters::openfoam::{LIBRARY, OpenfoamGas, OpenfoamLaunch};
@@ -100,13 +100,13 @@ pub fn write_inputs(
 }
 
 /// The user's own script of the particles, where the case names one.
-fn own_script(case: &Case) -> Result<Option<Template>, PartError> {
+fn own_script(case: &Case) -> Result<Option<ScriptTemplate>, PartError> {
     let Some(path) = &case.liggghts.template else {
         return Ok(None);
     };
     let populations = case.particles.iter().map(|one| one.name.clone()).collect();
     let materials = case.materials.iter().map(|one| one.name.clone()).collect();
-    let read = Template::read(path, populations, materials);
+    let read = ScriptTemplate::read(path, populations, materials);
     read.map(Some).map_err(|error| {
         let message = format!("the script {} cannot be used", path.display());
         PartError::new("LIGGGHTS (particles)", FailureKind::NotStarted, message).caused_by(error)
@@ -129,7 +129,7 @@ pub fn check_own_script(case: &Case, prepared: &Prepared) -> Result<(), PartErro
 fn liggghts_inputs<'a>(
     case: &Case,
     prepared: &'a Prepared,
-    template: Option<&'a Template>,
+    template: Option<&'a ScriptTemplate>,
     ranks: u32,
 ) -> Inputs<'a> {
     let points = &prepared.mesh.topology().points;

@@ -9,7 +9,7 @@ mod quantity;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use calcine_adapters::openfoam::stock::Solver;
+use calcine_adapters::openfoam::stock::StockSolver;
 use calcine_coupler::hold::Holds;
 use calcine_coupler::interior::reacting::{Reaction, SizeChange};
 use calcine_coupler::mesh::zone::Zone;
@@ -210,7 +210,7 @@ pub struct External {
     /// Time directory of OpenFOAM whose fields the gas starts from (absolute path).
     pub start: Option<PathBuf>,
     /// Program of an OpenFOAM gas.
-    pub solver: Solver,
+    pub solver: StockSolver,
     /// Whether LIGGGHTS counts the impulse of walls.
     pub wall_impulse: bool,
     /// MPI ranks, unless the command line states others.

@@ -21,7 +21,7 @@ use std::process::{self, ExitCode};
 use std::sync::Arc;
 
 use calcine_adapters::launch::find_program;
-use calcine_wire::Network;
+use calcine_wire::SolverNetwork;
 use clap::{Parser, Subcommand};
 
 use crate::assembly::{AssemblyError, Prepared};
@@ -134,7 +134,7 @@ pub fn main() -> ExitCode {
 
 /// Runs the command line of this process, with what can spawn solvers by MPI; without that, a run that
 /// needs it goes to the program `calcine-mpi`. Gives the exit code.
-pub fn run_line(network: Option<&Arc<dyn Network>>) -> u8 {
+pub fn run_line(network: Option<&Arc<dyn SolverNetwork>>) -> u8 {
     let arguments = Arguments::parse();
     let outcome = match &arguments.command {
         Command::Run(arguments) if network.is_none() && arguments.needs_mpi() => Err(become_mpi()),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use calcine_adapters::launch::{Launcher, Spawner};
-use calcine_wire::Network;
+use calcine_wire::SolverNetwork;
 use clap::{Args, ValueEnum};
 
 use super::Failure;
@@ -66,7 +66,7 @@ impl Parallel {
         &self,
         pairing: Pairing,
         case: &Starts,
-        network: Option<&Arc<dyn Network>>,
+        network: Option<&Arc<dyn SolverNetwork>>,
     ) -> Result<Starts, Failure> {
         let gas = pairing.gas == GasBackend::Openfoam;
         let particles = pairing.particles == ParticleBackend::Liggghts;

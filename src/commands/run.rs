@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use calcine_wire::Network;
+use calcine_wire::SolverNetwork;
 use clap::Args;
 
 use super::execute::{self, Settings};
@@ -61,7 +61,7 @@ impl Arguments {
 
 pub(super) fn run(
     arguments: &Arguments,
-    network: Option<&Arc<dyn Network>>,
+    network: Option<&Arc<dyn SolverNetwork>>,
 ) -> Result<u8, Failure> {
     use_threads(arguments.threads.map(usize::from))?;
     let (case, prepared) = read_and_prepare(&arguments.case, &arguments.set)?;

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use crate::host::HostError;
 use crate::library::Liggghts;
-use crate::state::State;
+use crate::state::RankParticles;
 
 /// Ids in one command: LIGGGHTS' lines are limited to 2048 letters.
 const IDS_A_LINE: usize = 100;
@@ -33,14 +33,14 @@ struct Resized {
 }
 
 /// What goes and comes, and what becomes of those that stay.
-pub struct Change {
+pub struct PopulationUpdate {
     remove: Vec<u64>,
     insert: Vec<New>,
     resize: Vec<Resized>,
     rest: bool,
 }
 
-impl Change {
+impl PopulationUpdate {
     /// Reads the lines.
     pub fn parse(text: &str) -> Result<Self, HostError> {
         let (mut remove, mut insert, mut resize) = (Vec::new(), Vec::new(), Vec::new());
@@ -87,7 +87,7 @@ impl Change {
     pub fn apply(
         &self,
         liggghts: &mut Liggghts,
-        state: &State,
+        state: &RankParticles,
         before: u64,
     ) -> Result<u64, HostError> {
         self.rest(liggghts)?;
@@ -124,7 +124,7 @@ impl Change {
     }
 
     /// Gives this rank's particles their new sizes; other ranks get theirs in the setup that follows.
-    fn resize(&self, liggghts: &mut Liggghts, state: &State) -> Result<(), HostError> {
+    fn resize(&self, liggghts: &mut Liggghts, state: &RankParticles) -> Result<(), HostError> {
         if self.resize.is_empty() {
             return Ok(());
         }
@@ -180,10 +180,11 @@ mod tests {
 
     #[test]
     fn lines_that_are_not_understood_are_told() {
-        let good = Change::parse("remove 7\ninsert 9 1 0 0 0.5 0 0 -1 1e-3 2500\n").unwrap();
+        let good =
+            PopulationUpdate::parse("remove 7\ninsert 9 1 0 0 0.5 0 0 -1 1e-3 2500\n").unwrap();
         assert_eq!((good.remove[0], good.insert[0].id), (7, 9));
         assert_eq!(good.insert[0].values[2], 0.5);
-        let other = Change::parse("rest\nresize 3 2.5e-3 1.5e-4\n").unwrap();
+        let other = PopulationUpdate::parse("rest\nresize 3 2.5e-3 1.5e-4\n").unwrap();
         assert!(other.rest && !good.rest);
         let Resized { id, radius, mass } = other.resize[0];
         assert_eq!((id, radius, mass), (3, 2.5e-3, 1.5e-4));
@@ -194,7 +195,7 @@ mod tests {
             "insert 9 1 0 0 0 0 0 0 x 1",
             "add 3",
         ] {
-            let error = Change::parse(line).err().unwrap().to_string();
+            let error = PopulationUpdate::parse(line).err().unwrap().to_string();
             assert!(error.contains(line), "{error}");
         }
     }

@@ -6,17 +6,17 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use calcine_wire::shared_memory::End;
+use calcine_wire::shared_memory::LinkEnd;
 use calcine_wire::{
-    Carried, Catalogue, Header, Hello, Kind, Link, LinkAddress, Means, SharedMemory, Transport,
-    WireError,
+    CarriedTransport, Catalogue, Header, Hello, Link, LinkAddress, MessageKind, SharedMemory,
+    Transport, TransportKind, WireError,
 };
 use thiserror::Error;
 
-use crate::change::Change;
+use crate::change::PopulationUpdate;
 use crate::library::{self, Liggghts};
-use crate::parent::Parent;
-use crate::state::State;
+use crate::parent::ParentCarrier;
+use crate::state::RankParticles;
 
 /// Ticks of the wire's clocks in one second.
 const TICKS: f64 = 1e12;
@@ -40,7 +40,7 @@ const LOG: &str = "log.liggghts";
 
 /// What the host was started with.
 #[derive(Debug)]
-pub struct Start {
+pub struct HostStart {
     /// The script; it ends with the setup, without a `run`.
     pub script: PathBuf,
     /// Hash of the case that the script was written for.
@@ -109,8 +109,8 @@ pub enum HostError {
 /// A running LIGGGHTS and what it must keep.
 pub struct Host {
     liggghts: Liggghts,
-    start: Start,
-    state: State,
+    start: HostStart,
+    state: RankParticles,
     particles: u64,
     rank: u32,
     told: Instant,
@@ -120,18 +120,23 @@ pub struct Host {
 
 impl Host {
     /// Starts MPI, opens the link, runs the script, shakes hands and sends the first state.
-    pub fn begin(start: Start) -> Result<Self, HostError> {
+    pub fn begin(start: HostStart) -> Result<Self, HostError> {
         let (rank, ranks) = library::start_mpi();
         let address = LinkAddress::from_environment()?;
         let transport: Box<dyn Transport + Send> = match address.means {
-            Means::SharedMemory => Box::new(SharedMemory::open(&address, rank, End::Solver)?),
-            Means::Mpi { .. } => Box::new(Carried::of_solver(Parent::find()?, &address)?),
+            TransportKind::SharedMemory => {
+                Box::new(SharedMemory::open(&address, rank, LinkEnd::Solver)?)
+            }
+            TransportKind::Mpi { .. } => Box::new(CarriedTransport::of_solver(
+                ParentCarrier::find()?,
+                &address,
+            )?),
         };
         library::keep_link(Link::new(transport, address.number(), rank));
         let mut host = Self {
             liggghts: Liggghts::open(LOG),
             start,
-            state: State::default(),
+            state: RankParticles::default(),
             particles: 0,
             rank,
             told: Instant::now(),
@@ -154,7 +159,7 @@ impl Host {
         };
         host.tell(&format!("{} with {} particles", hello.version, hello.count));
         on_link(|link| link.greet(&hello, GREETING).map(|_| ()))?;
-        host.answer(Header::of(Kind::State))?;
+        host.answer(Header::of(MessageKind::State))?;
         Ok(host)
     }
 
@@ -165,22 +170,22 @@ impl Host {
                 continue;
             };
             match header.kind() {
-                Some(Kind::Start) => self.window(header)?,
+                Some(MessageKind::Start) => self.window(header)?,
                 // Particles have one attempt a window: what is finished is already the start.
-                Some(Kind::Commit) => {}
-                Some(Kind::Checkpoint) => {
+                Some(MessageKind::Commit) => {}
+                Some(MessageKind::Checkpoint) => {
                     let directory = on_link(|link| link.text().map(PathBuf::from))?;
                     self.checkpoint(&directory)?;
-                    self.answer(header.answer(Kind::Checkpointed))?;
+                    self.answer(header.answer(MessageKind::Checkpointed))?;
                 }
-                Some(Kind::Change) => {
+                Some(MessageKind::Change) => {
                     let text = on_link(|link| link.text().map(str::to_owned))?;
                     self.change(&text)?;
-                    self.answer(header.answer(Kind::Changed))?;
+                    self.answer(header.answer(MessageKind::Changed))?;
                 }
-                Some(Kind::Bye) => {
+                Some(MessageKind::Bye) => {
                     self.tell("goodbye");
-                    on_link(|link| link.send_plain(header.answer(Kind::Bye)))?;
+                    on_link(|link| link.send_plain(header.answer(MessageKind::Bye)))?;
                     return Ok(());
                 }
                 _ => {
@@ -215,7 +220,7 @@ impl Host {
         let impulse = self.impulse(&force, &header, steps)?;
         let acted = steps as f64 * self.step()?;
         let support = [acted, x, y, z];
-        self.reply(header.answer(Kind::Finished), &impulse, support)
+        self.reply(header.answer(MessageKind::Finished), &impulse, support)
     }
 
     /// Runs so many steps; the impulse in N s that walls gave this rank's particles, step by step where it
@@ -315,7 +320,7 @@ impl Host {
 
     /// Takes particles out and puts new ones in, then sets everything up for them.
     fn change(&mut self, text: &str) -> Result<(), HostError> {
-        let change = Change::parse(text)?;
+        let change = PopulationUpdate::parse(text)?;
         self.particles = change.apply(&mut self.liggghts, &self.state, self.particles)?;
         // A group holds what was there when it was made: it is told again, and takes up who came.
         for line in self.script()?.lines() {
@@ -411,13 +416,13 @@ impl Host {
                 which: self.first_lost()?,
             });
         }
-        self.state = State::read(&self.liggghts)?;
+        self.state = RankParticles::read(&self.liggghts)?;
         Ok(())
     }
 
     /// The first particle of this rank's that is gone, in words.
     fn first_lost(&self) -> Result<String, HostError> {
-        let now = State::read(&self.liggghts)?;
+        let now = RankParticles::read(&self.liggghts)?;
         let gone = |(_, id): &(usize, &u64)| now.id.binary_search(id).is_err();
         let lost = self.state.id.iter().enumerate().find(gone);
         Ok(lost.map_or_else(String::new, |(row, id)| {

@@ -10,7 +10,7 @@ use std::ptr;
 use std::sync::{Mutex, PoisonError};
 
 use calcine_wire::Link;
-use calcine_wire::record::{Header, Kind};
+use calcine_wire::record::{Header, MessageKind};
 
 #[allow(non_camel_case_types)]
 type MPI_Comm = *mut c_void;
@@ -75,7 +75,7 @@ pub fn report(text: &str) {
         && let Some(link) = link.as_mut()
     {
         // Whoever started this process sees its end, even if the link is what failed.
-        let _ = link.send_last_word(Header::of(Kind::Failed), text);
+        let _ = link.send_last_word(Header::of(MessageKind::Failed), text);
     }
 }
 

@@ -13,7 +13,7 @@ mod state;
 
 use std::path::PathBuf;
 
-use host::{Host, HostError, Start};
+use host::{Host, HostError, HostStart};
 
 fn main() {
     let outcome = run();
@@ -26,7 +26,7 @@ fn main() {
 
 fn run() -> Result<(), HostError> {
     let mut words = std::env::args_os().skip(1);
-    let start = Start {
+    let start = HostStart {
         script: words.next().map(PathBuf::from).ok_or(HostError::Usage)?,
         case_hash: words
             .next()

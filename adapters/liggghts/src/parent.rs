@@ -70,7 +70,7 @@ fn words_kind() -> *mut c_void {
 }
 
 /// The intercommunicator to the coordinator, whose rank there is 0.
-pub struct Parent {
+pub struct ParentCarrier {
     comm: *mut c_void,
     /// What the coordinator has not taken, in order.
     posted: VecDeque<(*mut c_void, Message)>,
@@ -78,7 +78,7 @@ pub struct Parent {
 
 // SAFETY: the handles are addresses that any thread may use; MPI was started by the thread that makes
 // all calls, and the link's lock lets one through at a time.
-unsafe impl Send for Parent {}
+unsafe impl Send for ParentCarrier {}
 
 /// An MPI result as ours.
 fn checked(doing: &'static str, code: c_int) -> Result<(), WireError> {
@@ -94,7 +94,7 @@ fn length(words: usize) -> Result<c_int, WireError> {
     })
 }
 
-impl Parent {
+impl ParentCarrier {
     /// Finds the parent of this process; MPI must have been started.
     pub fn find() -> Result<Self, WireError> {
         let mut comm = ptr::null_mut();
@@ -116,7 +116,7 @@ impl Parent {
     }
 }
 
-impl Carrier for Parent {
+impl Carrier for ParentCarrier {
     fn post(&mut self, message: Message) -> Result<(), WireError> {
         let words = message.words();
         let (start, count) = (words.as_ptr().cast(), length(words.len())?);

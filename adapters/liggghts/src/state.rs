@@ -8,7 +8,7 @@ use crate::library::{self, Liggghts};
 
 /// One value or vector per particle, in ascending id.
 #[derive(Debug, Default)]
-pub struct State {
+pub struct RankParticles {
     /// LIGGGHTS' tags.
     pub id: Vec<u64>,
     /// Place of each in LIGGGHTS' own arrays, until its next command.
@@ -22,7 +22,7 @@ pub struct State {
     mass: Vec<f64>,
 }
 
-impl State {
+impl RankParticles {
     /// Reads what LIGGGHTS holds now.
     pub fn read(liggghts: &Liggghts) -> Result<Self, HostError> {
         let missing = |name: &'static str| move || HostError::Missing { name };

@@ -7,17 +7,19 @@ mod trips;
 
 use std::time::Duration;
 
-use calcine_mpi::{MpiNetwork, World, end, finalize};
+use calcine_mpi::{MpiNetwork, SpawnedWorld, end, finalize};
 use calcine_wire::run::VARIABLE;
-use calcine_wire::{Carried, LinkAddress, Network};
+use calcine_wire::{CarriedTransport, LinkAddress, SolverNetwork};
 use criterion::Criterion;
 
 fn main() {
     // Spawned by itself: the solver.
     if let Ok(address) = LinkAddress::from_environment() {
         let universe = mpi::initialize().unwrap();
-        let place = World::parent().unwrap().of_coordinator();
-        trips::answer(Box::new(Carried::of_solver(place, &address).unwrap()));
+        let place = SpawnedWorld::parent().unwrap().of_coordinator();
+        trips::answer(Box::new(
+            CarriedTransport::of_solver(place, &address).unwrap(),
+        ));
         return finalize(universe);
     }
     let (network, universe) = MpiNetwork::start().unwrap();

@@ -113,14 +113,14 @@ pub fn finalize(universe: Universe) {
 
 /// A communicator with ranks that were spawned, or one within this process.
 #[derive(Clone, Copy)]
-pub struct World {
+pub struct SpawnedWorld {
     comm: ffi::MPI_Comm,
 }
 
 // SAFETY: MPI is started for calls from any thread, and a communicator's handle is an address.
-unsafe impl Send for World {}
+unsafe impl Send for SpawnedWorld {}
 
-impl World {
+impl SpawnedWorld {
     /// Spawns a command line on a number of ranks; returns once they have started MPI, if ever.
     pub fn spawn(line: &[OsString], ranks: u32) -> Result<Self, WireError> {
         let text = |word: &OsString| CString::new(word.as_bytes()).unwrap_or_default();
@@ -193,8 +193,8 @@ impl World {
     }
 
     /// The coordinator's place opposite a rank.
-    pub fn of_rank(self, rank: u32) -> Place {
-        Place {
+    pub fn of_rank(self, rank: u32) -> MpiCarrier {
+        MpiCarrier {
             comm: self.comm,
             rank: c_int::try_from(rank).unwrap_or(c_int::MAX),
             send: DOWN,
@@ -204,8 +204,8 @@ impl World {
     }
 
     /// A rank's place opposite the coordinator.
-    pub fn of_coordinator(self) -> Place {
-        Place {
+    pub fn of_coordinator(self) -> MpiCarrier {
+        MpiCarrier {
             comm: self.comm,
             rank: 0,
             send: UP,
@@ -216,7 +216,7 @@ impl World {
 }
 
 /// One end of a connection.
-pub struct Place {
+pub struct MpiCarrier {
     comm: ffi::MPI_Comm,
     rank: c_int,
     send: c_int,
@@ -225,10 +225,10 @@ pub struct Place {
     posted: VecDeque<(ffi::MPI_Request, Message)>,
 }
 
-// SAFETY: as for `World`; a request is used by its place only.
-unsafe impl Send for Place {}
+// SAFETY: as for `SpawnedWorld`; a request is used by its place only.
+unsafe impl Send for MpiCarrier {}
 
-impl Carrier for Place {
+impl Carrier for MpiCarrier {
     fn post(&mut self, message: Message) -> Result<(), WireError> {
         let words = message.words();
         let (start, count) = (words.as_ptr().cast(), length(words.len())?);

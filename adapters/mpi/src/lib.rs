@@ -5,5 +5,5 @@
 mod carrier;
 mod network;
 
-pub use carrier::{Place, World, finalize, place_files};
+pub use carrier::{MpiCarrier, SpawnedWorld, finalize, place_files};
 pub use network::{MpiNetwork, end};

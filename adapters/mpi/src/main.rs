@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use calcine_mpi::{MpiNetwork, end};
-use calcine_wire::Network;
+use calcine_wire::SolverNetwork;
 
 fn main() -> ExitCode {
     let (network, universe) = match MpiNetwork::start_guarded() {
@@ -17,7 +17,7 @@ fn main() -> ExitCode {
     };
     let network = Arc::new(network);
     let code = {
-        let network: Arc<dyn Network> = network.clone();
+        let network: Arc<dyn SolverNetwork> = network.clone();
         calcine::commands::run_line(Some(&network))
     };
     let quiet = network.is_quiet();

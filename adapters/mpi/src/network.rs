@@ -11,11 +11,13 @@ use std::time::{Duration, Instant};
 
 use calcine_wire::process::parent;
 use calcine_wire::run::VARIABLE;
-use calcine_wire::{Carried, LinkAddress, Network, Run, Transport, WireError};
+use calcine_wire::{
+    CarriedTransport, LinkAddress, RunDirectory, SolverNetwork, Transport, WireError,
+};
 use mpi::Threading;
 use mpi::environment::Universe;
 
-use crate::carrier::{World, at_end, end_at_once, place_files};
+use crate::carrier::{SpawnedWorld, at_end, end_at_once, place_files};
 
 /// Between two looks at ranks that are starting, short enough to see one that dies at once; and how many looks
 /// make its end certain.
@@ -30,7 +32,7 @@ const RANK: &str = "OMPI_COMM_WORLD_RANK=";
 
 /// MPI in this process, and the worlds that it has spawned.
 pub struct MpiNetwork {
-    run: Run,
+    run: RunDirectory,
     /// Worlds that have not ended in an orderly way.
     worlds: AtomicU32,
     /// Ranks that were seen while they started, by the variable with their link's address.
@@ -82,7 +84,7 @@ impl MpiNetwork {
 
     /// Starts MPI, before any thread is started. The universe ends with [`end`].
     pub fn start() -> Result<(Self, Universe), WireError> {
-        let run = Run::create()?;
+        let run = RunDirectory::create()?;
         let address = run.address("mpi");
         place_files(&address.root, &address.make_mpi_memory()?);
         // A second run of this process, as in tests, keeps the first one's.
@@ -127,7 +129,7 @@ impl Drop for MpiNetwork {
     }
 }
 
-impl Network for MpiNetwork {
+impl SolverNetwork for MpiNetwork {
     fn address(&self, role: &str) -> LinkAddress {
         self.run.address(role).over_mpi()
     }
@@ -146,7 +148,7 @@ impl Network for MpiNetwork {
         let line = line.to_vec();
         std::thread::spawn(move || {
             // Nobody listens after the time is over.
-            let _ = sender.send(World::spawn(&line, ranks));
+            let _ = sender.send(SpawnedWorld::spawn(&line, ranks));
         });
         let begun = Instant::now();
         let mut fewer = 0;
@@ -167,7 +169,9 @@ impl Network for MpiNetwork {
                 return Err(WireError::DiedStarting { ranks, left });
             }
         };
-        let end = |rank| Box::new(Carried::new(world.of_rank(rank))) as Box<dyn Transport + Send>;
+        let end = |rank| {
+            Box::new(CarriedTransport::new(world.of_rank(rank))) as Box<dyn Transport + Send>
+        };
         Ok((0..ranks).map(end).collect())
     }
 

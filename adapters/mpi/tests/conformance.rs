@@ -8,8 +8,8 @@ mod laws;
 
 use std::sync::{Mutex, Once};
 
-use calcine_mpi::{MpiNetwork, World};
-use calcine_wire::Carried;
+use calcine_mpi::{MpiNetwork, SpawnedWorld};
+use calcine_wire::CarriedTransport;
 use laws::Ends;
 
 /// MPI once for all tests; this process ends without ending it.
@@ -25,10 +25,10 @@ fn mpi() -> Ends {
         std::mem::forget(universe);
     });
     let _turn = TURN.lock().unwrap();
-    let world = World::alone().unwrap();
+    let world = SpawnedWorld::alone().unwrap();
     Ends {
-        coordinator: Box::new(Carried::new(world.of_rank(0))),
-        solver: Box::new(Carried::new(world.of_coordinator())),
+        coordinator: Box::new(CarriedTransport::new(world.of_rank(0))),
+        solver: Box::new(CarriedTransport::new(world.of_coordinator())),
         number: 7,
         run: None,
     }

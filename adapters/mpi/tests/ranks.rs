@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use calcine_mpi::{MpiNetwork, end};
 use calcine_wire::run::VARIABLE;
-use calcine_wire::{Network, WireError};
+use calcine_wire::{SolverNetwork, WireError};
 
 const FOLDER: &str = "CALCINE_TEST_RANKS";
 

@@ -10,7 +10,7 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 
 use super::moving::WallForm;
-use super::template::{Template, Values};
+use super::template::{ScriptTemplate, ScriptVariables};
 use super::{facets, moving};
 
 /// Name of the script.
@@ -37,7 +37,7 @@ pub struct Inputs<'a> {
     /// Whether the impulse of walls is counted, step by step.
     pub wall_impulse: bool,
     /// The user's own script in place of the generated one; of a bed that moves only.
-    pub template: Option<&'a Template>,
+    pub template: Option<&'a ScriptTemplate>,
 }
 
 impl Inputs<'_> {
@@ -102,7 +102,7 @@ impl Inputs<'_> {
         let room = (volume / (4.0 * self.setup.id.len() as f64)).cbrt();
         let bins = room.max(self.setup.radius.iter().copied().fold(0.0, f64::max) + 0.5 * skin);
         if let (Some(own), Motion::Free(contacts)) = (self.template, &self.setup.motion) {
-            let values = Values {
+            let values = ScriptVariables {
                 step: self.step,
                 processors: grid,
                 skin,

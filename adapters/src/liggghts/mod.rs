@@ -19,7 +19,7 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::Window;
 use calcine_wire::hello::{hash_text, particles_hash};
-use calcine_wire::{Catalogue, Hello, Kind, Link, WireError};
+use calcine_wire::{Catalogue, Hello, Link, MessageKind, WireError};
 
 use crate::launch::{Launcher, Program, find_program};
 use crate::liggghts::inputs::{Inputs, SCRIPT};
@@ -93,7 +93,7 @@ fn change_text(change: &ParticleChanges) -> String {
 
 /// Particles as columns, in ascending id.
 #[derive(Clone, Debug, Default)]
-struct State {
+struct ReceivedGas {
     id: Vec<u64>,
     population: Vec<u32>,
     position: Vec<Vec3>,
@@ -114,8 +114,8 @@ struct State {
 pub struct LiggghtsParticles {
     solver: ExternalSolver,
     about: SolverInfo,
-    committed: State,
-    attempt: State,
+    committed: ReceivedGas,
+    attempt: ReceivedGas,
     window: Window,
     /// True where there is neither a wall nor a held particle.
     alone: bool,
@@ -183,8 +183,8 @@ impl LiggghtsParticles {
         let mut particles = Self {
             solver,
             about,
-            committed: State::default(),
-            attempt: State::default(),
+            committed: ReceivedGas::default(),
+            attempt: ReceivedGas::default(),
             window: Window::default(),
             alone,
         };
@@ -204,8 +204,8 @@ impl LiggghtsParticles {
     }
 
     /// The particles in the messages that the links hold.
-    fn read(&self, window: Option<&Window>) -> Result<State, PartError> {
-        let state = State::read(self.solver.links());
+    fn read(&self, window: Option<&Window>) -> Result<ReceivedGas, PartError> {
+        let state = ReceivedGas::read(self.solver.links());
         let state = state.map_err(|error| self.solver.failure(window, error))?;
         let unordered = state.id.windows(2).find(|pair| pair[0] >= pair[1]);
         if let Some(pair) = unordered {
@@ -235,7 +235,7 @@ fn vectors(numbers: &[f64]) -> impl Iterator<Item = Vec3> {
     numbers.chunks_exact(3).map(|x| Vec3::new(x[0], x[1], x[2]))
 }
 
-impl State {
+impl ReceivedGas {
     /// Joins the columns of all ranks by id.
     fn read(links: &[Link]) -> Result<Self, WireError> {
         let mut order = Vec::new();
@@ -382,7 +382,7 @@ impl Particles for LiggghtsParticles {
         let (ids, places) = (&self.committed.id, &self.committed.places);
         self.solver.send_columns(
             window,
-            header(Kind::Start, window),
+            header(MessageKind::Start, window),
             |rank| places[rank].len(),
             |rank, link| {
                 let own = link.column_words_mut("id")?.iter_mut();
@@ -404,7 +404,8 @@ impl Particles for LiggghtsParticles {
         received: &mut ParticleReceived,
     ) -> Result<(), PartError> {
         let window = self.window;
-        self.solver.wait(supervisor, &window, Kind::Finished)?;
+        self.solver
+            .wait(supervisor, &window, MessageKind::Finished)?;
         self.attempt = self.read(Some(&window))?;
         if self.attempt.id != self.committed.id {
             let (now, before) = (self.attempt.id.len(), self.committed.id.len());

@@ -51,7 +51,7 @@ const REFUSED: [(&[&str], &str, &str); 4] = [
 
 /// A script that cannot be used, with the line and the remedy.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-pub enum TemplateError {
+pub enum ScriptTemplateError {
     /// The file.
     #[error("{} cannot be read: {cause}", path.display())]
     File {
@@ -82,7 +82,7 @@ pub enum TemplateError {
     },
 }
 
-impl TemplateError {
+impl ScriptTemplateError {
     /// What is wrong, and the remedy.
     pub fn parts(&self) -> (String, String) {
         match self {
@@ -102,7 +102,7 @@ impl TemplateError {
 
 /// A script of the user's own.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Template {
+pub struct ScriptTemplate {
     path: PathBuf,
     commands: Vec<Command>,
     populations: Vec<String>,
@@ -121,8 +121,8 @@ impl Command {
         self.text.split_ascii_whitespace().collect()
     }
 
-    fn refuse(&self, rule: impl Into<String>, remedy: impl Into<String>) -> TemplateError {
-        TemplateError::Line {
+    fn refuse(&self, rule: impl Into<String>, remedy: impl Into<String>) -> ScriptTemplateError {
+        ScriptTemplateError::Line {
             line: self.line,
             text: self.text.trim().to_owned(),
             rule: rule.into(),
@@ -133,7 +133,7 @@ impl Command {
 
 /// What the case says beside its contacts, as the script's variables have it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Values {
+pub struct ScriptVariables {
     /// Time step in s.
     pub step: f64,
     /// Grid of ranks, three numbers.
@@ -148,15 +148,15 @@ pub struct Values {
     pub walls: moving::WallForm,
 }
 
-impl Template {
+impl ScriptTemplate {
     /// Reads a script and checks what can be checked without the case's numbers. Populations and materials
     /// by name, in the order of their atom types.
     pub fn read(
         path: &Path,
         populations: Vec<String>,
         materials: Vec<String>,
-    ) -> Result<Self, TemplateError> {
-        let text = fs::read_to_string(path).map_err(|cause| TemplateError::File {
+    ) -> Result<Self, ScriptTemplateError> {
+        let text = fs::read_to_string(path).map_err(|cause| ScriptTemplateError::File {
             path: path.to_owned(),
             cause: cause.to_string(),
         })?;
@@ -171,7 +171,11 @@ impl Template {
     }
 
     /// The script as the host runs it; time step and gravity must be those of the case.
-    pub fn script(&self, contacts: &Contacts, values: &Values) -> Result<String, TemplateError> {
+    pub fn script(
+        &self,
+        contacts: &Contacts,
+        values: &ScriptVariables,
+    ) -> Result<String, ScriptTemplateError> {
         let variables = self.variables(contacts, values);
         self.check_step(&variables, values.step)?;
         self.check_gravity(&variables, contacts.gravity)?;
@@ -204,7 +208,7 @@ impl Template {
     }
 
     /// Names and values; texts, so that no digit is lost.
-    fn variables(&self, contacts: &Contacts, values: &Values) -> Vec<(String, String)> {
+    fn variables(&self, contacts: &Contacts, values: &ScriptVariables) -> Vec<(String, String)> {
         let mut all = Vec::new();
         let mut add = |name: &str, value: String| all.push((format!("{PREFIX}{name}"), value));
         add("data", DATA.into());
@@ -255,7 +259,11 @@ impl Template {
         all
     }
 
-    fn check_step(&self, variables: &[(String, String)], step: f64) -> Result<(), TemplateError> {
+    fn check_step(
+        &self,
+        variables: &[(String, String)],
+        step: f64,
+    ) -> Result<(), ScriptTemplateError> {
         for command in &self.commands {
             if let ["timestep", value, ..] = command.words()[..] {
                 let found = number(value, variables);
@@ -274,7 +282,7 @@ impl Template {
         &self,
         variables: &[(String, String)],
         gravity: Vec3,
-    ) -> Result<(), TemplateError> {
+    ) -> Result<(), ScriptTemplateError> {
         let (mut sum, mut last) = (Vec3::zeros(), None);
         for command in &self.commands {
             let words = command.words();
@@ -305,7 +313,7 @@ impl Template {
             return Ok(());
         }
         let Some(command) = last else {
-            return Err(TemplateError::Missing {
+            return Err(ScriptTemplateError::Missing {
                 what: "fix … gravity",
                 remedy: "include calcine.gravity",
             });
@@ -358,7 +366,7 @@ fn commands(text: &str) -> Vec<Command> {
 }
 
 /// What holds for every script, whatever the case's numbers.
-fn check(commands: &[Command]) -> Result<(), TemplateError> {
+fn check(commands: &[Command]) -> Result<(), ScriptTemplateError> {
     let mut needed = [
         ("units si", "units si", false),
         ("atom_style granular", "atom_style granular", false),
@@ -404,7 +412,7 @@ fn check(commands: &[Command]) -> Result<(), TemplateError> {
         }
     }
     match needed.iter().find(|(.., found)| !found) {
-        Some(&(what, remedy, _)) => Err(TemplateError::Missing { what, remedy }),
+        Some(&(what, remedy, _)) => Err(ScriptTemplateError::Missing { what, remedy }),
         None => Ok(()),
     }
 }
@@ -460,8 +468,8 @@ mod tests {
         }
     }
 
-    fn template(more: &str) -> Template {
-        Template {
+    fn template(more: &str) -> ScriptTemplate {
+        ScriptTemplate {
             path: "in.bed".into(),
             commands: commands(&format!("{SCRIPT}{more}")),
             populations: vec!["small beads".into()],

@@ -10,8 +10,8 @@ use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::{GasPatch, GasSetup};
 use calcine_wire::Catalogue;
 
-use super::start::Start;
-use super::stock::{self, Solver};
+use super::start::StartFields;
+use super::stock::{self, StockSolver};
 use super::{NAME, chemistry, decompose, dictionaries, species, turbulence};
 use crate::launch::without_blanks;
 
@@ -27,7 +27,7 @@ pub struct OpenfoamCase<'a> {
     /// A time directory that OpenFOAM wrote on the same mesh, whose fields the gas starts from.
     pub start: Option<&'a Path>,
     /// Which program computes the gas.
-    pub solver: Solver,
+    pub solver: StockSolver,
     /// The library that a stock solver opens.
     pub library: &'a Path,
     /// Hash of the case, compared in the handshake.
@@ -59,7 +59,7 @@ impl OpenfoamCase<'_> {
         let names = setup.properties.species();
         let start = self
             .start
-            .map(|folder| Start::read(folder, names, self.mesh.cells()));
+            .map(|folder| StartFields::read(folder, names, self.mesh.cells()));
         let start = start.transpose()?.unwrap_or_default();
         if self.solver.is_stock() {
             self.write_stock(folder, &start)?;
@@ -95,7 +95,7 @@ impl OpenfoamCase<'_> {
         })
     }
 
-    fn write_own(&self, folder: &Path, start: &Start) -> Result<(), PartError> {
+    fn write_own(&self, folder: &Path, start: &StartFields) -> Result<(), PartError> {
         let setup = self.setup;
         let control = dictionaries::control(&self.beside(folder, "system/controlDict")?);
         for (name, text) in [
@@ -133,7 +133,7 @@ impl OpenfoamCase<'_> {
         Ok(())
     }
 
-    fn write_stock(&self, folder: &Path, start: &Start) -> Result<(), PartError> {
+    fn write_stock(&self, folder: &Path, start: &StartFields) -> Result<(), PartError> {
         let setup = self.setup;
         let include = self.beside(folder, "system/controlDict")?;
         let library = without_blanks(self.library, folder).map_err(|error| {
@@ -155,7 +155,7 @@ impl OpenfoamCase<'_> {
         for (name, text) in stock::pressures(self.solver, setup) {
             put(&folder.join("0").join(name), &start.applied(name, text))?;
         }
-        if self.solver == Solver::ReactingFoam {
+        if self.solver == StockSolver::ReactingFoam {
             for (name, text) in stock::reacting(setup) {
                 put(&folder.join(name), &text)?;
             }
@@ -374,7 +374,7 @@ mod tests {
             mesh: &mesh,
             template: Some(&template),
             start: None,
-            solver: Solver::default(),
+            solver: StockSolver::default(),
             library: Path::new("libcalcineFoam.so"),
             case_hash: "0a",
             ranks: 1,
@@ -391,7 +391,7 @@ mod tests {
 
     #[test]
     fn a_box_s_schemes_are_without_the_correction_that_a_sheared_mesh_needs() {
-        let text = Solver::default().defaults()[0].1;
+        let text = StockSolver::default().defaults()[0].1;
         assert!(suited(text, &mesh()).contains("Gauss linear orthogonal;"));
         let mut sheared = mesh().topology().clone();
         for point in &mut sheared.points {
@@ -410,7 +410,7 @@ mod tests {
             mesh: &mesh,
             template: None,
             start: None,
-            solver: Solver::default(),
+            solver: StockSolver::default(),
             library: Path::new("libcalcineFoam.so"),
             case_hash: "0a",
             ranks,
@@ -444,7 +444,7 @@ mod tests {
                 mesh: &mesh,
                 template: None,
                 start: None,
-                solver: Solver::default(),
+                solver: StockSolver::default(),
                 library: Path::new("libcalcineFoam.so"),
                 case_hash: "0a",
                 ranks: 1,

@@ -20,7 +20,7 @@ const CONCENTRATION: f64 = 1e-12;
 
 /// A reaction that OpenFOAM's chemistry cannot take.
 #[derive(Clone, Debug, Error, PartialEq)]
-pub enum Inexpressible {
+pub enum UnsupportedReaction {
     /// A pressure-dependent rate.
     #[error(
         "the reaction \"{reaction}\" has a rate between a low and a high pressure limit, which Calcine does not hand \
@@ -52,7 +52,7 @@ pub fn files(
     setup: &GasSetup,
     mixture: &Mixture,
     gas: &ReactingGas,
-) -> Result<Vec<(&'static str, String)>, Inexpressible> {
+) -> Result<Vec<(&'static str, String)>, UnsupportedReaction> {
     // What species without fields of their own start from: OpenFOAM brings their sum to one, calcineGasFoam sets them.
     let about = ("volScalarField", "Ydefault", "[0 0 0 0 0 0 0]", "1");
     Ok(vec![
@@ -140,7 +140,10 @@ fn properties(mixture: &Mixture, gas: &ReactingGas) -> String {
     text
 }
 
-fn reactions(mixture: &Mixture, steps: &[MechanismReaction]) -> Result<String, Inexpressible> {
+fn reactions(
+    mixture: &Mixture,
+    steps: &[MechanismReaction],
+) -> Result<String, UnsupportedReaction> {
     let mut text = header("dictionary", "reactions");
     let _ = write!(
         text,
@@ -158,9 +161,9 @@ fn reaction(
     number: usize,
     step: &MechanismReaction,
     names: &[String],
-) -> Result<String, Inexpressible> {
+) -> Result<String, UnsupportedReaction> {
     let RateConstant::Arrhenius(law) = &step.rate else {
-        return Err(Inexpressible::Falloff {
+        return Err(UnsupportedReaction::Falloff {
             reaction: step.name.clone(),
         });
     };
@@ -203,14 +206,14 @@ fn side(
     side: &[(usize, f64)],
     orders: &[(usize, f64)],
     names: &[String],
-) -> Result<String, Inexpressible> {
+) -> Result<String, UnsupportedReaction> {
     let of = |list: &[(usize, f64)], k: usize| {
         let own = list.iter().find(|(other, _)| *other == k);
         own.map_or(0.0, |(_, number)| *number)
     };
     for &(k, order) in orders {
         if order < 0.0 || (of(side, k) == 0.0 && order != 0.0) {
-            return Err(Inexpressible::Order {
+            return Err(UnsupportedReaction::Order {
                 reaction: step.name.clone(),
                 way,
                 order,

@@ -8,7 +8,7 @@ use calcine_wire::{Link, WireError};
 
 /// The gas as the solver sent it last, one value per cell.
 #[derive(Clone, Debug, Default)]
-pub struct State {
+pub struct ReceivedGas {
     temperature: Vec<f64>,
     pressure: Vec<f64>,
     density: Vec<f64>,
@@ -22,7 +22,7 @@ pub struct State {
 
 /// The links of all ranks, and the cells of the whole mesh that each has.
 #[derive(Clone, Copy)]
-pub struct Ranks<'a> {
+pub struct GasRanks<'a> {
     /// One link a rank.
     pub links: &'a [Link],
     /// By rank, in the order of its columns.
@@ -31,7 +31,7 @@ pub struct Ranks<'a> {
     pub cells: usize,
 }
 
-impl Ranks<'_> {
+impl GasRanks<'_> {
     /// Joins a column of all ranks.
     fn copy(self, name: &str, to: &mut Vec<f64>) -> Result<(), WireError> {
         to.resize(self.cells, 0.0);
@@ -75,11 +75,11 @@ impl Ranks<'_> {
     }
 }
 
-impl State {
+impl ReceivedGas {
     /// Takes the state, of so many species, of a turbulent gas or not, out of the messages that the links hold.
     pub fn read(
         &mut self,
-        ranks: Ranks<'_>,
+        ranks: GasRanks<'_>,
         species: usize,
         turbulent: bool,
     ) -> Result<(), WireError> {
@@ -163,7 +163,7 @@ pub fn write(
 }
 
 /// Reads what an attempt received, and how it went.
-pub fn read(ranks: Ranks<'_>, received: &mut CellReceived) -> Result<Convergence, WireError> {
+pub fn read(ranks: GasRanks<'_>, received: &mut CellReceived) -> Result<Convergence, WireError> {
     ranks.copy("heat", &mut received.heat)?;
     ranks.copy_vectors("drag", &mut received.drag)?;
     let link = ranks.first()?;

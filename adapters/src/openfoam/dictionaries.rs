@@ -12,7 +12,7 @@ use calcine_coupler::setup::{
 use calcine_wire::Catalogue;
 
 use super::species;
-use super::stock::Solver;
+use super::stock::StockSolver;
 
 /// The header of an OpenFOAM file.
 pub(super) fn header(class: &str, object: &str) -> String {
@@ -68,14 +68,14 @@ pub fn labels(name: &str, values: &[u32]) -> String {
 
 /// `constant/thermophysicalProperties`: an ideal gas with constant heat capacity and Sutherland
 /// transport, a fluid of constant properties, or a mixture of species.
-pub fn thermophysical(setup: &GasSetup, solver: Solver) -> String {
+pub fn thermophysical(setup: &GasSetup, solver: StockSolver) -> String {
     // buoyantPimpleFoam asks for a model of the density.
-    let psi = if solver == Solver::BuoyantPimpleFoam {
+    let psi = if solver == StockSolver::BuoyantPimpleFoam {
         "heRhoThermo"
     } else {
         "hePsiThermo"
     };
-    if let (Solver::ReactingFoam, GasModel::Perfect(gas)) = (solver, &setup.properties) {
+    if let (StockSolver::ReactingFoam, GasModel::Perfect(gas)) = (solver, &setup.properties) {
         return super::stock::one_species(&setup.mixture, gas);
     }
     let (kinds, numbers) = match &setup.properties {

@@ -24,13 +24,13 @@ use calcine_coupler::part::{
 use calcine_coupler::setup::GasSetup;
 use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::{GasStorage, Window};
-use calcine_wire::{Catalogue, Hello, Kind};
+use calcine_wire::{Catalogue, Hello, MessageKind};
 
 use crate::launch::{Launcher, Program, find_program};
 use crate::solver::{ExternalSolver, Launch, header};
 use case::OpenfoamCase;
-use columns::{Ranks, State};
-use stock::Solver;
+use columns::{GasRanks, ReceivedGas};
+use stock::StockSolver;
 
 /// Name in messages.
 const NAME: &str = "OpenFOAM (gas)";
@@ -58,7 +58,7 @@ pub struct OpenfoamLaunch<'a> {
     /// A time directory that OpenFOAM wrote, whose fields the gas starts from.
     pub start: Option<&'a Path>,
     /// Which program computes the gas.
-    pub solver: Solver,
+    pub solver: StockSolver,
     /// Hash of the case.
     pub case_hash: String,
     /// Where the OpenFOAM case is written and the solver runs.
@@ -87,7 +87,7 @@ pub struct OpenfoamGas {
     species: usize,
     /// True where it has eddies.
     turbulent: bool,
-    state: State,
+    state: ReceivedGas,
     window: Option<Window>,
 }
 
@@ -196,7 +196,7 @@ impl OpenfoamGas {
             storage: launch.setup.storage,
             species,
             turbulent,
-            state: State::default(),
+            state: ReceivedGas::default(),
             window: None,
         };
         gas.read_state(None)?;
@@ -250,8 +250,8 @@ fn without_spaces(folder: &Path) -> Result<(), PartError> {
     Err(PartError::new(NAME, FailureKind::NotStarted, message))
 }
 
-fn ranks<'a>(solver: &'a ExternalSolver, mesh: &Mesh) -> Ranks<'a> {
-    Ranks {
+fn ranks<'a>(solver: &'a ExternalSolver, mesh: &Mesh) -> GasRanks<'a> {
+    GasRanks {
         links: solver.links(),
         owned: solver.owned(),
         cells: mesh.cells(),
@@ -321,7 +321,7 @@ impl Gas for OpenfoamGas {
                 return Err(self.solver.refuse(Some(window), message));
             }
         }
-        let mut request = header(Kind::Start, window);
+        let mut request = header(MessageKind::Start, window);
         request.storage_span = match self.storage {
             GasStorage::Process => request.span_process,
             GasStorage::Accelerated => request.span_motion,
@@ -346,7 +346,7 @@ impl Gas for OpenfoamGas {
             return Err(self.solver.refuse(None, "finished without a start".into()));
         };
         self.solver
-            .wait(supervisor, &window, Kind::Finished)
+            .wait(supervisor, &window, MessageKind::Finished)
             .map_err(|mut error| {
                 if error.message.starts_with("diverged") {
                     error.kind = FailureKind::Diverged;

@@ -11,11 +11,11 @@ use super::NAME;
 
 /// The fields that a time directory holds; the others start as the case says.
 #[derive(Clone, Debug, Default)]
-pub struct Start {
+pub struct StartFields {
     fields: Vec<(String, usize, Vec<f64>)>,
 }
 
-impl Start {
+impl StartFields {
     /// Reads temperature `T`, absolute pressure `p`, superficial velocity `U` and mass fractions, as far as
     /// they are there. A directory without any of them is refused.
     pub fn read(directory: &Path, species: &[String], cells: usize) -> Result<Self, PartError> {

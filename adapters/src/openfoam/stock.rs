@@ -8,7 +8,7 @@ use super::dictionaries::{field, fixed, header, vector, zero_gradient};
 
 /// Which program computes the gas.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Solver {
+pub enum StockSolver {
     /// Calcine's own, with the void fraction in every term.
     #[default]
     CalcineGasFoam,
@@ -20,7 +20,7 @@ pub enum Solver {
     ReactingFoam,
 }
 
-impl Solver {
+impl StockSolver {
     /// The name of the program.
     pub fn name(self) -> &'static str {
         match self {
@@ -75,11 +75,12 @@ impl Solver {
 }
 
 /// What of a gas a stock solver cannot do, in words; `moving_clock`: process and motion time differ.
-pub fn refusal(solver: Solver, setup: &GasSetup, moving_clock: bool) -> Option<String> {
+pub fn refusal(solver: StockSolver, setup: &GasSetup, moving_clock: bool) -> Option<String> {
     if !solver.has_gravity() && setup.gravity.norm() > 0.0 {
         return Some("it has no gravity (`gas.gravity`)".into());
     }
-    if solver != Solver::BuoyantPimpleFoam && matches!(setup.properties, GasModel::Constant(_)) {
+    if solver != StockSolver::BuoyantPimpleFoam && matches!(setup.properties, GasModel::Constant(_))
+    {
         return Some("its gas has a density that follows the pressure (`gas.mixture`)".into());
     }
     if matches!(setup.properties, GasModel::Mixture(_)) {
@@ -137,7 +138,7 @@ fn function(schedule: &Schedule, factor: f64) -> String {
 }
 
 /// `system/controlDict`, after what it includes. The coordinator sets the time step and ends the run.
-pub fn control(solver: Solver, include: &str, library: &str) -> String {
+pub fn control(solver: StockSolver, include: &str, library: &str) -> String {
     header("dictionary", "controlDict")
         + include
         + &format!(
@@ -247,7 +248,7 @@ pub fn temperature(setup: &GasSetup) -> String {
 }
 
 /// `0/p`, absolute, and, for a solver with gravity, `0/p_rgh` without the hydrostatic part.
-pub fn pressures(solver: Solver, setup: &GasSetup) -> Vec<(&'static str, String)> {
+pub fn pressures(solver: StockSolver, setup: &GasSetup) -> Vec<(&'static str, String)> {
     let start = format!("{:e}", setup.pressure);
     let about = |name| ("volScalarField", name, "[1 -1 -2 0 0 0 0]", &*start);
     if !solver.has_gravity() {

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use calcine_adapters::launch::Launcher;
-use calcine_adapters::openfoam::stock::Solver;
+use calcine_adapters::openfoam::stock::StockSolver;
 use calcine_adapters::openfoam::{OpenfoamGas, OpenfoamLaunch};
 use calcine_coupler::error::PartError;
 use calcine_coupler::mesh::Mesh;
@@ -160,7 +160,7 @@ impl Duct {
             mesh: Arc::new(mesh),
             template: None,
             start: None,
-            solver: Solver::default(),
+            solver: StockSolver::default(),
             case_hash: "test".into(),
             folder: folder.join("case"),
             log: folder.join("log"),

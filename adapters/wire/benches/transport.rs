@@ -7,19 +7,19 @@ mod trips;
 use std::process::Command;
 
 use calcine_wire::run::VARIABLE;
-use calcine_wire::shared_memory::End;
-use calcine_wire::{LinkAddress, Run, SharedMemory};
+use calcine_wire::shared_memory::LinkEnd;
+use calcine_wire::{LinkAddress, RunDirectory, SharedMemory};
 use criterion::Criterion;
 
 fn main() {
     // Started once more by itself: the solver.
     if let Ok(address) = LinkAddress::from_environment() {
-        let end = SharedMemory::open(&address, 0, End::Solver).unwrap();
+        let end = SharedMemory::open(&address, 0, LinkEnd::Solver).unwrap();
         return trips::answer(Box::new(end));
     }
-    let run = Run::create().unwrap();
+    let run = RunDirectory::create().unwrap();
     let address = run.address("gas");
-    let end = SharedMemory::open(&address, 0, End::Coordinator).unwrap();
+    let end = SharedMemory::open(&address, 0, LinkEnd::Coordinator).unwrap();
     let mut solver = Command::new(std::env::current_exe().unwrap())
         .env(VARIABLE, address.to_text())
         .spawn()

@@ -11,13 +11,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
 use std::time::Duration;
 
-use crate::carried::{Carried, Carrier, Message};
+use crate::carried::{CarriedTransport, Carrier, Message};
 use crate::catalogue::Catalogue;
 use crate::hello::Hello;
 use crate::link::Link;
-use crate::record::{Header, Kind};
-use crate::run::{LinkAddress, Means};
-use crate::shared_memory::{End, SharedMemory};
+use crate::record::{Header, MessageKind};
+use crate::run::{LinkAddress, TransportKind};
+use crate::shared_memory::{LinkEnd, SharedMemory};
 use crate::transport::{Transport, WireError};
 
 /// How a call ended; `calcine_status` in C.
@@ -193,7 +193,10 @@ impl Carrier for CarriedByC {
 extern "C" fn calcine_link_needs_carrier(needs: *mut u32) -> Status {
     guarded(|| {
         let address = LinkAddress::from_environment()?;
-        put(needs, u32::from(address.means != Means::SharedMemory))?;
+        put(
+            needs,
+            u32::from(address.means != TransportKind::SharedMemory),
+        )?;
         Ok(Status::Ok)
     })
 }
@@ -210,12 +213,17 @@ extern "C" fn calcine_link_open(
         // SAFETY: C passes NULL or a filled-in struct that lives during the call.
         let calls = unsafe { carrier.as_ref() }.copied();
         let transport: Box<dyn Transport + Send> = match (&address.means, calls) {
-            (Means::SharedMemory, _) => Box::new(SharedMemory::open(&address, rank, End::Solver)?),
-            (Means::Mpi { .. }, Some(calls)) => {
-                let posted = VecDeque::new();
-                Box::new(Carried::of_solver(CarriedByC { calls, posted }, &address)?)
+            (TransportKind::SharedMemory, _) => {
+                Box::new(SharedMemory::open(&address, rank, LinkEnd::Solver)?)
             }
-            (Means::Mpi { .. }, None) => return Err(NULL),
+            (TransportKind::Mpi { .. }, Some(calls)) => {
+                let posted = VecDeque::new();
+                Box::new(CarriedTransport::of_solver(
+                    CarriedByC { calls, posted },
+                    &address,
+                )?)
+            }
+            (TransportKind::Mpi { .. }, None) => return Err(NULL),
         };
         let opened = CLink {
             link: Link::new(transport, address.number(), rank),
@@ -314,7 +322,7 @@ extern "C" fn calcine_link_text(link: *mut CLink, text: *mut *const c_char) -> S
 extern "C" fn calcine_link_loan(link: *mut CLink, kind: u32, count: u64) -> Status {
     guarded(|| {
         let link = of(link)?;
-        let kind = Kind::from_number(kind).ok_or(WireError::Unexpected {
+        let kind = MessageKind::from_number(kind).ok_or(WireError::Unexpected {
             found: kind,
             expected: "a known kind",
         })?;
@@ -351,7 +359,7 @@ extern "C" fn calcine_link_send(link: *mut CLink) -> Status {
 extern "C" fn calcine_link_failed(link: *mut CLink, text: *const c_char) -> Status {
     guarded(|| {
         let link = of(link)?;
-        let header = link.last.answer(Kind::Failed);
+        let header = link.last.answer(MessageKind::Failed);
         link.link.send_last_word(header, &text_of(text)?)?;
         Ok(Status::Ok)
     })

@@ -7,7 +7,7 @@ use crate::record::{HEADER_WORDS, Header};
 use crate::run::LinkAddress;
 use crate::transport::{Transport, WireError};
 use crate::watch::Watch;
-use crate::words::{self, LINE, Line};
+use crate::words::{self, CacheLine, LINE};
 
 /// Messages that may wait unread: a commit, and the start that follows it.
 const BUFFER: usize = 2;
@@ -26,7 +26,7 @@ const PAUSES: (Duration, Duration) = (Duration::from_micros(10), Duration::from_
 /// A whole message: header and payload, both at multiples of 64 bytes.
 #[derive(Debug)]
 pub struct Message {
-    lines: Vec<Line>,
+    lines: Vec<CacheLine>,
 }
 
 /// Moves whole messages between two processes, in order. Nothing in it may block.
@@ -49,7 +49,7 @@ impl Message {
     fn new(header: &Header, payload: usize) -> Self {
         let lines = HEADER_WORDS.div_ceil(LINE) + payload.div_ceil(LINE);
         let mut message = Self {
-            lines: vec![Line::default(); lines],
+            lines: vec![CacheLine::default(); lines],
         };
         words::of_lines_mut(&mut message.lines)[..HEADER_WORDS].copy_from_slice(&header.to_words());
         message
@@ -70,16 +70,16 @@ impl Message {
 }
 
 /// One end of a carried link.
-pub struct Carried<C> {
+pub struct CarriedTransport<C> {
     carrier: C,
     loan: Option<Message>,
     received: Option<(Header, Message)>,
     /// Memory of the message received before, for the next: large ones cost as much to make as to move.
-    spare: Vec<Line>,
+    spare: Vec<CacheLine>,
     coordinator: Option<(Watch, LinkAddress)>,
 }
 
-impl<C: Carrier> Carried<C> {
+impl<C: Carrier> CarriedTransport<C> {
     /// The coordinator's end.
     pub fn new(carrier: C) -> Self {
         Self {
@@ -115,7 +115,7 @@ impl<C: Carrier> Carried<C> {
     }
 }
 
-impl<C: Carrier> Transport for Carried<C> {
+impl<C: Carrier> Transport for CarriedTransport<C> {
     fn loan(&mut self, header: Header, words: usize) -> Result<&mut [u64], WireError> {
         let loan = self.loan.insert(Message::new(&header, words));
         Ok(loan.payload_mut())
@@ -156,7 +156,7 @@ impl<C: Carrier> Transport for Carried<C> {
             let dead = dead.map(|(watch, address)| (watch.pid(), address.clone()));
             if let Some(count) = self.carrier.arrived()? {
                 let mut lines = std::mem::take(&mut self.spare);
-                lines.resize(count.div_ceil(LINE), Line::default());
+                lines.resize(count.div_ceil(LINE), CacheLine::default());
                 self.carrier
                     .take(&mut words::of_lines_mut(&mut lines)[..count])?;
                 let message = Message { lines };

@@ -4,7 +4,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::record::Kind;
+use crate::record::MessageKind;
 use crate::transport::WireError;
 
 /// Words (of 8 bytes) in the alignment of a column: 64 bytes.
@@ -12,7 +12,7 @@ const COLUMN_WORDS: usize = 8;
 
 /// Which message carries a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Record {
+pub enum ColumnSet {
     /// `Start`, from the coordinator.
     Start,
     /// `State`, `Finished`, `Checkpointed`, from the solver.
@@ -21,29 +21,30 @@ pub enum Record {
     Owned,
 }
 
-impl Record {
+impl ColumnSet {
     /// The record that a kind of message carries, if it carries columns.
-    pub fn of(kind: Kind) -> Option<Record> {
+    pub fn of(kind: MessageKind) -> Option<ColumnSet> {
         match kind {
-            Kind::Start => Some(Record::Start),
-            Kind::State | Kind::Finished | Kind::Checkpointed | Kind::Changed => {
-                Some(Record::State)
-            }
-            Kind::Owned => Some(Record::Owned),
-            Kind::Hello
-            | Kind::Commit
-            | Kind::Checkpoint
-            | Kind::Change
-            | Kind::Failed
-            | Kind::Bye => None,
+            MessageKind::Start => Some(ColumnSet::Start),
+            MessageKind::State
+            | MessageKind::Finished
+            | MessageKind::Checkpointed
+            | MessageKind::Changed => Some(ColumnSet::State),
+            MessageKind::Owned => Some(ColumnSet::Owned),
+            MessageKind::Hello
+            | MessageKind::Commit
+            | MessageKind::Checkpoint
+            | MessageKind::Change
+            | MessageKind::Failed
+            | MessageKind::Bye => None,
         }
     }
 
     fn name(self) -> &'static str {
         match self {
-            Record::Start => "start",
-            Record::State => "state",
-            Record::Owned => "owned",
+            ColumnSet::Start => "start",
+            ColumnSet::State => "state",
+            ColumnSet::Owned => "owned",
         }
     }
 }
@@ -52,7 +53,7 @@ impl Record {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
     /// Which message carries it.
-    pub record: Record,
+    pub record: ColumnSet,
     /// Its name, without spaces.
     pub name: String,
     /// Components of an item; interleaved.
@@ -89,9 +90,9 @@ impl FromStr for Field {
         let mut words = line.split_ascii_whitespace();
         let mut next = || words.next().ok_or_else(refuse);
         let record = match next()? {
-            "start" => Record::Start,
-            "state" => Record::State,
-            "owned" => Record::Owned,
+            "start" => ColumnSet::Start,
+            "state" => ColumnSet::State,
+            "owned" => ColumnSet::Owned,
             _ => return Err(refuse()),
         };
         let name = next()?.to_owned();
@@ -203,7 +204,7 @@ impl Catalogue {
     }
 
     /// Fields of a record.
-    pub fn of(&self, record: Record) -> impl Iterator<Item = &Field> {
+    pub fn of(&self, record: ColumnSet) -> impl Iterator<Item = &Field> {
         self.fields
             .iter()
             .filter(move |field| field.record == record)
@@ -211,7 +212,7 @@ impl Catalogue {
 
     /// Words of a record's payload for `count` items, every column 64-byte aligned; `None` where
     /// that many do not fit a number.
-    pub fn words(&self, record: Record, count: usize) -> Option<usize> {
+    pub fn words(&self, record: ColumnSet, count: usize) -> Option<usize> {
         self.of(record).try_fold(0usize, |sum, field| {
             let items = if field.per_item { count } else { 1 };
             let words = field.components.checked_mul(items)?;
@@ -222,7 +223,7 @@ impl Catalogue {
     /// Index within the record, and words, of a column for `count` items.
     pub fn column(
         &self,
-        record: Record,
+        record: ColumnSet,
         name: &str,
         count: usize,
     ) -> Result<(usize, std::ops::Range<usize>), WireError> {
@@ -281,23 +282,32 @@ mod tests {
     #[test]
     fn the_gas_sends_a_heat_first_and_five_balances_of_seven_numbers() {
         let gas = Catalogue::standard("gas").unwrap();
-        assert_eq!(gas.column(Record::State, "heat", 12).unwrap(), (0, 0..12));
+        assert_eq!(
+            gas.column(ColumnSet::State, "heat", 12).unwrap(),
+            (0, 0..12)
+        );
         // 12 heats take 16 words, 12 drags 40, then the temperatures.
         assert_eq!(
-            gas.column(Record::State, "temperature", 12).unwrap(),
+            gas.column(ColumnSet::State, "temperature", 12).unwrap(),
             (2, 56..68)
         );
         assert_eq!(
-            gas.column(Record::State, "balances", 12).unwrap().1.len(),
+            gas.column(ColumnSet::State, "balances", 12)
+                .unwrap()
+                .1
+                .len(),
             35
         );
-        assert_eq!(gas.words(Record::Start, 12), Some(16 + 16 + 40 + 16 + 16));
+        assert_eq!(
+            gas.words(ColumnSet::Start, 12),
+            Some(16 + 16 + 40 + 16 + 16)
+        );
     }
 
     #[test]
     fn species_add_a_column_of_mass_fractions_and_a_balance_each() {
         let gas = Catalogue::gas(3, false).unwrap();
-        let length = |name| gas.column(Record::State, name, 12).unwrap().1.len();
+        let length = |name| gas.column(ColumnSet::State, name, 12).unwrap().1.len();
         assert_eq!(length("composition"), 36);
         assert_eq!(length("balances"), 35 + 21);
         let single = Catalogue::standard("gas").unwrap();
@@ -324,7 +334,7 @@ mod tests {
     #[test]
     fn a_count_beyond_memory_is_not_a_size() {
         let gas = Catalogue::standard("gas").unwrap();
-        assert_eq!(gas.words(Record::State, usize::MAX), None);
+        assert_eq!(gas.words(ColumnSet::State, usize::MAX), None);
     }
 
     proptest! {
@@ -332,13 +342,13 @@ mod tests {
         fn columns_are_aligned_and_never_overlap(count in 0usize..1000) {
             let gas = Catalogue::standard("gas").unwrap();
             let mut end = 0;
-            for field in gas.of(Record::State) {
-                let (_, range) = gas.column(Record::State, &field.name, count).unwrap();
+            for field in gas.of(ColumnSet::State) {
+                let (_, range) = gas.column(ColumnSet::State, &field.name, count).unwrap();
                 prop_assert_eq!(range.start % 8, 0);
                 prop_assert!(range.start >= end);
                 end = range.end;
             }
-            prop_assert!(gas.words(Record::State, count).unwrap() >= end);
+            prop_assert!(gas.words(ColumnSet::State, count).unwrap() >= end);
         }
     }
 }

@@ -21,12 +21,12 @@ mod watch;
 #[allow(unsafe_code)]
 mod words;
 
-pub use carried::{Carried, Carrier, Message};
-pub use catalogue::{Catalogue, Field, Record};
+pub use carried::{CarriedTransport, Carrier, Message};
+pub use catalogue::{Catalogue, ColumnSet, Field};
 pub use hello::Hello;
 pub use link::Link;
 pub use process::Process;
-pub use record::{Header, Kind};
-pub use run::{LinkAddress, Means, Run};
+pub use record::{Header, MessageKind};
+pub use run::{LinkAddress, RunDirectory, TransportKind};
 pub use shared_memory::SharedMemory;
-pub use transport::{Network, Transport, WireError};
+pub use transport::{SolverNetwork, Transport, WireError};

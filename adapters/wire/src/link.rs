@@ -2,10 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use crate::catalogue::{Catalogue, Record};
+use crate::catalogue::{Catalogue, ColumnSet};
 use crate::hello::Hello;
 use crate::process::Process;
-use crate::record::{Header, Kind, MAGIC, VERSION};
+use crate::record::{Header, MAGIC, MessageKind, VERSION};
 use crate::transport::{Transport, WireError};
 use crate::words;
 
@@ -55,7 +55,7 @@ impl Link {
     pub fn greet(&mut self, ours: &Hello, patience: Duration) -> Result<Hello, WireError> {
         let begun = Instant::now();
         loop {
-            match self.send_text(Header::of(Kind::Hello), &introduction(ours)) {
+            match self.send_text(Header::of(MessageKind::Hello), &introduction(ours)) {
                 Err(WireError::NotDelivered { receivers: 0 }) if begun.elapsed() < patience => {
                     std::thread::sleep(NOBODY_YET);
                 }
@@ -65,7 +65,11 @@ impl Link {
         loop {
             let left = patience.saturating_sub(begun.elapsed());
             if let Some(header) = self.receive(left)? {
-                self.expect(&header, Kind::Hello, "the coordinator's introduction")?;
+                self.expect(
+                    &header,
+                    MessageKind::Hello,
+                    "the coordinator's introduction",
+                )?;
                 let theirs = Hello::from_text(self.text()?)?;
                 ours.agree(&theirs)?;
                 self.catalogue = ours.catalogue.clone();
@@ -86,8 +90,8 @@ impl Link {
         self.peer = self.text().ok().and_then(Process::in_text);
         let greeting = self.read_greeting(ours);
         match &greeting {
-            Ok(_) => self.send_text(Header::of(Kind::Hello), &introduction(ours))?,
-            Err(error) => self.send_text(Header::of(Kind::Failed), &error.to_string())?,
+            Ok(_) => self.send_text(Header::of(MessageKind::Hello), &introduction(ours))?,
+            Err(error) => self.send_text(Header::of(MessageKind::Failed), &error.to_string())?,
         }
         self.catalogue = ours.catalogue.clone();
         greeting
@@ -95,13 +99,18 @@ impl Link {
 
     fn read_greeting(&self, ours: &Hello) -> Result<Hello, WireError> {
         let header = self.header()?;
-        self.expect(&header, Kind::Hello, "the solver's introduction")?;
+        self.expect(&header, MessageKind::Hello, "the solver's introduction")?;
         let theirs = Hello::from_text(self.text()?)?;
         ours.agree(&theirs)?;
         Ok(theirs)
     }
 
-    fn expect(&self, header: &Header, kind: Kind, expected: &'static str) -> Result<(), WireError> {
+    fn expect(
+        &self,
+        header: &Header,
+        kind: MessageKind,
+        expected: &'static str,
+    ) -> Result<(), WireError> {
         if header.kind() == Some(kind) {
             return Ok(());
         }
@@ -133,7 +142,7 @@ impl Link {
 
     /// Reserves a message with columns for `count` items; the header's kind decides which.
     pub fn loan(&mut self, header: Header, count: usize) -> Result<(), WireError> {
-        let columns = header.kind().and_then(Record::of);
+        let columns = header.kind().and_then(ColumnSet::of);
         let words = match columns {
             None => 0,
             Some(record) => self
@@ -158,7 +167,7 @@ impl Link {
             what: "there is no reserved message with columns",
         };
         let (header, filled) = self.reserved.as_mut().ok_or_else(order)?;
-        let record = header.kind().and_then(Record::of).ok_or_else(order)?;
+        let record = header.kind().and_then(ColumnSet::of).ok_or_else(order)?;
         let (index, range) = self.catalogue.column(record, name, header.count as usize)?;
         filled[index] = true;
         let payload = self.transport.loaned().ok_or_else(order)?;
@@ -175,7 +184,7 @@ impl Link {
         let (header, filled) = self.reserved.take().ok_or(WireError::Order {
             what: "there is no reserved message to send",
         })?;
-        if let Some(record) = header.kind().and_then(Record::of) {
+        if let Some(record) = header.kind().and_then(ColumnSet::of) {
             let mut fields = self.catalogue.of(record).zip(&filled);
             if let Some((field, _)) = fields.find(|(_, filled)| !**filled) {
                 return Err(WireError::Unfilled {
@@ -194,7 +203,7 @@ impl Link {
         }
         let header = self.header()?;
         self.check(&header)?;
-        if header.kind() == Some(Kind::Failed) {
+        if header.kind() == Some(MessageKind::Failed) {
             return Err(WireError::Failed {
                 text: self.text()?.to_owned(),
             });
@@ -216,7 +225,7 @@ impl Link {
     /// A column of the message received last, in place.
     pub fn column_words(&self, name: &str) -> Result<&[u64], WireError> {
         let (header, payload) = self.transport.received().ok_or(NOTHING)?;
-        let record = header.kind().and_then(Record::of).ok_or(NOTHING)?;
+        let record = header.kind().and_then(ColumnSet::of).ok_or(NOTHING)?;
         let (_, range) = self.catalogue.column(record, name, header.count as usize)?;
         payload.get(range).ok_or(NOTHING)
     }
@@ -267,7 +276,7 @@ impl Link {
             found: header.kind,
             expected: "a known kind",
         })?;
-        match Record::of(kind) {
+        match ColumnSet::of(kind) {
             None => same(
                 "length (at most held)",
                 header.bytes.min(held),

@@ -10,7 +10,7 @@ pub const VERSION: u32 = 3;
 /// What a message is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
-pub enum Kind {
+pub enum MessageKind {
     /// Who is there, with versions, hashes and catalogue (text); both ways, first.
     Hello = 1,
     /// The solver's state at the start of the run (columns).
@@ -38,25 +38,25 @@ pub enum Kind {
     Changed = 12,
 }
 
-impl Kind {
+impl MessageKind {
     /// All kinds.
-    pub const ALL: [Kind; 12] = [
-        Kind::Hello,
-        Kind::State,
-        Kind::Start,
-        Kind::Finished,
-        Kind::Commit,
-        Kind::Checkpoint,
-        Kind::Checkpointed,
-        Kind::Failed,
-        Kind::Bye,
-        Kind::Owned,
-        Kind::Change,
-        Kind::Changed,
+    pub const ALL: [MessageKind; 12] = [
+        MessageKind::Hello,
+        MessageKind::State,
+        MessageKind::Start,
+        MessageKind::Finished,
+        MessageKind::Commit,
+        MessageKind::Checkpoint,
+        MessageKind::Checkpointed,
+        MessageKind::Failed,
+        MessageKind::Bye,
+        MessageKind::Owned,
+        MessageKind::Change,
+        MessageKind::Changed,
     ];
 
     /// The kind of a number on the wire.
-    pub fn from_number(number: u32) -> Option<Kind> {
+    pub fn from_number(number: u32) -> Option<MessageKind> {
         Self::ALL.into_iter().find(|&kind| kind as u32 == number)
     }
 }
@@ -69,7 +69,7 @@ pub struct Header {
     pub magic: u64,
     /// [`VERSION`].
     pub version: u32,
-    /// A [`Kind`] as its number.
+    /// A [`MessageKind`] as its number.
     pub kind: u32,
     /// The run that the message belongs to.
     pub run: u64,
@@ -156,7 +156,7 @@ impl Header {
     }
 
     /// A header of a kind, everything else zero; a link fills in run, rank and sizes.
-    pub fn of(kind: Kind) -> Self {
+    pub fn of(kind: MessageKind) -> Self {
         Self {
             magic: MAGIC,
             version: VERSION,
@@ -166,7 +166,7 @@ impl Header {
     }
 
     /// The same window, attempt and clocks, as another kind.
-    pub fn answer(&self, kind: Kind) -> Self {
+    pub fn answer(&self, kind: MessageKind) -> Self {
         Self {
             kind: kind as u32,
             count: 0,
@@ -176,8 +176,8 @@ impl Header {
     }
 
     /// The kind, if the number is one.
-    pub fn kind(&self) -> Option<Kind> {
-        Kind::from_number(self.kind)
+    pub fn kind(&self) -> Option<MessageKind> {
+        MessageKind::from_number(self.kind)
     }
 }
 
@@ -199,7 +199,7 @@ mod tests {
             storage_span: 11,
             count: 12,
             bytes: 13,
-            ..Header::of(Kind::Finished)
+            ..Header::of(MessageKind::Finished)
         };
         assert_eq!(Header::from_words(&header.to_words()), Some(header));
         assert_eq!(Header::from_words(&[0; 11]), None);

@@ -32,7 +32,7 @@ static SERIAL: AtomicU32 = AtomicU32::new(0);
 
 /// What carries a link's messages.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum Means {
+pub enum TransportKind {
     /// Shared memory of this machine.
     #[default]
     SharedMemory,
@@ -53,14 +53,14 @@ pub struct LinkAddress {
     /// Directory of the wire's sockets and service files.
     pub root: PathBuf,
     /// What carries the messages.
-    pub means: Means,
+    pub means: TransportKind,
 }
 
 impl LinkAddress {
     /// The same address for ranks that MPI spawns.
     pub fn over_mpi(self) -> Self {
         Self {
-            means: Means::Mpi { machine: machine() },
+            means: TransportKind::Mpi { machine: machine() },
             ..self
         }
     }
@@ -68,8 +68,8 @@ impl LinkAddress {
     /// True where the coordinator is on this machine, so that its process id means something.
     pub fn is_here(&self) -> bool {
         match &self.means {
-            Means::SharedMemory => true,
-            Means::Mpi { machine: theirs } => *theirs == machine(),
+            TransportKind::SharedMemory => true,
+            TransportKind::Mpi { machine: theirs } => *theirs == machine(),
         }
     }
 
@@ -77,8 +77,8 @@ impl LinkAddress {
     pub fn to_text(&self) -> String {
         let root = self.root.display();
         let means = match &self.means {
-            Means::SharedMemory => "1".into(),
-            Means::Mpi { machine } => format!("{MPI}{machine}"),
+            TransportKind::SharedMemory => "1".into(),
+            TransportKind::Mpi { machine } => format!("{MPI}{machine}"),
         };
         format!("{means} {} {} {root}", self.name, self.role)
     }
@@ -97,10 +97,10 @@ impl LinkAddress {
         };
         let first = next()?;
         let means = match first.strip_prefix(MPI) {
-            Some(machine) => Means::Mpi {
+            Some(machine) => TransportKind::Mpi {
                 machine: machine.into(),
             },
-            None if first == "1" => Means::SharedMemory,
+            None if first == "1" => TransportKind::SharedMemory,
             None => return Err(refuse()),
         };
         let (name, role, root) = (
@@ -176,7 +176,7 @@ impl LinkAddress {
 
 /// A run of this process; its files go when it is dropped.
 #[derive(Debug)]
-pub struct Run {
+pub struct RunDirectory {
     name: String,
     root: PathBuf,
     /// Locked while this process lives.
@@ -185,7 +185,7 @@ pub struct Run {
     is_over: bool,
 }
 
-impl Run {
+impl RunDirectory {
     /// Makes a private place for a run, after removing what dead coordinators of this user left.
     pub fn create() -> Result<Self, WireError> {
         remove_stale(&std::env::temp_dir());
@@ -242,12 +242,12 @@ impl Run {
             name: self.name.clone(),
             role: role.into(),
             root: self.root.clone(),
-            means: Means::SharedMemory,
+            means: TransportKind::SharedMemory,
         }
     }
 }
 
-impl Drop for Run {
+impl Drop for RunDirectory {
     fn drop(&mut self) {
         remove_files(&self.name, &self.root);
         if self.is_over {
@@ -362,7 +362,7 @@ mod tests {
 
     #[test]
     fn an_address_survives_its_text_and_names_this_process() {
-        let run = Run::create().unwrap();
+        let run = RunDirectory::create().unwrap();
         let address = run.address("gas");
         assert_eq!(LinkAddress::from_text(&address.to_text()).unwrap(), address);
         let mpi = address.clone().over_mpi();
@@ -375,7 +375,7 @@ mod tests {
 
     #[test]
     fn a_run_leaves_nothing_behind() {
-        let run = Run::create().unwrap();
+        let run = RunDirectory::create().unwrap();
         let address = run.address("gas");
         assert_eq!(files_of(&address.name), 1);
         assert!(address.root.is_dir());
@@ -388,12 +388,12 @@ mod tests {
 
     #[test]
     fn a_dead_coordinators_files_go_and_a_living_ones_stay() {
-        let living = Run::create().unwrap();
+        let living = RunDirectory::create().unwrap();
         // Process 1 lives, but did not start at tick 2^60.
         let dead = format!("{NAME}1-1000000000000000-7");
         fs::write(Path::new(MEMORY).join(format!("{dead}_x.data")), b"x").unwrap();
         fs::create_dir(std::env::temp_dir().join(&dead)).unwrap();
-        let next = Run::create().unwrap();
+        let next = RunDirectory::create().unwrap();
         assert_eq!(files_of(&dead), 0);
         assert!(!std::env::temp_dir().join(&dead).exists());
         assert!(living.root.is_dir() && next.root.is_dir());

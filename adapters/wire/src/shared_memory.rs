@@ -16,7 +16,7 @@ use crate::record::Header;
 use crate::run::LinkAddress;
 use crate::transport::{Transport, WireError};
 use crate::watch::Watch;
-use crate::words::{self, LINE, Loan};
+use crate::words::{self, LINE, ReservedMessage};
 
 type Ipc = ipc_threadsafe::Service;
 
@@ -33,7 +33,7 @@ const LOOK: Duration = Duration::from_millis(50);
 
 /// Which end of a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum LinkEnd {
     /// Asks.
     Coordinator,
     /// Answers, and watches the coordinator's life.
@@ -42,7 +42,7 @@ pub enum End {
 
 /// Ports of one end; dropped in this order, the node last.
 struct Ports {
-    loan: Option<Loan>,
+    loan: Option<ReservedMessage>,
     words: usize,
     /// Where payloads lay and how many words of them are known to have memory behind them.
     backed: Vec<(usize, usize)>,
@@ -71,12 +71,12 @@ fn failed<E: std::fmt::Debug>(doing: &'static str) -> impl FnOnce(E) -> WireErro
 
 impl SharedMemory {
     /// Opens one end of a rank's link, whoever comes first.
-    pub fn open(address: &LinkAddress, rank: u32, end: End) -> Result<Self, WireError> {
+    pub fn open(address: &LinkAddress, rank: u32, end: LinkEnd) -> Result<Self, WireError> {
         set_log_level(LogLevel::Fatal);
         check_room(MARGIN)?;
         let peer = match end {
-            End::Coordinator => None,
-            End::Solver => Some(Watch::living(address)?),
+            LinkEnd::Coordinator => None,
+            LinkEnd::Solver => Some(Watch::living(address)?),
         };
         let prefix = format!("{}_", address.name);
         let mut config = Config::default();
@@ -121,15 +121,15 @@ impl Ports {
         node: Node<Ipc>,
         address: &LinkAddress,
         rank: u32,
-        end: End,
+        end: LinkEnd,
     ) -> Result<Self, WireError> {
         let name = |direction: &str| {
             ServiceName::new(&format!("{}-{rank}-{direction}", address.role))
                 .map_err(failed("naming a link"))
         };
         let (ours, theirs) = match end {
-            End::Coordinator => (name("down")?, name("up")?),
-            End::Solver => (name("up")?, name("down")?),
+            LinkEnd::Coordinator => (name("down")?, name("up")?),
+            LinkEnd::Solver => (name("up")?, name("down")?),
         };
         // With words' own alignment: asked for lines, iceoryx2 0.10 pads each word to a line and loses a slot of
         // the segment whenever it grows.
@@ -209,7 +209,7 @@ impl Ports {
 
     /// Makes sure, once for each place and length, that a payload has memory behind it: other ranks may have
     /// taken what was free when the room was checked.
-    fn back(&mut self, loan: &mut Loan) -> Result<(), WireError> {
+    fn back(&mut self, loan: &mut ReservedMessage) -> Result<(), WireError> {
         let payload = loan.payload_mut();
         let (place, words) = (payload.as_ptr() as usize, payload.len());
         let known = self.backed.iter_mut().find(|known| known.0 == place);
@@ -333,14 +333,14 @@ impl Transport for SharedMemory {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::Kind;
-    use crate::run::Run;
+    use crate::record::MessageKind;
+    use crate::run::RunDirectory;
 
     #[test]
     fn a_message_larger_than_the_memory_is_refused_with_both_numbers() {
-        let run = Run::create().unwrap();
-        let mut end = SharedMemory::open(&run.address("gas"), 0, End::Coordinator).unwrap();
-        let header = Header::of(Kind::Start);
+        let run = RunDirectory::create().unwrap();
+        let mut end = SharedMemory::open(&run.address("gas"), 0, LinkEnd::Coordinator).unwrap();
+        let header = Header::of(MessageKind::Start);
         // 2^44 words in 5 slots, the first line of each included.
         let error = end
             .loan(header, (1 << 44) - 8)
@@ -354,9 +354,9 @@ mod tests {
 
     #[test]
     fn a_message_that_nobody_waits_for_is_an_error() {
-        let run = Run::create().unwrap();
-        let mut end = SharedMemory::open(&run.address("gas"), 0, End::Coordinator).unwrap();
-        end.loan(Header::of(Kind::Commit), 0).unwrap();
+        let run = RunDirectory::create().unwrap();
+        let mut end = SharedMemory::open(&run.address("gas"), 0, LinkEnd::Coordinator).unwrap();
+        end.loan(Header::of(MessageKind::Commit), 0).unwrap();
         let error = end.send().unwrap_err().to_string();
         assert!(error.contains("0 of 1 receivers"), "{error}");
     }

@@ -36,7 +36,7 @@ pub trait Transport {
 }
 
 /// Starts solvers and connects with them in one: the ranks come up in a world of their own.
-pub trait Network: Send + Sync {
+pub trait SolverNetwork: Send + Sync {
     /// The address that a role's ranks are given.
     fn address(&self, role: &str) -> LinkAddress;
 

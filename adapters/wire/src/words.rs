@@ -14,18 +14,18 @@ pub const LINE: usize = 8;
 /// A line of memory.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
-pub struct Line([u64; LINE]);
+pub struct CacheLine([u64; LINE]);
 
-const _: () = assert!(size_of::<Line>() == 8 * LINE);
+const _: () = assert!(size_of::<CacheLine>() == 8 * LINE);
 
 /// Lines as words.
-pub fn of_lines(lines: &[Line]) -> &[u64] {
+pub fn of_lines(lines: &[CacheLine]) -> &[u64] {
     // SAFETY: a line is exactly eight words without padding, and its alignment exceeds theirs.
     unsafe { std::slice::from_raw_parts(lines.as_ptr().cast(), LINE * lines.len()) }
 }
 
 /// Lines as words, to be written.
-pub fn of_lines_mut(lines: &mut [Line]) -> &mut [u64] {
+pub fn of_lines_mut(lines: &mut [CacheLine]) -> &mut [u64] {
     // SAFETY: as above; every bit pattern is a word.
     unsafe { std::slice::from_raw_parts_mut(lines.as_mut_ptr().cast(), LINE * lines.len()) }
 }
@@ -35,12 +35,12 @@ pub fn of_lines_mut(lines: &mut [Line]) -> &mut [u64] {
 pub fn line_start(payload: &[u64]) -> usize {
     payload
         .as_ptr()
-        .align_offset(align_of::<Line>())
+        .align_offset(align_of::<CacheLine>())
         .min(payload.len())
 }
 
 /// A reserved message of the shared-memory transport.
-pub type Loan = SampleMutUninit<Service, [std::mem::MaybeUninit<u64>], Header>;
+pub type ReservedMessage = SampleMutUninit<Service, [std::mem::MaybeUninit<u64>], Header>;
 type Filled = SampleMut<Service, [u64], Header>;
 
 /// Words as doubles.
@@ -92,7 +92,7 @@ pub fn back(words: &mut [std::mem::MaybeUninit<u64>]) -> rustix::io::Result<()> 
 }
 
 /// A loan whose content counts as written.
-pub fn filled(loan: Loan) -> Filled {
+pub fn filled(loan: ReservedMessage) -> Filled {
     // SAFETY: as in `mapped`, every byte of the loan has a value and every value is a u64.
     unsafe { loan.assume_init() }
 }

@@ -8,9 +8,10 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use calcine_wire::run::VARIABLE;
-use calcine_wire::shared_memory::End;
+use calcine_wire::shared_memory::LinkEnd;
 use calcine_wire::{
-    Catalogue, Header, Hello, Kind, Link, LinkAddress, Means, Run, SharedMemory, WireError,
+    Catalogue, Header, Hello, Link, LinkAddress, MessageKind, RunDirectory, SharedMemory,
+    TransportKind, WireError,
 };
 
 /// The directory of the test's own binaries' parent, where the static library lies.
@@ -71,11 +72,11 @@ fn hello() -> Hello {
 struct Solver {
     child: Child,
     link: Link,
-    _run: Run,
+    _run: RunDirectory,
 }
 
 fn start(program: &Path, mesh: &str) -> Solver {
-    let run = Run::create().unwrap();
+    let run = RunDirectory::create().unwrap();
     let address = run.address("gas");
     let (child, link) = join(program, mesh, &address);
     Solver {
@@ -86,7 +87,7 @@ fn start(program: &Path, mesh: &str) -> Solver {
 }
 
 fn join(program: &Path, mesh: &str, address: &LinkAddress) -> (Child, Link) {
-    let transport = SharedMemory::open(address, 0, End::Coordinator).unwrap();
+    let transport = SharedMemory::open(address, 0, LinkEnd::Coordinator).unwrap();
     let link = Link::new(Box::new(transport), address.number(), 0);
     let child = Command::new(program)
         .arg(mesh)
@@ -110,7 +111,7 @@ fn a_solver_in_cpp_shakes_hands_answers_fails_and_ends() {
     let link = &mut solver.link;
     receive(link).unwrap();
     assert_eq!(link.answer_greeting(&hello()).unwrap().name, "test");
-    assert_eq!(receive(link).unwrap().kind(), Some(Kind::State));
+    assert_eq!(receive(link).unwrap().kind(), Some(MessageKind::State));
     assert_eq!(link.column("temperature").unwrap(), [1.0; 3]);
     assert_eq!(link.column("balances").unwrap().len(), 35);
 
@@ -119,7 +120,7 @@ fn a_solver_in_cpp_shakes_hands_answers_fails_and_ends() {
         let start = Header {
             window,
             span_motion: 7,
-            ..Header::of(Kind::Start)
+            ..Header::of(MessageKind::Start)
         };
         link.loan(start, 3).unwrap();
         for field in [
@@ -134,16 +135,16 @@ fn a_solver_in_cpp_shakes_hands_answers_fails_and_ends() {
         sources.copy_from_slice(&[0.0, 1.0, window as f64]);
         link.send().unwrap();
         let finished = receive(link).unwrap();
-        assert_eq!(finished.kind(), Some(Kind::Finished));
+        assert_eq!(finished.kind(), Some(MessageKind::Finished));
         assert_eq!(finished.window, window);
         let heat = link.column("heat").unwrap();
         assert_eq!(heat, [2.0 * window as f64 + 7.0; 3]);
         assert_eq!(heat.as_ptr() as usize % 64, 0);
-        link.send_plain(Header::of(Kind::Commit)).unwrap();
+        link.send_plain(Header::of(MessageKind::Commit)).unwrap();
     }
     eprintln!("a window over the wire: {:?}", begun.elapsed() / 100);
 
-    link.send_text(Header::of(Kind::Checkpoint), "/a/directory")
+    link.send_text(Header::of(MessageKind::Checkpoint), "/a/directory")
         .unwrap();
     let failure = receive(link).unwrap_err();
     assert_eq!(failure.to_string(), "/a/directory");
@@ -153,8 +154,14 @@ fn a_solver_in_cpp_shakes_hands_answers_fails_and_ends() {
     receive(&mut solver.link).unwrap();
     solver.link.answer_greeting(&hello()).unwrap();
     receive(&mut solver.link).unwrap();
-    solver.link.send_plain(Header::of(Kind::Bye)).unwrap();
-    assert_eq!(receive(&mut solver.link).unwrap().kind(), Some(Kind::Bye));
+    solver
+        .link
+        .send_plain(Header::of(MessageKind::Bye))
+        .unwrap();
+    assert_eq!(
+        receive(&mut solver.link).unwrap().kind(),
+        Some(MessageKind::Bye)
+    );
     assert_eq!(solver.child.wait().unwrap().code(), Some(0));
 
     let mut solver = start(&program, "another");
@@ -221,7 +228,7 @@ fn orphan(program: &Path, mesh: &str, greeted: bool) -> (String, Option<i32>, Du
         name: name.clone(),
         role: "gas".into(),
         root,
-        means: Means::SharedMemory,
+        means: TransportKind::SharedMemory,
     };
     let (mut child, mut link) = join(program, mesh, &address);
     receive(&mut link).unwrap();

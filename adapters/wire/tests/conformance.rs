@@ -5,17 +5,17 @@
 #[macro_use]
 mod laws;
 
-use calcine_wire::shared_memory::End;
-use calcine_wire::{Run, SharedMemory};
+use calcine_wire::shared_memory::LinkEnd;
+use calcine_wire::{RunDirectory, SharedMemory};
 use laws::Ends;
 
 fn shared_memory() -> Ends {
-    let run = Run::create().unwrap();
+    let run = RunDirectory::create().unwrap();
     let address = run.address("gas");
     let open = |end| Box::new(SharedMemory::open(&address, 0, end).unwrap());
     Ends {
-        coordinator: open(End::Coordinator),
-        solver: open(End::Solver),
+        coordinator: open(LinkEnd::Coordinator),
+        solver: open(LinkEnd::Solver),
         number: address.number(),
         run: Some(run),
     }

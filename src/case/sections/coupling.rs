@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::time::Duration;
 
-use calcine_adapters::liggghts::template::Template;
-use calcine_adapters::openfoam::stock::{Solver, refusal};
+use calcine_adapters::liggghts::template::ScriptTemplate;
+use calcine_adapters::openfoam::stock::{StockSolver, refusal};
 use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::setup::GasSetup;
 use calcine_coupler::time::GasStorage;
@@ -134,7 +134,7 @@ pub(super) fn check_script(root: &Reader<'_>, liggghts: &External, particles: &[
         let help = "leave it out: a bed that is held needs no script, or write motion = \"free\"";
         section.fail("template", rule, help);
     }
-    if let Err(error) = Template::read(path, Vec::new(), Vec::new()) {
+    if let Err(error) = ScriptTemplate::read(path, Vec::new(), Vec::new()) {
         let (rule, help) = error.parts();
         section.fail("template", format!("cannot be used: {rule}"), &help);
     }
@@ -145,7 +145,7 @@ pub(super) fn external(root: &Reader<'_>, key: &str, folder: &Path) -> External 
     let mut external = External {
         template: None,
         start: None,
-        solver: Solver::default(),
+        solver: StockSolver::default(),
         wall_impulse: false,
         ranks: 1,
     };
@@ -153,7 +153,7 @@ pub(super) fn external(root: &Reader<'_>, key: &str, folder: &Path) -> External 
         external.template = existing(&section, "template", folder);
         if key == "openfoam" {
             external.start = existing(&section, "start", folder);
-            let solvers = Solver::ALL.map(|solver| (solver.name(), solver));
+            let solvers = StockSolver::ALL.map(|solver| (solver.name(), solver));
             external.solver = section.choice("solver", &solvers).unwrap_or_default();
         } else {
             external.wall_impulse = section.truth("wall_impulse").unwrap_or(false);

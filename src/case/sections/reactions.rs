@@ -1,6 +1,6 @@
 //! `[[reactions]]`, and what materials are made of.
 
-use calcine_adapters::openfoam::stock::Solver;
+use calcine_adapters::openfoam::stock::StockSolver;
 use calcine_coupler::interior::reacting::{LayerDiffusivity, Rate, Reaction, SolidChemistry};
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::reaction::equilibrium::GibbsLine;
@@ -437,7 +437,7 @@ pub(super) fn heat_agrees(table: &Reader<'_>, heat: f64, own: f64) -> bool {
 }
 
 /// Errors where reactions do not go with the rest of the case.
-pub(super) fn fits(root: &Reader<'_>, chemistry: &ReactionSpec, laws: &Laws, solver: Solver) {
+pub(super) fn fits(root: &Reader<'_>, chemistry: &ReactionSpec, laws: &Laws, solver: StockSolver) {
     if !chemistry.exchanges() {
         return;
     }

@@ -8,7 +8,7 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use calcine_wire::{Header, Kind, Transport};
+use calcine_wire::{Header, MessageKind, Transport};
 use criterion::{BenchmarkId, Criterion, Throughput};
 use rustix::time::{ClockId, clock_gettime};
 
@@ -39,7 +39,7 @@ fn receive(end: &mut dyn Transport, spins: bool) {
 /// The solver's part: introduces itself, then answers each message with the time at which it was there, until
 /// a goodbye.
 pub fn answer(mut end: Box<dyn Transport + Send>) {
-    end.loan(Header::of(Kind::Hello), 0).unwrap();
+    end.loan(Header::of(MessageKind::Hello), 0).unwrap();
     end.send().unwrap();
     let mut copy = Vec::new();
     let mut spins = false;
@@ -47,7 +47,7 @@ pub fn answer(mut end: Box<dyn Transport + Send>) {
         receive(&mut *end, spins);
         let (header, payload) = end.received().unwrap();
         let order = header.attempt;
-        if header.kind() == Some(Kind::Bye) {
+        if header.kind() == Some(MessageKind::Bye) {
             return;
         }
         if order == READ {
@@ -56,7 +56,7 @@ pub fn answer(mut end: Box<dyn Transport + Send>) {
             black_box(&copy);
         }
         let there = now();
-        end.loan(Header::of(Kind::Finished), 1).unwrap()[0] = there;
+        end.loan(Header::of(MessageKind::Finished), 1).unwrap()[0] = there;
         end.send().unwrap();
         // How the next one is waited for.
         spins = order == SPIN;
@@ -67,7 +67,7 @@ pub fn answer(mut end: Box<dyn Transport + Send>) {
 fn trip(end: &mut dyn Transport, words: usize, order: u32, data: &[u64]) -> Duration {
     let header = Header {
         attempt: order,
-        ..Header::of(Kind::Start)
+        ..Header::of(MessageKind::Start)
     };
     let begun = now();
     let payload = end.loan(header, words).unwrap();
@@ -113,7 +113,7 @@ pub fn measure(name: &str, mut end: Box<dyn Transport + Send>, criterion: &mut C
         }
     }
     group.finish();
-    end.loan(Header::of(Kind::Bye), 0).unwrap();
+    end.loan(Header::of(MessageKind::Bye), 0).unwrap();
     end.send().unwrap();
     end.settle(Duration::from_secs(2)).unwrap();
 }

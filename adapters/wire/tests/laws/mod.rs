@@ -2,7 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use calcine_wire::{Catalogue, Header, Hello, Kind, Link, Run, Transport, WireError};
+use calcine_wire::{
+    Catalogue, Header, Hello, Link, MessageKind, RunDirectory, Transport, WireError,
+};
 
 const SOON: Duration = Duration::from_secs(5);
 
@@ -11,7 +13,7 @@ pub struct Ends {
     pub coordinator: Box<dyn Transport + Send>,
     pub solver: Box<dyn Transport + Send>,
     pub number: u64,
-    pub run: Option<Run>,
+    pub run: Option<RunDirectory>,
 }
 
 fn hello(name: &str) -> Hello {
@@ -28,7 +30,7 @@ fn hello(name: &str) -> Hello {
 }
 
 /// Two links after their handshake.
-fn connected(ends: Ends) -> (Link, Link, Option<Run>) {
+fn connected(ends: Ends) -> (Link, Link, Option<RunDirectory>) {
     let mut coordinator = Link::new(ends.coordinator, ends.number, 0);
     let mut solver = Link::new(ends.solver, ends.number, 0);
     let solver = std::thread::spawn(move || {
@@ -45,7 +47,7 @@ pub fn a_message_arrives_with_its_header_and_aligned_words(mut ends: Ends) {
     for words in [0usize, 1, 100, 1 << 20, 3] {
         let header = Header {
             window: words as u64,
-            ..Header::of(Kind::Start)
+            ..Header::of(MessageKind::Start)
         };
         let payload = ends.coordinator.loan(header, words).unwrap();
         for (index, word) in payload.iter_mut().enumerate() {
@@ -66,7 +68,7 @@ pub fn a_message_arrives_with_its_header_and_aligned_words(mut ends: Ends) {
 pub fn messages_grow_while_the_last_is_held_and_then_go_on(mut ends: Ends) {
     for count in 0..600_u32 {
         let words = 2000_usize << (count / 20).min(9);
-        let payload = ends.coordinator.loan(Header::of(Kind::Start), words);
+        let payload = ends.coordinator.loan(Header::of(MessageKind::Start), words);
         let payload = payload.unwrap_or_else(|error| panic!("message {count}: {error}"));
         payload[words - 1] = u64::from(count);
         ends.coordinator.send().unwrap();
@@ -87,14 +89,16 @@ pub fn nothing_arrives_within_the_patience_and_no_earlier(mut ends: Ends) {
 
 pub fn a_commit_and_the_next_start_may_wait_together_in_order(ends: Ends) {
     let (mut coordinator, mut solver, _run) = connected(ends);
-    coordinator.send_plain(Header::of(Kind::Commit)).unwrap();
     coordinator
-        .send_text(Header::of(Kind::Checkpoint), "/x")
+        .send_plain(Header::of(MessageKind::Commit))
+        .unwrap();
+    coordinator
+        .send_text(Header::of(MessageKind::Checkpoint), "/x")
         .unwrap();
     let first = solver.receive(SOON).unwrap().unwrap();
     let second = solver.receive(SOON).unwrap().unwrap();
-    assert_eq!(first.kind(), Some(Kind::Commit));
-    assert_eq!(second.kind(), Some(Kind::Checkpoint));
+    assert_eq!(first.kind(), Some(MessageKind::Commit));
+    assert_eq!(second.kind(), Some(MessageKind::Checkpoint));
     assert_eq!(solver.text().unwrap(), "/x");
 }
 
@@ -102,7 +106,9 @@ pub fn a_full_buffer_fails_instead_of_hanging(mut ends: Ends) {
     let begun = Instant::now();
     let mut sent = 0;
     while begun.elapsed() < SOON {
-        ends.coordinator.loan(Header::of(Kind::Commit), 0).unwrap();
+        ends.coordinator
+            .loan(Header::of(MessageKind::Commit), 0)
+            .unwrap();
         match ends.coordinator.send() {
             Ok(()) => sent += 1,
             Err(_) => break,
@@ -113,7 +119,7 @@ pub fn a_full_buffer_fails_instead_of_hanging(mut ends: Ends) {
 
 pub fn a_message_with_an_unfilled_column_stays(ends: Ends) {
     let (mut coordinator, mut solver, _run) = connected(ends);
-    coordinator.loan(Header::of(Kind::Start), 4).unwrap();
+    coordinator.loan(Header::of(MessageKind::Start), 4).unwrap();
     coordinator.column_mut("void_fraction").unwrap().fill(1.0);
     let error = coordinator.send().unwrap_err();
     assert!(error.to_string().contains("drag_coefficient"), "{error}");
@@ -122,7 +128,9 @@ pub fn a_message_with_an_unfilled_column_stays(ends: Ends) {
 
 pub fn a_message_of_another_run_is_refused(ends: Ends) {
     let (mut coordinator, mut solver) = (ends.coordinator, Link::new(ends.solver, 1, 0));
-    coordinator.loan(Header::of(Kind::Commit), 0).unwrap();
+    coordinator
+        .loan(Header::of(MessageKind::Commit), 0)
+        .unwrap();
     coordinator.send().unwrap();
     let error = solver.receive(SOON).unwrap_err();
     assert!(
@@ -134,7 +142,7 @@ pub fn a_message_of_another_run_is_refused(ends: Ends) {
 pub fn a_failure_arrives_as_an_error_with_its_words(ends: Ends) {
     let (mut coordinator, mut solver, _run) = connected(ends);
     solver
-        .send_text(Header::of(Kind::Failed), "ε fell to 0.05")
+        .send_text(Header::of(MessageKind::Failed), "ε fell to 0.05")
         .unwrap();
     let error = coordinator.receive(SOON).unwrap_err();
     assert_eq!(error.to_string(), "ε fell to 0.05");
