@@ -13,7 +13,7 @@ use calcine_coupler::physics::heat_transfer::{
     Gnielinski, Gunn, HeatTransfer, NoHeatTransfer, RanzMarshall, Wakao,
 };
 
-use crate::case::model::{Area, Case, ConductionLaw, DragLaw, Gap, HeatLaw};
+use crate::case::model::{Case, ConductionArea, ConductionLaw, DragLaw, GapSpec, HeatLaw};
 
 /// The drag law of a case.
 pub fn drag(law: DragLaw) -> Box<dyn Drag> {
@@ -52,9 +52,9 @@ pub fn heat(case: &Case) -> Option<HeatLaws> {
         ConductionLaw::Lens => Box::new(Lens),
     };
     let area = match laws.area {
-        Area::Overlap => ContactArea::Overlap,
-        Area::Load { force, within } => ContactArea::Load { force, within },
-        Area::Force => {
+        ConductionArea::Overlap => ContactArea::Overlap,
+        ConductionArea::Load { force, within } => ContactArea::Load { force, within },
+        ConductionArea::Force => {
             ContactArea::Force(match case.motion.as_ref().map(|motion| motion.law.force) {
                 Some(ContactForce::Linear {
                     characteristic_speed: speed,
@@ -64,9 +64,9 @@ pub fn heat(case: &Case) -> Option<HeatLaws> {
         }
     };
     let gap: Box<dyn GasGap> = match laws.gap {
-        Gap::None => Box::new(NoGap),
-        Gap::RongHorio { lens, least_width } => Box::new(RongHorio { lens, least_width }),
-        Gap::Cheng { cone, widest } => Box::new(Cheng { cone, widest }),
+        GapSpec::None => Box::new(NoGap),
+        GapSpec::RongHorio { lens, least_width } => Box::new(RongHorio { lens, least_width }),
+        GapSpec::Cheng { cone, widest } => Box::new(Cheng { cone, widest }),
     };
     Some(HeatLaws {
         conduction,
@@ -80,7 +80,7 @@ pub fn heat(case: &Case) -> Option<HeatLaws> {
 /// What heat between particles needs of the materials of a case. What a case does not state is not asked for:
 /// the check demands all that its laws need.
 pub fn thermal(case: &Case) -> Vec<ThermalProperties> {
-    let of = |material: &crate::case::model::Material| {
+    let of = |material: &crate::case::model::MaterialSpec| {
         let stiffness = |young: Option<f64>| Stiffness {
             young: young.unwrap_or(f64::NAN),
             poisson: material.poisson.unwrap_or(f64::NAN),

@@ -6,9 +6,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use calcine::assembly::Prepared;
+use calcine::assembly::PreparedCase;
 use calcine::case::model::Case;
-use calcine::case::{Placed, mesh, particles, read};
+use calcine::case::{InitialParticles, mesh, particles, read};
 use calcine_coupler::mesh::locate::Locator;
 use tempfile::TempDir;
 
@@ -24,7 +24,7 @@ fn case(name: &str, set: &[&str]) -> Case {
 }
 
 /// (z − radius, z + radius, diameter, temperature) of each particle of a population.
-fn of(placed: &Placed, population: usize) -> Vec<[f64; 4]> {
+fn of(placed: &InitialParticles, population: usize) -> Vec<[f64; 4]> {
     let setup = &placed.setup;
     (0..setup.id.len())
         .filter(|&p| setup.population[p] as usize == population)
@@ -123,7 +123,7 @@ fn a_timestep_of_a_file_without_timesteps_is_refused() {
 }
 
 /// Writes a file of particles and places them as the only population of a box.
-fn from_file(name: &str, bytes: &[u8]) -> Result<Placed, String> {
+fn from_file(name: &str, bytes: &[u8]) -> Result<InitialParticles, String> {
     let folder = TempDir::new().unwrap();
     let text = fs::read_to_string(good("two-populations.toml")).unwrap();
     let grid = "{ grid = { first = \"5 5 5 mm\", spacing = \"10 10 10 mm\", counts = [1, 1, 2] } }";
@@ -294,7 +294,7 @@ fn graded_and_refined_meshes_have_the_cells_that_the_case_says() {
 fn an_excluded_zone_beside_the_mesh_is_refused() {
     let zone = "coupling.smoother.excluded[0].box={ from = \"0 0 200 mm\", to = \"10 10 210 mm\" }";
     let case = case("refined-box.toml", &[zone]);
-    let prepared = Prepared::new(&case).unwrap();
+    let prepared = PreparedCase::new(&case).unwrap();
     let error = prepared.void_fraction(&case).unwrap_err();
     assert_eq!(
         error.to_string(),

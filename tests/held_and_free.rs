@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use calcine::results::Summary;
 use calcine::results::read::{Series, arrays, collection};
-use calcine::results::voids::Voids;
+use calcine::results::voids::VoidProfiles;
 
 /// The shipped settled bed; its lines by their beginnings replaced.
 fn case(folder: &Path, name: &str, replaced: &[(&str, String)]) -> PathBuf {
@@ -57,7 +57,7 @@ fn a_settled_bed_is_held_heated_and_let_go_where_it_lies() {
     let settled = run(&case(folder.path(), "settle", &[]), &out("settle"), &[]);
 
     // The report shows how its void fraction goes; in a box there is no distance from one wall.
-    let voids = Voids::read(&out("settle")).unwrap().unwrap();
+    let voids = VoidProfiles::read(&out("settle")).unwrap().unwrap();
     assert!(voids.wall.place.is_empty());
     let points = voids.height.place.iter().zip(&voids.height.void_fraction);
     let inner = points.filter(|(z, _)| (0.006..0.018).contains(*z));

@@ -7,7 +7,7 @@ mod fake;
 
 use std::fs;
 
-use calcine::case::model::Band;
+use calcine::case::model::ToleranceBand;
 use calcine::compare::{Agreement, CompareError, compare};
 
 #[test]
@@ -65,7 +65,7 @@ fn runs_that_differ_by_less_than_the_bands_agree() {
 fn a_run_outside_a_band_is_named_and_the_comparison_does_not_agree() {
     let scratch = tempfile::tempdir().unwrap();
     let mut case = fake::case();
-    case.quantities[1].agree = Some(Band::Absolute(0.5));
+    case.quantities[1].agree = Some(ToleranceBand::Absolute(0.5));
     let runs = [("a", 0.0), ("b", 0.1), ("c", -0.6)].map(|(name, shift)| {
         let out = scratch.path().join(name);
         fake::run(&case, &out, shift);

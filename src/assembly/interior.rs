@@ -6,7 +6,7 @@ use calcine_coupler::part::ParticleFields;
 use calcine_coupler::physics::gas_model::GasModel;
 
 use super::AssemblyError;
-use super::prepared::Prepared;
+use super::prepared::PreparedCase;
 use crate::case::model::{Case, ReactionSpec};
 use crate::laws;
 
@@ -14,7 +14,7 @@ use crate::laws;
 /// those of the case, and get their temperatures from it.
 pub(super) fn interior(
     case: &Case,
-    prepared: &Prepared,
+    prepared: &PreparedCase,
     particles: &ParticleFields<'_>,
 ) -> Result<Box<dyn ParticleModel>, AssemblyError> {
     let all = 0..particles.id.len();

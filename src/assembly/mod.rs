@@ -17,8 +17,8 @@ use thiserror::Error;
 
 pub use interior::chemistry;
 pub use pairing::{GasBackend, Pairing, ParticleBackend};
-pub use prepared::Prepared;
-pub use solvers::{Start, Starts, check_own_script, write_inputs};
+pub use prepared::PreparedCase;
+pub use solvers::{SolverStart, SolverStarts, check_own_script, write_inputs};
 
 use crate::case::model::Case;
 use crate::case::sizes::TooLarge;
@@ -61,11 +61,11 @@ pub enum AssemblyError {
 
 /// How a run is put together, beside its case.
 #[derive(Clone, Copy, Debug)]
-pub struct Settings<'a> {
+pub struct RunSettings<'a> {
     /// Who computes what.
     pub pairing: Pairing,
     /// How external solvers are started.
-    pub starts: &'a Starts,
+    pub starts: &'a SolverStarts,
     /// The results folder; inputs of external solvers go to `solvers/`, logs to `log/` in it.
     pub results: &'a Path,
     /// True where every part starts from the committed checkpoint.
@@ -77,8 +77,8 @@ pub struct Settings<'a> {
 /// Builds the run.
 pub fn assemble<'m>(
     case: &Case,
-    prepared: &'m Prepared,
-    settings: &Settings<'_>,
+    prepared: &'m PreparedCase,
+    settings: &RunSettings<'_>,
     supervisor: &mut Supervisor,
 ) -> Result<CoupledRun<'m>, AssemblyError> {
     if let Some(origin) = settings.from {

@@ -8,11 +8,11 @@ use calcine_coupler::paths::{HeatWall, PathsSetup};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::traffic::{Feed, FeedsAndOutlets};
 
-use super::prepared::{Prepared, method};
+use super::prepared::{PreparedCase, method};
 use crate::case::model::Case;
 use crate::laws;
 
-pub(super) fn plan(case: &Case, prepared: &Prepared, checkpoint: CheckpointPaths) -> Plan {
+pub(super) fn plan(case: &Case, prepared: &PreparedCase, checkpoint: CheckpointPaths) -> Plan {
     Plan {
         end: case.time.end,
         motion_window: case.time.motion_window,
@@ -46,7 +46,7 @@ pub(super) fn plan(case: &Case, prepared: &Prepared, checkpoint: CheckpointPaths
 }
 
 /// Feeds and outlets of the case; ids go on after those of the start.
-fn traffic(case: &Case, prepared: &Prepared) -> FeedsAndOutlets {
+fn traffic(case: &Case, prepared: &PreparedCase) -> FeedsAndOutlets {
     let feeds = case.feeds.iter().map(|feed| {
         let population = &case.particles[feed.population];
         Feed {
@@ -68,7 +68,7 @@ fn traffic(case: &Case, prepared: &Prepared) -> FeedsAndOutlets {
 }
 
 /// Heat between particles and to walls, as the coordinator finds it.
-fn paths(case: &Case, prepared: &Prepared) -> PathsSetup {
+fn paths(case: &Case, prepared: &PreparedCase) -> PathsSetup {
     let Some(laws) = laws::heat(case) else {
         return PathsSetup::default();
     };

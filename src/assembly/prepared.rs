@@ -11,13 +11,13 @@ use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::smoother::{Smoother, SmootherSettings as Smoothing};
 
 use super::AssemblyError;
-use crate::case::model::{Case, Mapping};
+use crate::case::model::{Case, MappingSpec};
 use crate::case::sizes;
-use crate::case::{PlaceError, Placed, contacts, mesh, particles};
+use crate::case::{InitialParticles, PlaceError, contacts, mesh, particles};
 
 /// What does not change during a run, made from a case: mesh and particles at the start.
 #[derive(Debug)]
-pub struct Prepared {
+pub struct PreparedCase {
     /// The gas mesh.
     pub mesh: Arc<Mesh>,
     /// The particles at the start.
@@ -26,11 +26,11 @@ pub struct Prepared {
     pub temperature: Vec<f64>,
 }
 
-impl Prepared {
+impl PreparedCase {
     /// Generates or reads the mesh and places the particles.
     pub fn new(case: &Case) -> Result<Self, AssemblyError> {
         sizes::fits(case)?;
-        let Placed {
+        let InitialParticles {
             mut setup,
             temperature,
         } = particles(case)?;
@@ -63,7 +63,7 @@ impl Prepared {
 }
 
 /// The smoother, which leaves the case's excluded zones alone.
-pub(super) fn smoother(case: &Case, prepared: &Prepared) -> Result<Smoother, AssemblyError> {
+pub(super) fn smoother(case: &Case, prepared: &PreparedCase) -> Result<Smoother, AssemblyError> {
     let (mesh, zones) = (&prepared.mesh, &case.coupling.excluded);
     for (index, zone) in zones.iter().enumerate() {
         if !mesh.cell_centre().iter().any(|&centre| zone.holds(centre)) {
@@ -78,7 +78,7 @@ pub(super) fn smoother(case: &Case, prepared: &Prepared) -> Result<Smoother, Ass
 /// Settings of the smoother. Where the case does not state the diffusion's length, it is half the
 /// mean diameter where particles are larger than a third of the cells about them (requirements VFS-6): without
 /// it a particle that spans several cells would give heat to cells that have nothing to give.
-fn smoothing(case: &Case, prepared: &Prepared) -> Smoothing {
+fn smoothing(case: &Case, prepared: &PreparedCase) -> Smoothing {
     let radii = &prepared.particles.radius;
     let diameter = 2.0 * radii.iter().sum::<f64>() / radii.len() as f64;
     let large = diameter > cell_size(prepared) / 3.0;
@@ -94,7 +94,7 @@ fn smoothing(case: &Case, prepared: &Prepared) -> Smoothing {
 }
 
 /// Mean size in m of the cells in the box about the particles' centres, or of all where none lies there.
-fn cell_size(prepared: &Prepared) -> f64 {
+fn cell_size(prepared: &PreparedCase) -> f64 {
     let (mesh, centres) = (&prepared.mesh, &prepared.particles.position);
     let (mut low, mut high) = (Vec3::repeat(f64::MAX), Vec3::repeat(f64::MIN));
     for centre in centres {
@@ -116,8 +116,8 @@ fn cell_size(prepared: &Prepared) -> f64 {
 
 pub(super) fn method(case: &Case) -> Method {
     match case.coupling.mapping {
-        Mapping::Centroid => Method::Centroid,
-        Mapping::Divided => Method::Divided,
-        Mapping::Overlap => Method::Overlap,
+        MappingSpec::Centroid => Method::Centroid,
+        MappingSpec::Divided => Method::Divided,
+        MappingSpec::Overlap => Method::Overlap,
     }
 }

@@ -19,20 +19,20 @@ use calcine_native::gas::NativeGas;
 use calcine_native::particles::NativeParticles;
 
 use super::pairing::{GasBackend, Pairing, ParticleBackend};
-use super::prepared::Prepared;
-use super::{AssemblyError, Settings};
+use super::prepared::PreparedCase;
+use super::{AssemblyError, RunSettings};
 use crate::case::model::Case;
 
 /// How an external solver is started.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Start {
+pub struct SolverStart {
     /// Number of ranks.
     pub ranks: u32,
     /// Who starts them.
     pub launcher: Launcher,
 }
 
-impl Default for Start {
+impl Default for SolverStart {
     fn default() -> Self {
         Self {
             ranks: 1,
@@ -43,19 +43,19 @@ impl Default for Start {
 
 /// How the external solvers of a run are started; natively it does not matter.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Starts {
+pub struct SolverStarts {
     /// That of the gas.
-    pub gas: Start,
+    pub gas: SolverStart,
     /// That of the particles.
-    pub particles: Start,
+    pub particles: SolverStart,
 }
 
-impl Starts {
+impl SolverStarts {
     /// As many ranks as the case says, started by Calcine.
     pub fn of(case: &Case) -> Self {
-        let start = |ranks: u32| Start {
+        let start = |ranks: u32| SolverStart {
             ranks: ranks.max(1),
-            ..Start::default()
+            ..SolverStart::default()
         };
         Self {
             gas: start(case.openfoam.ranks),
@@ -68,11 +68,11 @@ impl Starts {
 /// `liggghts/` below a folder; returns what was written.
 pub fn write_inputs(
     case: &Case,
-    prepared: &Prepared,
+    prepared: &PreparedCase,
     pairing: Pairing,
     folder: &Path,
 ) -> Result<Vec<std::path::PathBuf>, AssemblyError> {
-    let starts = Starts::of(case);
+    let starts = SolverStarts::of(case);
     let mut written = Vec::new();
     if pairing.gas == GasBackend::Openfoam {
         let target = folder.join("openfoam");
@@ -114,7 +114,7 @@ fn own_script(case: &Case) -> Result<Option<ScriptTemplate>, PartError> {
 }
 
 /// What LIGGGHTS would not take of the user's own script, for `calcine check`.
-pub fn check_own_script(case: &Case, prepared: &Prepared) -> Result<(), PartError> {
+pub fn check_own_script(case: &Case, prepared: &PreparedCase) -> Result<(), PartError> {
     let template = own_script(case)?;
     let inputs = liggghts_inputs(
         case,
@@ -128,7 +128,7 @@ pub fn check_own_script(case: &Case, prepared: &Prepared) -> Result<(), PartErro
 /// What LIGGGHTS is told of the particles, in the box of the mesh's points.
 fn liggghts_inputs<'a>(
     case: &Case,
-    prepared: &'a Prepared,
+    prepared: &'a PreparedCase,
     template: Option<&'a ScriptTemplate>,
     ranks: u32,
 ) -> Inputs<'a> {
@@ -153,8 +153,8 @@ fn liggghts_inputs<'a>(
 /// What the builders of the parts share.
 pub(super) struct Assembly<'a> {
     pub(super) case: &'a Case,
-    pub(super) prepared: &'a Prepared,
-    pub(super) settings: &'a Settings<'a>,
+    pub(super) prepared: &'a PreparedCase,
+    pub(super) settings: &'a RunSettings<'a>,
     pub(super) from: Option<&'a Path>,
 }
 

@@ -14,7 +14,7 @@ use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::time::Ticks;
 use thiserror::Error;
 
-use super::model::{Case, FreeMotion, Material, Motion, MotionKind};
+use super::model::{Case, FreeMotion, MaterialSpec, MotionKind, MotionSpec};
 use super::units::shown;
 
 /// A step above this share of Rayleigh's time gets a warning, above the second it is refused.
@@ -118,7 +118,10 @@ impl Limits {
 
 /// How the particles of a case move, on the motion clock.
 pub fn motion(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Result<Told, ContactsError> {
-    let free = case.particles.iter().any(|one| one.motion == Motion::Free);
+    let free = case
+        .particles
+        .iter()
+        .any(|one| one.motion == MotionSpec::Free);
     let Some(motion) = case.motion.as_ref().filter(|_| free) else {
         return Ok(Told::Frozen);
     };
@@ -145,7 +148,7 @@ pub fn motion(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Result<Told, C
         }
     }
     // The reader asks for the elastic constants of what touches; others are never used.
-    let elastic = |material: &Material| Elastic {
+    let elastic = |material: &MaterialSpec| Elastic {
         young: material.young.unwrap_or(1e7),
         poisson: material.poisson.unwrap_or(0.3),
     };
@@ -158,7 +161,7 @@ pub fn motion(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Result<Told, C
         held: case
             .particles
             .iter()
-            .map(|one| one.motion == Motion::Frozen)
+            .map(|one| one.motion == MotionSpec::Frozen)
             .collect(),
         law: motion.law,
         pairs: pairs(case),
@@ -254,7 +257,7 @@ pub fn limits(case: &Case, motion: &FreeMotion, mesh: &Mesh, setup: &ParticleSet
         let (Some(young), Some(poisson)) = (material.young, material.poisson) else {
             continue;
         };
-        if population.motion == Motion::Frozen {
+        if population.motion == MotionSpec::Frozen {
             continue;
         }
         let own = setup.population.iter().zip(&setup.radius);

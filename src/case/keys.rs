@@ -2,7 +2,7 @@
 
 /// Whether a key must be there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Need {
+pub enum KeyPresence {
     /// It must.
     Required,
     /// One of several that exclude each other; the meaning names them.
@@ -19,7 +19,7 @@ pub struct Key {
     /// What the value is: `text`, `table`, a quantity with its SI unit.
     pub value: &'static str,
     /// Whether it must be there.
-    pub need: Need,
+    pub need: KeyPresence,
     /// What it means.
     pub meaning: &'static str,
     /// An example of the value, in TOML.
@@ -29,7 +29,7 @@ pub struct Key {
 const fn key(
     key: &'static str,
     value: &'static str,
-    need: Need,
+    need: KeyPresence,
     meaning: &'static str,
     example: &'static str,
 ) -> Key {
@@ -42,7 +42,7 @@ const fn key(
     }
 }
 
-use Need::{Default, OneOf, Required};
+use KeyPresence::{Default, OneOf, Required};
 
 /// All keys, in the order of a case file.
 pub fn keys() -> &'static [Key] {

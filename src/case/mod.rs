@@ -25,13 +25,13 @@ use toml_edit::{Document, DocumentMut, Item, Value};
 
 pub use check::check_report;
 pub use meshing::{MeshingError, mesh};
-pub use place::{PlaceError, Placed, particles};
+pub use place::{InitialParticles, PlaceError, particles};
 pub use problem::{CaseErrors, Problem};
 pub use step::settle;
 
 use calcine_coupler::motion::WallShape;
 use model::Case;
-use table::{Problems, Reader};
+use table::{Problems, TableReader};
 
 /// Reads and checks a case file with `--set key=value` applied; all its errors at once.
 pub fn read(path: &Path, set: &[String]) -> Result<Case, CaseErrors> {
@@ -52,7 +52,7 @@ pub fn parse(path: &Path, text: &str, set: &[String]) -> Result<Case, CaseErrors
     let effective = apply(path, text, set)?;
     let document = syntax(path, &effective)?;
     let problems = Problems::default();
-    let root = Reader::root(&problems, document.as_table());
+    let root = TableReader::root(&problems, document.as_table());
     let case = sections::case(&root, path, &effective, hash(document.as_table()));
     root.finish();
     let mut problems = problems.take();
@@ -197,7 +197,7 @@ fn with_files(case: &Case) -> String {
         .particles
         .iter()
         .filter_map(|population| match &population.place {
-            model::Place::File { path, .. } => Some(path.clone()),
+            model::PlacementSpec::File { path, .. } => Some(path.clone()),
             _ => None,
         });
     let mesh = match &case.mesh {

@@ -20,11 +20,15 @@ use calcine_coupler::setup::{GasSetup, Schedule};
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
 use calcine_coupler::traffic::Outlet;
 
-pub use laws::{Area, Conduction, ConductionLaw, DragLaw, Gap, HeatLaw, Laws, Radiation};
-pub use material::{Material, SizeLaw};
+pub use laws::{
+    ConductionArea, ConductionLaw, ConductionSpec, DragLaw, GapSpec, HeatLaw, Laws, RadiationSpec,
+};
+pub use material::{MaterialSpec, SizeLaw};
 pub use mesh::MeshSpec;
-pub use particles::{FeedSpec, Motion, Place, Population};
-pub use quantity::{Band, Expect, GasPlace, Measure, ParticlePlace, Probe, Quantity, Statistic};
+pub use particles::{FeedSpec, MotionSpec, PlacementSpec, Population};
+pub use quantity::{
+    Expect, GasPlace, Measure, ParticlePlace, Probe, Quantity, Statistic, ToleranceBand,
+};
 
 /// A checked case.
 #[derive(Clone, Debug)]
@@ -40,15 +44,15 @@ pub struct Case {
     /// Effective TOML text, `--set` applied, as written next to the results.
     pub effective: String,
     /// Clocks.
-    pub time: Time,
+    pub time: TimeSpec,
     /// The gas mesh.
     pub mesh: MeshSpec,
     /// Materials, in the order of the file.
-    pub materials: Vec<Material>,
+    pub materials: Vec<MaterialSpec>,
     /// Solids that materials are made of, and what reacts.
     pub chemistry: ReactionSpec,
     /// Contact properties of pairs of materials.
-    pub contacts: Vec<Contact>,
+    pub contacts: Vec<ContactSpec>,
     /// Walls that particles touch.
     pub walls: Vec<Wall>,
     /// Temperature in K of each wall that particles exchange heat with; `None`: adiabatic.
@@ -72,9 +76,9 @@ pub struct Case {
     /// How gas and particles are coupled.
     pub coupling: Coupling,
     /// What only an OpenFOAM gas needs.
-    pub openfoam: External,
+    pub openfoam: ExternalSpec,
     /// What only LIGGGHTS particles need.
-    pub liggghts: External,
+    pub liggghts: ExternalSpec,
     /// What is written.
     pub output: Output,
     /// Points at which fields are sampled.
@@ -85,7 +89,7 @@ pub struct Case {
 
 /// Clocks and checkpoints.
 #[derive(Clone, Debug)]
-pub struct Time {
+pub struct TimeSpec {
     /// End of the run, process time.
     pub end: Ticks,
     /// Length of a coupling window in process time, where the case states that instead of the
@@ -125,7 +129,7 @@ impl ReactionSpec {
 
 /// Contact properties of a pair of materials.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Contact {
+pub struct ContactSpec {
     /// Indices into `Case::materials`.
     pub between: [usize; 2],
     /// Coefficient of restitution.
@@ -172,7 +176,7 @@ pub fn belongs(wall: &str, name: &str) -> bool {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coupling {
     /// Base mapping of a particle onto cells.
-    pub mapping: Mapping,
+    pub mapping: MappingSpec,
     /// Largest solid fraction of a cell after smoothing, below 1.
     pub max_solid_fraction: f64,
     /// Zones into and out of which the smoother moves nothing.
@@ -193,7 +197,7 @@ pub struct Coupling {
 
 /// Base mappings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mapping {
+pub enum MappingSpec {
     /// All of a particle in the cell of its centre.
     Centroid,
     /// Satellite points inside the particle, each in its cell.
@@ -204,7 +208,7 @@ pub enum Mapping {
 
 /// What only an external solver needs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct External {
+pub struct ExternalSpec {
     /// Template (absolute path); `None`: all inputs are generated.
     pub template: Option<PathBuf>,
     /// Time directory of OpenFOAM whose fields the gas starts from (absolute path).

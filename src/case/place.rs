@@ -12,7 +12,7 @@ use calcine_coupler::time::Ticks;
 use thiserror::Error;
 
 use super::bed::{self, Choice};
-use super::model::{Case, MeshSpec, Place, Population};
+use super::model::{Case, MeshSpec, PlacementSpec, Population};
 use super::overlap;
 use super::units::shown;
 
@@ -69,7 +69,7 @@ pub enum PlaceError {
 
 /// Particles at the start of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Placed {
+pub struct InitialParticles {
     /// What every backend starts from.
     pub setup: ParticleSetup,
     /// Temperatures in K.
@@ -78,8 +78,8 @@ pub struct Placed {
 
 /// The particles of all populations, ids from 1 in the order of the file; on a grid x runs fastest,
 /// in files of particles their own ids give the order.
-pub fn particles(case: &Case) -> Result<Placed, PlaceError> {
-    let mut placed = Placed::default();
+pub fn particles(case: &Case) -> Result<InitialParticles, PlaceError> {
+    let mut placed = InitialParticles::default();
     let setup = &mut placed.setup;
     for (index, population) in (0u32..).zip(&case.particles) {
         let density = case.materials[population.material].density;
@@ -146,7 +146,7 @@ fn spheres(case: &Case, population: &Population) -> Result<Vec<Sphere>, PlaceErr
             .collect()
     };
     match &population.place {
-        Place::Grid {
+        PlacementSpec::Grid {
             first,
             spacing,
             counts,
@@ -161,7 +161,7 @@ fn spheres(case: &Case, population: &Population) -> Result<Vec<Sphere>, PlaceErr
             let diameters = draw(centres.len())?;
             Ok(all(centres, diameters))
         }
-        Place::Random {
+        PlacementSpec::Random {
             layer,
             solid_fraction,
             seed,
@@ -176,12 +176,12 @@ fn spheres(case: &Case, population: &Population) -> Result<Vec<Sphere>, PlaceErr
             let packing = random(&case.mesh, layer[0], &spec).map_err(failed)?;
             Ok(all(packing.centres, packing.diameters))
         }
-        Place::Regular { lattice, layer } => {
+        PlacementSpec::Regular { lattice, layer } => {
             let diameter = population.sizes.largest();
             let packing = regular(&case.mesh, *layer, diameter, *lattice).map_err(failed)?;
             Ok(all(packing.centres, packing.diameters))
         }
-        Place::File {
+        PlacementSpec::File {
             path,
             timestep,
             kind,

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use serde_json::{Map, Value, json};
 
-use super::keys::{Key, Need, keys};
+use super::keys::{Key, KeyPresence, keys};
 use super::units;
 
 /// A number as a quantity writes it.
@@ -14,7 +14,7 @@ const NAME: &str = "NAME";
 
 /// The schema, draft 2020-12.
 pub fn schema() -> Value {
-    let mut root = Node::default();
+    let mut root = YamlNode::default();
     for key in keys() {
         root.insert(key.key, key);
     }
@@ -31,12 +31,12 @@ pub fn schema() -> Value {
 
 /// A key with the keys below it, in the order of the table.
 #[derive(Default)]
-struct Node {
+struct YamlNode {
     key: Option<&'static Key>,
-    below: Vec<(&'static str, Node)>,
+    below: Vec<(&'static str, YamlNode)>,
 }
 
-impl Node {
+impl YamlNode {
     fn insert(&mut self, path: &'static str, key: &'static Key) {
         let (name, rest) = match path.split_once('.') {
             Some((name, rest)) => (name, Some(rest)),
@@ -44,7 +44,7 @@ impl Node {
         };
         let at = self.below.iter().position(|(other, _)| *other == name);
         let at = at.unwrap_or_else(|| {
-            self.below.push((name, Node::default()));
+            self.below.push((name, YamlNode::default()));
             self.below.len() - 1
         });
         let node = &mut self.below[at].1;
@@ -55,7 +55,7 @@ impl Node {
     }
 
     /// Names of the keys below that are needed so.
-    fn named(&self, wanted: impl Fn(&Need) -> bool) -> Vec<&'static str> {
+    fn named(&self, wanted: impl Fn(&KeyPresence) -> bool) -> Vec<&'static str> {
         let keys = self.below.iter().filter_map(|(name, node)| {
             let need = &node.key?.need;
             wanted(need).then_some(*name)
@@ -76,11 +76,11 @@ impl Node {
         let properties = properties.map(|(name, node)| ((*name).to_owned(), node.schema()));
         schema.insert("properties".into(), Value::Object(properties.collect()));
         schema.insert("additionalProperties".into(), false.into());
-        let required = self.named(|need| *need == Need::Required);
+        let required = self.named(|need| *need == KeyPresence::Required);
         if !required.is_empty() {
             schema.insert("required".into(), json!(required));
         }
-        let one_of = self.named(|need| *need == Need::OneOf);
+        let one_of = self.named(|need| *need == KeyPresence::OneOf);
         if !one_of.is_empty() {
             let each = one_of.iter().map(|name| json!({"required": [name]}));
             let each: Vec<Value> = each.collect();
@@ -97,7 +97,7 @@ impl Node {
     fn together(&self) -> Map<String, Value> {
         let mut pairs = Map::new();
         for (name, node) in &self.below {
-            if let Some(Need::Default(without)) = node.key.map(|key| key.need)
+            if let Some(KeyPresence::Default(without)) = node.key.map(|key| key.need)
                 && let Some(partner) = without.strip_prefix("goes with ")
             {
                 let partner = partner.trim_matches('`');
@@ -118,7 +118,7 @@ impl Node {
             other => Map::from_iter([("const".into(), other)]),
         };
         let mut description = format!("{} ({})", key.meaning, key.value);
-        if let Need::Default(without) = key.need {
+        if let KeyPresence::Default(without) = key.need {
             description.push_str(&format!(" Without it: {without}."));
             if let Some(value) = default(key, without) {
                 schema.insert("default".into(), value);
@@ -335,7 +335,7 @@ mod tests {
     #[test]
     fn every_value_of_the_table_has_a_form_of_its_own_or_a_dimension_with_a_unit() {
         for key in keys() {
-            let form = Node::default().form(key.value);
+            let form = YamlNode::default().form(key.value);
             let text = form.to_string();
             let quantity = form == quantity(1) || form == quantity(3);
             let dimensional = key.value.contains(", ");

@@ -7,7 +7,7 @@ use calcine_coupler::setup::Turbulence;
 use calcine_coupler::sight::ViewFactors;
 use thiserror::Error;
 
-use super::model::{Case, MeshSpec, Place};
+use super::model::{Case, MeshSpec, PlacementSpec};
 
 /// Bytes that coordinator and native gas hold per cell, and per frozen particle, about; measured as the growth of
 /// resident memory, rounded up: the heated bed on 14 700, 66 760 and 134 792 cells.
@@ -64,7 +64,7 @@ fn views(case: &Case) -> f64 {
     };
     let (ViewFactors::Rays { range, .. } | ViewFactors::Distance { range }) = radiation.sight;
     let solid = case.particles.iter().filter_map(|one| match one.place {
-        Place::Random { solid_fraction, .. } => Some(solid_fraction),
+        PlacementSpec::Random { solid_fraction, .. } => Some(solid_fraction),
         _ => None,
     });
     let solid = solid.reduce(f64::max);
@@ -124,8 +124,10 @@ fn particles(case: &Case) -> f64 {
     let populations = case.particles.iter().map(|population| {
         let diameter = population.sizes.mean().unwrap_or(f64::INFINITY);
         match &population.place {
-            Place::Grid { counts, .. } => counts.iter().map(|&count| count as f64).product(),
-            Place::Random {
+            PlacementSpec::Grid { counts, .. } => {
+                counts.iter().map(|&count| count as f64).product()
+            }
+            PlacementSpec::Random {
                 layer,
                 solid_fraction,
                 ..
@@ -133,7 +135,7 @@ fn particles(case: &Case) -> f64 {
                 let sphere = PI / 6.0 * diameter.powi(3);
                 section * (layer[1] - layer[0]) * solid_fraction / sphere
             }
-            Place::Regular { .. } | Place::File { .. } => 0.0,
+            PlacementSpec::Regular { .. } | PlacementSpec::File { .. } => 0.0,
         }
     });
     populations.sum()

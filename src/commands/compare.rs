@@ -7,7 +7,7 @@ use clap::Args;
 use super::execute::{self, Settings};
 use super::parallel::Transport;
 use super::{Failure, chain, read_and_prepare, results_folder, say};
-use crate::assembly::{Pairing, Starts};
+use crate::assembly::{Pairing, SolverStarts};
 use crate::exit;
 
 /// Runs several pairings of one case and says how far they differ against the case's bands.
@@ -66,7 +66,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         say(format_args!("{}:", pairing.name()));
         let settings = Settings {
             pairing,
-            starts: &Starts::of(&case),
+            starts: &SolverStarts::of(&case),
             transport: Transport::default(),
             out: &folder,
             resume: false,

@@ -18,12 +18,12 @@ use tracing::{error, info, warn};
 
 use super::parallel::{self, Transport};
 use super::{Failure, chain, origin, with_help};
-use crate::assembly::{self, Pairing, Prepared, Starts, assemble};
+use crate::assembly::{self, Pairing, PreparedCase, SolverStarts, assemble};
 use crate::case::buoyancy;
 use crate::case::model::Case;
 use crate::exit;
 use crate::progress::Progress;
-use crate::results::pace::Pace;
+use crate::results::pace::InertialNumberStatistics;
 use crate::results::{self, Recorder, ResultsError, RunInfo, Summary, Verdict};
 
 /// A file that every run makes and holds locked while it lives.
@@ -34,7 +34,7 @@ pub(super) struct Settings<'a> {
     /// Who computes what.
     pub(super) pairing: Pairing,
     /// How external solvers are started.
-    pub(super) starts: &'a Starts,
+    pub(super) starts: &'a SolverStarts,
     /// What carries their messages.
     pub(super) transport: Transport,
     /// The results folder.
@@ -60,7 +60,7 @@ pub(super) struct Done {
 /// Runs a case into its results folder.
 pub(super) fn execute(
     case: &Case,
-    prepared: &Prepared,
+    prepared: &PreparedCase,
     settings: &Settings<'_>,
 ) -> Result<Done, Failure> {
     let out = settings.out;
@@ -109,7 +109,7 @@ pub(super) fn execute(
     let _signals = SignalThread::start(&interrupts, settings.stop_after)?;
     let mut supervisor = Supervisor::new(case.coupling.deadline, interrupts);
     info!(case = %case.name, pairing = %settings.pairing.name(), resume, "start");
-    let assembly = assembly::Settings {
+    let assembly = assembly::RunSettings {
         pairing: settings.pairing,
         starts: settings.starts,
         results: out,
@@ -255,7 +255,11 @@ fn closing(summary: &Summary) -> String {
             summary.convergence.largest_residual
         );
     }
-    if let Some(words) = summary.pace.as_ref().and_then(Pace::warning) {
+    if let Some(words) = summary
+        .pace
+        .as_ref()
+        .and_then(InertialNumberStatistics::warning)
+    {
         let _ = writeln!(text, "  warning: {words}");
     }
     text.trim_end().to_owned()

@@ -24,7 +24,7 @@ use calcine_adapters::launch::find_program;
 use calcine_wire::SolverNetwork;
 use clap::{Parser, Subcommand};
 
-use crate::assembly::{AssemblyError, Prepared};
+use crate::assembly::{AssemblyError, PreparedCase};
 use crate::case::model::Case;
 use crate::exit;
 
@@ -109,9 +109,9 @@ fn read_case(path: &Path, set: &[String]) -> Result<Case, Failure> {
 }
 
 /// Reads a case and makes mesh and particles.
-fn read_and_prepare(path: &Path, set: &[String]) -> Result<(Case, Prepared), Failure> {
+fn read_and_prepare(path: &Path, set: &[String]) -> Result<(Case, PreparedCase), Failure> {
     let mut case = read_case(path, set)?;
-    let prepared = Prepared::new(&case)?;
+    let prepared = PreparedCase::new(&case)?;
     crate::case::settle(&mut case, &prepared.mesh);
     Ok((case, prepared))
 }

@@ -7,7 +7,7 @@ use calcine_wire::SolverNetwork;
 use clap::{Args, ValueEnum};
 
 use super::Failure;
-use crate::assembly::{GasBackend, Pairing, ParticleBackend, Start, Starts};
+use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStart, SolverStarts};
 use crate::exit;
 
 /// What carries messages between Calcine and external solvers.
@@ -65,9 +65,9 @@ impl Parallel {
     pub(super) fn starts(
         &self,
         pairing: Pairing,
-        case: &Starts,
+        case: &SolverStarts,
         network: Option<&Arc<dyn SolverNetwork>>,
-    ) -> Result<Starts, Failure> {
+    ) -> Result<SolverStarts, Failure> {
         let gas = pairing.gas == GasBackend::Openfoam;
         let particles = pairing.particles == ParticleBackend::Liggghts;
         for (option, given, taken, remedy) in [
@@ -118,16 +118,17 @@ impl Parallel {
                            --transport shared-memory";
             return Err(Failure::new(exit::CASE, message));
         }
-        let start = |ranks: Option<u16>, case: &Start, launcher: &Option<Launcher>| Start {
-            ranks: ranks.map_or(case.ranks, u32::from),
-            launcher: match (launcher, network) {
-                (Some(launcher), _) => launcher.clone(),
-                (None, Some(network)) => Launcher::Network(Spawner(Arc::clone(network))),
-                (None, None) if self.attach => Launcher::Hand,
-                (None, None) => Launcher::Mpirun,
-            },
-        };
-        Ok(Starts {
+        let start =
+            |ranks: Option<u16>, case: &SolverStart, launcher: &Option<Launcher>| SolverStart {
+                ranks: ranks.map_or(case.ranks, u32::from),
+                launcher: match (launcher, network) {
+                    (Some(launcher), _) => launcher.clone(),
+                    (None, Some(network)) => Launcher::Network(Spawner(Arc::clone(network))),
+                    (None, None) if self.attach => Launcher::Hand,
+                    (None, None) => Launcher::Mpirun,
+                },
+            };
+        Ok(SolverStarts {
             gas: start(self.ranks_gas, &case.gas, &self.launch_gas),
             particles: start(
                 self.ranks_particles,
@@ -139,7 +140,7 @@ impl Parallel {
 }
 
 /// The options that a run was started with, as a user would type them to go on.
-pub(super) fn flags(starts: &Starts) -> String {
+pub(super) fn flags(starts: &SolverStarts) -> String {
     let mut text = String::new();
     for (name, start) in [("gas", &starts.gas), ("particles", &starts.particles)] {
         if start.ranks > 1 {
@@ -153,7 +154,7 @@ pub(super) fn flags(starts: &Starts) -> String {
     if both.iter().any(|start| start.launcher == Launcher::Hand) {
         text.push_str(" --attach");
     }
-    let spawned = |start: &&&Start| matches!(start.launcher, Launcher::Network(_));
+    let spawned = |start: &&&SolverStart| matches!(start.launcher, Launcher::Network(_));
     if both.iter().any(|start| spawned(&start)) {
         text.push_str(" --transport mpi");
     }
@@ -171,12 +172,12 @@ mod tests {
         parallel: Parallel,
     }
 
-    fn starts(words: &[&str], pairing: &str) -> Result<Starts, String> {
+    fn starts(words: &[&str], pairing: &str) -> Result<SolverStarts, String> {
         let words = ["calcine"].iter().chain(words);
         let line = Line::try_parse_from(words).map_err(|error| error.to_string())?;
         let pairing = Pairing::parse(pairing).unwrap();
         line.parallel
-            .starts(pairing, &Starts::default(), None)
+            .starts(pairing, &SolverStarts::default(), None)
             .map_err(|failure| failure.message)
     }
 

@@ -10,7 +10,7 @@ use clap::Args;
 use super::execute::{self, Settings};
 use super::parallel::{Parallel, Transport};
 use super::{Failure, read_and_prepare, results_folder, say};
-use crate::assembly::{GasBackend, Pairing, ParticleBackend, Starts};
+use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStarts};
 use crate::exit;
 
 /// Runs a case, natively or with production solvers.
@@ -74,7 +74,7 @@ pub(super) fn run(
         pairing,
         starts: &arguments
             .parallel
-            .starts(pairing, &Starts::of(&case), network)?,
+            .starts(pairing, &SolverStarts::of(&case), network)?,
         transport: arguments.parallel.transport(),
         out: &out,
         resume: arguments.resume,

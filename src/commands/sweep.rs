@@ -8,7 +8,7 @@ use clap::Args;
 use super::execute::{self, Settings};
 use super::parallel::Transport;
 use super::{Failure, chain, read_and_prepare, read_case, results_folder, say};
-use crate::assembly::{GasBackend, Pairing, ParticleBackend, Starts};
+use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStarts};
 use crate::compare::deviation::{Deviation, deviation};
 use crate::exit;
 use crate::results::Summary;
@@ -99,7 +99,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
 fn one(arguments: &Arguments, settings: &[String], folder: &Path) -> Result<(), Failure> {
     let (case, prepared) = read_and_prepare(&arguments.case, settings)?;
     let settings = Settings {
-        starts: &Starts::of(&case),
+        starts: &SolverStarts::of(&case),
         transport: Transport::default(),
         pairing: Pairing {
             gas: arguments.gas,

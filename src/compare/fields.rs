@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::quantities::{common_times, exceeds, words};
 use super::{Agreement, CompareError, Source, common};
-use crate::case::model::{Band, Case, Measure};
+use crate::case::model::{Case, Measure, ToleranceBand};
 use crate::report::plot::between;
 use crate::results::read::{self, Arrays};
 
@@ -191,7 +191,9 @@ fn single_particle_band(case: &Case) -> Option<f64> {
         case.quantities
             .iter()
             .filter_map(|quantity| match (&quantity.measure, quantity.agree) {
-                (Measure::Particle { .. }, Some(Band::Absolute(distance))) => Some(distance),
+                (Measure::Particle { .. }, Some(ToleranceBand::Absolute(distance))) => {
+                    Some(distance)
+                }
                 _ => None,
             });
     bands.reduce(f64::min)
@@ -201,7 +203,7 @@ fn judged(mut field: FieldDifference, band: Option<f64>) -> FieldDifference {
     let worst = field.worst().map_or(0.0, |pair| pair.maximum);
     field.verdict =
         Agreement::of(band.map(|allowed| if worst == 0.0 { 0.0 } else { worst / allowed }));
-    field.band = band.map(|allowed| words(Band::Absolute(allowed), &field.unit));
+    field.band = band.map(|allowed| words(ToleranceBand::Absolute(allowed), &field.unit));
     field
 }
 

@@ -102,7 +102,7 @@ impl Agreement {
 
 /// One run among those compared.
 #[derive(Clone, Debug, Serialize)]
-pub struct Run {
+pub struct ComparedRun {
     /// Name of the pairing.
     pub name: String,
     /// Process time reached in s.
@@ -125,7 +125,7 @@ pub struct Comparison {
     /// Title of the case.
     pub title: String,
     /// The runs, in the order given.
-    pub runs: Vec<Run>,
+    pub runs: Vec<ComparedRun>,
     /// Differences of the quantities of interest.
     pub quantities: Vec<QuantityDifference>,
     /// Differences of the fields.
@@ -155,7 +155,7 @@ pub fn compare(case: &Case, runs: &[(String, PathBuf)]) -> Result<Comparison, Co
         .collect::<Result<Vec<_>, _>>()?;
     let quantities = quantities::differences(case, &sources);
     let fields = fields::differences(case, &sources)?;
-    let listed: Vec<Run> = sources.iter().map(|source| run(case, source)).collect();
+    let listed: Vec<ComparedRun> = sources.iter().map(|source| run(case, source)).collect();
     let bands = quantities.iter().map(|quantity| quantity.verdict);
     let bands = bands.chain(fields.iter().map(|field| field.verdict));
     let agrees = listed.iter().all(|run| run.complete)
@@ -207,12 +207,12 @@ fn open(case: &Case, name: &str, directory: &Path) -> Result<Source, CompareErro
     })
 }
 
-fn run(case: &Case, source: &Source) -> Run {
+fn run(case: &Case, source: &Source) -> ComparedRun {
     let lines = ["mass", "energy"].map(|name| {
         let line = source.summary.ledger.lines.get(name);
         line.map_or(f64::NAN, |line| line.relative_error)
     });
-    Run {
+    ComparedRun {
         name: source.name.clone(),
         process_time_s: source.summary.process_time_s,
         wall_time_s: source.summary.wall_time_s.total,

@@ -236,7 +236,7 @@ fn overlay(comparison: &Comparison, title: &str, columns: &[&str]) -> String {
 }
 
 fn wall(comparison: &Comparison) -> String {
-    let bar = |run: &super::Run| {
+    let bar = |run: &super::ComparedRun| {
         let text = format!(
             "{} · ledger {}",
             span(run.wall_time_s),

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{Agreement, Source};
-use crate::case::model::{Band, Case, Quantity};
+use crate::case::model::{Case, Quantity, ToleranceBand};
 use crate::report::number::{figure, span, with_unit};
 use crate::report::plot::between;
 use crate::results::quantities::allowance;
@@ -166,10 +166,10 @@ pub(super) fn extremes(values: &[f64]) -> (f64, f64) {
 }
 
 /// A band in words.
-pub(super) fn words(band: Band, unit: &str) -> String {
+pub(super) fn words(band: ToleranceBand, unit: &str) -> String {
     match band {
-        Band::Relative(share) => format!("{} %", figure(100.0 * share, 3)),
-        Band::Absolute(distance) => with_unit(distance, 3, unit),
+        ToleranceBand::Relative(share) => format!("{} %", figure(100.0 * share, 3)),
+        ToleranceBand::Absolute(distance) => with_unit(distance, 3, unit),
     }
 }
 
@@ -179,12 +179,12 @@ mod tests {
 
     #[test]
     fn bands_read_as_other_numbers_do() {
-        assert_eq!(words(Band::Relative(0.07), "K"), "7 %");
+        assert_eq!(words(ToleranceBand::Relative(0.07), "K"), "7 %");
         assert_eq!(
-            words(Band::Absolute(1.5f64.to_radians()), "rad"),
+            words(ToleranceBand::Absolute(1.5f64.to_radians()), "rad"),
             "0.0262 rad"
         );
-        assert_eq!(words(Band::Absolute(0.01), "1"), "0.01");
+        assert_eq!(words(ToleranceBand::Absolute(0.01), "1"), "0.01");
     }
 
     #[test]

@@ -4,10 +4,10 @@ use calcine_coupler::physics::kinetics::{Broadening, Collider, RateConstant, Rea
 use calcine_coupler::physics::reaction::{Arrhenius, Equation};
 use calcine_coupler::physics::thermo::{Element, LennardJones, Nasa7};
 
-use super::equation::{self, Body};
-use super::units::{self, Units};
-use super::yaml::{self, Node, Value};
-use super::{Fault, MechanismFile, Stated, Thermo, fault};
+use super::equation::{self, ThirdBody};
+use super::units::{self, MechanismUnits};
+use super::yaml::{self, YamlNode, YamlValue};
+use super::{Fault, MechanismFile, ParsedReaction, Thermo, fault};
 
 /// Keys of every reaction that are read.
 const REACTION: &[&str] = &[
@@ -34,7 +34,7 @@ pub fn parse(text: &str) -> Result<MechanismFile, Fault> {
     root.map("the file")?;
     let units = match root.get("units") {
         Some(node) => self::units(node)?,
-        None => Units::CANTERA,
+        None => MechanismUnits::CANTERA,
     };
     let mut file = MechanismFile {
         thermo: species(&root)?,
@@ -58,7 +58,7 @@ pub fn parse_species(text: &str) -> Result<Vec<Thermo>, Fault> {
     species(&root)
 }
 
-fn species(root: &Node) -> Result<Vec<Thermo>, Fault> {
+fn species(root: &YamlNode) -> Result<Vec<Thermo>, Fault> {
     let Some(species) = root.get("species") else {
         return Ok(Vec::new());
     };
@@ -66,8 +66,8 @@ fn species(root: &Node) -> Result<Vec<Thermo>, Fault> {
     all.filter_map(|node| thermo(node).transpose()).collect()
 }
 
-fn units(node: &Node) -> Result<Units, Fault> {
-    let mut made = Units::CANTERA;
+fn units(node: &YamlNode) -> Result<MechanismUnits, Fault> {
+    let mut made = MechanismUnits::CANTERA;
     let mut energy = None;
     for (key, value) in node.map("units")? {
         let name = value.text(key)?;
@@ -103,7 +103,7 @@ fn units(node: &Node) -> Result<Units, Fault> {
 }
 
 /// Thermodynamics of a species; `None` where it has elements that Calcine does not have.
-fn thermo(node: &Node) -> Result<Option<Thermo>, Fault> {
+fn thermo(node: &YamlNode) -> Result<Option<Thermo>, Fault> {
     let name = node.required("name", "a species")?.text("name")?.to_owned();
     let mut atoms = [0.0; Element::COUNT];
     for (symbol, count) in node
@@ -170,7 +170,7 @@ fn thermo(node: &Node) -> Result<Option<Thermo>, Fault> {
 }
 
 /// Transport data of a species, σ in Å and ε/k in K as Cantera has them.
-fn potential(species: &Node) -> Result<Option<LennardJones>, Fault> {
+fn potential(species: &YamlNode) -> Result<Option<LennardJones>, Fault> {
     let Some(transport) = species.get("transport") else {
         return Ok(None);
     };
@@ -191,7 +191,7 @@ fn potential(species: &Node) -> Result<Option<LennardJones>, Fault> {
 }
 
 /// A pressure such as `1 bar` in Pa.
-fn pressure(node: &Node) -> Result<f64, Fault> {
+fn pressure(node: &YamlNode) -> Result<f64, Fault> {
     let text = node.text("reference-pressure")?;
     let (number, unit) = text.split_once(' ').unwrap_or((text, "Pa"));
     let unit = match unit.trim() {
@@ -215,7 +215,7 @@ fn pressure(node: &Node) -> Result<f64, Fault> {
     }
 }
 
-fn reaction(node: &Node, units: &Units) -> Result<Stated, Fault> {
+fn reaction(node: &YamlNode, units: &MechanismUnits) -> Result<ParsedReaction, Fault> {
     let stated = node.required("equation", "a reaction")?;
     let text = stated.text("equation")?;
     let name = text.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -229,14 +229,14 @@ fn reaction(node: &Node, units: &Units) -> Result<Stated, Fault> {
         );
     }
     let (equation, body) = equation::parse(text).map_err(|what| (Some(stated.line), what))?;
-    let falloff = matches!(body, Body::Falloff(_));
+    let falloff = matches!(body, ThirdBody::Falloff(_));
     if (kind == "falloff") != falloff {
         return fault(
             node.line,
             format!("{name} is a falloff in one of its type and equation only"),
         );
     }
-    if kind == "three-body" && body != Body::Three {
+    if kind == "three-body" && body != ThirdBody::Three {
         return fault(
             node.line,
             format!("{name} is a three-body reaction without M"),
@@ -273,7 +273,7 @@ fn reaction(node: &Node, units: &Units) -> Result<Stated, Fault> {
     let duplicate = node
         .get("duplicate")
         .map_or(Ok(false), |node| node.truth("duplicate"))?;
-    Ok(Stated {
+    Ok(ParsedReaction {
         statement: ReactionStatement {
             name,
             equation,
@@ -287,7 +287,7 @@ fn reaction(node: &Node, units: &Units) -> Result<Stated, Fault> {
 }
 
 /// Orders that the file states.
-fn orders(node: &Node, equation: &Equation, name: &str) -> Result<Vec<(String, f64)>, Fault> {
+fn orders(node: &YamlNode, equation: &Equation, name: &str) -> Result<Vec<(String, f64)>, Fault> {
     let Some(table) = node.get("orders") else {
         return Ok(Vec::new());
     };
@@ -317,18 +317,23 @@ fn orders(node: &Node, equation: &Equation, name: &str) -> Result<Vec<(String, f
     Ok(stated)
 }
 
-fn arrhenius(node: &Node, units: &Units, order: f64, name: &str) -> Result<Arrhenius, Fault> {
+fn arrhenius(
+    node: &YamlNode,
+    units: &MechanismUnits,
+    order: f64,
+    name: &str,
+) -> Result<Arrhenius, Fault> {
     let (factor, exponent, energy) = match &node.value {
-        Value::Map(_) => {
+        YamlValue::Map(_) => {
             node.only(&["A", "b", "Ea"], name)?;
             let of = |key| node.required(key, name);
             (of("A")?, of("b")?, of("Ea")?)
         }
-        Value::List(list) => match &list[..] {
+        YamlValue::List(list) => match &list[..] {
             [factor, exponent, energy] => (factor, exponent, energy),
             _ => return fault(node.line, format!("{name} has not three numbers A, b, Ea")),
         },
-        Value::Text(_) => return fault(node.line, format!("{name} has no rate constant")),
+        YamlValue::Text(_) => return fault(node.line, format!("{name} has no rate constant")),
     };
     Ok(Arrhenius {
         factor: units.factor(factor.number("A")?, order),
@@ -338,7 +343,7 @@ fn arrhenius(node: &Node, units: &Units, order: f64, name: &str) -> Result<Arrhe
 }
 
 /// A number in the units of the file, or one with its own unit.
-fn activation_energy(node: &Node, units: &Units) -> Result<f64, Fault> {
+fn activation_energy(node: &YamlNode, units: &MechanismUnits) -> Result<f64, Fault> {
     let text = node.text("Ea")?;
     let Some((number, unit)) = text.trim().split_once(' ') else {
         return Ok(node.number("Ea")? * units.activation_energy);
@@ -352,7 +357,7 @@ fn activation_energy(node: &Node, units: &Units) -> Result<f64, Fault> {
     }
 }
 
-fn broadening(node: &Node) -> Result<Broadening, Fault> {
+fn broadening(node: &YamlNode) -> Result<Broadening, Fault> {
     let Some(troe) = node.get("Troe") else {
         return Ok(Broadening::Lindemann);
     };
@@ -362,7 +367,7 @@ fn broadening(node: &Node) -> Result<Broadening, Fault> {
     Ok(super::troe([of("A")?, of("T3")?, of("T1")?], second))
 }
 
-fn collider(node: &Node, body: Body, name: &str) -> Result<Option<Collider>, Fault> {
+fn collider(node: &YamlNode, body: ThirdBody, name: &str) -> Result<Option<Collider>, Fault> {
     let stated = node.get("efficiencies");
     let others = node.get("default-efficiency");
     let line = stated.or(others).unwrap_or(node).line;

@@ -3,9 +3,9 @@
 use calcine_coupler::physics::kinetics::{Broadening, RateConstant, ReactionStatement};
 use calcine_coupler::physics::reaction::{Arrhenius, Equation};
 
-use super::equation::{self, Body};
-use super::units::{self, Units};
-use super::{Fault, MechanismFile, Stated, chemkin_thermo, fault};
+use super::equation::{self, ThirdBody};
+use super::units::{self, MechanismUnits};
+use super::{Fault, MechanismFile, ParsedReaction, chemkin_thermo, fault};
 
 /// Words after a reaction that are known and not read.
 const REFUSED: &[&str] = &[
@@ -27,7 +27,7 @@ enum Section {
 pub fn parse(text: &str) -> Result<MechanismFile, Fault> {
     let mut file = MechanismFile::default();
     let mut section = Section::None;
-    let mut units = Units::CHEMKIN;
+    let mut units = MechanismUnits::CHEMKIN;
     let mut thermo = (0, String::new());
     let mut drafts: Vec<Draft> = Vec::new();
     for (k, whole) in text.lines().enumerate() {
@@ -82,8 +82,8 @@ pub fn parse(text: &str) -> Result<MechanismFile, Fault> {
 }
 
 /// Units behind REACTIONS.
-fn units<'w>(words: impl Iterator<Item = &'w str>, line: usize) -> Result<Units, Fault> {
-    let mut made = Units::CHEMKIN;
+fn units<'w>(words: impl Iterator<Item = &'w str>, line: usize) -> Result<MechanismUnits, Fault> {
+    let mut made = MechanismUnits::CHEMKIN;
     for word in words {
         if let Some(unit) = units::activation_energy(word) {
             made.activation_energy = unit;
@@ -101,7 +101,7 @@ struct Draft {
     name: String,
     line: usize,
     equation: Equation,
-    body: Body,
+    body: ThirdBody,
     rate: [f64; 3],
     low: Option<[f64; 3]>,
     troe: Option<Vec<f64>>,
@@ -215,7 +215,7 @@ fn auxiliary(draft: &mut Draft, bare: &str, line: usize) -> Result<(), Fault> {
 }
 
 impl Draft {
-    fn finish(self, units: &Units) -> Result<Stated, Fault> {
+    fn finish(self, units: &MechanismUnits) -> Result<ParsedReaction, Fault> {
         let refuse = |what: &str| fault(self.line, format!("{} {what}", self.name));
         if !self.orders.is_empty() && self.equation.reversible {
             return refuse("goes both ways and has FORD, whose way back is not defined");
@@ -228,12 +228,12 @@ impl Draft {
             activation_energy: energy * units.activation_energy,
         };
         let rate = match (&self.body, self.low, &self.troe) {
-            (Body::Falloff(_), Some(low), troe) => RateConstant::Falloff {
+            (ThirdBody::Falloff(_), Some(low), troe) => RateConstant::Falloff {
                 high: law(self.rate, order),
                 low: law(low, order + 1.0),
                 broadening: self.broadening(troe.as_deref())?,
             },
-            (Body::Falloff(_), None, _) => return refuse("has (+M) but no LOW"),
+            (ThirdBody::Falloff(_), None, _) => return refuse("has (+M) but no LOW"),
             (_, Some(_), _) => return refuse("has LOW but no (+M)"),
             (_, None, Some(_)) => return refuse("has TROE but no (+M)"),
             (_, None, None) => RateConstant::Arrhenius(law(self.rate, order + self.body.bodies())),
@@ -244,7 +244,7 @@ impl Draft {
         let collider = self.body.collider(self.efficiencies, None);
         let collider =
             collider.map_err(|what| (Some(self.line), format!("{} {what}", self.name)))?;
-        Ok(Stated {
+        Ok(ParsedReaction {
             statement: ReactionStatement {
                 name: self.name,
                 equation: self.equation,

@@ -5,7 +5,7 @@ use calcine_coupler::physics::reaction::Equation;
 
 /// The third body of an equation.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Body {
+pub enum ThirdBody {
     /// None.
     None,
     /// `+ M`: the rate is proportional to it.
@@ -14,7 +14,7 @@ pub enum Body {
     Falloff(Option<String>),
 }
 
-impl Body {
+impl ThirdBody {
     /// What it adds to the order of the rate constant.
     pub fn bodies(&self) -> f64 {
         match self {
@@ -63,7 +63,7 @@ pub fn with_orders(equation: &Equation, stated: &[(String, f64)]) -> Vec<(String
 }
 
 /// Reads `CH4+0.5O2=>CO+2H2`, `2 O + M <=> O2 + M`, `H+CH3(+M)=CH4(+M)`; `=` goes both ways.
-pub fn parse(text: &str) -> Result<(Equation, Body), String> {
+pub fn parse(text: &str) -> Result<(Equation, ThirdBody), String> {
     let bare: String = text.chars().filter(|c| !c.is_whitespace()).collect();
     let arrow = ["<=>", "=>", "="]
         .into_iter()
@@ -87,14 +87,14 @@ pub fn parse(text: &str) -> Result<(Equation, Body), String> {
 }
 
 /// A side without its third body.
-fn side(text: &str) -> (String, Body) {
-    let mut body = Body::None;
+fn side(text: &str) -> (String, ThirdBody) {
+    let mut body = ThirdBody::None;
     let mut rest = text.to_owned();
     if let Some(start) = text.find("(+")
         && let Some(length) = text[start..].find(')')
     {
         let name = &text[start + 2..start + length];
-        body = Body::Falloff((!name.eq_ignore_ascii_case("m")).then(|| name.to_owned()));
+        body = ThirdBody::Falloff((!name.eq_ignore_ascii_case("m")).then(|| name.to_owned()));
         rest.replace_range(start..=start + length, "");
     }
     let mut terms: Vec<&str> = rest.split('+').collect();
@@ -102,7 +102,7 @@ fn side(text: &str) -> (String, Body) {
         && terms.len() > 1
     {
         terms.remove(k);
-        body = Body::Three;
+        body = ThirdBody::Three;
     }
     (terms.join(" + "), body)
 }
@@ -114,14 +114,14 @@ mod tests {
     #[test]
     fn third_bodies_are_taken_out_and_equal_species_added() {
         let (equation, body) = parse("H + H + M <=> H2 + M").unwrap();
-        assert_eq!((equation.left[0].0, body), (2.0, Body::Three));
+        assert_eq!((equation.left[0].0, body), (2.0, ThirdBody::Three));
         let (equation, body) = parse("CH3+H(+M)=CH4(+M)").unwrap();
         assert!(equation.reversible && equation.right == [(1.0, "CH4".into())]);
-        assert_eq!(body, Body::Falloff(None));
+        assert_eq!(body, ThirdBody::Falloff(None));
         let (_, body) = parse("CO + O (+ H2O) => CO2 (+ H2O)").unwrap();
-        assert_eq!(body, Body::Falloff(Some("H2O".into())));
+        assert_eq!(body, ThirdBody::Falloff(Some("H2O".into())));
         let (equation, body) = parse("CH4+.5O2=>CO+2H2").unwrap();
-        assert_eq!((equation.left[1].0, body), (0.5, Body::None));
+        assert_eq!((equation.left[1].0, body), (0.5, ThirdBody::None));
     }
 
     #[test]

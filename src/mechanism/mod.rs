@@ -16,7 +16,7 @@ use thiserror::Error;
 
 /// A reaction of a file.
 #[derive(Clone, Debug)]
-pub struct Stated {
+pub struct ParsedReaction {
     /// The reaction.
     pub statement: ReactionStatement,
     /// Its line.
@@ -46,7 +46,7 @@ pub struct MechanismFile {
     /// Where it stands.
     pub path: PathBuf,
     /// Its reactions.
-    pub reactions: Vec<Stated>,
+    pub reactions: Vec<ParsedReaction>,
     /// Species with their thermodynamics; those with elements that Calcine does not have are left out.
     pub thermo: Vec<Thermo>,
     /// Where the thermodynamics stand, if in a file of their own.
@@ -184,7 +184,7 @@ fn alone(collider: &Collider) -> Option<&str> {
 }
 
 /// Two reactions of one equation must both say so: else one is a slip.
-fn repeated(reactions: &[Stated]) -> Result<(), Fault> {
+fn repeated(reactions: &[ParsedReaction]) -> Result<(), Fault> {
     let all: Vec<_> = reactions
         .iter()
         .map(|one| Identity::of(&one.statement))

@@ -11,7 +11,7 @@ const ELECTRON_VOLT: f64 = 1.602_176_634e-19;
 
 /// Units in which a mechanism writes its rate constants, as what one of each is in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Units {
+pub struct MechanismUnits {
     /// Length in m.
     pub length: f64,
     /// Time in s.
@@ -22,7 +22,7 @@ pub struct Units {
     pub activation_energy: f64,
 }
 
-impl Units {
+impl MechanismUnits {
     /// Cantera's where a file does not say: m, s, kmol, J/kmol.
     pub const CANTERA: Self = Self {
         length: 1.0,
@@ -99,12 +99,12 @@ mod tests {
 
     #[test]
     fn a_factor_of_second_order_in_cm3_per_mol_is_a_millionth_in_m3() {
-        assert!((Units::CHEMKIN.factor(3e13, 2.0) / 3e7 - 1.0).abs() < 1e-14);
-        assert!((Units::CANTERA.factor(3e8, 2.0) / 3e5 - 1.0).abs() < 1e-14);
-        assert_eq!(Units::CHEMKIN.factor(7.0, 1.0), 7.0);
-        let molecules = Units {
+        assert!((MechanismUnits::CHEMKIN.factor(3e13, 2.0) / 3e7 - 1.0).abs() < 1e-14);
+        assert!((MechanismUnits::CANTERA.factor(3e8, 2.0) / 3e5 - 1.0).abs() < 1e-14);
+        assert_eq!(MechanismUnits::CHEMKIN.factor(7.0, 1.0), 7.0);
+        let molecules = MechanismUnits {
             quantity: quantity("molec").unwrap_or(0.0),
-            ..Units::CHEMKIN
+            ..MechanismUnits::CHEMKIN
         };
         // 1e-11 cm³/molecule/s: 6.022e12 cm³/mol/s.
         assert!((molecules.factor(1e-11, 2.0) / 6.022_140_76e6 - 1.0).abs() < 1e-12);

@@ -9,32 +9,32 @@ const DEEPEST: usize = 32;
 
 /// A node.
 #[derive(Clone, Debug)]
-pub struct Node {
+pub struct YamlNode {
     /// Its line, from one.
     pub line: usize,
     /// What it is.
-    pub value: Value,
+    pub value: YamlValue,
 }
 
 /// What a node is.
 #[derive(Clone, Debug)]
-pub enum Value {
+pub enum YamlValue {
     /// A text, a number, true or false.
     Text(String),
     /// A list.
-    List(Vec<Node>),
+    List(Vec<YamlNode>),
     /// Keys with their values, in the order of the file.
-    Map(Vec<(String, Node)>),
+    Map(Vec<(String, YamlNode)>),
 }
 
 /// What is being read.
 enum Open {
-    List(Vec<Node>),
-    Map(Vec<(String, Node)>, Option<String>),
+    List(Vec<YamlNode>),
+    Map(Vec<(String, YamlNode)>, Option<String>),
 }
 
 /// Reads the first document of a text.
-pub fn parse(text: &str) -> Result<Node, Fault> {
+pub fn parse(text: &str) -> Result<YamlNode, Fault> {
     let mut open: Vec<(usize, Open)> = Vec::new();
     for event in Parser::new_from_str(text) {
         let (event, span) = event.map_err(|error| {
@@ -46,9 +46,9 @@ pub fn parse(text: &str) -> Result<Node, Fault> {
             return fault(line, format!("is nested more than {DEEPEST} times"));
         }
         let done = match event {
-            Event::Scalar(text, ..) => Node {
+            Event::Scalar(text, ..) => YamlNode {
                 line,
-                value: Value::Text(text.into_owned()),
+                value: YamlValue::Text(text.into_owned()),
             },
             Event::SequenceStart(..) => {
                 open.push((line, Open::List(Vec::new())));
@@ -59,13 +59,13 @@ pub fn parse(text: &str) -> Result<Node, Fault> {
                 continue;
             }
             Event::SequenceEnd | Event::MappingEnd => match open.pop() {
-                Some((line, Open::List(list))) => Node {
+                Some((line, Open::List(list))) => YamlNode {
                     line,
-                    value: Value::List(list),
+                    value: YamlValue::List(list),
                 },
-                Some((line, Open::Map(map, _))) => Node {
+                Some((line, Open::Map(map, _))) => YamlNode {
                     line,
-                    value: Value::Map(map),
+                    value: YamlValue::Map(map),
                 },
                 None => continue,
             },
@@ -78,10 +78,10 @@ pub fn parse(text: &str) -> Result<Node, Fault> {
             Some((_, Open::Map(map, key))) => match key.take() {
                 Some(name) => map.push((name, done)),
                 None => match done.value {
-                    Value::Text(name) if map.iter().any(|(other, _)| *other == name) => {
+                    YamlValue::Text(name) if map.iter().any(|(other, _)| *other == name) => {
                         return fault(line, format!("the key {name} stands twice"));
                     }
-                    Value::Text(name) => *key = Some(name),
+                    YamlValue::Text(name) => *key = Some(name),
                     _ => return fault(line, "a key that is no text"),
                 },
             },
@@ -90,19 +90,19 @@ pub fn parse(text: &str) -> Result<Node, Fault> {
     Err((None, "has no content".into()))
 }
 
-impl Node {
+impl YamlNode {
     /// Its keys.
-    pub fn map(&self, what: &str) -> Result<&[(String, Node)], Fault> {
+    pub fn map(&self, what: &str) -> Result<&[(String, YamlNode)], Fault> {
         match &self.value {
-            Value::Map(map) => Ok(map),
+            YamlValue::Map(map) => Ok(map),
             _ => fault(self.line, format!("{what} is no table of keys")),
         }
     }
 
     /// Its entries.
-    pub fn list(&self, what: &str) -> Result<&[Node], Fault> {
+    pub fn list(&self, what: &str) -> Result<&[YamlNode], Fault> {
         match &self.value {
-            Value::List(list) => Ok(list),
+            YamlValue::List(list) => Ok(list),
             _ => fault(self.line, format!("{what} is no list")),
         }
     }
@@ -110,7 +110,7 @@ impl Node {
     /// Its text.
     pub fn text(&self, what: &str) -> Result<&str, Fault> {
         match &self.value {
-            Value::Text(text) => Ok(text),
+            YamlValue::Text(text) => Ok(text),
             _ => fault(self.line, format!("{what} is no text")),
         }
     }
@@ -140,9 +140,9 @@ impl Node {
     }
 
     /// The value of a key.
-    pub fn get(&self, key: &str) -> Option<&Node> {
+    pub fn get(&self, key: &str) -> Option<&YamlNode> {
         match &self.value {
-            Value::Map(map) => map
+            YamlValue::Map(map) => map
                 .iter()
                 .find(|(name, _)| name == key)
                 .map(|(_, node)| node),
@@ -151,7 +151,7 @@ impl Node {
     }
 
     /// The value of a key that must be there.
-    pub fn required(&self, key: &str, what: &str) -> Result<&Node, Fault> {
+    pub fn required(&self, key: &str, what: &str) -> Result<&YamlNode, Fault> {
         match self.get(key) {
             Some(node) => Ok(node),
             None => fault(self.line, format!("{what} has no {key}")),

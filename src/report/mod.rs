@@ -18,7 +18,7 @@ use self::number::{figure, span, with_unit};
 use self::page::{Page, badge, bars, escape, table, tiles};
 use self::plot::{Curve, Plot, Stroke};
 use crate::results::read::Series;
-use crate::results::summary::{QuantityResult, Solver};
+use crate::results::summary::{QuantityResult, SolverSummary};
 use crate::results::{CASE, ResultsError, Summary, files};
 
 /// Name of the page in a result directory.
@@ -337,7 +337,7 @@ fn residuals(series: &Series) -> String {
 }
 
 fn provenance(summary: &Summary) -> String {
-    let solver = |solver: &Solver, backend: &str| {
+    let solver = |solver: &SolverSummary, backend: &str| {
         let ranks = if solver.ranks == 1 { "rank" } else { "ranks" };
         format!(
             "{} {} ({}), {} {ranks}",

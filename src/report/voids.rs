@@ -5,11 +5,11 @@ use std::path::Path;
 use super::colour;
 use super::plot::{Curve, Plot, Stroke};
 use crate::results::ResultsError;
-use crate::results::voids::{Profile, Voids};
+use crate::results::voids::{VoidProfile, VoidProfiles};
 
 /// Both profiles; empty where the results have none.
 pub(super) fn render(directory: &Path) -> Result<String, ResultsError> {
-    let Some(voids) = Voids::read(directory)? else {
+    let Some(voids) = VoidProfiles::read(directory)? else {
         return Ok(String::new());
     };
     let plots = [
@@ -30,7 +30,7 @@ pub(super) fn render(directory: &Path) -> Result<String, ResultsError> {
     Ok(format!("<div class=\"plots\">{plots}</div>"))
 }
 
-fn plot(what: &str, x_label: &str, profile: &Profile) -> String {
+fn plot(what: &str, x_label: &str, profile: &VoidProfile) -> String {
     let curve = Curve {
         label: String::new(),
         colour: colour::line(0),

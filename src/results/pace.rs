@@ -62,7 +62,7 @@ fn cross_section(mesh: &Mesh, up: Vec3) -> f64 {
 
 /// The inertial number over the rows of the series.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Pace {
+pub struct InertialNumberStatistics {
     /// Rows with a window behind them.
     pub rows: u64,
     /// Mean.
@@ -73,7 +73,7 @@ pub struct Pace {
     pub inertial_number_largest: f64,
 }
 
-impl Pace {
+impl InertialNumberStatistics {
     /// Adds a row.
     pub(super) fn add(&mut self, number: f64) {
         self.rows += 1;
@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn mean_and_largest_are_over_the_rows_and_a_fast_bed_is_warned_of() {
-        let mut pace = Pace::default();
+        let mut pace = InertialNumberStatistics::default();
         for number in [1e-3, 4e-3, 1e-3] {
             pace.add(number);
         }

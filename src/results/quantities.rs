@@ -9,14 +9,14 @@ use super::ResultsError;
 use super::probe::Site;
 use super::summary::{QuantityResult, Verdict};
 use crate::case::model::{
-    Band, Case, Expect, GasPlace, Measure, ParticlePlace, Quantity, Statistic, belongs,
+    Case, Expect, GasPlace, Measure, ParticlePlace, Quantity, Statistic, ToleranceBand, belongs,
 };
 
 /// The largest distance from a value that a band allows, in the value's unit.
-pub fn allowance(band: Band, value: f64) -> f64 {
+pub fn allowance(band: ToleranceBand, value: f64) -> f64 {
     match band {
-        Band::Relative(share) => share * value.abs(),
-        Band::Absolute(distance) => distance,
+        ToleranceBand::Relative(share) => share * value.abs(),
+        ToleranceBand::Absolute(distance) => distance,
     }
 }
 

@@ -15,8 +15,8 @@ use super::series::{self, Row, TRACKED_PARTICLES, Table};
 use super::status::{Status, Watch};
 use super::store::Store;
 use super::summary::{
-    Backends, CaseName, Ledger, LedgerLine, ProcessorTimes, Provenance, Solver, Solvers, Summary,
-    Verdict, WallTimes,
+    Backends, CaseName, LedgerLineSummary, LedgerSummary, ProcessorTimes, Provenance,
+    SolverSummaries, SolverSummary, Summary, Verdict, WallTimes,
 };
 use super::vtk::{self, Cells};
 use super::{CASE, ResultsError, STORE, SUMMARY, files, pace, snapshot, voids};
@@ -376,7 +376,7 @@ impl Recorder {
                 gas: self.info.gas.clone(),
                 particles: self.info.particles.clone(),
             },
-            solver: Solvers {
+            solver: SolverSummaries {
                 gas: solver(moment.about[0]),
                 particles: solver(moment.about[1]),
             },
@@ -392,7 +392,7 @@ impl Recorder {
             windows: moment.windows,
             particles: moment.particles.len(),
             cells: moment.mesh.cells(),
-            ledger: Ledger {
+            ledger: LedgerSummary {
                 lines: moment
                     .ledger
                     .lines()
@@ -467,16 +467,16 @@ fn status_of(summary: &Summary) -> Status {
     }
 }
 
-fn solver(about: &SolverInfo) -> Solver {
-    Solver {
+fn solver(about: &SolverInfo) -> SolverSummary {
+    SolverSummary {
         name: about.name.clone(),
         version: about.version.clone(),
         ranks: about.ranks,
     }
 }
 
-fn ledger_line(unit: &str, line: LedgerSums) -> LedgerLine {
-    LedgerLine {
+fn ledger_line(unit: &str, line: LedgerSums) -> LedgerLineSummary {
+    LedgerLineSummary {
         relative_error: line.relative_error(),
         drift: line.drift,
         error: line.error,

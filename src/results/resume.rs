@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::pace::Pace;
+use super::pace::InertialNumberStatistics;
 use super::quantities::Captured;
 use super::summary::{ConvergenceSummary, ProcessorTimes, Provenance, Summary, Verdict, WallTimes};
 use super::{ResultsError, SERIES, STORE, SUMMARY, files};
@@ -41,7 +41,7 @@ pub(super) struct Counters {
     pub convergence: ConvergenceSummary,
     /// Inertial number so far.
     #[serde(default)]
-    pub pace: Pace,
+    pub pace: InertialNumberStatistics,
     /// Wall times so far.
     pub wall: WallTimes,
     /// Processor times so far.

@@ -11,7 +11,7 @@ use calcine_coupler::time::Window;
 use super::probe::Site;
 use super::quantities::{evaluate, statistic};
 use super::{ResultsError, SERIES, pace};
-use crate::case::model::{Case, Motion, MotionKind, Statistic};
+use crate::case::model::{Case, MotionKind, MotionSpec, Statistic};
 
 /// Up to so many particles each has a column of its own; beyond, the series holds statistics.
 pub(super) const TRACKED_PARTICLES: usize = 1000;
@@ -142,7 +142,10 @@ pub(super) fn columns(case: &Case, moment: &CommittedState<'_>) -> Vec<Column> {
 /// True where free particles move faster than they would at their own pace.
 pub(super) fn accelerated(case: &Case) -> bool {
     let kind = case.motion.as_ref().map(|motion| motion.kind);
-    let moves = case.particles.iter().any(|one| one.motion == Motion::Free);
+    let moves = case
+        .particles
+        .iter()
+        .any(|one| one.motion == MotionSpec::Free);
     moves && kind == Some(MotionKind::Accelerated)
 }
 

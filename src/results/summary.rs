@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::pace::Pace;
+use super::pace::InertialNumberStatistics;
 use super::{ResultsError, SUMMARY, files};
 
 /// How a quantity, or the run, stands against what the case expects.
@@ -54,7 +54,7 @@ pub struct Summary {
     /// The kinds of solver, `native`, `openfoam`, `liggghts`.
     pub backend: Backends,
     /// The two solvers with version and ranks.
-    pub solver: Solvers,
+    pub solver: SolverSummaries,
     /// How the coordinator talks to the solvers.
     pub transport: String,
     /// Over which clock the gas stores.
@@ -74,7 +74,7 @@ pub struct Summary {
     /// Cells of the gas mesh.
     pub cells: usize,
     /// The ledger.
-    pub ledger: Ledger,
+    pub ledger: LedgerSummary,
     /// Wall times by stage in s, over all processes of the run.
     pub wall_time_s: WallTimes,
     /// Processor time of the two solvers in s, over all processes of the run.
@@ -86,7 +86,7 @@ pub struct Summary {
     pub convergence: ConvergenceSummary,
     /// How far a bed that moves accelerated is from quasi-static.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pace: Option<Pace>,
+    pub pace: Option<InertialNumberStatistics>,
 }
 
 /// The case of a run.
@@ -129,16 +129,16 @@ pub struct Backends {
 
 /// The solvers as they name themselves.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Solvers {
+pub struct SolverSummaries {
     /// The gas solver.
-    pub gas: Solver,
+    pub gas: SolverSummary,
     /// The particle solver.
-    pub particles: Solver,
+    pub particles: SolverSummary,
 }
 
 /// One solver.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Solver {
+pub struct SolverSummary {
     /// Its name.
     pub name: String,
     /// Its version.
@@ -149,17 +149,17 @@ pub struct Solver {
 
 /// The ledger's lines by their stable names; elements get a table of their own.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Ledger {
+pub struct LedgerSummary {
     /// `mass`, `energy`, `energy_exchange`, `momentum`, `gas_momentum`.
     #[serde(flatten)]
-    pub lines: BTreeMap<String, LedgerLine>,
+    pub lines: BTreeMap<String, LedgerLineSummary>,
     /// One line per element.
-    pub elements: BTreeMap<String, LedgerLine>,
+    pub elements: BTreeMap<String, LedgerLineSummary>,
 }
 
 /// One line of the ledger.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LedgerLine {
+pub struct LedgerLineSummary {
     /// Error over throughput (requirements CON-2).
     #[serde(deserialize_with = "number")]
     pub relative_error: f64,

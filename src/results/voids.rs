@@ -25,7 +25,7 @@ const ENDS: (f64, f64, f64) = (2.5, 2.0, 0.95);
 
 /// Void fraction over a length.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Profile {
+pub struct VoidProfile {
     /// Places in m.
     pub place: Vec<f64>,
     /// Void fraction there.
@@ -34,12 +34,12 @@ pub struct Profile {
 
 /// The profiles of a bed.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Voids {
+pub struct VoidProfiles {
     /// Over the height z in m: share of the container's cross-section that no particle cuts.
-    pub height: Profile,
+    pub height: VoidProfile,
     /// In a cylinder, over the distance from its wall in m: share of the surface of that distance that no particle
     /// cuts, away from the ends of the bed. Empty elsewhere, and where the bed is too low.
-    pub wall: Profile,
+    pub wall: VoidProfile,
 }
 
 /// What holds a bed: an upright cylinder or a box.
@@ -86,12 +86,12 @@ impl Container {
 }
 
 /// The profiles of a bed in the container of its case; `None` where it has none.
-pub(super) fn of_bed(case: &Case, bed: &ParticleFields<'_>) -> Option<Voids> {
+pub(super) fn of_bed(case: &Case, bed: &ParticleFields<'_>) -> Option<VoidProfiles> {
     let container = Container::of(case)?;
     (bed.len() >= FEWEST).then(|| profiles(container, bed.position, bed.radius))
 }
 
-fn profiles(container: Container, centres: &[Vec3], radii: &[f64]) -> Voids {
+fn profiles(container: Container, centres: &[Vec3], radii: &[f64]) -> VoidProfiles {
     let diameter = 2.0 * radii.iter().sum::<f64>() / radii.len() as f64;
     let ends = centres.iter().zip(radii).map(|(c, r)| (c.z - r, c.z + r));
     let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |a, b| {
@@ -103,7 +103,7 @@ fn profiles(container: Container, centres: &[Vec3], radii: &[f64]) -> Voids {
         radii,
         places(low, high, diameter),
     );
-    let mut wall = Profile::default();
+    let mut wall = VoidProfile::default();
     if let Container::Cylinder(axis, radius) = container {
         let mut heights: Vec<f64> = centres.iter().map(|centre| centre.z).collect();
         heights.sort_by(f64::total_cmp);
@@ -114,7 +114,7 @@ fn profiles(container: Container, centres: &[Vec3], radii: &[f64]) -> Voids {
             wall = over_distance((axis, radius), band, centres, radii, places);
         }
     }
-    Voids { height, wall }
+    VoidProfiles { height, wall }
 }
 
 /// Places from one to another in m, so many in a diameter that its oscillations are seen.
@@ -139,7 +139,7 @@ fn add(
 }
 
 /// One less the area in which spheres cut the plane of each height, over the cross-section in m².
-fn over_height(area: f64, centres: &[Vec3], radii: &[f64], place: Vec<f64>) -> Profile {
+fn over_height(area: f64, centres: &[Vec3], radii: &[f64], place: Vec<f64>) -> VoidProfile {
     let mut sums = vec![0.0; place.len()];
     for (centre, &radius) in centres.iter().zip(radii) {
         let range = (centre.z - radius, centre.z + radius);
@@ -147,7 +147,7 @@ fn over_height(area: f64, centres: &[Vec3], radii: &[f64], place: Vec<f64>) -> P
             PI * (radius * radius - (z - centre.z).powi(2))
         });
     }
-    Profile {
+    VoidProfile {
         void_fraction: sums.iter().map(|sum| 1.0 - sum / area).collect(),
         place,
     }
@@ -163,7 +163,7 @@ fn over_distance(
     centres: &[Vec3],
     radii: &[f64],
     place: Vec<f64>,
-) -> Profile {
+) -> VoidProfile {
     let around = 2.0 * PI * (band[1] - band[0]);
     let mut sums = vec![0.0; place.len()];
     for (centre, &radius) in centres.iter().zip(radii) {
@@ -192,13 +192,13 @@ fn over_distance(
             2.0 * gauss(0.0, 0.5 * PI, line) / around
         });
     }
-    Profile {
+    VoidProfile {
         void_fraction: sums.iter().map(|sum| 1.0 - sum).collect(),
         place,
     }
 }
 
-impl Voids {
+impl VoidProfiles {
     /// The file's text: the name of the profile, the place, the void fraction.
     fn text(&self) -> String {
         let mut text = String::from("profile,place [m],void_fraction [1]\n");
@@ -320,7 +320,7 @@ mod tests {
     #[test]
     fn a_file_reads_back_to_the_same_bits_and_another_is_refused() {
         let folder = tempfile::tempdir().unwrap();
-        assert_eq!(Voids::read(folder.path()).unwrap(), None);
+        assert_eq!(VoidProfiles::read(folder.path()).unwrap(), None);
         let centres: Vec<Vec3> = (0..400)
             .map(|k| Vec3::new(f64::from(k % 9) * 0.1, 0.0, f64::from(k) / 300.0))
             .collect();
@@ -331,9 +331,9 @@ mod tests {
         );
         assert!(!voids.wall.place.is_empty() && !voids.height.place.is_empty());
         voids.write(folder.path()).unwrap();
-        assert_eq!(Voids::read(folder.path()).unwrap(), Some(voids));
+        assert_eq!(VoidProfiles::read(folder.path()).unwrap(), Some(voids));
         files::replace(&folder.path().join(VOIDS), b"head\nslope,1,2\n").unwrap();
-        let error = Voids::read(folder.path()).unwrap_err().to_string();
+        let error = VoidProfiles::read(folder.path()).unwrap_err().to_string();
         assert!(error.contains("slope,1,2"), "{error}");
     }
 }

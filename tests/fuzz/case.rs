@@ -4,8 +4,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use calcine::assembly::Prepared;
-use calcine::case::model::{Case, MeshSpec, Place};
+use calcine::assembly::PreparedCase;
+use calcine::case::model::{Case, MeshSpec, PlacementSpec};
 use calcine::case::{check_report, parse};
 
 use crate::mutate::mutate;
@@ -132,9 +132,9 @@ fn check(case: &Case) {
         MeshSpec::Cylinder { cells, .. } => (cells[0] * cells[0] * cells[1]) as f64,
         _ => f64::INFINITY,
     };
-    let placed = |place: &Place| match place {
-        Place::Grid { counts, .. } => counts.iter().map(|&n| n as f64).product(),
-        Place::File { .. } => 10.0,
+    let placed = |place: &PlacementSpec| match place {
+        PlacementSpec::Grid { counts, .. } => counts.iter().map(|&n| n as f64).product(),
+        PlacementSpec::File { .. } => 10.0,
         _ => f64::INFINITY,
     };
     let beds = case.particles.iter();
@@ -142,7 +142,7 @@ fn check(case: &Case) {
     if cells > MOST[0] || particles > MOST[1] {
         return;
     }
-    let Ok(prepared) = Prepared::new(case) else {
+    let Ok(prepared) = PreparedCase::new(case) else {
         return;
     };
     if let Ok(void) = prepared.void_fraction(case) {

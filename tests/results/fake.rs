@@ -37,7 +37,7 @@ pub fn case() -> Case {
         name: name.into(),
         measure,
         unit,
-        agree: Some(Band::Relative(0.01)),
+        agree: Some(ToleranceBand::Relative(0.01)),
         agree_from: 0.0,
         agree_over: 0.0,
         expect,
@@ -48,7 +48,7 @@ pub fn case() -> Case {
         path: PathBuf::from("heated-column.toml"),
         hash: "0123456789abcdef".repeat(4),
         effective: "format = 1\n".into(),
-        time: Time {
+        time: TimeSpec {
             end: seconds(20.0),
             process_step: None,
             motion_window: seconds(0.01),
@@ -81,17 +81,17 @@ pub fn case() -> Case {
         laws: Laws {
             momentum: Default::default(),
             drag: DragLaw::ErgunWenYu,
-            conduction: Conduction {
+            conduction: ConductionSpec {
                 law: ConductionLaw::None,
-                area: Area::Overlap,
-                gap: Gap::None,
+                area: ConductionArea::Overlap,
+                gap: GapSpec::None,
             },
             radiation: None,
             heat_transfer: HeatLaw::Gunn,
             mass_transfer: HeatLaw::None,
         },
         coupling: Coupling {
-            mapping: Mapping::Overlap,
+            mapping: MappingSpec::Overlap,
             max_solid_fraction: 0.64,
             diffusion_length: None,
             excluded: vec![],
@@ -100,8 +100,8 @@ pub fn case() -> Case {
             exchange_attempts: 20,
             deadline: Duration::from_secs(10),
         },
-        openfoam: External::default(),
-        liggghts: External::default(),
+        openfoam: ExternalSpec::default(),
+        liggghts: ExternalSpec::default(),
         output: Output {
             every: seconds(5.0),
             series_every: Some(seconds(0.7)),
@@ -129,7 +129,7 @@ pub fn case() -> Case {
                 Some(Expect {
                     at: Some(10.0),
                     value: 18.0,
-                    within: Band::Relative(0.01),
+                    within: ToleranceBand::Relative(0.01),
                 }),
             ),
             quantity(
@@ -152,7 +152,7 @@ pub fn case() -> Case {
                 Some(Expect {
                     at: None,
                     value: 500.0,
-                    within: Band::Absolute(1.0),
+                    within: ToleranceBand::Absolute(1.0),
                 }),
             ),
         ],

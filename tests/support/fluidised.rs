@@ -7,7 +7,7 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use calcine::assembly::Prepared;
+use calcine::assembly::PreparedCase;
 use calcine::case::read;
 use calcine::results::read::Series;
 use calcine_coupler::mapping::{Mapper, Method};
@@ -114,7 +114,7 @@ fn centres(out: &Path, time: f64) -> Vec<Vec3> {
 /// the fastest on.
 pub fn examine(case: &Path, set: &[String], out: &Path, moving: &[Hold], packed: &[Hold]) -> Found {
     let case = read(case, set).unwrap();
-    let prepared = Prepared::new(&case).unwrap();
+    let prepared = PreparedCase::new(&case).unwrap();
     let mesh: &Mesh = &prepared.mesh;
     let smoother = SmootherSettings {
         max_solid_fraction: case.coupling.max_solid_fraction,

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use calcine::results::read;
-use calcine::results::voids::Voids;
+use calcine::results::voids::VoidProfiles;
 
 use crate::run as calcine;
 
@@ -66,7 +66,7 @@ fn settle(friction: f64) -> Bed {
         .map(|k| void(&centres, RADIUS - at(k) * BEAD, band))
         .collect();
     // The run's own profile cuts the spheres exactly, at every second of its places.
-    let own = Voids::read(&out).unwrap().unwrap().wall;
+    let own = VoidProfiles::read(&out).unwrap().unwrap().wall;
     let apart = profile.iter().enumerate().map(|(k, void)| {
         assert!((own.place[2 * k] - at(k) * BEAD).abs() < 1e-9);
         (own.void_fraction[2 * k] - void).abs()

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::headers;
-use crate::steps::{Outcome, Stop, new_log, output, quietly, say, step};
-use crate::workspace::{Profile, Workspace};
+use crate::steps::{Stop, TaskResult, new_log, output, quietly, say, step};
+use crate::workspace::{CargoProfile, Workspace};
 
 /// The solver that `build.sh` leaves in its output folder.
 pub const SOLVER: &str = "calcineGasFoam";
@@ -25,7 +25,7 @@ pub struct OpenfoamAdapter {
 
 impl OpenfoamAdapter {
     /// Prepares the headers and takes stock of the sources.
-    pub fn new(workspace: &Workspace) -> Outcome<Self> {
+    pub fn new(workspace: &Workspace) -> TaskResult<Self> {
         let headers = headers::prepare(&workspace.openfoam, &workspace.logs)?;
         let folder = workspace.openfoam.join("bin");
         let stamp = stamp(&workspace.root, &headers)?;
@@ -44,7 +44,7 @@ impl OpenfoamAdapter {
 
     /// Compiles and links, unless that is done. The C ABI's static library of `profile` must be
     /// there. Its profile is not part of the stamp: both are optimised and of the same sources.
-    pub fn build(&self, workspace: &Workspace, profile: Profile) -> Outcome<()> {
+    pub fn build(&self, workspace: &Workspace, profile: CargoProfile) -> TaskResult<()> {
         if self.is_current() {
             say("the OpenFOAM adapter is up to date");
             return Ok(());
@@ -77,7 +77,7 @@ impl OpenfoamAdapter {
     }
 
     /// The finished programs and libraries.
-    pub fn products(&self) -> Outcome<Vec<PathBuf>> {
+    pub fn products(&self) -> TaskResult<Vec<PathBuf>> {
         let mut files = Vec::new();
         collect(&self.folder, &mut files)?;
         files.retain(|path| {
@@ -94,7 +94,7 @@ impl OpenfoamAdapter {
 }
 
 /// A short text that differs when anything does that the C++ is made of.
-fn stamp(root: &Path, headers: &Path) -> Outcome<String> {
+fn stamp(root: &Path, headers: &Path) -> TaskResult<String> {
     let mut files = vec![
         root.join("Cargo.lock"),
         root.join("adapters/wire/Cargo.toml"),
@@ -121,7 +121,7 @@ fn stamp(root: &Path, headers: &Path) -> Outcome<String> {
     Ok(format!("{:016x}\n", hasher.finish()))
 }
 
-fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> Outcome<()> {
+fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> TaskResult<()> {
     for entry in fs::read_dir(folder)
         .map_err(|cause| Stop::io(folder, &cause))?
         .flatten()

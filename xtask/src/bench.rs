@@ -10,7 +10,7 @@ use std::time::SystemTime;
 use crate::json::Json;
 use crate::packages::{self, Needs};
 use crate::runs;
-use crate::steps::{Outcome, Stop, loud_step, say, visibly};
+use crate::steps::{Stop, TaskResult, loud_step, say, visibly};
 use crate::table::{Table, short};
 use crate::tasks;
 use crate::workspace::Workspace;
@@ -41,7 +41,7 @@ pub struct Choice {
 }
 
 /// Runs the benchmarks and prints the table.
-pub fn run(workspace: &Workspace, choice: &Choice) -> Outcome<()> {
+pub fn run(workspace: &Workspace, choice: &Choice) -> TaskResult<()> {
     let begun = SystemTime::now();
     if choice.table_only {
         return print(&table(&measurements(&workspace.target, None)));
@@ -57,7 +57,7 @@ pub fn run(workspace: &Workspace, choice: &Choice) -> Outcome<()> {
     packages::install(needs, &workspace.logs)?;
     let everything = choice.words.is_empty();
     if everything {
-        tasks::build_parts(workspace, needs, tasks::Parts::OfRuns)?;
+        tasks::build_parts(workspace, needs, tasks::BuildScope::OfRuns)?;
     }
     let folders = if choice.runs_only { &[][..] } else { &FOLDERS };
     for &folder in folders {
@@ -85,7 +85,7 @@ pub fn run(workspace: &Workspace, choice: &Choice) -> Outcome<()> {
     tables?.iter().try_for_each(print)
 }
 
-fn print(table: &Table) -> Outcome<()> {
+fn print(table: &Table) -> TaskResult<()> {
     if table.is_empty() {
         say("nothing was measured");
     }

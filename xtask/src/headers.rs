@@ -9,7 +9,7 @@ use std::process::Command;
 
 use crate::packages;
 use crate::sources::write_source_entries;
-use crate::steps::{Outcome, Stop, new_log, quietly, step};
+use crate::steps::{Stop, TaskResult, new_log, quietly, step};
 
 /// A complete tree of headers holds this file: written last, before the tree gets its name.
 const STAMP: &str = ".complete";
@@ -22,7 +22,7 @@ const INCLUDED: [&str; 7] = ["H", "C", "h", "hpp", "cpp", "cxx", "I"];
 
 /// The folders below `src/` and `wmake/` for the installed OpenFOAM, as `FOLDER/VERSION`;
 /// made if it is not there yet. Each library's `lnInclude` folder is ready to use.
-pub fn prepare(folder: &Path, logs: &Path) -> Outcome<PathBuf> {
+pub fn prepare(folder: &Path, logs: &Path) -> TaskResult<PathBuf> {
     let version = packages::source_version("openfoam").ok_or_else(|| {
         Stop::new("the package openfoam is not installed: run `cargo xtask setup`")
     })?;
@@ -51,7 +51,7 @@ pub fn prepare(folder: &Path, logs: &Path) -> Outcome<PathBuf> {
 }
 
 /// Downloads the source package with a private configuration of APT into `work`.
-fn fetch(version: &str, work: &Path, log: &Path) -> Outcome<()> {
+fn fetch(version: &str, work: &Path, log: &Path) -> TaskResult<()> {
     for sub in ["parts", "lists/partial", "cache/archives/partial"] {
         let path = work.join(sub);
         fs::create_dir_all(&path).map_err(|cause| Stop::io(&path, &cause))?;
@@ -94,7 +94,7 @@ fn apt(work: &Path) -> Command {
 }
 
 /// Unpacks the source package and keeps `src/` and `wmake/`, as `work/kept`.
-fn unpack(work: &Path, log: &Path) -> Outcome<()> {
+fn unpack(work: &Path, log: &Path) -> TaskResult<()> {
     let description = fs::read_dir(work)
         .map_err(|cause| Stop::io(work, &cause))?
         .flatten()
@@ -119,7 +119,7 @@ fn unpack(work: &Path, log: &Path) -> Outcome<()> {
 
 /// Gives every library below `source` (a folder that holds `Make/files`) a folder `lnInclude`
 /// with a link to each of its headers, as OpenFOAM's `wmakeLnInclude` does.
-fn link_headers(source: &Path) -> Outcome<()> {
+fn link_headers(source: &Path) -> TaskResult<()> {
     let mut folders = vec![source.to_owned()];
     while let Some(folder) = folders.pop() {
         for sub in subfolders(&folder)? {
@@ -132,7 +132,7 @@ fn link_headers(source: &Path) -> Outcome<()> {
     Ok(())
 }
 
-fn link_library(library: &Path) -> Outcome<()> {
+fn link_library(library: &Path) -> TaskResult<()> {
     let mut headers = BTreeMap::new();
     let mut folders = vec![PathBuf::new()];
     while let Some(relative) = folders.pop() {
@@ -173,7 +173,7 @@ fn link_library(library: &Path) -> Outcome<()> {
 }
 
 /// Subfolders that can hold a library's own headers.
-fn subfolders(folder: &Path) -> Outcome<Vec<PathBuf>> {
+fn subfolders(folder: &Path) -> TaskResult<Vec<PathBuf>> {
     let entries = fs::read_dir(folder).map_err(|cause| Stop::io(folder, &cause))?;
     let own = |path: &PathBuf| {
         let name = path
@@ -191,7 +191,7 @@ fn subfolders(folder: &Path) -> Outcome<Vec<PathBuf>> {
         .collect())
 }
 
-fn write(path: &Path, text: &str) -> Outcome<()> {
+fn write(path: &Path, text: &str) -> TaskResult<()> {
     fs::write(path, text).map_err(|cause| Stop::io(path, &cause))
 }
 
@@ -204,7 +204,7 @@ fn remove_leftovers(folder: &Path) {
     }
 }
 
-fn remove(folder: &Path) -> Outcome<()> {
+fn remove(folder: &Path) -> TaskResult<()> {
     match fs::remove_dir_all(folder) {
         Err(cause) if cause.kind() != std::io::ErrorKind::NotFound => Err(Stop::io(folder, &cause)),
         _ => Ok(()),

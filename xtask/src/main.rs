@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use packages::Needs;
-use steps::{Outcome, Stop, say};
+use steps::{Stop, TaskResult, say};
 use workspace::Workspace;
 
 const USAGE: &str = "\
@@ -186,7 +186,7 @@ fn install(words: &[OsString]) -> Option<Task> {
     })
 }
 
-fn perform(task: Task) -> Outcome<()> {
+fn perform(task: Task) -> TaskResult<()> {
     let workspace = Workspace::find()?;
     match task {
         Task::SetUp { needs, build } => tasks::set_up(&workspace, needs, build),

@@ -5,7 +5,7 @@ use std::io::{self, IsTerminal};
 use std::path::Path;
 use std::process::Command;
 
-use crate::steps::{Outcome, Stop, new_log, output, quietly, say, shown, step};
+use crate::steps::{Stop, TaskResult, new_log, output, quietly, say, shown, step};
 
 /// What a task needs besides Rust and a C compiler.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -76,7 +76,7 @@ impl Needs {
 }
 
 /// Installs what is missing of the packages needed.
-pub fn install(needs: Needs, logs: &Path) -> Outcome<()> {
+pub fn install(needs: Needs, logs: &Path) -> TaskResult<()> {
     let wanted = needs.packages();
     if !is_here("dpkg-query") {
         return without_debian(needs, &wanted);
@@ -125,7 +125,7 @@ fn apt_get() -> Command {
 }
 
 /// The words before a command that needs root: none, or `sudo`.
-fn privileges(commands: &[Command]) -> Outcome<Vec<&'static str>> {
+fn privileges(commands: &[Command]) -> TaskResult<Vec<&'static str>> {
     if user_id() == Some(0) {
         return Ok(Vec::new());
     }
@@ -163,7 +163,7 @@ fn with(prefix: &[&str], command: &Command) -> Command {
 }
 
 /// Another system than Debian: a native run may have its HDF5 from elsewhere.
-fn without_debian(needs: Needs, wanted: &[&str]) -> Outcome<()> {
+fn without_debian(needs: Needs, wanted: &[&str]) -> TaskResult<()> {
     let hdf5 = env::var_os("HDF5_DIR").is_some()
         || output(Command::new("pkg-config").args(["--exists", "hdf5"])).is_some();
     if needs == Needs::NATIVE && hdf5 {

@@ -8,9 +8,9 @@ use std::process::Command;
 use std::thread;
 
 use crate::json::Json;
-use crate::steps::{Outcome, Stop, quietly, step};
+use crate::steps::{Stop, TaskResult, quietly, step};
 use crate::table::{Table, short};
-use crate::workspace::{Profile, Workspace};
+use crate::workspace::{CargoProfile, Workspace};
 
 /// Cells across and along the heated bed (10 k, 100 k, 1 M in all), and windows.
 const SIZES: [[u32; 3]; 3] = [[18, 42, 5], [38, 92, 2], [84, 190, 1]];
@@ -31,7 +31,7 @@ const PHASES: [&str; 7] = [
 const BETWEEN: usize = 3;
 
 /// All tables of runs.
-pub fn tables(workspace: &Workspace, native: bool) -> Outcome<Vec<Table>> {
+pub fn tables(workspace: &Workspace, native: bool) -> TaskResult<Vec<Table>> {
     let mut tables = vec![phases(workspace)?];
     if !native {
         tables.push(between(workspace)?);
@@ -47,11 +47,15 @@ fn sizes() -> &'static [[u32; 3]] {
 }
 
 /// The summary of a run of a shipped case, its results below the target folder.
-fn summary(workspace: &Workspace, (case, name): (&str, &str), words: &[String]) -> Outcome<Json> {
+fn summary(
+    workspace: &Workspace,
+    (case, name): (&str, &str),
+    words: &[String],
+) -> TaskResult<Json> {
     let log = crate::steps::new_log(&workspace.logs, "bench-runs")?;
     let out = workspace.target.join("xtask/bench").join(name);
     let _ = fs::remove_dir_all(&out);
-    let program = workspace.target.join(Profile::Release.folder());
+    let program = workspace.target.join(CargoProfile::Release.folder());
     let mut command = Command::new(program.join("calcine"));
     command
         .arg("run")
@@ -92,7 +96,7 @@ fn set(settings: &[String]) -> Vec<String> {
 }
 
 /// The native heated bed: the cost of a window by phase.
-fn phases(workspace: &Workspace) -> Outcome<Table> {
+fn phases(workspace: &Workspace) -> TaskResult<Table> {
     let mut table = Table::new([
         "cost per window by phase",
         "cells",
@@ -109,7 +113,7 @@ fn phases(workspace: &Workspace) -> Outcome<Table> {
     Ok(table)
 }
 
-fn add_phases(table: &mut Table, run: &Json, frozen: bool) -> Outcome<()> {
+fn add_phases(table: &mut Table, run: &Json, frozen: bool) -> TaskResult<()> {
     let rows = phase_rows(run, frozen);
     let rows = rows.ok_or_else(|| Stop::new("a summary lacks its wall times"))?;
     rows.into_iter().for_each(|row| table.add(row));
@@ -146,7 +150,7 @@ fn phase_rows(summary: &Json, frozen: bool) -> Option<Vec<[String; 6]>> {
 
 /// 100 k cells of OpenFOAM and 50 k moving beads of LIGGGHTS: the shipped moving bed with beads of 1.7 mm in
 /// cells of 1.5 mm, so that the smoother and the short diffusion work too.
-fn between(workspace: &Workspace) -> Outcome<Table> {
+fn between(workspace: &Workspace) -> TaskResult<Table> {
     let mut table = Table::new([
         "moving bed with OpenFOAM and LIGGGHTS",
         "cells",
@@ -216,7 +220,7 @@ impl Gas {
 }
 
 /// The heated bed with both gases, on one core and two.
-fn gases(workspace: &Workspace) -> Outcome<Table> {
+fn gases(workspace: &Workspace) -> TaskResult<Table> {
     let mut table = Table::new([
         "gas of the heated bed",
         "cells",

@@ -5,11 +5,11 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::steps::{Outcome, Stop, output};
+use crate::steps::{Stop, TaskResult, output};
 
 /// Writes source entries for every repository of Debian's that the system uses into `folder`,
 /// with the same suites and keys.
-pub fn write_source_entries(folder: &Path) -> Outcome<()> {
+pub fn write_source_entries(folder: &Path) -> TaskResult<()> {
     let wanted = debian_repositories();
     let mut found = 0;
     for (file, text) in system_entries() {

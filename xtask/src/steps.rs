@@ -25,7 +25,7 @@ impl Stop {
 }
 
 /// The result of a step.
-pub type Outcome<T> = Result<T, Stop>;
+pub type TaskResult<T> = Result<T, Stop>;
 
 /// Writes a line for the user.
 pub fn say(text: &str) {
@@ -49,7 +49,7 @@ fn quoted(word: &OsStr) -> String {
 }
 
 /// Starts a log of the step `name` in `folder` and returns its path.
-pub fn new_log(folder: &Path, name: &str) -> Outcome<PathBuf> {
+pub fn new_log(folder: &Path, name: &str) -> TaskResult<PathBuf> {
     fs::create_dir_all(folder).map_err(|cause| Stop::io(folder, &cause))?;
     let path = folder.join(format!("{name}.log"));
     File::create(&path).map_err(|cause| Stop::io(&path, &cause))?;
@@ -57,7 +57,7 @@ pub fn new_log(folder: &Path, name: &str) -> Outcome<PathBuf> {
 }
 
 /// Runs a command quietly: its output is appended to `log`, whose end is shown if it fails.
-pub fn quietly(command: &mut Command, log: &Path) -> Outcome<()> {
+pub fn quietly(command: &mut Command, log: &Path) -> TaskResult<()> {
     let file = File::options()
         .append(true)
         .create(true)
@@ -83,7 +83,7 @@ pub fn quietly(command: &mut Command, log: &Path) -> Outcome<()> {
 }
 
 /// Runs a command whose output the user sees.
-pub fn visibly(command: &mut Command) -> Outcome<()> {
+pub fn visibly(command: &mut Command) -> TaskResult<()> {
     let status = command
         .status()
         .map_err(|cause| not_started(command, &cause))?;
@@ -115,7 +115,7 @@ fn not_started(command: &Command, cause: &io::Error) -> Stop {
 }
 
 /// Does a quiet step and says what it was and how long it took, in one line.
-pub fn step<T>(what: &str, work: impl FnOnce() -> Outcome<T>) -> Outcome<T> {
+pub fn step<T>(what: &str, work: impl FnOnce() -> TaskResult<T>) -> TaskResult<T> {
     let begun = Instant::now();
     let _ = write!(io::stderr(), "xtask: {what} … ");
     let done = work();
@@ -129,7 +129,7 @@ pub fn step<T>(what: &str, work: impl FnOnce() -> Outcome<T>) -> Outcome<T> {
 }
 
 /// Does a step that prints by itself; the line with its time comes at the end.
-pub fn loud_step<T>(what: &str, work: impl FnOnce() -> Outcome<T>) -> Outcome<T> {
+pub fn loud_step<T>(what: &str, work: impl FnOnce() -> TaskResult<T>) -> TaskResult<T> {
     let begun = Instant::now();
     say(&format!("{what} …"));
     let done = work();

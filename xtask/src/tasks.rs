@@ -9,15 +9,15 @@ use std::process::Command;
 use crate::adapters::OpenfoamAdapter;
 use crate::headers;
 use crate::packages::{self, Needs};
-use crate::steps::{Outcome, Stop, loud_step, say, step, visibly};
-use crate::workspace::{Profile, Workspace};
+use crate::steps::{Stop, TaskResult, loud_step, say, step, visibly};
+use crate::workspace::{CargoProfile, Workspace};
 
 /// Installs the packages, prepares the headers and, with `build`, builds for runs.
-pub fn set_up(workspace: &Workspace, needs: Needs, build: bool) -> Outcome<()> {
+pub fn set_up(workspace: &Workspace, needs: Needs, build: bool) -> TaskResult<()> {
     let _lock = workspace.lock()?;
     packages::install(needs, &workspace.logs)?;
     if build {
-        build_parts(workspace, needs, Parts::OfRuns)?;
+        build_parts(workspace, needs, BuildScope::OfRuns)?;
     } else if needs.openfoam {
         headers::prepare(&workspace.openfoam, &workspace.logs)?;
     }
@@ -25,19 +25,19 @@ pub fn set_up(workspace: &Workspace, needs: Needs, build: bool) -> Outcome<()> {
 }
 
 /// Sets up and builds what the subcommand of Calcine needs, then becomes it.
-pub fn run(workspace: &Workspace, words: &[OsString]) -> Outcome<()> {
+pub fn run(workspace: &Workspace, words: &[OsString]) -> TaskResult<()> {
     let needs = needs_of(words);
     set_up(workspace, needs, true)?;
     let calcine = workspace
         .target
-        .join(Profile::Release.folder())
+        .join(CargoProfile::Release.folder())
         .join("calcine");
     let cause = Command::new(&calcine).args(words).exec();
     Err(Stop::io(&calcine, &cause))
 }
 
 /// Sets up and builds everything, then runs all tests; natively: those without other solvers.
-pub fn test(workspace: &Workspace, native: bool, words: &[OsString]) -> Outcome<()> {
+pub fn test(workspace: &Workspace, native: bool, words: &[OsString]) -> TaskResult<()> {
     let needs = if native {
         Needs {
             tests: true,
@@ -49,7 +49,7 @@ pub fn test(workspace: &Workspace, native: bool, words: &[OsString]) -> Outcome<
     {
         let _lock = workspace.lock()?;
         packages::install(needs, &workspace.logs)?;
-        build_parts(workspace, needs, Parts::OfTests(&["--tests"]))?;
+        build_parts(workspace, needs, BuildScope::OfTests(&["--tests"]))?;
     }
     let mut command = workspace.cargo("test");
     command.arg("--no-fail-fast");
@@ -60,12 +60,17 @@ pub fn test(workspace: &Workspace, native: bool, words: &[OsString]) -> Outcome<
 }
 
 /// Runs one of the test programs of the package `calcine` that have words of their own.
-pub fn program(workspace: &Workspace, name: &str, needs: Needs, words: &[OsString]) -> Outcome<()> {
+pub fn program(
+    workspace: &Workspace,
+    name: &str,
+    needs: Needs,
+    words: &[OsString],
+) -> TaskResult<()> {
     let all = needs.openfoam && needs.liggghts && needs.mpi;
     packages::install(needs, &workspace.logs)?;
     if all {
         let _lock = workspace.lock()?;
-        build_parts(workspace, needs, Parts::OfTests(&["--test", name]))?;
+        build_parts(workspace, needs, BuildScope::OfTests(&["--test", name]))?;
     }
     let mut command = workspace.cargo("test");
     command.args(if all {
@@ -78,9 +83,9 @@ pub fn program(workspace: &Workspace, name: &str, needs: Needs, words: &[OsStrin
 }
 
 /// Copies the command to PREFIX/bin and its adapters to PREFIX/libexec/calcine.
-pub fn install(workspace: &Workspace, prefix: &Path, needs: Needs) -> Outcome<()> {
+pub fn install(workspace: &Workspace, prefix: &Path, needs: Needs) -> TaskResult<()> {
     set_up(workspace, needs, true)?;
-    let built = workspace.target.join(Profile::Release.folder());
+    let built = workspace.target.join(CargoProfile::Release.folder());
     let (bin, libexec) = (prefix.join("bin"), prefix.join("libexec/calcine"));
     let mut copies = vec![(built.join("calcine"), bin.join("calcine"))];
     if needs.liggghts {
@@ -108,7 +113,7 @@ pub fn install(workspace: &Workspace, prefix: &Path, needs: Needs) -> Outcome<()
 
 /// What is built.
 #[derive(Clone, Copy)]
-pub enum Parts<'a> {
+pub enum BuildScope<'a> {
     /// The programs of a run, in the profile for runs.
     OfRuns,
     /// Everything, in the profile for tests, with these test programs.
@@ -116,14 +121,14 @@ pub enum Parts<'a> {
 }
 
 /// One call of Cargo for all packages, so that shared dependencies are built once, then the C++.
-pub fn build_parts(workspace: &Workspace, needs: Needs, parts: Parts<'_>) -> Outcome<()> {
+pub fn build_parts(workspace: &Workspace, needs: Needs, parts: BuildScope<'_>) -> TaskResult<()> {
     let adapter = needs
         .openfoam
         .then(|| OpenfoamAdapter::new(workspace))
         .transpose()?;
     let (profile, megabytes) = match parts {
-        Parts::OfRuns => (Profile::Release, 1000),
-        Parts::OfTests(_) => (Profile::Dev, 3000),
+        BuildScope::OfRuns => (CargoProfile::Release, 1000),
+        BuildScope::OfTests(_) => (CargoProfile::Dev, 3000),
     };
     if let Some(free) = workspace.free_megabytes().filter(|free| *free < megabytes) {
         let target = workspace.target.display();
@@ -134,13 +139,13 @@ pub fn build_parts(workspace: &Workspace, needs: Needs, parts: Parts<'_>) -> Out
     let mut command = workspace.cargo("build");
     command.args(["--profile", profile.name()]);
     match parts {
-        Parts::OfTests(tests) => {
+        BuildScope::OfTests(tests) => {
             // The C ABI's test links the static library, which only `cargo build` leaves in place. Test programs, because
             // with what they need libraries have other features: each would be built twice.
             command.args((needs.liggghts && needs.mpi).then_some("--workspace"));
             command.args(["--lib", "--bins"]).args(tests);
         }
-        Parts::OfRuns => {
+        BuildScope::OfRuns => {
             command.args(["-p", "calcine"]);
             if adapter
                 .as_ref()
@@ -201,7 +206,7 @@ fn chooses_packages(words: &[OsString]) -> bool {
 }
 
 /// Copies by way of a temporary name, so that a program that runs is replaced, not changed.
-fn copy(from: &Path, to: &Path) -> Outcome<()> {
+fn copy(from: &Path, to: &Path) -> TaskResult<()> {
     let folder = to.parent().unwrap_or(Path::new("."));
     fs::create_dir_all(folder).map_err(|cause| Stop::io(folder, &cause))?;
     let mut name = OsString::from(".");

@@ -6,7 +6,7 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::steps::{Outcome, Stop, output};
+use crate::steps::{Stop, TaskResult, output};
 
 /// Places of this clone.
 #[derive(Debug)]
@@ -24,7 +24,7 @@ pub struct Workspace {
 
 impl Workspace {
     /// Finds the places from what `cargo run` hands over.
-    pub fn find() -> Outcome<Self> {
+    pub fn find() -> TaskResult<Self> {
         let manifest = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
         let root = manifest
             .as_deref()
@@ -65,7 +65,7 @@ impl Workspace {
 
     /// Waits until no other xtask sets up or builds in this target folder. The lock ends with
     /// the returned file, or with this process.
-    pub fn lock(&self) -> Outcome<File> {
+    pub fn lock(&self) -> TaskResult<File> {
         fs::create_dir_all(&self.logs).map_err(|cause| Stop::io(&self.logs, &cause))?;
         let path = self.logs.join("lock");
         let file = File::create(&path).map_err(|cause| Stop::io(&path, &cause))?;
@@ -87,14 +87,14 @@ fn available(told: &str) -> Option<u64> {
 
 /// A Cargo profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Profile {
+pub enum CargoProfile {
     /// For tests; optimised, with debug assertions.
     Dev,
     /// For runs.
     Release,
 }
 
-impl Profile {
+impl CargoProfile {
     /// Its folder below the target folder.
     pub fn folder(self) -> &'static str {
         match self {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::*;
-use crate::case::table::{Problems, Reader};
+use crate::case::table::{Problems, TableReader};
 
 #[test]
 fn the_table_holds_exactly_the_keys_that_the_reader_asks_for() {
@@ -19,7 +19,7 @@ fn the_table_holds_exactly_the_keys_that_the_reader_asks_for() {
             let text = std::fs::read_to_string(&path).unwrap();
             let document = toml_edit::Document::parse(text.as_str()).unwrap();
             let problems = Problems::default();
-            let reader = Reader::root(&problems, document.as_table());
+            let reader = TableReader::root(&problems, document.as_table());
             crate::case::sections::case(&reader, &path, &text, String::new());
             asked.append(&mut problems.asked());
         }

@@ -14,34 +14,34 @@ pub struct Laws {
     /// Heat transfer between gas and particle.
     pub heat_transfer: HeatLaw,
     /// Heat conduction between particles.
-    pub conduction: Conduction,
+    pub conduction: ConductionSpec,
     /// Mass transfer between gas and particles that react.
     pub mass_transfer: HeatLaw,
     /// Radiation between particles; `None`: none.
-    pub radiation: Option<Radiation>,
+    pub radiation: Option<RadiationSpec>,
 }
 
 impl Laws {
     /// True where heat passes contacts or gaps.
     pub fn conducts(&self) -> bool {
-        self.conduction.law != ConductionLaw::None || self.conduction.gap != Gap::None
+        self.conduction.law != ConductionLaw::None || self.conduction.gap != GapSpec::None
     }
 }
 
 /// How particles conduct heat to each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Conduction {
+pub struct ConductionSpec {
     /// Through contacts.
     pub law: ConductionLaw,
     /// By which overlap.
-    pub area: Area,
+    pub area: ConductionArea,
     /// Through the gas between surfaces.
-    pub gap: Gap,
+    pub gap: GapSpec,
 }
 
 /// The overlap by which contacts conduct.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Area {
+pub enum ConductionArea {
     /// As it is.
     Overlap,
     /// That of the real materials under the computed force.
@@ -57,7 +57,7 @@ pub enum Area {
 
 /// Conduction through the gas between surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Gap {
+pub enum GapSpec {
     /// None.
     None,
     /// Rong and Horio 1999.
@@ -78,7 +78,7 @@ pub enum Gap {
 
 /// How particles radiate.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Radiation {
+pub struct RadiationSpec {
     /// How views are found.
     pub sight: ViewFactors,
     /// True where badly conducting spheres pass on less.

@@ -5,7 +5,7 @@ use calcine_coupler::physics::solid::HeatCapacity;
 
 /// A solid material.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Material {
+pub struct MaterialSpec {
     /// Name.
     pub name: String,
     /// Density in kg/m³.

@@ -19,11 +19,11 @@ pub struct Population {
     /// Seed by which diameters that differ are drawn.
     pub size_seed: u64,
     /// How the particles move.
-    pub motion: Motion,
+    pub motion: MotionSpec,
     /// Velocity at the start in m/s of motion time.
     pub velocity: Vec3,
     /// Where they are at the start.
-    pub place: Place,
+    pub place: PlacementSpec,
     /// Start temperature in K; a file of particles may state its own.
     pub temperature: f64,
 }
@@ -51,7 +51,7 @@ pub struct FeedSpec {
 
 /// How particles move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Motion {
+pub enum MotionSpec {
     /// They stay where they are.
     Frozen,
     /// They move by gravity, contacts and the force of the gas.
@@ -60,7 +60,7 @@ pub enum Motion {
 
 /// Where particles are at the start.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Place {
+pub enum PlacementSpec {
     /// A regular stacking: `counts` particles along x, y, z from `first` on.
     Grid {
         /// Centre of the first particle in m.

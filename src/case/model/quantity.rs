@@ -27,7 +27,7 @@ pub struct Quantity {
     /// Unit as printed.
     pub unit: &'static str,
     /// Largest difference between pairings.
-    pub agree: Option<Band>,
+    pub agree: Option<ToleranceBand>,
     /// Process time in s from which `agree` holds.
     pub agree_from: f64,
     /// Process time in s over which values are averaged before pairings are compared; 0: not at all.
@@ -125,7 +125,7 @@ pub enum Statistic {
 
 /// A band around a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Band {
+pub enum ToleranceBand {
     /// Fraction of the value.
     Relative(f64),
     /// In the unit of the quantity.
@@ -140,5 +140,5 @@ pub struct Expect {
     /// The value, in the unit of the quantity.
     pub value: f64,
     /// The band.
-    pub within: Band,
+    pub within: ToleranceBand,
 }

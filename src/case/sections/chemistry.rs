@@ -14,7 +14,7 @@ use calcine_coupler::setup::GasPatch;
 
 use super::existing;
 use super::reactions::{arrhenius, heat_agrees, lacking};
-use crate::case::table::Reader;
+use crate::case::table::TableReader;
 use crate::case::units::Dimension;
 use crate::mechanism;
 
@@ -28,7 +28,7 @@ pub(super) struct Around<'a> {
 
 /// What the gas does by itself, and the files that say so.
 pub(super) fn chemistry(
-    gas: &Reader<'_>,
+    gas: &TableReader<'_>,
     around: &Around<'_>,
     folder: &Path,
 ) -> Option<(GasChemistry, Vec<PathBuf>)> {
@@ -90,7 +90,7 @@ pub(super) fn chemistry(
     Some((GasChemistry::Reacting(Box::new(reacting)), files))
 }
 
-fn combustion(table: &Reader<'_>) -> Option<Combustion> {
+fn combustion(table: &TableReader<'_>) -> Option<Combustion> {
     let stirred = table.choice("model", &[("laminar", false), ("pasr", true)]);
     let stirred = match table.has("model") {
         true => stirred?,
@@ -110,7 +110,7 @@ fn combustion(table: &Reader<'_>) -> Option<Combustion> {
     Some(Combustion::Laminar)
 }
 
-fn tolerances(table: &Reader<'_>) -> Tolerances {
+fn tolerances(table: &TableReader<'_>) -> Tolerances {
     let default = Tolerances::default();
     let number = |key| table.positive(key, Dimension::NONE);
     Tolerances {
@@ -122,7 +122,11 @@ fn tolerances(table: &Reader<'_>) -> Tolerances {
 }
 
 /// A built-in mechanism, or that of a file.
-fn file(table: &Reader<'_>, mixture: &Mixture, folder: &Path) -> Option<(Mechanism, Vec<PathBuf>)> {
+fn file(
+    table: &TableReader<'_>,
+    mixture: &Mixture,
+    folder: &Path,
+) -> Option<(Mechanism, Vec<PathBuf>)> {
     let name = table.text("mechanism")?;
     let built_in = match name {
         "jones-lindstedt" => Some(Mechanism::jones_lindstedt(mixture)),
@@ -165,7 +169,7 @@ fn file(table: &Reader<'_>, mixture: &Mixture, folder: &Path) -> Option<(Mechani
     }
 }
 
-fn reactions(table: &Reader<'_>, mixture: &Mixture, around: &Around<'_>) -> Option<Mechanism> {
+fn reactions(table: &TableReader<'_>, mixture: &Mixture, around: &Around<'_>) -> Option<Mechanism> {
     let tables = table.tables("reactions");
     let mut statements: Vec<ReactionStatement> = Vec::new();
     for table in &tables {
@@ -196,7 +200,7 @@ fn reactions(table: &Reader<'_>, mixture: &Mixture, around: &Around<'_>) -> Opti
 }
 
 fn reaction(
-    table: &Reader<'_>,
+    table: &TableReader<'_>,
     mixture: &Mixture,
     around: &Around<'_>,
 ) -> Option<ReactionStatement> {
@@ -270,10 +274,12 @@ fn reaction(
         .then_some(statement)
 }
 
-fn third_body(table: &Reader<'_>, mixture: &Mixture) -> Option<Collider> {
+fn third_body(table: &TableReader<'_>, mixture: &Mixture) -> Option<Collider> {
     let others = table.quantity("others", Dimension::NONE).unwrap_or(1.0);
     let stated = table.table("efficiencies");
-    let efficiencies = stated.as_ref().map_or(Some(Vec::new()), Reader::numbers);
+    let efficiencies = stated
+        .as_ref()
+        .map_or(Some(Vec::new()), TableReader::numbers);
     table.finish();
     let efficiencies = efficiencies?;
     for (species, _) in &efficiencies {
@@ -332,7 +338,7 @@ fn absent(k: usize, net: &[(usize, f64)], around: &Around<'_>) -> Option<&'stati
 }
 
 /// True where the last species, which is what the others leave, reacts in none.
-fn last_rests(table: &Reader<'_>, key: &str, mechanism: &Mechanism) -> bool {
+fn last_rests(table: &TableReader<'_>, key: &str, mechanism: &Mechanism) -> bool {
     let last = mechanism.species() - 1;
     let reacts = |step: &&MechanismReaction| step.net.iter().any(|one| one.0 == last);
     let Some(step) = mechanism.steps().iter().find(reacts) else {

@@ -2,7 +2,7 @@
 
 use calcine_coupler::physics::thermo::Mixture;
 
-use crate::case::table::Reader;
+use crate::case::table::TableReader;
 
 /// An example of the form.
 pub(super) const EXAMPLE: &str = "{ mole = { N2 = 0.79, O2 = 0.21 } }";
@@ -10,7 +10,7 @@ pub(super) const EXAMPLE: &str = "{ mole = { N2 = 0.79, O2 = 0.21 } }";
 const SLACK: f64 = 1e-3;
 
 /// The mass fractions that a table states, in the order of the mixture's species.
-pub(super) fn fractions(table: &Reader<'_>, mixture: &Mixture) -> Option<Vec<f64>> {
+pub(super) fn fractions(table: &TableReader<'_>, mixture: &Mixture) -> Option<Vec<f64>> {
     let mut given = ["mole", "mass"].into_iter().filter(|key| table.has(key));
     let (kind, more) = (given.next(), given.next());
     let (Some(kind), None) = (kind, more) else {

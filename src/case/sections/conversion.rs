@@ -5,8 +5,8 @@ use calcine_coupler::interior::reacting::size::specific_volume;
 use calcine_coupler::physics::reaction::Equilibrium;
 use calcine_coupler::physics::solids::SolidSpecies;
 
-use crate::case::model::{Material, Population, ReactionSpec, SizeLaw};
-use crate::case::table::Reader;
+use crate::case::model::{MaterialSpec, Population, ReactionSpec, SizeLaw};
+use crate::case::table::TableReader;
 use crate::case::units::Dimension;
 
 /// By how much the density that stated densities of solids come to may differ from the material's.
@@ -21,7 +21,7 @@ enum Law {
 }
 
 /// The law of a material.
-pub(super) fn read(material: &Reader<'_>, solids: &[SolidSpecies]) -> SizeLaw {
+pub(super) fn read(material: &TableReader<'_>, solids: &[SolidSpecies]) -> SizeLaw {
     let Some(table) = material.table("size") else {
         return SizeLaw::default();
     };
@@ -35,7 +35,7 @@ pub(super) fn read(material: &Reader<'_>, solids: &[SolidSpecies]) -> SizeLaw {
         ("densities", Law::Densities),
     ];
     let law = table.required_choice("law", &laws);
-    let least = |table: &Reader<'_>| {
+    let least = |table: &TableReader<'_>| {
         let diameter = table.required_positive("least_diameter", Dimension::LENGTH);
         0.5 * diameter.unwrap_or(f64::NAN)
     };
@@ -54,7 +54,7 @@ pub(super) fn read(material: &Reader<'_>, solids: &[SolidSpecies]) -> SizeLaw {
 }
 
 /// Density of each solid, by the names of the table; `None` where one could not be read.
-fn densities(table: &Reader<'_>, solids: &[SolidSpecies]) -> Option<Vec<Option<f64>>> {
+fn densities(table: &TableReader<'_>, solids: &[SolidSpecies]) -> Option<Vec<Option<f64>>> {
     let example = "{ CaCO3 = \"2700 kg/m^3\", CaO = \"1600 kg/m^3\" }";
     let inner = table.required_table("densities", example)?;
     let mut found = vec![None; solids.len()];
@@ -79,7 +79,7 @@ fn densities(table: &Reader<'_>, solids: &[SolidSpecies]) -> Option<Vec<Option<f
 
 /// The law in terms of the solids that there are: of all solids, those that are `used`.
 pub(super) fn size(
-    material: &Material,
+    material: &MaterialSpec,
     start: &[f64],
     solids: &[SolidSpecies],
     used: &[bool],
@@ -104,9 +104,9 @@ pub(super) fn size(
 
 /// Errors where sizes do not go with composition, reactions and diameters.
 pub(super) fn fits(
-    root: &Reader<'_>,
+    root: &TableReader<'_>,
     chemistry: &ReactionSpec,
-    materials: &[Material],
+    materials: &[MaterialSpec],
     particles: &[Population],
 ) {
     let tables = root.table("materials").map(|section| section.named());
@@ -158,7 +158,7 @@ pub(super) fn fits(
 }
 
 /// The density in kg/m³ that the stated ones of a material's solids come to at the start.
-fn stated_density(material: &Material) -> Option<f64> {
+fn stated_density(material: &MaterialSpec) -> Option<f64> {
     let SizeLaw::Densities { densities, .. } = &material.size else {
         return None;
     };

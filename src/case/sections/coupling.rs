@@ -11,20 +11,22 @@ use calcine_coupler::time::GasStorage;
 
 use super::existing;
 use super::zone::zones;
-use crate::case::model::{Coupling, External, Laws, Mapping, Motion, Population, Time};
-use crate::case::table::Reader;
+use crate::case::model::{
+    Coupling, ExternalSpec, Laws, MappingSpec, MotionSpec, Population, TimeSpec,
+};
+use crate::case::table::TableReader;
 use crate::case::units::Dimension;
 
-pub(super) fn read(root: &Reader<'_>) -> Option<Coupling> {
+pub(super) fn read(root: &TableReader<'_>) -> Option<Coupling> {
     let section = root.required_table("coupling", "[coupling] with mapping = \"overlap\"")?;
     let mappings = [
-        ("overlap", Mapping::Overlap),
-        ("divided", Mapping::Divided),
-        ("centroid", Mapping::Centroid),
+        ("overlap", MappingSpec::Overlap),
+        ("divided", MappingSpec::Divided),
+        ("centroid", MappingSpec::Centroid),
     ];
     let mapping = section.required_choice("mapping", &mappings);
     let mut coupling = Coupling {
-        mapping: mapping.unwrap_or(Mapping::Overlap),
+        mapping: mapping.unwrap_or(MappingSpec::Overlap),
         max_solid_fraction: 0.64,
         excluded: Vec::new(),
         smoother_tolerance: 1e-4,
@@ -69,7 +71,7 @@ pub(super) fn read(root: &Reader<'_>) -> Option<Coupling> {
 }
 
 /// A plain number in (0, 1).
-fn fraction(table: &Reader<'_>, key: &str) -> Option<f64> {
+fn fraction(table: &TableReader<'_>, key: &str) -> Option<f64> {
     let value = table.quantity(key, Dimension::NONE)?;
     if value > 0.0 && value < 1.0 {
         return Some(value);
@@ -84,10 +86,10 @@ fn fraction(table: &Reader<'_>, key: &str) -> Option<f64> {
 
 /// A stock solver does less than calcineGasFoam: what this case asks of it in vain.
 pub(super) fn check_stock(
-    root: &Reader<'_>,
-    openfoam: &External,
+    root: &TableReader<'_>,
+    openfoam: &ExternalSpec,
     gas: &GasSetup,
-    time: &Time,
+    time: &TimeSpec,
     laws: Option<&Laws>,
 ) {
     if !openfoam.solver.is_stock() {
@@ -125,11 +127,15 @@ pub(super) fn check_stock(
 }
 
 /// A script of the user's own is for particles that move, and must let Calcine drive it.
-pub(super) fn check_script(root: &Reader<'_>, liggghts: &External, particles: &[Population]) {
+pub(super) fn check_script(
+    root: &TableReader<'_>,
+    liggghts: &ExternalSpec,
+    particles: &[Population],
+) {
     let (Some(path), Some(section)) = (&liggghts.template, root.table("liggghts")) else {
         return;
     };
-    if particles.iter().all(|one| one.motion == Motion::Frozen) {
+    if particles.iter().all(|one| one.motion == MotionSpec::Frozen) {
         let rule = "names a script, but no population moves";
         let help = "leave it out: a bed that is held needs no script, or write motion = \"free\"";
         section.fail("template", rule, help);
@@ -141,8 +147,8 @@ pub(super) fn check_script(root: &Reader<'_>, liggghts: &External, particles: &[
 }
 
 /// `[openfoam]` or `[liggghts]`.
-pub(super) fn external(root: &Reader<'_>, key: &str, folder: &Path) -> External {
-    let mut external = External {
+pub(super) fn external(root: &TableReader<'_>, key: &str, folder: &Path) -> ExternalSpec {
+    let mut external = ExternalSpec {
         template: None,
         start: None,
         solver: StockSolver::default(),

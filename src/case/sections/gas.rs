@@ -16,7 +16,7 @@ use super::gas_patch::boundary;
 use super::species_data;
 use super::turbulence::turbulence;
 use crate::case::model::MeshSpec;
-use crate::case::table::Reader;
+use crate::case::table::TableReader;
 use crate::case::units::Dimension;
 
 /// What the section says.
@@ -28,7 +28,7 @@ pub(super) struct GasRead {
 }
 
 pub(super) fn read(
-    root: &Reader<'_>,
+    root: &TableReader<'_>,
     mesh: Option<&MeshSpec>,
     storage: Option<GasStorage>,
     folder: &Path,
@@ -93,7 +93,7 @@ pub(super) fn read(
 
 /// A built-in mixture, or the properties of `[gas.properties]` or `[gas.constant]`.
 fn properties(
-    section: &Reader<'_>,
+    section: &TableReader<'_>,
     mixture: Option<&str>,
     folder: &Path,
 ) -> Option<(GasModel, Vec<PathBuf>)> {
@@ -112,7 +112,7 @@ fn properties(
 }
 
 /// A gas without species.
-fn single(section: &Reader<'_>, mixture: Option<&str>) -> Option<GasModel> {
+fn single(section: &TableReader<'_>, mixture: Option<&str>) -> Option<GasModel> {
     if let Some(table) = section.table("constant") {
         let density = table.required_positive("density", Dimension::DENSITY);
         let heat_capacity = table.required_positive("heat_capacity", Dimension::HEAT_CAPACITY);
@@ -170,7 +170,7 @@ fn single(section: &Reader<'_>, mixture: Option<&str>) -> Option<GasModel> {
 }
 
 /// The Schmidt number of a mixture; 1 where there are no species.
-fn schmidt(section: &Reader<'_>, gas: Option<&GasModel>) -> Option<f64> {
+fn schmidt(section: &TableReader<'_>, gas: Option<&GasModel>) -> Option<f64> {
     if !matches!(gas, Some(GasModel::Mixture(_))) {
         return Some(1.0);
     }
@@ -180,7 +180,10 @@ fn schmidt(section: &Reader<'_>, gas: Option<&GasModel>) -> Option<f64> {
     section.positive("schmidt", Dimension::NONE)
 }
 
-fn initial(section: &Reader<'_>, gas: Option<&GasModel>) -> Option<(f64, f64, Vec3, Vec<f64>)> {
+fn initial(
+    section: &TableReader<'_>,
+    gas: Option<&GasModel>,
+) -> Option<(f64, f64, Vec3, Vec<f64>)> {
     let initial = section.required_table(
         "initial",
         "initial = { temperature = \"300 K\", pressure = \"1 atm\" }",
@@ -206,7 +209,7 @@ fn initial(section: &Reader<'_>, gas: Option<&GasModel>) -> Option<(f64, f64, Ve
 
 /// Defaults: 20 outer iterations to 1e-8, 2 pressure corrections, linear solvers to 1e-13, van Leer's
 /// limiter.
-fn controls(section: &Reader<'_>) -> GasControls {
+fn controls(section: &TableReader<'_>) -> GasControls {
     let mut controls = GasControls {
         outer_iterations: 20,
         convection: Convection::default(),

@@ -11,12 +11,12 @@ use super::composition::{EXAMPLE, fractions};
 use super::patches;
 use super::turbulence::of_inlet;
 use crate::case::model::MeshSpec;
-use crate::case::table::Reader;
+use crate::case::table::TableReader;
 use crate::case::units::Dimension;
 
 /// Conditions of all patches, for a gas, turbulent or not; one of constant density cannot flow into a closed domain.
 pub(super) fn boundary(
-    section: &Reader<'_>,
+    section: &TableReader<'_>,
     mesh: Option<&MeshSpec>,
     gas: Option<&GasModel>,
     turbulent: Option<bool>,
@@ -65,7 +65,11 @@ pub(super) fn boundary(
     complete.then_some(made)
 }
 
-fn patch(reader: &Reader<'_>, gas: Option<&GasModel>, turbulent: Option<bool>) -> Option<GasPatch> {
+fn patch(
+    reader: &TableReader<'_>,
+    gas: Option<&GasModel>,
+    turbulent: Option<bool>,
+) -> Option<GasPatch> {
     let kinds = ["inlet", "outlet", "wall", "symmetry"];
     let mut given = kinds.iter().filter(|kind| reader.has(kind));
     let (kind, more) = (given.next(), given.next());
@@ -87,7 +91,11 @@ fn patch(reader: &Reader<'_>, gas: Option<&GasModel>, turbulent: Option<bool>) -
     made
 }
 
-fn inlet(table: &Reader<'_>, gas: Option<&GasModel>, turbulent: Option<bool>) -> Option<GasPatch> {
+fn inlet(
+    table: &TableReader<'_>,
+    gas: Option<&GasModel>,
+    turbulent: Option<bool>,
+) -> Option<GasPatch> {
     let flow = flow(table);
     let temperature = table.temperatures("temperature");
     let turbulence = of_inlet(table, turbulent);
@@ -103,7 +111,7 @@ fn inlet(table: &Reader<'_>, gas: Option<&GasModel>, turbulent: Option<bool>) ->
 }
 
 /// `composition` of the gas that flows in.
-fn composition(table: &Reader<'_>, mixture: &Mixture) -> Option<CompositionSchedule> {
+fn composition(table: &TableReader<'_>, mixture: &Mixture) -> Option<CompositionSchedule> {
     let Some(dated) = table.dated_tables("composition", EXAMPLE) else {
         if !table.has("composition") {
             table.missing("composition", EXAMPLE);
@@ -118,7 +126,7 @@ fn composition(table: &Reader<'_>, mixture: &Mixture) -> Option<CompositionSched
 }
 
 /// `superficial_velocity` or `mass_flow`.
-fn flow(table: &Reader<'_>) -> Option<InletFlow> {
+fn flow(table: &TableReader<'_>) -> Option<InletFlow> {
     let keys = ["superficial_velocity", "mass_flow"];
     let mut given = keys.iter().copied().filter(|key| table.has(key));
     let (key, more) = (given.next().unwrap_or(keys[0]), given.next());
@@ -148,7 +156,7 @@ fn flow(table: &Reader<'_>) -> Option<InletFlow> {
     })
 }
 
-fn wall(table: &Reader<'_>) -> Option<GasPatch> {
+fn wall(table: &TableReader<'_>) -> Option<GasPatch> {
     let velocity = wall_velocity(table);
     let heat = match table.raw("heat") {
         None => {
@@ -172,7 +180,7 @@ fn wall(table: &Reader<'_>) -> Option<GasPatch> {
 }
 
 /// `"no-slip"`, `"slip"`, or `{ moving = "1 0 0 m/s" }`.
-fn wall_velocity(table: &Reader<'_>) -> Option<WallVelocity> {
+fn wall_velocity(table: &TableReader<'_>) -> Option<WallVelocity> {
     match table.raw("velocity") {
         Some(item) if item.as_table_like().is_some() => {
             let inner = table.table("velocity")?;
@@ -191,7 +199,7 @@ fn wall_velocity(table: &Reader<'_>) -> Option<WallVelocity> {
 }
 
 /// `{ temperature = … }`, `{ flux = … }`, or `{ coefficient = …, ambient = … }`.
-fn wall_heat(table: &Reader<'_>) -> Option<WallHeat> {
+fn wall_heat(table: &TableReader<'_>) -> Option<WallHeat> {
     let kinds = ["temperature", "flux", "coefficient"];
     let mut given = kinds.iter().copied().filter(|kind| table.has(kind));
     let (kind, more) = (given.next(), given.next());

@@ -5,13 +5,14 @@ use calcine_coupler::setup::Schedule;
 use calcine_coupler::sight::ViewFactors;
 
 use crate::case::model::{
-    Area, Conduction, ConductionLaw, Gap, Laws, Material, Population, Radiation,
+    ConductionArea, ConductionLaw, ConductionSpec, GapSpec, Laws, MaterialSpec, Population,
+    RadiationSpec,
 };
-use crate::case::table::Reader;
+use crate::case::table::TableReader;
 use crate::case::units::Dimension;
 
 /// `laws.conduction`.
-pub(super) fn conduction(section: &Reader<'_>) -> Option<Conduction> {
+pub(super) fn conduction(section: &TableReader<'_>) -> Option<ConductionSpec> {
     let table = section.required_table("conduction", "conduction = { law = \"none\" }")?;
     let laws = [
         ("batchelor-obrien", ConductionLaw::BatchelorObrien),
@@ -22,10 +23,10 @@ pub(super) fn conduction(section: &Reader<'_>) -> Option<Conduction> {
     let area = area(&table);
     let gap = match table.table("gap") {
         Some(table) => gap(&table),
-        None => Some(Gap::None),
+        None => Some(GapSpec::None),
     };
     table.finish();
-    Some(Conduction {
+    Some(ConductionSpec {
         law: law?,
         area: area?,
         gap: gap?,
@@ -33,7 +34,7 @@ pub(super) fn conduction(section: &Reader<'_>) -> Option<Conduction> {
 }
 
 /// `area`, with `load` and `within` where it is a load.
-fn area(table: &Reader<'_>) -> Option<Area> {
+fn area(table: &TableReader<'_>) -> Option<ConductionArea> {
     let areas = [("overlap", 0), ("force", 1), ("load", 2)];
     let chosen = match table.has("area") {
         true => table.choice("area", &areas)?,
@@ -47,7 +48,7 @@ fn area(table: &Reader<'_>) -> Option<Area> {
                 table.missing(key, example);
             }
         }
-        return Some(Area::Load {
+        return Some(ConductionArea::Load {
             force: force?,
             within: within?,
         });
@@ -58,13 +59,13 @@ fn area(table: &Reader<'_>) -> Option<Area> {
         }
     }
     Some(match chosen {
-        1 => Area::Force,
-        _ => Area::Overlap,
+        1 => ConductionArea::Force,
+        _ => ConductionArea::Overlap,
     })
 }
 
 /// `gap`: conduction through the gas between surfaces.
-fn gap(table: &Reader<'_>) -> Option<Gap> {
+fn gap(table: &TableReader<'_>) -> Option<GapSpec> {
     let laws = [("rong-horio", 1), ("cheng", 2), ("none", 0)];
     let law = table.required_choice("law", &laws);
     let number = |key, usual: f64| match table.has(key) {
@@ -92,20 +93,20 @@ fn gap(table: &Reader<'_>) -> Option<Gap> {
     }
     table.finish();
     Some(match law? {
-        1 => Gap::RongHorio {
+        1 => GapSpec::RongHorio {
             lens: lens?,
             least_width: least?,
         },
-        2 => Gap::Cheng {
+        2 => GapSpec::Cheng {
             cone: cone?,
             widest: widest?,
         },
-        _ => Gap::None,
+        _ => GapSpec::None,
     })
 }
 
 /// `laws.radiation`; `Some(None)` where surfaces do not radiate.
-pub(super) fn radiation(section: &Reader<'_>) -> Option<Option<Radiation>> {
+pub(super) fn radiation(section: &TableReader<'_>) -> Option<Option<RadiationSpec>> {
     let table = section.required_table("radiation", "radiation = { law = \"none\" }")?;
     let laws = [("view-factors", 1), ("distance", 2), ("none", 0)];
     let law = table.required_choice("law", &laws);
@@ -149,7 +150,7 @@ pub(super) fn radiation(section: &Reader<'_>) -> Option<Option<Radiation>> {
         2 => ViewFactors::Distance { range },
         _ => return Some(None),
     };
-    Some(Some(Radiation {
+    Some(Some(RadiationSpec {
         sight,
         inside: inside?,
         surroundings: surroundings?,
@@ -158,7 +159,7 @@ pub(super) fn radiation(section: &Reader<'_>) -> Option<Option<Radiation>> {
 }
 
 /// `surroundings`: a temperature, or "closed".
-fn surroundings(table: &Reader<'_>, law: Option<i32>) -> Option<Option<Schedule>> {
+fn surroundings(table: &TableReader<'_>, law: Option<i32>) -> Option<Option<Schedule>> {
     if !table.has("surroundings") {
         if matches!(law, Some(1 | 2)) {
             table.missing("surroundings", "\"300 K\", or \"closed\"");
@@ -182,9 +183,9 @@ fn surroundings(table: &Reader<'_>, law: Option<i32>) -> Option<Option<Schedule>
 
 /// What the laws need to know of materials, and of walls of a temperature.
 pub(super) fn need_properties(
-    root: &Reader<'_>,
+    root: &TableReader<'_>,
     laws: &Laws,
-    materials: &[Material],
+    materials: &[MaterialSpec],
     particles: &[Population],
     walls: &[(Wall, Option<Schedule>)],
 ) {
@@ -192,7 +193,7 @@ pub(super) fn need_properties(
         return;
     };
     let conducts = laws.conducts();
-    let pressed = !matches!(laws.conduction.area, Area::Overlap)
+    let pressed = !matches!(laws.conduction.area, ConductionArea::Overlap)
         && laws.conduction.law != ConductionLaw::None;
     for (k, material) in materials.iter().enumerate() {
         let in_bed = particles.iter().any(|population| population.material == k);
@@ -231,7 +232,7 @@ pub(super) fn need_properties(
 }
 
 /// Walls of a temperature stay where they are, as the coordinator sees them.
-pub(super) fn stays(table: &Reader<'_>, shape: &WallShape, motion: &WallMotion) {
+pub(super) fn stays(table: &TableReader<'_>, shape: &WallShape, motion: &WallMotion) {
     let along = match (shape, motion) {
         (_, WallMotion::Still) => true,
         (WallShape::Plane { normal, .. }, WallMotion::Translating(velocity)) => {

@@ -4,8 +4,8 @@ use calcine_coupler::hold::{HoldError, Holds};
 use calcine_coupler::time::Ticks;
 
 use super::time::ticks;
-use crate::case::model::{FreeMotion, Time};
-use crate::case::table::Reader;
+use crate::case::model::{FreeMotion, TimeSpec};
+use crate::case::table::TableReader;
 use crate::case::units::Dimension;
 
 const KEY: &str = "held";
@@ -15,7 +15,7 @@ const HELP: &str = "write begin and end of each time, one after the other, for e
 const MOST: i64 = 1_000_000;
 
 /// Spans of process time, or a table of spans that repeat.
-pub(super) fn holds(section: &Reader<'_>, time: Option<&Time>) -> Holds {
+pub(super) fn holds(section: &TableReader<'_>, time: Option<&TimeSpec>) -> Holds {
     let Some(item) = section.raw(KEY) else {
         return Holds::default();
     };
@@ -31,7 +31,7 @@ pub(super) fn holds(section: &Reader<'_>, time: Option<&Time>) -> Holds {
 }
 
 /// [begin, end] of each.
-fn spans(section: &Reader<'_>) -> Option<Vec<[Ticks; 2]>> {
+fn spans(section: &TableReader<'_>) -> Option<Vec<[Ticks; 2]>> {
     let mut spans = Vec::new();
     for entry in section.raw(KEY)?.as_array()? {
         let pair = entry.as_array().filter(|pair| pair.len() == 2);
@@ -55,7 +55,10 @@ fn spans(section: &Reader<'_>) -> Option<Vec<[Ticks; 2]>> {
 }
 
 /// `{ from, for, every }`, up to the end of the run.
-fn periodic(section: &Reader<'_>, time: Option<&Time>) -> Option<Result<Holds, HoldError>> {
+fn periodic(
+    section: &TableReader<'_>,
+    time: Option<&TimeSpec>,
+) -> Option<Result<Holds, HoldError>> {
     let table = section.table(KEY)?;
     let from = table.quantity("from", Dimension::TIME).unwrap_or(0.0);
     let length = ticks(&table, "for", true);
@@ -84,7 +87,12 @@ fn periodic(section: &Reader<'_>, time: Option<&Time>) -> Option<Result<Holds, H
 }
 
 /// Checks that there is something to hold, and a time to hold it.
-pub(super) fn fits(root: &Reader<'_>, motion: Option<&FreeMotion>, time: &Time, frozen: bool) {
+pub(super) fn fits(
+    root: &TableReader<'_>,
+    motion: Option<&FreeMotion>,
+    time: &TimeSpec,
+    frozen: bool,
+) {
     let (Some(motion), Some(section)) = (motion, root.table("motion")) else {
         return;
     };

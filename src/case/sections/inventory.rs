@@ -4,14 +4,14 @@ use calcine_coupler::interior::reacting::{Rate, Reaction};
 use calcine_coupler::physics::solids::SolidSpecies;
 
 use super::conversion;
-use crate::case::model::{Material, Population, ReactionSpec};
+use crate::case::model::{MaterialSpec, Population, ReactionSpec};
 
 /// Reactions with the solids of the case; a material of particles that does not say what it is made of is one solid that
 /// does not react. Nothing where no reaction is.
 pub(super) fn inventory(
     mut solids: Vec<SolidSpecies>,
     mut reactions: Vec<Reaction>,
-    materials: &[Material],
+    materials: &[MaterialSpec],
     particles: &[Population],
 ) -> ReactionSpec {
     if reactions.is_empty() {

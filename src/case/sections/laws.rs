@@ -4,9 +4,9 @@ use calcine_coupler::momentum_model::MomentumModel;
 
 use super::heat;
 use crate::case::model::{DragLaw, HeatLaw, Laws};
-use crate::case::table::Reader;
+use crate::case::table::TableReader;
 
-pub(super) fn read(root: &Reader<'_>) -> Option<Laws> {
+pub(super) fn read(root: &TableReader<'_>) -> Option<Laws> {
     let section = root.required_table("laws", "[laws] with drag = { law = \"ergun-wen-yu\" }")?;
     let drag = drag(&section);
     let heats = [
@@ -36,7 +36,7 @@ pub(super) fn read(root: &Reader<'_>) -> Option<Laws> {
 }
 
 /// The drag law, and the model by which it is exchanged.
-fn drag(section: &Reader<'_>) -> Option<(DragLaw, MomentumModel)> {
+fn drag(section: &TableReader<'_>) -> Option<(DragLaw, MomentumModel)> {
     let laws = [
         ("ergun-wen-yu", DragLaw::ErgunWenYu),
         ("ergun", DragLaw::Ergun),
@@ -55,7 +55,7 @@ fn drag(section: &Reader<'_>) -> Option<(DragLaw, MomentumModel)> {
     Some((law?, model))
 }
 
-fn law<T: Copy>(section: &Reader<'_>, key: &str, choices: &[(&str, T)]) -> Option<T> {
+fn law<T: Copy>(section: &TableReader<'_>, key: &str, choices: &[(&str, T)]) -> Option<T> {
     let example = choices.first().map_or("none", |(name, _)| name);
     let table = section.required_table(key, &format!("{key} = {{ law = \"{example}\" }}"))?;
     let law = table.required_choice("law", choices);

@@ -9,7 +9,7 @@ use toml_edit::Value;
 use super::existing;
 use super::zone::{openings, refinements};
 use crate::case::model::MeshSpec;
-use crate::case::table::Reader;
+use crate::case::table::TableReader;
 use crate::case::units::Dimension;
 
 /// Patch names of x−, x+, y−, y+, z−, z+ where the case names none.
@@ -17,7 +17,7 @@ const PATCHES: [&str; 6] = ["side", "side", "side", "side", "bottom", "top"];
 /// Most cells that 32-bit numbers hold.
 const MOST_CELLS: f64 = 2e9;
 
-pub(super) fn read(root: &Reader<'_>, folder: &Path) -> Option<MeshSpec> {
+pub(super) fn read(root: &TableReader<'_>, folder: &Path) -> Option<MeshSpec> {
     let section = root.required_table(
         "mesh",
         "[mesh] with box = { size = \"10 10 110 mm\", cells = [1, 1, 11] }",
@@ -41,7 +41,7 @@ pub(super) fn read(root: &Reader<'_>, folder: &Path) -> Option<MeshSpec> {
     made
 }
 
-fn cylinder(section: &Reader<'_>) -> Option<MeshSpec> {
+fn cylinder(section: &TableReader<'_>) -> Option<MeshSpec> {
     let cylinder = section.table("cylinder")?;
     let origin = cylinder
         .vector("origin", Dimension::LENGTH)
@@ -72,7 +72,7 @@ fn cylinder(section: &Reader<'_>) -> Option<MeshSpec> {
     })
 }
 
-fn polymesh(section: &Reader<'_>, folder: &Path) -> Option<MeshSpec> {
+fn polymesh(section: &TableReader<'_>, folder: &Path) -> Option<MeshSpec> {
     let path = existing(section, "polymesh", folder)?;
     if path.join("owner").is_file() {
         return Some(MeshSpec::PolyMesh(path));
@@ -85,7 +85,7 @@ fn polymesh(section: &Reader<'_>, folder: &Path) -> Option<MeshSpec> {
     None
 }
 
-fn cuboid(section: &Reader<'_>) -> Option<MeshSpec> {
+fn cuboid(section: &TableReader<'_>) -> Option<MeshSpec> {
     let cuboid = section.table("box")?;
     let origin = cuboid
         .vector("origin", Dimension::LENGTH)
@@ -141,7 +141,7 @@ fn cuboid(section: &Reader<'_>) -> Option<MeshSpec> {
 
 /// How cell sizes change along axes; nothing for equal ones. `None` where something is wrong.
 fn gradings<const N: usize>(
-    mesh: &Reader<'_>,
+    mesh: &TableReader<'_>,
     axes: [&str; N],
     cells: Option<[usize; N]>,
 ) -> Option<[Vec<Stretch>; N]> {
@@ -175,7 +175,7 @@ fn gradings<const N: usize>(
 }
 
 /// A ratio of cell sizes, or regions of [share of the length, share of the cells, ratio].
-fn grading(table: &Reader<'_>, axis: &str) -> Option<Vec<Stretch>> {
+fn grading(table: &TableReader<'_>, axis: &str) -> Option<Vec<Stretch>> {
     let help = "write the ratio of the last cell to the first, such as 4, or regions of \
                 [share of the length, share of the cells, ratio], such as \
                 [[0.4, 0.2, 0.25], [0.6, 0.8, 1]]";

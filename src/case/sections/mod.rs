@@ -31,13 +31,18 @@ use std::path::{Path, PathBuf};
 
 use self::gas::GasRead;
 use super::model::{Case, MeshSpec};
-use super::table::Reader;
+use super::table::TableReader;
 
 /// Version of the format that this reader knows.
 const FORMAT: u64 = 1;
 
 /// Reads all sections; `None` where one could not be read (its problems are recorded).
-pub(super) fn case(root: &Reader<'_>, path: &Path, effective: &str, hash: String) -> Option<Case> {
+pub(super) fn case(
+    root: &TableReader<'_>,
+    path: &Path,
+    effective: &str,
+    hash: String,
+) -> Option<Case> {
     if !root.has("format") {
         root.missing("format", "1");
     } else if root
@@ -178,7 +183,7 @@ fn patches(mesh: Option<&MeshSpec>) -> Option<Vec<&str>> {
 }
 
 /// A path of the case file, absolute; an error where there is nothing.
-fn existing(reader: &Reader<'_>, key: &str, folder: &Path) -> Option<PathBuf> {
+fn existing(reader: &TableReader<'_>, key: &str, folder: &Path) -> Option<PathBuf> {
     let text = reader.text(key)?;
     let path = folder.join(text);
     match path.canonicalize() {

@@ -3,8 +3,10 @@
 use calcine_coupler::motion::{Cohesion, ContactForce, ContactLaw, Rolling, Wall};
 
 use super::hold;
-use crate::case::model::{Contact, FreeMotion, Material, Motion, MotionKind, Population, Time};
-use crate::case::table::Reader;
+use crate::case::model::{
+    ContactSpec, FreeMotion, MaterialSpec, MotionKind, MotionSpec, Population, TimeSpec,
+};
+use crate::case::table::TableReader;
 use crate::case::units::Dimension;
 
 const EXAMPLE: &str =
@@ -18,7 +20,7 @@ enum Law {
     Linear,
 }
 
-pub(super) fn motion(root: &Reader<'_>, time: Option<&Time>) -> Option<FreeMotion> {
+pub(super) fn motion(root: &TableReader<'_>, time: Option<&TimeSpec>) -> Option<FreeMotion> {
     let section = root.table("motion")?;
     let kinds = [
         ("real-time", MotionKind::RealTime),
@@ -51,14 +53,14 @@ pub(super) fn motion(root: &Reader<'_>, time: Option<&Time>) -> Option<FreeMotio
     })
 }
 
-fn law<T: Copy>(section: &Reader<'_>, key: &str, choices: &[(&str, T)]) -> Option<T> {
+fn law<T: Copy>(section: &TableReader<'_>, key: &str, choices: &[(&str, T)]) -> Option<T> {
     let table = section.required_table(key, &format!("{key} = {{ law = \"none\" }}"))?;
     let law = table.required_choice("law", choices);
     table.finish();
     law
 }
 
-fn force(section: &Reader<'_>) -> Option<ContactForce> {
+fn force(section: &TableReader<'_>) -> Option<ContactForce> {
     let table = section.required_table("contact", "contact = { law = \"hertz-mindlin\" }")?;
     let laws = [
         ("hertz-mindlin", Law::Hertz),
@@ -91,12 +93,12 @@ fn force(section: &Reader<'_>) -> Option<ContactForce> {
 
 /// Checks that clocks and motion go together.
 pub(super) fn fits(
-    root: &Reader<'_>,
+    root: &TableReader<'_>,
     motion: Option<&FreeMotion>,
-    time: &Time,
+    time: &TimeSpec,
     particles: &[Population],
 ) {
-    let frozen = particles.iter().all(|one| one.motion == Motion::Frozen);
+    let frozen = particles.iter().all(|one| one.motion == MotionSpec::Frozen);
     hold::fits(root, motion, time, frozen);
     if frozen {
         return;
@@ -137,15 +139,15 @@ pub(super) fn fits(
 /// What meets what.
 pub(super) struct Meeting<'a> {
     pub motion: &'a FreeMotion,
-    pub materials: &'a [Material],
-    pub contacts: &'a [Contact],
+    pub materials: &'a [MaterialSpec],
+    pub contacts: &'a [ContactSpec],
     pub particles: &'a [Population],
     pub walls: &'a [Wall],
 }
 
 /// Every material that touches a free particle needs elastic constants, and every such pair its
 /// properties; all that is missing is told.
-pub(super) fn need_properties(root: &Reader<'_>, meeting: &Meeting<'_>) {
+pub(super) fn need_properties(root: &TableReader<'_>, meeting: &Meeting<'_>) {
     let Meeting {
         motion,
         materials,
@@ -153,7 +155,7 @@ pub(super) fn need_properties(root: &Reader<'_>, meeting: &Meeting<'_>) {
         particles,
         walls,
     } = meeting;
-    let free = |population: &&Population| population.motion == Motion::Free;
+    let free = |population: &&Population| population.motion == MotionSpec::Free;
     let movers: Vec<usize> = particles
         .iter()
         .filter(free)

@@ -2,7 +2,7 @@
 
 use super::time::ticks;
 use crate::case::model::Output;
-use crate::case::table::Reader;
+use crate::case::table::TableReader;
 
 /// Gas fields of the snapshots.
 const GAS: [&str; 7] = [
@@ -26,7 +26,7 @@ const PARTICLES: [&str; 8] = [
     "solids",
 ];
 
-pub(super) fn output(root: &Reader<'_>) -> Option<Output> {
+pub(super) fn output(root: &TableReader<'_>) -> Option<Output> {
     let section = root.required_table("output", "[output] with every = \"30 s\"")?;
     let every = ticks(&section, "every", true);
     let series_every = ticks(&section, "series_every", false);

@@ -12,11 +12,11 @@ use super::conversion;
 use super::place::place;
 use super::reactions::{composition, mixed};
 use super::sizes::sizes;
-use crate::case::model::{Contact, Material, MeshSpec, Motion, Population};
-use crate::case::table::Reader;
+use crate::case::model::{ContactSpec, MaterialSpec, MeshSpec, MotionSpec, Population};
+use crate::case::table::TableReader;
 use crate::case::units::Dimension;
 
-pub(super) fn materials(root: &Reader<'_>, solids: &[SolidSpecies]) -> Vec<Material> {
+pub(super) fn materials(root: &TableReader<'_>, solids: &[SolidSpecies]) -> Vec<MaterialSpec> {
     let example = "[materials.glass] with density = \"2500 kg/m^3\"";
     let Some(section) = root.required_table("materials", example) else {
         return Vec::new();
@@ -28,7 +28,7 @@ pub(super) fn materials(root: &Reader<'_>, solids: &[SolidSpecies]) -> Vec<Mater
         .collect()
 }
 
-fn material(name: String, table: &Reader<'_>, solids: &[SolidSpecies]) -> Material {
+fn material(name: String, table: &TableReader<'_>, solids: &[SolidSpecies]) -> MaterialSpec {
     // A value that could not be read is recorded as an error; its stand-in is never used.
     let positive = |key, dimension| table.required_positive(key, dimension).unwrap_or(f64::NAN);
     let composed = table.table("composition");
@@ -43,7 +43,7 @@ fn material(name: String, table: &Reader<'_>, solids: &[SolidSpecies]) -> Materi
         None if table.has("composition") => HeatCapacity::constant(f64::NAN),
         None => heat_capacity(table),
     };
-    let made = Material {
+    let made = MaterialSpec {
         name,
         density: positive("density", Dimension::DENSITY),
         heat_capacity,
@@ -77,7 +77,7 @@ fn material(name: String, table: &Reader<'_>, solids: &[SolidSpecies]) -> Materi
 }
 
 /// A number, or points over temperature.
-fn conductivity(table: &Reader<'_>) -> Option<Conductivity> {
+fn conductivity(table: &TableReader<'_>) -> Option<Conductivity> {
     if !table.has("conductivity") {
         return None;
     }
@@ -94,7 +94,7 @@ fn conductivity(table: &Reader<'_>) -> Option<Conductivity> {
 }
 
 /// A number, points over temperature, or a table with NASA's polynomials.
-fn heat_capacity(table: &Reader<'_>) -> HeatCapacity {
+fn heat_capacity(table: &TableReader<'_>) -> HeatCapacity {
     let polynomials = table
         .raw("heat_capacity")
         .is_some_and(|item| item.as_table_like().is_some());
@@ -131,7 +131,7 @@ const HOTTEST: f64 = 20_000.0;
 
 /// NASA's seven coefficients over two ranges, every few kelvin: c_p is linear in between, and the enthalpy
 /// its exact integral.
-fn polynomial(table: &Reader<'_>) -> Option<Vec<(f64, f64)>> {
+fn polynomial(table: &TableReader<'_>) -> Option<Vec<(f64, f64)>> {
     const STEP: f64 = 2.0;
     let molar_mass = table.required_positive("molar_mass", Dimension::MOLAR_MASS);
     let ends = table.required_vector("ranges", Dimension::TEMPERATURE);
@@ -162,7 +162,7 @@ fn polynomial(table: &Reader<'_>) -> Option<Vec<(f64, f64)>> {
     Some(kelvins.chain([ends[2]]).map(at).collect())
 }
 
-fn coefficients(table: &Reader<'_>, key: &str) -> Option<[f64; 7]> {
+fn coefficients(table: &TableReader<'_>, key: &str) -> Option<[f64; 7]> {
     let example = "[2.5, 0, 0, 0, 0, 0, 0]";
     let Some(item) = table.raw(key) else {
         table.missing(key, example);
@@ -185,7 +185,7 @@ fn coefficients(table: &Reader<'_>, key: &str) -> Option<[f64; 7]> {
     seven
 }
 
-pub(super) fn contacts(root: &Reader<'_>, materials: &[Material]) -> Vec<Contact> {
+pub(super) fn contacts(root: &TableReader<'_>, materials: &[MaterialSpec]) -> Vec<ContactSpec> {
     root.tables("contacts")
         .iter()
         .filter_map(|table| {
@@ -224,7 +224,7 @@ pub(super) fn contacts(root: &Reader<'_>, materials: &[Material]) -> Vec<Contact
                     "name two of [materials]",
                 );
             }
-            Some(Contact {
+            Some(ContactSpec {
                 between: pair?,
                 restitution,
                 friction,
@@ -237,8 +237,8 @@ pub(super) fn contacts(root: &Reader<'_>, materials: &[Material]) -> Vec<Contact
 }
 
 pub(super) fn populations(
-    root: &Reader<'_>,
-    materials: &[Material],
+    root: &TableReader<'_>,
+    materials: &[MaterialSpec],
     mesh: Option<&MeshSpec>,
     folder: &Path,
 ) -> Option<Vec<Population>> {
@@ -267,8 +267,8 @@ pub(super) fn populations(
 }
 
 fn population(
-    table: &Reader<'_>,
-    materials: &[Material],
+    table: &TableReader<'_>,
+    materials: &[MaterialSpec],
     mesh: Option<&MeshSpec>,
     folder: &Path,
 ) -> Option<Population> {
@@ -293,10 +293,10 @@ fn population(
     let sizes = sizes(table);
     let motion = table.required_choice(
         "motion",
-        &[("frozen", Motion::Frozen), ("free", Motion::Free)],
+        &[("frozen", MotionSpec::Frozen), ("free", MotionSpec::Free)],
     );
     let velocity = table.vector("velocity", Dimension::VELOCITY);
-    if velocity.is_some() && motion == Some(Motion::Frozen) {
+    if velocity.is_some() && motion == Some(MotionSpec::Frozen) {
         let help = "remove it, or write motion = \"free\"";
         table.fail("velocity", "does not go with motion = \"frozen\"", help);
     }

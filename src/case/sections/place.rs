@@ -7,9 +7,9 @@ use calcine_coupler::packing::regular::Lattice;
 use calcine_coupler::physics::Vec3;
 
 use super::existing;
-use crate::case::model::{MeshSpec, Place};
+use crate::case::model::{MeshSpec, PlacementSpec};
 use crate::case::overlap::PRESSED;
-use crate::case::table::Reader;
+use crate::case::table::TableReader;
 use crate::case::units::{Dimension, shown};
 
 /// Most particles of a grid.
@@ -18,11 +18,11 @@ const MOST_PARTICLES: f64 = 1e9;
 const ROUND_OFF: f64 = 1e-9;
 
 pub(super) fn place(
-    place: &Reader<'_>,
+    place: &TableReader<'_>,
     sizes: Option<&Sizes>,
     mesh: Option<&MeshSpec>,
     folder: &Path,
-) -> Option<Place> {
+) -> Option<PlacementSpec> {
     let kinds = ["grid", "file", "packing"];
     let given: Vec<&str> = kinds.into_iter().filter(|kind| place.has(kind)).collect();
     match given[..] {
@@ -36,11 +36,11 @@ pub(super) fn place(
     }
 }
 
-fn file(place: &Reader<'_>, folder: &Path) -> Option<Place> {
+fn file(place: &TableReader<'_>, folder: &Path) -> Option<PlacementSpec> {
     let path = existing(place, "file", folder);
     let timestep = place.whole("timestep", 0..=i64::MAX);
     let kind = place.whole("type", 0..=i64::MAX);
-    Some(Place::File {
+    Some(PlacementSpec::File {
         path: path?,
         timestep,
         kind,
@@ -48,7 +48,11 @@ fn file(place: &Reader<'_>, folder: &Path) -> Option<Place> {
 }
 
 /// A packing from wall to wall of a generated mesh.
-fn packing(place: &Reader<'_>, sizes: Option<&Sizes>, mesh: Option<&MeshSpec>) -> Option<Place> {
+fn packing(
+    place: &TableReader<'_>,
+    sizes: Option<&Sizes>,
+    mesh: Option<&MeshSpec>,
+) -> Option<PlacementSpec> {
     let kinds = [
         ("random", None),
         ("simple-cubic", Some(Lattice::SimpleCubic)),
@@ -70,13 +74,13 @@ fn packing(place: &Reader<'_>, sizes: Option<&Sizes>, mesh: Option<&MeshSpec>) -
         );
         return None;
     }
-    Some(Place::Regular {
+    Some(PlacementSpec::Regular {
         lattice,
         layer: layer?,
     })
 }
 
-fn random(place: &Reader<'_>, layer: Option<[f64; 2]>) -> Option<Place> {
+fn random(place: &TableReader<'_>, layer: Option<[f64; 2]>) -> Option<PlacementSpec> {
     if !place.has("solid_fraction") {
         place.missing("solid_fraction", "0.58");
     }
@@ -94,7 +98,7 @@ fn random(place: &Reader<'_>, layer: Option<[f64; 2]>) -> Option<Place> {
         );
         return None;
     }
-    Some(Place::Random {
+    Some(PlacementSpec::Random {
         layer,
         solid_fraction,
         seed,
@@ -102,7 +106,11 @@ fn random(place: &Reader<'_>, layer: Option<[f64; 2]>) -> Option<Place> {
 }
 
 /// Lowest and highest z of a packing in m: `height` above the bottom of the mesh, or `region`.
-fn layer(place: &Reader<'_>, sizes: Option<&Sizes>, mesh: Option<&MeshSpec>) -> Option<[f64; 2]> {
+fn layer(
+    place: &TableReader<'_>,
+    sizes: Option<&Sizes>,
+    mesh: Option<&MeshSpec>,
+) -> Option<[f64; 2]> {
     let given = [place.has("height"), place.has("region")];
     let height = place.positive("height", Dimension::LENGTH);
     let region = if given[1] {
@@ -169,7 +177,11 @@ fn layer(place: &Reader<'_>, sizes: Option<&Sizes>, mesh: Option<&MeshSpec>) -> 
     }
 }
 
-fn grid(grid: &Reader<'_>, sizes: Option<&Sizes>, mesh: Option<&MeshSpec>) -> Option<Place> {
+fn grid(
+    grid: &TableReader<'_>,
+    sizes: Option<&Sizes>,
+    mesh: Option<&MeshSpec>,
+) -> Option<PlacementSpec> {
     let first = grid.required_vector("first", Dimension::LENGTH);
     let spacing = grid.required_vector("spacing", Dimension::LENGTH);
     let counts = grid.wholes::<3>("counts");
@@ -216,7 +228,7 @@ fn grid(grid: &Reader<'_>, sizes: Option<&Sizes>, mesh: Option<&MeshSpec>) -> Op
             }
         }
     }
-    Some(Place::Grid {
+    Some(PlacementSpec::Grid {
         first,
         spacing,
         counts,

@@ -3,12 +3,12 @@
 use calcine_coupler::physics::Vec3;
 
 use crate::case::model::Probe;
-use crate::case::table::Reader;
+use crate::case::table::TableReader;
 use crate::case::units::{Dimension, UnitError, quantities};
 
 const LINE: &str = "line = { from = \"0 0 0 mm\", to = \"0 0 300 mm\", points = 100 }";
 
-pub(super) fn probes(root: &Reader<'_>) -> Vec<Probe> {
+pub(super) fn probes(root: &TableReader<'_>) -> Vec<Probe> {
     let mut names = Vec::new();
     root.tables("probes")
         .iter()
@@ -44,7 +44,7 @@ pub(super) fn probes(root: &Reader<'_>) -> Vec<Probe> {
         .collect()
 }
 
-fn places(table: &Reader<'_>) -> Option<Vec<Vec3>> {
+fn places(table: &TableReader<'_>) -> Option<Vec<Vec3>> {
     let kinds = ["line", "point", "points"];
     let given: Vec<&str> = kinds.into_iter().filter(|kind| table.has(kind)).collect();
     match given[..] {
@@ -62,7 +62,7 @@ fn places(table: &Reader<'_>) -> Option<Vec<Vec3>> {
     }
 }
 
-fn line(line: &Reader<'_>) -> Option<Vec<Vec3>> {
+fn line(line: &TableReader<'_>) -> Option<Vec<Vec3>> {
     let from = line.required_vector("from", Dimension::LENGTH);
     let to = line.required_vector("to", Dimension::LENGTH);
     if !line.has("points") {
@@ -76,7 +76,7 @@ fn line(line: &Reader<'_>) -> Option<Vec<Vec3>> {
     Some((0..=last).map(at).collect())
 }
 
-fn points(table: &Reader<'_>) -> Option<Vec<Vec3>> {
+fn points(table: &TableReader<'_>) -> Option<Vec<Vec3>> {
     let texts = table.texts("points")?;
     let mut all = Vec::new();
     for text in &texts {

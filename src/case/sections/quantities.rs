@@ -7,15 +7,15 @@ use calcine_coupler::setup::Schedule;
 use super::patches;
 use super::walls::direction;
 use crate::case::model::{
-    Band, Expect, GasPlace, Measure, MeshSpec, ParticlePlace, Place, Population, Probe, Quantity,
-    SURROUNDINGS, Statistic, belongs,
+    Expect, GasPlace, Measure, MeshSpec, ParticlePlace, PlacementSpec, Population, Probe, Quantity,
+    SURROUNDINGS, Statistic, ToleranceBand, belongs,
 };
 use calcine_coupler::physics::solids::SolidSpecies;
 
-use crate::case::table::Reader;
+use crate::case::table::TableReader;
 use crate::case::units::{Dimension, difference};
 
-pub(super) fn quantities(root: &Reader<'_>, known: &Known<'_>) -> Vec<Quantity> {
+pub(super) fn quantities(root: &TableReader<'_>, known: &Known<'_>) -> Vec<Quantity> {
     let mut made: Vec<Quantity> = Vec::new();
     for table in &root.tables("quantities") {
         let Some(quantity) = quantity(table, known) else {
@@ -33,7 +33,7 @@ pub(super) fn quantities(root: &Reader<'_>, known: &Known<'_>) -> Vec<Quantity> 
     made
 }
 
-fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
+fn quantity(table: &TableReader<'_>, known: &Known<'_>) -> Option<Quantity> {
     let name = table.required_text("name", "\"pressure_drop\"");
     let example = "measure = { difference = \"pressure\", patches = [\"bottom\", \"top\"] }";
     let measure = table.required_table("measure", example).and_then(|reader| {
@@ -106,13 +106,15 @@ fn quantity(table: &Reader<'_>, known: &Known<'_>) -> Option<Quantity> {
 }
 
 /// A band such as "5 %" or "0.5 K".
-fn band(table: &Reader<'_>, key: &str, dimension: Dimension) -> Option<Band> {
+fn band(table: &TableReader<'_>, key: &str, dimension: Dimension) -> Option<ToleranceBand> {
     let text = table.text(key)?;
     let made = match difference(text) {
         Ok((number, _)) if number >= 0.0 && text.trim_end().ends_with('%') => {
-            Some(Band::Relative(number))
+            Some(ToleranceBand::Relative(number))
         }
-        Ok((number, found)) if number >= 0.0 && found == dimension => Some(Band::Absolute(number)),
+        Ok((number, found)) if number >= 0.0 && found == dimension => {
+            Some(ToleranceBand::Absolute(number))
+        }
         _ => None,
     };
     if made.is_none() {
@@ -141,7 +143,7 @@ pub(super) struct Known<'a> {
 
 /// The species or solid whose mass fraction is measured.
 fn column(
-    reader: &Reader<'_>,
+    reader: &TableReader<'_>,
     measure: &Measure,
     field: &str,
     of: Option<&str>,
@@ -197,7 +199,7 @@ const PARTICLES: [(&str, &str); 6] = [
 ];
 
 /// The measure and the field that it is of.
-fn measure(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
+fn measure(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
     let kinds = [
         "difference",
         "gas",
@@ -224,7 +226,7 @@ fn measure(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static 
     }
 }
 
-fn difference_of(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
+fn difference_of(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
     let field = reader.choice("difference", &DIFFERENCES);
     let names = reader
         .texts("patches")
@@ -250,7 +252,7 @@ fn difference_of(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'s
     ))
 }
 
-fn gas(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
+fn gas(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
     let field = reader.choice("gas", &GAS);
     let patch = reader.text("patch");
     let probe = reader.text("probe");
@@ -278,7 +280,7 @@ fn gas(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)
     ))
 }
 
-fn particles(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
+fn particles(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
     let field = reader.choice("particles", &PARTICLES);
     let population = reader.text("population");
     let probe = reader.text("probe");
@@ -313,7 +315,7 @@ fn particles(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'stati
     ))
 }
 
-fn particle(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
+fn particle(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
     let field = reader.choice("particle", &PARTICLES);
     if !reader.has("number") {
         reader.missing("number", "1");
@@ -339,7 +341,7 @@ fn particle(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static
 }
 
 /// Heat from a wall of a temperature, or from all parts of one of several shapes.
-fn wall_heat(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
+fn wall_heat(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
     let name = reader.text("wall_heat")?;
     let warm = known.walls.iter().filter(|(_, kelvin)| kelvin.is_some());
     let names: Vec<&str> = warm.map(|(wall, _)| wall.name.as_str()).collect();
@@ -354,7 +356,7 @@ fn wall_heat(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'stati
     Some((Measure::WallHeat { wall: name.into() }, "wall_heat"))
 }
 
-fn surface_angle(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
+fn surface_angle(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
     let table = reader.table("surface_angle")?;
     let point = table.required_vector("point", Dimension::LENGTH);
     let axis = direction(&table, "axis");
@@ -374,7 +376,7 @@ fn surface_angle(reader: &Reader<'_>, known: &Known<'_>) -> Option<(Measure, &'s
 }
 
 /// The statistic; on a probe the mean, where none is named: it may be a single point.
-fn statistic(reader: &Reader<'_>, probe: bool) -> Option<Statistic> {
+fn statistic(reader: &TableReader<'_>, probe: bool) -> Option<Statistic> {
     let statistics = [
         ("mean", Statistic::Mean),
         ("min", Statistic::Min),
@@ -386,7 +388,7 @@ fn statistic(reader: &Reader<'_>, probe: bool) -> Option<Statistic> {
     reader.required_choice("statistic", &statistics)
 }
 
-fn check_patch(reader: &Reader<'_>, key: &str, name: &str, mesh: Option<&MeshSpec>) {
+fn check_patch(reader: &TableReader<'_>, key: &str, name: &str, mesh: Option<&MeshSpec>) {
     if let Some(known) = patches(mesh)
         && !known.contains(&name)
     {
@@ -395,7 +397,7 @@ fn check_patch(reader: &Reader<'_>, key: &str, name: &str, mesh: Option<&MeshSpe
     }
 }
 
-fn checked_probe(reader: &Reader<'_>, name: &str, known: &Known<'_>) -> Option<String> {
+fn checked_probe(reader: &TableReader<'_>, name: &str, known: &Known<'_>) -> Option<String> {
     if known.probes.iter().any(|probe| probe.name == name) {
         return Some(name.into());
     }
@@ -413,7 +415,7 @@ fn count(populations: &[Population]) -> Option<usize> {
     populations
         .iter()
         .try_fold(0usize, |sum, population| match &population.place {
-            Place::Grid { counts, .. } => sum.checked_add(counts.iter().product()),
+            PlacementSpec::Grid { counts, .. } => sum.checked_add(counts.iter().product()),
             _ => None,
         })
 }

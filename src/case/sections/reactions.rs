@@ -11,7 +11,7 @@ use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{GasPatch, GasSetup};
 
 use crate::case::model::{HeatLaw, Laws, ReactionSpec};
-use crate::case::table::Reader;
+use crate::case::table::TableReader;
 use crate::case::units::Dimension;
 
 /// How far fractions may be from summing to 1, as of gases.
@@ -20,7 +20,7 @@ const SLACK: f64 = 1e-3;
 const HEAT: f64 = 0.02;
 
 /// Mass fractions of the solids that `{ mass = { … } }` or `{ mole = { … } }` states.
-pub(super) fn composition(table: &Reader<'_>, solids: &[SolidSpecies]) -> Option<Vec<f64>> {
+pub(super) fn composition(table: &TableReader<'_>, solids: &[SolidSpecies]) -> Option<Vec<f64>> {
     let mut given = ["mole", "mass"].into_iter().filter(|key| table.has(key));
     let (Some(kind), None) = (given.next(), given.next()) else {
         let help = "for example { mass = { Fe2O3 = 0.95, Al2O3 = 0.05 } }";
@@ -82,7 +82,7 @@ struct Known<'a> {
 }
 
 pub(super) fn reactions(
-    root: &Reader<'_>,
+    root: &TableReader<'_>,
     solids: &[SolidSpecies],
     setup: Option<&GasSetup>,
 ) -> Vec<Reaction> {
@@ -116,7 +116,7 @@ pub(super) fn reactions(
     made
 }
 
-fn reaction(table: &Reader<'_>, known: &Known<'_>) -> Option<Reaction> {
+fn reaction(table: &TableReader<'_>, known: &Known<'_>) -> Option<Reaction> {
     let name = table.required_text("name", "\"reduction\"");
     let text = table.required_text("equation", "\"CaCO3 <=> CaO + CO2\"");
     let core = table.required_choice("law", &[("shrinking-core", true), ("power-law", false)]);
@@ -159,7 +159,7 @@ struct Parts {
     gases: Vec<(usize, f64)>,
 }
 
-fn equation(table: &Reader<'_>, text: &str, known: &Known<'_>) -> Option<(Equation, Parts)> {
+fn equation(table: &TableReader<'_>, text: &str, known: &Known<'_>) -> Option<(Equation, Parts)> {
     let equation = match Equation::parse(text) {
         Ok(equation) => equation,
         Err(error) => {
@@ -211,7 +211,7 @@ fn equation(table: &Reader<'_>, text: &str, known: &Known<'_>) -> Option<(Equati
     Some((equation, parts))
 }
 
-fn balanced(table: &Reader<'_>, parts: &Parts, known: &Known<'_>) -> Option<()> {
+fn balanced(table: &TableReader<'_>, parts: &Parts, known: &Known<'_>) -> Option<()> {
     let off = imbalance(|element| {
         let at = element as usize;
         let solids = parts.solids.iter();
@@ -232,7 +232,7 @@ fn balanced(table: &Reader<'_>, parts: &Parts, known: &Known<'_>) -> Option<()> 
 }
 
 /// Factor, exponent and activation energy of a rate constant.
-pub(super) fn arrhenius(table: &Reader<'_>, unit: Option<Dimension>) -> Option<Arrhenius> {
+pub(super) fn arrhenius(table: &TableReader<'_>, unit: Option<Dimension>) -> Option<Arrhenius> {
     let factor = table.required_positive("factor", unit.unwrap_or(Dimension::NONE));
     let exponent = table.quantity("exponent", Dimension::NONE).unwrap_or(0.0);
     let energy = table
@@ -245,7 +245,7 @@ pub(super) fn arrhenius(table: &Reader<'_>, unit: Option<Dimension>) -> Option<A
     })
 }
 
-fn core_rate(table: &Reader<'_>) -> Option<Rate> {
+fn core_rate(table: &TableReader<'_>) -> Option<Rate> {
     let example = "rate = { factor = \"0.3 m/s\", activation_energy = \"70 kJ/mol\" }";
     let rate = table.required_table("rate", example);
     let constant = rate.and_then(|rate| {
@@ -277,7 +277,7 @@ fn core_rate(table: &Reader<'_>) -> Option<Rate> {
 }
 
 fn power_rate(
-    table: &Reader<'_>,
+    table: &TableReader<'_>,
     known: &Known<'_>,
     equation: Option<&(Equation, Parts)>,
 ) -> Option<Rate> {
@@ -372,7 +372,7 @@ pub(super) fn lacking(
 }
 
 fn equilibrium(
-    table: &Reader<'_>,
+    table: &TableReader<'_>,
     equation: &Equation,
     parts: &Parts,
     known: &Known<'_>,
@@ -413,7 +413,7 @@ fn equilibrium(
 }
 
 /// True where a stated heat is that of the enthalpies of formation.
-fn agrees(table: &Reader<'_>, heat: f64, made: &Reaction, known: &Known<'_>) -> bool {
+fn agrees(table: &TableReader<'_>, heat: f64, made: &Reaction, known: &Known<'_>) -> bool {
     let gas = known.gas.cloned();
     let Ok(chemistry) = SolidChemistry::new(known.solids.to_vec(), gas, Vec::new()) else {
         return true;
@@ -422,7 +422,7 @@ fn agrees(table: &Reader<'_>, heat: f64, made: &Reaction, known: &Known<'_>) -> 
 }
 
 /// True where a stated heat in J/mol is that of the enthalpies.
-pub(super) fn heat_agrees(table: &Reader<'_>, heat: f64, own: f64) -> bool {
+pub(super) fn heat_agrees(table: &TableReader<'_>, heat: f64, own: f64) -> bool {
     if (heat - own).abs() <= HEAT * own.abs().max(1e3) {
         return true;
     }
@@ -437,7 +437,12 @@ pub(super) fn heat_agrees(table: &Reader<'_>, heat: f64, own: f64) -> bool {
 }
 
 /// Errors where reactions do not go with the rest of the case.
-pub(super) fn fits(root: &Reader<'_>, chemistry: &ReactionSpec, laws: &Laws, solver: StockSolver) {
+pub(super) fn fits(
+    root: &TableReader<'_>,
+    chemistry: &ReactionSpec,
+    laws: &Laws,
+    solver: StockSolver,
+) {
     if !chemistry.exchanges() {
         return;
     }

@@ -3,14 +3,14 @@
 use calcine_coupler::packing::{Shape, Share, Sizes};
 use toml_edit::Value;
 
-use crate::case::table::Reader;
+use crate::case::table::TableReader;
 use crate::case::units::Dimension;
 
 const EXAMPLE: &str = "for example { normal = { mean = \"4 mm\", deviation = \"0.4 mm\", \
                        min = \"3 mm\", max = \"5 mm\" }, share = \"number\", seed = 1 }";
 
 /// Diameters, and the seed by which they are drawn.
-pub(super) fn sizes(population: &Reader<'_>) -> Option<(Sizes, u64)> {
+pub(super) fn sizes(population: &TableReader<'_>) -> Option<(Sizes, u64)> {
     let table = population
         .raw("diameter")
         .is_some_and(|item| item.as_table_like().is_some());
@@ -52,7 +52,7 @@ pub(super) fn sizes(population: &Reader<'_>) -> Option<(Sizes, u64)> {
     Some((sizes, seed?))
 }
 
-fn range(table: &Reader<'_>, kind: &str, share: Option<Share>) -> Option<Sizes> {
+fn range(table: &TableReader<'_>, kind: &str, share: Option<Share>) -> Option<Sizes> {
     let range = table.table(kind)?;
     let shape = match kind {
         "normal" => {
@@ -85,7 +85,7 @@ fn range(table: &Reader<'_>, kind: &str, share: Option<Share>) -> Option<Sizes> 
 }
 
 /// Pairs of a diameter and its share.
-fn parts(table: &Reader<'_>) -> Option<Vec<(f64, f64)>> {
+fn parts(table: &TableReader<'_>) -> Option<Vec<(f64, f64)>> {
     let pairs = table.raw("table")?.as_array();
     let Some(pairs) = pairs.filter(|pairs| !pairs.is_empty()) else {
         let help = "for example [[\"4 mm\", 0.3], [\"6 mm\", 0.7]]";

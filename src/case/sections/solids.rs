@@ -3,11 +3,11 @@
 use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::physics::solids::SolidSpecies;
 
-use crate::case::table::Reader;
+use crate::case::table::TableReader;
 use crate::case::units::Dimension;
 
 /// All solids that a case may name: its own, and the built-in ones that it does not redefine.
-pub(super) fn solids(root: &Reader<'_>) -> Vec<SolidSpecies> {
+pub(super) fn solids(root: &TableReader<'_>) -> Vec<SolidSpecies> {
     let own = root.table("solids").map_or(Vec::new(), |section| {
         let tables = section.named().into_iter();
         tables
@@ -23,7 +23,7 @@ pub(super) fn solids(root: &Reader<'_>) -> Vec<SolidSpecies> {
     all
 }
 
-fn solid(name: &str, table: &Reader<'_>) -> Option<SolidSpecies> {
+fn solid(name: &str, table: &TableReader<'_>) -> Option<SolidSpecies> {
     let formula = table.required_text("formula", "\"SiO2\"");
     let enthalpy = table.required_quantity("formation_enthalpy", Dimension::MOLAR_ENERGY);
     let entropy = table.required_positive("entropy", Dimension::MOLAR_ENTROPY);

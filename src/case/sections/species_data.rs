@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use calcine_coupler::physics::thermo::{LennardJones, Mixture, Species, fuller};
 
 use super::existing;
-use crate::case::table::Reader;
+use crate::case::table::TableReader;
 use crate::case::units::Dimension;
 use crate::mechanism::{self, Thermo};
 
 /// What the case says of the transport of a species; the rest is by its file.
-struct Stated {
+struct ParsedReaction {
     name: String,
     diameter: Option<f64>,
     well_depth: Option<f64>,
@@ -19,15 +19,15 @@ struct Stated {
 
 /// A file of thermodynamics, and what the case says beside it.
 struct Data<'a> {
-    table: Reader<'a>,
+    table: TableReader<'a>,
     path: PathBuf,
     thermo: Vec<Thermo>,
-    stated: Vec<Stated>,
+    stated: Vec<ParsedReaction>,
 }
 
 /// The mixture of `gas.species`, and the files that it is from.
 pub(super) fn mixture(
-    section: &Reader<'_>,
+    section: &TableReader<'_>,
     names: &[String],
     folder: &Path,
 ) -> Option<(Mixture, Vec<PathBuf>)> {
@@ -60,7 +60,7 @@ pub(super) fn mixture(
     }
 }
 
-fn data<'a>(table: Reader<'a>, names: &[String], folder: &Path) -> Option<Data<'a>> {
+fn data<'a>(table: TableReader<'a>, names: &[String], folder: &Path) -> Option<Data<'a>> {
     if !table.has("thermo") {
         table.missing("thermo", "\"therm.dat\"");
     }
@@ -72,7 +72,7 @@ fn data<'a>(table: Reader<'a>, names: &[String], folder: &Path) -> Option<Data<'
                 let help = "remove it, or add the species to `gas.species`";
                 transport.fail(&name, "is no species of the gas", help);
             }
-            stated.push(Stated {
+            stated.push(ParsedReaction {
                 name,
                 diameter: own.positive("diameter", Dimension::LENGTH),
                 well_depth: own.positive("well_depth", Dimension::TEMPERATURE),
@@ -103,7 +103,7 @@ fn data<'a>(table: Reader<'a>, names: &[String], folder: &Path) -> Option<Data<'
 }
 
 /// A species that is not built in.
-fn of_file(section: &Reader<'_>, data: &Data<'_>, name: &str) -> Option<Species> {
+fn of_file(section: &TableReader<'_>, data: &Data<'_>, name: &str) -> Option<Species> {
     let Some(thermo) = data.thermo.iter().find(|one| one.name == name) else {
         let known: Vec<&str> = Species::built_in_names().collect();
         let rule = format!(

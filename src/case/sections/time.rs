@@ -2,11 +2,11 @@
 
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
 
-use crate::case::model::Time;
-use crate::case::table::Reader;
+use crate::case::model::TimeSpec;
+use crate::case::table::TableReader;
 use crate::case::units::Dimension;
 
-pub(super) fn read(root: &Reader<'_>) -> Option<(Time, GasStorage)> {
+pub(super) fn read(root: &TableReader<'_>) -> Option<(TimeSpec, GasStorage)> {
     let section = root.required_table("time", "[time] with end = \"10 min\"")?;
     let end = ticks(&section, "end", true);
     let process_step = ticks(&section, "process_step", false);
@@ -39,7 +39,7 @@ pub(super) fn read(root: &Reader<'_>) -> Option<(Time, GasStorage)> {
         let rule = format!("is {motion_window}, longer than the run of {end}");
         section.fail(key, rule, "lower it, or raise `time.end`");
     }
-    let time = Time {
+    let time = TimeSpec {
         end,
         process_step,
         motion_window,
@@ -52,7 +52,7 @@ pub(super) fn read(root: &Reader<'_>) -> Option<(Time, GasStorage)> {
 }
 
 /// A process step stands for the motion clock as a whole.
-fn exclusive(section: &Reader<'_>, storage: GasStorage) {
+fn exclusive(section: &TableReader<'_>, storage: GasStorage) {
     for key in ["motion_window", "acceleration"] {
         if section.has(key) {
             let help = "remove one of the two: `process_step` chooses the motion time by itself";
@@ -70,7 +70,7 @@ fn exclusive(section: &Reader<'_>, storage: GasStorage) {
 }
 
 /// A time of the case's clock; errors where it is below the tick or too long.
-pub(super) fn ticks(section: &Reader<'_>, key: &str, required: bool) -> Option<Ticks> {
+pub(super) fn ticks(section: &TableReader<'_>, key: &str, required: bool) -> Option<Ticks> {
     let seconds = if required {
         section.required_positive(key, Dimension::TIME)?
     } else {
@@ -94,7 +94,7 @@ pub(super) fn ticks(section: &Reader<'_>, key: &str, required: bool) -> Option<T
 }
 
 /// A number, or a list of [process time, number].
-fn acceleration(section: &Reader<'_>) -> Option<Acceleration> {
+fn acceleration(section: &TableReader<'_>) -> Option<Acceleration> {
     let key = "acceleration";
     let Some(item) = section.raw(key) else {
         return Acceleration::constant(1.0).ok();

@@ -5,20 +5,20 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::traffic::Outlet;
 
 use super::zone::zone;
-use crate::case::model::{FeedSpec, Motion, Population};
-use crate::case::table::Reader;
+use crate::case::model::{FeedSpec, MotionSpec, Population};
+use crate::case::table::TableReader;
 use crate::case::units::Dimension;
 
 const REGION: &str = "region = { box = { from = \"0 0 80 mm\", to = \"50 50 100 mm\" } }";
 
-fn region(table: &Reader<'_>) -> Option<Zone> {
+fn region(table: &TableReader<'_>) -> Option<Zone> {
     let region = table.required_table("region", REGION)?;
     let zone = zone(&region);
     region.finish();
     zone
 }
 
-pub(super) fn feeds(root: &Reader<'_>, particles: Option<&[Population]>) -> Vec<FeedSpec> {
+pub(super) fn feeds(root: &TableReader<'_>, particles: Option<&[Population]>) -> Vec<FeedSpec> {
     let tables = root.tables("feeds");
     tables
         .iter()
@@ -26,7 +26,7 @@ pub(super) fn feeds(root: &Reader<'_>, particles: Option<&[Population]>) -> Vec<
         .collect()
 }
 
-fn feed(table: &Reader<'_>, particles: Option<&[Population]>) -> Option<FeedSpec> {
+fn feed(table: &TableReader<'_>, particles: Option<&[Population]>) -> Option<FeedSpec> {
     let name = table.required_text("name", "\"charge\"");
     let population = table.required_text("population", "\"beads\"");
     let region = region(table);
@@ -51,7 +51,7 @@ fn feed(table: &Reader<'_>, particles: Option<&[Population]>) -> Option<FeedSpec
         table.fail("population", format!("is \"{population}\""), help);
         return None;
     };
-    if particles[index].motion == Motion::Frozen {
+    if particles[index].motion == MotionSpec::Frozen {
         let rule = format!("is \"{population}\", whose particles are frozen");
         table.fail("population", rule, "write motion = \"free\" for it");
     }
@@ -67,8 +67,8 @@ fn feed(table: &Reader<'_>, particles: Option<&[Population]>) -> Option<FeedSpec
     })
 }
 
-pub(super) fn outlets(root: &Reader<'_>) -> Vec<Outlet> {
-    let one = |table: &Reader<'_>| {
+pub(super) fn outlets(root: &TableReader<'_>) -> Vec<Outlet> {
+    let one = |table: &TableReader<'_>| {
         let name = table.required_text("name", "\"discharge\"");
         let zone = region(table);
         let rate = table.positive("mass_rate", Dimension::MASS_FLOW);

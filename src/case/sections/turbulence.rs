@@ -3,7 +3,7 @@
 use calcine_coupler::setup::{InletTurbulence, Turbulence};
 
 use crate::case::model::Output;
-use crate::case::table::Reader;
+use crate::case::table::TableReader;
 use crate::case::units::Dimension;
 
 /// Turbulent Prandtl number of shear flows near walls: Kays 1994, doi 10.1115/1.2911398.
@@ -15,7 +15,7 @@ const SCHMIDT: f64 = 0.7;
 const EXAMPLE: &str = "{ intensity = 0.05, length_scale = \"5 mm\" }";
 
 /// Laminar where the table is not there; `None` where it is wrong.
-pub(super) fn turbulence(section: &Reader<'_>) -> Option<Turbulence> {
+pub(super) fn turbulence(section: &TableReader<'_>) -> Option<Turbulence> {
     let Some(table) = section.table("turbulence") else {
         return (!section.has("turbulence")).then_some(Turbulence::Laminar);
     };
@@ -49,7 +49,7 @@ pub(super) fn turbulence(section: &Reader<'_>) -> Option<Turbulence> {
 /// `turbulence` of an inlet: there where the gas is turbulent, and only there; nothing is asked where it is not
 /// known whether it is.
 pub(super) fn of_inlet(
-    table: &Reader<'_>,
+    table: &TableReader<'_>,
     turbulent: Option<bool>,
 ) -> Option<Option<InletTurbulence>> {
     let Some(given) = table.table("turbulence") else {
@@ -73,7 +73,7 @@ pub(super) fn of_inlet(
 }
 
 /// Only a turbulent gas that is not held has eddies to write.
-pub(super) fn fits(root: &Reader<'_>, turbulence: &Turbulence, held: bool, output: &Output) {
+pub(super) fn fits(root: &TableReader<'_>, turbulence: &Turbulence, held: bool, output: &Output) {
     let Some(section) = root.table("gas") else {
         return;
     };

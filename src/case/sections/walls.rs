@@ -7,17 +7,17 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::Schedule;
 
 use super::{existing, heat};
-use crate::case::model::{Material, MeshSpec};
+use crate::case::model::{MaterialSpec, MeshSpec};
 use crate::case::place::inner_diameter;
 use crate::case::stl;
-use crate::case::table::Reader;
+use crate::case::table::TableReader;
 use crate::case::units::Dimension;
 
 const SHAPES: [&str; 5] = ["plane", "cylinder", "cone", "stl", "patches"];
 
 pub(super) fn walls(
-    root: &Reader<'_>,
-    materials: &[Material],
+    root: &TableReader<'_>,
+    materials: &[MaterialSpec],
     mesh: Option<&MeshSpec>,
     folder: &Path,
 ) -> Vec<(Wall, Option<Schedule>)> {
@@ -72,7 +72,7 @@ pub(super) fn walls(
 
 /// The shapes of one entry, with the part of the mesh that each is.
 fn shapes(
-    table: &Reader<'_>,
+    table: &TableReader<'_>,
     mesh: Option<&MeshSpec>,
     folder: &Path,
 ) -> Option<Vec<(&'static str, WallShape)>> {
@@ -113,7 +113,7 @@ fn shapes(
 }
 
 /// A direction, made one long.
-pub(super) fn direction(table: &Reader<'_>, key: &str) -> Option<Vec3> {
+pub(super) fn direction(table: &TableReader<'_>, key: &str) -> Option<Vec3> {
     if !table.has(key) {
         table.missing(key, "\"0 0 1\"");
     }
@@ -125,7 +125,7 @@ pub(super) fn direction(table: &Reader<'_>, key: &str) -> Option<Vec3> {
     Some(vector.normalize())
 }
 
-fn plane(table: &Reader<'_>) -> Option<WallShape> {
+fn plane(table: &TableReader<'_>) -> Option<WallShape> {
     let point = table.required_vector("point", Dimension::LENGTH);
     let normal = direction(table, "normal");
     table.finish();
@@ -135,7 +135,7 @@ fn plane(table: &Reader<'_>) -> Option<WallShape> {
     })
 }
 
-fn cylinder(table: &Reader<'_>) -> Option<WallShape> {
+fn cylinder(table: &TableReader<'_>) -> Option<WallShape> {
     let point = table.required_vector("point", Dimension::LENGTH);
     let axis = direction(table, "axis");
     let radius = table.required_positive("radius", Dimension::LENGTH);
@@ -147,7 +147,7 @@ fn cylinder(table: &Reader<'_>) -> Option<WallShape> {
     })
 }
 
-fn cone(table: &Reader<'_>) -> Option<WallShape> {
+fn cone(table: &TableReader<'_>) -> Option<WallShape> {
     let from = table.required_vector("from", Dimension::LENGTH);
     let to = table.required_vector("to", Dimension::LENGTH);
     let low = table.required_quantity("from_radius", Dimension::LENGTH);
@@ -164,7 +164,10 @@ fn cone(table: &Reader<'_>) -> Option<WallShape> {
 }
 
 /// The sides of the generated mesh that carry one of the named patches.
-fn of_mesh(table: &Reader<'_>, mesh: Option<&MeshSpec>) -> Option<Vec<(&'static str, WallShape)>> {
+fn of_mesh(
+    table: &TableReader<'_>,
+    mesh: Option<&MeshSpec>,
+) -> Option<Vec<(&'static str, WallShape)>> {
     let wanted = table.texts("patches")?;
     let parts = parts(mesh?);
     let unknown = wanted
@@ -240,7 +243,7 @@ fn parts(mesh: &MeshSpec) -> Vec<(String, &'static str, WallShape)> {
     }
 }
 
-fn motion(table: &Reader<'_>) -> WallMotion {
+fn motion(table: &TableReader<'_>) -> WallMotion {
     let translating = table
         .vector("velocity", Dimension::VELOCITY)
         .map(Vec3::from);

@@ -5,13 +5,13 @@ use calcine_coupler::mesh::refine::{MOST_LEVELS, Refinement};
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::physics::Vec3;
 
-use crate::case::table::Reader;
+use crate::case::table::TableReader;
 use crate::case::units::{Dimension, shown};
 
 const EXAMPLE: &str = "for example box = { from = \"0 0 0 mm\", to = \"10 10 50 mm\" }";
 
 /// A zone from the keys of its own table: `box` or `cylinder`.
-pub(super) fn zone(table: &Reader<'_>) -> Option<Zone> {
+pub(super) fn zone(table: &TableReader<'_>) -> Option<Zone> {
     let kinds = ["box", "cylinder"];
     let given: Vec<&str> = kinds.into_iter().filter(|kind| table.has(kind)).collect();
     let [kind] = given[..] else {
@@ -52,9 +52,9 @@ pub(super) fn zone(table: &Reader<'_>) -> Option<Zone> {
 }
 
 /// Zones of a list.
-pub(super) fn zones(above: &Reader<'_>, key: &str) -> Vec<Zone> {
+pub(super) fn zones(above: &TableReader<'_>, key: &str) -> Vec<Zone> {
     let tables = above.tables(key);
-    let one = |table: &Reader<'_>| {
+    let one = |table: &TableReader<'_>| {
         let zone = zone(table);
         table.finish();
         zone
@@ -63,9 +63,9 @@ pub(super) fn zones(above: &Reader<'_>, key: &str) -> Vec<Zone> {
 }
 
 /// The regions of a generated mesh that are refined.
-pub(super) fn refinements(mesh: &Reader<'_>) -> Vec<Refinement> {
+pub(super) fn refinements(mesh: &TableReader<'_>) -> Vec<Refinement> {
     let tables = mesh.tables("refine");
-    let one = |table: &Reader<'_>| {
+    let one = |table: &TableReader<'_>| {
         let levels = if table.has("levels") {
             table.whole("levels", 1..=i64::from(MOST_LEVELS))
         } else {
@@ -83,9 +83,9 @@ pub(super) fn refinements(mesh: &Reader<'_>) -> Vec<Refinement> {
 }
 
 /// The parts of a generated mesh's boundary that have patches of their own, beside those of its sides.
-pub(super) fn openings(mesh: &Reader<'_>, sides: &[String]) -> Vec<Opening> {
+pub(super) fn openings(mesh: &TableReader<'_>, sides: &[String]) -> Vec<Opening> {
     let tables = mesh.tables("openings");
-    let one = |table: &Reader<'_>| {
+    let one = |table: &TableReader<'_>| {
         let name = table.required_text("name", "\"burners\"");
         let zone = zone(table);
         table.finish();

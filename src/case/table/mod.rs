@@ -48,7 +48,7 @@ impl Problems {
 }
 
 /// A table of the file, with its place.
-pub struct Reader<'a> {
+pub struct TableReader<'a> {
     problems: &'a Problems,
     table: &'a dyn TableLike,
     place: String,
@@ -58,7 +58,7 @@ pub struct Reader<'a> {
     known: RefCell<Vec<String>>,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> TableReader<'a> {
     /// The whole file.
     pub fn root(problems: &'a Problems, table: &'a dyn TableLike) -> Self {
         Self {

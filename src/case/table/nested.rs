@@ -5,17 +5,17 @@ use std::ops::Range;
 
 use toml_edit::{Item, TableLike, Value};
 
-use super::{Reader, dotted};
+use super::{TableReader, dotted};
 use crate::case::units::Dimension;
 
-impl<'a> Reader<'a> {
+impl<'a> TableReader<'a> {
     /// A list or single value as it stands, for forms of its own.
     pub fn raw(&self, key: &str) -> Option<&'a Item> {
         self.item(key)
     }
 
     /// A table below a key.
-    pub fn table(&self, key: &str) -> Option<Reader<'a>> {
+    pub fn table(&self, key: &str) -> Option<TableReader<'a>> {
         let item = self.item(key)?;
         let Some(table) = item.as_table_like() else {
             self.wrong_type(key, "a table", item);
@@ -25,7 +25,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A table that must be there.
-    pub fn required_table(&self, key: &str, example: &str) -> Option<Reader<'a>> {
+    pub fn required_table(&self, key: &str, example: &str) -> Option<TableReader<'a>> {
         if !self.has(key) {
             let message = format!("`{}` is missing", self.place_of(key));
             self.problems.add(
@@ -38,7 +38,7 @@ impl<'a> Reader<'a> {
     }
 
     /// All tables of a list such as `[[particles]]`.
-    pub fn tables(&self, key: &str) -> Vec<Reader<'a>> {
+    pub fn tables(&self, key: &str) -> Vec<TableReader<'a>> {
         let Some(item) = self.item(key) else {
             return Vec::new();
         };
@@ -83,7 +83,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Tables below this one by name, in the order of the file, such as `[materials.glass]`.
-    pub fn named(&self) -> Vec<(String, Reader<'a>)> {
+    pub fn named(&self) -> Vec<(String, TableReader<'a>)> {
         let mut found = Vec::new();
         for (name, item) in self.table.iter() {
             self.known.borrow_mut().push(name.into());
@@ -99,12 +99,12 @@ impl<'a> Reader<'a> {
     }
 
     /// A table at a time of 0 s, or a list of [time, table] with increasing times in s.
-    pub fn dated_tables(&self, key: &str, example: &str) -> Option<Vec<(f64, Reader<'a>)>> {
+    pub fn dated_tables(&self, key: &str, example: &str) -> Option<Vec<(f64, TableReader<'a>)>> {
         let item = self.item(key)?;
         let Some(array) = item.as_array() else {
             return Some(vec![(0.0, self.table(key)?)]);
         };
-        let mut found: Vec<(f64, Reader<'a>)> = Vec::new();
+        let mut found: Vec<(f64, TableReader<'a>)> = Vec::new();
         for (i, entry) in array.iter().enumerate() {
             let pair = entry.as_array().filter(|pair| pair.len() == 2);
             let pair = pair.and_then(|pair| Some((pair.get(0)?, pair.get(1)?.as_inline_table()?)));
@@ -173,9 +173,9 @@ impl<'a> Reader<'a> {
         key: &str,
         table: &'a dyn TableLike,
         span: Option<Range<usize>>,
-    ) -> Reader<'a> {
+    ) -> TableReader<'a> {
         let span = span.unwrap_or_else(|| self.span.clone());
-        Reader {
+        TableReader {
             problems: self.problems,
             table,
             place,

@@ -3,10 +3,10 @@
 use calcine_coupler::setup::Schedule;
 use toml_edit::Value;
 
-use super::Reader;
+use super::TableReader;
 use crate::case::units::{Dimension, UnitError, quantities};
 
-impl Reader<'_> {
+impl TableReader<'_> {
     /// A quantity with its unit, in SI.
     pub fn quantity(&self, key: &str, dimension: Dimension) -> Option<f64> {
         let item = self.item(key)?;

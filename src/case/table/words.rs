@@ -1,8 +1,8 @@
 //! Texts, choices between words, whole numbers; what a misspelt word may have meant.
 
-use super::Reader;
+use super::TableReader;
 
-impl<'a> Reader<'a> {
+impl<'a> TableReader<'a> {
     /// A text.
     pub fn text(&self, key: &str) -> Option<&'a str> {
         let item = self.item(key)?;
