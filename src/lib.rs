@@ -1,4 +1,4 @@
-//! Calcine: reactive granular beds, gas and grains coupled.
+//! Calcine: reactive granular beds, gas and particles coupled.
 
 pub mod assembly;
 pub mod case;

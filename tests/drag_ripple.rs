@@ -160,7 +160,7 @@ fn the_force_on_a_bead_that_crosses_ten_cells_ripples_least_by_overlap() {
             assert!(found.speed < 0.01, "{}", found.speed);
         }
     }
-    // All of a particle changing cells at once is felt as a blow.
+    // All of a particle changing cells at once is felt as an impact.
     assert!(centroid[0].force > 0.2, "{}", centroid[0].force);
     assert!(centroid[0].peak > 10.0 * overlap[0].peak);
     // The bead drags the water of its own cells along; F spreads that, and comes nearer to the law's 0.27 m/s.

@@ -27,7 +27,7 @@ use rustix::process::{Pid, Signal, kill_process};
 
 /// The seed, unless another is given.
 const SEED: u64 = 20_261_121;
-/// Blows in the default suite.
+/// Trials in the default suite.
 const FEW: u64 = 20;
 /// `coupling.deadline` where a process is to be stopped: time enough to start on a busy machine.
 const DEADLINE: Duration = Duration::from_secs(6);
@@ -36,7 +36,7 @@ const LIMIT: Duration = Duration::from_secs(5);
 /// After which a run counts as hanging.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Ranks of the gas and of the particles, the transport, and the latest moment of a blow in ms.
+/// Ranks of the gas and of the particles, the transport, and the latest moment of a signal in ms.
 type Kind = (u32, u32, &'static str, usize);
 
 /// One rank each half of the times.
@@ -58,7 +58,7 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     };
     let Orders { kills, seed, .. } = orders;
-    println!("faults: seed {seed}, {kills} blows");
+    println!("faults: seed {seed}, {kills} trials");
     // A short path: the wire's sockets lie in it. Nothing else is in it, so that whatever stays is seen.
     let scratch = tempfile::Builder::new().prefix("c").rand_bytes(4).tempdir();
     let scratch = scratch.unwrap();
@@ -104,7 +104,7 @@ fn main() -> ExitCode {
 struct Story {
     text: String,
     victim: String,
-    /// From the blow to the end of the last process.
+    /// From the signal to the end of the last process.
     taken: Duration,
     fault: Option<String>,
 }
@@ -197,7 +197,7 @@ fn stage(out: &Path) -> String {
     }
 }
 
-/// One run and one blow.
+/// One run and one signal.
 fn strike(out: &Path, scratch: &Path, kind: Kind, random: &mut Random) -> Story {
     let stops = random.once_in(6);
     let deadline = format!("coupling.deadline={} s", DEADLINE.as_secs());
@@ -224,10 +224,10 @@ fn strike(out: &Path, scratch: &Path, kind: Kind, random: &mut Random) -> Story 
         }
         let victim = *random.one(&all);
         let line = command_line(victim);
-        let blow = if stops { Signal::STOP } else { Signal::KILL };
+        let sent = if stops { Signal::STOP } else { Signal::KILL };
         let pid = Pid::from_raw(i32::try_from(victim).unwrap()).unwrap();
         // It may have ended by itself meanwhile, as tools that only start others do.
-        if kill_process(pid, blow).is_ok() {
+        if kill_process(pid, sent).is_ok() {
             break (victim, line, peers);
         }
     };

@@ -52,7 +52,7 @@ fn assert_nothing_left(coordinator: u32, peers: &[u32]) {
 }
 
 /// Sends a signal to the last process whose command line begins with a word that ends so.
-fn strike(words: &[&str], victim: &str, blow: Signal) -> (u32, i32, String) {
+fn strike(words: &[&str], victim: &str, sent: Signal) -> (u32, i32, String) {
     let directory = tempfile::tempdir().unwrap();
     let out = directory.path().join("run");
     let mut run = start_with(&out, words);
@@ -69,9 +69,9 @@ fn strike(words: &[&str], victim: &str, blow: Signal) -> (u32, i32, String) {
         .iter()
         .rfind(is_victim)
         .unwrap_or_else(|| panic!("no process `{victim}` among {peers:?}"));
-    signal(found, blow);
+    signal(found, sent);
     let (code, text, taken) = end_of(&mut run);
-    println!("{victim}: ended {taken:?} after the blow; message:\n{text}");
+    println!("{victim}: ended {taken:?} after the signal; message:\n{text}");
     assert_nothing_left(coordinator, &peers);
     (found, code, text)
 }
@@ -164,7 +164,7 @@ fn over_mpi_a_rank_that_dies_before_it_introduces_itself_is_named() {
     let peers = descendants(coordinator);
     kill(victim);
     let (code, text, taken) = end_of(&mut run);
-    println!("ended {taken:?} after the blow; message:\n{text}");
+    println!("ended {taken:?} after the signal; message:\n{text}");
     assert_eq!(code, 4, "{text}");
     // It has not written to its log yet.
     for word in ["LIGGGHTS (particles", "died", &format!("pid {victim}")] {

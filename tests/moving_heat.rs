@@ -68,7 +68,7 @@ fn top_gas(run: &Path) -> Vec<f64> {
         .collect()
 }
 
-/// Bands of the case for each bed; and the gas at the top, in which single balls that fall elsewhere show by 3.3 K (deviation
+/// Bands of the case for each bed; and the gas at the top, in which single particles that fall elsewhere show by 3.3 K (deviation
 /// of a pair), as the mean difference over beds.
 #[test]
 fn native_particles_and_liggghts_conduct_and_radiate_alike_while_they_move() {

@@ -27,7 +27,7 @@ const STATE: [f64; 7] = [
 const TEMPERATURE: f64 = 1807.0476115669605;
 
 /// The whole span is tried first. From this state the equations of such a step are all but singular at a span of
-/// 1.1281e-4 s, and its stages overflow: an integration that took what is no number would put the flame out.
+/// 1.1281e-4 s, and its stages overflow: an integration that took NaN for a result would put the flame out.
 #[test]
 fn a_step_whose_stages_overflow_is_taken_back() {
     let folder = tempfile::tempdir().unwrap();

@@ -97,13 +97,13 @@ impl SampledGas {
         let species = composition.len() / cells.max(1);
         self.composition.resize(species * particles, 0.0);
         let mut one = vec![0.0; if species == 0 { 0 } else { cells }];
-        let mut seen = vec![0.0; if species == 0 { 0 } else { particles }];
+        let mut sampled_gas = vec![0.0; if species == 0 { 0 } else { particles }];
         for k in 0..species {
             for (cell, value) in one.iter_mut().enumerate() {
                 *value = composition[cell * species + k];
             }
-            operator.sample(&one, &mut seen);
-            for (p, value) in seen.iter().enumerate() {
+            operator.sample(&one, &mut sampled_gas);
+            for (p, value) in sampled_gas.iter().enumerate() {
                 self.composition[p * species + k] = *value;
             }
         }
@@ -186,7 +186,7 @@ impl Closures {
     /// Evaluates mass transfer at these pressures in Pa, for particles that react.
     pub fn evaluate_films(
         &self,
-        seen: &SampledGas,
+        sampled_gas: &SampledGas,
         particles: &ParticleFields<'_>,
         pressure: &[f64],
         acceleration: f64,
@@ -201,18 +201,18 @@ impl Closures {
         coefficients.film.resize(species * particles.len(), 0.0);
         for (p, &pressure) in pressure.iter().enumerate() {
             let own = p * species..(p + 1) * species;
-            let composition = &seen.composition[own.clone()];
-            let temperature = seen.temperature[p];
-            let Ok(void_fraction) = VoidFraction::new(seen.void_fraction[p]) else {
+            let composition = &sampled_gas.composition[own.clone()];
+            let temperature = sampled_gas.temperature[p];
+            let Ok(void_fraction) = VoidFraction::new(sampled_gas.void_fraction[p]) else {
                 continue;
             };
             let local = LocalGas {
                 void_fraction,
-                density: seen.density[p],
+                density: sampled_gas.density[p],
                 viscosity: self.gas.viscosity(temperature, composition),
                 conductivity: 0.0,
                 heat_capacity: self.gas.heat_capacity(temperature, composition),
-                slip: (seen.velocity[p] - particles.velocity[p] / acceleration).norm(),
+                slip: (sampled_gas.velocity[p] - particles.velocity[p] / acceleration).norm(),
             };
             mixture.diffusivities(pressure, temperature, composition, &mut diffusivities);
             let diameter = 2.0 * particles.radius[p];
@@ -226,7 +226,7 @@ impl Closures {
     /// Evaluates all laws. Slip is u − v/AF (requirements TSM-7).
     pub fn evaluate(
         &self,
-        seen: &SampledGas,
+        sampled_gas: &SampledGas,
         particles: &ParticleFields<'_>,
         acceleration: f64,
         coefficients: &mut CouplingCoefficients,
@@ -239,21 +239,21 @@ impl Closures {
         coefficients.gas_conductivity.resize(count, 0.0);
         for p in 0..count {
             let id = particles.id[p];
-            let temperature = seen.temperature[p];
-            let void_fraction = VoidFraction::new(seen.void_fraction[p]).map_err(|_| {
+            let temperature = sampled_gas.temperature[p];
+            let void_fraction = VoidFraction::new(sampled_gas.void_fraction[p]).map_err(|_| {
                 ClosureError::VoidFraction {
                     id,
-                    value: seen.void_fraction[p],
+                    value: sampled_gas.void_fraction[p],
                 }
             })?;
-            let composition = &seen.composition[p * species..(p + 1) * species];
+            let composition = &sampled_gas.composition[p * species..(p + 1) * species];
             let local = LocalGas {
                 void_fraction,
-                density: seen.density[p],
+                density: sampled_gas.density[p],
                 viscosity: self.gas.viscosity(temperature, composition),
                 conductivity: self.gas.conductivity(temperature, composition),
                 heat_capacity: self.gas.heat_capacity(temperature, composition),
-                slip: (seen.velocity[p] - particles.velocity[p] / acceleration).norm(),
+                slip: (sampled_gas.velocity[p] - particles.velocity[p] / acceleration).norm(),
             };
             let diameter = 2.0 * particles.radius[p];
             let drag = self.drag.coefficient(&local, diameter);
@@ -277,7 +277,9 @@ impl Closures {
                     });
                 }
             }
-            coefficients.drag[p] = self.momentum.coefficient(drag, seen.void_fraction[p]);
+            coefficients.drag[p] = self
+                .momentum
+                .coefficient(drag, sampled_gas.void_fraction[p]);
             coefficients.conductance[p] = conductance;
             coefficients.slip[p] = local.slip;
             coefficients.gas_conductivity[p] = local.conductivity;

@@ -3,7 +3,7 @@
 use calcine_interior::{NeighbourPair, NeighbourWall};
 use calcine_physics::Vec3;
 
-use crate::sight::WallSurface;
+use crate::view_factors::WallSurface;
 
 /// All pairs of spheres whose surfaces are nearer than `gap` in m, found by cells over a box (its lowest
 /// corner and its size in m; what lies outside counts to the nearest cell). The first of a pair is the

@@ -9,7 +9,7 @@
 //!
 //! T_p' = (K_p T_p + (h A − K_p) T̄_p)/(h A),   Q_p = Σ_c W_cp h A (T_c − T_p') = K_p (T̄_p − T_p).
 //!
-//! T̄_p ties the particle's cells together. The gas gets the majorised form: a diagonal implicitly,
+//! T̄_p couples the particle's cells to each other. The gas gets the majorised form: a diagonal implicitly,
 //! the rest at the last iterate (superscript k), with g_p = h A − K_p, at most K_p/2:
 //!
 //! R_c = Σ_p W_cp [K_p (T_p − T_c) + g_p (T̄_p^k − T_c^k)].
@@ -20,7 +20,7 @@
 //! little less than they would be.) What the gas reports beyond R_c (a solver's tolerance, an enthalpy that
 //! is not linear in T) is credited to the particles of the cell by their share W_cp K_p/H_c,
 //! H_c = Σ_p W_cp K_p. Drag acts cell by cell too, W_cp K_A (v/AF − u_c); the velocity of particles
-//! is given over a window, so that nothing ties its cells (for stiff drag K_A is what
+//! is given over a window, so that it does not couple its cells (for stiff drag K_A is what
 //! `CouplingCoefficients::relax` makes of it).
 //!
 //! Momentum is exchanged by model A or B (requirements DRG-1, [`crate::momentum_model`]): the coefficients
@@ -80,9 +80,9 @@ pub struct Exchange {
 #[derive(Debug, Default)]
 struct Iterate {
     temperature: Vec<f64>,
-    seen_temperature: Vec<f64>,
+    sampled_temperature: Vec<f64>,
     /// Σ_p W_cp g_p of each cell in W/K.
-    tie: Vec<f64>,
+    coupling_coefficient: Vec<f64>,
 }
 
 impl Exchange {
@@ -97,50 +97,51 @@ impl Exchange {
         self.drag.resize(particles, Vec3::zeros());
         self.scalar.resize(particles, 0.0);
         self.vector.resize(particles, Vec3::zeros());
-        self.iterate.seen_temperature.resize(particles, 0.0);
-        self.iterate.tie.resize(cells, 0.0);
+        self.iterate.sampled_temperature.resize(particles, 0.0);
+        self.iterate.coupling_coefficient.resize(cells, 0.0);
     }
 
     /// Begins the attempts with one set of laws: looks at the gas and spreads the drag, which no
     /// attempt changes.
-    pub fn begin(&mut self, setting: &ExchangeInputs<'_>, gas: &GasFields<'_>) {
-        let operator = setting.operator;
+    pub fn begin(&mut self, inputs: &ExchangeInputs<'_>, gas: &GasFields<'_>) {
+        let operator = inputs.operator;
         self.resize(operator.cells(), operator.particles());
         self.iterate.temperature.clear();
         self.iterate.temperature.extend_from_slice(gas.temperature);
-        operator.sample(gas.temperature, &mut self.iterate.seen_temperature);
+        operator.sample(gas.temperature, &mut self.iterate.sampled_temperature);
 
-        let coefficients = setting.coefficients;
+        let coefficients = inputs.coefficients;
         operator.spread(&coefficients.drag, &mut self.cells.drag_coefficient);
         for (p, source) in self.vector.iter_mut().enumerate() {
-            let velocity = setting.particles.velocity[p];
-            *source = coefficients.drag_source(p, velocity, setting.acceleration);
+            let velocity = inputs.particles.velocity[p];
+            *source = coefficients.drag_source(p, velocity, inputs.acceleration);
         }
         operator.spread_vectors(&self.vector, &mut self.cells.drag_source);
     }
 
     /// The gas temperature that each particle sees at the last iterate in K.
-    pub fn seen_temperature(&self) -> &[f64] {
-        &self.iterate.seen_temperature
+    pub fn sampled_temperature(&self) -> &[f64] {
+        &self.iterate.sampled_temperature
     }
 
     /// Fills what the gas is told of heat, linearised about the last iterate. The exchange starts
     /// from these particle temperatures in K.
-    pub fn linearise(&mut self, setting: &ExchangeInputs<'_>, temperature: &[f64]) {
-        let (operator, iterate) = (setting.operator, &mut self.iterate);
+    pub fn linearise(&mut self, inputs: &ExchangeInputs<'_>, temperature: &[f64]) {
+        let (operator, iterate) = (inputs.operator, &mut self.iterate);
         // K_p, g_p and the source side by side: three components cost little more than one.
         for (p, kelvin) in temperature.iter().enumerate() {
             let own = self.conductance[p];
-            let tie = tie(setting.coefficients.conductance[p], own);
-            let source = own * kelvin + tie * iterate.seen_temperature[p];
-            self.vector[p] = Vec3::new(own, tie, source);
+            let coupling_coefficient =
+                coupling_coefficient(inputs.coefficients.conductance[p], own);
+            let source = own * kelvin + coupling_coefficient * iterate.sampled_temperature[p];
+            self.vector[p] = Vec3::new(own, coupling_coefficient, source);
         }
         operator.spread_vectors(&self.vector, &mut self.cell_vector);
         for c in 0..operator.cells() {
-            let [own, tie, source] = self.cell_vector[c].into();
+            let [own, coupling_coefficient, source] = self.cell_vector[c].into();
             self.cells.heat_coefficient[c] = own;
-            iterate.tie[c] = tie;
-            self.cells.heat_source[c] = source - tie * iterate.temperature[c];
+            iterate.coupling_coefficient[c] = coupling_coefficient;
+            self.cells.heat_source[c] = source - coupling_coefficient * iterate.temperature[c];
         }
     }
 
@@ -151,13 +152,13 @@ impl Exchange {
     /// set free and take.
     pub fn credit_heat(
         &mut self,
-        setting: &ExchangeInputs<'_>,
+        inputs: &ExchangeInputs<'_>,
         temperature: &[f64],
         gas: &GasFields<'_>,
         received: &CellReceived,
         carried: &[f64],
     ) -> f64 {
-        let (operator, coefficients) = (setting.operator, setting.coefficients);
+        let (operator, coefficients) = (inputs.operator, inputs.coefficients);
         let exchange = &self.cells;
         // T_c − δ_c/H_c, with δ_c what the gas reports beyond R_c, and T_c side by side.
         for c in 0..operator.cells() {
@@ -170,18 +171,20 @@ impl Exchange {
         }
         operator.sample_vectors(&self.cell_vector, &mut self.vector);
         for (p, kelvin) in temperature.iter().enumerate() {
-            let [credited, seen, _] = self.vector[p].into();
+            let [credited, sampled, _] = self.vector[p].into();
             let own = self.conductance[p];
             self.heat[p] = own * (credited - kelvin);
-            let before = std::mem::replace(&mut self.iterate.seen_temperature[p], seen);
-            self.scalar[p] = tie(coefficients.conductance[p], own) * (seen - before);
+            let before = std::mem::replace(&mut self.iterate.sampled_temperature[p], sampled);
+            self.scalar[p] =
+                coupling_coefficient(coefficients.conductance[p], own) * (sampled - before);
         }
         operator.spread(&self.scalar, &mut self.cell_scalar);
         let (mut misplaced, mut exchanged) = (0.0, 0.0);
         for c in 0..operator.cells() {
             let before = std::mem::replace(&mut self.iterate.temperature[c], gas.temperature[c]);
             let change = gas.temperature[c] - before;
-            misplaced += (self.iterate.tie[c] * change - self.cell_scalar[c]).abs();
+            misplaced +=
+                (self.iterate.coupling_coefficient[c] * change - self.cell_scalar[c]).abs();
             exchanged += received.heat[c].abs();
         }
         share(misplaced, exchanged)
@@ -190,21 +193,21 @@ impl Exchange {
     /// Gives each particle the drag that the gas reports.
     pub fn credit_drag(
         &mut self,
-        setting: &ExchangeInputs<'_>,
+        inputs: &ExchangeInputs<'_>,
         gas: &GasFields<'_>,
         received: &CellReceived,
     ) {
         let exchange = &self.cells;
-        for c in 0..setting.operator.cells() {
+        for c in 0..inputs.operator.cells() {
             let (own, coefficient) = (gas.velocity[c], exchange.drag_coefficient[c]);
             let beyond = received.drag[c] - (exchange.drag_source[c] - coefficient * own);
             self.cell_vector[c] = own - beyond.map(|beyond| ratio(beyond, coefficient));
         }
-        let operator = setting.operator;
+        let operator = inputs.operator;
         operator.sample_vectors(&self.cell_vector, &mut self.vector);
         for (p, drag) in self.drag.iter_mut().enumerate() {
-            let slip = self.vector[p] - setting.particles.velocity[p] / setting.acceleration;
-            *drag = setting.coefficients.drag_at(p, slip);
+            let slip = self.vector[p] - inputs.particles.velocity[p] / inputs.acceleration;
+            *drag = inputs.coefficients.drag_at(p, slip);
         }
     }
 
@@ -243,7 +246,7 @@ impl Exchange {
 }
 
 /// g_p: how strongly a particle draws its cells together, from h A and K_p, in W/K.
-fn tie(conductance: f64, eliminated: f64) -> f64 {
+fn coupling_coefficient(conductance: f64, eliminated: f64) -> f64 {
     (conductance - eliminated).min(0.5 * eliminated)
 }
 

@@ -96,7 +96,7 @@ pub struct Ledger {
     /// particles, feeds and outlets gave, where the solver counts the impulse of walls.
     pub particle_momentum: BalanceLine,
     /// What feeds brought and outlets took so far.
-    pub traffic: [CarriedInventory; 2],
+    pub fed_and_discharged: [CarriedInventory; 2],
     /// Mass of each element of a gas mixture in kg, by its symbol.
     pub elements: Vec<(String, BalanceLine)>,
 }

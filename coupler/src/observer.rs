@@ -77,7 +77,7 @@ pub struct CommittedState<'a> {
     /// none does.
     pub solid_fractions: &'a [f64],
     /// What else the particles had of the gas.
-    pub felt: ParticleGasExchange<'a>,
+    pub particle_gas: ParticleGasExchange<'a>,
     /// Names of walls and surroundings that give heat to the particles.
     pub reservoirs: &'a [String],
     /// Mean heat from each of these into the particles over the window in W; empty where there is none.
@@ -87,7 +87,7 @@ pub struct CommittedState<'a> {
     /// Convergence of the gas in the window.
     pub convergence: &'a Convergence,
     /// Attempts of the window, and what they left misplaced.
-    pub placement: &'a ExchangeConvergence,
+    pub exchange_convergence: &'a ExchangeConvergence,
     /// Wall times by stage.
     pub timing: &'a Timing,
     /// The two solvers.

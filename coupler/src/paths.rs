@@ -7,7 +7,7 @@ use crate::contacts::{touching, touching_walls};
 use crate::motion::WallShape;
 use crate::part::ParticleFields;
 use crate::setup::Schedule;
-use crate::sight::{RadiationScene, RadiationWall, ViewFactors, WallSurface, views};
+use crate::view_factors::{RadiationScene, RadiationWall, ViewFactors, WallSurface, views};
 
 /// Name of the surroundings among the reservoirs.
 pub const SURROUNDINGS: &str = "surroundings";
@@ -36,7 +36,7 @@ pub struct PathsSetup {
     /// radius in m.
     pub gap: f64,
     /// How particles see each other; `None`: they do not radiate.
-    pub sight: Option<ViewFactors>,
+    pub view_factors: Option<ViewFactors>,
     /// Temperature in K of what is seen beyond all walls, over process time in s; `None`: nothing leaves.
     pub surroundings: Option<Schedule>,
     /// Views of moving particles hold for so much process time in s.
@@ -105,7 +105,7 @@ impl Paths {
     }
 
     /// Finds what particles meet at a process time in s, and tells it.
-    pub fn meet(
+    pub fn find_neighbours(
         &mut self,
         particles: &ParticleFields<'_>,
         time: f64,
@@ -122,25 +122,26 @@ impl Paths {
         let due = self
             .seen_at
             .is_none_or(|at| time - at >= self.setup.refresh * (1.0 - 1e-9));
-        let found: Option<ExchangeAreas> = self.setup.sight.filter(|_| due).map(|sight| {
-            let reservoirs = self.mirrors.iter().filter(|m| m.absorbs.is_some()).count();
-            let own = |k: &u32| self.setup.emissivity.get(*k as usize).copied();
-            let emissivity = particles.population.iter().map(|k| own(k).unwrap_or(1.0));
-            let scene = RadiationScene {
-                radii,
-                centres,
-                emissivity: &emissivity.collect::<Vec<f64>>(),
-                walls: &self.mirrors,
-                reservoirs,
-                beyond: self.setup.surroundings.as_ref().map(|_| reservoirs),
-            };
-            views(&scene, sight)
-        });
+        let found: Option<ExchangeAreas> =
+            self.setup.view_factors.filter(|_| due).map(|view_factors| {
+                let reservoirs = self.mirrors.iter().filter(|m| m.absorbs.is_some()).count();
+                let own = |k: &u32| self.setup.emissivity.get(*k as usize).copied();
+                let emissivity = particles.population.iter().map(|k| own(k).unwrap_or(1.0));
+                let scene = RadiationScene {
+                    radii,
+                    centres,
+                    emissivity: &emissivity.collect::<Vec<f64>>(),
+                    walls: &self.mirrors,
+                    reservoirs,
+                    beyond: self.setup.surroundings.as_ref().map(|_| reservoirs),
+                };
+                views(&scene, view_factors)
+            });
         if found.is_some() {
             self.seen_at = Some(time);
         }
         tell(&Neighbours {
-            touches: &touches,
+            pairs: &touches,
             walls: &walls,
             views: found.as_ref(),
         });

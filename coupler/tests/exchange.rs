@@ -167,17 +167,17 @@ fn attempts(
     let mut shares = Vec::new();
     for _ in 0..count {
         let temperature = thin.committed_temperature().to_vec();
-        let setting = ExchangeInputs {
+        let inputs = ExchangeInputs {
             operator: &bench.operator,
             particles: bench.fields(),
             coefficients: &coefficients,
             acceleration: 3.0,
         };
-        exchange.begin(&setting, &gas.fields());
-        exchange.linearise(&setting, &temperature);
+        exchange.begin(&inputs, &gas.fields());
+        exchange.linearise(&inputs, &temperature);
         gas.attempt(&exchange, span, beyond, &mut received);
-        let share = exchange.credit_heat(&setting, &temperature, &gas.fields(), &received, &[]);
-        exchange.credit_drag(&setting, &gas.fields(), &received);
+        let share = exchange.credit_heat(&inputs, &temperature, &gas.fields(), &received, &[]);
+        exchange.credit_drag(&inputs, &gas.fields(), &received);
         thin.advance(&exchange.heat, span);
         shares.push(share);
     }

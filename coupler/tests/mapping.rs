@@ -136,8 +136,8 @@ fn overlap_is_continuous_while_a_particle_crosses_cells() {
 
 #[test]
 fn overlap_keeps_the_centre_of_a_particle_within_a_uniform_mesh() {
-    // Over cells with linear fields: the first moment of shares by volume is the ball's centre
-    // plus what the cells' own extent adds, which cancels for a ball symmetric in its cells.
+    // Over cells with linear fields: the first moment of shares by volume is the sphere's centre
+    // plus what the cells' own extent adds, which cancels for a sphere symmetric in its cells.
     let mesh = unit_cells([5, 5, 5]);
     let mapper = Mapper::new(&mesh);
     let at = Vec3::new(2.5, 2.5, 2.5);

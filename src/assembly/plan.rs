@@ -2,11 +2,11 @@
 
 use calcine_coupler::closures::Closures;
 use calcine_coupler::coordinator::{CheckpointPaths, ContactStepLimit, Plan};
+use calcine_coupler::feeds::{Feed, FeedsAndOutlets};
 use calcine_coupler::hold::Holds;
 use calcine_coupler::motion::Motion;
 use calcine_coupler::paths::{HeatWall, PathsSetup};
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::traffic::{Feed, FeedsAndOutlets};
 
 use super::prepared::{PreparedCase, method};
 use crate::case::model::Case;
@@ -35,10 +35,10 @@ pub(super) fn plan(case: &Case, prepared: &PreparedCase, checkpoint: CheckpointP
             .as_ref()
             .map_or_else(Holds::default, |motion| motion.held.clone()),
         gravity: case.gas.gravity,
-        traffic: traffic(case, prepared),
+        feeds_and_outlets: feeds_and_outlets(case, prepared),
         substance: case.particles.iter().map(|one| one.material).collect(),
         paths: paths(case, prepared),
-        pace: match &prepared.particles.motion {
+        step_limit: match &prepared.particles.motion {
             Motion::Frozen => None,
             Motion::Free(contacts) => Some(ContactStepLimit::of(contacts)),
         },
@@ -46,7 +46,7 @@ pub(super) fn plan(case: &Case, prepared: &PreparedCase, checkpoint: CheckpointP
 }
 
 /// Feeds and outlets of the case; ids go on after those of the start.
-fn traffic(case: &Case, prepared: &PreparedCase) -> FeedsAndOutlets {
+fn feeds_and_outlets(case: &Case, prepared: &PreparedCase) -> FeedsAndOutlets {
     let feeds = case.feeds.iter().map(|feed| {
         let population = &case.particles[feed.population];
         Feed {
@@ -96,7 +96,7 @@ fn paths(case: &Case, prepared: &PreparedCase) -> PathsSetup {
             .map(|one| emissivity(one.material))
             .collect(),
         gap: laws.reach(largest),
-        sight: radiation.map(|one| one.sight),
+        view_factors: radiation.map(|one| one.view_factors),
         surroundings: radiation.and_then(|one| one.surroundings.clone()),
         refresh: radiation.map_or(0.0, |one| one.refresh),
     }

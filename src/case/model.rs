@@ -10,6 +10,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use calcine_adapters::openfoam::stock::StockSolver;
+use calcine_coupler::feeds::Outlet;
 use calcine_coupler::hold::Holds;
 use calcine_coupler::interior::reacting::{Reaction, SizeChange};
 use calcine_coupler::mesh::zone::Zone;
@@ -18,7 +19,6 @@ pub use calcine_coupler::paths::SURROUNDINGS;
 use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::setup::{GasSetup, Schedule};
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
-use calcine_coupler::traffic::Outlet;
 
 pub use laws::{
     ConductionArea, ConductionLaw, ConductionSpec, DragLaw, GapSpec, HeatLaw, Laws, RadiationSpec,

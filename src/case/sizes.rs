@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::fs;
 
 use calcine_coupler::setup::Turbulence;
-use calcine_coupler::sight::ViewFactors;
+use calcine_coupler::view_factors::ViewFactors;
 use thiserror::Error;
 
 use super::model::{Case, MeshSpec, PlacementSpec};
@@ -62,7 +62,8 @@ fn views(case: &Case) -> f64 {
     let Some(radiation) = &case.laws.radiation else {
         return 0.0;
     };
-    let (ViewFactors::Rays { range, .. } | ViewFactors::Distance { range }) = radiation.sight;
+    let (ViewFactors::Rays { range, .. } | ViewFactors::Distance { range }) =
+        radiation.view_factors;
     let solid = case.particles.iter().filter_map(|one| match one.place {
         PlacementSpec::Random { solid_fraction, .. } => Some(solid_fraction),
         _ => None,
@@ -77,7 +78,7 @@ fn views(case: &Case) -> f64 {
     let mean = means.fold(f64::INFINITY, f64::min).min(largest);
     // 4/3 π (range d_max)³ times the solid fraction, over π/6 d³; each pair once.
     let within = 0.5 * 8.0 * solid.unwrap_or(DENSE) * (range * largest / mean).powi(3);
-    match radiation.sight {
+    match radiation.view_factors {
         ViewFactors::Rays { .. } => within.min(IN_SIGHT),
         ViewFactors::Distance { .. } => within,
     }
@@ -215,8 +216,8 @@ mod tests {
     #[test]
     fn particles_that_radiate_need_memory_for_whom_they_see() {
         let mut hot = shipped("bed-conductivity");
-        let mut seen = |sight: ViewFactors| {
-            hot.laws.radiation.as_mut().unwrap().sight = sight;
+        let mut seen = |view_factors: ViewFactors| {
+            hot.laws.radiation.as_mut().unwrap().view_factors = view_factors;
             views(&hot)
         };
         // 8 · 0.57 · 27 neighbours within three diameters, each pair once.

@@ -225,12 +225,12 @@ impl DoctorReport {
 
     /// Pairings that can run here.
     fn pairings(&self) -> Vec<&'static str> {
-        let (foam, grains) = (self.openfoam_works(), self.liggghts_works());
+        let (foam, particles) = (self.openfoam_works(), self.liggghts_works());
         let all = [
             ("native+native", true),
-            ("native+liggghts", grains),
+            ("native+liggghts", particles),
             ("openfoam+native", foam),
-            ("openfoam+liggghts", foam && grains),
+            ("openfoam+liggghts", foam && particles),
         ];
         all.into_iter()
             .filter(|(_, works)| *works)

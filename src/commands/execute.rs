@@ -23,7 +23,7 @@ use crate::case::buoyancy;
 use crate::case::model::Case;
 use crate::exit;
 use crate::progress::Progress;
-use crate::results::pace::InertialNumberStatistics;
+use crate::results::inertial_number::InertialNumberStatistics;
 use crate::results::{self, Recorder, ResultsError, RunInfo, Summary, Verdict};
 
 /// A file that every run makes and holds locked while it lives.

@@ -28,7 +28,7 @@ use crate::assembly::{AssemblyError, PreparedCase};
 use crate::case::model::Case;
 use crate::exit;
 
-/// Reactive granular beds: gas and grains coupled, natively or with OpenFOAM and LIGGGHTS.
+/// Reactive granular beds: gas and particles coupled, natively or with OpenFOAM and LIGGGHTS.
 #[derive(Debug, Parser)]
 #[command(name = "calcine", version, propagate_version = true)]
 struct Arguments {

@@ -119,7 +119,7 @@ pub(super) fn differences(
     Ok(list)
 }
 
-/// Columns of the series over all particles: their mean is no number where one of them has no temperature.
+/// Columns of the series over all particles: their mean is NaN where one of them has no temperature.
 const MEAN: &str = "particles.temperature_mean";
 const LARGEST: &str = "particles.temperature_max";
 
@@ -139,7 +139,7 @@ fn tracks(case: &Case, sources: &[Source]) -> Option<FieldDifference> {
     let mut sums = pairs(sources);
     for time in common_times(sources) {
         let sound = |source: &Source| {
-            // Of no particles the mean is no number, and the largest is none either.
+            // Over no particles mean and largest are NaN.
             !at(source, MEAN, time).is_nan() || at(source, LARGEST, time).is_nan()
         };
         let sound: Vec<bool> = sources.iter().map(sound).collect();
@@ -169,7 +169,7 @@ fn tracks(case: &Case, sources: &[Source]) -> Option<FieldDifference> {
     Some(judged(field, single_particle_band(case)))
 }
 
-/// A column of a run at a time; no number where it has none.
+/// A column of a run at a time; NaN where it has none.
 fn at(source: &Source, column: &str, time: f64) -> f64 {
     match source.series.column(column) {
         [] => f64::NAN,

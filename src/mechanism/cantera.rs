@@ -353,7 +353,10 @@ fn activation_energy(node: &YamlNode, units: &MechanismUnits) -> Result<f64, Fau
     };
     match number.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number * unit),
-        _ => fault(node.line, format!("Ea is \"{text}\", which is no number")),
+        _ => fault(
+            node.line,
+            format!("Ea is \"{text}\", which is not a number"),
+        ),
     }
 }
 

@@ -176,7 +176,7 @@ fn auxiliary(draft: &mut Draft, bare: &str, line: usize) -> Result<(), Fault> {
             numbers.ok_or_else(|| {
                 (
                     Some(line),
-                    format!("{word} has \"{inner}\", which are no numbers"),
+                    format!("{word} has \"{inner}\", which are not numbers"),
                 )
             })
         };

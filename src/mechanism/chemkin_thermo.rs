@@ -72,7 +72,7 @@ fn number(text: &str, line: usize, name: &str, what: &str) -> Result<f64, Fault>
         Ok(number) if number.is_finite() => Ok(number),
         _ => fault(
             line,
-            format!("{name} has \"{text}\" for {what}, which is no number"),
+            format!("{name} has \"{text}\" for {what}, which is not a number"),
         ),
     }
 }

@@ -173,7 +173,7 @@ fn what_of_cantera_s_is_not_read_is_refused_by_file_line_and_name() {
         ),
         (
             "reactions:\n- equation: A => B\n  rate-constant: {A: many, b: 0, Ea: 0}\n",
-            "a.yaml:3: A is \"many\", which is no number",
+            "a.yaml:3: A is \"many\", which is not a number",
         ),
         (
             "reactions:\n- equation: A => B\n  rate-constant: {A: 1, b: 0, Ea: 3 erg/mol}\n",

@@ -122,7 +122,7 @@ impl YamlNode {
             Ok(number) if number.is_finite() => Ok(number),
             _ => fault(
                 self.line,
-                format!("{what} is \"{text}\", which is no number"),
+                format!("{what} is \"{text}\", which is not a number"),
             ),
         }
     }

@@ -9,7 +9,7 @@ mod error;
 pub(crate) mod files;
 // Only HDF5 holds descriptions.
 #[cfg_attr(not(feature = "hdf5"), allow(dead_code))]
-pub mod pace;
+pub mod inertial_number;
 mod probe;
 pub mod quantities;
 pub mod read;

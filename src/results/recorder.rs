@@ -19,7 +19,7 @@ use super::summary::{
     SolverSummaries, SolverSummary, Summary, Verdict, WallTimes,
 };
 use super::vtk::{self, Cells};
-use super::{CASE, ResultsError, STORE, SUMMARY, files, pace, snapshot, voids};
+use super::{CASE, ResultsError, STORE, SUMMARY, files, inertial_number, snapshot, voids};
 use crate::case::model::Case;
 
 /// So many rows are gathered before they go to the HDF5 file.
@@ -223,9 +223,11 @@ impl Recorder {
     fn count(&mut self, moment: &CommittedState<'_>) {
         let (sums, window) = (&mut self.counters.convergence, moment.convergence);
         sums.unconverged_windows += u64::from(!window.converged);
-        sums.unsettled_windows += u64::from(!moment.placement.settled);
-        sums.attempts += u64::from(moment.placement.attempts);
-        sums.largest_misplaced = sums.largest_misplaced.max(moment.placement.misplaced);
+        sums.unsettled_windows += u64::from(!moment.exchange_convergence.settled);
+        sums.attempts += u64::from(moment.exchange_convergence.attempts);
+        sums.largest_misplaced = sums
+            .largest_misplaced
+            .max(moment.exchange_convergence.misplaced);
         sums.outer_iterations += u64::from(window.outer_iterations);
         sums.linear_iterations += u64::from(window.linear_iterations);
         sums.largest_residual = sums.largest_residual.max(window.residual);
@@ -247,7 +249,7 @@ impl Recorder {
             .unwrap_or(self.case.output.every);
         let moves = |window: &Window| !series::held(&self.case, window);
         if moment.window.is_some_and(moves) && series::accelerated(&self.case) {
-            let number = pace::of_bed(moment, self.case.gas.gravity);
+            let number = inertial_number::of_bed(moment, self.case.gas.gravity);
             self.counters.pace.add(number);
         }
         let now = moment.clocks.process;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::pace::InertialNumberStatistics;
+use super::inertial_number::InertialNumberStatistics;
 use super::quantities::Captured;
 use super::summary::{ConvergenceSummary, ProcessorTimes, Provenance, Summary, Verdict, WallTimes};
 use super::{ResultsError, SERIES, STORE, SUMMARY, files};

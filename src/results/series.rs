@@ -10,7 +10,7 @@ use calcine_coupler::time::Window;
 
 use super::probe::Site;
 use super::quantities::{evaluate, statistic};
-use super::{ResultsError, SERIES, pace};
+use super::{ResultsError, SERIES, inertial_number};
 use crate::case::model::{Case, MotionKind, MotionSpec, Statistic};
 
 /// Up to so many particles each has a column of its own; beyond, the series holds statistics.
@@ -190,7 +190,7 @@ pub(super) fn row(
         values.push(statistic(which, moment.gas.temperature));
     }
     if accelerated(case) {
-        values.push(pace::of_bed(moment, case.gas.gravity));
+        values.push(inertial_number::of_bed(moment, case.gas.gravity));
     }
     values.push(f64::from(moment.convergence.outer_iterations));
     values.push(f64::from(moment.convergence.linear_iterations));

@@ -207,19 +207,19 @@ pub(super) fn particles<'a>(
             "force",
             "N",
             "force of the gas on the particle over the last window",
-            Vector(moment.felt.force),
+            Vector(moment.particle_gas.force),
         ),
         field(
             "void_fraction",
             "1",
             "void fraction by which the laws of the particle were evaluated",
-            Scalar(moment.felt.void_fraction),
+            Scalar(moment.particle_gas.void_fraction),
         ),
         field(
             "slip",
             "m/s",
             "speed of the gas relative to the particle by which its laws were evaluated",
-            Scalar(moment.felt.slip),
+            Scalar(moment.particle_gas.slip),
         ),
     ];
     let count = bed.len();

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::pace::InertialNumberStatistics;
+use super::inertial_number::InertialNumberStatistics;
 use super::{ResultsError, SUMMARY, files};
 
 /// How a quantity, or the run, stands against what the case expects.

@@ -4,7 +4,7 @@
 pub struct Orders {
     pub kills: u64,
     pub seed: u64,
-    /// Number of the first one: with its seed and number a blow is dealt again.
+    /// Number of the first one: with its seed and number a trial is repeated.
     pub first: u64,
 }
 
@@ -14,7 +14,7 @@ impl Orders {
     }
 }
 
-/// What to do; nothing where `cargo test` lists tests or asks for others. `few` blows and `seed`, from
+/// What to do; nothing where `cargo test` lists tests or asks for others. `few` trials and `seed`, from
 /// the first on, unless `--kills`, `--seed` and `--from` say otherwise.
 pub fn orders(name: &str, few: u64, seed: u64) -> Option<Orders> {
     let words: Vec<String> = std::env::args().skip(1).collect();

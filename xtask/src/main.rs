@@ -134,7 +134,7 @@ fn read(words: &[OsString]) -> Option<Task> {
 }
 
 /// A test program; unless the words hold its option, with the option's usual value. Nothing where a word is neither a name nor
-/// an option of theirs, or an option's value is no number.
+/// an option of theirs, or an option's value is not a number.
 fn program(name: &'static str, needs: Needs, usual: [&str; 2], words: &[OsString]) -> Option<Task> {
     let mut texts = words.iter();
     while let Some(word) = texts.next() {

@@ -13,10 +13,10 @@ use calcine_wire::{
 };
 use thiserror::Error;
 
-use crate::change::PopulationUpdate;
 use crate::library::{self, Liggghts};
 use crate::parent::ParentCarrier;
-use crate::state::RankParticles;
+use crate::population_update::PopulationUpdate;
+use crate::rank_particles::RankParticles;
 
 /// Ticks of the wire's clocks in one second.
 const TICKS: f64 = 1e12;

@@ -3,13 +3,13 @@
 //!
 //! `calcine-liggghts SCRIPT CASE-HASH [RESTART-FILE]`, started by Calcine in the script's folder.
 
-mod change;
 mod host;
 #[allow(unsafe_code)]
 mod library;
 #[allow(unsafe_code)]
 mod parent;
-mod state;
+mod population_update;
+mod rank_particles;
 
 use std::path::PathBuf;
 

@@ -20,7 +20,7 @@ const scalar apart = 1e-2;
 
 scalar bounded(scalar T)
 {
-    // What is no number is not hotter.
+    // NaN is not hotter.
     return T > coldest ? min(T, hottest) : coldest;
 }
 
@@ -81,7 +81,7 @@ void Foam::calcine::gasChemistry::setPositive(const scalarField& c) const
 {
     forAll(positive_, i)
     {
-        // What is no number is not positive.
+        // NaN is not positive.
         positive_[i] = c[i] > 0 ? min(c[i], densest) : 0;
     }
 }

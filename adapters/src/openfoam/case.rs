@@ -10,7 +10,7 @@ use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::{GasPatch, GasSetup};
 use calcine_wire::Catalogue;
 
-use super::start::StartFields;
+use super::start_fields::StartFields;
 use super::stock::{self, StockSolver};
 use super::{NAME, chemistry, decompose, dictionaries, species, turbulence};
 use crate::launch::without_blanks;

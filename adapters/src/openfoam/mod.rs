@@ -7,7 +7,7 @@ mod decompose;
 mod dictionaries;
 mod identity;
 mod species;
-mod start;
+mod start_fields;
 pub mod stock;
 pub mod turbulence;
 

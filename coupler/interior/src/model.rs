@@ -32,16 +32,16 @@ pub trait ParticleModel: Send {
         None
     }
 
-    /// True where particles exchange heat with each other and with walls, so that `meet` and `conduct` matter.
+    /// True where particles exchange heat with each other and with walls, so that `set_neighbours` and `conduct` matter.
     fn conducts(&self) -> bool;
 
     /// Takes up which particles and walls meet at the present places.
-    fn meet(&mut self, meeting: &Neighbours<'_>);
+    fn set_neighbours(&mut self, neighbours: &Neighbours<'_>);
 
     /// Fixes the heat that particles exchange with each other and with walls in the coming attempt: that
     /// of an implicit step over a process span in s in which each particle also exchanges heat with the
     /// gas beside it.
-    fn conduct(&mut self, beside: &NetworkSurroundings<'_>, span: f64);
+    fn conduct(&mut self, surroundings: &NetworkSurroundings<'_>, span: f64);
 
     /// Heat in W that each reservoir, a wall or the surroundings, gives to the particles in the attempt.
     fn reservoir_heat(&self) -> &[f64];

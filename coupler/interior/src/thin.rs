@@ -83,13 +83,13 @@ impl ParticleModel for Thin {
         self.network.is_some()
     }
 
-    fn meet(&mut self, meeting: &Neighbours<'_>) {
+    fn set_neighbours(&mut self, neighbours: &Neighbours<'_>) {
         if let Some(network) = &mut self.network {
-            network.meet(meeting);
+            network.set_neighbours(neighbours);
         }
     }
 
-    fn conduct(&mut self, beside: &NetworkSurroundings<'_>, span: f64) {
+    fn conduct(&mut self, surroundings: &NetworkSurroundings<'_>, span: f64) {
         let Some(network) = self.network.as_mut().filter(|network| !network.is_empty()) else {
             return;
         };
@@ -105,7 +105,7 @@ impl ParticleModel for Thin {
             };
             secant / span
         };
-        network.solve(capacity, committed, beside);
+        network.solve(capacity, committed, surroundings);
         self.start.clear();
         for (p, heat) in network.heat.iter().enumerate() {
             self.start.push(moved(
@@ -273,8 +273,8 @@ mod tests {
             vec![300.0, 400.0],
             Some(network),
         );
-        thin.meet(&Neighbours {
-            touches: &[NeighbourPair {
+        thin.set_neighbours(&Neighbours {
+            pairs: &[NeighbourPair {
                 particles: [0, 1],
                 radius: [5e-3; 2],
                 overlap: 1e-6,

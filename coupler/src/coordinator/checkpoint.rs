@@ -192,12 +192,12 @@ impl CoupledRun<'_> {
         state.set_f64s("particle_other_force", &other);
         let moved: Vec<f64> = self
             .ledger
-            .traffic
+            .fed_and_discharged
             .iter()
             .flat_map(CarriedInventory::numbers)
             .collect();
         state.set_f64s("traffic_moved", &moved);
-        self.plan.traffic.record(&mut state);
+        self.plan.feeds_and_outlets.record(&mut state);
         self.record_identity(&mut state);
         state
     }
@@ -237,11 +237,11 @@ impl CoupledRun<'_> {
             force.copy_from_slice(values);
         }
         let moved = state.f64s_of("traffic_moved", 12)?.chunks_exact(6);
-        for (total, values) in self.ledger.traffic.iter_mut().zip(moved) {
+        for (total, values) in self.ledger.fed_and_discharged.iter_mut().zip(moved) {
             let numbers = <[f64; 6]>::try_from(values).unwrap_or_default();
             *total = CarriedInventory::from_numbers(numbers);
         }
-        self.plan.traffic.restore(&state)?;
+        self.plan.feeds_and_outlets.restore(&state)?;
         self.restore_amounts(&state)?;
         self.parts.interior.restore(temperature);
         self.weigh();

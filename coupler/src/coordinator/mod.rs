@@ -1,13 +1,13 @@
 //! The loop: windows, attempts, commits, checkpoints.
 
 mod checkpoint;
+mod feeds;
 mod hold;
 mod momentum;
 mod origin;
 mod react;
 mod resize;
 mod span;
-mod trade;
 mod window;
 
 use std::path::PathBuf;
@@ -27,6 +27,7 @@ use crate::checkpoint::StateFileError;
 use crate::closures::{ClosureError, Closures, CouplingCoefficients, SampledGas};
 use crate::error::PartError;
 use crate::exchange::{Exchange, ExchangeConvergence};
+use crate::feeds::FeedsAndOutlets;
 use crate::hold::Holds;
 use crate::ledger::{BalanceLine, Ledger};
 use crate::mapping::{Mapper, MappingError, Method};
@@ -36,10 +37,9 @@ use crate::packing::PackingError;
 use crate::part::{Bed, CellReceived, Convergence, Gas, ParticlePush, ParticleReceived, Particles};
 use crate::paths::{Paths, PathsSetup};
 use crate::smoother::{Operator, Smoother, SmootherError};
+use crate::species_coupling::SpeciesCoupling;
 use crate::supervisor::Supervisor;
 use crate::time::{Acceleration, Clocks, GasStorage, Ticks, TimeError};
-use crate::traffic::FeedsAndOutlets;
-use crate::turnover::SpeciesCoupling;
 
 /// When windows, checkpoints and the run end, and how exactly a window is exchanged.
 #[derive(Clone, Debug)]
@@ -75,13 +75,13 @@ pub struct Plan {
     /// Gravity in m/s².
     pub gravity: Vec3,
     /// Feeds and outlets.
-    pub traffic: FeedsAndOutlets,
+    pub feeds_and_outlets: FeedsAndOutlets,
     /// Material of each population, for what feeds bring in.
     pub substance: Vec<usize>,
     /// Heat between particles and to walls.
     pub paths: PathsSetup,
     /// How light particles that move may become by what reacts in them; `None` where none moves.
-    pub pace: Option<ContactStepLimit>,
+    pub step_limit: Option<ContactStepLimit>,
 }
 
 /// How a run ended without an error.
@@ -166,10 +166,10 @@ struct Mapped {
 /// Memory of one window, reused.
 #[derive(Default)]
 struct Workspace {
-    seen: SampledGas,
+    sampled_gas: SampledGas,
     coefficients: CouplingCoefficients,
     exchange: Exchange,
-    turnover: SpeciesCoupling,
+    species_coupling: SpeciesCoupling,
     /// Pressure in Pa that each particle sees, where some react.
     pressure: Vec<f64>,
     /// Masses in kg and mass fractions of solids, for observers.
@@ -206,7 +206,7 @@ pub struct CoupledRun<'m> {
     ledger: Ledger,
     timing: Timing,
     convergence: Convergence,
-    placement: ExchangeConvergence,
+    exchange_convergence: ExchangeConvergence,
     work: Workspace,
     paths: Paths,
 }
@@ -230,7 +230,7 @@ impl<'m> CoupledRun<'m> {
             .heat
             .resize(parts.particles.fields().len(), 0.0);
         work.begin(&parts.particles.fields(), &plan.free, plan.gravity);
-        let pores = &mut work.seen.void_fraction;
+        let pores = &mut work.sampled_gas.void_fraction;
         pores.resize(mapped.operator.particles(), 1.0);
         mapped.operator.sample(&mapped.bed.void_fraction, pores);
         let paths = Paths::new(plan.paths.clone());
@@ -254,7 +254,7 @@ impl<'m> CoupledRun<'m> {
             },
             timing,
             convergence: Convergence::default(),
-            placement: ExchangeConvergence {
+            exchange_convergence: ExchangeConvergence {
                 settled: true,
                 ..ExchangeConvergence::default()
             },
@@ -282,7 +282,7 @@ impl<'m> CoupledRun<'m> {
         while self.clocks.process < self.plan.end {
             let window = self.next_window()?;
             self.bring_to_rest(supervisor, &window)?;
-            self.trade(supervisor, &window)?;
+            self.feed_and_discharge(supervisor, &window)?;
             self.advance(supervisor, &window)?;
             self.resize(supervisor)?;
             last = Some(window);
@@ -353,16 +353,16 @@ impl<'m> CoupledRun<'m> {
             particle_heat: &self.work.exchange.heat,
             particle_mass: &self.work.particle_mass,
             solid_fractions: &self.work.solid_fractions,
-            felt: ParticleGasExchange {
+            particle_gas: ParticleGasExchange {
                 force: &self.work.push.force,
-                void_fraction: &self.work.seen.void_fraction,
+                void_fraction: &self.work.sampled_gas.void_fraction,
                 slip: &self.work.coefficients.slip,
             },
             reservoirs: self.paths.names(),
             reservoir_heat: &self.work.reservoir_heat,
             ledger: &self.ledger,
             convergence: &self.convergence,
-            placement: &self.placement,
+            exchange_convergence: &self.exchange_convergence,
             timing: &self.timing,
             about: [self.parts.gas.about(), self.parts.particles.about()],
         }

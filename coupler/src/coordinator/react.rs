@@ -22,7 +22,7 @@ impl CoupledRun<'_> {
         let gas = self.parts.gas.fields();
         mapped.operator.sample(gas.pressure, &mut work.pressure);
         self.closures.evaluate_films(
-            &work.seen,
+            &work.sampled_gas,
             &particles,
             &work.pressure,
             window.acceleration(),
@@ -38,12 +38,12 @@ impl CoupledRun<'_> {
         };
         let gas = self.parts.gas.fields();
         let span = window.span.process.seconds();
-        work.seen.sample(&mapped.operator, &gas, &mapped.bed);
+        work.sampled_gas.sample(&mapped.operator, &gas, &mapped.bed);
         mapped.operator.sample(gas.pressure, &mut work.pressure);
         let around = Surroundings {
-            temperature: &work.seen.temperature,
+            temperature: &work.sampled_gas.temperature,
             pressure: &work.pressure,
-            composition: &work.seen.composition,
+            composition: &work.sampled_gas.composition,
             conductance: &work.coefficients.conductance,
             film: &work.coefficients.film,
             radius: self.parts.particles.fields().radius,
@@ -67,7 +67,7 @@ impl CoupledRun<'_> {
             let told = &mut work.exchange.cells.species;
             let properties = &self.closures.gas;
             let operator = &mapped.operator;
-            work.turnover
+            work.species_coupling
                 .linearise(operator, reacting, &gas, properties, told);
         });
         let conductance = &work.coefficients.conductance;
@@ -84,14 +84,16 @@ impl CoupledRun<'_> {
         let gas = self.parts.gas.fields();
         let species = self.closures.gas.species().len();
         let operator = &self.mapped.operator;
-        self.work.turnover.follow(operator, reacting, &gas, species)
+        self.work
+            .species_coupling
+            .follow(operator, reacting, &gas, species)
     }
 
     /// Fixes what particles give and take.
     pub(super) fn fix_rates(&mut self, window: &Window) {
         let work = &mut self.work;
         if let Some(reacting) = self.parts.interior.reacting() {
-            work.turnover.fix(
+            work.species_coupling.fix(
                 &self.mapped.operator,
                 reacting,
                 window.span.process.seconds(),
@@ -109,11 +111,11 @@ impl CoupledRun<'_> {
         };
         let gas = self.parts.gas.fields();
         let operator = &self.mapped.operator;
-        work.turnover
+        work.species_coupling
             .credit(operator, reacting, &gas, &self.closures.gas);
         let booking = ExchangeTotals {
-            rates: &work.turnover.rates,
-            carried: &work.turnover.carried,
+            rates: &work.species_coupling.rates,
+            carried: &work.species_coupling.carried,
         };
         reacting.book(&booking, window.span.process.seconds());
     }

@@ -11,7 +11,7 @@ use calcine_physics::Vec3;
 use calcine_physics::contact::time_step::rayleigh;
 use thiserror::Error;
 
-use super::trade::momentum;
+use super::feeds::momentum;
 use super::{CoupledRun, RunError};
 use crate::motion::{Contacts, Elastic, ParticleChanges, Resized};
 use crate::supervisor::Supervisor;
@@ -47,7 +47,7 @@ impl ContactStepLimit {
         };
         let density = new.mass / (4.0 / 3.0 * PI * new.radius.powi(3));
         let time = rayleigh(new.radius, density, elastic.young, elastic.poisson);
-        // A time that is no number is no bound to keep either.
+        // A time that is NaN bounds nothing and is refused too.
         if self.step <= LONGEST_STEP * time {
             return Ok(());
         }
@@ -105,8 +105,13 @@ impl CoupledRun<'_> {
                 radius,
                 mass,
             };
-            if let Some(pace) = self.plan.pace.as_ref().filter(|_| self.work.free[row]) {
-                pace.bears(fields.population[row], &new)?;
+            if let Some(step_limit) = self
+                .plan
+                .step_limit
+                .as_ref()
+                .filter(|_| self.work.free[row])
+            {
+                step_limit.bears(fields.population[row], &new)?;
             }
             asked += mass - fields.mass[row];
             turned += (mass - fields.mass[row]).abs();
@@ -137,7 +142,7 @@ mod tests {
 
     #[test]
     fn a_particle_may_become_as_light_as_half_of_rayleighs_time_allows() {
-        let pace = |step: f64| ContactStepLimit {
+        let step_limit = |step: f64| ContactStepLimit {
             step,
             elastic: vec![Elastic {
                 young: 5e7,
@@ -150,13 +155,13 @@ mod tests {
             radius: 1e-3,
             mass: 2500.0 * 4.0 / 3.0 * PI * 1e-9,
         };
-        assert!(pace(1.90e-5).bears(0, &new).is_ok());
-        let error = pace(1.91e-5).bears(0, &new).unwrap_err().to_string();
+        assert!(step_limit(1.90e-5).bears(0, &new).is_ok());
+        let error = step_limit(1.91e-5).bears(0, &new).unwrap_err().to_string();
         assert!(
             error.contains("particle 7") && error.contains("0.00003802"),
             "{error}"
         );
         let nothing = Resized { mass: 0.0, ..new };
-        assert!(pace(1e-9).bears(0, &nothing).is_err());
+        assert!(step_limit(1e-9).bears(0, &nothing).is_err());
     }
 }

@@ -145,8 +145,9 @@ impl CoupledRun<'_> {
             let time = self.clocks.process.seconds();
             let interior = &mut self.parts.interior;
             let particles = self.parts.particles.fields();
-            self.paths
-                .meet(&particles, time, |meeting| interior.meet(meeting));
+            self.paths.find_neighbours(&particles, time, |neighbours| {
+                interior.set_neighbours(neighbours)
+            });
             self.timing.interior += begun.elapsed();
         }
     }
@@ -156,10 +157,15 @@ impl CoupledRun<'_> {
         let (mapped, work) = (&self.mapped, &mut self.work);
         let particles = self.parts.particles.fields();
         let acceleration = window.acceleration();
-        work.seen
+        work.sampled_gas
             .sample(&mapped.operator, &self.parts.gas.fields(), &mapped.bed);
         self.closures
-            .evaluate(&work.seen, &particles, acceleration, &mut work.coefficients)
+            .evaluate(
+                &work.sampled_gas,
+                &particles,
+                acceleration,
+                &mut work.coefficients,
+            )
             .map_err(|cause| RunError::Closure {
                 window: window.index,
                 cause,
@@ -218,7 +224,7 @@ impl CoupledRun<'_> {
                 let span = window.span.process.seconds();
                 self.parts.interior.advance(&work.exchange.heat, span);
             });
-            self.placement = ExchangeConvergence {
+            self.exchange_convergence = ExchangeConvergence {
                 attempts: window.attempt,
                 misplaced: if settled { misplaced.min(off) } else { off },
                 settled,
@@ -230,14 +236,14 @@ impl CoupledRun<'_> {
     /// Spreads what does not change between attempts.
     fn begin_exchange(&mut self, window: &Window) {
         let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
-        let setting = ExchangeInputs {
+        let inputs = ExchangeInputs {
             operator: &mapped.operator,
             particles: self.parts.particles.fields(),
             coefficients: &work.coefficients,
             acceleration: window.acceleration(),
         };
         timed(&mut timing.exchange, || {
-            work.exchange.begin(&setting, &self.parts.gas.fields());
+            work.exchange.begin(&inputs, &self.parts.gas.fields());
         });
     }
 
@@ -261,13 +267,13 @@ impl CoupledRun<'_> {
         if self.parts.interior.conducts() {
             let (work, timing) = (&self.work, &mut self.timing);
             timed(&mut timing.interior, || {
-                let beside = NetworkSurroundings {
+                let surroundings = NetworkSurroundings {
                     conductance: &work.coefficients.conductance,
-                    temperature: work.exchange.seen_temperature(),
+                    temperature: work.exchange.sampled_temperature(),
                     gas_conductivity: &work.coefficients.gas_conductivity,
                     reservoirs: self.paths.reservoirs(end),
                 };
-                self.parts.interior.conduct(&beside, span);
+                self.parts.interior.conduct(&surroundings, span);
             });
         }
     }
@@ -275,7 +281,7 @@ impl CoupledRun<'_> {
     /// One attempt of the gas; the share of the exchange that it left misplaced.
     fn attempt(&mut self, supervisor: &Supervisor, window: &mut Window) -> Result<f64, RunError> {
         let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
-        let setting = ExchangeInputs {
+        let inputs = ExchangeInputs {
             operator: &mapped.operator,
             particles: self.parts.particles.fields(),
             coefficients: &work.coefficients,
@@ -283,7 +289,7 @@ impl CoupledRun<'_> {
         };
         let start = self.parts.interior.start_temperature();
         timed(&mut timing.exchange, || {
-            work.exchange.linearise(&setting, start);
+            work.exchange.linearise(&inputs, start);
         });
         let accounts = (&mut timing.gas, &mut timing.gas_processor);
         self.convergence = metered(accounts.0, accounts.1, || {
@@ -295,11 +301,12 @@ impl CoupledRun<'_> {
         window.attempt += 1;
         let misplaced = timed(&mut timing.exchange, || {
             let (gas, properties) = (self.parts.gas.fields(), &self.closures.gas);
-            let (turnover, told) = (&mut work.turnover, &work.exchange.cells.species);
-            turnover.heat_of_cells(&gas, properties, told);
-            let apart = &turnover.cell_heat;
+            let (species_coupling, told) =
+                (&mut work.species_coupling, &work.exchange.cells.species);
+            species_coupling.heat_of_cells(&gas, properties, told);
+            let apart = &species_coupling.cell_heat;
             work.exchange
-                .credit_heat(&setting, start, &gas, &work.received, apart)
+                .credit_heat(&inputs, start, &gas, &work.received, apart)
         });
         Ok(misplaced)
     }
@@ -307,7 +314,7 @@ impl CoupledRun<'_> {
     /// Gives the particles their drag after the last attempt.
     fn credit_drag(&mut self, window: &Window) {
         let (mapped, work, timing) = (&self.mapped, &mut self.work, &mut self.timing);
-        let setting = ExchangeInputs {
+        let inputs = ExchangeInputs {
             operator: &mapped.operator,
             particles: self.parts.particles.fields(),
             coefficients: &work.coefficients,
@@ -315,7 +322,7 @@ impl CoupledRun<'_> {
         };
         timed(&mut timing.exchange, || {
             let gas = self.parts.gas.fields();
-            work.exchange.credit_drag(&setting, &gas, &work.received);
+            work.exchange.credit_drag(&inputs, &gas, &work.received);
         });
     }
 
@@ -379,7 +386,7 @@ impl CoupledRun<'_> {
         book_energy(
             ledger,
             received,
-            [&work.exchange.heat, &work.turnover.carried],
+            [&work.exchange.heat, &work.species_coupling.carried],
             &*self.parts.interior,
             scale,
             process,

@@ -1,4 +1,4 @@
-//! What a plane polygon has inside and outside a ball, seen from the ball's centre.
+//! What a plane polygon has inside and outside a sphere, seen from the sphere's centre.
 
 use std::f64::consts::TAU;
 
@@ -7,12 +7,12 @@ use nalgebra::Vector2;
 /// A place in a plane in m.
 pub(super) type Point = Vector2<f64>;
 
-/// A plane seen from the ball's centre. Places in it count from the centre's foot.
+/// A plane seen from the sphere's centre. Places in it count from the centre's foot.
 pub(super) struct Plane {
     /// Signed height h of the plane over the centre in m.
     height: f64,
     radius: f64,
-    /// ρ² in m²; not positive where the ball does not reach the plane.
+    /// ρ² in m²; not positive where the sphere does not reach the plane.
     disc: f64,
 }
 
@@ -70,7 +70,7 @@ impl Plane {
         }
     }
 
-    /// Square of the radius in m² of the disc that the ball cuts from the plane; not positive where it cuts none.
+    /// Square of the radius in m² of the disc that the sphere cuts from the plane; not positive where it cuts none.
     pub fn disc(&self) -> f64 {
         self.disc
     }
@@ -81,7 +81,7 @@ impl Plane {
         self.volume(area, -angle)
     }
 
-    /// h/3 · area(F ∩ D) + sign(h) R³/3 · Ω(F ∖ D) in m³: the cone's part in the ball.
+    /// h/3 · area(F ∩ D) + sign(h) R³/3 · Ω(F ∖ D) in m³: the cone's part in the sphere.
     pub fn cone(&self, corners: &[Point], foot: Point) -> f64 {
         let mut whole = Turns::NONE;
         edges(corners, foot, |a, b| self.triangle(a, b, &mut whole));
@@ -204,7 +204,7 @@ mod tests {
                 .map(|(x, y)| Point::new(x * half, y * half))
         };
         let plane = Plane::new(0.6, 1.0);
-        // Disc of radius 0.8; the ball's cap over it is seen as 2 pi (1 - 0.6).
+        // Disc of radius 0.8; the sphere's cap over it is seen as 2 pi (1 - 0.6).
         let (area, angle) = plane.in_disc(&square(2.0), Point::zeros());
         assert!((area - 0.64 * PI).abs() < 1e-15 && (angle - 0.8 * PI).abs() < 1e-15);
         // A square of side 2a at height h is seen as 4 asin(a^2/(a^2 + h^2)).

@@ -150,7 +150,7 @@ impl<'m> Mapper<'m> {
             Method::Overlap if depth < radius => self.by_overlap(position, radius, memory),
             _ => {}
         }
-        // All of it lies in one cell; a ball too small for its volume to be a number is a point.
+        // All of it lies in one cell; a sphere too small for its volume to be a number is a point.
         if memory.row.is_empty() {
             memory.row.push((home as u32, 1.0));
         }
@@ -175,11 +175,11 @@ impl<'m> Mapper<'m> {
             scratch,
             row,
         } = memory;
-        let ball = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
+        let sphere = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
         self.locator.cells_near(position, radius, cells);
         let mesh = self.locator.mesh();
         let volumes = self.overlap.volumes(mesh, cells, position, radius, scratch);
-        let shares = volumes.iter().map(|volume| volume / ball);
+        let shares = volumes.iter().map(|volume| volume / sphere);
         let shares = cells.iter().copied().zip(shares);
         row.extend(shares.filter(|&(_, share)| share > Self::ROUND_OFF));
     }

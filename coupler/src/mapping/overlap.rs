@@ -1,4 +1,4 @@
-//! Exact overlap of a ball and a polyhedron.
+//! Exact overlap of a sphere and a polyhedron.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -9,16 +9,16 @@ use super::disc::{Plane, Point};
 use crate::mesh::Mesh;
 use crate::mesh::locate::Locator;
 
-/// Volumes that a ball shares with the cells of a mesh.
+/// Volumes that a sphere shares with the cells of a mesh.
 ///
-/// The cell is the signed sum of the cones from the ball's centre to its faces. At the height h
-/// over a plane face F, with the disc D of radius ρ = √(R² − h²) that the ball cuts from the plane,
-/// cone ∩ ball = h/3 · area(F ∩ D) + R³/3 · Ω(F ∖ D), Ω the solid angle. Both are sums over the
+/// The cell is the signed sum of the cones from the sphere's centre to its faces. At the height h
+/// over a plane face F, with the disc D of radius ρ = √(R² − h²) that the sphere cuts from the plane,
+/// cone ∩ sphere = h/3 · area(F ∩ D) + R³/3 · Ω(F ∖ D), Ω the solid angle. Both are sums over the
 /// edges of F of what the triangle (foot of the centre, edge) has. Faces that are not plane are
 /// taken as triangles around the mean of their points, as for cell volumes.
 ///
 /// The solid angles of all faces of a convex cell sum to 4π where the centre lies inside and to none outside, so
-/// that there only the faces count that the ball cuts, each by h/3 · area(F ∩ D) − R³/3 · Ω(F ∩ D), once for both
+/// that there only the faces count that the sphere cuts, each by h/3 · area(F ∩ D) − R³/3 · Ω(F ∩ D), once for both
 /// of its cells.
 #[derive(Clone, Debug)]
 pub(super) struct Overlap {
@@ -31,7 +31,7 @@ pub(super) struct Overlap {
     convex: Vec<bool>,
 }
 
-/// What a plane face is to balls, in one piece of memory.
+/// What a plane face is to spheres, in one piece of memory.
 #[derive(Clone, Debug)]
 struct Face {
     centre: Vec3,
@@ -65,18 +65,18 @@ impl Axes {
     }
 }
 
-/// How a cell's share of a ball is found.
+/// How a cell's share of a sphere is found.
 #[derive(Clone, Copy, PartialEq)]
 enum Way {
-    /// All of the cell lies in the ball.
+    /// All of the cell lies in the sphere.
     Whole,
-    /// By the faces that the ball cuts, and the ball's centre inside the cell or not.
+    /// By the faces that the sphere cuts, and the sphere's centre inside the cell or not.
     Cut { inside: bool },
     /// By the cones over all faces.
     Cones,
 }
 
-/// Memory that one ball leaves to the next.
+/// Memory that one sphere leaves to the next.
 #[derive(Default)]
 pub(super) struct Scratch {
     ways: Vec<Way>,
@@ -136,7 +136,7 @@ impl Overlap {
         }
     }
 
-    /// Volumes in m³ that the ball shares with cells, which ascend, to round-off of the ball's own volume.
+    /// Volumes in m³ that the sphere shares with cells, which ascend, to round-off of the sphere's own volume.
     pub fn volumes<'s>(
         &self,
         mesh: &Mesh,
@@ -208,7 +208,7 @@ impl Overlap {
         Way::Cut { inside }
     }
 
-    /// What a plane face takes of the ball: h/3 · area(F ∩ D) − sign(h) R³/3 · Ω(F ∩ D).
+    /// What a plane face takes of the sphere: h/3 · area(F ∩ D) − sign(h) R³/3 · Ω(F ∩ D).
     fn within(&self, face: &Face, centre: Vec3, plane: &Plane) -> f64 {
         let foot = face.axes.in_plane(centre - face.centre);
         let span = plane.disc().sqrt() + face.reach;
@@ -222,7 +222,7 @@ impl Overlap {
         &self.corners[face.corners.start as usize..face.corners.end as usize]
     }
 
-    /// Signed volume of ball ∩ cone over one face, positive where the face's normal points away.
+    /// Signed volume of sphere ∩ cone over one face, positive where the face's normal points away.
     fn cone(&self, mesh: &Mesh, index: usize, centre: Vec3, radius: f64) -> f64 {
         let face = &self.faces[index];
         let corners = self.corners_of(face);
@@ -302,7 +302,7 @@ mod tests {
             .to_vec()
     }
 
-    fn ball(radius: f64) -> f64 {
+    fn sphere(radius: f64) -> f64 {
         4.0 / 3.0 * PI * radius.powi(3)
     }
 
@@ -312,7 +312,7 @@ mod tests {
         let volumes = volumes(&mesh, Vec3::new(1.4, 1.5, 0.9), 0.3);
         // Cap of height 0.2: pi h^2 (3 R - h)/3.
         let cap = PI * 0.2 * 0.2 * (0.9 - 0.2) / 3.0;
-        assert!((volumes[4] - (ball(0.3) - cap)).abs() < 1e-15);
+        assert!((volumes[4] - (sphere(0.3) - cap)).abs() < 1e-15);
         assert!((volumes[13] - cap).abs() < 1e-15);
     }
 
@@ -321,7 +321,7 @@ mod tests {
         let mesh = moved(|_| Vec3::zeros());
         let volumes = volumes(&mesh, Vec3::new(1.0, 1.0, 1.0), 0.7);
         for cell in [0, 1, 3, 4, 9, 10, 12, 13] {
-            assert!((volumes[cell] - ball(0.7) / 8.0).abs() < 1e-15);
+            assert!((volumes[cell] - sphere(0.7) / 8.0).abs() < 1e-15);
         }
     }
 
@@ -329,8 +329,8 @@ mod tests {
     fn a_ball_within_a_cell_is_all_there_and_a_cell_within_a_ball_too() {
         let mesh = moved(|_| Vec3::zeros());
         let small = volumes(&mesh, Vec3::new(1.3, 1.6, 1.4), 0.2);
-        assert!((small[13] - ball(0.2)).abs() < 1e-16);
-        // Over the far cells the cones cancel to round-off of the ball.
+        assert!((small[13] - sphere(0.2)).abs() < 1e-16);
+        // Over the far cells the cones cancel to round-off of the sphere.
         assert!(
             small
                 .iter()
@@ -375,7 +375,7 @@ mod tests {
             (mesh.face_centre()[7], 0.3),
         ] {
             let total: f64 = volumes(&mesh, centre, radius).iter().sum();
-            assert!((total / ball(radius) - 1.0).abs() < 1e-14, "{total}");
+            assert!((total / sphere(radius) - 1.0).abs() < 1e-14, "{total}");
         }
     }
 
@@ -396,7 +396,7 @@ mod tests {
                 counted[cell] += step.powi(3);
             }
         }
-        // 113,000 points in the ball; a grid counts a volume to about its surface / n^1.5.
+        // 113,000 points in the sphere; a grid counts a volume to about its surface / n^1.5.
         for (cell, (exact, counted)) in exact.iter().zip(&counted).enumerate() {
             assert!(
                 (exact - counted).abs() < 3e-3,

@@ -1,4 +1,4 @@
-//! Points that stand for a ball.
+//! Points that stand for a sphere.
 
 use calcine_physics::Vec3;
 use nalgebra::Matrix3;
@@ -29,12 +29,12 @@ const TURN: Matrix3<f64> = Matrix3::new(
     55.0 / 91.0,
 );
 
-/// Points per ball: the centre and two shells of 14, as many as CFDEMcoupling's `divided` has.
+/// Points per sphere: the centre and two shells of 14, as many as CFDEMcoupling's `divided` has.
 pub const COUNT: usize = 29;
 
-/// Points of equal weight in a ball. It is cut into a central ball and two shells of 1, 14 and 14
+/// Points of equal weight in a sphere. It is cut into a central sphere and two shells of 1, 14 and 14
 /// parts of its volume; a shell's points sit at its root-mean-square radius,
-/// r² = 3/5 (b⁵ − a⁵)/(b³ − a³), so that the spread of the ball is kept (to 0.4 %, the centre's).
+/// r² = 3/5 (b⁵ − a⁵)/(b³ − a³), so that the spread of the sphere is kept (to 0.4 %, the centre's).
 pub(super) fn points(centre: Vec3, radius: f64) -> impl Iterator<Item = Vec3> {
     let reach = |parts: f64| radius * (parts / COUNT as f64).cbrt();
     let mean_square = |inner: f64, outer: f64| {
@@ -67,8 +67,8 @@ mod tests {
         let points: Vec<_> = points(Vec3::zeros(), 2.0).collect();
         assert_eq!(points.len(), COUNT);
         assert!(points.iter().sum::<Vec3>().norm() < 1e-14);
-        // A ball of radius R has the variance R²/5 along each axis and no covariance; the central
-        // ball of 1/29 of the volume holds 29^(-5/3) of it, which a point does not have.
+        // A sphere of radius R has the variance R²/5 along each axis and no covariance; the central
+        // sphere of 1/29 of the volume holds 29^(-5/3) of it, which a point does not have.
         let variance = 0.8 * (1.0 - 29f64.powf(-5.0 / 3.0));
         let moment =
             |i: usize, j: usize| points.iter().map(|p| p[i] * p[j]).sum::<f64>() / COUNT as f64;

@@ -100,7 +100,7 @@ impl<'m> Locator<'m> {
         Some((cell, self.depth(cell, position)))
     }
 
-    /// A distance in m that a ball around a position may have without leaving the cell; negative
+    /// A distance in m that a sphere around a position may have without leaving the cell; negative
     /// where a plane through a face, moved inwards by what the face is warped, is passed.
     pub fn depth(&self, cell: usize, position: Vec3) -> f64 {
         let mut least = f64::INFINITY;
@@ -118,7 +118,7 @@ impl<'m> Locator<'m> {
         self.bins.place(position)
     }
 
-    /// Sets `cells` to those whose bounding boxes reach into a ball, ascending.
+    /// Sets `cells` to those whose bounding boxes reach into a sphere, ascending.
     pub fn cells_near(&self, centre: Vec3, radius: f64, cells: &mut Vec<u32>) {
         let reach = Vec3::repeat(radius);
         self.bins.between(centre - reach, centre + reach, cells);

@@ -2,7 +2,7 @@
 
 use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::setup::Schedule;
-use calcine_coupler::sight::ViewFactors;
+use calcine_coupler::view_factors::ViewFactors;
 
 /// Laws; each is stated in the case file, none has a default.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,7 +80,7 @@ pub enum GapSpec {
 #[derive(Clone, Debug, PartialEq)]
 pub struct RadiationSpec {
     /// How views are found.
-    pub sight: ViewFactors,
+    pub view_factors: ViewFactors,
     /// True where badly conducting spheres pass on less.
     pub inside: bool,
     /// Temperature in K of what is seen beyond all walls; `None`: nothing leaves.

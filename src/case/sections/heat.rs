@@ -2,7 +2,7 @@
 
 use calcine_coupler::motion::{Wall, WallMotion, WallShape};
 use calcine_coupler::setup::Schedule;
-use calcine_coupler::sight::ViewFactors;
+use calcine_coupler::view_factors::ViewFactors;
 
 use crate::case::model::{
     ConductionArea, ConductionLaw, ConductionSpec, GapSpec, Laws, MaterialSpec, Population,
@@ -145,13 +145,13 @@ pub(super) fn radiation(section: &TableReader<'_>) -> Option<Option<RadiationSpe
     table.finish();
     let rays = usize::try_from(rays?).ok()?;
     let range = range?;
-    let sight = match law? {
+    let view_factors = match law? {
         1 => ViewFactors::Rays { rays, range },
         2 => ViewFactors::Distance { range },
         _ => return Some(None),
     };
     Some(Some(RadiationSpec {
-        sight,
+        view_factors,
         inside: inside?,
         surroundings: surroundings?,
         refresh: refresh?,

@@ -4,6 +4,7 @@ mod chemistry;
 mod composition;
 mod conversion;
 mod coupling;
+mod feeds;
 mod gas;
 mod gas_patch;
 mod heat;
@@ -22,7 +23,6 @@ mod sizes;
 mod solids;
 mod species_data;
 mod time;
-mod traffic;
 mod turbulence;
 mod walls;
 mod zone;
@@ -69,8 +69,8 @@ pub(super) fn case(
         folder,
     );
     let particles = particles::populations(root, &materials, mesh.as_ref(), folder);
-    let feeds = traffic::feeds(root, particles.as_deref());
-    let outlets = traffic::outlets(root);
+    let feeds = feeds::feeds(root, particles.as_deref());
+    let outlets = feeds::outlets(root);
     let laws = laws::read(root);
     let walls = walls::walls(root, &materials, mesh.as_ref(), folder);
     let motion = motion::motion(root, time.as_ref().map(|(time, _)| time));

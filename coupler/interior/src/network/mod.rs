@@ -11,7 +11,7 @@
 //! radiosity to the other, and A e/(1 − e) from the surface to its own. Their heat is booked where the views
 //! end, so that what a pair exchanges adds up to zero to the last bit.
 
-mod meeting;
+mod neighbours;
 mod radiation;
 mod solver;
 
@@ -22,7 +22,9 @@ use calcine_physics::conduction::{
 };
 use calcine_physics::radiation::conducted_share;
 
-pub use meeting::{ExchangeAreas, NeighbourPair, NeighbourWall, Neighbours, NetworkSurroundings};
+pub use neighbours::{
+    ExchangeAreas, NeighbourPair, NeighbourWall, Neighbours, NetworkSurroundings,
+};
 use radiation::Radiation;
 use solver::{NetworkSolver, NetworkSystem};
 
@@ -90,7 +92,7 @@ pub struct HeatNetwork {
     material: Vec<usize>,
     /// Index of the material of each reservoir that is a wall.
     walls: Vec<usize>,
-    touches: Vec<NeighbourPair>,
+    pairs: Vec<NeighbourPair>,
     wall_touches: Vec<NeighbourWall>,
     radiation: Radiation,
     /// Heat into each particle from the others and from reservoirs in W.
@@ -107,10 +109,10 @@ struct Work {
     /// Pairs of nodes with their conductance in W/K; contacts first.
     bonds: Vec<([usize; 2], f64)>,
     /// Node and reservoir with their conductance in W/K; contacts first.
-    ties: Vec<([usize; 2], f64)>,
+    reservoir_links: Vec<([usize; 2], f64)>,
     capacity: Vec<f64>,
     old: Vec<f64>,
-    tie: Vec<f64>,
+    sink_conductance: Vec<f64>,
     drive: Vec<f64>,
     temperature: Vec<f64>,
     last: Vec<f64>,
@@ -137,7 +139,7 @@ impl HeatNetwork {
             materials,
             material,
             walls,
-            touches: Vec::new(),
+            pairs: Vec::new(),
             wall_touches: Vec::new(),
             radiation: Radiation::default(),
             work: Work::default(),
@@ -159,17 +161,17 @@ impl HeatNetwork {
         without(&mut self.material, gone);
         self.material.extend(new.iter().map(|one| one.material));
         self.heat = vec![0.0; self.material.len()];
-        self.touches.clear();
+        self.pairs.clear();
         self.wall_touches.clear();
     }
 
     /// Takes up what the particles meet at their present places.
-    pub fn meet(&mut self, meeting: &Neighbours<'_>) {
-        self.touches.clear();
-        self.touches.extend_from_slice(meeting.touches);
+    pub fn set_neighbours(&mut self, neighbours: &Neighbours<'_>) {
+        self.pairs.clear();
+        self.pairs.extend_from_slice(neighbours.pairs);
         self.wall_touches.clear();
-        self.wall_touches.extend_from_slice(meeting.walls);
-        if let Some(views) = meeting.views.filter(|_| self.laws.radiates) {
+        self.wall_touches.extend_from_slice(neighbours.walls);
+        if let Some(views) = neighbours.views.filter(|_| self.laws.radiates) {
             let emissivity = |&k: &usize| self.materials[k].emissivity;
             self.radiation = Radiation::new(views, self.material.iter().map(emissivity).collect());
         }
@@ -177,7 +179,7 @@ impl HeatNetwork {
 
     /// True where no heat can flow.
     pub fn is_empty(&self) -> bool {
-        self.touches.is_empty() && self.wall_touches.is_empty() && self.radiation.is_empty()
+        self.pairs.is_empty() && self.wall_touches.is_empty() && self.radiation.is_empty()
     }
 
     /// Sets `heat` to that of an implicit step: temperatures T with
@@ -188,10 +190,10 @@ impl HeatNetwork {
         &mut self,
         capacity: impl Fn(usize, f64) -> f64,
         old: &[f64],
-        beside: &NetworkSurroundings<'_>,
+        surroundings: &NetworkSurroundings<'_>,
     ) {
         let count = old.len();
-        self.conduct(old, beside);
+        self.conduct(old, surroundings);
         if self.laws.inside {
             let (materials, material) = (&self.materials, &self.material);
             self.radiation.limit(|p, diameter| {
@@ -201,7 +203,7 @@ impl HeatNetwork {
             });
         }
         let work = &mut self.work;
-        let (solid, walled) = (work.bonds.len(), work.ties.len());
+        let (solid, walled) = (work.bonds.len(), work.reservoir_links.len());
         let nodes = count + self.radiation.radiosities();
         let repeats = !self.radiation.is_empty();
         work.old.clear();
@@ -214,31 +216,33 @@ impl HeatNetwork {
                 .extend((0..count).map(|i| capacity(i, work.temperature[i])));
             work.capacity.resize(nodes, 0.0);
             work.bonds.truncate(solid);
-            work.ties.truncate(walled);
+            work.reservoir_links.truncate(walled);
             self.radiation.linearise(
                 &work.temperature,
-                beside.reservoirs,
+                surroundings.reservoirs,
                 &mut work.bonds,
-                &mut work.ties,
+                &mut work.reservoir_links,
             );
-            work.tie.clear();
-            work.tie.extend_from_slice(beside.conductance);
-            work.tie.resize(nodes, 0.0);
+            work.sink_conductance.clear();
+            work.sink_conductance
+                .extend_from_slice(surroundings.conductance);
+            work.sink_conductance.resize(nodes, 0.0);
             work.drive.clear();
             work.drive.extend(
-                (0..count).map(|i| beside.conductance[i] * (beside.temperature[i] - old[i])),
+                (0..count)
+                    .map(|i| surroundings.conductance[i] * (surroundings.temperature[i] - old[i])),
             );
             work.drive.resize(nodes, 0.0);
-            for &([node, reservoir], g) in &work.ties {
-                work.tie[node] += g;
-                work.drive[node] += g * (beside.reservoirs[reservoir] - work.old[node]);
+            for &([node, reservoir], g) in &work.reservoir_links {
+                work.sink_conductance[node] += g;
+                work.drive[node] += g * (surroundings.reservoirs[reservoir] - work.old[node]);
             }
             work.last.clone_from(&work.temperature);
             let system = NetworkSystem {
                 bonds: &work.bonds,
                 capacity: &work.capacity,
                 old: &work.old,
-                tie: &work.tie,
+                sink_conductance: &work.sink_conductance,
                 drive: &work.drive,
             };
             work.solver.solve(&system, &mut work.temperature);
@@ -248,10 +252,10 @@ impl HeatNetwork {
                 break;
             }
         }
-        self.book(count, solid, beside.reservoirs);
+        self.book(count, solid, surroundings.reservoirs);
     }
 
-    /// Heat over every bond and tie, the same on both of its sides.
+    /// Heat over every bond and link to a reservoir, the same on both of its sides.
     fn book(&mut self, count: usize, solid: usize, reservoirs: &[f64]) {
         let work = &self.work;
         let kelvin = &work.temperature;
@@ -269,7 +273,7 @@ impl HeatNetwork {
             self.heat[row(i)] += flow;
             self.heat[row(j)] -= flow;
         }
-        for &([node, reservoir], g) in &work.ties {
+        for &([node, reservoir], g) in &work.reservoir_links {
             let flow = g * (reservoirs[reservoir] - kelvin[node]);
             self.heat[row(node)] += flow;
             self.reservoir_heat[reservoir] += flow;
@@ -277,7 +281,7 @@ impl HeatNetwork {
     }
 
     /// Contacts and gaps at the temperatures of the start, in K.
-    fn conduct(&mut self, old: &[f64], beside: &NetworkSurroundings<'_>) {
+    fn conduct(&mut self, old: &[f64], surroundings: &NetworkSurroundings<'_>) {
         let Self {
             laws,
             materials,
@@ -287,12 +291,12 @@ impl HeatNetwork {
             ..
         } = self;
         work.bonds.clear();
-        work.ties.clear();
-        for touch in &self.touches {
+        work.reservoir_links.clear();
+        for touch in &self.pairs {
             let [i, j] = touch.particles;
             let of = [i, j].map(|p| &materials[material[p]]);
             let conductivity = [of[0].conductivity.at(old[i]), of[1].conductivity.at(old[j])];
-            let gas = [i, j].map(|p| beside.gas_conductivity[p]);
+            let gas = [i, j].map(|p| surroundings.gas_conductivity[p]);
             let gas = 2.0 * gas[0] * gas[1] / (gas[0] + gas[1]);
             let g = conductance(laws, of, touch.radius, touch.overlap, conductivity, gas);
             if g > 0.0 {
@@ -305,13 +309,13 @@ impl HeatNetwork {
                 continue;
             };
             let of = [&materials[material[i]], &materials[wall]];
-            let kelvin = [old[i], beside.reservoirs[reservoir]];
+            let kelvin = [old[i], surroundings.reservoirs[reservoir]];
             let conductivity = [0, 1].map(|k| of[k].conductivity.at(kelvin[k]));
             let radius = [touch.radius, f64::INFINITY];
-            let gas = beside.gas_conductivity[i];
+            let gas = surroundings.gas_conductivity[i];
             let g = conductance(laws, of, radius, touch.overlap, conductivity, gas);
             if g > 0.0 {
-                work.ties.push(([i, reservoir], g));
+                work.reservoir_links.push(([i, reservoir], g));
             }
         }
     }

@@ -105,7 +105,7 @@ impl Radiation {
         }
     }
 
-    /// Appends the bonds and ties of an iterate: temperatures of all nodes and of reservoirs in K.
+    /// Appends the bonds and links to reservoirs of an iterate: temperatures of all nodes and of reservoirs in K.
     ///
     /// A black surface in a bed with grey ones keeps its radiosity node: its own bond is then so strong, 1e6
     /// of its surface, that both are one.
@@ -114,7 +114,7 @@ impl Radiation {
         kelvin: &[f64],
         reservoirs: &[f64],
         bonds: &mut Vec<([usize; 2], f64)>,
-        ties: &mut Vec<([usize; 2], f64)>,
+        reservoir_links: &mut Vec<([usize; 2], f64)>,
     ) {
         let shift = self.radiosities();
         for &([i, j], area) in &self.views.pairs {
@@ -125,7 +125,7 @@ impl Radiation {
         for &([i, reservoir], area) in &self.views.reservoirs {
             let node = i + shift;
             let h = linear(kelvin[node], reservoirs[reservoir]);
-            ties.push(([node, reservoir], self.of(i) * area * h));
+            reservoir_links.push(([node, reservoir], self.of(i) * area * h));
         }
         for i in 0..shift {
             let e = self.emissivity[i];

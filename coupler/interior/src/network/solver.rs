@@ -14,7 +14,7 @@ pub struct NetworkSystem<'a> {
     /// T_old in K.
     pub old: &'a [f64],
     /// Conductance h in W/K to what has a given temperature.
-    pub tie: &'a [f64],
+    pub sink_conductance: &'a [f64],
     /// h (S − T_old) in W.
     pub drive: &'a [f64],
 }
@@ -36,7 +36,7 @@ impl NetworkSolver {
             bonds,
             capacity,
             old,
-            tie,
+            sink_conductance,
             drive,
         } = *system;
         let Self {
@@ -47,7 +47,7 @@ impl NetworkSolver {
         } = self;
         let x = temperature;
         diagonal.clear();
-        diagonal.extend(capacity.iter().zip(tie).map(|(c, h)| c + h));
+        diagonal.extend(capacity.iter().zip(sink_conductance).map(|(c, h)| c + h));
         for &([i, j], g) in bonds {
             diagonal[i] += g;
             diagonal[j] += g;
@@ -56,7 +56,9 @@ impl NetworkSolver {
         p.clear();
         p.extend_from_slice(drive);
         r.clear();
-        r.extend((0..count).map(|i| drive[i] - (capacity[i] + tie[i]) * (x[i] - old[i])));
+        r.extend(
+            (0..count).map(|i| drive[i] - (capacity[i] + sink_conductance[i]) * (x[i] - old[i])),
+        );
         for &([i, j], g) in bonds {
             let (before, now) = (g * (old[j] - old[i]), g * (x[j] - x[i]));
             p[i] += before;

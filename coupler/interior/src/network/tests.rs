@@ -14,9 +14,9 @@ fn chain(count: usize) -> HeatNetwork {
         radius: [5e-3; 2],
         overlap: 1e-6,
     };
-    let touches: Vec<NeighbourPair> = (0..count - 1).map(touch).collect();
-    network.meet(&Neighbours {
-        touches: &touches,
+    let pairs: Vec<NeighbourPair> = (0..count - 1).map(touch).collect();
+    network.set_neighbours(&Neighbours {
+        pairs: &pairs,
         walls: &[],
         views: None,
     });
@@ -27,18 +27,18 @@ fn step(
     network: &mut HeatNetwork,
     capacity: f64,
     old: &[f64],
-    tie: &[f64],
-    beside: &[f64],
+    sink_conductance: &[f64],
+    surroundings: &[f64],
     reservoirs: &[f64],
 ) {
     let gas = vec![0.03; old.len()];
-    let beside = NetworkSurroundings {
-        conductance: tie,
-        temperature: beside,
+    let surroundings = NetworkSurroundings {
+        conductance: sink_conductance,
+        temperature: surroundings,
         gas_conductivity: &gas,
         reservoirs,
     };
-    network.solve(|_, _| capacity, old, &beside);
+    network.solve(|_, _| capacity, old, &surroundings);
 }
 
 #[test]
@@ -60,14 +60,21 @@ fn two_particles_approach_each_other_as_the_implicit_step_has_it() {
 
 #[test]
 fn a_chain_between_two_surroundings_carries_the_series_conductance_in_any_step() {
-    // Ends tied by h = 1 W/K to 500 and 300 K; a huge step is the steady state: resistances
+    // Ends coupled by h = 1 W/K to 500 and 300 K; a huge step is the steady state: resistances
     // 1/h + 9/G + 1/h.
     let mut network = chain(10);
-    let mut tie = [0.0; 10];
-    let mut beside = [0.0; 10];
-    (tie[0], tie[9]) = (1.0, 1.0);
-    (beside[0], beside[9]) = (500.0, 300.0);
-    step(&mut network, 1e-12, &[400.0; 10], &tie, &beside, &[]);
+    let mut sink_conductance = [0.0; 10];
+    let mut surroundings = [0.0; 10];
+    (sink_conductance[0], sink_conductance[9]) = (1.0, 1.0);
+    (surroundings[0], surroundings[9]) = (500.0, 300.0);
+    step(
+        &mut network,
+        1e-12,
+        &[400.0; 10],
+        &sink_conductance,
+        &surroundings,
+        &[],
+    );
     let flow = 200.0 / (2.0 + 9.0 / 5e-3);
     assert!(
         (network.heat[0] / -flow - 1.0).abs() < 1e-9,
@@ -96,8 +103,8 @@ fn enclosure(emissivity: [f64; 3]) -> HeatNetwork {
         ..plain(1.0)
     });
     let mut network = HeatNetwork::new(laws, materials.to_vec(), vec![0, 1, 2], Vec::new());
-    network.meet(&Neighbours {
-        touches: &[],
+    network.set_neighbours(&Neighbours {
+        pairs: &[],
         walls: &[],
         views: Some(&ExchangeAreas {
             pairs: vec![([0, 1], 1.0), ([0, 2], 1.0)],
@@ -157,8 +164,8 @@ fn grey_surfaces_exchange_through_resistances_in_series() {
         ..plain(1.0)
     };
     let mut network = HeatNetwork::new(laws, vec![grey(0.8), grey(0.3)], vec![0, 1], Vec::new());
-    network.meet(&Neighbours {
-        touches: &[],
+    network.set_neighbours(&Neighbours {
+        pairs: &[],
         walls: &[],
         views: Some(&ExchangeAreas {
             pairs: vec![([0, 1], 2.0)],
@@ -228,8 +235,8 @@ fn an_implicit_step_of_radiation_solves_its_own_equation() {
             ..HeatLaws::contacts(Box::new(NoConduction))
         };
         let mut network = HeatNetwork::new(laws, vec![plain(1.0)], vec![0], vec![0]);
-        network.meet(&Neighbours {
-            touches: &[],
+        network.set_neighbours(&Neighbours {
+            pairs: &[],
             walls: &[],
             views: Some(&ExchangeAreas {
                 pairs: Vec::new(),
@@ -274,8 +281,8 @@ fn a_wall_heats_by_contact_and_through_the_gas() {
         overlap,
     };
     let mut heat = |overlap: f64| {
-        network.meet(&Neighbours {
-            touches: &[],
+        network.set_neighbours(&Neighbours {
+            pairs: &[],
             walls: &[at(overlap)],
             views: None,
         });

@@ -25,14 +25,14 @@ impl ParticleModel for Reacting {
         self.network.is_some()
     }
 
-    fn meet(&mut self, meeting: &Neighbours<'_>) {
+    fn set_neighbours(&mut self, neighbours: &Neighbours<'_>) {
         if let Some(network) = &mut self.network {
-            network.meet(meeting);
+            network.set_neighbours(neighbours);
         }
     }
 
     /// The heat of the last attempt's reactions counts as if it had come before.
-    fn conduct(&mut self, beside: &NetworkSurroundings<'_>, span: f64) {
+    fn conduct(&mut self, surroundings: &NetworkSurroundings<'_>, span: f64) {
         let Some(network) = self.network.as_mut().filter(|network| !network.is_empty()) else {
             return;
         };
@@ -44,7 +44,7 @@ impl ParticleModel for Reacting {
             self.committed.temperature[p] + (heat + self.carried[p] * span) / self.capacity[p]
         };
         let old: Vec<f64> = (0..self.capacity.len()).map(warmed).collect();
-        network.solve(|p, _| self.capacity[p] / span, &old, beside);
+        network.solve(|p, _| self.capacity[p] / span, &old, surroundings);
     }
 
     fn reservoir_heat(&self) -> &[f64] {

@@ -93,7 +93,7 @@ impl Broadening {
         else {
             return N::constant(1.0);
         };
-        // At a scale of zero −1/scale is infinite, and its product with a slope of zero no number.
+        // At a scale of zero −1/scale is infinite, and its product with a slope of zero is NaN.
         let decay = |scale: f64| match scale == 0.0 {
             true => N::constant(0.0),
             false => temperature.times(-1.0 / scale).exp(),

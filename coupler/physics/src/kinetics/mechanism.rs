@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use super::error::KineticsError;
 use super::falloff::RateConstant;
+use super::mechanism_reaction::MechanismReaction;
 use super::number::Number;
 use super::statement::ReactionStatement;
-use super::step::MechanismReaction;
 use crate::gas::GAS_CONSTANT;
 use crate::reaction::equilibrium::STANDARD_PRESSURE;
 use crate::thermo::Mixture;

@@ -8,15 +8,15 @@ pub mod error;
 pub mod falloff;
 pub mod jones_lindstedt;
 pub mod mechanism;
+pub mod mechanism_reaction;
 pub mod number;
 pub mod pasr;
 pub mod reactor;
 pub mod statement;
-pub mod step;
 
 pub use error::KineticsError;
 pub use falloff::{Broadening, RateConstant};
 pub use mechanism::{Mechanism, MixtureState};
+pub use mechanism_reaction::MechanismReaction;
 pub use reactor::{Reactor, ReactorStatistics, Tolerances};
 pub use statement::{Collider, ReactionStatement};
-pub use step::MechanismReaction;

@@ -6,7 +6,7 @@ use crate::points::linear;
 /// the centres in radii.
 ///
 /// Mean over 3610 spheres in a box at a solid fraction of 0.56 (0.60 inside), of rays as
-/// `calcine_coupler::sight` traces them (1024 a particle, some 600 to 7000 pairs to each point; the standard
+/// `calcine_coupler::view_factors` traces them (1024 a particle, some 600 to 7000 pairs to each point; the standard
 /// error is below 0.01); linear between the points. The dip at 4 is that of spheres which stand in one row.
 ///
 /// Validity: random beds of equal spheres at solid fractions of 0.55 to 0.62. Feng and Han, Int. J. Heat Mass

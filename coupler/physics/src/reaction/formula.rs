@@ -86,7 +86,7 @@ fn number(letters: &[char], at: &mut usize) -> Result<f64, String> {
         return Ok(1.0);
     }
     let value = text.parse::<f64>().ok().filter(|value| *value > 0.0);
-    value.ok_or_else(|| format!("\"{text}\" is no number of atoms"))
+    value.ok_or_else(|| format!("\"{text}\" is not a number of atoms"))
 }
 
 #[cfg(test)]
@@ -113,7 +113,7 @@ mod tests {
             ("", "no atom"),
             ("Ca(OH", "not closed"),
             ("CaO)", "was not opened"),
-            ("Fe0", "\"0\" is no number"),
+            ("Fe0", "\"0\" is not a number"),
         ] {
             let message = atoms(text).unwrap_err().to_string();
             assert!(message.contains(why), "{message}");

@@ -304,7 +304,7 @@ fn pairs<L: ContactModel, const BUDGET: bool>(
                 *torque = Vec3::zeros();
             }
         }
-        let (meeting, arms) = meet(scene.rules, a, b, va, vb);
+        let (surfaces, arms) = meet(scene.rules, a, b, va, vb);
         let pair = scene.rules.pair(spheres.material[i], spheres.material[j]);
         let prepared = candidates.prepared.get(k).copied().unwrap_or(0.0);
         let torque = candidates.rolling.get_mut(k).unwrap_or(&mut unused);
@@ -312,7 +312,7 @@ fn pairs<L: ContactModel, const BUDGET: bool>(
             scene.law,
             scene.rules,
             (pair, prepared),
-            &meeting,
+            &surfaces,
             shift,
             torque,
             scene.step,
@@ -351,7 +351,7 @@ fn meet(
     let moment = |place: &SpherePosition, moves: &SphereMotion| {
         moves.inverse_mass / (place.radius * place.radius)
     };
-    let meeting = SurfaceOverlap {
+    let surfaces = SurfaceOverlap {
         normal: between * (1.0 / distance),
         overlap,
         radius,
@@ -372,5 +372,5 @@ fn meet(
             }
         },
     };
-    (meeting, arms)
+    (surfaces, arms)
 }

@@ -49,21 +49,21 @@ pub fn evaluate<L: ContactModel, const BUDGET: bool>(
     law: &L,
     rules: &ContactRules,
     (pair, prepared): (&PairConstants, f64),
-    meeting: &SurfaceOverlap,
+    surfaces: &SurfaceOverlap,
     shift: &mut Vec3,
     torque: &mut Vec3,
     step: f64,
     budget: &mut ContactEnergy,
 ) -> ContactLoad {
-    let normal = meeting.normal;
+    let normal = surfaces.normal;
     let springs = law.springs(
         pair,
         prepared,
-        meeting.overlap,
-        meeting.radius,
-        meeting.mass,
+        surfaces.overlap,
+        surfaces.radius,
+        surfaces.mass,
     );
-    let approach = meeting.velocity.dot(&normal);
+    let approach = surfaces.velocity.dot(&normal);
     let mut damped = springs.elastic - springs.normal_damping * approach;
     if !rules.attractive && damped < 0.0 {
         damped = 0.0;
@@ -71,11 +71,11 @@ pub fn evaluate<L: ContactModel, const BUDGET: bool>(
     let mut push = damped;
     let mut stored = springs.energy;
     if rules.cohesion {
-        let (pull, energy) = sjkr(pair, meeting.area);
+        let (pull, energy) = sjkr(pair, surfaces.area);
         push += pull;
         stored += energy;
     }
-    let slip = meeting.velocity - approach * normal - meeting.turning.cross(&normal);
+    let slip = surfaces.velocity - approach * normal - surfaces.turning.cross(&normal);
     let mut moved = *shift + slip * step;
     moved -= moved.dot(&normal) * normal;
     // Friction is limited by the force without attraction.
@@ -95,18 +95,18 @@ pub fn evaluate<L: ContactModel, const BUDGET: bool>(
         Rolling::ConstantTorque => constant_torque(
             pair,
             springs.elastic,
-            meeting.radius,
-            meeting.rotation,
+            surfaces.radius,
+            surfaces.rotation,
             normal,
         ),
         Rolling::ElasticPlastic => {
             let spring = RollingSpring {
                 force: damped,
-                stiffness: springs.elastic / meeting.overlap,
-                radius: meeting.radius,
-                inertia: meeting.inertia,
+                stiffness: springs.elastic / surfaces.overlap,
+                radius: surfaces.radius,
+                inertia: surfaces.inertia,
             };
-            let across = meeting.rotation - meeting.rotation.dot(&normal) * normal;
+            let across = surfaces.rotation - surfaces.rotation.dot(&normal) * normal;
             elastic_plastic(pair, &spring, torque, across, step)
         }
     };
@@ -116,7 +116,7 @@ pub fn evaluate<L: ContactModel, const BUDGET: bool>(
         budget.lost_normal += (springs.elastic - damped) * approach * step;
         // The block takes off what its springs hold more than before.
         budget.lost_tangential -= tangential.force.dot(&slip) * step;
-        budget.lost_rolling -= rolling.dot(&meeting.rotation) * step;
+        budget.lost_rolling -= rolling.dot(&surfaces.rotation) * step;
     }
     ContactLoad {
         force: push * normal + tangential.force,

@@ -8,12 +8,12 @@ use calcine_coupler::physics::contact::{ContactModel, HertzMindlin, Linear, Spri
 use rayon::prelude::*;
 
 use super::block::{Block, size};
-use super::carry::{StoredContact, StoredContacts, StoredWallContact};
 use super::energy::{BedEnergy, ContactEnergy};
 use super::motion::{self, KickInputs};
 use super::rebuild::{NeighbourSearch, SearchInputs};
 use super::rules::ContactRules;
 use super::sphere::{SphereLoad, SphereMotion, SpherePosition, Spheres};
+use super::stored_contacts::{StoredContact, StoredContacts, StoredWallContact};
 use super::walls::WallBody;
 
 /// Skin at the start, in radii of the smallest sphere.
@@ -176,7 +176,7 @@ impl Engine {
         }
         self.check()?;
         self.pose(steps);
-        self.search.carry = StoredContacts::of(memories.0, memories.1);
+        self.search.stored = StoredContacts::of(memories.0, memories.1);
         self.find();
         self.evaluate(0.0);
         self.take_up();
@@ -185,10 +185,10 @@ impl Engine {
 
     /// The memories of all contacts, in order of their rows.
     pub fn memories(&mut self) -> (Vec<StoredContact>, Vec<StoredWallContact>) {
-        let carry = &mut self.search.carry;
-        carry.collect(&self.blocks, &self.spheres, self.stamp);
-        carry.sort(self.spheres.len());
-        (carry.pairs.clone(), carry.walls.clone())
+        let stored = &mut self.search.stored;
+        stored.collect(&self.blocks, &self.spheres, self.stamp);
+        stored.sort(self.spheres.len());
+        (stored.pairs.clone(), stored.walls.clone())
     }
 
     /// Sets the force of the gas on each particle, by rows, in N.
@@ -265,8 +265,8 @@ impl Engine {
             if near >= self.skin || idle {
                 self.check()?;
                 self.adapt();
-                let carry = &mut self.search.carry;
-                carry.collect(&self.blocks, &self.spheres, self.stamp);
+                let stored = &mut self.search.stored;
+                stored.collect(&self.blocks, &self.spheres, self.stamp);
                 self.find();
             }
             fastest = if k + 1 == steps {
@@ -391,7 +391,7 @@ impl Engine {
         }
     }
 
-    /// Finds candidates anew; the memories are in `search.carry`.
+    /// Finds candidates anew; the memories are in `search.stored`.
     fn find(&mut self) {
         match self.contacts.law.force {
             ContactForce::HertzMindlin => self.find_with(&HertzMindlin, false),

@@ -6,7 +6,6 @@
 //! threads.
 
 mod block;
-mod carry;
 mod contact;
 pub mod energy;
 mod engine;
@@ -16,7 +15,8 @@ mod motion;
 mod rebuild;
 mod rules;
 mod sphere;
+mod stored_contacts;
 mod walls;
 
-pub use carry::{StoredContact, StoredWallContact};
 pub use engine::{Engine, EscapedParticle, InsertedSphere};
+pub use stored_contacts::{StoredContact, StoredWallContact};

@@ -5,10 +5,10 @@ use calcine_coupler::physics::contact::{ContactModel, PairConstants};
 use rayon::prelude::*;
 
 use super::block::{Block, CandidatePairs, TouchingPair, size};
-use super::carry::StoredContacts;
 use super::grid::{self, CellNeighbourhood, SearchGrid};
 use super::rules::ContactRules;
 use super::sphere::{SphereLoad, Spheres};
+use super::stored_contacts::StoredContacts;
 use super::walls::WallBody;
 use super::walls::{shape, triangle};
 use calcine_coupler::motion::Rolling;
@@ -20,7 +20,7 @@ pub struct NeighbourSearch {
     /// Cells.
     pub grid: SearchGrid,
     /// Memories of contacts on their way from the old candidates to the new.
-    pub carry: StoredContacts,
+    pub stored: StoredContacts,
     /// True where each block has loads for particles of blocks behind it only.
     pub forward: bool,
     keys: Vec<(u64, u32, u32)>,
@@ -49,7 +49,7 @@ pub struct SearchInputs<'a, L> {
 }
 
 impl NeighbourSearch {
-    /// Sorts the particles and lists all candidates, with the memories in `carry`.
+    /// Sorts the particles and lists all candidates, with the memories in `stored`.
     pub fn run<L: ContactModel>(
         &mut self,
         task: &SearchInputs<'_, L>,
@@ -59,7 +59,7 @@ impl NeighbourSearch {
         parallel: bool,
     ) {
         self.sort(task, spheres);
-        self.carry.sort(spheres.len());
+        self.stored.sort(spheres.len());
         self.grid.fill(&spheres.place, task.bounds, task.skin);
         self.near_triangles(task, spheres);
         let size = size(spheres.len());
@@ -151,7 +151,7 @@ impl NeighbourSearch {
         i: usize,
         j: usize,
     ) {
-        let memory = self.carry.pair(spheres.row[i], spheres.row[j]);
+        let memory = self.stored.pair(spheres.row[i], spheres.row[j]);
         let (shift, rolling) = memory.unwrap_or_default();
         list.pair.push([i as u32, j as u32]);
         list.shift.push(shift);
@@ -223,7 +223,7 @@ impl NeighbourSearch {
             return;
         };
         let slots = &mut block.walls.slots[group.slots.start as usize..group.slots.end as usize];
-        self.carry
+        self.stored
             .fill(spheres.row[i], group.wall, slots, task.stamp);
         if task.prepares {
             let pair: &PairConstants = task.rules.pair(spheres.material[i], wall.material);

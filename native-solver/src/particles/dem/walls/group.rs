@@ -232,7 +232,7 @@ fn contact<L: ContactModel, const BUDGET: bool>(
     let overlap = radius - distance;
     let arm = radius - 0.5 * overlap;
     let surface = wall.velocity(centre - distance * normal);
-    let meeting = SurfaceOverlap {
+    let surfaces = SurfaceOverlap {
         normal,
         overlap,
         radius,
@@ -260,7 +260,7 @@ fn contact<L: ContactModel, const BUDGET: bool>(
         scene.law,
         scene.rules,
         (pair, prepared),
-        &meeting,
+        &surfaces,
         &mut slot.shift,
         &mut slot.rolling,
         scene.step,

@@ -5,20 +5,20 @@ use calcine_physics::Vec3;
 use calcine_physics::thermo::Element;
 
 use super::{CoupledRun, RunError};
+use crate::feeds::WindowSpan;
 use crate::ledger::Ledger;
 use crate::part::ParticleFields;
 use crate::supervisor::Supervisor;
 use crate::time::Window;
-use crate::traffic::WindowSpan;
 
 impl CoupledRun<'_> {
     /// Lets feeds and outlets act before a window, and books what they moved. They stand while the bed is held.
-    pub(super) fn trade(
+    pub(super) fn feed_and_discharge(
         &mut self,
         supervisor: &Supervisor,
         window: &Window,
     ) -> Result<(), RunError> {
-        if self.plan.traffic.is_none() || self.holds(window) {
+        if self.plan.feeds_and_outlets.is_none() || self.holds(window) {
             return Ok(());
         }
         let moment = WindowSpan {
@@ -27,16 +27,16 @@ impl CoupledRun<'_> {
             acceleration: window.acceleration(),
         };
         let fields = self.parts.particles.fields();
-        let trade = self.plan.traffic.decide(moment, &fields)?;
-        if trade.change.is_empty() {
+        let due = self.plan.feeds_and_outlets.decide(moment, &fields)?;
+        if due.change.is_empty() {
             return Ok(());
         }
         let held = |masses: &[f64]| masses.iter().sum::<f64>();
         let before = held(fields.mass);
         let momentum_before = momentum(&fields);
-        let [mut came, mut went] = self.ledger.traffic;
+        let [mut came, mut went] = self.ledger.fed_and_discharged;
         let (gone_before, left_before) = (went.mass, went.momentum);
-        for &row in &trade.rows {
+        for &row in &due.rows {
             let enthalpy = self.parts.interior.enthalpy(row);
             went.add(fields.mass[row], enthalpy, fields.velocity[row]);
         }
@@ -44,16 +44,16 @@ impl CoupledRun<'_> {
         let elements = reacting.map(|one| {
             [
                 one.elements(0..fields.len()),
-                one.elements(trade.rows.iter().copied()),
+                one.elements(due.rows.iter().copied()),
             ]
         });
-        self.parts.particles.change(supervisor, &trade.change)?;
+        self.parts.particles.change(supervisor, &due.change)?;
 
         // New ids are the highest: their rows are the last ones.
         let fields = self.parts.particles.fields();
-        let first = fields.len() - trade.change.insert.len();
+        let first = fields.len() - due.change.insert.len();
         let newcomers: Vec<Newcomer> = (first..fields.len())
-            .zip(&trade.temperature)
+            .zip(&due.temperature)
             .map(|(row, &temperature)| {
                 let population = fields.population[row] as usize;
                 let substance = self.plan.substance.get(population);
@@ -64,7 +64,7 @@ impl CoupledRun<'_> {
                 }
             })
             .collect();
-        self.parts.interior.change(&trade.rows, &newcomers);
+        self.parts.interior.change(&due.rows, &newcomers);
         if let (Some(before), Some(reacting)) = (elements, self.parts.interior.reactions()) {
             let after = reacting.elements(0..fields.len());
             let brought = reacting.elements_brought(&newcomers);
@@ -77,7 +77,7 @@ impl CoupledRun<'_> {
         }
         let (brought, taken) = (came.mass - brought_before, went.mass - gone_before);
         let after = held(fields.mass);
-        self.ledger.traffic = [came, went];
+        self.ledger.fed_and_discharged = [came, went];
         self.ledger
             .particle_mass
             .book(after - before - brought + taken, brought + taken);
@@ -88,9 +88,9 @@ impl CoupledRun<'_> {
             .book(left.norm(), carried[0].norm() + carried[1].norm());
 
         let work = &mut self.work;
-        without(&mut work.exchange.heat, &trade.rows);
-        without(&mut work.other, &trade.rows);
-        without(&mut work.free, &trade.rows);
+        without(&mut work.exchange.heat, &due.rows);
+        without(&mut work.other, &due.rows);
+        without(&mut work.free, &due.rows);
         work.exchange.heat.resize(fields.len(), 0.0);
         for row in first..fields.len() {
             let population = fields.population[row] as usize;
@@ -111,7 +111,7 @@ impl CoupledRun<'_> {
     }
 }
 
-/// The mass in kg of each element that particles held before a trade, and that of those that went, against what
+/// The mass in kg of each element that particles held before the change, and that of those that went, against what
 /// they hold now and what the newcomers' compositions say.
 fn book_elements(
     ledger: &mut Ledger,

@@ -34,7 +34,7 @@ pub struct SpeciesCoupling {
     /// Mass fractions by which the fixed rates went.
     fractions: Vec<f64>,
     scratch: Vec<f64>,
-    seen: Vec<f64>,
+    sampled: Vec<f64>,
 }
 
 impl SpeciesCoupling {
@@ -135,7 +135,7 @@ impl SpeciesCoupling {
         let channels = reacting.channels();
         self.carried.clear();
         self.carried.resize(particles, 0.0);
-        self.seen.resize(particles, 0.0);
+        self.sampled.resize(particles, 0.0);
         let mut enthalpy = vec![0.0; cells];
         for (c, channel) in channels.iter().enumerate() {
             for (cell, sum) in enthalpy.iter_mut().enumerate() {
@@ -148,18 +148,18 @@ impl SpeciesCoupling {
                     .map(|(k, mass)| -mass * properties.species_enthalpy(k, gas.temperature[cell]))
                     .sum();
             }
-            operator.sample(&enthalpy, &mut self.seen);
-            for (p, seen) in self.seen.iter().enumerate() {
+            operator.sample(&enthalpy, &mut self.sampled);
+            for (p, sampled) in self.sampled.iter().enumerate() {
                 let at = p * channels.len() + c;
-                self.carried[p] -= self.shares[at] * reacting.lines().1[at] * seen;
+                self.carried[p] -= self.shares[at] * reacting.lines().1[at] * sampled;
             }
             for (cell, value) in enthalpy.iter_mut().enumerate() {
                 *value *= self.fractions[cell * species + channel.key];
             }
-            operator.sample(&enthalpy, &mut self.seen);
-            for (p, seen) in self.seen.iter().enumerate() {
+            operator.sample(&enthalpy, &mut self.sampled);
+            for (p, sampled) in self.sampled.iter().enumerate() {
                 let at = p * channels.len() + c;
-                self.carried[p] += self.shares[at] * reacting.lines().0[at] * seen
+                self.carried[p] += self.shares[at] * reacting.lines().0[at] * sampled
                     - self.rates[at] * made(channel, properties, reacting.end_temperature()[p]);
             }
         }
@@ -199,7 +199,7 @@ impl SpeciesCoupling {
         self.rates.clear();
         self.rates.resize(slopes.len(), 0.0);
         self.scratch.resize(operator.cells(), 0.0);
-        self.seen.resize(operator.particles(), 0.0);
+        self.sampled.resize(operator.particles(), 0.0);
         let mut sampled = None;
         for (c, channel) in channels.iter().enumerate() {
             if sampled != Some(channel.key) {
@@ -207,12 +207,12 @@ impl SpeciesCoupling {
                 for (cell, value) in self.particle[0].iter_mut().enumerate() {
                     *value = self.fractions[cell * species + channel.key];
                 }
-                operator.sample(&self.particle[0], &mut self.seen);
+                operator.sample(&self.particle[0], &mut self.sampled);
                 sampled = Some(channel.key);
             }
-            for (p, seen) in self.seen.iter().enumerate() {
+            for (p, sampled) in self.sampled.iter().enumerate() {
                 let at = p * channels.len() + c;
-                self.rates[at] = slopes[at] * seen - offsets[at];
+                self.rates[at] = slopes[at] * sampled - offsets[at];
             }
         }
         self.scratch.resize(operator.particles(), 0.0);

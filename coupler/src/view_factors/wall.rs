@@ -126,8 +126,8 @@ impl Frustum {
     fn hit(&self, origin: Vec3, way: Vec3) -> Option<RayHit> {
         let from = origin - self.start;
         let (rho, speed) = (across(from, &self.axis), across(way, &self.axis));
-        let (x, pace) = (from.dot(&self.axis), way.dot(&self.axis));
-        let (r, growth) = (self.radius + self.slope * x, self.slope * pace);
+        let (x, step_limit) = (from.dot(&self.axis), way.dot(&self.axis));
+        let (r, growth) = (self.radius + self.slope * x, self.slope * step_limit);
         // |ρ + t v|² = (r + t g)²
         let a = speed.norm_squared() - growth * growth;
         let b = rho.dot(&speed) - r * growth;
@@ -140,7 +140,7 @@ impl Frustum {
         };
         let mut best: Option<RayHit> = None;
         for distance in ways {
-            let place = x + distance * pace;
+            let place = x + distance * step_limit;
             let here = rho + distance * speed;
             let outward = here.dot(&speed) - (r + distance * growth) * growth;
             let inside = distance >= 0.0 && (0.0..=self.length).contains(&place);

@@ -100,24 +100,24 @@ const FAINT: f64 = 1e-4;
 const REFLECTIONS: usize = 1000;
 
 /// View factors of all particles.
-pub fn views(scene: &RadiationScene<'_>, sight: ViewFactors) -> ExchangeAreas {
+pub fn views(scene: &RadiationScene<'_>, view_factors: ViewFactors) -> ExchangeAreas {
     let count = scene.centres.len();
     let whole = scene.radii.iter().map(|r| 4.0 * PI * r * r);
-    let surface: Vec<f64> = match sight {
+    let surface: Vec<f64> = match view_factors {
         ViewFactors::Rays { .. } => whole.zip(scene.emissivity).map(|(a, e)| a * e).collect(),
         ViewFactors::Distance { .. } => whole.collect(),
     };
     let largest = scene.radii.iter().copied().fold(0.0, f64::max);
-    let (ViewFactors::Rays { range, .. } | ViewFactors::Distance { range }) = sight;
+    let (ViewFactors::Rays { range, .. } | ViewFactors::Distance { range }) = view_factors;
     let reach = 2.0 * largest * range;
     let open = Open::new(scene.radii);
     let mut made = ExchangeAreas {
         own: vec![0.0; count],
-        radiosity: matches!(sight, ViewFactors::Distance { .. }),
+        radiosity: matches!(view_factors, ViewFactors::Distance { .. }),
         surface,
         ..ExchangeAreas::default()
     };
-    match sight {
+    match view_factors {
         ViewFactors::Rays { rays, .. } => {
             let grid = SphereGrid::new(scene.radii, scene.centres);
             let mut near: Vec<Vec<u32>> = vec![Vec::new(); count];

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use crate::host::HostError;
 use crate::library::Liggghts;
-use crate::state::RankParticles;
+use crate::rank_particles::RankParticles;
 
 /// Ids in one command: LIGGGHTS' lines are limited to 2048 letters.
 const IDS_A_LINE: usize = 100;

@@ -1,8 +1,8 @@
 //! `[[feeds]]` and `[[outlets]]`: particles that come and go.
 
+use calcine_coupler::feeds::Outlet;
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::traffic::Outlet;
 
 use super::zone::zone;
 use crate::case::model::{FeedSpec, MotionSpec, Population};

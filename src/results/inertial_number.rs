@@ -21,7 +21,14 @@ pub(super) fn of_bed(moment: &CommittedState<'_>, gravity: Vec3) -> f64 {
     let Some(up) = (-gravity).try_normalize(0.0) else {
         return f64::NAN;
     };
-    let force = |p: usize| moment.felt.force.get(p).copied().unwrap_or_default();
+    let force = |p: usize| {
+        moment
+            .particle_gas
+            .force
+            .get(p)
+            .copied()
+            .unwrap_or_default()
+    };
     let height = |p: usize| bed.position[p].dot(&up);
     let mut order: Vec<usize> = (0..bed.len()).collect();
     order.sort_by(|&a, &b| height(b).total_cmp(&height(a)));

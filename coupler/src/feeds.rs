@@ -115,17 +115,17 @@ impl FeedsAndOutlets {
         moment: WindowSpan,
         particles: &ParticleFields<'_>,
     ) -> Result<PopulationChange, PackingError> {
-        let mut trade = PopulationChange::default();
-        self.take_out(moment, particles, &mut trade);
-        self.bring_in(moment, particles, &mut trade)?;
-        Ok(trade)
+        let mut due = PopulationChange::default();
+        self.take_out(moment, particles, &mut due);
+        self.bring_in(moment, particles, &mut due)?;
+        Ok(due)
     }
 
     fn take_out(
         &mut self,
         moment: WindowSpan,
         particles: &ParticleFields<'_>,
-        trade: &mut PopulationChange,
+        due: &mut PopulationChange,
     ) {
         let mut gone = vec![false; particles.len()];
         for (outlet, due) in self.outlets.iter().zip(&mut self.due[1]) {
@@ -154,18 +154,18 @@ impl FeedsAndOutlets {
                 *due = due.min(0.0);
             }
         }
-        trade.rows = (0..particles.len()).filter(|&row| gone[row]).collect();
-        trade.change.remove = trade.rows.iter().map(|&row| particles.id[row]).collect();
+        due.rows = (0..particles.len()).filter(|&row| gone[row]).collect();
+        due.change.remove = due.rows.iter().map(|&row| particles.id[row]).collect();
     }
 
     fn bring_in(
         &mut self,
         moment: WindowSpan,
         particles: &ParticleFields<'_>,
-        trade: &mut PopulationChange,
+        due: &mut PopulationChange,
     ) -> Result<(), PackingError> {
         let mut gone = vec![false; particles.len()];
-        trade.rows.iter().for_each(|&row| gone[row] = true);
+        due.rows.iter().for_each(|&row| gone[row] = true);
         for (index, feed) in self.feeds.iter().enumerate() {
             self.due[0][index] += feed.rate * moment.span;
             loop {
@@ -182,7 +182,7 @@ impl FeedsAndOutlets {
                         let apart = particles.radius[row] + radius;
                         (particles.position[row] - place).norm_squared() >= apart * apart
                     });
-                    old && trade.change.insert.iter().all(|new| {
+                    old && due.change.insert.iter().all(|new| {
                         let apart = new.radius + radius;
                         (new.position - place).norm_squared() >= apart * apart
                     })
@@ -191,7 +191,7 @@ impl FeedsAndOutlets {
                     .map(|_| within(&feed.zone, radius, &mut random))
                     .find(free);
                 let Some(position) = place else { break };
-                trade.change.insert.push(NewParticle {
+                due.change.insert.push(NewParticle {
                     id: self.next_id,
                     population: feed.population,
                     position,
@@ -199,7 +199,7 @@ impl FeedsAndOutlets {
                     radius,
                     density: feed.density,
                 });
-                trade.temperature.push(feed.temperature);
+                due.temperature.push(feed.temperature);
                 self.next_id += 1;
                 self.drawn[index] += 1;
                 self.due[0][index] -= mass;
@@ -350,12 +350,14 @@ mod tests {
     fn a_feed_keeps_its_mass_flow_and_its_particles_touch_nothing() {
         let bed = Bed::stack(3);
         let mass = 4.0 / 3.0 * PI * 0.005f64.powi(3) * 2000.0;
-        let mut traffic =
+        let mut feeds_and_outlets =
             FeedsAndOutlets::new(vec![feed(40.0 * mass, 0.0)], Vec::new(), Vec3::z(), 4);
         let mut ids = Vec::new();
         for window in 0..100 {
-            let trade = traffic.decide(moment(window), &bed.fields()).unwrap();
-            for new in &trade.change.insert {
+            let due = feeds_and_outlets
+                .decide(moment(window), &bed.fields())
+                .unwrap();
+            for new in &due.change.insert {
                 ids.push(new.id);
                 assert!(
                     (new.velocity.z + 0.5).abs() < 1e-15,
@@ -384,15 +386,15 @@ mod tests {
                 1,
             )
         };
-        let mut traffic = make();
-        let first = traffic.decide(moment(0), &bed.fields()).unwrap();
+        let mut feeds_and_outlets = make();
+        let first = feeds_and_outlets.decide(moment(0), &bed.fields()).unwrap();
         assert_eq!(first.change.insert.len(), 23);
         let mut state = StateFile::new();
-        traffic.record(&mut state);
+        feeds_and_outlets.record(&mut state);
         let mut other = make();
         other.restore(&state).unwrap();
-        let [a, b] = [&mut traffic, &mut other]
-            .map(|traffic| traffic.decide(moment(1), &bed.fields()).unwrap());
+        let [a, b] = [&mut feeds_and_outlets, &mut other]
+            .map(|feeds_and_outlets| feeds_and_outlets.decide(moment(1), &bed.fields()).unwrap());
         assert_eq!(a.change, b.change);
         assert_eq!(a.change.insert.len(), 3);
     }
@@ -410,13 +412,13 @@ mod tests {
             rate,
         };
         let mut all = FeedsAndOutlets::new(Vec::new(), vec![outlet(None)], Vec3::z(), 11);
-        let trade = all.decide(moment(0), &bed.fields()).unwrap();
-        assert_eq!(trade.change.remove, [1, 2, 3, 4, 5]);
+        let due = all.decide(moment(0), &bed.fields()).unwrap();
+        assert_eq!(due.change.remove, [1, 2, 3, 4, 5]);
         // 0.2 kg/s over 10 ms are two particles of 1 g.
         let mut slow = FeedsAndOutlets::new(Vec::new(), vec![outlet(Some(0.2))], Vec3::z(), 11);
         for window in 0..3 {
-            let trade = slow.decide(moment(window), &bed.fields()).unwrap();
-            assert_eq!(trade.change.remove, [1, 2]);
+            let due = slow.decide(moment(window), &bed.fields()).unwrap();
+            assert_eq!(due.change.remove, [1, 2]);
         }
     }
 

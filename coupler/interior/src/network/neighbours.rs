@@ -44,7 +44,7 @@ pub struct ExchangeAreas {
 #[derive(Clone, Copy, Debug)]
 pub struct Neighbours<'a> {
     /// Particles that touch or are near each other.
-    pub touches: &'a [NeighbourPair],
+    pub pairs: &'a [NeighbourPair],
     /// Particles at walls.
     pub walls: &'a [NeighbourWall],
     /// Views; `None`: those of before still hold.
