@@ -4,15 +4,14 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
-#[path = "agreement/cases.rs"]
-mod cases;
-#[path = "support/program.rs"]
-mod program;
+pub mod cases;
 
 use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
+
+use crate::support::program;
 
 /// How far the two gases may be apart: shares of a field's span over the run.
 struct Bands {

@@ -4,16 +4,12 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/program.rs"]
-mod program;
-#[path = "support/schiller_naumann.rs"]
-mod schiller_naumann;
-
 use std::path::Path;
 
 use calcine::results::read::Series;
-use program::run_text;
-use schiller_naumann::Sphere;
+
+use crate::support::program::run_text;
+use crate::support::schiller_naumann::Sphere;
 
 const DIAMETER: f64 = 2e-3;
 const CELL: f64 = 4e-3;

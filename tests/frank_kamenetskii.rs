@@ -9,15 +9,14 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/program.rs"]
-mod program;
-
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 use std::path::Path;
 
 use calcine::results::Summary;
 use calcine::results::read::Series;
+
+use crate::support::program;
 
 /// Distance of centres and diameter in m, wall temperature in K.
 const APART: f64 = 10e-3;

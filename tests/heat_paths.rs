@@ -4,11 +4,6 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/lattice.rs"]
-mod lattice;
-#[path = "support/program.rs"]
-mod program;
-
 use std::path::{Path, PathBuf};
 
 use calcine::results::Summary;
@@ -16,6 +11,9 @@ use calcine::results::read::Series;
 use calcine_coupler::physics::bed_conductivity::{
     BedConductivity, PackedBed, YagiKunii, ZehnerBauerSchluender,
 };
+
+use crate::support::lattice;
+use crate::support::program;
 
 fn case(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)

@@ -3,14 +3,13 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/column.rs"]
-mod column;
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use calcine::results::Summary;
 use calcine::results::read::Series;
+
+use crate::support::column;
 
 fn case() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/heated-column.toml")

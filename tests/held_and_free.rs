@@ -3,15 +3,14 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/program.rs"]
-mod program;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use calcine::results::Summary;
 use calcine::results::read::{Series, arrays, collection};
 use calcine::results::voids::VoidProfiles;
+
+use crate::support::program;
 
 /// The shipped settled bed; its lines by their beginnings replaced.
 fn case(folder: &Path, name: &str, replaced: &[(&str, String)]) -> PathBuf {

@@ -4,11 +4,6 @@
 #![cfg(feature = "hdf5")]
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/killed.rs"]
-mod killed;
-#[path = "support/program.rs"]
-mod program;
-
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -16,6 +11,9 @@ use std::process::Command;
 use calcine::results::Summary;
 use calcine::results::read::{Series, arrays, collection};
 use calcine_coupler::physics::Vec3;
+
+use crate::support::killed;
+use crate::support::program;
 
 fn good(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/inputs/good/{name}.toml"))

@@ -2,14 +2,12 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[path = "results/fake.rs"]
-#[allow(dead_code)]
-mod fake;
-
 use std::fs;
 
 use calcine::case::model::{GasPlace, Measure, ParticlePlace, Probe, Statistic};
 use calcine_coupler::physics::Vec3;
+
+use crate::support::fake;
 
 /// Each measure against a value that reaches the series by another way.
 #[test]

@@ -4,16 +4,14 @@
 #![cfg(feature = "hdf5")]
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/program.rs"]
-mod program;
-
 use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
 use calcine::results::Summary;
 use calcine::results::read::Series;
-use program::{run_text, shipped};
+
+use crate::support::program::{run_text, shipped};
 
 const DIAMETER: f64 = 7.8e-3;
 

@@ -4,13 +4,6 @@
 #![cfg(feature = "hdf5")]
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/fluidised.rs"]
-mod fluidised;
-#[path = "support/moving.rs"]
-mod moving;
-#[path = "support/results_equal.rs"]
-mod results_equal;
-
 use std::f64::consts::PI;
 use std::path::Path;
 use std::process::Stdio;
@@ -19,8 +12,10 @@ use std::time::{Duration, Instant};
 use calcine::results::Summary;
 use calcine::results::read::Series;
 use calcine_coupler::ledger::STORAGE_CLOCK;
-use fluidised::{Hold, examine};
-use moving::{case, command, run};
+
+use crate::support::fluidised::{Hold, examine};
+use crate::support::moving::{case, command, run};
+use crate::support::results_equal;
 
 fn closed(directory: &Path, within: f64) {
     let summary = Summary::read(directory).unwrap();

@@ -4,16 +4,14 @@
 #![cfg(feature = "hdf5")]
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/killed.rs"]
-mod killed;
-#[path = "support/program.rs"]
-mod program;
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use calcine::results::Summary;
 use calcine::results::read::Series;
+
+use crate::support::killed;
+use crate::support::program;
 
 const CASE: &str = "tests/inputs/good/moving-heat.toml";
 

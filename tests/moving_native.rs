@@ -3,14 +3,10 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/program.rs"]
-mod program;
-#[path = "support/schiller_naumann.rs"]
-mod schiller_naumann;
-
 use calcine::results::read::Series;
-use program::shipped;
-use schiller_naumann::Sphere;
+
+use crate::support::program::{self, shipped};
+use crate::support::schiller_naumann::Sphere;
 
 /// The series of a native run with settings.
 fn run(name: &str, set: &[&str]) -> Series {

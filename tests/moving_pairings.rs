@@ -7,14 +7,12 @@
     clippy::print_stdout
 )]
 
-#[path = "support/program.rs"]
-mod program;
-
 use std::fs;
 use std::path::Path;
 
-use program::shipped;
 use serde_json::Value;
+
+use crate::support::program::{self, shipped};
 
 #[test]
 fn a_moving_bed_is_heated_alike_by_native_particles_and_by_liggghts() {

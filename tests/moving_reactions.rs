@@ -3,14 +3,13 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/program.rs"]
-mod program;
-
 use std::f64::consts::PI;
 use std::path::Path;
 
 use calcine::results::Summary;
 use calcine::results::read::Series;
+
+use crate::support::program;
 
 const CASE: &str = "tests/inputs/good/moving-reactions.toml";
 

@@ -3,15 +3,11 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/moving.rs"]
-mod moving;
-#[path = "support/schiller_naumann.rs"]
-mod schiller_naumann;
-
 use calcine::results::Summary;
 use calcine::results::read::Series;
-use moving::{case, refused, run};
-use schiller_naumann::Sphere;
+
+use crate::support::moving::{case, refused, run};
+use crate::support::schiller_naumann::Sphere;
 
 /// The bead of cases/settling-sphere.toml.
 fn bead() -> Sphere {

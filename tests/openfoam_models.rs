@@ -7,14 +7,9 @@ use std::path::{Path, PathBuf};
 
 use calcine::results::Summary;
 use calcine::results::read::Series;
-use program::run_text;
 
-#[path = "support/program.rs"]
-mod program;
-
-#[path = "agreement/cases.rs"]
-#[allow(dead_code)]
-mod cases;
+use crate::agreement::cases;
+use crate::support::program::run_text;
 
 fn template(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))

@@ -2,13 +2,12 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/program.rs"]
-mod program;
-
 use std::path::{Path, PathBuf};
 
 use calcine::results::Summary;
 use calcine::results::read::Series;
+
+use crate::support::program;
 
 fn run(case: &str, out: &Path, settings: &[&str]) -> Summary {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(case);

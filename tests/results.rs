@@ -1,9 +1,6 @@
 //! Results of a run: written by the recorder, read by others.
 #![allow(clippy::unwrap_used)]
 
-#[path = "results/fake.rs"]
-mod fake;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -11,6 +8,8 @@ use std::process::Command;
 use calcine::results::read::Series;
 use calcine::results::{Recorder, ResultsError, Summary, Verdict};
 use calcine_coupler::observer::Observer;
+
+use crate::support::fake;
 
 fn python(script: &str, directory: &Path) -> String {
     let output = Command::new("/usr/bin/python3")

@@ -1,14 +1,12 @@
 //! Pages made of results: the report of a run, and the comparison of several.
 #![allow(clippy::unwrap_used)]
 
-#[path = "results/fake.rs"]
-#[allow(dead_code)]
-mod fake;
-
 use std::fs;
 
 use calcine::case::model::ToleranceBand;
 use calcine::compare::{Agreement, CompareError, compare};
+
+use crate::support::fake;
 
 #[test]
 fn the_report_is_one_page_that_loads_nothing() {

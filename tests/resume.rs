@@ -3,17 +3,13 @@
 #![cfg(feature = "hdf5")]
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/killed.rs"]
-mod killed;
-#[path = "support/program.rs"]
-mod program;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use killed::results_equal;
-use program::shipped;
+use crate::support::killed;
+use crate::support::program::{self, shipped};
+use crate::support::results_equal;
 
 /// A run with checkpoints each 2 s of process time; long enough to be killed in its middle.
 fn command(pairing: [&str; 2], out: &Path, end: &str) -> Command {

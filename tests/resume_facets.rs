@@ -4,17 +4,15 @@
 #![cfg(feature = "hdf5")]
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/killed.rs"]
-mod killed;
-#[path = "support/program.rs"]
-mod program;
-
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use calcine::results::Summary;
+
+use crate::support::killed;
+use crate::support::program;
 
 /// Corners of a square of a side in mm at a height in mm.
 fn square(side: f64, z: f64) -> [[f64; 3]; 4] {

@@ -4,16 +4,12 @@
 #![cfg(feature = "hdf5")]
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/killed.rs"]
-mod killed;
-#[path = "support/program.rs"]
-mod program;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use program::shipped;
+use crate::support::killed;
+use crate::support::program::{self, shipped};
 
 /// The moving bed with a turbulence model, on two ranks each: 24 windows, a checkpoint each four.
 fn command(template: &Path, out: &Path) -> Command {

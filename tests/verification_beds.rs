@@ -3,19 +3,14 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
-#[path = "support/program.rs"]
-mod program;
-#[path = "support/results_equal.rs"]
-mod results_equal;
-#[path = "support/schumann.rs"]
-mod schumann;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use calcine::case::{particles, read};
 use calcine::results::read::Series;
-use program::run_text;
+
+use crate::support::program::run_text;
+use crate::support::schumann;
 
 /// Writes a case, runs it on two threads into a folder of its name, and returns that folder.
 fn run(directory: &Path, name: &str, text: &str, words: &[&str]) -> PathBuf {
@@ -266,6 +261,7 @@ fn still_gas_stays_still_in_a_random_bed_under_gravity_through_the_smoother() {
     assert!(drop > 1.0 && drop < 1.155, "{drop} Pa");
 }
 
+#[cfg(feature = "hdf5")]
 #[test]
 fn a_whole_run_has_the_same_bits_on_one_and_on_two_threads() {
     let directory = tempfile::tempdir().unwrap();
@@ -286,7 +282,7 @@ fn a_whole_run_has_the_same_bits_on_one_and_on_two_threads() {
     let summary = calcine::results::Summary::read(&one).unwrap();
     // Loops over fewer than 16 384 cells stay on one thread anyway.
     assert!(summary.cells > 16_384, "{} cells", summary.cells);
-    let differing = results_equal::differences(&one, &two);
+    let differing = crate::support::results_equal::differences(&one, &two);
     assert_eq!(differing, [""; 0]);
 }
 

@@ -3,9 +3,6 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[path = "liggghts_support/mod.rs"]
-mod support;
-
 use std::path::Path;
 
 use calcine_adapters::liggghts::LiggghtsParticles;
@@ -14,7 +11,8 @@ use calcine_coupler::motion::{
 };
 use calcine_coupler::part::{Part, Particles};
 use calcine_coupler::physics::Vec3;
-use support::{Bench, MASS, contacts, heap, momentum, setup, setup_with};
+
+use crate::liggghts_support::{Bench, MASS, contacts, heap, momentum, setup, setup_with};
 
 #[test]
 fn the_impulse_of_a_force_is_exact_also_where_it_changes_and_the_window_is_no_whole_number_of_steps()

@@ -8,15 +8,15 @@
     clippy::panic
 )]
 
-#[path = "liggghts_support/mod.rs"]
-mod support;
-
 use calcine_adapters::liggghts::LiggghtsParticles;
 use calcine_coupler::motion::{NewParticle, ParticleChanges};
 use calcine_coupler::part::Particles;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
-use support::{Bench, MASS, contacts, heap, heap_from, momentum, setup, setup_with};
+
+use crate::liggghts_support::{
+    Bench, MASS, contacts, heap, heap_from, momentum, setup, setup_with,
+};
 
 /// A sphere that comes in above the heap and away from it, at a place along x in m.
 fn elsewhere(id: u64, x: f64) -> NewParticle {

@@ -3,9 +3,6 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
-#[cfg(test)]
-mod openfoam_support;
-
 use std::path::Path;
 
 use calcine_coupler::gas_chemistry::{Combustion, GasChemistry, ReactingGas};
@@ -18,7 +15,8 @@ use calcine_coupler::physics::kinetics::{Mechanism, Tolerances};
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{CompositionSchedule, GasPatch, GasSetup, InletFlow, Schedule};
 use calcine_coupler::time::{Clocks, Ticks};
-use openfoam_support::{Duct, exchange_of_nothing, setup};
+
+use crate::openfoam_support::{self, Duct, exchange_of_nothing, setup};
 
 const SPECIES: [&str; 7] = ["CH4", "O2", "CO", "H2", "CO2", "H2O", "N2"];
 /// Moles of methane and air at λ = 1.1, of these species.

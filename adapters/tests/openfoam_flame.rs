@@ -2,9 +2,6 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
-#[cfg(test)]
-mod openfoam_support;
-
 use calcine_coupler::gas_chemistry::{Combustion, GasChemistry, ReactingGas};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
@@ -15,7 +12,8 @@ use calcine_coupler::physics::kinetics::{Mechanism, Tolerances};
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{CompositionSchedule, GasPatch, GasSetup, InletFlow, Schedule};
 use calcine_coupler::time::{Clocks, Ticks};
-use openfoam_support::{Duct, exchange_of_nothing, setup};
+
+use crate::openfoam_support::{Duct, exchange_of_nothing, setup};
 
 const SPECIES: [&str; 7] = ["CH4", "O2", "CO", "H2", "CO2", "H2O", "N2"];
 /// As in the native gas' own test: cells along 24 mm, motion window in s, pressure in Pa.

@@ -1,14 +1,12 @@
 //! Flow, heat and balances of calcineGasFoam against exact solutions (verification).
 
-#[cfg(test)]
-mod openfoam_support;
-
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::part::{Balance, Bed, Gas, Part};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
 use calcine_coupler::setup::{GasPatch, Schedule, WallHeat, WallVelocity};
-use openfoam_support::{
+
+use crate::openfoam_support::{
     CELLS, Duct, PRESSURE, SIDE, SPEED, TEMPERATURE, bed, exchange_of_nothing, inviscid, mesh,
     no_exchange, setup, stop,
 };

@@ -1,16 +1,14 @@
 //! A solver's life: repeats, checkpoints, refusals and death.
 
-#[cfg(test)]
-mod openfoam_support;
-
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use calcine_coupler::error::FailureKind;
 use calcine_coupler::part::{CellExchange, Gas, Part};
-use openfoam_support::{CELLS, Duct, bed, mesh, no_exchange, setup};
 use rustix::process::{Pid, Signal, kill_process};
+
+use crate::openfoam_support::{CELLS, Duct, bed, mesh, no_exchange, setup};
 
 fn heating() -> CellExchange {
     let mut exchange = no_exchange();
@@ -124,7 +122,10 @@ fn a_coordinator_that_waits_to_be_killed() {
 fn a_solver_ends_within_a_second_of_its_coordinator() {
     let folder = tempfile::tempdir().unwrap();
     let mut coordinator = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "a_coordinator_that_waits_to_be_killed"])
+        .args([
+            "--exact",
+            "openfoam_life::a_coordinator_that_waits_to_be_killed",
+        ])
         .env("CALCINE_TEST_COORDINATOR", folder.path())
         .stdout(Stdio::null())
         .spawn()

@@ -3,9 +3,6 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
-#[cfg(test)]
-mod openfoam_support;
-
 use std::path::Path;
 
 use calcine_coupler::gas_chemistry::{Combustion, GasChemistry, ReactingGas};
@@ -18,7 +15,8 @@ use calcine_coupler::setup::{
     CompositionSchedule, GasPatch, GasSetup, InletTurbulence, Schedule, Turbulence,
 };
 use calcine_coupler::time::{Clocks, Ticks};
-use openfoam_support::{Duct, PRESSURE, exchange_of_nothing, mesh, setup};
+
+use crate::openfoam_support::{Duct, PRESSURE, exchange_of_nothing, mesh, setup};
 
 const SPECIES: [&str; 7] = ["CH4", "O2", "CO", "H2", "CO2", "H2O", "N2"];
 /// Moles of fresh gas, of these species.

@@ -8,8 +8,6 @@
     clippy::print_stdout
 )]
 
-mod openfoam_support;
-
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -17,8 +15,9 @@ use calcine_coupler::error::FailureKind;
 use calcine_coupler::part::{Balance, Bed, CellExchange, Gas, Part};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::{GasPatch, GasSetup, Schedule, WallHeat};
-use openfoam_support::{Duct, exchange_of_nothing, mesh, setup, stop};
 use rustix::process::{Pid, Signal, kill_process};
+
+use crate::openfoam_support::{Duct, exchange_of_nothing, mesh, setup, stop};
 
 /// Cells of the bed along x, y, z: two ranks lie above each other, four also side by side.
 const DIVISION: [usize; 3] = [3, 3, 8];

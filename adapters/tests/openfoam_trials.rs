@@ -2,16 +2,14 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-#[cfg(test)]
-mod openfoam_support;
-
 use calcine_coupler::gas_chemistry::{Combustion, GasChemistry, ReactingGas};
 use calcine_coupler::part::Gas;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::kinetics::{Mechanism, Tolerances};
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::time::{Clocks, Ticks};
-use openfoam_support::{Duct, bed, no_exchange, setup, stop};
+
+use crate::openfoam_support::{Duct, bed, no_exchange, setup, stop};
 
 const SPECIES: [&str; 7] = ["CH4", "O2", "CO", "H2", "CO2", "H2O", "N2"];
 /// Mass fractions and temperature in K of a burner's cell in the shaft furnace.

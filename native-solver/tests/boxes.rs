@@ -1,14 +1,13 @@
 //! The gas in boxes of many cells: rest, friction at walls, conduction, threads.
 #![allow(clippy::unwrap_used, clippy::needless_range_loop)]
 
-mod common;
-
 use std::sync::Arc;
 
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::part::Gas;
 use calcine_coupler::physics::Vec3;
-use common::*;
+
+use crate::common::*;
 
 /// A box whose points are moved, so that no face is normal to the line between its centres.
 fn sheared(mesh: &Mesh) -> Arc<Mesh> {

@@ -2,15 +2,14 @@
 //! furnace: what reacts at once does so where it comes in, and not where gas is at the end of a window.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-mod common;
-
 use calcine_coupler::gas_chemistry::{Combustion, GasChemistry, ReactingGas};
 use calcine_coupler::part::Gas;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::kinetics::{Mechanism, Reactor, Tolerances};
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{CompositionSchedule, GasPatch, InletFlow, Schedule};
-use common::*;
+
+use crate::common::*;
 
 const SPECIES: [&str; 7] = ["CH4", "O2", "CO", "H2", "CO2", "H2O", "N2"];
 /// What a mole of methane has burnt to with λ = 1.1, in mol.

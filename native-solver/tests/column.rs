@@ -1,11 +1,10 @@
 //! The gas in a duct one cell wide, with and without a bed: verification against exact solutions.
 #![allow(clippy::unwrap_used, clippy::needless_range_loop)]
 
-mod common;
-
 use calcine_coupler::part::{Balance, Gas};
 use calcine_coupler::time::GasStorage;
-use common::*;
+
+use crate::common::*;
 
 const SIZE: [f64; 3] = [0.01, 0.01, 0.12];
 const CELLS: usize = 12;

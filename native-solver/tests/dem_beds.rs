@@ -1,8 +1,6 @@
 //! Many spheres: conservation, packing, resumption, threads, coming and going.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod grains;
-
 use std::f64::consts::PI;
 
 use calcine_coupler::motion::{
@@ -10,7 +8,8 @@ use calcine_coupler::motion::{
 };
 use calcine_coupler::part::{Part, Particles};
 use calcine_coupler::physics::Vec3;
-use grains::*;
+
+use crate::grains::*;
 
 #[test]
 fn a_frictionless_elastic_box_keeps_its_energy() {

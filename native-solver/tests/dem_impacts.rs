@@ -7,13 +7,12 @@
 //! contact are integrated apart (`apart` below).
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod grains;
-
 use std::f64::consts::PI;
 
 use calcine_coupler::motion::{ContactForce, Contacts};
 use calcine_coupler::physics::Vec3;
-use grains::*;
+
+use crate::grains::*;
 
 /// A material: Young's modulus in Pa, Poisson's ratio, density in kg/m³.
 #[derive(Clone, Copy)]

@@ -2,12 +2,11 @@
 //! and held particles are reported to give them, in windows that are no whole number of steps.
 #![allow(clippy::unwrap_used)]
 
-mod grains;
-
 use calcine_coupler::motion::{NewParticle, WallMotion};
 use calcine_coupler::part::Particles;
 use calcine_coupler::physics::Vec3;
-use grains::{Bed, contacts, cuboid, loose};
+
+use crate::grains::{Bed, contacts, cuboid, loose};
 
 const STEP: f64 = 1e-5;
 

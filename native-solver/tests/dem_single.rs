@@ -1,14 +1,13 @@
 //! One sphere and pairs of spheres against exact solutions.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod grains;
-
 use std::f64::consts::PI;
 
 use calcine_coupler::motion::Contacts;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::time_step::hertz_collision;
-use grains::*;
+
+use crate::grains::*;
 
 const RADIUS: f64 = 1e-3;
 /// Effective modulus of the tests' material in Pa: E/(2 (1 − ν²)).

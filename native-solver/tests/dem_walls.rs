@@ -1,12 +1,11 @@
 //! Walls: moving ones drag, and the edges of triangles count once.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod grains;
-
 use calcine_coupler::motion::{Contacts, WallMotion, WallShape};
 use calcine_coupler::part::Particles;
 use calcine_coupler::physics::Vec3;
-use grains::*;
+
+use crate::grains::*;
 
 const RADIUS: f64 = 1e-3;
 

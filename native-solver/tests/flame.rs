@@ -1,8 +1,6 @@
 //! A premixed flame of methane on a burner: its place and its peak do not depend on the acceleration factor.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-mod common;
-
 use calcine_coupler::gas_chemistry::{Combustion, GasChemistry, ReactingGas};
 use calcine_coupler::part::{Balance, Gas, Part};
 use calcine_coupler::physics::gas::GAS_CONSTANT;
@@ -11,7 +9,8 @@ use calcine_coupler::physics::kinetics::{Mechanism, Tolerances};
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{CompositionSchedule, GasPatch, InletFlow, Schedule};
 use calcine_coupler::time::GasStorage;
-use common::*;
+
+use crate::common::*;
 
 const SPECIES: [&str; 7] = ["CH4", "O2", "CO", "H2", "CO2", "H2O", "N2"];
 const METHANE: usize = 0;

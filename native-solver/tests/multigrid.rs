@@ -1,8 +1,6 @@
 //! The algebraic multigrid: convergence whatever the size, symmetry, threads, resume.
 #![allow(clippy::unwrap_used, clippy::needless_range_loop)]
 
-mod common;
-
 use std::sync::Arc;
 
 use calcine_coupler::physics::Vec3;
@@ -11,7 +9,8 @@ use calcine_native::numerics::grid::MeshGraph;
 use calcine_native::numerics::krylov::{Krylov, SolveStatistics, SolveTolerance};
 use calcine_native::numerics::matrix::Matrix;
 use calcine_native::numerics::preconditioner::Preconditioner;
-use common::*;
+
+use crate::common::*;
 
 /// Diffusion in a box, zero on the boundary at the top only, with a coefficient per cell and its
 /// harmonic mean on faces.

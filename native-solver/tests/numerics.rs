@@ -1,8 +1,6 @@
 //! Linear solvers and operators on general meshes.
 #![allow(clippy::unwrap_used, clippy::needless_range_loop)]
 
-mod common;
-
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -16,7 +14,8 @@ use calcine_native::numerics::operators::{
 };
 use calcine_native::numerics::parallel::sum;
 use calcine_native::numerics::preconditioner::{Incomplete, Preconditioner};
-use common::*;
+
+use crate::common::*;
 
 const TIGHT: SolveTolerance = SolveTolerance {
     absolute: 0.0,

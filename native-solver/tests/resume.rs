@@ -1,8 +1,6 @@
 //! Checkpoints and failures of the native parts.
 #![allow(clippy::unwrap_used, clippy::needless_range_loop)]
 
-mod common;
-
 use std::f64::consts::PI;
 use std::time::Duration;
 
@@ -14,7 +12,8 @@ use calcine_coupler::supervisor::{Interrupts, Supervisor};
 use calcine_coupler::time::{Clocks, Ticks, Window};
 use calcine_native::gas::{NativeError, NativeGas};
 use calcine_native::particles::NativeParticles;
-use common::*;
+
+use crate::common::*;
 
 fn patches() -> [(&'static str, calcine_coupler::setup::GasPatch); 3] {
     [

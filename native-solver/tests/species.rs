@@ -1,13 +1,12 @@
 //! Species of the gas: mixing at one temperature, diffusion against its exact solution, balances.
 #![allow(clippy::unwrap_used)]
 
-mod common;
-
 use calcine_coupler::part::{Balance, Gas};
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{CompositionSchedule, Convection, GasPatch, InletFlow, Schedule};
-use common::*;
+
+use crate::common::*;
 
 /// A duct along z, filled with the first of two gases at four fifths, into which flows mostly the second.
 fn duct_of(

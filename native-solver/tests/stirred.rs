@@ -2,8 +2,6 @@
 //! times the share that eddies mix), and what eddies carry.
 #![allow(clippy::unwrap_used)]
 
-mod common;
-
 use calcine_coupler::gas_chemistry::{Combustion, GasChemistry, ReactingGas};
 use calcine_coupler::part::Gas;
 use calcine_coupler::physics::gas_model::GasModel;
@@ -13,7 +11,8 @@ use calcine_coupler::physics::turbulence::KEpsilon;
 use calcine_coupler::setup::{
     CompositionSchedule, GasPatch, InletFlow, InletTurbulence, Schedule, Turbulence,
 };
-use common::*;
+
+use crate::common::*;
 
 const SPECIES: [&str; 7] = ["CH4", "O2", "CO", "H2", "H2O", "CO2", "N2"];
 const MIXING: f64 = 0.01;

@@ -2,13 +2,12 @@
 //! jump of void fraction with second-order convection.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::needless_range_loop)]
 
-mod common;
-
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::part::Gas;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::{Convection, GasPatch, WallHeat, WallVelocity};
-use common::*;
+
+use crate::common::*;
 
 /// (y, u) on the vertical centreline at Re = 100, lid at y = 1: Ghia, Ghia and Shin 1982, table I,
 /// doi 10.1016/0021-9991(82)90058-4.

@@ -2,15 +2,14 @@
 //! and diffusion, conduction in time, heat through walls, a closed box.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::needless_range_loop)]
 
-mod common;
-
 use std::f64::consts::PI;
 
 use calcine_coupler::part::Gas;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GAS_CONSTANT;
 use calcine_coupler::setup::{Convection, InletFlow, Schedule, WallHeat};
-use common::*;
+
+use crate::common::*;
 
 /// RMS error in K of a steady profile T = 300 + 100 sin(π z/2L), made by a heat source, in a duct
 /// of L = 1 m at a Péclet number of 20, void fraction 0.7.

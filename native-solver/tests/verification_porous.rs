@@ -3,14 +3,13 @@
 //! convection, conduction and exchange, in a closed box with walls that the gas sticks to.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-mod common;
-
 use std::f64::consts::PI;
 
 use calcine_coupler::part::Gas;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::{Convection, GasPatch};
-use common::*;
+
+use crate::common::*;
 
 /// Density in kg/m³, c_p in J/kg/K, viscosity in Pa s, conductivity in W/m/K.
 const FLUID: [f64; 4] = [1.3, 2.0, 0.05, 0.4];

@@ -2,8 +2,6 @@
 //! against the correlation of its friction and the law of the wall, the bed, and the two clocks.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
-mod common;
-
 use std::sync::Arc;
 
 use calcine_coupler::mesh::Mesh;
@@ -12,7 +10,8 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::turbulence::{KEpsilon, LogLaw};
 use calcine_coupler::setup::{Convection, GasPatch, InletTurbulence, Schedule, Turbulence};
 use calcine_native::gas::NativeGas;
-use common::*;
+
+use crate::common::*;
 
 /// The model with k in m²/s² and its length scale in m at the start.
 fn k_epsilon(energy: f64, length_scale: f64) -> Turbulence {

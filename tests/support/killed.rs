@@ -1,14 +1,13 @@
 //! Runs that are killed in their middle and resumed.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, dead_code)]
-
-#[path = "results_equal.rs"]
-pub mod results_equal;
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
+
+use super::results_equal;
 
 /// A watchdog: the runs take seconds.
 const PATIENCE: Duration = Duration::from_secs(120);

@@ -1,14 +1,13 @@
 //! Runs of moving particles with real LIGGGHTS.
 
-#![allow(clippy::unwrap_used, dead_code)]
-
-#[path = "program.rs"]
-mod program;
+#![allow(clippy::unwrap_used)]
 
 use std::path::Path;
 use std::process::Command;
 
-pub use program::shipped as case;
+use super::program;
+
+pub use super::program::shipped as case;
 
 const WITH: [&str; 2] = ["--particles", "liggghts"];
 

@@ -1,7 +1,5 @@
 //! Drag of a lone sphere by Schiller and Naumann (1933), apart from Calcine: the limit of Wen and Yu's law.
 
-#![allow(dead_code)]
-
 use std::f64::consts::PI;
 
 /// A sphere in a fluid: diameter in m, densities in kg/m³, viscosity in Pa s.

@@ -2,12 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[macro_use]
-mod laws;
-
 use calcine_wire::shared_memory::LinkEnd;
 use calcine_wire::{RunDirectory, SharedMemory};
-use laws::Ends;
+
+use crate::laws::Ends;
 
 fn shared_memory() -> Ends {
     let run = RunDirectory::create().unwrap();

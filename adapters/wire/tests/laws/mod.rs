@@ -166,7 +166,7 @@ macro_rules! conformance {
         mod of_transport {
             $(#[test]
             fn $law() {
-                crate::laws::$law(crate::$transport());
+                crate::laws::$law(super::$transport());
             })+
         }
     };

@@ -3,9 +3,6 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
-#[path = "support/processes.rs"]
-mod processes;
-
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -15,11 +12,12 @@ use std::time::Duration;
 use calcine_wire::record::VERSION;
 use calcine_wire::shared_memory::LinkEnd;
 use calcine_wire::{Header, LinkAddress, MessageKind, SharedMemory, Transport};
-use processes::{
+use rustix::process::Signal;
+
+use crate::processes::{
     alive, belonging, case, descendants, is_solver, leftovers, signal, start_with,
     wait_for_windows, wait_until,
 };
-use rustix::process::Signal;
 
 const LIMIT: Duration = Duration::from_secs(5);
 const BOTH: [&str; 4] = ["--gas", "openfoam", "--particles", "liggghts"];
@@ -196,7 +194,7 @@ fn a_solver_of_another_version_is_refused_with_both_numbers() {
     let coordinator = run.id();
     let (_, after) = line.split_once("CALCINE_LINK='").unwrap();
     let mut solver = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "a_solver_of_another_version"])
+        .args(["--exact", "kinds::a_solver_of_another_version"])
         .env("CALCINE_TEST_SOLVER", "1")
         .env("CALCINE_LINK", after.split_once('\'').unwrap().0)
         .stdout(Stdio::null())

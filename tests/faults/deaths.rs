@@ -3,16 +3,13 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
-#[path = "support/processes.rs"]
-mod processes;
-
 use std::fs;
 use std::io::Read;
 use std::path::Path;
 use std::process::{Child, Command};
 use std::time::{Duration, Instant};
 
-use processes::{
+use crate::processes::{
     alive, belonging, case, command_line, descendants, kill, leftovers, start, start_with,
     wait_for_windows, wait_until,
 };

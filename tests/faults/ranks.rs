@@ -8,20 +8,18 @@
     clippy::print_stdout
 )]
 
-#[path = "support/processes.rs"]
-mod processes;
-
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-use processes::{
+use rustix::process::Signal;
+
+use crate::processes::{
     alive, case, command_line, descendants, kill, leftovers, signal, start_with, wait_for_windows,
     wait_until,
 };
-use rustix::process::Signal;
 
 const RANKS: [&str; 4] = ["--ranks-gas", "2", "--ranks-particles", "2"];
 

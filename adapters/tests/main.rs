@@ -1,0 +1,14 @@
+//! All tests of the adapters from outside, in one program, but for those that look at what their whole process has
+//! left behind (`liggghts.rs`).
+
+mod liggghts_moving;
+mod liggghts_ranks;
+mod liggghts_support;
+mod openfoam_burner;
+mod openfoam_flame;
+mod openfoam_flow;
+mod openfoam_life;
+mod openfoam_pasr;
+mod openfoam_ranks;
+mod openfoam_support;
+mod openfoam_trials;

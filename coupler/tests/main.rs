@@ -1,0 +1,11 @@
+//! All tests of the coupler from outside, in one program.
+
+mod cylinder;
+mod exchange;
+mod mapping;
+mod mesh;
+mod packing;
+mod refine;
+mod smoother;
+mod smoother_refusals;
+mod smoother_tall;

@@ -1,0 +1,22 @@
+//! All tests of the native solvers from outside, in one program.
+
+mod boxes;
+mod burner;
+mod column;
+mod common;
+mod dem_beds;
+mod dem_impacts;
+mod dem_momentum;
+mod dem_single;
+mod dem_walls;
+mod flame;
+mod grains;
+mod multigrid;
+mod numerics;
+mod resume;
+mod species;
+mod stirred;
+mod verification_flow;
+mod verification_heat;
+mod verification_porous;
+mod verification_turbulence;

@@ -1,0 +1,9 @@
+//! Faults of coupled runs, in a program of their own: what they ask is how soon processes end, and no other test
+//! shall run beside them.
+
+#[path = "../support/processes.rs"]
+mod processes;
+
+mod deaths;
+mod kinds;
+mod ranks;

@@ -1,0 +1,39 @@
+//! All tests of the whole, in one program, but for those with a command line of their own (`fuzz`, `validate`, `torture`,
+//! `faults_random`) and those that ask how soon processes end (`faults`).
+
+mod agreement;
+mod architecture;
+mod beds;
+mod case_files;
+mod contacts_agree;
+mod continuation;
+mod drag_ripple;
+mod frank_kamenetskii;
+mod heat_paths;
+mod heated_column;
+mod held_and_free;
+mod held_bed;
+mod liggghts_script;
+mod measures;
+mod momentum_models;
+mod moving_beds;
+mod moving_heat;
+mod moving_native;
+mod moving_pairings;
+mod moving_reactions;
+mod moving_single;
+mod openfoam_models;
+mod reactions;
+mod readers;
+mod results;
+mod results_pages;
+mod resume;
+mod resume_facets;
+mod resume_ranks;
+mod schema;
+mod shipped_cases;
+mod stock_solver;
+mod support;
+mod test_programs;
+mod time_splitting;
+mod verification_beds;
