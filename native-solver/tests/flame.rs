@@ -25,6 +25,15 @@ const PRESSURE: f64 = 10_132.5;
 /// Methane over what the air could burn.
 const RATIO: f64 = 0.8;
 
+/// Kind `regression`: what this program gave on this mesh when the test was written. Held against no reference and no
+/// verification; to be recorded again, with the reason, where mesh, scheme or mechanism change.
+mod regression {
+    /// Distance of the flame from the inlet in m: four cells.
+    pub const PLACE: f64 = 1.7546e-3;
+    /// Highest temperature in K.
+    pub const PEAK: f64 = 1930.81;
+}
+
 /// Mass fractions of methane in air (O2 with 3.76 N2).
 fn fresh(mixture: &Mixture) -> Vec<f64> {
     mixture.mass_fractions(&[RATIO, 2.0, 0.0, 0.0, 0.0, 0.0, 7.52])
@@ -149,9 +158,13 @@ fn a_flame_stands_where_it_stands_whatever_the_acceleration() {
     settle(&mut flame, 678.0, 60);
     let (place, peak) = place_and_peak(&flame);
     println!("AF 678: {place} m, {peak} K after {} windows", flame.index);
-    // Four cells from the inlet, below the adiabatic temperature; what this mesh gave at first.
-    assert!((place / 1.7546e-3 - 1.0).abs() < 1e-3, "{place} m");
-    assert!((peak - 1930.81).abs() < 0.1, "{peak} K");
+    let place_error = place / regression::PLACE - 1.0;
+    assert!(place_error.abs() < 1e-3, "regression: {place} m");
+    assert!(
+        (peak - regression::PEAK).abs() < 0.1,
+        "regression: {peak} K"
+    );
+    // No lean flame exceeds the temperature of burning completely without loss.
     assert!(peak < adiabatic(&mixture()), "{peak} K");
 
     // Found from the same start at another factor; the slowest of it takes some hundred pseudo-steps to die away.
