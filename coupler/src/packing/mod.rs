@@ -1,6 +1,7 @@
 //! Packed beds to start from: random packings by geometry alone, and regular stackings.
 
 mod container;
+mod error;
 pub(crate) mod random;
 pub mod regular;
 mod relax;
@@ -9,11 +10,12 @@ mod sizes;
 use std::f64::consts::PI;
 
 use calcine_physics::Vec3;
-use thiserror::Error;
 
+pub use error::PackingError;
 pub use sizes::{Shape, Share, Sizes};
 
 use container::{Container, Section};
+use error::positive;
 use random::SplitMix64;
 
 /// Most spheres of one packing.
@@ -59,34 +61,6 @@ pub struct RandomSpec {
     pub seed: u64,
     /// Of the diameters, where they differ.
     pub size_seed: u64,
-}
-
-/// A packing that cannot be made.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum PackingError {
-    /// A number that has no meaning.
-    #[error("the packing's {what} is {value}; it needs {need}")]
-    Value {
-        /// Which number.
-        what: &'static str,
-        /// Its value in SI units.
-        value: f64,
-        /// What it may be.
-        need: &'static str,
-    },
-    /// Spheres that overlap still.
-    #[error(
-        "{count} spheres cannot be packed at a solid fraction of {target}: {reached:.4} was reached \
-         without overlap; lower the solid fraction"
-    )]
-    Fraction {
-        /// Number of spheres.
-        count: usize,
-        /// Wanted solid fraction.
-        target: f64,
-        /// Solid fraction with the spheres shrunk until none overlap.
-        reached: f64,
-    },
 }
 
 /// A random packing in an upright cylinder; `origin` is the centre of its bottom, in m.
@@ -166,14 +140,6 @@ fn check(spec: &RandomSpec) -> Result<(), PackingError> {
         Fill::Height(height) => positive("height", height),
         Fill::Number(count) => positive("number of spheres", count as f64),
     }
-}
-
-fn positive(what: &'static str, value: f64) -> Result<(), PackingError> {
-    if value.is_finite() && value > 0.0 {
-        return Ok(());
-    }
-    let need = "a number above 0";
-    Err(PackingError::Value { what, value, need })
 }
 
 /// Diameters in m of all spheres: as many as asked for, or as come nearest to the solid volume.

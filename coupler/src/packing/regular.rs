@@ -3,7 +3,8 @@
 use calcine_physics::Vec3;
 
 use super::container::{Container, Section};
-use super::{MOST, Packing, PackingError, positive, too_many};
+use super::error::{PackingError, positive};
+use super::{MOST, Packing, too_many};
 
 /// Regular stackings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Distributions of diameters.
 
+use super::error::{PackingError, positive};
 use super::random::SplitMix64;
-use super::{PackingError, positive};
 
 /// Diameters of the spheres.
 #[derive(Clone, Debug, PartialEq)]

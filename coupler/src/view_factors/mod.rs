@@ -19,6 +19,7 @@
 //! symmetrically, until what each particle emits arrives somewhere ([`balance`]).
 
 mod balance;
+mod ray;
 mod trace;
 mod tree;
 mod wall;
@@ -33,8 +34,9 @@ use rayon::prelude::*;
 
 use crate::contacts::pairs_around;
 use crate::packing::random::SplitMix64;
+pub use ray::RayHit;
 use trace::{SphereGrid, meets};
-pub use wall::{RayHit, WallSurface};
+pub use wall::WallSurface;
 
 /// How views are found.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use calcine_physics::Vec3;
 
-use super::wall::RayHit;
+use super::ray::RayHit;
 
 /// Triangles to a leaf at most.
 const LEAF: usize = 4;

@@ -2,17 +2,9 @@
 
 use calcine_physics::Vec3;
 
+use super::ray::RayHit;
 use super::tree::TriangleTree;
 use crate::motion::WallShape;
-
-/// Where a ray meets a wall.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RayHit {
-    /// Distance along the ray in m.
-    pub distance: f64,
-    /// Unit normal of the wall, against the ray.
-    pub normal: Vec3,
-}
 
 /// The shape of a wall, ready to be asked.
 #[derive(Clone, Debug)]

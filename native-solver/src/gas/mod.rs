@@ -15,6 +15,7 @@ mod pressure;
 mod species;
 mod state;
 mod stirring;
+mod tolerance;
 mod transport;
 mod turbulence;
 

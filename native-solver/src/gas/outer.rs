@@ -13,6 +13,7 @@ use super::momentum::Momentum;
 use super::pressure::{self, Pressure};
 use super::species::SpeciesEquations;
 use super::state::GasState;
+use super::tolerance::ScalarTolerance;
 use crate::numerics::grid::MeshGraph;
 use crate::numerics::krylov::Krylov;
 use crate::numerics::matrix::Matrix;
@@ -31,15 +32,6 @@ const PSEUDO_STEPS: u32 = 5;
 
 /// They need not change a value by less than this share of the residual of momentum and continuity, whose fluxes they take.
 const CLOSER: f64 = 0.1;
-
-/// When the solve of a scalar ends: where its residual is below either.
-#[derive(Clone, Copy, Debug)]
-pub struct ScalarTolerance {
-    /// As a share of what moves: through the boundary, from the particles, into storage.
-    pub absolute: f64,
-    /// As a share of the initial residual.
-    pub relative: f64,
-}
 
 /// The equations and their scratch memory, reused from window to window.
 #[derive(Debug)]

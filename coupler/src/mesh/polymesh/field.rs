@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::PolyMeshError;
+use super::error::PolyMeshError;
 use super::tokens::{Header, Scanner};
 
 /// The `internalField` of a file of a time directory: `components` numbers for each of so many cells, one

@@ -1,50 +1,13 @@
 //! OpenFOAM's polyMesh folders: `points`, `faces`, `owner`, `neighbour`, `boundary`, as
 //! OpenFOAM 1912 reads and writes them (its User Guide, chapter "Mesh generation and conversion").
 
+mod error;
 mod field;
 mod read;
 mod tokens;
 mod write;
 
-use std::path::PathBuf;
-
-use thiserror::Error;
-
+pub use error::PolyMeshError;
 pub use field::internal_field;
 pub use read::read;
 pub use write::{write, write_with};
-
-use super::MeshError;
-
-/// A polyMesh folder that cannot be read or written.
-#[derive(Debug, Error)]
-pub enum PolyMeshError {
-    /// A file could not be opened, read or written.
-    #[error("{}: {cause}", file.display())]
-    Io {
-        /// The file.
-        file: PathBuf,
-        /// What the system said.
-        #[source]
-        cause: std::io::Error,
-    },
-    /// A file that does not read as its kind should.
-    #[error("{}, line {line}: {message}", file.display())]
-    Syntax {
-        /// The file.
-        file: PathBuf,
-        /// Line, counted from 1.
-        line: usize,
-        /// What was expected and what is there.
-        message: String,
-    },
-    /// Files that read well but make no mesh.
-    #[error("{}: {cause}", folder.display())]
-    Mesh {
-        /// The polyMesh folder.
-        folder: PathBuf,
-        /// What is wrong with the mesh.
-        #[source]
-        cause: MeshError,
-    },
-}

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use calcine_physics::Vec3;
 
-use super::PolyMeshError;
+use super::error::PolyMeshError;
 use super::tokens::{Header, Scanner};
 use crate::mesh::{Mesh, Patch, Topology};
 

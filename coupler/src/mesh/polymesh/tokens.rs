@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::PolyMeshError;
+use super::error::PolyMeshError;
 
 /// A place in a file's bytes.
 pub(super) struct Scanner<'a> {

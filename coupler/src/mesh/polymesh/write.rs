@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use super::PolyMeshError;
+use super::error::PolyMeshError;
 use crate::mesh::Mesh;
 
 /// Writes the five files of a mesh, in ASCII, into a polyMesh folder, which is made if it is not

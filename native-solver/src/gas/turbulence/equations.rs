@@ -13,8 +13,9 @@ use calcine_coupler::physics::turbulence::KEpsilon;
 use calcine_coupler::turbulence::is_free;
 use nalgebra::Matrix3;
 
+use super::eddies::Eddies;
+use super::update_viscosity;
 use super::wall::{self, WallFace, WallLaw, wall_faces};
-use super::{Eddies, update_viscosity};
 use crate::gas::boundary::{Boundaries, FaceCondition};
 use crate::gas::state::GasState;
 use crate::numerics::grid::{CellFace, MeshGraph};

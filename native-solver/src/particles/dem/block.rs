@@ -7,12 +7,13 @@ use calcine_coupler::motion::Rolling;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{CohesionArea, ContactModel};
 
+use super::candidates::{CandidatePairs, TouchingPair};
 use super::contact::{SurfaceOverlap, evaluate};
 use super::energy::ContactEnergy;
+use super::force_context::ForceContext;
 use super::lanes;
 use super::rules::ContactRules;
 use super::sphere::{SphereLoad, SphereMotion, SpherePosition, Spheres};
-use super::walls::WallBody;
 use super::walls::group::WallContacts;
 
 /// Most and fewest particles per block.
@@ -26,58 +27,6 @@ const BLOCKS: usize = 16;
 pub fn size(count: usize) -> usize {
     let share = count.div_ceil(BLOCKS).next_power_of_two();
     share.clamp(SIZES[0], SIZES[1])
-}
-
-/// Pairs that may touch, with their memory. Arrays that a run does not need are empty.
-#[derive(Clone, Debug, Default)]
-pub struct CandidatePairs {
-    /// Indices of the two spheres; the first is of the block.
-    pub pair: Vec<[u32; 2]>,
-    /// Elongations of tangential springs in m; what does not touch has none, whatever stands here.
-    pub shift: Vec<Vec3>,
-    /// Those that touched in the last evaluation.
-    pub touched: Vec<bool>,
-    /// Torques of rolling springs in N m.
-    pub rolling: Vec<Vec3>,
-    /// What the law prepared.
-    pub prepared: Vec<f64>,
-}
-
-impl CandidatePairs {
-    /// Forgets all; keeps the memory.
-    pub fn clear(&mut self) {
-        self.pair.clear();
-        self.shift.clear();
-        self.touched.clear();
-        self.rolling.clear();
-        self.prepared.clear();
-    }
-}
-
-/// A candidate that touches: its index, and whether it did in the evaluation before.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct TouchingPair(u32);
-
-impl TouchingPair {
-    /// The bit beside the index.
-    const KEPT: u32 = 1 << 31;
-
-    #[inline(always)]
-    fn new(index: usize, kept: bool) -> Self {
-        Self(index as u32 | u32::from(kept) << 31)
-    }
-
-    /// Index of the candidate.
-    #[inline(always)]
-    pub fn index(self) -> usize {
-        (self.0 & !Self::KEPT) as usize
-    }
-
-    /// True where it touched before: its spring goes on.
-    #[inline(always)]
-    pub fn kept(self) -> bool {
-        self.0 & Self::KEPT != 0
-    }
 }
 
 /// A block.
@@ -104,22 +53,6 @@ pub struct Block {
     /// Impulse in N s that walls and held particles gave its free ones, and what of it others' free ones
     /// got: sums over all blocks are of free particles.
     pub support: Vec3,
-}
-
-/// What an evaluation of all forces shares.
-pub struct ForceContext<'a, L> {
-    /// The contact law.
-    pub law: &'a L,
-    /// Constants and options.
-    pub rules: &'a ContactRules,
-    /// The particles.
-    pub spheres: &'a Spheres,
-    /// The walls where they are now.
-    pub walls: &'a [WallBody],
-    /// Time in s over which memories are brought up to date.
-    pub step: f64,
-    /// Number of this evaluation.
-    pub stamp: u64,
 }
 
 impl Block {

@@ -7,7 +7,8 @@ use std::ops::Range;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{ContactModel, PairConstants};
 
-use super::block::{CandidatePairs, ForceContext, TouchingPair};
+use super::candidates::{CandidatePairs, TouchingPair};
+use super::force_context::ForceContext;
 use super::sphere::SphereLoad;
 
 /// Contacts at a time.

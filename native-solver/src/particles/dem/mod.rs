@@ -6,9 +6,11 @@
 //! threads.
 
 mod block;
+mod candidates;
 mod contact;
 pub mod energy;
 mod engine;
+mod force_context;
 mod grid;
 mod lanes;
 mod motion;

@@ -4,7 +4,8 @@ use calcine_coupler::motion::WallShape;
 use calcine_coupler::physics::contact::{ContactModel, PairConstants};
 use rayon::prelude::*;
 
-use super::block::{Block, CandidatePairs, TouchingPair, size};
+use super::block::{Block, size};
+use super::candidates::{CandidatePairs, TouchingPair};
 use super::grid::{self, CellNeighbourhood, SearchGrid};
 use super::rules::ContactRules;
 use super::sphere::{SphereLoad, Spheres};

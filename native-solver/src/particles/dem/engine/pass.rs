@@ -4,7 +4,8 @@ use calcine_coupler::motion::ContactForce;
 use calcine_coupler::physics::contact::{ContactModel, HertzMindlin, Linear, SpringSliderDashpot};
 use rayon::prelude::*;
 
-use super::super::block::{Block, ForceContext, size};
+use super::super::block::{Block, size};
+use super::super::force_context::ForceContext;
 use super::super::motion;
 use super::super::sphere::SphereLoad;
 use super::Engine;

@@ -6,9 +6,9 @@ use calcine_coupler::motion::{Rolling, WallShape};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{CohesionArea, ContactModel};
 
-use super::super::block::ForceContext;
 use super::super::contact::{SurfaceOverlap, evaluate};
 use super::super::energy::ContactEnergy;
+use super::super::force_context::ForceContext;
 use super::super::sphere::{SphereLoad, SpherePosition};
 use super::WallBody;
 use super::shape::{self, NearestPoint};

@@ -1,0 +1,39 @@
+//! What can go wrong with a packing.
+
+use thiserror::Error;
+
+/// A packing that cannot be made.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum PackingError {
+    /// A number that has no meaning.
+    #[error("the packing's {what} is {value}; it needs {need}")]
+    Value {
+        /// Which number.
+        what: &'static str,
+        /// Its value in SI units.
+        value: f64,
+        /// What it may be.
+        need: &'static str,
+    },
+    /// Spheres that overlap still.
+    #[error(
+        "{count} spheres cannot be packed at a solid fraction of {target}: {reached:.4} was reached \
+         without overlap; lower the solid fraction"
+    )]
+    Fraction {
+        /// Number of spheres.
+        count: usize,
+        /// Wanted solid fraction.
+        target: f64,
+        /// Solid fraction with the spheres shrunk until none overlap.
+        reached: f64,
+    },
+}
+
+pub(super) fn positive(what: &'static str, value: f64) -> Result<(), PackingError> {
+    if value.is_finite() && value > 0.0 {
+        return Ok(());
+    }
+    let need = "a number above 0";
+    Err(PackingError::Value { what, value, need })
+}
