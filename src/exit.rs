@@ -24,6 +24,7 @@ pub fn of(error: &RunError) -> u8 {
         RunError::Part(part) => match part.kind {
             FailureKind::Diverged => DIVERGED,
             FailureKind::Io => OTHER,
+            FailureKind::Refused => CASE,
             FailureKind::Interrupted => CHECKPOINTED,
             FailureKind::Died
             | FailureKind::Silent

@@ -479,6 +479,12 @@ impl ExternalSolver {
             .wait(links, supervisor, None, MessageKind::Changed, self.asked)
     }
 
+    /// Sets conditions of patches from the next window on, told in a text.
+    pub fn set_boundary(&mut self, text: &str) -> Result<(), PartError> {
+        self.send_text(MessageKind::Boundary, text)?;
+        self.wait_alone(MessageKind::Boundary)
+    }
+
     /// Ends the solver in an orderly way.
     pub fn goodbye(&mut self) -> Result<(), PartError> {
         self.send_text(MessageKind::Bye, "")?;

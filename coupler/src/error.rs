@@ -23,6 +23,8 @@ pub enum FailureKind {
     Reported,
     /// A file could not be read or written.
     Io,
+    /// It was asked for something that it cannot do.
+    Refused,
     /// The user interrupted the run.
     Interrupted,
 }

@@ -8,7 +8,8 @@ use std::time::Duration;
 
 use calcine_physics::Vec3;
 
-use crate::error::PartError;
+use crate::boundary_value::BoundaryValue;
+use crate::error::{FailureKind, PartError};
 use crate::mesh::Mesh;
 use crate::motion::ParticleChanges;
 use crate::supervisor::Supervisor;
@@ -216,6 +217,22 @@ pub trait Gas: Part {
 
     /// Fields after the last finished attempt (initially: the start of the run).
     fn fields(&self) -> GasFields<'_>;
+
+    /// Sets a condition of a patch from the start of the next window on; between two windows, after a commit. What
+    /// was set is no part of the gas' checkpoint: the coordinator sets it again after a resume.
+    fn set_boundary(&mut self, value: &BoundaryValue) -> Result<(), PartError> {
+        let message = format!(
+            "the condition `{}` at patch `{}` cannot be set while this solver runs; native gas and calcineGasFoam \
+             can",
+            value.quantity.name(),
+            value.patch
+        );
+        Err(PartError::new(
+            self.about().name.clone(),
+            FailureKind::Refused,
+            message,
+        ))
+    }
 
     /// Starts an attempt from the last commit; does not wait. Attempts of one window above 0 may take what the
     /// attempt before found as their first guess, never as the old state.

@@ -1,6 +1,8 @@
 #include "boundary.H"
 #include "processorFvPatch.H"
 
+#include <sstream>
+
 namespace
 {
 
@@ -98,6 +100,66 @@ Foam::calcine::boundary::boundary
         {
             passages_[patchi] = passage::given;
         }
+    }
+}
+
+
+void Foam::calcine::boundary::set(const std::string& lines, const wordList& species)
+{
+    std::istringstream all(lines);
+    std::string line;
+    while (std::getline(all, line))
+    {
+        std::istringstream words(line);
+        std::string patch, condition, text;
+        words >> patch >> condition;
+        scalarList values;
+        while (words >> text)
+        {
+            values.append(std::stod(text));
+        }
+        const label patchi = mesh_.boundaryMesh().findPatchID(patch);
+        driven* found = nullptr;
+        for (driven& d : driven_)
+        {
+            found = d.patch == patchi && patchi >= 0 ? &d : found;
+        }
+        const bool composition = condition == "composition";
+        if (!found || values.size() != (composition ? species.size() : 1))
+        {
+            FatalErrorInFunction
+                << "the condition \"" << line.c_str() << "\" cannot be set: the driven patches are of the mesh's "
+                << mesh_.boundaryMesh().names() << ", and there are " << species.size() << " species"
+                << exit(FatalError);
+        }
+        if (composition)
+        {
+            forAll(species, k)
+            {
+                found->composition.set(species[k], new schedule(values[k]));
+            }
+            continue;
+        }
+        if (condition == "superficial_velocity" || condition == "mass_flow")
+        {
+            found->superficialVelocity.clear();
+            found->massFlow.clear();
+        }
+        autoPtr<schedule>* table =
+            condition == "superficial_velocity" ? &found->superficialVelocity
+          : condition == "mass_flow" ? &found->massFlow
+          : condition == "temperature" ? &found->temperature
+          : condition == "pressure" ? &found->pressure
+          : condition == "heat_flux" ? &found->heatFlux
+          : condition == "heat_transfer_coefficient" ? &found->coefficient
+          : condition == "ambient" ? &found->ambient
+          : nullptr;
+        if (!table)
+        {
+            FatalErrorInFunction
+                << "there is no condition \"" << condition.c_str() << "\" of a patch" << exit(FatalError);
+        }
+        table->reset(new schedule(values[0]));
     }
 }
 

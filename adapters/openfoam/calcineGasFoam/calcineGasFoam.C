@@ -230,6 +230,11 @@ void serve
                 gas.checkpoint(link.text());
                 send(link, CALCINE_CHECKPOINTED, gas, emptyReport(cells, gas.speciesNames().size()));
                 break;
+            case CALCINE_BOUNDARY:
+                gas.setBoundary(link.text());
+                link.loan(CALCINE_BOUNDARY, 0);
+                link.send();
+                break;
             case CALCINE_BYE:
                 link.loan(CALCINE_BYE, 0);
                 link.send();

@@ -16,12 +16,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
+use calcine_coupler::boundary_value::BoundaryValue;
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::part::{
     Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
 };
-use calcine_coupler::setup::GasSetup;
+use calcine_coupler::setup::{GasPatch, GasSetup};
 use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::{GasStorage, Window};
 use calcine_wire::{Catalogue, Hello, MessageKind};
@@ -87,6 +88,10 @@ pub struct OpenfoamGas {
     species: usize,
     /// True where it has eddies.
     turbulent: bool,
+    /// Which program computes it.
+    program: Solver,
+    /// Conditions of the patches as they were set last.
+    patches: Vec<(String, GasPatch)>,
     state: ReceivedGas,
     window: Option<Window>,
 }
@@ -196,6 +201,8 @@ impl OpenfoamGas {
             storage: launch.setup.storage,
             species,
             turbulent,
+            program: launch.solver,
+            patches: launch.setup.patches.clone(),
             state: ReceivedGas::default(),
             window: None,
         };
@@ -296,6 +303,18 @@ impl Part for OpenfoamGas {
 impl Gas for OpenfoamGas {
     fn mesh(&self) -> &Mesh {
         &self.mesh
+    }
+
+    fn set_boundary(&mut self, value: &BoundaryValue) -> Result<(), PartError> {
+        let refused = |message: String| PartError::new(NAME, FailureKind::Refused, message);
+        if self.program.is_stock() {
+            return Err(refused(format!(
+                "a stock solver takes its conditions from its own case: `{value}` cannot be set while it runs"
+            )));
+        }
+        let set = value.apply(&mut self.patches);
+        set.map_err(|error| refused(error.to_string()).caused_by(error))?;
+        self.solver.set_boundary(&value.line())
     }
 
     fn fields(&self) -> GasFields<'_> {

@@ -11,6 +11,8 @@
  *     CALCINE_COMMIT      take the last attempt as the start of the next; no answer
  *     CALCINE_CHECKPOINT  write into the directory that calcine_link_text gives, re-initialise from
  *                         what was written; answer CALCINE_CHECKPOINTED with the state
+ *     CALCINE_BOUNDARY    conditions of patches from the next window on: a text with a line each, patch,
+ *                         condition and values; answer CALCINE_BOUNDARY without columns
  *     CALCINE_BYE         answer CALCINE_BYE, close the link, exit with 0
  *
  * The next request may arrive before the answer to the last one only after CALCINE_COMMIT.
@@ -52,7 +54,8 @@ typedef enum calcine_kind {
     CALCINE_CHECKPOINTED = 7,
     CALCINE_FAILED = 8,
     CALCINE_BYE = 9,
-    CALCINE_OWNED = 10
+    CALCINE_OWNED = 10,
+    CALCINE_BOUNDARY = 13
 } calcine_kind;
 
 /* What stands before the columns of a message. Times in ticks of 1e-12 s. */

@@ -35,6 +35,7 @@ impl ColumnSet {
             | MessageKind::Commit
             | MessageKind::Checkpoint
             | MessageKind::Change
+            | MessageKind::Boundary
             | MessageKind::Failed
             | MessageKind::Bye => None,
         }

@@ -36,11 +36,14 @@ pub enum MessageKind {
     Change = 11,
     /// The change is made; the state after it (columns).
     Changed = 12,
+    /// Conditions of a gas' patches from the next window on (text: a line each of patch, condition and values);
+    /// answered by the same kind without a payload.
+    Boundary = 13,
 }
 
 impl MessageKind {
     /// All kinds.
-    pub const ALL: [MessageKind; 12] = [
+    pub const ALL: [MessageKind; 13] = [
         MessageKind::Hello,
         MessageKind::State,
         MessageKind::Start,
@@ -53,6 +56,7 @@ impl MessageKind {
         MessageKind::Owned,
         MessageKind::Change,
         MessageKind::Changed,
+        MessageKind::Boundary,
     ];
 
     /// The kind of a number on the wire.

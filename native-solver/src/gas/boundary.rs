@@ -17,6 +17,8 @@ const TANGENTIAL: f64 = 1e-9;
 /// A patch and its condition.
 #[derive(Clone, Debug)]
 struct Boundary {
+    /// Its name.
+    name: String,
     /// Area in m².
     area: f64,
     condition: GasPatch,
@@ -151,6 +153,7 @@ impl Boundaries {
             let index = boundaries.patches.len() as u32;
             boundaries.patch_of.extend(patch.faces().map(|_| index));
             boundaries.patches.push(Boundary {
+                name: patch.name.clone(),
                 area: patch
                     .faces()
                     .map(|face| mesh.face_area()[face].norm())
@@ -176,6 +179,16 @@ impl Boundaries {
     pub fn closed(&self) -> bool {
         let outlet = |boundary: &Boundary| matches!(boundary.condition, GasPatch::Outlet { .. });
         !self.patches.iter().any(outlet)
+    }
+
+    /// Takes up conditions that were set since.
+    pub fn take(&mut self, setup: &GasSetup) {
+        for boundary in &mut self.patches {
+            let named = setup.patches.iter().find(|(name, _)| *name == boundary.name);
+            if let Some((_, condition)) = named {
+                boundary.condition.clone_from(condition);
+            }
+        }
     }
 
     /// Evaluates all conditions at a process time in s.

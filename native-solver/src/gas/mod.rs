@@ -22,6 +22,7 @@ mod turbulence;
 use std::path::Path;
 use std::sync::Arc;
 
+use calcine_coupler::boundary_value::BoundaryValue;
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::part::{
@@ -282,6 +283,16 @@ impl Gas for NativeGas {
             pressure_gradient: &self.now.pressure_gradient,
             turbulence: self.now.turbulence.fields(),
         }
+    }
+
+    fn set_boundary(&mut self, value: &BoundaryValue) -> Result<(), PartError> {
+        let set = value.apply(&mut self.setup.patches);
+        set.map_err(|error| {
+            self.failure(FailureKind::Refused, error.to_string())
+                .caused_by(error)
+        })?;
+        self.boundaries.take(&self.setup);
+        Ok(())
     }
 
     fn start(
