@@ -27,7 +27,7 @@ pub struct SolverInfo {
 }
 
 /// What every participant can do.
-pub trait Part {
+pub trait Part: Send {
     /// Name, version, ranks.
     fn about(&self) -> &SolverInfo;
 

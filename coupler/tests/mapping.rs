@@ -31,7 +31,7 @@ fn warped() -> Mesh {
     Mesh::new(topology).unwrap()
 }
 
-fn weights_at(mapper: &Mapper<'_>, method: Method, at: Vec3, radius: f64) -> Vec<f64> {
+fn weights_at(mapper: &Mapper<&Mesh>, method: Method, at: Vec3, radius: f64) -> Vec<f64> {
     let weights = mapper.fill(method, &[at], &[radius]).unwrap();
     let mut cells = vec![0.0; weights.cells()];
     for (cell, share) in weights.of_particle(0) {

@@ -7,6 +7,7 @@ mod prepared;
 mod solvers;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use calcine_coupler::coordinator::{CheckpointPaths, CoupledRun, Origin, RunError, RunParts};
 use calcine_coupler::error::PartError;
@@ -75,12 +76,12 @@ pub struct RunSettings<'a> {
 }
 
 /// Builds the run.
-pub fn assemble<'m>(
+pub fn assemble(
     case: &Case,
-    prepared: &'m PreparedCase,
+    prepared: &PreparedCase,
     settings: &RunSettings<'_>,
     supervisor: &mut Supervisor,
-) -> Result<CoupledRun<'m>, AssemblyError> {
+) -> Result<CoupledRun, AssemblyError> {
     if let Some(origin) = settings.from {
         let species = case.gas.properties.species();
         origin.check(&prepared.mesh, species, &prepared.particles)?;
@@ -109,7 +110,13 @@ pub fn assemble<'m>(
         plan.exchange_attempts = 1;
         plan.repeats = false;
     }
-    let mut run = CoupledRun::new(plan, &prepared.mesh, smoother, plan::closures(case), parts)?;
+    let mut run = CoupledRun::new(
+        plan,
+        Arc::clone(&prepared.mesh),
+        smoother,
+        plan::closures(case),
+        parts,
+    )?;
     if settings.resume {
         run.resume()?;
     } else if let Some(origin) = settings.from {

@@ -48,7 +48,7 @@ impl PreparedCase {
         let particles = &self.particles;
         let volume = |r: &f64| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3);
         let volumes: Vec<f64> = particles.radius.iter().map(volume).collect();
-        let mapper = Mapper::new(&self.mesh);
+        let mapper = Mapper::new(&*self.mesh);
         let weights = mapper
             .fill(method(case), &particles.position, &particles.radius)
             .map_err(RunError::from)?;

@@ -89,7 +89,7 @@ pub struct OpenfoamGas {
     /// True where it has eddies.
     turbulent: bool,
     /// Which program computes it.
-    program: Solver,
+    program: StockSolver,
     /// Conditions of the patches as they were set last.
     patches: Vec<(String, GasPatch)>,
     state: ReceivedGas,

@@ -11,7 +11,7 @@ use crate::run::LinkAddress;
 
 /// Moves messages between the two ends of a link. At most one message is reserved and at most one is
 /// held as received at a time; both stay in place, nothing is copied.
-pub trait Transport {
+pub trait Transport: Send {
     /// Reserves the next message with a payload of `words` words of 8 bytes, whose content is
     /// unspecified until written; a reserved message that was not sent is dropped.
     fn loan(&mut self, header: Header, words: usize) -> Result<&mut [u64], WireError>;

@@ -102,12 +102,9 @@ fn sync(directory: &Path) -> io::Result<()> {
     fs::File::open(directory)?.sync_all()
 }
 
-impl CoupledRun<'_> {
+impl CoupledRun {
     /// Writes a checkpoint of all participants; each goes on from what it wrote.
-    pub(super) fn checkpoint(
-        &mut self,
-        observers: &mut [&mut dyn Observer],
-    ) -> Result<(), RunError> {
+    pub fn checkpoint(&mut self, observers: &mut [&mut dyn Observer]) -> Result<(), RunError> {
         let begun = Instant::now();
         let fresh = self.plan.checkpoint.fresh();
         let failed = |doing, cause| CheckpointError::Io {
@@ -137,6 +134,7 @@ impl CoupledRun<'_> {
             self.paths.forget();
             self.find_contacts();
         }
+        self.last_checkpoint = Instant::now();
         self.timing.output += begun.elapsed();
         Ok(())
     }
@@ -198,6 +196,7 @@ impl CoupledRun<'_> {
             .collect();
         state.set_f64s("traffic_moved", &moved);
         self.plan.feeds_and_outlets.record(&mut state);
+        self.record_controls(&mut state);
         self.record_identity(&mut state);
         state
     }
@@ -266,6 +265,7 @@ impl CoupledRun<'_> {
         if let [held] = *state.u64s("held")? {
             self.held = Ticks::new(held.cast_signed());
         }
+        self.restore_controls(&state)?;
         self.paths.forget();
         self.find_contacts();
         Ok(())

@@ -11,7 +11,7 @@ use crate::part::ParticleFields;
 use crate::supervisor::Supervisor;
 use crate::time::Window;
 
-impl CoupledRun<'_> {
+impl CoupledRun {
     /// Lets feeds and outlets act before a window, and books what they moved. They stand while the bed is held.
     pub(super) fn feed_and_discharge(
         &mut self,

@@ -6,7 +6,7 @@ use crate::motion::ParticleChanges;
 use crate::supervisor::Supervisor;
 use crate::time::{Clocks, Window};
 
-impl CoupledRun<'_> {
+impl CoupledRun {
     /// True where particles that move are held over a window.
     pub(super) fn holds(&self, window: &Window) -> bool {
         !self.plan.free.is_empty() && self.plan.holds.at(window.start.process).0

@@ -1,6 +1,7 @@
 //! The loop: windows, attempts, commits, checkpoints.
 
 mod checkpoint;
+mod controls;
 mod feeds;
 mod hold;
 mod momentum;
@@ -11,6 +12,7 @@ mod span;
 mod window;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use calcine_interior::ParticleModel;
@@ -20,6 +22,7 @@ use calcine_physics::thermo::Element;
 use thiserror::Error;
 
 pub use checkpoint::{CheckpointError, CheckpointPaths};
+pub use controls::{Control, ControlError};
 pub use origin::{Origin, OriginError};
 pub use resize::{ContactStepLimit, LONGEST_STEP, TooLight};
 
@@ -124,6 +127,9 @@ pub enum RunError {
     /// A particle too light for the solver's time step.
     #[error(transparent)]
     TooLight(#[from] TooLight),
+    /// Something that cannot be set.
+    #[error(transparent)]
+    Control(#[from] ControlError),
     /// A feed whose particles cannot be drawn.
     #[error("feeds: {0}")]
     Feed(#[from] PackingError),
@@ -191,10 +197,10 @@ struct Workspace {
 }
 
 /// A run: the parts, the laws, the state of the loop.
-pub struct CoupledRun<'m> {
+pub struct CoupledRun {
     plan: Plan,
-    mesh: &'m Mesh,
-    mapper: Mapper<'m>,
+    mesh: Arc<Mesh>,
+    mapper: Mapper<Arc<Mesh>>,
     smoother: Smoother,
     closures: Closures,
     parts: RunParts,
@@ -209,18 +215,23 @@ pub struct CoupledRun<'m> {
     exchange_convergence: ExchangeConvergence,
     work: Workspace,
     paths: Paths,
+    /// What was set while the run goes on, each condition once.
+    controls: Vec<Control>,
+    /// The window committed last, and when the last checkpoint was written.
+    last: Option<crate::time::Window>,
+    last_checkpoint: Instant,
 }
 
-impl<'m> CoupledRun<'m> {
+impl CoupledRun {
     /// Maps the bed for the first time; the clocks stand at zero.
     pub fn new(
         plan: Plan,
-        mesh: &'m Mesh,
+        mesh: Arc<Mesh>,
         smoother: Smoother,
         closures: Closures,
         parts: RunParts,
     ) -> Result<Self, RunError> {
-        let mapper = Mapper::new(mesh);
+        let mapper = Mapper::new(Arc::clone(&mesh));
         let elements = elements(&closures, &*parts.interior).into_iter();
         let mut timing = Timing::default();
         let particles = &*parts.particles;
@@ -259,6 +270,9 @@ impl<'m> CoupledRun<'m> {
                 ..ExchangeConvergence::default()
             },
             work,
+            controls: Vec::new(),
+            last: None,
+            last_checkpoint: Instant::now(),
         };
         run.find_contacts();
         run.weigh();
@@ -266,53 +280,95 @@ impl<'m> CoupledRun<'m> {
     }
 
     /// Runs to the end, to an interrupt's checkpoint, or to an error.
-    ///
-    /// A finished run leaves a last checkpoint without the observers' part: another case may
-    /// continue from it, but there is nothing left to resume.
     pub fn run(
         &mut self,
         supervisor: &Supervisor,
         observers: &mut [&mut dyn Observer],
     ) -> Result<Ending, RunError> {
+        self.begin(observers)?;
+        loop {
+            if let Some(ending) = self.step(supervisor, observers)? {
+                return Ok(ending);
+            }
+        }
+    }
+
+    /// Shows the observers where the run stands, before the first step of this process.
+    pub fn begin(&mut self, observers: &mut [&mut dyn Observer]) -> Result<(), RunError> {
         for observer in observers.iter_mut() {
-            observer.start(&self.moment(None))?;
+            observer.start(&self.state())?;
         }
-        let mut last_checkpoint = Instant::now();
-        let mut last = None;
-        while self.clocks.process < self.plan.end {
-            let window = self.next_window()?;
-            self.bring_to_rest(supervisor, &window)?;
-            self.feed_and_discharge(supervisor, &window)?;
-            self.advance(supervisor, &window)?;
-            self.resize(supervisor)?;
-            last = Some(window);
+        self.last_checkpoint = Instant::now();
+        Ok(())
+    }
 
-            let output = Instant::now();
-            for observer in observers.iter_mut() {
-                observer.window(&self.moment(Some(&window)))?;
-            }
-            self.timing.output += output.elapsed();
-
-            let interrupted = supervisor.interrupts().count() > 0;
-            let finished = self.clocks.process >= self.plan.end;
-            let due = self.checkpoint_due(window.start.process, last_checkpoint.elapsed());
-            if (interrupted || due) && !finished {
-                self.checkpoint(observers)?;
-                last_checkpoint = Instant::now();
-            }
-            if interrupted && !finished {
-                let directory = self.plan.checkpoint.committed();
-                self.finish_parts(supervisor)?;
-                return Ok(Ending::Checkpointed(directory));
-            }
+    /// One window, with the output and the checkpoint that are due after it; `None` as long as the run goes on.
+    ///
+    /// A finished run leaves a last checkpoint without the observers' part: another case may
+    /// continue from it, but there is nothing left to resume.
+    pub fn step(
+        &mut self,
+        supervisor: &Supervisor,
+        observers: &mut [&mut dyn Observer],
+    ) -> Result<Option<Ending>, RunError> {
+        if self.clocks.process >= self.plan.end {
+            return self.finish(supervisor, observers).map(Some);
         }
+        let window = self.next_window()?;
+        self.bring_to_rest(supervisor, &window)?;
+        self.feed_and_discharge(supervisor, &window)?;
+        self.advance(supervisor, &window)?;
+        self.resize(supervisor)?;
+        self.last = Some(window);
+
+        let output = Instant::now();
+        for observer in observers.iter_mut() {
+            observer.window(&self.moment(Some(&window)))?;
+        }
+        self.timing.output += output.elapsed();
+
+        if self.clocks.process >= self.plan.end {
+            return self.finish(supervisor, observers).map(Some);
+        }
+        if supervisor.interrupts().count() > 0 {
+            return self.stop(supervisor, observers).map(Some);
+        }
+        if self.checkpoint_due(window.start.process, self.last_checkpoint.elapsed()) {
+            self.checkpoint(observers)?;
+        }
+        Ok(None)
+    }
+
+    /// Ends the run where it stands, with a checkpoint from which it can go on.
+    pub fn stop(
+        &mut self,
+        supervisor: &Supervisor,
+        observers: &mut [&mut dyn Observer],
+    ) -> Result<Ending, RunError> {
+        self.checkpoint(observers)?;
+        self.finish_parts(supervisor)?;
+        Ok(Ending::Checkpointed(self.plan.checkpoint.committed()))
+    }
+
+    /// Ends the run at the end of process time.
+    fn finish(
+        &mut self,
+        supervisor: &Supervisor,
+        observers: &mut [&mut dyn Observer],
+    ) -> Result<Ending, RunError> {
         self.note_processors();
+        let last = self.last;
         for observer in observers.iter_mut() {
             observer.finish(&self.moment(last.as_ref()))?;
         }
         self.checkpoint(&mut [])?;
         self.finish_parts(supervisor)?;
         Ok(Ending::Finished)
+    }
+
+    /// The committed state: clocks, fields, particles, ledger.
+    pub fn state(&self) -> CommittedState<'_> {
+        self.moment(None)
     }
 
     fn finish_parts(&mut self, supervisor: &Supervisor) -> Result<(), PartError> {
@@ -345,7 +401,7 @@ impl<'m> CoupledRun<'m> {
             windows: self.windows,
             clocks: self.clocks,
             window,
-            mesh: self.mesh,
+            mesh: &self.mesh,
             gas: self.parts.gas.fields(),
             bed: &self.mapped.bed,
             particles: self.parts.particles.fields(),

@@ -21,7 +21,7 @@ impl Workspace {
     }
 }
 
-impl CoupledRun<'_> {
+impl CoupledRun {
     /// Makes of the coefficients of drag what acts over the window.
     pub(super) fn relax_drag(&mut self, window: &Window) {
         let still = self.holds(window);

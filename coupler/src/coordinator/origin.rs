@@ -187,7 +187,7 @@ impl Origin {
     }
 }
 
-impl CoupledRun<'_> {
+impl CoupledRun {
     /// What must be the same for another run to continue from this one's checkpoint.
     pub(super) fn record_identity(&self, state: &mut StateFile) {
         let particles = self.parts.particles.fields();
@@ -195,7 +195,7 @@ impl CoupledRun<'_> {
         let centres: Vec<f64> = centres.flat_map(|x| [x.x, x.y, x.z]).collect();
         let species = self.closures.gas.species().join(", ");
         let species: Vec<u64> = species.bytes().map(u64::from).collect();
-        state.set_u64s("mesh", &identity(self.mesh));
+        state.set_u64s("mesh", &identity(&self.mesh));
         state.set_u64s("species", &species);
         state.set_u64s("particle_id", particles.id);
         state.set_f64s("particle_position", &centres);

@@ -5,7 +5,7 @@ use super::{CoupledRun, RunError};
 use crate::time::Window;
 use calcine_interior::reacting::{ExchangeTotals, Surroundings};
 
-impl CoupledRun<'_> {
+impl CoupledRun {
     /// True where some particles react.
     pub(super) fn reacts(&self) -> bool {
         self.parts.interior.reactions().is_some()

@@ -81,7 +81,7 @@ pub struct TooLight {
     pub time: f64,
 }
 
-impl CoupledRun<'_> {
+impl CoupledRun {
     /// Tells the solver of the particles what the window has made of them. A bed that is held only
     /// needs to know where a radius has changed.
     pub(super) fn resize(&mut self, supervisor: &Supervisor) -> Result<(), RunError> {

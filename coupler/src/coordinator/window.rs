@@ -1,6 +1,7 @@
 //! One coupling window (design: "One window").
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use calcine_interior::{NetworkSurroundings, Reacting};
@@ -14,6 +15,7 @@ use super::{CoupledRun, Mapped, RunError};
 use crate::exchange::{ExchangeConvergence, ExchangeInputs};
 use crate::ledger::Ledger;
 use crate::mapping::{Mapper, Method};
+use crate::mesh::Mesh;
 use crate::observer::Timing;
 use crate::part::{Balance, Bed, CellReceived, Particles};
 use crate::smoother::Smoother;
@@ -44,7 +46,7 @@ fn metered<T>(wall: &mut Duration, used: &mut Duration, stage: impl FnOnce() -> 
 
 /// Base mapping and smoother for the present positions.
 pub(super) fn map(
-    mapper: &Mapper<'_>,
+    mapper: &Mapper<Arc<Mesh>>,
     method: Method,
     smoother: &Smoother,
     particles: &dyn Particles,
@@ -76,7 +78,7 @@ pub(super) fn map(
     })
 }
 
-impl CoupledRun<'_> {
+impl CoupledRun {
     pub(super) fn next_window(&self) -> Result<Window, RunError> {
         let plan = &self.plan;
         let (_, change) = plan.holds.at(self.clocks.process);

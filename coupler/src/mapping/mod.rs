@@ -5,6 +5,8 @@ mod overlap;
 mod satellites;
 mod weights;
 
+use std::ops::Deref;
+
 use calcine_physics::Vec3;
 use rayon::prelude::*;
 use thiserror::Error;
@@ -70,19 +72,19 @@ pub enum Method {
 
 /// Maps particles onto the cells of a mesh.
 #[derive(Clone, Debug)]
-pub struct Mapper<'m> {
-    locator: Locator<'m>,
+pub struct Mapper<M> {
+    locator: Locator<M>,
     overlap: Overlap,
 }
 
-impl<'m> Mapper<'m> {
+impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
     /// Shares below this are round-off, not overlap.
     const ROUND_OFF: f64 = 1e-14;
     /// Particles that one thread takes at a time.
     const PIECE: usize = 256;
 
     /// The mapper of a mesh.
-    pub fn new(mesh: &'m Mesh) -> Self {
+    pub fn new(mesh: M) -> Self {
         let locator = Locator::new(mesh);
         let overlap = Overlap::new(&locator);
         Self { locator, overlap }

@@ -1,7 +1,7 @@
 //! Exact overlap of a sphere and a polyhedron.
 
 use std::f64::consts::PI;
-use std::ops::Range;
+use std::ops::{Deref, Range};
 
 use calcine_physics::Vec3;
 
@@ -87,7 +87,7 @@ pub(super) struct Scratch {
 const GRAZING: f64 = 1e-10;
 
 impl Overlap {
-    pub fn new(locator: &Locator<'_>) -> Self {
+    pub fn new<M: Deref<Target = Mesh>>(locator: &Locator<M>) -> Self {
         let mesh = locator.mesh();
         let points = |face: usize| {
             let indices = mesh.face_points(face).iter();

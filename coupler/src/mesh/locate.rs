@@ -2,16 +2,17 @@
 
 use std::borrow::Cow;
 use std::f64::consts::TAU;
+use std::ops::Deref;
 
 use calcine_physics::Vec3;
 
 use super::Mesh;
 
 /// Finds the cells of a mesh by position: a regular grid of bins, finer where cells are, lists the
-/// cells whose bounding boxes reach into each bin; among those the faces decide.
+/// cells whose bounding boxes reach into each bin; among those the faces decide. The mesh is borrowed or shared.
 #[derive(Clone, Debug)]
-pub struct Locator<'m> {
-    mesh: &'m Mesh,
+pub struct Locator<M> {
+    mesh: M,
     boxes: Vec<[Vec3; 2]>,
     /// Unit normals of the faces, out of their owners.
     normal: Vec<Vec3>,
@@ -20,9 +21,10 @@ pub struct Locator<'m> {
     bins: Bins,
 }
 
-impl<'m> Locator<'m> {
+impl<M: Deref<Target = Mesh>> Locator<M> {
     /// The locator of a mesh.
-    pub fn new(mesh: &'m Mesh) -> Self {
+    pub fn new(owner: M) -> Self {
+        let mesh: &Mesh = &owner;
         let points = &mesh.topology().points;
         let boxes: Vec<_> = (0..mesh.cells())
             .map(|cell| {
@@ -38,7 +40,7 @@ impl<'m> Locator<'m> {
         let warp = (0..mesh.faces()).map(|face| warp(mesh, face)).collect();
         let normal = mesh.face_area().iter().map(Vec3::normalize).collect();
         Self {
-            mesh,
+            mesh: owner,
             boxes,
             normal,
             warp,
@@ -52,8 +54,8 @@ impl<'m> Locator<'m> {
     }
 
     /// The mesh.
-    pub fn mesh(&self) -> &'m Mesh {
-        self.mesh
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
     }
 
     /// Unit normal of a face, out of its owner.

@@ -184,7 +184,10 @@ impl Boundaries {
     /// Takes up conditions that were set since.
     pub fn take(&mut self, setup: &GasSetup) {
         for boundary in &mut self.patches {
-            let named = setup.patches.iter().find(|(name, _)| *name == boundary.name);
+            let named = setup
+                .patches
+                .iter()
+                .find(|(name, _)| *name == boundary.name);
             if let Some((_, condition)) = named {
                 boundary.condition.clone_from(condition);
             }
