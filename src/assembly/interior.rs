@@ -5,7 +5,7 @@ use calcine_coupler::interior::{HeatNetwork, ParticleModel, Reacting, Thin};
 use calcine_coupler::part::ParticleFields;
 use calcine_coupler::physics::gas_model::GasModel;
 
-use super::AssemblyError;
+use super::error::AssemblyError;
 use super::prepared::PreparedCase;
 use crate::case::model::{Case, ReactionSpec};
 use crate::laws;

@@ -10,7 +10,7 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::smoother::{Smoother, SmootherSettings as Smoothing};
 
-use super::AssemblyError;
+use super::error::AssemblyError;
 use crate::case::model::{Case, MappingSpec};
 use crate::case::sizes;
 use crate::case::{InitialParticles, PlaceError, contacts, mesh, particles};

@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use calcine_adapters::launch::Launcher;
 use calcine_adapters::liggghts::inputs::Inputs;
 use calcine_adapters::liggghts::template::ScriptTemplate;
 use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch, LiggghtsParticles};
@@ -18,51 +17,11 @@ use calcine_coupler::supervisor::Supervisor;
 use calcine_native::gas::NativeGas;
 use calcine_native::particles::NativeParticles;
 
+use super::error::AssemblyError;
 use super::pairing::{GasBackend, Pairing, ParticleBackend};
 use super::prepared::PreparedCase;
-use super::{AssemblyError, RunSettings};
+use super::settings::{RunSettings, SolverStarts};
 use crate::case::model::Case;
-
-/// How an external solver is started.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SolverStart {
-    /// Number of ranks.
-    pub ranks: u32,
-    /// Who starts them.
-    pub launcher: Launcher,
-}
-
-impl Default for SolverStart {
-    fn default() -> Self {
-        Self {
-            ranks: 1,
-            launcher: Launcher::default(),
-        }
-    }
-}
-
-/// How the external solvers of a run are started; natively it does not matter.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct SolverStarts {
-    /// That of the gas.
-    pub gas: SolverStart,
-    /// That of the particles.
-    pub particles: SolverStart,
-}
-
-impl SolverStarts {
-    /// As many ranks as the case says, started by Calcine.
-    pub fn of(case: &Case) -> Self {
-        let start = |ranks: u32| SolverStart {
-            ranks: ranks.max(1),
-            ..SolverStart::default()
-        };
-        Self {
-            gas: start(case.openfoam.ranks),
-            particles: start(case.liggghts.ranks),
-        }
-    }
-}
 
 /// Writes the inputs of the external solvers of a pairing, as a run would, into `openfoam/` and
 /// `liggghts/` below a folder; returns what was written.

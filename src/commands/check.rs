@@ -6,7 +6,9 @@ use clap::Args;
 
 use crate::case::contacts;
 
-use super::{Failure, chain, read_and_prepare, say};
+use super::console::say;
+use super::failure::{Failure, chain};
+use super::inputs::read_and_prepare;
 use crate::assembly::check_own_script;
 use crate::exit;
 

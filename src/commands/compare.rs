@@ -4,9 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::console::say;
 use super::execute::{self, Settings};
+use super::failure::{Failure, chain};
+use super::inputs::{read_and_prepare, results_folder};
 use super::parallel::Transport;
-use super::{Failure, chain, read_and_prepare, results_folder, say};
 use crate::assembly::{Pairing, SolverStarts};
 use crate::exit;
 

@@ -16,8 +16,9 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use tracing::{error, info, warn};
 
+use super::failure::{Failure, chain, with_help};
+use super::origin;
 use super::parallel::{self, Transport};
-use super::{Failure, chain, origin, with_help};
 use crate::assembly::{self, Pairing, PreparedCase, SolverStarts, assemble};
 use crate::case::buoyancy;
 use crate::case::model::Case;

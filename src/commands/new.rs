@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{Failure, say, schema};
+use super::console::say;
+use super::failure::Failure;
+use super::schema;
 use crate::exit;
 
 /// Name of the schema beside a new case.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use calcine_coupler::coordinator::Origin;
 
-use super::{Failure, chain, with_help};
+use super::failure::{Failure, chain, with_help};
 use crate::assembly::Pairing;
 use crate::exit;
 use crate::results::summary::{Provenance, Verdict};

@@ -6,7 +6,7 @@ use calcine_adapters::launch::{Launcher, Spawner};
 use calcine_wire::SolverNetwork;
 use clap::{Args, ValueEnum};
 
-use super::Failure;
+use super::failure::Failure;
 use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStart, SolverStarts};
 use crate::exit;
 

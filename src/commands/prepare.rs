@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Failure, read_and_prepare, results_folder, say};
+use super::console::say;
+use super::failure::Failure;
+use super::inputs::{read_and_prepare, results_folder};
 use crate::assembly::{self, GasBackend, Pairing, ParticleBackend};
 use crate::exit;
 

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Failure, chain, say};
+use super::console::say;
+use super::failure::{Failure, chain};
 use crate::exit;
 
 /// Writes one self-contained HTML page about a results folder.

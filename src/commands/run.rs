@@ -7,9 +7,11 @@ use std::time::Duration;
 use calcine_wire::SolverNetwork;
 use clap::Args;
 
+use super::console::say;
 use super::execute::{self, Settings};
+use super::failure::{Failure, chain};
+use super::inputs::{read_and_prepare, results_folder};
 use super::parallel::{Parallel, Transport};
-use super::{Failure, read_and_prepare, results_folder, say};
 use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStarts};
 use crate::exit;
 
@@ -87,7 +89,7 @@ pub(super) fn run(
     if done.code == exit::OK || done.code == exit::OUTSIDE_BANDS {
         match crate::report::write(&out) {
             Ok(page) => say(format_args!("report: {}", page.display())),
-            Err(error) => return Err(Failure::new(exit::OTHER, super::chain(&error))),
+            Err(error) => return Err(Failure::new(exit::OTHER, chain(&error))),
         }
     }
     Ok(done.code)

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Failure, say};
+use super::console::say;
+use super::failure::Failure;
 use crate::case::schema::schema;
 use crate::exit;
 

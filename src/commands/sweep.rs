@@ -5,9 +5,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::console::say;
 use super::execute::{self, Settings};
+use super::failure::{Failure, chain};
+use super::inputs::{read_and_prepare, read_case, results_folder};
 use super::parallel::Transport;
-use super::{Failure, chain, read_and_prepare, read_case, results_folder, say};
 use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStarts};
 use crate::compare::deviation::{Deviation, deviation};
 use crate::exit;

@@ -3,8 +3,11 @@
 
 use serde::Serialize;
 
+use super::agreement::Agreement;
+use super::common;
+use super::error::CompareError;
 use super::quantities::{common_times, exceeds, words};
-use super::{Agreement, CompareError, Source, common};
+use super::source::Source;
 use crate::case::model::{Case, Measure, ToleranceBand};
 use crate::report::plot::between;
 use crate::results::read::{self, Arrays};

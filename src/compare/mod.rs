@@ -1,23 +1,27 @@
 //! Comparison of runs of one case with different solvers: quantity by quantity and field by field,
 //! against the bands (`agree`) that the case states.
 
+mod agreement;
 mod common;
+mod comparison;
 pub mod deviation;
+mod error;
 mod fields;
 mod page;
 mod quantities;
+mod source;
 mod table;
 
 use std::path::{Path, PathBuf};
 
-use miette::Diagnostic;
-use serde::Serialize;
-use thiserror::Error;
-
 use crate::case::model::Case;
 use crate::results::read::Series;
-use crate::results::{ResultsError, Summary, files};
+use crate::results::{Summary, files};
+use source::Source;
 
+pub use self::agreement::Agreement;
+pub use self::comparison::{ComparedRun, Comparison};
+pub use self::error::CompareError;
 pub use self::fields::{FieldDifference, Norms};
 pub use self::quantities::{Extreme, QuantityDifference};
 
@@ -25,124 +29,6 @@ pub use self::quantities::{Extreme, QuantityDifference};
 pub const COMPARISON: &str = "compare.json";
 /// Name of the comparison as a page.
 pub const PAGE: &str = "compare.html";
-
-/// Runs that cannot be compared.
-#[derive(Debug, Error, Diagnostic)]
-pub enum CompareError {
-    /// Results that cannot be read or written.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Results(#[from] ResultsError),
-    /// One run alone.
-    #[error("{count} run cannot be compared, at least 2 are needed")]
-    #[diagnostic(help("name two pairings or more, for example `--pairings all`"))]
-    TooFew {
-        /// Number of runs.
-        count: usize,
-    },
-    /// A run of another case.
-    #[error("{} holds a run of a case with the hash {stored}, this case has {hash}", path.display())]
-    #[diagnostic(help("run that pairing again with this case file and the same `--set` values"))]
-    OtherCase {
-        /// Its result directory.
-        path: PathBuf,
-        /// The hash in its summary.
-        stored: String,
-        /// The hash of the case.
-        hash: String,
-    },
-    /// Snapshots with different fields or numbers of cells or particles.
-    #[error("the field `{field}` has {found} values in `{run}` and {expected} in `{reference}`")]
-    #[diagnostic(help("both runs must use the mesh and the particles of the case"))]
-    Shape {
-        /// Name of the field.
-        field: String,
-        /// The run that differs.
-        run: String,
-        /// Its number of values.
-        found: usize,
-        /// The run it is compared with.
-        reference: String,
-        /// That run's number of values.
-        expected: usize,
-    },
-}
-
-/// How a difference stands against its band.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Agreement {
-    /// Within the band.
-    Inside,
-    /// Out of the band.
-    Outside,
-    /// The case states no band.
-    None,
-}
-
-impl Agreement {
-    /// The word in tables.
-    pub fn word(self) -> &'static str {
-        match self {
-            Agreement::Inside => "inside",
-            Agreement::Outside => "outside",
-            Agreement::None => "–",
-        }
-    }
-
-    /// How a multiple of the allowed distance stands; NaN is outside.
-    fn of(multiple: Option<f64>) -> Self {
-        match multiple {
-            None => Agreement::None,
-            Some(multiple) if multiple <= 1.0 => Agreement::Inside,
-            Some(_) => Agreement::Outside,
-        }
-    }
-}
-
-/// One run among those compared.
-#[derive(Clone, Debug, Serialize)]
-pub struct ComparedRun {
-    /// Name of the pairing.
-    pub name: String,
-    /// Process time reached in s.
-    pub process_time_s: f64,
-    /// Wall time in s.
-    pub wall_time_s: f64,
-    /// True where it reached the end of the case.
-    pub complete: bool,
-    /// Largest relative error of the ledger's mass and energy lines.
-    pub ledger_error: f64,
-}
-
-/// What was found.
-#[derive(Clone, Debug, Serialize)]
-pub struct Comparison {
-    /// Name of the case.
-    pub case: String,
-    /// SHA-256 of the case.
-    pub hash: String,
-    /// Title of the case.
-    pub title: String,
-    /// The runs, in the order given.
-    pub runs: Vec<ComparedRun>,
-    /// Differences of the quantities of interest.
-    pub quantities: Vec<QuantityDifference>,
-    /// Differences of the fields.
-    pub fields: Vec<FieldDifference>,
-    /// True where every band holds and every run is complete.
-    pub agrees: bool,
-    #[serde(skip)]
-    series: Vec<Series>,
-}
-
-/// A run as read.
-struct Source {
-    name: String,
-    directory: PathBuf,
-    summary: Summary,
-    series: Series,
-}
 
 /// Compares result directories of the same case; each comes with the name of its pairing.
 pub fn compare(case: &Case, runs: &[(String, PathBuf)]) -> Result<Comparison, CompareError> {

@@ -1,11 +1,13 @@
 //! The comparison as one self-contained page with overlaid plots.
 
+use super::agreement::Agreement;
+use super::comparison::{ComparedRun, Comparison};
+use super::quantities::QuantityDifference;
 use super::table::{percent, verdict};
-use super::{Agreement, Comparison, QuantityDifference};
 use crate::report::colour;
 use crate::report::number::{figure, span, with_unit};
 use crate::report::page::{Page, bars, escape, table};
-use crate::report::plot::{Curve, Plot, Stroke, between};
+use crate::report::plot::{Curve, Plot, Stroke, TIME, between};
 
 /// The page.
 pub(super) fn render(comparison: &Comparison) -> String {
@@ -189,7 +191,7 @@ fn above_the_first(comparison: &Comparison, quantity: &QuantityDifference) -> St
             comparison.runs[0].name,
             quantity.unit
         ),
-        x_label: "process time in s",
+        x_label: TIME,
         logarithmic: false,
         above: None,
         band: None,
@@ -226,7 +228,7 @@ fn overlay(comparison: &Comparison, title: &str, columns: &[&str]) -> String {
     }
     let plot = Plot {
         title: title.into(),
-        x_label: "process time in s",
+        x_label: TIME,
         logarithmic: false,
         above: None,
         band: None,
@@ -236,7 +238,7 @@ fn overlay(comparison: &Comparison, title: &str, columns: &[&str]) -> String {
 }
 
 fn wall(comparison: &Comparison) -> String {
-    let bar = |run: &super::ComparedRun| {
+    let bar = |run: &ComparedRun| {
         let text = format!(
             "{} · ledger {}",
             span(run.wall_time_s),

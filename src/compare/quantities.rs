@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use super::{Agreement, Source};
+use super::agreement::Agreement;
+use super::source::Source;
 use crate::case::model::{Case, Quantity, ToleranceBand};
 use crate::report::number::{figure, span, with_unit};
 use crate::report::plot::between;

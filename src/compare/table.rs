@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::Comparison;
+use super::agreement::Agreement;
+use super::comparison::Comparison;
 use crate::report::number::{figure, span, with_unit};
 
 /// Rows of cells with aligned columns, the first to the left, the others to the right.
@@ -114,7 +115,7 @@ pub(super) fn verdict(comparison: &Comparison) -> String {
         .map(|field| (&field.name, field.verdict));
     let outside: Vec<&str> = quantities
         .chain(fields)
-        .filter(|(_, verdict)| *verdict == super::Agreement::Outside)
+        .filter(|(_, verdict)| *verdict == Agreement::Outside)
         .map(|(name, _)| name.as_str())
         .collect();
     let short: Vec<&str> = comparison

@@ -5,9 +5,10 @@ use calcine_coupler::physics::reaction::{Arrhenius, Equation};
 use calcine_coupler::physics::thermo::{Element, LennardJones, Nasa7};
 
 use super::equation::{self, ThirdBody};
+use super::fault::{Fault, fault};
+use super::file::{self, MechanismFile, ParsedReaction, Thermo};
 use super::units::{self, MechanismUnits};
 use super::yaml::{self, YamlNode, YamlValue};
-use super::{Fault, MechanismFile, ParsedReaction, Thermo, fault};
 
 /// Keys of every reaction that are read.
 const REACTION: &[&str] = &[
@@ -367,7 +368,7 @@ fn broadening(node: &YamlNode) -> Result<Broadening, Fault> {
     troe.only(&["A", "T3", "T1", "T2"], "Troe")?;
     let of = |key: &str| troe.required(key, "Troe")?.number(key);
     let second = troe.get("T2").map(|node| node.number("T2")).transpose()?;
-    Ok(super::troe([of("A")?, of("T3")?, of("T1")?], second))
+    Ok(file::troe([of("A")?, of("T3")?, of("T1")?], second))
 }
 
 fn collider(node: &YamlNode, body: ThirdBody, name: &str) -> Result<Option<Collider>, Fault> {

@@ -3,9 +3,11 @@
 use calcine_coupler::physics::kinetics::{Broadening, RateConstant, ReactionStatement};
 use calcine_coupler::physics::reaction::{Arrhenius, Equation};
 
+use super::chemkin_thermo;
 use super::equation::{self, ThirdBody};
+use super::fault::{Fault, fault};
+use super::file::{self, MechanismFile, ParsedReaction};
 use super::units::{self, MechanismUnits};
-use super::{Fault, MechanismFile, ParsedReaction, chemkin_thermo, fault};
 
 /// Words after a reaction that are known and not read.
 const REFUSED: &[&str] = &[
@@ -260,9 +262,9 @@ impl Draft {
     fn broadening(&self, troe: Option<&[f64]>) -> Result<Broadening, Fault> {
         match troe {
             None => Ok(Broadening::Lindemann),
-            Some(&[share, third, first]) => Ok(super::troe([share, third, first], None)),
+            Some(&[share, third, first]) => Ok(file::troe([share, third, first], None)),
             Some(&[share, third, first, second]) => {
-                Ok(super::troe([share, third, first], Some(second)))
+                Ok(file::troe([share, third, first], Some(second)))
             }
             Some(_) => fault(
                 self.line,

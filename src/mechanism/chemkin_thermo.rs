@@ -2,7 +2,8 @@
 
 use calcine_coupler::physics::thermo::{Element, Nasa7};
 
-use super::{Fault, Thermo, fault};
+use super::fault::{Fault, fault};
+use super::file::Thermo;
 
 /// Columns of the elements on the first card.
 const ELEMENTS: [(usize, usize); 5] = [(24, 29), (29, 34), (34, 39), (39, 44), (73, 78)];

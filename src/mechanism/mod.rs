@@ -5,53 +5,19 @@ mod cantera;
 mod chemkin;
 mod chemkin_thermo;
 mod equation;
+mod fault;
+mod file;
 mod units;
 mod yaml;
 
 use std::path::{Path, PathBuf};
 
-use calcine_coupler::physics::kinetics::{Broadening, Collider, Mechanism, ReactionStatement};
-use calcine_coupler::physics::thermo::{Element, LennardJones, Mixture, Nasa7};
+use calcine_coupler::physics::kinetics::{Collider, Mechanism, ReactionStatement};
+use calcine_coupler::physics::thermo::Mixture;
 use thiserror::Error;
 
-/// A reaction of a file.
-#[derive(Clone, Debug)]
-pub struct ParsedReaction {
-    /// The reaction.
-    pub statement: ReactionStatement,
-    /// Its line.
-    pub line: usize,
-    /// True where it says that another has its equation.
-    pub duplicate: bool,
-}
-
-/// Thermodynamics of a species of a file.
-#[derive(Clone, Debug)]
-pub struct Thermo {
-    /// Its name.
-    pub name: String,
-    /// Its line.
-    pub line: usize,
-    /// Atoms in the order of [`Element::ALL`].
-    pub atoms: [f64; Element::COUNT],
-    /// Its polynomials, molar, at 1 bar.
-    pub polynomial: Nasa7,
-    /// How its molecules meet, where the file says so.
-    pub potential: Option<LennardJones>,
-}
-
-/// What files say: reactions in mol, m³, s, J and the species' thermodynamics.
-#[derive(Clone, Debug, Default)]
-pub struct MechanismFile {
-    /// Where it stands.
-    pub path: PathBuf,
-    /// Its reactions.
-    pub reactions: Vec<ParsedReaction>,
-    /// Species with their thermodynamics; those with elements that Calcine does not have are left out.
-    pub thermo: Vec<Thermo>,
-    /// Where the thermodynamics stand, if in a file of their own.
-    pub thermo_path: Option<PathBuf>,
-}
+use fault::{Fault, fault};
+pub use file::{MechanismFile, ParsedReaction, Thermo};
 
 /// A file that cannot be used.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -67,13 +33,6 @@ pub struct MechanismError {
 
 fn at(line: &Option<usize>) -> String {
     line.map_or(String::new(), |line| format!(":{line}"))
-}
-
-/// What is wrong on a line, before the file's name is added.
-type Fault = (Option<usize>, String);
-
-fn fault<T>(line: usize, what: impl Into<String>) -> Result<T, Fault> {
-    Err((Some(line), what.into()))
 }
 
 /// How far the enthalpy of formation, or the Gibbs energy at 1500 K, of a species in a file may be from that of Calcine's own, in
@@ -135,17 +94,6 @@ fn placed(path: &Path, (line, what): Fault) -> MechanismError {
         file: path.to_owned(),
         line,
         what,
-    }
-}
-
-/// Troe's form of the numbers a, T₃, T₁ and T₂ of a file, in K. T₂ of zero leaves its term out, as it does in Cantera: the
-/// term would be one.
-fn troe([share, third, first]: [f64; 3], second: Option<f64>) -> Broadening {
-    Broadening::Troe {
-        share,
-        third,
-        first,
-        second: second.filter(|second| *second != 0.0),
     }
 }
 

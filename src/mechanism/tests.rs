@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use calcine_coupler::physics::kinetics::{MixtureState, RateConstant};
+use calcine_coupler::physics::kinetics::{Broadening, MixtureState, RateConstant};
 use proptest::prelude::*;
 
 use super::*;

@@ -2,7 +2,7 @@
 
 use saphyr_parser::{Event, Parser};
 
-use super::{Fault, fault};
+use super::fault::{Fault, fault};
 
 /// Deepest nesting: mechanisms have four.
 const DEEPEST: usize = 32;

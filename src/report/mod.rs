@@ -16,7 +16,7 @@ use calcine_coupler::ledger::STORAGE_CLOCK;
 
 use self::number::{figure, span, with_unit};
 use self::page::{Page, badge, bars, escape, table, tiles};
-use self::plot::{Curve, Plot, Stroke};
+use self::plot::{Curve, Plot, Stroke, TIME};
 use crate::results::read::Series;
 use crate::results::summary::{QuantityResult, SolverSummary};
 use crate::results::{CASE, ResultsError, Summary, files};
@@ -25,8 +25,6 @@ use crate::results::{CASE, ResultsError, Summary, files};
 pub const REPORT: &str = "report.html";
 /// Up to so many particles are named in the legend of their plot.
 const NAMED_PARTICLES: usize = 20;
-/// Label of every time axis.
-const TIME: &str = "process time in s";
 
 /// Writes `report.html` into a result directory, from the files that are in it.
 pub fn write(directory: &Path) -> Result<PathBuf, ResultsError> {

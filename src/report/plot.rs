@@ -14,6 +14,8 @@ const LEFT: f64 = 66.0;
 const RIGHT: f64 = 14.0;
 const TOP: f64 = 34.0;
 const BOTTOM: f64 = 44.0;
+/// Label of every time axis.
+pub(crate) const TIME: &str = "process time in s";
 
 /// One line of a plot.
 pub(crate) struct Curve<'a> {

@@ -7,7 +7,7 @@ use std::path::Path;
 use super::colour;
 use super::number::span;
 use super::page::escape;
-use super::plot::{Curve, Plot, Stroke};
+use super::plot::{Curve, Plot, Stroke, TIME};
 use crate::results::read::collection;
 use crate::results::{ResultsError, files};
 
@@ -86,7 +86,7 @@ fn plot(probe: &str, field: &str, times: &[f64], snapshots: &[(&[f64], &[f64])])
             y: &values,
             stroke: Stroke::Solid,
         };
-        return drawn(super::TIME, vec![curve]);
+        return drawn(TIME, vec![curve]);
     }
     let last = snapshots.len() - 1;
     let shown = snapshots.len().min(SHOWN);

@@ -1,0 +1,45 @@
+//! What keeps a case from being assembled.
+
+use calcine_coupler::coordinator::RunError;
+use calcine_coupler::error::PartError;
+use calcine_coupler::interior::reacting::LayersError;
+use calcine_native::gas::NativeError;
+use thiserror::Error;
+
+use crate::case::sizes::TooLarge;
+use crate::case::{MeshingError, PlaceError};
+
+/// A case that cannot be assembled, although its file was in order.
+#[derive(Debug, Error)]
+pub enum AssemblyError {
+    /// The mesh cannot be made or read.
+    #[error("mesh: {0}")]
+    Mesh(#[from] MeshingError),
+    /// An excluded zone beside the mesh.
+    #[error(
+        "`coupling.smoother.excluded[{index}]` holds no centre of a cell; enlarge it, or move it into \
+         the mesh"
+    )]
+    Excluded {
+        /// Number of the zone, from 0.
+        index: usize,
+    },
+    /// More than this machine's memory.
+    #[error(transparent)]
+    TooLarge(#[from] TooLarge),
+    /// The particles cannot be placed.
+    #[error("particles: {0}")]
+    Particles(#[from] PlaceError),
+    /// Reactions that make no shrinking core.
+    #[error("reactions: {0}")]
+    Layers(#[from] LayersError),
+    /// A native solver refuses the case or a checkpoint.
+    #[error(transparent)]
+    Native(#[from] NativeError),
+    /// A part could not start.
+    #[error(transparent)]
+    Part(#[from] PartError),
+    /// The bed does not fit, or a checkpoint cannot be taken up.
+    #[error(transparent)]
+    Run(#[from] RunError),
+}

@@ -1,0 +1,30 @@
+//! What commands read and where they write.
+
+use std::path::{Path, PathBuf};
+
+use super::failure::Failure;
+use crate::assembly::PreparedCase;
+use crate::case::model::Case;
+use crate::exit;
+
+/// Reads a case with `--set` applied; all its errors at once.
+pub(super) fn read_case(path: &Path, set: &[String]) -> Result<Case, Failure> {
+    crate::case::read(path, set).map_err(|errors| Failure::new(exit::CASE, errors.render()))
+}
+
+/// Reads a case and makes mesh and particles.
+pub(super) fn read_and_prepare(
+    path: &Path,
+    set: &[String],
+) -> Result<(Case, PreparedCase), Failure> {
+    let mut case = read_case(path, set)?;
+    let prepared = PreparedCase::new(&case)?;
+    crate::case::settle(&mut case, &prepared.mesh);
+    Ok((case, prepared))
+}
+
+/// The results folder: as asked for, or `results/NAME` below the working directory.
+pub(super) fn results_folder(case: &Case, out: Option<&PathBuf>) -> PathBuf {
+    out.cloned()
+        .unwrap_or_else(|| PathBuf::from("results").join(&case.name))
+}
