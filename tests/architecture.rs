@@ -12,7 +12,7 @@ use serde_json::Value;
 
 /// All arrows there may be: a crate and the crates of this workspace that it may use. Another
 /// arrow is a change of the design (CONTRIBUTING.md), not of this table alone.
-const ARROWS: [(&str, &[&str]); 10] = [
+const ARROWS: [(&str, &[&str]); 11] = [
     (
         "calcine",
         &[
@@ -26,12 +26,13 @@ const ARROWS: [(&str, &[&str]); 10] = [
     ),
     ("calcine-adapters", &["calcine-coupler", "calcine-wire"]),
     ("calcine-coupler", &["calcine-interior", "calcine-physics"]),
-    ("calcine-interior", &["calcine-physics"]),
+    ("calcine-interior", &["calcine-numerics", "calcine-physics"]),
     ("calcine-liggghts", &["calcine-wire"]),
     // The same command line, where MPI spawns the solvers.
     ("calcine-mpi", &["calcine", "calcine-wire"]),
     ("calcine-native", &["calcine-coupler"]),
-    ("calcine-physics", &[]),
+    ("calcine-numerics", &[]),
+    ("calcine-physics", &["calcine-numerics"]),
     ("calcine-wire", &[]),
     ("xtask", &[]),
 ];

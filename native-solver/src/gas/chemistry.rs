@@ -24,7 +24,7 @@
 
 use calcine_coupler::gas_chemistry::ReactingGas;
 use calcine_coupler::physics::kinetics::elements::Elements;
-use calcine_coupler::physics::kinetics::{self, Reactor};
+use calcine_coupler::physics::kinetics::{self, Reactor, ReactorWorkspace};
 use calcine_coupler::physics::thermo::mixture::MOST_SPECIES;
 use rayon::prelude::*;
 
@@ -158,7 +158,7 @@ impl CellChemistry {
         let spans = &self.spans;
         self.rates.resize(frame.grid.cells() * species, 0.0);
         let reactor = Reactor::new(&gas.mechanism, gas.tolerances);
-        let one = |cell: usize, rates: &mut [f64]| {
+        let one = |cell: usize, rates: &mut [f64], workspace: &mut ReactorWorkspace| {
             let mut before = [0.0; MOST_SPECIES];
             let before = &mut before[..species];
             before.copy_from_slice(at.composition_of(cell, species));
@@ -175,7 +175,7 @@ impl CellChemistry {
             };
             let share = reacting_share(frame, gas, cell, state);
             let span = spans[cell];
-            let reacted = reactor.advance(pressure, &mut temperature, after, span);
+            let reacted = reactor.advance_in(workspace, pressure, &mut temperature, after, span);
             for (rate, (after, before)) in rates.iter_mut().zip(after.iter().zip(before.iter())) {
                 *rate = share * (after - before) / span;
             }
@@ -191,9 +191,9 @@ impl CellChemistry {
             .rates
             .par_chunks_mut(GRAIN * species)
             .enumerate()
-            .map(|(k, rates)| {
+            .map_init(ReactorWorkspace::default, |workspace, (k, rates)| {
                 let mut cells = rates.chunks_mut(species).enumerate();
-                cells.try_for_each(|(i, rates)| one(k * GRAIN + i, rates))
+                cells.try_for_each(|(i, rates)| one(k * GRAIN + i, rates, workspace))
             })
             .filter_map(Result::err)
             .collect();

@@ -1,6 +1,7 @@
 //! Rate constants of gas reactions.
 
-use super::number::Number;
+use calcine_numerics::Number;
+
 use crate::gas::GAS_CONSTANT;
 use crate::reaction::Arrhenius;
 
@@ -120,7 +121,7 @@ impl Broadening {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kinetics::number::Dual;
+    use calcine_numerics::Dual;
 
     /// GRI-Mech 3.0's H + CH3 (+M) <=> CH4 (+M), in mol, m³, s, J/mol.
     fn methyl(broadening: Broadening) -> RateConstant {
@@ -229,18 +230,18 @@ mod tests {
             let dual = law.at(
                 Dual {
                     value: 1500.0,
-                    slope: 3.0,
+                    slope: [3.0],
                 },
                 Dual {
                     value: 8.0,
-                    slope: 0.5,
+                    slope: [0.5],
                 },
             );
             let h = 1e-4;
             let quotient = (at(1500.0 + 3.0 * h, 8.0 + 0.5 * h)
                 - at(1500.0 - 3.0 * h, 8.0 - 0.5 * h))
                 / (2.0 * h);
-            assert!((dual.slope / quotient - 1.0).abs() < 1e-7);
+            assert!((dual.slope[0] / quotient - 1.0).abs() < 1e-7);
         }
     }
 }

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use calcine_numerics::Number;
+
 use super::error::KineticsError;
 use super::falloff::RateConstant;
 use super::mechanism_reaction::MechanismReaction;
-use super::number::Number;
 use super::statement::ReactionStatement;
 use crate::gas::GAS_CONSTANT;
 use crate::reaction::equilibrium::STANDARD_PRESSURE;

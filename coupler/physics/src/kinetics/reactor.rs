@@ -1,15 +1,13 @@
 //! A parcel of gas that reacts at constant pressure.
 
-use diffsol::{NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverMethod, OdeSolverStopReason, Vector};
+use calcine_numerics::rosenbrock::{IntegrationAccuracy, SystemDerivatives};
+use calcine_numerics::{DenseMatrix, Dual, Number, Rosenbrock, RosenbrockTableau, StiffSystem};
 
 use super::elements::Elements;
 use super::error::KineticsError;
 use super::mechanism::{Mechanism, MixtureState};
-use super::number::{Dual, Number};
 use crate::gas::GAS_CONSTANT;
 use crate::thermo::mixture::MOST_SPECIES;
-
-type Matrix = NalgebraMat<f64>;
 
 /// How exactly a reactor integrates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,14 +48,32 @@ pub struct ReactorStatistics {
 ///
 /// dY_i/dt = w_i/ρ;  dT/dt = −Σ h_i w_i/(ρ c_p), or 0,
 ///
-/// by diffsol's backward differentiation formulas of variable order with the exact Jacobian (Martin Robinson, diffsol, JOSS
-/// 2026). At the end negative fractions are set to zero and the elements kept ([`Elements::restore`]), and the adiabatic temperature
-/// follows from the mixture's enthalpy with that of formation, which is kept exactly.
+/// by the stiffly accurate Rosenbrock method of fourth order ([`RosenbrockTableau::RODAS4`]) with the exact Jacobian. At the end negative
+/// fractions are set to zero and the elements kept ([`Elements::restore`]), and the adiabatic temperature follows from the
+/// mixture's enthalpy with that of formation, which is kept exactly.
 #[derive(Clone, Debug)]
 pub struct Reactor {
     mechanism: Mechanism,
     tolerances: Tolerances,
     elements: Elements,
+}
+
+/// Memory of integrations, reused; no result depends on what it was used for before.
+#[derive(Clone, Debug)]
+pub struct ReactorWorkspace {
+    method: Rosenbrock<DenseMatrix>,
+    unknowns: Vec<f64>,
+    tolerance: Vec<f64>,
+}
+
+impl Default for ReactorWorkspace {
+    fn default() -> Self {
+        Self {
+            method: Rosenbrock::new(&RosenbrockTableau::RODAS4, DenseMatrix::default()),
+            unknowns: Vec::new(),
+            tolerance: Vec::new(),
+        }
+    }
 }
 
 impl Reactor {
@@ -84,7 +100,20 @@ impl Reactor {
         fractions: &mut [f64],
         time: f64,
     ) -> Result<ReactorStatistics, KineticsError> {
-        self.run(pressure, temperature, fractions, time, true)
+        let mut workspace = ReactorWorkspace::default();
+        self.advance_in(&mut workspace, pressure, temperature, fractions, time)
+    }
+
+    /// The same with memory that is reused.
+    pub fn advance_in(
+        &self,
+        workspace: &mut ReactorWorkspace,
+        pressure: f64,
+        temperature: &mut f64,
+        fractions: &mut [f64],
+        time: f64,
+    ) -> Result<ReactorStatistics, KineticsError> {
+        self.run(workspace, (pressure, time), temperature, fractions, true)
     }
 
     /// The same at a fixed temperature in K: what heat is set free is taken away.
@@ -95,16 +124,17 @@ impl Reactor {
         fractions: &mut [f64],
         time: f64,
     ) -> Result<ReactorStatistics, KineticsError> {
-        let mut fixed = temperature;
-        self.run(pressure, &mut fixed, fractions, time, false)
+        let (mut workspace, mut fixed) = (ReactorWorkspace::default(), temperature);
+        let (workspace, fixed) = (&mut workspace, &mut fixed);
+        self.run(workspace, (pressure, time), fixed, fractions, false)
     }
 
     fn run(
         &self,
-        pressure: f64,
+        workspace: &mut ReactorWorkspace,
+        (pressure, time): (f64, f64),
         temperature: &mut f64,
         fractions: &mut [f64],
-        time: f64,
         adiabatic: bool,
     ) -> Result<ReactorStatistics, KineticsError> {
         self.sound(pressure, *temperature, fractions, time)?;
@@ -125,9 +155,9 @@ impl Reactor {
         let masses = self.elements.of(fractions);
         let enthalpy = |t: f64, y: &[f64]| mixture.enthalpy(t, y) + mixture.formation_enthalpy(y);
         let kept = enthalpy(*temperature, fractions);
-        let (mut reached, steps) =
-            self.integrate(pressure, *temperature, fractions, time, adiabatic)?;
-        let count = fractions.len();
+        let state = (pressure, *temperature);
+        let steps = self.integrate(workspace, state, fractions, time, adiabatic)?;
+        let (reached, count) = (&mut workspace.unknowns, fractions.len());
         self.elements.restore(&masses, &mut reached[..count]);
         if adiabatic {
             let new = &reached[..count];
@@ -144,68 +174,51 @@ impl Reactor {
         Ok(ReactorStatistics { steps })
     }
 
-    /// Mass fractions and temperature after the time, and how many steps it took.
+    /// Leaves mass fractions and temperature after the time in the workspace; the result is how many steps it took.
     fn integrate(
         &self,
-        pressure: f64,
-        temperature: f64,
+        workspace: &mut ReactorWorkspace,
+        (pressure, temperature): (f64, f64),
         fractions: &[f64],
         time: f64,
         adiabatic: bool,
-    ) -> Result<(Vec<f64>, usize), KineticsError> {
+    ) -> Result<usize, KineticsError> {
+        let ReactorWorkspace {
+            method,
+            unknowns,
+            tolerance,
+        } = workspace;
         let count = fractions.len();
-        let fail = |reached: f64, why: String| KineticsError::Integration {
-            state: self.words(pressure, temperature, fractions),
-            reached,
-            time,
-            why,
-        };
-        let law = Equations {
+        unknowns.clear();
+        unknowns.extend_from_slice(fractions);
+        unknowns.push(temperature);
+        tolerance.clear();
+        tolerance.resize(count, self.tolerances.fraction);
+        tolerance.push(self.tolerances.temperature);
+        method.algebra().resize(count + 1);
+        let mut law = ParcelEquations {
             mechanism: &self.mechanism,
             pressure,
             adiabatic,
         };
-        let mut absolute = vec![self.tolerances.fraction; count + 1];
-        absolute[count] = self.tolerances.temperature;
-        let mut problem = OdeBuilder::<Matrix>::new()
-            .rtol(self.tolerances.relative)
-            .atol(absolute)
-            .h0(time)
-            .rhs_implicit(
-                |x: &[f64], _: &[f64], _, out: &mut [f64]| law.slope(x, out),
-                |x: &[f64], _: &[f64], _, v: &[f64], out: &mut [f64]| law.directional(x, v, out),
-            )
-            .init(
-                |_: &[f64], _, y: &mut [f64]| {
-                    y[..count].copy_from_slice(fractions);
-                    y[count] = temperature;
-                },
-                count + 1,
-            )
-            .build()
-            .map_err(|error| fail(0.0, error.to_string()))?;
-        problem.ode_options.min_timestep = time * f64::EPSILON;
-        let mut solver = problem
-            .bdf::<NalgebraLU<f64>>()
-            .map_err(|error| fail(0.0, error.to_string()))?;
-        solver
-            .set_stop_time(time)
-            .map_err(|error| fail(0.0, error.to_string()))?;
-        for step in 1..=self.tolerances.steps {
-            match solver.step() {
-                Ok(OdeSolverStopReason::TstopReached) => {
-                    let reached = solver.state().y.clone_as_vec();
-                    if reached.iter().all(|x| x.is_finite()) {
-                        return Ok((reached, step));
-                    }
-                    return Err(fail(time, "a value is not finite".into()));
-                }
-                Ok(_) => {}
-                Err(error) => return Err(fail(solver.state().t, error.to_string())),
+        let accuracy = IntegrationAccuracy {
+            relative: self.tolerances.relative,
+            absolute: tolerance,
+            steps: self.tolerances.steps,
+        };
+        let done = method.integrate(&mut law, unknowns, time, accuracy);
+        done.map(|done| done.steps).map_err(|stalled| {
+            let names = self.mechanism.mixture().names();
+            let worst = names
+                .get(stalled.worst)
+                .map_or("temperature", String::as_str);
+            KineticsError::Integration {
+                state: self.words(pressure, temperature, fractions),
+                reached: stalled.reached,
+                time,
+                why: format!("{}; the largest error is that of {worst}", stalled.cause),
             }
-        }
-        let why = format!("it took more than {} steps", self.tolerances.steps);
-        Err(fail(solver.state().t, why))
+        })
     }
 
     /// Refuses a state in which nothing can be said.
@@ -247,29 +260,47 @@ impl Reactor {
 }
 
 /// The equations of a parcel; the unknowns are the mass fractions and the temperature.
-struct Equations<'a> {
+struct ParcelEquations<'a> {
     mechanism: &'a Mechanism,
     pressure: f64,
     adiabatic: bool,
 }
 
-impl Equations<'_> {
-    fn slope(&self, x: &[f64], out: &mut [f64]) {
+/// Columns of the Jacobian that one evaluation gives.
+const COLUMNS: usize = 8;
+
+impl StiffSystem for ParcelEquations<'_> {
+    fn unknowns(&self) -> usize {
+        self.mechanism.species() + 1
+    }
+
+    fn rates(&mut self, x: &[f64], out: &mut [f64]) {
         self.evaluate(|k| x[k], out);
     }
 
-    fn directional(&self, x: &[f64], v: &[f64], out: &mut [f64]) {
-        let mut both = [Dual::constant(0.0); MOST_SPECIES + 1];
-        let at = |k: usize| Dual {
-            value: x[k],
-            slope: v[k],
-        };
-        self.evaluate(at, &mut both[..x.len()]);
-        for (y, dual) in out.iter_mut().zip(both) {
-            *y = dual.slope;
+    fn differentiate(&mut self, x: &[f64], out: &mut [f64], derivatives: &mut SystemDerivatives) {
+        let n = x.len();
+        let mut duals = [Dual::<COLUMNS>::constant(0.0); MOST_SPECIES + 1];
+        for first in (0..n).step_by(COLUMNS) {
+            let columns = first..(first + COLUMNS).min(n);
+            let at = |k: usize| {
+                if columns.contains(&k) {
+                    Dual::along(x[k], k - first)
+                } else {
+                    Dual::constant(x[k])
+                }
+            };
+            self.evaluate(at, &mut duals[..n]);
+            for (row, dual) in duals[..n].iter().enumerate() {
+                out[row] = dual.value;
+                let slopes = &dual.slope[..columns.len()];
+                derivatives.jacobian[row * n..][columns.clone()].copy_from_slice(slopes);
+            }
         }
     }
+}
 
+impl ParcelEquations<'_> {
     /// Slopes of the unknowns in 1/s and K/s.
     fn evaluate<N: Number>(&self, at: impl Fn(usize) -> N, out: &mut [N]) {
         let species = self.mechanism.mixture().species();

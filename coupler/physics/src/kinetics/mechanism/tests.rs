@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::kinetics::Broadening;
-use crate::kinetics::number::Dual;
 use crate::kinetics::statement::Collider;
 use crate::reaction::{Arrhenius, Equation};
+use calcine_numerics::{Dual, Number};
 
 const SPECIES: [&str; 7] = ["CH4", "O2", "CO", "H2", "H2O", "CO2", "N2"];
 
@@ -164,20 +164,22 @@ fn derivatives_are_the_difference_quotients() {
     for (k, dual) in duals.iter_mut().enumerate() {
         *dual = Dual {
             value: c[k],
-            slope: direction.get(k).copied().unwrap_or(0.0),
+            slope: [direction.get(k).copied().unwrap_or(0.0)],
         };
     }
     let mut out = vec![Dual::constant(0.0); 7];
     let t = Dual {
         value: 1600.0,
-        slope: 50.0,
+        slope: [50.0],
     };
     mechanism.mass_rates(t, &duals, &mut out);
     let h = 1e-5;
     for ((dual, high), low) in out.iter().zip(at(h)).zip(at(-h)) {
         let quotient = (high - low) / (2.0 * h);
-        let scale = out.iter().fold(0.0_f64, |most, x| most.max(x.slope.abs()));
-        assert!((dual.slope - quotient).abs() < 1e-7 * scale);
+        let scale = out
+            .iter()
+            .fold(0.0_f64, |most, x| most.max(x.slope[0].abs()));
+        assert!((dual.slope[0] - quotient).abs() < 1e-7 * scale);
     }
 }
 
