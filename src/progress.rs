@@ -42,11 +42,6 @@ impl Progress {
         }
     }
 
-    /// Takes the bar off the screen.
-    pub fn clear(&self) {
-        self.bar.finish_and_clear();
-    }
-
     fn draw(&mut self, moment: &CommittedState<'_>) {
         let done = moment.clocks.process.seconds() / self.end.seconds();
         self.bar.set_position((done * LENGTH as f64) as u64);
@@ -55,6 +50,13 @@ impl Progress {
         self.bar
             .set_message(format!("process time {now:.3} s  AF {factor:.0}"));
         self.drawn = Instant::now();
+    }
+}
+
+/// Takes the bar off the screen.
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
     }
 }
 

@@ -32,6 +32,7 @@ mod resume_facets;
 mod resume_ranks;
 mod schema;
 mod shipped_cases;
+mod simulation;
 mod stock_solver;
 mod support;
 mod test_programs;

@@ -1,34 +1,24 @@
 //! One run from a prepared case to its results, used by `run`, `compare` and `sweep`.
 
 use std::fmt::Write as _;
-use std::fs::{self, File};
-use std::io;
 use std::path::Path;
-use std::sync::Arc;
 use std::time::Duration;
 
-use calcine_coupler::coordinator::{Ending, RunError};
 use calcine_coupler::ledger::STORAGE_CLOCK;
-use calcine_coupler::observer::Observer;
-use calcine_coupler::supervisor::{Interrupts, Supervisor};
-use rustix::fs::{FlockOperation, flock};
+use calcine_coupler::supervisor::Interrupts;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
-use tracing::{error, info, warn};
 
-use super::failure::{Failure, chain, with_help};
-use super::origin;
+use super::failure::{Failure, chain};
 use super::parallel::{self, Transport};
-use crate::assembly::{self, Pairing, PreparedCase, SolverStarts, assemble};
+use crate::assembly::{Pairing, PreparedCase, SolverStarts};
 use crate::case::buoyancy;
 use crate::case::model::Case;
 use crate::exit;
 use crate::progress::Progress;
 use crate::results::inertial_number::InertialNumberStatistics;
-use crate::results::{self, Recorder, ResultsError, RunInfo, Summary, Verdict};
-
-/// A file that every run makes and holds locked while it lives.
-const LOCK: &str = "lock";
+use crate::results::{Summary, Verdict};
+use crate::simulation::{self, Ending, Simulation, SimulationError};
 
 /// How a case is run.
 pub(super) struct Settings<'a> {
@@ -65,83 +55,39 @@ pub(super) fn execute(
     settings: &Settings<'_>,
 ) -> Result<Done, Failure> {
     let out = settings.out;
-    let started_before = out.join(LOCK).is_file();
-    fs::create_dir_all(out.join("log")).map_err(|cause| io_failure(out, &cause))?;
-    let _lock = lock(out)?;
-    let checkpoint = out.join("checkpoint");
-    let resume = settings.resume && checkpoint.join("coordinator.state").is_file();
     if settings.resume
-        && let Some(summary) = origin::finished(out)
+        && let Some(summary) = simulation::finished(out)
     {
         return over(case, out, &summary);
     }
-    let begun_from = origin::folder(settings.from, settings.resume && !resume, out);
-    if settings.resume && !resume {
-        // A run that ended before its first checkpoint is resumed by starting it again.
-        let again = started_before && results::clear_start(out, &case.hash).map_err(refused)?;
-        if !again {
-            let message = format!(
-                "there is no checkpoint in {}: run without `--resume`, or name the folder with \
-                 `--out`",
-                out.display()
-            );
-            return Err(Failure::new(exit::CASE, message));
-        }
-    }
-    let begun_from = begun_from.filter(|_| !resume);
-    let continued = begun_from.map(|folder| origin::read(&folder, settings.pairing));
-    let (origin, provenance) = continued.transpose()?.unzip();
-    let from = resume.then_some(checkpoint.as_path());
-    let info = RunInfo {
-        gas: settings.pairing.gas.name().into(),
-        particles: settings.pairing.particles.name().into(),
-        transport: if settings.pairing.is_native() {
-            "none"
-        } else {
-            settings.transport.name()
-        }
-        .into(),
-        from: provenance,
-    };
-    let mut recorder = Recorder::create(case, info, out, from).map_err(refused)?;
-    let _log = log_to(out)?;
-
     let interrupts = Interrupts::default();
     let _signals = SignalThread::start(&interrupts, settings.stop_after)?;
-    let mut supervisor = Supervisor::new(case.coupling.deadline, interrupts);
-    info!(case = %case.name, pairing = %settings.pairing.name(), resume, "start");
-    let assembly = assembly::RunSettings {
-        pairing: settings.pairing,
-        starts: settings.starts,
-        results: out,
-        resume,
-        from: origin.as_ref(),
-    };
-    let mut run = assemble(case, prepared, &assembly, &mut supervisor)?;
-    let number = buoyancy::number(case, &prepared.mesh);
-    info!("N sqrt(AF) dt is {number:.2e}");
-    if settings.progress && number > 0.0 {
-        let limit = buoyancy::LIMIT;
-        eprintln!("buoyancy: N sqrt(AF) dt is {number:.2e} (resolved below {limit})");
+    tell_buoyancy(case, prepared, settings.progress);
+    let mut builder = Simulation::open(&case.path)
+        .gas(settings.pairing.gas)
+        .particles(settings.pairing.particles)
+        .starts(settings.starts.clone(), settings.transport.name())
+        .out(out)
+        .resume(settings.resume)
+        .interrupts(interrupts);
+    if let Some(from) = settings.from {
+        builder = builder.from(from);
     }
-    if let Some(warning) = buoyancy::warning(number) {
-        warn!("{warning}");
-        eprintln!("warning: {warning}");
-    }
-    let mut progress = Progress::new(case, settings.progress);
-    let mut observers: [&mut dyn Observer; 2] = [&mut recorder, &mut progress];
-    let ending = run.run(&supervisor, &mut observers);
-    progress.clear();
+    let progress = Box::new(Progress::new(case, settings.progress));
+    let mut simulation = builder.start_prepared(case, prepared, vec![progress])?;
+    let ending = simulation.finish();
+    let summary = simulation.summary().cloned();
+    // Takes the progress bar off the screen before anything is printed.
+    drop(simulation);
     match ending {
         Ok(Ending::Finished) => {
-            let summary = recorder.summary();
+            let summary = summary.as_ref();
             let outside = summary.is_some_and(|summary| {
                 summary
                     .quantities
                     .values()
                     .any(|quantity| quantity.verdict == Verdict::Fail)
             });
-            info!(outside, "finished");
             let code = if outside {
                 exit::OUTSIDE_BANDS
             } else {
@@ -153,8 +99,6 @@ pub(super) fn execute(
             })
         }
         Ok(Ending::Checkpointed(path)) => {
-            stopped(&mut recorder);
-            info!(path = %path.display(), "checkpointed");
             let text = format!(
                 "stopped with a checkpoint in {}; go on with\n  calcine run {} --out {} --resume{}{}",
                 path.display(),
@@ -168,10 +112,19 @@ pub(super) fn execute(
                 text,
             })
         }
-        Err(failure) => {
-            stopped(&mut recorder);
-            Err(failed(out, &failure))
-        }
+        Err(failure) => Err(failed(out, &failure)),
+    }
+}
+
+/// Tells how well the window resolves buoyancy.
+fn tell_buoyancy(case: &Case, prepared: &PreparedCase, shown: bool) {
+    let number = buoyancy::number(case, &prepared.mesh);
+    if shown && number > 0.0 {
+        let limit = buoyancy::LIMIT;
+        eprintln!("buoyancy: N sqrt(AF) dt is {number:.2e} (resolved below {limit})");
+    }
+    if let Some(warning) = buoyancy::warning(number) {
+        eprintln!("warning: {warning}");
     }
 }
 
@@ -193,13 +146,6 @@ fn over(case: &Case, out: &Path, summary: &Summary) -> Result<Done, Failure> {
     };
     let text = format!("the run in {} had come to its end already", out.display());
     Ok(Done { code, text })
-}
-
-/// Says in the results that the run ended early; a failure of that is only logged.
-fn stopped(recorder: &mut Recorder) {
-    if let Err(failure) = recorder.stopped() {
-        error!("{}", chain(&failure));
-    }
 }
 
 /// The closing lines of a run: what was run, the quantities, the ledger, the time.
@@ -266,16 +212,16 @@ fn closing(summary: &Summary) -> String {
     text.trim_end().to_owned()
 }
 
-fn failed(out: &Path, failure: &RunError) -> Failure {
+/// A run that failed, with the checkpoint that it can go on from.
+fn failed(out: &Path, failure: &SimulationError) -> Failure {
     let mut message = chain(failure);
-    error!("{message}");
-    if out.join("checkpoint").join("coordinator.state").is_file() {
+    if simulation::has_checkpoint(out) {
         message.push_str(&format!(
             "\nthe last checkpoint is in {}: `--resume` goes on from it",
             out.join("checkpoint").display()
         ));
     }
-    Failure::new(exit::of(failure), message)
+    Failure::new(failure.exit_code(), message)
 }
 
 fn backend_flags(pairing: Pairing) -> String {
@@ -288,46 +234,6 @@ fn backend_flags(pairing: Pairing) -> String {
             pairing.particles.name()
         )
     }
-}
-
-fn io_failure(path: &Path, cause: &io::Error) -> Failure {
-    Failure::new(exit::OTHER, format_args!("{}: {cause}", path.display()))
-}
-
-fn refused(cause: ResultsError) -> Failure {
-    Failure::new(exit::CASE, with_help(&cause))
-}
-
-/// Keeps a second run out of the results folder while this one lives.
-fn lock(out: &Path) -> Result<File, Failure> {
-    let path = out.join(LOCK);
-    let file = File::create(&path).map_err(|cause| io_failure(&path, &cause))?;
-    flock(&file, FlockOperation::NonBlockingLockExclusive).map_err(|_| {
-        let message = format!(
-            "another run is writing into {}: name another folder with `--out`",
-            out.display()
-        );
-        Failure::new(exit::CASE, message)
-    })?;
-    Ok(file)
-}
-
-/// Structured log of this run: DIR/log/calcine.log (CALCINE_LOG sets the level, default info).
-fn log_to(out: &Path) -> Result<tracing::subscriber::DefaultGuard, Failure> {
-    let path = out.join("log").join("calcine.log");
-    let file = File::options()
-        .create(true)
-        .append(true)
-        .open(&path)
-        .map_err(|cause| io_failure(&path, &cause))?;
-    let filter = tracing_subscriber::EnvFilter::try_from_env("CALCINE_LOG")
-        .unwrap_or_else(|_| tracing_subscriber::EnvFilter::new("info"));
-    let subscriber = tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_ansi(false)
-        .with_writer(Arc::new(file))
-        .finish();
-    Ok(tracing::subscriber::set_default(subscriber))
 }
 
 /// Turns Ctrl-C, SIGTERM and `--stop-after` into interrupts.

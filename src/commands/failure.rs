@@ -3,7 +3,9 @@
 use std::fmt;
 
 use crate::assembly::AssemblyError;
+pub(super) use crate::error_chain::chain;
 use crate::exit;
+use crate::simulation::SimulationError;
 
 /// Why a command failed: an exit code and what to tell the user.
 #[derive(Debug)]
@@ -34,26 +36,12 @@ impl From<AssemblyError> for Failure {
     }
 }
 
-/// An error with its causes, one a line.
-pub(super) fn chain(error: &dyn std::error::Error) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        let line = error.to_string();
-        if !text.contains(&line) {
-            text.push_str("\n  because: ");
-            text.push_str(&line);
-        }
-        cause = error.source();
+impl From<SimulationError> for Failure {
+    fn from(error: SimulationError) -> Self {
+        let remedy = error
+            .remedy()
+            .map(|help| format!("\n  help: {help}"))
+            .unwrap_or_default();
+        Failure::new(error.exit_code(), chain(&error) + &remedy)
     }
-    text
-}
-
-/// An error with its causes and its remedy.
-pub(super) fn with_help<E: std::error::Error + miette::Diagnostic>(error: &E) -> String {
-    let remedy = error
-        .help()
-        .map(|help| format!("\n  help: {help}"))
-        .unwrap_or_default();
-    chain(error) + &remedy
 }

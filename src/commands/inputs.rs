@@ -1,11 +1,12 @@
 //! What commands read and where they write.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::failure::Failure;
 use crate::assembly::PreparedCase;
 use crate::case::model::Case;
 use crate::exit;
+pub(super) use crate::simulation::results_folder;
 
 /// Reads a case with `--set` applied; all its errors at once.
 pub(super) fn read_case(path: &Path, set: &[String]) -> Result<Case, Failure> {
@@ -21,10 +22,4 @@ pub(super) fn read_and_prepare(
     let prepared = PreparedCase::new(&case)?;
     crate::case::settle(&mut case, &prepared.mesh);
     Ok((case, prepared))
-}
-
-/// The results folder: as asked for, or `results/NAME` below the working directory.
-pub(super) fn results_folder(case: &Case, out: Option<&PathBuf>) -> PathBuf {
-    out.cloned()
-        .unwrap_or_else(|| PathBuf::from("results").join(&case.name))
 }

@@ -8,7 +8,6 @@ mod execute;
 mod failure;
 mod inputs;
 mod new;
-mod origin;
 mod parallel;
 mod prepare;
 mod report;

@@ -67,7 +67,7 @@ pub(super) fn run(
 ) -> Result<u8, Failure> {
     use_threads(arguments.threads.map(usize::from))?;
     let (case, prepared) = read_and_prepare(&arguments.case, &arguments.set)?;
-    let out = results_folder(&case, arguments.out.as_ref());
+    let out = results_folder(&case, arguments.out.as_deref());
     let pairing = Pairing {
         gas: arguments.gas,
         particles: arguments.particles,

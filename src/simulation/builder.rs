@@ -1,0 +1,189 @@
+//! How a simulation is begun.
+
+use std::path::{Path, PathBuf};
+
+use calcine_coupler::coordinator::Ending;
+use calcine_coupler::observer::Observer;
+use calcine_coupler::supervisor::{Interrupts, Supervisor};
+use tracing::dispatcher::with_default;
+use tracing::{info, warn};
+
+use super::{Simulation, SimulationError, folder};
+use crate::assembly::{
+    self, GasBackend, Pairing, ParticleBackend, PreparedCase, SolverStarts, assemble,
+};
+use crate::case::buoyancy;
+use crate::case::model::Case;
+use crate::results::{self, Recorder, RunInfo};
+
+/// A simulation that is not begun yet: the case, and how it is to be run.
+#[derive(Clone, Debug)]
+pub struct SimulationBuilder {
+    case: PathBuf,
+    set: Vec<String>,
+    pairing: Pairing,
+    starts: Option<SolverStarts>,
+    transport: String,
+    out: Option<PathBuf>,
+    resume: bool,
+    from: Option<PathBuf>,
+    interrupts: Interrupts,
+}
+
+impl SimulationBuilder {
+    pub(super) fn new(case: PathBuf) -> Self {
+        Self {
+            case,
+            set: Vec::new(),
+            pairing: Pairing::default(),
+            starts: None,
+            transport: "shared-memory".into(),
+            out: None,
+            resume: false,
+            from: None,
+            interrupts: Interrupts::default(),
+        }
+    }
+
+    /// Changes a key of the case, as `--set KEY=VALUE` does.
+    #[must_use]
+    pub fn set(mut self, assignment: impl Into<String>) -> Self {
+        self.set.push(assignment.into());
+        self
+    }
+
+    /// Who computes the gas; the native solver unless told.
+    #[must_use]
+    pub fn gas(mut self, gas: GasBackend) -> Self {
+        self.pairing.gas = gas;
+        self
+    }
+
+    /// Who computes the particles; the native solver unless told.
+    #[must_use]
+    pub fn particles(mut self, particles: ParticleBackend) -> Self {
+        self.pairing.particles = particles;
+        self
+    }
+
+    /// How external solvers are started, and what carries their messages (`shared-memory` or `mpi`); as the case
+    /// says over shared memory unless told.
+    #[must_use]
+    pub fn starts(mut self, starts: SolverStarts, transport: &str) -> Self {
+        self.starts = Some(starts);
+        self.transport = transport.to_owned();
+        self
+    }
+
+    /// The results folder; `results/NAME` below the working directory unless told.
+    #[must_use]
+    pub fn out(mut self, folder: impl Into<PathBuf>) -> Self {
+        self.out = Some(folder.into());
+        self
+    }
+
+    /// Goes on from the last checkpoint in the results folder, or begins again where a run ended before its first
+    /// one.
+    #[must_use]
+    pub fn resume(mut self, resume: bool) -> Self {
+        self.resume = resume;
+        self
+    }
+
+    /// Continues from the last checkpoint of another run of the same mesh and particles, with clocks that start at
+    /// zero.
+    #[must_use]
+    pub fn from(mut self, folder: impl Into<PathBuf>) -> Self {
+        self.from = Some(folder.into());
+        self
+    }
+
+    /// Interrupts that may be raised from elsewhere while solvers start; else [`Simulation::interrupts`] gives them.
+    #[must_use]
+    pub fn interrupts(mut self, interrupts: Interrupts) -> Self {
+        self.interrupts = interrupts;
+        self
+    }
+
+    /// Reads and checks the case, makes mesh and particles, starts the solvers, and stands before the first window.
+    pub fn start(self) -> Result<Simulation, SimulationError> {
+        let mut case = crate::case::read(&self.case, &self.set)?;
+        let prepared = PreparedCase::new(&case)?;
+        crate::case::settle(&mut case, &prepared.mesh);
+        self.start_prepared(&case, &prepared, Vec::new())
+    }
+
+    /// The same with what was made of the case before, and observers that see the run from its start.
+    pub(crate) fn start_prepared(
+        self,
+        case: &Case,
+        prepared: &PreparedCase,
+        mut observers: Vec<Box<dyn Observer + Send>>,
+    ) -> Result<Simulation, SimulationError> {
+        let out = results_folder(case, self.out.as_deref());
+        if self.resume && folder::finished(&out).is_some() {
+            return Err(SimulationError::Over(Ending::Finished));
+        }
+        let started_before = folder::create(&out)?;
+        let lock = folder::lock(&out)?;
+        let checkpoint = out.join("checkpoint");
+        let resume = self.resume && folder::has_checkpoint(&out);
+        let again = self.resume && !resume;
+        let begun_from = folder::begun_from(self.from.as_deref(), again, &out);
+        if again && !(started_before && results::clear_start(&out, &case.hash)?) {
+            return Err(SimulationError::NoCheckpoint { folder: out });
+        }
+        let begun_from = begun_from.filter(|_| !resume);
+        let continued = begun_from.map(|from| folder::origin(&from, self.pairing));
+        let (origin, provenance) = continued.transpose()?.unzip();
+        let info = RunInfo {
+            gas: self.pairing.gas.name().into(),
+            particles: self.pairing.particles.name().into(),
+            transport: match self.pairing.is_native() {
+                true => "none".into(),
+                false => self.transport,
+            },
+            from: provenance,
+        };
+        let from = resume.then_some(checkpoint.as_path());
+        let mut recorder = Recorder::create(case, info, &out, from)?;
+        let log = folder::log(&out)?;
+        let starts = self.starts.unwrap_or_else(|| SolverStarts::of(case));
+        let settings = assembly::RunSettings {
+            pairing: self.pairing,
+            starts: &starts,
+            results: &out,
+            resume,
+            from: origin.as_ref(),
+        };
+        let mut supervisor = Supervisor::new(case.coupling.deadline, self.interrupts);
+        let run = with_default(&log, || {
+            info!(case = %case.name, pairing = %self.pairing.name(), resume, "start");
+            let mut run = assemble(case, prepared, &settings, &mut supervisor)?;
+            let number = buoyancy::number(case, &prepared.mesh);
+            info!("N sqrt(AF) dt is {number:.2e}");
+            if let Some(warning) = buoyancy::warning(number) {
+                warn!("{warning}");
+            }
+            run.begin(&mut super::all(&mut recorder, &mut observers))?;
+            Ok::<_, SimulationError>(run)
+        })?;
+        Ok(Simulation {
+            run,
+            supervisor,
+            recorder,
+            observers,
+            case: case.clone(),
+            out,
+            log,
+            ending: None,
+            failed: false,
+            _lock: lock,
+        })
+    }
+}
+
+/// The results folder: as asked for, or `results/NAME` below the working directory.
+pub(crate) fn results_folder(case: &Case, out: Option<&Path>) -> PathBuf {
+    out.map_or_else(|| PathBuf::from("results").join(&case.name), Path::to_owned)
+}

@@ -1,0 +1,126 @@
+//! Why a simulation cannot be begun, or cannot go on.
+
+use std::io;
+use std::path::PathBuf;
+
+use calcine_coupler::checkpoint::StateFileError;
+use calcine_coupler::coordinator::{Ending, RunError};
+use miette::Diagnostic;
+use thiserror::Error;
+
+use crate::assembly::AssemblyError;
+use crate::case::CaseErrors;
+use crate::exit;
+use crate::results::ResultsError;
+
+/// Why a simulation cannot be begun, or cannot go on; the words are those that `calcine run` prints.
+#[derive(Debug, Error)]
+pub enum SimulationError {
+    /// The case file is wrong; all its errors at once.
+    #[error("{}", .0.render())]
+    Case(CaseErrors),
+    /// The case cannot be assembled, although its file is in order.
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
+    /// The results folder, or the results of another run, cannot be used.
+    #[error(transparent)]
+    Results(#[from] ResultsError),
+    /// A window failed; the last checkpoint stays.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// Another run writes into the folder.
+    #[error("another run is writing into {folder}: name another folder with `--out`")]
+    Occupied {
+        /// The results folder.
+        folder: PathBuf,
+    },
+    /// There is nothing to resume.
+    #[error(
+        "there is no checkpoint in {folder}: run without `--resume`, or name the folder with `--out`"
+    )]
+    NoCheckpoint {
+        /// The results folder.
+        folder: PathBuf,
+    },
+    /// The results to continue from are of another gas solver.
+    #[error(
+        "--from {folder}: the results are of the gas backend `{found}`, this run has `{asked}`, and the state of \
+         one is no start of the other: run both with `--gas {found}`"
+    )]
+    OtherGas {
+        /// The folder to continue from.
+        folder: PathBuf,
+        /// Its gas backend.
+        found: String,
+        /// This run's.
+        asked: String,
+    },
+    /// The results to continue from hold no checkpoint.
+    #[error(
+        "--from {folder}: there is no checkpoint in it; a run leaves one at its end, on Ctrl-C and as often as \
+         `time.checkpoint` says"
+    )]
+    NoOrigin {
+        /// The folder to continue from.
+        folder: PathBuf,
+    },
+    /// The checkpoint to continue from cannot be read.
+    #[error("--from {folder}: {cause}")]
+    Origin {
+        /// The folder to continue from.
+        folder: PathBuf,
+        /// Why.
+        #[source]
+        cause: StateFileError,
+    },
+    /// A file or folder of the run.
+    #[error("{path}: {cause}")]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// Why.
+        #[source]
+        cause: io::Error,
+    },
+    /// The run has ended already.
+    #[error("the run has ended ({}): open the case again, with `resume` to go on from a checkpoint", words(.0))]
+    Over(Ending),
+    /// An earlier step failed, so that the parts may stand in the middle of a window.
+    #[error(
+        "an earlier step failed: open the case again with `resume` to go on from the last checkpoint"
+    )]
+    Failed,
+}
+
+fn words(ending: &Ending) -> String {
+    match ending {
+        Ending::Finished => "at the end of its time".into(),
+        Ending::Checkpointed(path) => format!("with a checkpoint in {}", path.display()),
+    }
+}
+
+impl From<CaseErrors> for SimulationError {
+    fn from(errors: CaseErrors) -> Self {
+        Self::Case(errors)
+    }
+}
+
+impl SimulationError {
+    /// The exit code with which `calcine run` ends, see [`crate::exit`].
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Assembly(AssemblyError::Run(error)) | Self::Run(error) => exit::of(error),
+            Self::Assembly(AssemblyError::Part(_)) => exit::PEER,
+            Self::Io { .. } | Self::Failed | Self::Over(_) => exit::OTHER,
+            _ => exit::CASE,
+        }
+    }
+
+    /// What to do about it, where the message does not say so itself.
+    pub fn remedy(&self) -> Option<String> {
+        match self {
+            Self::Results(error) => error.help().map(|help| help.to_string()),
+            _ => None,
+        }
+    }
+}
