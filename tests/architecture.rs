@@ -231,3 +231,64 @@ fn no_file_holds_a_path_of_the_machine_it_was_written_on() {
         "files with a path of one machine: {wrong:?}"
     );
 }
+
+/// Rust files below a folder of the clone, with their text; comments are left out.
+fn sources(folder: &str) -> Vec<(String, String)> {
+    let below = root().join(folder);
+    let rust = |path: &PathBuf| {
+        path.starts_with(&below) && path.extension().is_some_and(|ending| ending == "rs")
+    };
+    let code = |path: PathBuf| {
+        let text = fs::read_to_string(&path).unwrap();
+        let lines = text
+            .lines()
+            .filter(|line| !line.trim_start().starts_with("//"));
+        (shown(&path), lines.collect::<Vec<_>>().join("\n"))
+    };
+    files().into_iter().filter(rust).map(code).collect()
+}
+
+#[test]
+fn the_coordinator_names_no_model_of_particles() {
+    // Every type that implements the trait, and the modules that they live in.
+    let mut named = BTreeSet::new();
+    for (path, text) in sources("coupler/interior/src") {
+        for rest in text.split("impl ParticleModel for ").skip(1) {
+            let name = rest.split(|c: char| !c.is_alphanumeric()).next().unwrap();
+            named.insert(name.to_owned());
+            let inside = path.trim_start_matches("coupler/interior/src/");
+            let module = inside.split(['/', '.']).next().unwrap();
+            named.insert(module.to_owned());
+        }
+    }
+    let models = ["Reacting", "Thin", "reacting", "thin"];
+    assert!(models.iter().all(|name| named.contains(*name)), "{named:?}");
+    let words = |text: &str| -> BTreeSet<String> {
+        let split = text.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+        split.map(str::to_owned).collect()
+    };
+    let mut wrong = Vec::new();
+    for (path, text) in sources("coupler/src") {
+        // A variant of the gas' own chemistry is called as a model is: only what comes from the crate counts.
+        if words(&text).contains("calcine_interior") {
+            let found = words(&text);
+            wrong.extend(
+                named
+                    .intersection(&found)
+                    .map(|name| format!("{path}: {name}")),
+            );
+        }
+    }
+    // The root makes models in its assembly and nowhere else.
+    for (path, text) in sources("src") {
+        let makes = |name: &str| text.contains(&format!("{name}::new("));
+        let imports = words(&text).contains("ParticleModel");
+        if !path.starts_with("src/assembly/") && (imports || makes("Reacting") || makes("Thin")) {
+            wrong.push(path);
+        }
+    }
+    assert!(
+        wrong.is_empty(),
+        "models named outside the assembly: {wrong:#?}"
+    );
+}

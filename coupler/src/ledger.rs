@@ -41,7 +41,7 @@ pub struct CarriedInventory {
     pub particles: u64,
     /// Their mass in kg.
     pub mass: f64,
-    /// Their enthalpy in J, as their materials count it.
+    /// Their energy in J, as their models count it: of particles that exchange mass with the gas from the elements on.
     pub enthalpy: f64,
     /// Their momentum in kg m/s of motion time.
     pub momentum: Vec3,
@@ -54,6 +54,14 @@ impl CarriedInventory {
         self.mass += mass;
         self.enthalpy += enthalpy;
         self.momentum += mass * velocity;
+    }
+
+    /// Adds what others carried.
+    pub fn add_all(&mut self, other: &Self) {
+        self.particles += other.particles;
+        self.mass += other.mass;
+        self.enthalpy += other.enthalpy;
+        self.momentum += other.momentum;
     }
 
     /// The numbers in one order, for a checkpoint.
@@ -97,6 +105,8 @@ pub struct Ledger {
     pub particle_momentum: BalanceLine,
     /// What feeds brought and outlets took so far.
     pub fed_and_discharged: [CarriedInventory; 2],
+    /// What was left so far of particles that were used up, burnt for example, and taken out.
+    pub used_up: CarriedInventory,
     /// Mass of each element of a gas mixture in kg, by its symbol.
     pub elements: Vec<(String, BalanceLine)>,
 }

@@ -14,6 +14,7 @@ pub mod hold;
 pub mod ledger;
 pub mod mapping;
 pub mod mesh;
+pub mod models;
 pub mod momentum_model;
 pub mod motion;
 pub mod observer;

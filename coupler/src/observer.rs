@@ -9,6 +9,7 @@ use thiserror::Error;
 use crate::exchange::ExchangeConvergence;
 use crate::ledger::Ledger;
 use crate::mesh::Mesh;
+use crate::models::ParticleModels;
 use crate::part::{Bed, Convergence, GasFields, ParticleFields, SolverInfo};
 use crate::time::{Clocks, Window};
 
@@ -71,11 +72,10 @@ pub struct CommittedState<'a> {
     pub particle_temperature: &'a [f64],
     /// Mean heat flow into each particle over the window in W.
     pub particle_heat: &'a [f64],
-    /// Particle masses in kg, as their solids have it where they react.
+    /// Particle masses in kg, as their models have it where these change it.
     pub particle_mass: &'a [f64],
-    /// Mass fractions of the solids of particles that react, solid by solid within each particle; empty where
-    /// none does.
-    pub solid_fractions: &'a [f64],
+    /// What is inside the particles, as columns by their names.
+    pub models: &'a ParticleModels,
     /// What else the particles had of the gas.
     pub particle_gas: ParticleGasExchange<'a>,
     /// Names of walls and surroundings that give heat to the particles.

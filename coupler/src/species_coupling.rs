@@ -1,25 +1,34 @@
-//! What particles that react exchange with the gas (requirements RXN-1, 2).
+//! What particles exchange with the gas through channels, heterogeneous reactions for example (requirements RXN-1, 2).
 //!
-//! The rate of a heterogeneous reaction j of particle p is a line in the mass fraction of its key gas,
+//! The rate of a channel j of particle p is a line in the mass fraction of its key gas,
 //! r = b Y − a, and each cell that p spans has its share W_cp of it by the cell's own Y. A first attempt of
 //! a window gives the gas these lines: the key gas implicitly, which is what keeps large process steps stable, all
-//! others explicitly. What comes of it gives the rates of the cells; limited to the solids that are there, they are given to
-//! the gas once more as fixed sources, all species of a reaction in their proportions, so that elements close whatever the
+//! others explicitly. What comes of it gives the rates of the cells; limited to what particles hold, they are given to
+//! the gas once more as fixed sources, all species of a channel in their proportions, so that elements close whatever the
 //! attempts before did.
 //!
 //! Gas that is used up leaves its cell with the cell's temperature, gas that is made comes with the
 //! particle's.
 
-use calcine_interior::Reacting;
+use calcine_interior::{Channel, GasLines};
 use calcine_physics::gas_model::GasModel;
 
 use crate::part::{GasFields, SpeciesExchange};
 use crate::smoother::Operator;
 
+/// The channels of all particles, and their lines at hand.
+#[derive(Clone, Copy, Debug)]
+pub struct ChannelLines<'a> {
+    /// The channels.
+    pub channels: &'a [Channel],
+    /// The lines of all particles.
+    pub lines: &'a GasLines,
+}
+
 /// The exchange of species of one window, with its scratch memory.
 #[derive(Debug, Default)]
 pub struct SpeciesCoupling {
-    /// Mean rate of each channel of each particle in mol/s, channel by channel within each particle.
+    /// Mean rate of each channel of each particle in units/s, channel by channel within each particle.
     pub rates: Vec<f64>,
     /// Sensible heat in W that exchanged gases bring into each particle.
     pub carried: Vec<f64>,
@@ -29,7 +38,7 @@ pub struct SpeciesCoupling {
     /// Of each channel: slopes and offsets of particles, and of cells.
     particle: [Vec<f64>; 2],
     cell: [Vec<Vec<f64>>; 2],
-    /// The same, times the sensible enthalpy in J/mol of what the reaction makes.
+    /// The same, times the sensible enthalpy in J a unit of what the channel makes.
     warm: [Vec<Vec<f64>>; 2],
     /// Mass fractions by which the fixed rates went.
     fractions: Vec<f64>,
@@ -42,34 +51,34 @@ impl SpeciesCoupling {
     pub fn linearise(
         &mut self,
         operator: &Operator,
-        reacting: &Reacting,
+        given: ChannelLines<'_>,
         gas: &GasFields<'_>,
         properties: &GasModel,
         out: &mut SpeciesExchange,
     ) {
         let species = properties.species().len();
-        let count = reacting.channels().len() * operator.particles();
+        let count = given.channels.len() * operator.particles();
         self.shares.clear();
         self.shares.resize(count, 1.0);
-        self.spread(operator, reacting, properties);
+        self.spread(operator, given, properties);
         self.fractions.clear();
         self.fractions.extend_from_slice(gas.composition);
-        self.sample_rates(operator, reacting, species);
-        self.fill(reacting, species, true, out);
+        self.sample_rates(operator, given, species);
+        self.fill(given, species, true, out);
     }
 
     /// Rates of the lines at the gas as it is now; how far they are from those before, as a share of all.
     pub fn follow(
         &mut self,
         operator: &Operator,
-        reacting: &Reacting,
+        given: ChannelLines<'_>,
         gas: &GasFields<'_>,
         species: usize,
     ) -> f64 {
         let before = std::mem::take(&mut self.rates);
         self.fractions.clear();
         self.fractions.extend_from_slice(gas.composition);
-        self.sample_rates(operator, reacting, species);
+        self.sample_rates(operator, given, species);
         let (mut moved, mut all) = (0.0, 0.0);
         for (now, before) in self.rates.iter().zip(&before) {
             moved += (now - before).abs();
@@ -78,25 +87,25 @@ impl SpeciesCoupling {
         if moved == 0.0 { 0.0 } else { moved / all }
     }
 
-    /// Tells the gas the rates of the last attempt as they are, limited to the solids that are there over a
-    /// span in s.
+    /// Tells the gas the rates of the last attempt as they are, after `limit` has lowered them to what the particles
+    /// hold.
     pub fn fix(
         &mut self,
         operator: &Operator,
-        reacting: &mut Reacting,
-        span: f64,
+        given: ChannelLines<'_>,
+        limit: impl FnOnce(&mut [f64]),
         properties: &GasModel,
         out: &mut SpeciesExchange,
     ) {
-        let species = properties.species().len();
-        reacting.limit(&self.rates, span, &mut self.shares);
-        for (rate, share) in self.rates.iter_mut().zip(&self.shares) {
-            *rate *= share;
+        self.shares.clone_from(&self.rates);
+        limit(&mut self.rates);
+        for (share, rate) in self.shares.iter_mut().zip(&self.rates) {
+            *share = if *share == *rate { 1.0 } else { rate / *share };
         }
         if self.shares.iter().any(|share| *share != 1.0) {
-            self.spread(operator, reacting, properties);
+            self.spread(operator, given, properties);
         }
-        self.fill(reacting, species, false, out);
+        self.fill(given, properties.species().len(), false, out);
     }
 
     /// What of the heat that cells received came with exchanged gas, in W.
@@ -126,13 +135,13 @@ impl SpeciesCoupling {
     pub fn credit(
         &mut self,
         operator: &Operator,
-        reacting: &Reacting,
+        given: ChannelLines<'_>,
         gas: &GasFields<'_>,
         properties: &GasModel,
     ) {
         let (cells, particles) = (operator.cells(), operator.particles());
         let species = properties.species().len();
-        let channels = reacting.channels();
+        let channels = given.channels;
         self.carried.clear();
         self.carried.resize(particles, 0.0);
         self.sampled.resize(particles, 0.0);
@@ -151,25 +160,32 @@ impl SpeciesCoupling {
             operator.sample(&enthalpy, &mut self.sampled);
             for (p, sampled) in self.sampled.iter().enumerate() {
                 let at = p * channels.len() + c;
-                self.carried[p] -= self.shares[at] * reacting.lines().1[at] * sampled;
+                self.carried[p] -= self.shares[at] * given.lines.offset[at] * sampled;
             }
             for (cell, value) in enthalpy.iter_mut().enumerate() {
-                *value *= self.fractions[cell * species + channel.key];
+                *value *= self.fraction(cell, species, channel);
             }
             operator.sample(&enthalpy, &mut self.sampled);
             for (p, sampled) in self.sampled.iter().enumerate() {
                 let at = p * channels.len() + c;
-                self.carried[p] += self.shares[at] * reacting.lines().0[at] * sampled
-                    - self.rates[at] * made(channel, properties, reacting.end_temperature()[p]);
+                self.carried[p] += self.shares[at] * given.lines.slope[at] * sampled
+                    - self.rates[at] * made(channel, properties, given.lines.released[p]);
             }
         }
     }
 
+    /// Mass fraction in a cell of the key gas of a channel.
+    fn fraction(&self, cell: usize, species: usize, channel: &Channel) -> f64 {
+        channel
+            .key
+            .map_or(0.0, |key| self.fractions[cell * species + key])
+    }
+
     /// Brings the particles' lines to the cells.
-    fn spread(&mut self, operator: &Operator, reacting: &Reacting, properties: &GasModel) {
+    fn spread(&mut self, operator: &Operator, given: ChannelLines<'_>, properties: &GasModel) {
         let (cells, particles) = (operator.cells(), operator.particles());
-        let channels = reacting.channels();
-        let lines = [reacting.lines().0, reacting.lines().1];
+        let channels = given.channels;
+        let lines = [&given.lines.slope, &given.lines.offset];
         self.scratch.resize(particles, 0.0);
         for (which, lines) in lines.into_iter().enumerate() {
             self.cell[which].resize(channels.len(), Vec::new());
@@ -183,7 +199,7 @@ impl SpeciesCoupling {
                 operator.spread(&self.scratch, &mut self.cell[which][c]);
                 for (p, value) in self.scratch.iter_mut().enumerate() {
                     if *value != 0.0 {
-                        *value *= made(channel, properties, reacting.end_temperature()[p]);
+                        *value *= made(channel, properties, given.lines.released[p]);
                     }
                 }
                 self.warm[which][c].resize(cells, 0.0);
@@ -193,19 +209,21 @@ impl SpeciesCoupling {
     }
 
     /// Rates of all particles' lines, unlimited, at the mass fractions at hand.
-    fn sample_rates(&mut self, operator: &Operator, reacting: &Reacting, species: usize) {
-        let channels = reacting.channels();
-        let (slopes, offsets) = reacting.lines();
+    fn sample_rates(&mut self, operator: &Operator, given: ChannelLines<'_>, species: usize) {
+        let channels = given.channels;
+        let (slopes, offsets) = (&given.lines.slope, &given.lines.offset);
         self.rates.clear();
         self.rates.resize(slopes.len(), 0.0);
         self.scratch.resize(operator.cells(), 0.0);
         self.sampled.resize(operator.particles(), 0.0);
-        let mut sampled = None;
+        let (mut sampled, fractions) = (None, &self.fractions);
         for (c, channel) in channels.iter().enumerate() {
             if sampled != Some(channel.key) {
                 self.particle[0].resize(operator.cells(), 0.0);
                 for (cell, value) in self.particle[0].iter_mut().enumerate() {
-                    *value = self.fractions[cell * species + channel.key];
+                    *value = channel
+                        .key
+                        .map_or(0.0, |key| fractions[cell * species + key]);
                 }
                 operator.sample(&self.particle[0], &mut self.sampled);
                 sampled = Some(channel.key);
@@ -219,21 +237,27 @@ impl SpeciesCoupling {
     }
 
     /// What the gas is told, by the cells' lines at the mass fractions at hand.
-    fn fill(&self, reacting: &Reacting, species: usize, implicit: bool, out: &mut SpeciesExchange) {
+    fn fill(
+        &self,
+        given: ChannelLines<'_>,
+        species: usize,
+        implicit: bool,
+        out: &mut SpeciesExchange,
+    ) {
         let cells = self.fractions.len() / species.max(1);
         out.reset(cells, species);
-        for (c, channel) in reacting.channels().iter().enumerate() {
+        for (c, channel) in given.channels.iter().enumerate() {
             for cell in 0..cells {
                 let (slope, offset) = (self.cell[0][c][cell], self.cell[1][c][cell]);
                 if slope == 0.0 && offset == 0.0 {
                     continue;
                 }
-                let fraction = self.fractions[cell * species + channel.key];
+                let fraction = self.fraction(cell, species, channel);
                 let rate = slope * fraction - offset;
                 for (k, mass) in channel.mass.iter().enumerate().filter(|(_, m)| **m != 0.0) {
                     let at = cell * species + k;
                     let steepness = -mass * slope;
-                    if implicit && k == channel.key && steepness > 0.0 {
+                    if implicit && channel.key == Some(k) && steepness > 0.0 {
                         out.coefficient[at] += steepness;
                         out.source[at] -= mass * offset;
                     } else {
@@ -249,18 +273,11 @@ impl SpeciesCoupling {
     }
 }
 
-/// Sensible enthalpy in J/mol of the gases that a reaction makes, at a temperature in K.
-fn made(
-    channel: &calcine_interior::reacting::Channel,
-    properties: &GasModel,
-    temperature: f64,
-) -> f64 {
-    let parts = channel
-        .mass
-        .iter()
-        .enumerate()
-        .filter(|(_, mass)| **mass > 0.0);
+/// Sensible enthalpy in J of the gases that a unit of a channel makes, at a temperature in K.
+fn made(channel: &Channel, properties: &GasModel, temperature: f64) -> f64 {
+    let parts = channel.mass.iter().enumerate();
     parts
+        .filter(|(_, mass)| **mass > 0.0)
         .map(|(k, mass)| mass * properties.species_enthalpy(k, temperature))
         .sum()
 }

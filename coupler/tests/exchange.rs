@@ -6,12 +6,15 @@
 
 use calcine_coupler::closures::CouplingCoefficients;
 use calcine_coupler::exchange::{Exchange, ExchangeInputs};
-use calcine_coupler::interior::{ParticleModel, Thin};
+use calcine_coupler::interior::{
+    At, GasLines, Newcomer, ParticleModel, Surroundings, TEMPERATURE, Thin, Transfer,
+};
 use calcine_coupler::mapping::{Mapper, Method};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
 use calcine_coupler::part::{CellReceived, GasFields, ParticleFields};
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::smoother::{Operator, Smoother, SmootherSettings};
 
 /// A gas of cells that only store heat and momentum: c dT/dt = S − H T, m du/dt = S_u − K u.
@@ -154,19 +157,28 @@ fn attempts(
 ) -> (Vec<f64>, Exchange, CellReceived, Thin, StillGas) {
     let bench = Bench::new();
     let mut gas = StillGas::new(8);
-    let mut thin = Thin::of_heat_capacity(vec![5e-3, 8e-3], vec![400.0, 350.0]);
+    let mut thin = Thin::new(HeatCapacity::constant(1.0));
+    for (id, mass, kelvin) in [(1, 5e-3, 400.0), (2, 8e-3, 350.0)] {
+        let state: [(&str, &[f64]); 1] = [(TEMPERATURE, &[kelvin])];
+        let radius = bench.radius[0];
+        let one = Newcomer {
+            id,
+            mass,
+            radius,
+            state: &state,
+        };
+        thin.change(&[], &[one]).unwrap();
+    }
     let coefficients = CouplingCoefficients {
         drag: vec![1e-3, 2e-3],
         conductance: vec![conductance; 2],
         ..CouplingCoefficients::default()
     };
     let mut exchange = Exchange::default();
-    exchange.conductance.resize(2, 0.0);
-    thin.eliminated(&coefficients.conductance, span, &mut exchange.conductance);
+    let mut lines = GasLines::default();
     let mut received = CellReceived::default();
     let mut shares = Vec::new();
     for _ in 0..count {
-        let temperature = thin.committed_temperature().to_vec();
         let inputs = ExchangeInputs {
             operator: &bench.operator,
             particles: bench.fields(),
@@ -174,11 +186,29 @@ fn attempts(
             acceleration: 3.0,
         };
         exchange.begin(&inputs, &gas.fields());
-        exchange.linearise(&inputs, &temperature);
+        let around = Surroundings {
+            temperature: exchange.sampled_temperature(),
+            pressure: &[],
+            composition: &[],
+            conductance: &coefficients.conductance,
+            film: &[],
+            radius: &bench.radius,
+        };
+        lines.reset(2, 0);
+        thin.respond(&around, span, &[0.0; 2], &mut lines).unwrap();
+        exchange.conductance.clone_from(&lines.conductance);
+        let temperature = &lines.temperature;
+        exchange.linearise(&inputs, temperature);
         gas.attempt(&exchange, span, beyond, &mut received);
-        let share = exchange.credit_heat(&inputs, &temperature, &gas.fields(), &received, &[]);
+        let share = exchange.credit_heat(&inputs, temperature, &gas.fields(), &received, &[]);
         exchange.credit_drag(&inputs, &gas.fields(), &received);
-        thin.advance(&exchange.heat, span);
+        let took = Transfer {
+            heat: &exchange.heat,
+            network: &[0.0; 2],
+            carried: &[],
+            rates: &[],
+        };
+        thin.settle(&took, span).unwrap();
         shares.push(share);
     }
     (shares, exchange, received, thin, gas)
@@ -216,7 +246,11 @@ fn the_iteration_converges_to_the_coupled_system_of_cells_and_particles() {
     // Q_p = h A (T̄_p − T_p) with both temperatures new is the coupled system's definition.
     let mut seen = vec![0.0; 2];
     Bench::new().operator.sample(&gas.temperature, &mut seen);
-    for ((seen, own), heat) in seen.iter().zip(thin.temperature()).zip(&exchange.heat) {
+    for ((seen, own), heat) in seen
+        .iter()
+        .zip(thin.bodies(At::Attempt).temperature)
+        .zip(&exchange.heat)
+    {
         let expected = 0.02 * (seen - own);
         assert!((heat - expected).abs() < 1e-10 * expected.abs());
     }
@@ -229,7 +263,12 @@ fn no_cell_is_driven_beyond_its_particle_and_its_neighbours() {
     // hot ones by particles that are colder.
     for (conductance, span) in [(1e-3, 0.1), (0.02, 0.5), (0.5, 0.01), (100.0, 0.5)] {
         let (.., thin, gas) = attempts(conductance, span, 3, 0.0);
-        for &temperature in thin.temperature().iter().chain(&gas.temperature) {
+        for &temperature in thin
+            .bodies(At::Attempt)
+            .temperature
+            .iter()
+            .chain(&gas.temperature)
+        {
             assert!(
                 (300.0 - 1e-9..=400.0 + 1e-9).contains(&temperature),
                 "{temperature}"
@@ -242,7 +281,12 @@ fn no_cell_is_driven_beyond_its_particle_and_its_neighbours() {
 fn a_stiff_particle_relaxes_without_overshoot() {
     // h A Δτ/(m c) = 1e4: a lagged particle temperature would diverge (requirements TSM-9).
     let (.., thin, gas) = attempts(100.0, 0.5, 200, 0.0);
-    for &temperature in thin.temperature().iter().chain(&gas.temperature) {
+    for &temperature in thin
+        .bodies(At::Attempt)
+        .temperature
+        .iter()
+        .chain(&gas.temperature)
+    {
         assert!((290.0..410.0).contains(&temperature), "{temperature}");
     }
 }

@@ -1,7 +1,9 @@
-//! The interior of the particles of a case.
+//! The inside of the particles of a case: a model for each material, and the network between them.
 
+use calcine_coupler::coordinator::RunError;
 use calcine_coupler::interior::reacting::SolidChemistry;
 use calcine_coupler::interior::{HeatNetwork, ParticleModel, Reacting, Thin};
+use calcine_coupler::models::ParticleModels;
 use calcine_coupler::part::ParticleFields;
 use calcine_coupler::physics::gas_model::GasModel;
 
@@ -10,50 +12,73 @@ use super::prepared::PreparedCase;
 use crate::case::model::{Case, ReactionSpec};
 use crate::laws;
 
-/// The interior of the particles that the run starts with; those of a checkpoint may be others than
-/// those of the case, and get their temperatures from it.
-pub(super) fn interior(
+/// Makes the model of the particles of a material by its name, without particles yet; `None` for the one that the case
+/// asks for.
+pub type ModelFactory<'a> = dyn Fn(&str) -> Option<Box<dyn ParticleModel>> + 'a;
+
+/// The models of all materials that have particles, with the particles that the run starts with; those of a
+/// checkpoint may be others than those of the case, and get their state from it.
+pub(super) fn models(
     case: &Case,
     prepared: &PreparedCase,
     particles: &ParticleFields<'_>,
-) -> Result<Box<dyn ParticleModel>, AssemblyError> {
-    let all = 0..particles.id.len();
-    let start = prepared.temperature.iter().copied();
+    own: &ModelFactory<'_>,
+) -> Result<ParticleModels, AssemblyError> {
+    let mut made: Vec<Box<dyn ParticleModel>> = Vec::new();
+    let mut place = vec![None; case.materials.len()];
+    let mut model_of = Vec::new();
+    for population in &case.particles {
+        let material = population.material;
+        let index = match place[material] {
+            Some(index) => index,
+            None => {
+                let given = own(&case.materials[material].name);
+                made.push(match given {
+                    Some(model) => model,
+                    None => model(case, material)?,
+                });
+                made.len() - 1
+            }
+        };
+        place[material] = Some(index);
+        model_of.push(index);
+    }
+    let mut models = ParticleModels::new(made, model_of).map_err(RunError::from)?;
     let density = |p: usize| {
         case.materials[case.particles[particles.population[p] as usize].material].density
     };
     let volume = |p: usize| 4.0 / 3.0 * std::f64::consts::PI * particles.radius[p].powi(3);
-    let material = |p: usize| case.particles[particles.population[p] as usize].material;
-    let network = laws::heat(case).map(|laws| {
-        let walls = case.walls.iter().zip(&case.wall_temperatures);
-        let warm = walls.filter(|(_, temperature)| temperature.is_some());
-        HeatNetwork::new(
-            laws,
-            laws::thermal(case),
-            all.clone().map(material).collect(),
-            warm.map(|(wall, _)| wall.material).collect(),
-        )
-    });
-    let masses: Vec<f64> = all.clone().map(|p| density(p) * volume(p)).collect();
-    let materials: Vec<usize> = all.clone().map(material).collect();
-    let temperature = start
-        .chain(std::iter::repeat(case.gas.temperature))
-        .take(all.len())
+    let masses: Vec<f64> = (0..particles.len())
+        .map(|p| density(p) * volume(p))
         .collect();
+    let start = prepared.temperature.iter().copied();
+    let temperature: Vec<f64> = start
+        .chain(std::iter::repeat(case.gas.temperature))
+        .take(particles.len())
+        .collect();
+    let filled = models.fill(particles, &masses, &temperature);
+    filled.map_err(RunError::from)?;
+    Ok(models)
+}
+
+/// The model that the case asks for.
+fn model(case: &Case, material: usize) -> Result<Box<dyn ParticleModel>, AssemblyError> {
     if case.chemistry.reactions.is_empty() {
-        let laws = case.materials.iter().map(|m| m.heat_capacity.clone());
-        let made = Thin::new(masses, materials, laws.collect(), temperature, network);
-        return Ok(Box::new(made));
+        let law = case.materials[material].heat_capacity.clone();
+        return Ok(Box::new(Thin::new(law)));
     }
-    let made = Reacting::new(
-        chemistry(case)?,
-        &case.chemistry.compositions,
-        &masses,
-        materials,
-        temperature,
-        network,
-    );
-    Ok(Box::new(made.with_sizes(case.chemistry.sizes.clone())))
+    let made = Reacting::new(chemistry(case)?, &case.chemistry.compositions[material]);
+    let size = case.chemistry.sizes[material].clone();
+    Ok(Box::new(made.with_size(size)))
+}
+
+/// Heat between particles and to walls, without particles yet; `None` where there is none.
+pub(super) fn network(case: &Case) -> Option<HeatNetwork> {
+    let laws = laws::heat(case)?;
+    let walls = case.walls.iter().zip(&case.wall_temperatures);
+    let warm = walls.filter(|(_, temperature)| temperature.is_some());
+    let materials = warm.map(|(wall, _)| wall.material).collect();
+    Some(HeatNetwork::new(laws, laws::thermal(case), materials))
 }
 
 /// The reactions of a case.

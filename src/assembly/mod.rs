@@ -14,7 +14,7 @@ use calcine_coupler::coordinator::{CheckpointPaths, CoupledRun, RunParts};
 use calcine_coupler::supervisor::Supervisor;
 
 pub use error::AssemblyError;
-pub use interior::chemistry;
+pub use interior::{ModelFactory, chemistry};
 pub use pairing::{GasBackend, Pairing, ParticleBackend};
 pub use prepared::PreparedCase;
 pub use settings::{RunSettings, SolverStart, SolverStarts};
@@ -28,6 +28,17 @@ pub fn assemble(
     prepared: &PreparedCase,
     settings: &RunSettings<'_>,
     supervisor: &mut Supervisor,
+) -> Result<CoupledRun, AssemblyError> {
+    assemble_with(case, prepared, settings, supervisor, &|_| None)
+}
+
+/// Builds the run with models of particles that the case file does not know, by the name of the material.
+pub fn assemble_with(
+    case: &Case,
+    prepared: &PreparedCase,
+    settings: &RunSettings<'_>,
+    supervisor: &mut Supervisor,
+    models: &ModelFactory<'_>,
 ) -> Result<CoupledRun, AssemblyError> {
     if let Some(origin) = settings.from {
         let species = case.gas.properties.species();
@@ -43,11 +54,11 @@ pub fn assemble(
     };
     let gas = assembly.gas(supervisor)?;
     let particles = assembly.particles(supervisor)?;
-    let interior = interior::interior(case, prepared, &particles.fields())?;
     let parts = RunParts {
         gas,
+        models: interior::models(case, prepared, &particles.fields(), models)?,
+        network: interior::network(case),
         particles,
-        interior,
     };
     let smoother = prepared::smoother(case, prepared)?;
     let mut plan = plan::plan(case, prepared, checkpoint);

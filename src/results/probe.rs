@@ -113,7 +113,9 @@ pub(super) fn samples<'a>(
         }
         if site.probe.particles {
             let places = site.particles(centres, radii);
-            columns.extend(particles.iter().map(|field| column(field, &places, true)));
+            let single = |field: &&Field<'_>| !matches!(field.values, Values::Ragged(_));
+            let fields = particles.iter().filter(single);
+            columns.extend(fields.map(|field| column(field, &places, true)));
         }
         Sample { site, columns }
     };
@@ -134,7 +136,7 @@ fn column(field: &Field<'_>, places: &[Option<usize>], of_particles: bool) -> Co
         (Some(place), Values::Vector(list)) => list[place].norm(),
         (Some(place), Values::Whole(list)) => list[place] as f64,
         (Some(place), Values::Small(list)) => f64::from(list[place]),
-        (None, _) => f64::NAN,
+        (None, _) | (Some(_), Values::Ragged(_)) => f64::NAN,
     };
     let holder = if of_particles {
         "of the particle at each point"

@@ -1,12 +1,14 @@
 //! Quantities of interest: how each is measured at a moment, and its verdict.
 
 use calcine_coupler::mesh::Mesh;
+use calcine_coupler::models::ParticleColumn;
 use calcine_coupler::observer::CommittedState;
 use calcine_coupler::physics::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::ResultsError;
 use super::probe::Site;
+use super::snapshot::SOLIDS;
 use super::summary::{QuantityResult, Verdict};
 use crate::case::model::{
     Case, Expect, GasPlace, Measure, ParticlePlace, Quantity, Statistic, ToleranceBand, belongs,
@@ -149,10 +151,9 @@ fn of_particles(moment: &CommittedState<'_>, (field, column): Field<'_>) -> Vec<
         "mass" => moment.particle_mass.to_vec(),
         "diameter" => bed.radius.iter().map(|radius| 2.0 * radius).collect(),
         "mass_fraction" => {
-            let solids = moment.solid_fractions.len() / bed.len().max(1);
-            let of = column.unwrap_or(0);
-            let fractions = moment.solid_fractions.iter().skip(of);
-            fractions.step_by(solids.max(1)).copied().collect()
+            let solids = moment.models.shown(SOLIDS);
+            let of = column.and_then(|k| solids.get(k));
+            of.and_then(ParticleColumn::scalars).unwrap_or_default()
         }
         _ => moment.particle_temperature.to_vec(),
     }

@@ -269,8 +269,8 @@ impl Recorder {
             self.case.gas.properties.species(),
             moment,
         )?;
-        let particles =
-            snapshot::particles(&self.case.output, &self.case.chemistry.solids, moment)?;
+        let inside = snapshot::inside(&self.case.output, moment);
+        let particles = snapshot::particles(&self.case.output, &inside, moment)?;
         let number = self.counters.snapshots.len();
         let now = moment.clocks.process;
         let Some(open) = &mut self.open else {

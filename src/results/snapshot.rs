@@ -1,8 +1,9 @@
 //! Fields of a snapshot: the columns that the case asks for, with unit and description.
 
+use calcine_coupler::interior::{ColumnKind, ColumnValues, Ragged};
+use calcine_coupler::models::ParticleColumn;
 use calcine_coupler::observer::CommittedState;
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::physics::solids::SolidSpecies;
 
 use super::ResultsError;
 use crate::case::model::Output;
@@ -27,6 +28,8 @@ pub(super) enum Values<'a> {
     Whole(&'a [u64]),
     /// Small whole numbers.
     Small(&'a [u32]),
+    /// Any number each.
+    Ragged(&'a Ragged),
 }
 
 impl Values<'_> {
@@ -38,6 +41,7 @@ impl Values<'_> {
             Values::Vector(list) => list.len(),
             Values::Whole(list) => list.len(),
             Values::Small(list) => list.len(),
+            Values::Ragged(rows) => rows.rows(),
         }
     }
 
@@ -60,7 +64,7 @@ pub(super) struct Field<'a> {
     /// Unit, `1` for pure numbers.
     pub unit: &'static str,
     /// What it is.
-    pub description: &'static str,
+    pub description: &'a str,
     /// The values.
     pub values: Values<'a>,
 }
@@ -68,7 +72,7 @@ pub(super) struct Field<'a> {
 const fn field<'a>(
     name: &'a str,
     unit: &'static str,
-    description: &'static str,
+    description: &'a str,
     values: Values<'a>,
 ) -> Field<'a> {
     Field {
@@ -85,6 +89,8 @@ pub(super) const MASS_FRACTIONS: &str = "mass_fractions";
 pub(super) const TURBULENCE: &str = "turbulence";
 /// The same of the solids of particles.
 pub(super) const SOLIDS: &str = "solids";
+/// The name by which a case file asks for all columns that the models of particles show.
+pub(super) const INSIDE: &str = "inside";
 
 /// The gas fields that the case asks for, in a fixed order; mass fractions go by the names of the
 /// species.
@@ -168,7 +174,7 @@ pub(super) fn gas<'a>(
 /// What every particle snapshot holds, then the particle fields that the case asks for.
 pub(super) fn particles<'a>(
     output: &Output,
-    solids: &'a [SolidSpecies],
+    inside: &'a [ParticleColumn],
     moment: &CommittedState<'a>,
 ) -> Result<Vec<Field<'a>>, ResultsError> {
     use Values::{Scalar, Small, Vector, Whole};
@@ -225,20 +231,65 @@ pub(super) fn particles<'a>(
     let count = bed.len();
     let mut fields = always.to_vec();
     fields.extend(chosen(&all, &output.particles, count, "particle")?);
-    if output.particles.iter().any(|name| name == SOLIDS) && !moment.solid_fractions.is_empty() {
-        fields.extend(solids.iter().enumerate().map(|(column, solid)| {
-            let values = Values::Column {
-                table: moment.solid_fractions,
-                column,
-                columns: solids.len(),
-            };
-            field(solid.name(), "1", "mass fraction of this solid", values)
-        }));
+    for one in inside {
+        let column = &one.column;
+        let name = column.name.as_str();
+        if fields.iter().all(|field| field.name != name) {
+            let values = values(&one.values);
+            fields.push(field(name, column.unit, &column.description, values));
+        }
     }
     match fields.iter().find(|field| field.values.len() != count) {
         None => Ok(fields),
         Some(field) => Err(wrong_length(field, count, "particle")),
     }
+}
+
+/// Columns inside particles that the case asks for: those of the solids, or all that are shown.
+pub(super) fn inside(output: &Output, moment: &CommittedState<'_>) -> Vec<ParticleColumn> {
+    let asks = |group: &str| output.particles.iter().any(|name| name == group);
+    if asks(INSIDE) {
+        moment.models.shown("")
+    } else if asks(SOLIDS) {
+        moment.models.shown(SOLIDS)
+    } else {
+        Vec::new()
+    }
+}
+
+/// One number a particle where each has one.
+fn values(rows: &Ragged) -> Values<'_> {
+    match rows.values() {
+        _ if !rows.lengths().all(|length| length == 1) => Values::Ragged(rows),
+        ColumnValues::Real(list) => Values::Scalar(list),
+        ColumnValues::Count(list) => Values::Whole(list),
+    }
+}
+
+/// Rows of any number of values as rows of as many as the longest has (one at least), filled up with zero; and how
+/// many each has.
+pub(super) fn padded(rows: &Ragged) -> (usize, Vec<f64>, Vec<u64>) {
+    let width = rows.lengths().max().unwrap_or(0).max(1);
+    let mut values = vec![0.0; width * rows.rows()];
+    for (row, to) in values.chunks_exact_mut(width).enumerate() {
+        match rows.kind() {
+            ColumnKind::Real => {
+                let own = rows.reals(row);
+                to[..own.len()].copy_from_slice(own);
+            }
+            ColumnKind::Count => {
+                let own = rows.counts(row).iter();
+                to.iter_mut().zip(own).for_each(|(to, n)| *to = *n as f64);
+            }
+        }
+    }
+    let lengths = rows.lengths().map(|length| length as u64).collect();
+    (width, values, lengths)
+}
+
+/// Name of the array that says how many values each particle has in a column.
+pub(super) fn lengths_of(name: &str) -> String {
+    format!("{name}.lengths")
 }
 
 fn chosen<'a>(

@@ -4,6 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
+use calcine_coupler::interior::ColumnValues;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::observer::CommittedState;
 use calcine_coupler::physics::Vec3;
@@ -14,7 +15,7 @@ use ndarray::{Array2, ArrayView1, ArrayView2};
 use super::ResultsError;
 use super::probe::{Column as Sampled, Sample, Site};
 use super::series::{Column, Row};
-use super::snapshot::{Field, Values};
+use super::snapshot::{Field, Values, lengths_of};
 use crate::case::model::Case;
 
 /// Rows of one chunk of the series.
@@ -292,6 +293,15 @@ fn write_field(group: &Group, field: &Field<'_>) -> hdf5::Result<()> {
             columns,
         } => write_list(group, field.name, &Values::column(table, column, columns))?,
         Values::Vector(list) => write_vectors(group, field.name, list)?,
+        Values::Ragged(rows) => {
+            let lengths: Vec<u64> = rows.lengths().map(|length| length as u64).collect();
+            let counts = write_list(group, &lengths_of(field.name), &lengths)?;
+            describe(&counts, "1", "how many values each particle has")?;
+            match rows.values() {
+                ColumnValues::Real(list) => write_list(group, field.name, list)?,
+                ColumnValues::Count(list) => write_list(group, field.name, list)?,
+            }
+        }
     };
     describe(&dataset, field.unit, field.description)
 }

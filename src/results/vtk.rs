@@ -9,7 +9,7 @@ use std::path::Path;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::Vec3;
 
-use super::snapshot::{Field, Values};
+use super::snapshot::{Field, Values, lengths_of, padded};
 use super::{ResultsError, files};
 
 /// VTK's number of a hexahedron.
@@ -62,6 +62,12 @@ impl Draft {
             Values::Vector(list) => self.vectors(field.name, list),
             Values::Whole(list) => self.wholes(field.name, list.iter().map(|&id| id as i64)),
             Values::Small(list) => self.wholes(field.name, list.iter().map(|&n| i64::from(n))),
+            Values::Ragged(rows) => {
+                let (width, values, lengths) = padded(rows);
+                self.floats(field.name, width, values.iter());
+                let name = lengths_of(field.name);
+                self.wholes(&name, lengths.iter().map(|&n| n as i64));
+            }
         }
     }
 

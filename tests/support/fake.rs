@@ -10,6 +10,7 @@ use calcine::results::{Recorder, RunInfo};
 use calcine_coupler::exchange::ExchangeConvergence;
 use calcine_coupler::ledger::Ledger;
 use calcine_coupler::mesh::Mesh;
+use calcine_coupler::models::ParticleModels;
 use calcine_coupler::observer::{CommittedState, Observer, Timing};
 use calcine_coupler::part::{Bed, Convergence, GasFields, ParticleFields, SolverInfo};
 use calcine_coupler::physics::Vec3;
@@ -208,6 +209,7 @@ pub struct World {
     mass: Vec<f64>,
     pub temperature: Vec<f64>,
     heat: Vec<f64>,
+    models: ParticleModels,
     convergence: Convergence,
     timing: Timing,
     about: [SolverInfo; 2],
@@ -272,6 +274,7 @@ impl World {
             mass: vec![1.3e-3; 10],
             temperature: vec![300.0; 10],
             heat: vec![0.0; 10],
+            models: ParticleModels::default(),
             convergence: Convergence::default(),
             timing: Timing::default(),
             about: [about("Calcine gas"), about("Calcine particles")],
@@ -362,7 +365,7 @@ impl World {
             particle_temperature: &self.temperature,
             particle_heat: &self.heat,
             particle_mass: &self.mass,
-            solid_fractions: &[],
+            models: &self.models,
             particle_gas: Default::default(),
             exchange_convergence: &SETTLED,
             reservoirs: &[],

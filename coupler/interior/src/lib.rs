@@ -1,17 +1,22 @@
 //! What happens inside and between particles.
 
+mod column;
 mod model;
 mod network;
 pub mod reacting;
 mod thin;
 
-pub use model::{Newcomer, ParticleModel};
+pub use column::{ColumnKind, ColumnRole, ColumnShape, ColumnValues, Ragged, StateColumn};
+pub use model::{
+    At, Bodies, Channel, GasLines, Inventory, ModelError, Newcomer, ParticleModel, SurfaceLine,
+    Surroundings, Tally, Transfer,
+};
 pub use network::{
     ExchangeAreas, HeatLaws, HeatNetwork, NeighbourPair, NeighbourWall, Neighbours,
     NetworkSurroundings, ThermalProperties,
 };
 pub use reacting::Reacting;
-pub use thin::Thin;
+pub use thin::{TEMPERATURE, Thin};
 
 /// Takes rows, in ascending order, out of a list; the others keep their order.
 pub fn without<T>(list: &mut Vec<T>, gone: &[usize]) {

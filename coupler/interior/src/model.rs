@@ -1,76 +1,321 @@
-//! The trait behind which particles are thermally thin or resolved along the radius.
+//! The seam behind which the inside of particles is computed.
+//!
+//! A model owns the state of the particles of one material, in rows of its own. The coordinator maps the rows of a run to
+//! models, owns the network of contacts and radiation over all of them, and exchanges their heat and gas. It knows
+//! of a model only what this trait says.
+//!
+//! One attempt at a window, always from the last commit:
+//!
+//! 1. [`ParticleModel::surface`]: what the particle takes from the network, as a line over its surface temperature.
+//!    The network is solved with these lines; where they bend, it asks again at the temperatures it found.
+//! 2. [`ParticleModel::respond`]: with the network's heat given, what the particle exchanges with the gas, as lines.
+//! 3. The gas takes the lines; 1 and 2 are repeated with the gas of the last attempt until both agree.
+//! 4. [`ParticleModel::limit`]: what the gas made of the channels, limited to what the particle holds. The gas takes
+//!    that once more as fixed sources.
+//! 5. [`ParticleModel::settle`]: what was exchanged is booked, whatever the lines were: mass, elements and energy close.
 
-use crate::network::{Neighbours, NetworkSurroundings};
-use crate::reacting::Reacting;
+use std::error::Error;
 
-/// A particle that comes in.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Newcomer {
-    /// Its mass in kg.
-    pub mass: f64,
-    /// Index of its material.
-    pub material: usize,
-    /// Its temperature in K.
+use calcine_physics::thermo::Element;
+use thiserror::Error as DeriveError;
+
+use crate::column::{Ragged, StateColumn};
+
+/// The gas about particles, and what they exchange with it; one value a row where nothing else is said.
+#[derive(Clone, Copy, Debug)]
+pub struct Surroundings<'a> {
+    /// Temperature of the gas that each sees in K.
+    pub temperature: &'a [f64],
+    /// Its pressure in Pa; empty where no model of the run has channels.
+    pub pressure: &'a [f64],
+    /// Its mass fractions, species by species within each row; empty for a single gas.
+    pub composition: &'a [f64],
+    /// Conductance h A to it in W/K.
+    pub conductance: &'a [f64],
+    /// Mass transfer coefficients in m/s, species by species within each row; empty where no model has channels.
+    pub film: &'a [f64],
+    /// Radii at the start of the window in m.
+    pub radius: &'a [f64],
+}
+
+/// What a particle takes from the network over its surface temperature T: Q = k (T − T_free), the gas beside it and all
+/// that happens inside over the span eliminated.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SurfaceLine {
+    /// k in W/K, positive.
+    pub conductance: f64,
+    /// T_free in K: the surface temperature at the end of the span without a network.
     pub temperature: f64,
 }
 
-/// Inside of all particles. An attempt always starts from the last commit.
-pub trait ParticleModel: Send {
-    /// Surface temperature of each particle in K after the last attempt.
-    fn temperature(&self) -> &[f64];
+/// A way by which mass passes between particle and gas.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// What it is, for messages.
+    pub name: String,
+    /// The gas over whose mass fraction its rate is linearised; `None` for a rate that does not follow the gas.
+    pub key: Option<usize>,
+    /// Mass in kg that a unit (a mole, for a reaction) makes (+) or takes (−) of each gas.
+    pub mass: Vec<f64>,
+}
 
-    /// Surface temperature of each particle in K at the last commit.
-    fn committed_temperature(&self) -> &[f64];
+/// What particles exchange with the gas, as lines over the gas that they see.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GasLines {
+    /// K in W/K, of the heat Q = K (T_gas − T_start) into each particle.
+    pub conductance: Vec<f64>,
+    /// T_start in K.
+    pub temperature: Vec<f64>,
+    /// b of the rate b Y − a of each channel in units/s, channel by channel within each row; Y the mass fraction of
+    /// its key gas.
+    pub slope: Vec<f64>,
+    /// a in units/s, likewise.
+    pub offset: Vec<f64>,
+    /// Temperature in K with which gas leaves each particle.
+    pub released: Vec<f64>,
+}
 
-    /// The particles as ones that react; `None` where none does.
-    fn reacting(&mut self) -> Option<&mut Reacting> {
-        None
+impl GasLines {
+    /// Makes room for so many rows and channels, all zero.
+    pub fn reset(&mut self, rows: usize, channels: usize) {
+        for list in [
+            &mut self.conductance,
+            &mut self.temperature,
+            &mut self.released,
+        ] {
+            list.clear();
+            list.resize(rows, 0.0);
+        }
+        for list in [&mut self.slope, &mut self.offset] {
+            list.clear();
+            list.resize(rows * channels, 0.0);
+        }
+    }
+}
+
+/// What passed between particles and all else over an attempt; means over the span.
+#[derive(Clone, Copy, Debug)]
+pub struct Transfer<'a> {
+    /// Heat from the gas into each particle in W, that of exchanged mass apart.
+    pub heat: &'a [f64],
+    /// Heat from the network into each particle in W.
+    pub network: &'a [f64],
+    /// Sensible enthalpy that exchanged gas carries into each particle in W.
+    pub carried: &'a [f64],
+    /// Rate of each channel in units/s, channel by channel within each row.
+    pub rates: &'a [f64],
+}
+
+/// Which state of the particles is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum At {
+    /// The last commit.
+    Commit,
+    /// The last attempt.
+    Attempt,
+}
+
+/// What others see of particles.
+#[derive(Clone, Copy, Debug)]
+pub struct Bodies<'a> {
+    /// Surface temperature in K.
+    pub temperature: &'a [f64],
+    /// Mass in kg; empty where masses stay as the solver of the motion has them.
+    pub mass: &'a [f64],
+    /// Radius in m; empty where radii stay as the solver of the motion has them.
+    pub radius: &'a [f64],
+}
+
+/// A sum over rows, and the sum of magnitudes to which its error is relative.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tally {
+    /// Signed sum.
+    pub sum: f64,
+    /// Sum of magnitudes.
+    pub magnitude: f64,
+}
+
+impl Tally {
+    /// Adds a value with its own magnitude.
+    pub fn add(&mut self, value: f64) {
+        self.sum += value;
+        self.magnitude += value.abs();
+    }
+}
+
+impl std::ops::AddAssign for Tally {
+    fn add_assign(&mut self, other: Self) {
+        self.sum += other.sum;
+        self.magnitude += other.magnitude;
+    }
+}
+
+/// Conserved quantities of particles, or changes of them. Energies count from the elements in their standard states where
+/// a model exchanges mass with the gas (the gas' formation reference), so that what passes between both drops out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Inventory {
+    /// Mass in kg.
+    pub mass: Tally,
+    /// Energy in J. The magnitude of a change is that of sensible and reaction heat.
+    pub energy: Tally,
+    /// Mass of each element in kg, in the order of [`Element::ALL`]; zero for particles whose elements do not count.
+    pub elements: Vec<Tally>,
+}
+
+impl Default for Inventory {
+    fn default() -> Self {
+        Self {
+            mass: Tally::default(),
+            energy: Tally::default(),
+            elements: vec![Tally::default(); Element::COUNT],
+        }
+    }
+}
+
+impl std::ops::AddAssign<&Inventory> for Inventory {
+    fn add_assign(&mut self, other: &Self) {
+        self.mass += other.mass;
+        self.energy += other.energy;
+        for (sum, other) in self.elements.iter_mut().zip(&other.elements) {
+            *sum += *other;
+        }
+    }
+}
+
+/// A particle that comes in. What its state does not say is as the model's material has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Newcomer<'a> {
+    /// Its id.
+    pub id: u64,
+    /// Its mass in kg.
+    pub mass: f64,
+    /// Its radius in m.
+    pub radius: f64,
+    /// Values of columns by name. Every model takes a `temperature` in K, the same throughout the particle.
+    pub state: &'a [(&'a str, &'a [f64])],
+}
+
+impl Newcomer<'_> {
+    /// The one value of a column that must be there.
+    pub fn scalar(&self, column: &str) -> Result<f64, ModelError> {
+        let found = self.state.iter().find(|(name, _)| *name == column);
+        match found {
+            Some((_, [value])) => Ok(*value),
+            other => Err(ModelError::Column {
+                column: column.to_owned(),
+                found: other.map_or_else(
+                    || "nothing".to_owned(),
+                    |(_, values)| format!("{} values", values.len()),
+                ),
+                expected: format!("one value for the new particle {}", self.id),
+            }),
+        }
     }
 
-    /// The same to look at.
-    fn reactions(&self) -> Option<&Reacting> {
-        None
+    /// An error where the state names a column beside these.
+    pub fn only(&self, known: &[&str]) -> Result<(), ModelError> {
+        let strange = self.state.iter().find(|(name, _)| !known.contains(name));
+        match strange {
+            None => Ok(()),
+            Some((name, values)) => Err(ModelError::Column {
+                column: (*name).to_owned(),
+                found: format!("{} values for the new particle {}", values.len(), self.id),
+                expected: format!("no other columns than {}", known.join(", ")),
+            }),
+        }
+    }
+}
+
+/// A model that cannot go on. The coordinator names the particle's id.
+#[derive(Debug, DeriveError)]
+pub enum ModelError {
+    /// The state of one particle.
+    #[error("{cause}")]
+    Particle {
+        /// Its row in the model.
+        row: usize,
+        /// What is wrong.
+        cause: Box<dyn Error + Send + Sync>,
+    },
+    /// Values of a column that do not fit.
+    #[error("column `{column}` of the particles' state: found {found}, needs {expected}")]
+    Column {
+        /// Its name.
+        column: String,
+        /// What there is.
+        found: String,
+        /// What there must be.
+        expected: String,
+    },
+}
+
+/// Inside of the particles of one material. Values are per real particle; an attempt always starts from the last commit.
+/// A model begins without particles: they come by [`ParticleModel::change`], and from a checkpoint by
+/// [`ParticleModel::load`] after that. Rows are in ascending id.
+///
+/// Results may not depend on the number of threads that a model uses.
+pub trait ParticleModel: Send + Sync {
+    /// Columns of its state; the same over the whole run.
+    fn columns(&self) -> &[StateColumn];
+
+    /// The committed values of a column, by its place in [`ParticleModel::columns`].
+    fn read(&self, column: usize, out: &mut Ragged);
+
+    /// Takes up committed values of all its columns, of which those that are no state are empty.
+    fn load(&mut self, from: &[Ragged]) -> Result<(), ModelError>;
+
+    /// What others see of the particles.
+    fn bodies(&self, at: At) -> Bodies<'_>;
+
+    /// Ways of mass between particles and gas; the same over the whole run.
+    fn channels(&self) -> &[Channel] {
+        &[]
     }
 
-    /// True where particles exchange heat with each other and with walls, so that `set_neighbours` and `conduct` matter.
-    fn conducts(&self) -> bool;
+    /// Elements that its inventories count.
+    fn elements(&self) -> Vec<Element> {
+        Vec::new()
+    }
 
-    /// Takes up which particles and walls meet at the present places.
-    fn set_neighbours(&mut self, neighbours: &Neighbours<'_>);
+    /// Fills the line of each particle over a span in s about the surface temperatures `at` in K. It may be called
+    /// several times before `respond`, and changes nothing that shows.
+    fn surface(
+        &mut self,
+        around: &Surroundings<'_>,
+        span: f64,
+        at: &[f64],
+        out: &mut [SurfaceLine],
+    ) -> Result<(), ModelError>;
 
-    /// Fixes the heat that particles exchange with each other and with walls in the coming attempt: that
-    /// of an implicit step over a process span in s in which each particle also exchanges heat with the
-    /// gas beside it.
-    fn conduct(&mut self, surroundings: &NetworkSurroundings<'_>, span: f64);
+    /// Fills what each particle exchanges with the gas over a span in s, with the network's mean heat into each
+    /// given in W; `out` has room for all rows and channels.
+    fn respond(
+        &mut self,
+        around: &Surroundings<'_>,
+        span: f64,
+        network: &[f64],
+        out: &mut GasLines,
+    ) -> Result<(), ModelError>;
 
-    /// Heat in W that each reservoir, a wall or the surroundings, gives to the particles in the attempt.
-    fn reservoir_heat(&self) -> &[f64];
+    /// Lowers rates of channels in units/s, channel by channel within each row, to what the particles hold over a
+    /// span in s.
+    fn limit(&mut self, rates: &mut [f64], span: f64) {
+        let _ = (rates, span);
+    }
 
-    /// Temperature in K of each particle from which the exchange with the gas starts: the committed
-    /// one, moved by what the particles conduct and radiate over the span.
-    fn start_temperature(&self) -> &[f64];
+    /// Ends the attempt with what passed over a span in s.
+    fn settle(&mut self, took: &Transfer<'_>, span: f64) -> Result<(), ModelError>;
 
-    /// Conductances with the particles' own new temperatures eliminated (requirements TSM-9):
-    /// from h A in W/K over a process span in s to K, such that K (T_gas − T_start) is the
-    /// heat flow of the implicit step.
-    fn eliminated(&self, conductance: &[f64], span: f64, out: &mut [f64]);
+    /// What the last attempt changed since the last commit, as differences row by row.
+    fn changed(&self) -> Inventory;
 
-    /// One attempt over a process span in s, with the mean heat flow from the gas into each particle in
-    /// W; what the particles exchange with each other and with walls is added.
-    fn advance(&mut self, heat: &[f64], span: f64);
+    /// What these rows hold at the last commit.
+    fn held(&self, rows: &[usize]) -> Inventory;
 
-    /// Takes the last attempt as the new start.
-    fn commit(&mut self);
+    /// Takes the last attempt as the new start. Returns the rows, ascending, of particles that are used up: the
+    /// coordinator books what is left of them and takes them out by `change`.
+    fn commit(&mut self) -> Vec<usize>;
 
-    /// Energy stored by the last attempt in J: the sum over particles, and the sum of magnitudes.
-    fn stored_change(&self) -> (f64, f64);
-
-    /// Takes particles out, by their rows in ascending order, and appends new ones; after a commit.
-    fn change(&mut self, gone: &[usize], new: &[Newcomer]);
-
-    /// Enthalpy of each particle at its committed temperature in J, from 0 K of its heat capacity's law on.
-    fn enthalpy(&self, row: usize) -> f64;
-
-    /// Takes up temperatures in K from a checkpoint, as committed.
-    fn restore(&mut self, temperature: &[f64]);
+    /// Takes particles out, by their rows in ascending order, and puts new ones behind the others; after a commit.
+    fn change(&mut self, gone: &[usize], new: &[Newcomer<'_>]) -> Result<(), ModelError>;
 }

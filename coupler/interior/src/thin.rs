@@ -2,278 +2,337 @@
 
 use calcine_physics::solid::HeatCapacity;
 
-use crate::network::{HeatNetwork, Neighbours, NetworkSurroundings};
-use crate::{Newcomer, ParticleModel, without};
+use crate::column::{ColumnRole, Ragged, StateColumn};
+use crate::model::{
+    At, Bodies, GasLines, Inventory, ModelError, Newcomer, ParticleModel, SurfaceLine,
+    Surroundings, Tally, Transfer,
+};
+use crate::without;
+
+/// Name of the column of temperatures, which newcomers of every model bring.
+pub const TEMPERATURE: &str = "temperature";
 
 /// Particles of uniform temperature: m dh(T)/dτ = Q, h the enthalpy of the material. Good for Biot
 /// numbers below about 0.1.
 #[derive(Debug)]
 pub struct Thin {
+    law: HeatCapacity,
+    columns: [StateColumn; 2],
     /// Mass of each particle in kg.
     mass: Vec<f64>,
-    /// Index into `materials` of each particle.
-    material: Vec<usize>,
-    materials: Vec<HeatCapacity>,
     /// m c at the committed temperatures in J/K.
     heat_capacity: Vec<f64>,
     committed: Vec<f64>,
     temperature: Vec<f64>,
-    /// Start of the exchange with the gas where particles conduct, in K.
-    start: Vec<f64>,
-    network: Option<HeatNetwork>,
 }
 
 impl Thin {
-    /// Particles of masses in kg, each of one of the materials, at start temperatures in K; conduction
-    /// between them through a network, or none.
-    pub fn new(
-        mass: Vec<f64>,
-        material: Vec<usize>,
-        materials: Vec<HeatCapacity>,
-        temperature: Vec<f64>,
-        network: Option<HeatNetwork>,
-    ) -> Self {
-        debug_assert!(mass.len() == temperature.len() && mass.len() == material.len());
-        let mut thin = Self {
-            heat_capacity: vec![0.0; mass.len()],
-            mass,
-            material,
-            materials,
-            committed: temperature.clone(),
-            start: temperature.clone(),
-            temperature,
-            network,
-        };
-        thin.update_heat_capacity();
-        thin
-    }
-
-    /// Particles of constant heat capacities m c in J/K at start temperatures in K.
-    pub fn of_heat_capacity(heat_capacity: Vec<f64>, temperature: Vec<f64>) -> Self {
-        let material = vec![0; heat_capacity.len()];
-        let unit = vec![HeatCapacity::constant(1.0)];
-        Self::new(heat_capacity, material, unit, temperature, None)
-    }
-
-    fn update_heat_capacity(&mut self) {
-        for (p, capacity) in self.heat_capacity.iter_mut().enumerate() {
-            *capacity = self.mass[p] * self.materials[self.material[p]].at(self.committed[p]);
+    /// No particles yet, of a material with this law.
+    pub fn new(law: HeatCapacity) -> Self {
+        let mass = StateColumn::shown("mass", "kg", "mass of the particle");
+        Self {
+            law,
+            columns: [
+                StateColumn::shown(TEMPERATURE, "K", "temperature of the particle"),
+                mass.with_role(ColumnRole::Private),
+            ],
+            mass: Vec::new(),
+            heat_capacity: Vec::new(),
+            committed: Vec::new(),
+            temperature: Vec::new(),
         }
     }
 
-    fn start_over(&mut self) {
-        self.start.copy_from_slice(&self.committed);
-        if let Some(network) = &mut self.network {
-            network.heat.fill(0.0);
-            network.reservoir_heat.fill(0.0);
+    fn begin(&mut self) {
+        self.temperature.clone_from(&self.committed);
+        self.heat_capacity.clear();
+        let pairs = self.mass.iter().zip(&self.committed);
+        self.heat_capacity
+            .extend(pairs.map(|(mass, kelvin)| mass * self.law.at(*kelvin)));
+    }
+
+    /// Mean heat capacity in J/K of a particle between its committed and another temperature in K.
+    fn secant(&self, row: usize, kelvin: f64) -> f64 {
+        let before = self.committed[row];
+        let rise = kelvin - before;
+        if self.law.is_constant() || rise.abs() < SECANT * kelvin {
+            self.heat_capacity[row]
+        } else {
+            self.mass[row] * (self.law.enthalpy(kelvin) - self.law.enthalpy(before)) / rise
+        }
+    }
+
+    /// The temperature in K to which a particle comes from the last commit with an energy in J.
+    fn moved(&self, row: usize, energy: f64) -> f64 {
+        let start = self.committed[row];
+        if self.law.is_constant() {
+            start + energy / self.heat_capacity[row]
+        } else {
+            self.law
+                .temperature(self.law.enthalpy(start) + energy / self.mass[row])
         }
     }
 }
 
 impl ParticleModel for Thin {
-    fn temperature(&self) -> &[f64] {
-        &self.temperature
+    fn columns(&self) -> &[StateColumn] {
+        &self.columns
     }
 
-    fn committed_temperature(&self) -> &[f64] {
-        &self.committed
+    fn read(&self, column: usize, out: &mut Ragged) {
+        let values = if column == 0 {
+            &self.committed
+        } else {
+            &self.mass
+        };
+        *out = Ragged::scalars(values.clone());
     }
 
-    fn conducts(&self) -> bool {
-        self.network.is_some()
+    fn load(&mut self, from: &[Ragged]) -> Result<(), ModelError> {
+        let rows = self.mass.len();
+        for ((column, values), to) in self
+            .columns
+            .iter()
+            .zip(from)
+            .zip([&mut self.committed, &mut self.mass])
+        {
+            to.copy_from_slice(values.to_scalars(&column.name, rows)?);
+        }
+        self.begin();
+        Ok(())
     }
 
-    fn set_neighbours(&mut self, neighbours: &Neighbours<'_>) {
-        if let Some(network) = &mut self.network {
-            network.set_neighbours(neighbours);
+    fn bodies(&self, at: At) -> Bodies<'_> {
+        Bodies {
+            temperature: match at {
+                At::Commit => &self.committed,
+                At::Attempt => &self.temperature,
+            },
+            mass: &[],
+            radius: &[],
         }
     }
 
-    fn conduct(&mut self, surroundings: &NetworkSurroundings<'_>, span: f64) {
-        let Some(network) = self.network.as_mut().filter(|network| !network.is_empty()) else {
-            return;
-        };
-        let (mass, material, materials) = (&self.mass, &self.material, &self.materials);
-        let (heat_capacity, committed) = (&self.heat_capacity, &self.committed);
-        let capacity = |p: usize, kelvin: f64| {
-            let law = &materials[material[p]];
-            let rise = kelvin - committed[p];
-            let secant = if law.is_constant() || rise.abs() < SECANT * kelvin {
-                heat_capacity[p]
-            } else {
-                mass[p] * (law.enthalpy(kelvin) - law.enthalpy(committed[p])) / rise
+    fn surface(
+        &mut self,
+        around: &Surroundings<'_>,
+        span: f64,
+        at: &[f64],
+        out: &mut [SurfaceLine],
+    ) -> Result<(), ModelError> {
+        for (p, line) in out.iter_mut().enumerate() {
+            let stored = self.secant(p, at[p]) / span;
+            let (gas, beside) = (around.conductance[p], around.temperature[p]);
+            *line = SurfaceLine {
+                conductance: stored + gas,
+                temperature: self.committed[p]
+                    + gas * (beside - self.committed[p]) / (stored + gas),
             };
-            secant / span
-        };
-        network.solve(capacity, committed, surroundings);
-        self.start.clear();
-        for (p, heat) in network.heat.iter().enumerate() {
-            self.start.push(moved(
-                &materials[material[p]],
-                committed[p],
-                heat * span,
-                mass[p],
-                heat_capacity[p],
-            ));
         }
+        Ok(())
     }
 
-    fn reservoir_heat(&self) -> &[f64] {
-        self.network
-            .as_ref()
-            .map_or(&[], |network| &network.reservoir_heat)
-    }
-
-    fn start_temperature(&self) -> &[f64] {
-        &self.start
-    }
-
-    fn eliminated(&self, conductance: &[f64], span: f64, out: &mut [f64]) {
-        for ((k, &ha), &mc) in out.iter_mut().zip(conductance).zip(&self.heat_capacity) {
-            *k = ha / (1.0 + ha * span / mc);
-        }
-    }
-
-    fn advance(&mut self, heat: &[f64], span: f64) {
-        for (p, temperature) in self.temperature.iter_mut().enumerate() {
-            let conducted = self.network.as_ref().map_or(0.0, |network| network.heat[p]);
-            let gained = (heat[p] + conducted) * span;
-            *temperature = moved(
-                &self.materials[self.material[p]],
-                self.committed[p],
-                gained,
-                self.mass[p],
-                self.heat_capacity[p],
-            );
-        }
-    }
-
-    fn commit(&mut self) {
-        self.committed.copy_from_slice(&self.temperature);
-        self.update_heat_capacity();
-        self.start_over();
-    }
-
-    fn stored_change(&self) -> (f64, f64) {
-        let change = |p: usize| {
-            let law = &self.materials[self.material[p]];
-            if law.is_constant() {
-                self.heat_capacity[p] * (self.temperature[p] - self.committed[p])
+    /// K = h A/(1 + h A Δτ/(m c)) (requirements TSM-9), from the committed temperature moved by the network's heat.
+    fn respond(
+        &mut self,
+        around: &Surroundings<'_>,
+        span: f64,
+        network: &[f64],
+        out: &mut GasLines,
+    ) -> Result<(), ModelError> {
+        for (p, &ha) in around.conductance.iter().enumerate() {
+            out.conductance[p] = ha / (1.0 + ha * span / self.heat_capacity[p]);
+            out.temperature[p] = if network[p] == 0.0 {
+                self.committed[p]
             } else {
-                let before = law.enthalpy(self.committed[p]);
-                self.mass[p] * (law.enthalpy(self.temperature[p]) - before)
-            }
-        };
-        (0..self.temperature.len()).fold((0.0, 0.0), |(sum, magnitude), p| {
-            (sum + change(p), magnitude + change(p).abs())
-        })
-    }
-
-    fn change(&mut self, gone: &[usize], new: &[Newcomer]) {
-        without(&mut self.mass, gone);
-        without(&mut self.material, gone);
-        without(&mut self.committed, gone);
-        self.mass.extend(new.iter().map(|one| one.mass));
-        self.material.extend(new.iter().map(|one| one.material));
-        self.committed.extend(new.iter().map(|one| one.temperature));
-        self.temperature.clone_from(&self.committed);
-        self.start.clone_from(&self.committed);
-        self.heat_capacity.resize(self.mass.len(), 0.0);
-        if let Some(network) = &mut self.network {
-            network.change(gone, new);
+                self.moved(p, network[p] * span)
+            };
+            out.released[p] = self.committed[p];
         }
-        self.update_heat_capacity();
-        self.start_over();
+        Ok(())
     }
 
-    fn enthalpy(&self, row: usize) -> f64 {
-        let law = &self.materials[self.material[row]];
-        self.mass[row] * law.enthalpy(self.committed[row])
+    fn settle(&mut self, took: &Transfer<'_>, span: f64) -> Result<(), ModelError> {
+        for p in 0..self.mass.len() {
+            self.temperature[p] = self.moved(p, (took.heat[p] + took.network[p]) * span);
+        }
+        Ok(())
     }
 
-    fn restore(&mut self, temperature: &[f64]) {
-        self.committed.copy_from_slice(temperature);
-        self.temperature.copy_from_slice(temperature);
-        self.update_heat_capacity();
-        self.start_over();
+    fn changed(&self) -> Inventory {
+        let mut energy = Tally::default();
+        for (p, (now, before)) in self.temperature.iter().zip(&self.committed).enumerate() {
+            energy.add(if self.law.is_constant() {
+                self.heat_capacity[p] * (now - before)
+            } else {
+                self.mass[p] * (self.law.enthalpy(*now) - self.law.enthalpy(*before))
+            });
+        }
+        Inventory {
+            energy,
+            ..Inventory::default()
+        }
+    }
+
+    fn held(&self, rows: &[usize]) -> Inventory {
+        let mut all = Inventory::default();
+        for &row in rows {
+            all.mass.add(self.mass[row]);
+            all.energy
+                .add(self.mass[row] * self.law.enthalpy(self.committed[row]));
+        }
+        all
+    }
+
+    fn commit(&mut self) -> Vec<usize> {
+        self.committed.copy_from_slice(&self.temperature);
+        self.begin();
+        Vec::new()
+    }
+
+    fn change(&mut self, gone: &[usize], new: &[Newcomer<'_>]) -> Result<(), ModelError> {
+        without(&mut self.mass, gone);
+        without(&mut self.committed, gone);
+        for one in new {
+            one.only(&[TEMPERATURE])?;
+            self.committed.push(one.scalar(TEMPERATURE)?);
+            self.mass.push(one.mass);
+        }
+        self.begin();
+        Ok(())
     }
 }
 
 /// Below this share of the temperature a rise gives no secant of the enthalpy, and c_p stands for it.
-const SECANT: f64 = 1e-6;
-
-/// The temperature in K to which a particle of a mass in kg, and of a heat capacity in J/K at the start, comes
-/// with an energy in J.
-fn moved(law: &HeatCapacity, start: f64, energy: f64, mass: f64, heat_capacity: f64) -> f64 {
-    if law.is_constant() {
-        start + energy / heat_capacity
-    } else {
-        law.temperature(law.enthalpy(start) + energy / mass)
-    }
-}
+pub(crate) const SECANT: f64 = 1e-6;
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::{HeatLaws, NeighbourPair, plain};
+    use crate::network::{
+        HeatLaws, HeatNetwork, NeighbourPair, Neighbours, NetworkSurroundings, plain,
+    };
     use calcine_physics::conduction::BatchelorObrien;
 
+    /// Particles of these masses in kg and temperatures in K, of a material of 1 J/kg/K.
+    fn unit(particles: &[(f64, f64)]) -> Thin {
+        of(HeatCapacity::constant(1.0), particles)
+    }
+
+    fn of(law: HeatCapacity, particles: &[(f64, f64)]) -> Thin {
+        let mut thin = Thin::new(law);
+        for (id, (mass, kelvin)) in (1..).zip(particles) {
+            let state: [(&str, &[f64]); 1] = [(TEMPERATURE, &[*kelvin])];
+            let one = Newcomer {
+                id,
+                mass: *mass,
+                radius: 1e-3,
+                state: &state,
+            };
+            thin.change(&[], &[one]).unwrap();
+        }
+        thin
+    }
+
+    fn around<'a>(temperature: &'a [f64], conductance: &'a [f64]) -> Surroundings<'a> {
+        Surroundings {
+            temperature,
+            pressure: &[],
+            composition: &[],
+            conductance,
+            film: &[],
+            radius: &[],
+        }
+    }
+
+    fn settle(thin: &mut Thin, heat: &[f64], network: &[f64], span: f64) {
+        let took = Transfer {
+            heat,
+            network,
+            carried: &[],
+            rates: &[],
+        };
+        thin.settle(&took, span).unwrap();
+    }
+
     #[test]
-    fn the_eliminated_conductance_gives_the_implicit_step() {
-        let mut thin = Thin::of_heat_capacity(vec![2.0], vec![300.0]);
-        let (ha, span, gas) = (0.5, 8.0, 400.0);
-        let mut k = [0.0];
-        thin.eliminated(&[ha], span, &mut k);
-        thin.advance(&[k[0] * (gas - 300.0)], span);
+    fn the_lines_to_network_and_gas_give_the_implicit_step() {
+        let mut thin = unit(&[(2.0, 300.0)]);
+        let (around, span, mut lines) = (around(&[400.0], &[0.5]), 8.0, GasLines::default());
         // m c (T − 300) = hA Δτ (400 − T): T = (600 + 1600)/6
-        assert!((thin.temperature()[0] - 2200.0 / 6.0).abs() < 1e-12);
-        assert!((thin.stored_change().0 - 2.0 * (2200.0 / 6.0 - 300.0)).abs() < 1e-10);
-        assert_eq!(thin.committed_temperature(), [300.0]);
+        let expected = 2200.0 / 6.0;
+        let mut surface = [SurfaceLine::default()];
+        thin.surface(&around, span, &[300.0], &mut surface).unwrap();
+        assert!((surface[0].temperature - expected).abs() < 1e-12);
+        assert!((surface[0].conductance - 0.75).abs() < 1e-15);
+        lines.reset(1, 0);
+        thin.respond(&around, span, &[0.0], &mut lines).unwrap();
+        settle(
+            &mut thin,
+            &[lines.conductance[0] * (400.0 - lines.temperature[0])],
+            &[0.0],
+            span,
+        );
+        assert!((thin.bodies(At::Attempt).temperature[0] - expected).abs() < 1e-12);
+        assert!((thin.changed().energy.sum - 2.0 * (expected - 300.0)).abs() < 1e-10);
+        assert_eq!(thin.bodies(At::Commit).temperature, [300.0]);
     }
 
     #[test]
     fn an_attempt_starts_from_the_last_commit() {
-        let mut thin = Thin::of_heat_capacity(vec![1.0], vec![300.0]);
-        thin.advance(&[5.0], 1.0);
-        thin.advance(&[7.0], 1.0);
-        assert_eq!(thin.temperature(), [307.0]);
-        thin.commit();
-        thin.advance(&[1.0], 1.0);
-        assert_eq!(thin.temperature(), [308.0]);
-        thin.restore(&[301.0]);
-        assert_eq!(
-            (thin.temperature()[0], thin.committed_temperature()[0]),
-            (301.0, 301.0)
-        );
+        let mut thin = unit(&[(1.0, 300.0)]);
+        settle(&mut thin, &[5.0], &[0.0], 1.0);
+        settle(&mut thin, &[3.0], &[4.0], 1.0);
+        assert_eq!(thin.bodies(At::Attempt).temperature, [307.0]);
+        assert!(thin.commit().is_empty());
+        settle(&mut thin, &[1.0], &[0.0], 1.0);
+        assert_eq!(thin.bodies(At::Attempt).temperature, [308.0]);
+        let mass = || Ragged::scalars(vec![1.0]);
+        let kelvin = Ragged::scalars(vec![301.0]);
+        thin.load(&[kelvin, mass()]).unwrap();
+        for at in [At::Commit, At::Attempt] {
+            assert_eq!(thin.bodies(at).temperature, [301.0]);
+        }
+        let error = thin
+            .load(&[Ragged::scalars(vec![1.0; 2]), mass()])
+            .unwrap_err();
+        assert!(error.to_string().contains("2 values"), "{error}");
     }
 
     #[test]
     fn a_heat_capacity_that_follows_temperature_stores_exactly_what_came() {
         // c = 500 + (T − 300): from 300 to 400 K takes 550 · 100 J/kg.
         let law = HeatCapacity::table(vec![(300.0, 500.0), (600.0, 800.0)]);
-        let mut thin = Thin::new(vec![2.0], vec![0], vec![law], vec![300.0], None);
-        thin.advance(&[1100.0], 100.0);
-        assert!((thin.temperature()[0] - 400.0).abs() < 1e-10);
-        assert!((thin.stored_change().0 - 110_000.0).abs() < 1e-6);
+        let mut thin = of(law, &[(2.0, 300.0)]);
+        let mut surface = [SurfaceLine::default()];
+        let still = around(&[0.0], &[0.0]);
+        thin.surface(&still, 10.0, &[400.0], &mut surface).unwrap();
+        assert!(
+            (surface[0].conductance - 2.0 * 550.0 / 10.0).abs() < 1e-9,
+            "secant"
+        );
+        settle(&mut thin, &[1100.0], &[0.0], 100.0);
+        assert!((thin.bodies(At::Attempt).temperature[0] - 400.0).abs() < 1e-10);
+        assert!((thin.changed().energy.sum - 110_000.0).abs() < 1e-6);
         thin.commit();
-        let mut k = [0.0];
-        thin.eliminated(&[1e12], 1.0, &mut k);
-        assert!((k[0] / (2.0 * 600.0) - 1.0).abs() < 1e-8, "m c at 400 K");
+        let mut lines = GasLines::default();
+        lines.reset(1, 0);
+        let stiff = around(&[0.0], &[1e12]);
+        thin.respond(&stiff, 1.0, &[0.0], &mut lines).unwrap();
+        let expected = 2.0 * 600.0;
+        assert!(
+            (lines.conductance[0] / expected - 1.0).abs() < 1e-8,
+            "m c at 400 K"
+        );
     }
 
     #[test]
     fn touching_particles_in_still_gas_relax_to_their_common_temperature() {
         let laws = HeatLaws::contacts(Box::new(BatchelorObrien));
-        let network = HeatNetwork::new(laws, vec![plain(50.0)], vec![0; 2], Vec::new());
-        let unit = vec![HeatCapacity::constant(1.0)];
-        let mut thin = Thin::new(
-            vec![1.0, 3.0],
-            vec![0, 0],
-            unit,
-            vec![300.0, 400.0],
-            Some(network),
-        );
-        thin.set_neighbours(&Neighbours {
+        let mut network = HeatNetwork::new(laws, vec![plain(50.0)], Vec::new());
+        network.change(&[], &[(1e-3, 0), (1e-3, 0)]);
+        let mut thin = unit(&[(1.0, 300.0), (3.0, 400.0)]);
+        network.set_neighbours(&Neighbours {
             pairs: &[NeighbourPair {
                 particles: [0, 1],
                 radius: [5e-3; 2],
@@ -282,20 +341,24 @@ mod tests {
             walls: &[],
             views: None,
         });
-        let still = NetworkSurroundings {
-            conductance: &[0.0; 2],
-            temperature: &[0.0; 2],
+        let beside = NetworkSurroundings {
             gas_conductivity: &[0.026; 2],
             reservoirs: &[],
         };
         // exp(−G t (1/C₁ + 1/C₂)), G = 5e-3: 1000 implicit steps of 0.1 s are within 1e-3 of it.
         for _ in 0..1000 {
-            thin.conduct(&still, 0.1);
-            thin.advance(&[0.0; 2], 0.1);
-            assert!(thin.stored_change().0.abs() < 1e-12);
+            let still = around(&[0.0; 2], &[0.0; 2]);
+            let start = thin.bodies(At::Commit).temperature.to_vec();
+            let solved = network.solve(&start, &beside, |at, lines| {
+                thin.surface(&still, 0.1, at, lines)
+            });
+            assert!(solved.unwrap());
+            settle(&mut thin, &[0.0; 2], &network.heat, 0.1);
+            assert!(thin.changed().energy.sum.abs() < 1e-12);
             thin.commit();
         }
-        let left = (thin.temperature()[1] - thin.temperature()[0]) / 100.0;
+        let kelvin = thin.bodies(At::Commit).temperature;
+        let left = (kelvin[1] - kelvin[0]) / 100.0;
         let exact = (-5e-3_f64 * 100.0 * (1.0 + 1.0 / 3.0)).exp();
         assert!((left / exact - 1.0).abs() < 1e-3, "{left} {exact}");
     }

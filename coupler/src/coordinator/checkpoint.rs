@@ -5,13 +5,13 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use calcine_interior::Reacting;
 use rustix::fs::{CWD, RenameFlags, renameat_with};
 use thiserror::Error;
 
+use super::meter::{Meter, Stage};
 use super::{CoupledRun, RunError};
 use crate::checkpoint::StateFile;
-use crate::ledger::CarriedInventory;
+use crate::ledger::{CarriedInventory, Ledger};
 use crate::observer::Observer;
 use crate::time::{Clocks, Ticks};
 
@@ -105,7 +105,7 @@ fn sync(directory: &Path) -> io::Result<()> {
 impl CoupledRun {
     /// Writes a checkpoint of all participants; each goes on from what it wrote.
     pub fn checkpoint(&mut self, observers: &mut [&mut dyn Observer]) -> Result<(), RunError> {
-        let begun = Instant::now();
+        let running = Meter::start(Stage::Output);
         let fresh = self.plan.checkpoint.fresh();
         let failed = |doing, cause| CheckpointError::Io {
             path: fresh.clone(),
@@ -127,26 +127,19 @@ impl CoupledRun {
             observer.checkpoint(&self.moment(None), &fresh)?;
         }
         self.plan.checkpoint.publish()?;
-        // A resumed run finds its views at the checkpoint's places and sizes; else they are the same.
-        let reacting = self.parts.interior.reactions();
-        let grows = reacting.is_some_and(Reacting::changes_sizes);
-        if grows || !self.plan.free.is_empty() {
-            self.paths.forget();
-            self.find_contacts();
-        }
+        // A resumed run finds exchange areas at the checkpoint's places and sizes; else they are the same.
+        let (particles, time) = (self.parts.particles.fields(), self.clocks.process.seconds());
+        let moves = !self.plan.free.is_empty();
+        self.interior.find_neighbours_anew(&particles, time, moves);
         self.last_checkpoint = Instant::now();
-        self.timing.output += begun.elapsed();
+        self.meter.stop(running);
         Ok(())
     }
 
-    /// Takes up what particles are made of.
-    pub(super) fn restore_amounts(&mut self, state: &StateFile) -> Result<(), RunError> {
-        let particles = self.parts.particles.fields().len();
-        if let Some(reacting) = self.parts.interior.reacting() {
-            let solids = reacting.chemistry().solids.len();
-            let amounts = state.f64s_of("particle_amounts", particles * solids)?;
-            reacting.restore_amounts(amounts);
-        }
+    /// Takes up the state of all particles.
+    pub(super) fn restore_particles(&mut self, state: &StateFile) -> Result<(), RunError> {
+        self.interior.models.restore(state)?;
+        self.interior.weigh(&self.parts.particles.fields());
         Ok(())
     }
 
@@ -171,18 +164,12 @@ impl CoupledRun {
             .collect::<Vec<_>>();
         state.set_f64s("ledger", &ledger);
         state.set_u64s("windows_and_clocks", &clocks);
-        state.set_u64s("held", &[self.held.count().cast_unsigned()]);
+        state.set_u64s("held", &[self.motion.held.count().cast_unsigned()]);
         state.set_u64s("case_hash", &hash);
-        state.set_f64s(
-            "particle_temperature",
-            self.parts.interior.committed_temperature(),
-        );
-        if let Some(reacting) = self.parts.interior.reactions() {
-            state.set_f64s("particle_amounts", reacting.amounts());
-        }
-        state.set_f64s("particle_heat", &self.work.exchange.heat);
+        self.interior.models.record(&mut state);
+        state.set_f64s("particle_heat", &self.exchange.exchange.heat);
         let other: Vec<f64> = self
-            .work
+            .motion
             .other
             .iter()
             .flat_map(|f| f.iter().copied())
@@ -192,6 +179,7 @@ impl CoupledRun {
             .ledger
             .fed_and_discharged
             .iter()
+            .chain([&self.ledger.used_up])
             .flat_map(CarriedInventory::numbers)
             .collect();
         state.set_f64s("traffic_moved", &moved);
@@ -219,11 +207,10 @@ impl CoupledRun {
             }
             .into());
         }
-        let temperature = state.f64s("particle_temperature")?;
         let heat = state.f64s("particle_heat")?;
         let expected = self.parts.particles.fields().len();
-        if temperature.len() != expected || heat.len() != expected {
-            let found = temperature.len();
+        if heat.len() != expected {
+            let found = heat.len();
             return Err(CheckpointError::Particles {
                 path: directory,
                 found,
@@ -232,19 +219,22 @@ impl CoupledRun {
             .into());
         }
         let other = state.f64s_of("particle_other_force", 3 * expected)?;
-        for (force, values) in self.work.other.iter_mut().zip(other.chunks_exact(3)) {
+        for (force, values) in self.motion.other.iter_mut().zip(other.chunks_exact(3)) {
             force.copy_from_slice(values);
         }
-        let moved = state.f64s_of("traffic_moved", 12)?.chunks_exact(6);
-        for (total, values) in self.ledger.fed_and_discharged.iter_mut().zip(moved) {
+        let moved = state.f64s_of("traffic_moved", 18)?.chunks_exact(6);
+        let Ledger {
+            fed_and_discharged,
+            used_up,
+            ..
+        } = &mut self.ledger;
+        for (total, values) in fed_and_discharged.iter_mut().chain([used_up]).zip(moved) {
             let numbers = <[f64; 6]>::try_from(values).unwrap_or_default();
             *total = CarriedInventory::from_numbers(numbers);
         }
         self.plan.feeds_and_outlets.restore(&state)?;
-        self.restore_amounts(&state)?;
-        self.parts.interior.restore(temperature);
-        self.weigh();
-        self.work.exchange.heat.copy_from_slice(heat);
+        self.restore_particles(&state)?;
+        self.exchange.exchange.heat.copy_from_slice(heat);
         for (line, values) in self
             .ledger
             .lines_mut()
@@ -263,11 +253,11 @@ impl CoupledRun {
             };
         }
         if let [held] = *state.u64s("held")? {
-            self.held = Ticks::new(held.cast_signed());
+            self.motion.held = Ticks::new(held.cast_signed());
         }
         self.restore_controls(&state)?;
-        self.paths.forget();
-        self.find_contacts();
+        self.interior.forget_neighbours();
+        self.find_neighbours();
         Ok(())
     }
 }

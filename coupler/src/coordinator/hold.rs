@@ -1,10 +1,10 @@
-//! Windows in which the bed is held (see [`crate::hold`]). Only the coordinator knows of them: the solver of the
-//! particles is told once that they come to rest, and is not asked for steps.
+//! Windows in which the bed is held (see [`crate::hold`]): the solver of the particles is told once that they come to
+//! rest.
 
 use super::{CoupledRun, RunError};
 use crate::motion::ParticleChanges;
 use crate::supervisor::Supervisor;
-use crate::time::{Clocks, Window};
+use crate::time::Window;
 
 impl CoupledRun {
     /// True where particles that move are held over a window.
@@ -31,26 +31,5 @@ impl CoupledRun {
             self.parts.particles.change(supervisor, &change)?;
         }
         Ok(())
-    }
-
-    /// A window in which the bed is held: what holds it takes up the force of the gas, and no balance of the
-    /// momentum of free particles is made.
-    pub(super) fn hold(&mut self, window: &Window) {
-        let span = window.span.motion.seconds();
-        let (force, received) = (&self.work.push.force, &mut self.work.particle_received);
-        received.impulse.clear();
-        received
-            .impulse
-            .extend(force.iter().map(|force| force * span));
-        (received.acted, received.support) = (span, None);
-    }
-
-    /// A window on the particles' own clock, which stands while they are held.
-    pub(super) fn own_window(&self, window: &Window) -> Window {
-        let start = Clocks {
-            motion: window.start.motion.since(self.held),
-            ..window.start
-        };
-        Window { start, ..*window }
     }
 }

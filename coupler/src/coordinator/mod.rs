@@ -1,24 +1,27 @@
-//! The loop: windows, attempts, commits, checkpoints.
+//! The loop: windows, attempts, commits, checkpoints. A window is a sequence of stages, one file each, of which every one
+//! is told what it takes and owns what it makes.
 
+mod balances;
+mod bed;
 mod checkpoint;
 mod controls;
-mod feeds;
+mod exchange;
 mod hold;
-mod momentum;
+mod interior;
+mod laws;
+mod meter;
 mod origin;
-mod react;
+mod particles;
+mod population;
 mod resize;
 mod span;
-mod window;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use calcine_interior::ParticleModel;
-use calcine_interior::reacting::ReactError;
+use calcine_interior::HeatNetwork;
 use calcine_physics::Vec3;
-use calcine_physics::thermo::Element;
 use thiserror::Error;
 
 pub use checkpoint::{CheckpointError, CheckpointPaths};
@@ -26,23 +29,32 @@ pub use controls::{Control, ControlError};
 pub use origin::{Origin, OriginError};
 pub use resize::{ContactStepLimit, LONGEST_STEP, TooLight};
 
+use balances::WindowBalances;
+use bed::BedStage;
+use exchange::{ExchangeLimits, ExchangeStage, Participants};
+use interior::InteriorStage;
+use laws::{LawInputs, LawStage};
+use meter::{Meter, Stage};
+use particles::{MotionInputs, MotionStage};
+use span::next_span;
+
 use crate::checkpoint::StateFileError;
-use crate::closures::{ClosureError, Closures, CouplingCoefficients, SampledGas};
+use crate::closures::{ClosureError, Closures};
 use crate::error::PartError;
-use crate::exchange::{Exchange, ExchangeConvergence};
+use crate::exchange::ExchangeConvergence;
 use crate::feeds::FeedsAndOutlets;
 use crate::hold::Holds;
 use crate::ledger::{BalanceLine, Ledger};
-use crate::mapping::{Mapper, MappingError, Method};
+use crate::mapping::{MappingError, Method};
 use crate::mesh::Mesh;
+use crate::models::{ParticleModelError, ParticleModels, RestoreError};
 use crate::observer::{CommittedState, Observer, ObserverError, ParticleGasExchange, Timing};
 use crate::packing::PackingError;
-use crate::part::{Bed, CellReceived, Convergence, Gas, ParticlePush, ParticleReceived, Particles};
+use crate::part::{Gas, Particles};
 use crate::paths::{Paths, PathsSetup};
-use crate::smoother::{Operator, Smoother, SmootherError};
-use crate::species_coupling::SpeciesCoupling;
+use crate::smoother::{Smoother, SmootherError};
 use crate::supervisor::Supervisor;
-use crate::time::{Acceleration, Clocks, GasStorage, Ticks, TimeError};
+use crate::time::{Acceleration, Clocks, GasStorage, Ticks, TimeError, Window};
 
 /// When windows, checkpoints and the run end, and how exactly a window is exchanged.
 #[derive(Clone, Debug)]
@@ -79,7 +91,7 @@ pub struct Plan {
     pub gravity: Vec3,
     /// Feeds and outlets.
     pub feeds_and_outlets: FeedsAndOutlets,
-    /// Material of each population, for what feeds bring in.
+    /// Material of each population, for the heat between particles.
     pub substance: Vec<usize>,
     /// Heat between particles and to walls.
     pub paths: PathsSetup,
@@ -116,14 +128,20 @@ pub enum RunError {
         /// What the law said.
         cause: ClosureError,
     },
-    /// Reactions that cannot be followed.
+    /// The inside of a particle that cannot be followed.
     #[error("window {window}: {cause}")]
-    React {
+    Interior {
         /// Index of the window.
         window: u64,
         /// Which particle, and why.
-        cause: ReactError,
+        cause: ParticleModelError,
     },
+    /// Particles that their models do not take.
+    #[error(transparent)]
+    Models(#[from] ParticleModelError),
+    /// State of particles that cannot be taken up.
+    #[error(transparent)]
+    Restore(#[from] RestoreError),
     /// A particle too light for the solver's time step.
     #[error(transparent)]
     TooLight(#[from] TooLight),
@@ -156,69 +174,36 @@ pub struct RunParts {
     pub gas: Box<dyn Gas>,
     /// The particles.
     pub particles: Box<dyn Particles>,
-    /// What is inside the particles.
-    pub interior: Box<dyn ParticleModel>,
+    /// What is inside the particles: models that hold all of them.
+    pub models: ParticleModels,
+    /// Heat between particles and to walls, a network without particles yet; `None` where there is none.
+    pub network: Option<HeatNetwork>,
 }
 
-/// Bed and operator, valid for the positions they were made from.
-struct Mapped {
-    operator: Operator,
-    bed: Bed,
-    position: Vec<Vec3>,
-    radius: Vec<f64>,
-    solid_volume: Vec<f64>,
+/// The two solvers.
+struct Solvers {
+    gas: Box<dyn Gas>,
+    particles: Box<dyn Particles>,
 }
 
-/// Memory of one window, reused.
-#[derive(Default)]
-struct Workspace {
-    sampled_gas: SampledGas,
-    coefficients: CouplingCoefficients,
-    exchange: Exchange,
-    species_coupling: SpeciesCoupling,
-    /// Pressure in Pa that each particle sees, where some react.
-    pressure: Vec<f64>,
-    /// Masses in kg and mass fractions of solids, for observers.
-    particle_mass: Vec<f64>,
-    solid_fractions: Vec<f64>,
-    received: CellReceived,
-    particle_received: ParticleReceived,
-    push: ParticlePush,
-    pressure_force: Vec<Vec3>,
-    /// Velocities in m/s at the start of the window.
-    velocity: Vec<Vec3>,
-    /// All but drag that acted on each particle in the last window, in N.
-    other: Vec<Vec3>,
-    free: Vec<bool>,
-    /// As many as `free`, and none of them free.
-    still: Vec<bool>,
-    /// Heat of the last window from walls and surroundings into the particles in W.
-    reservoir_heat: Vec<f64>,
-}
-
-/// A run: the parts, the laws, the state of the loop.
+/// A run: the solvers, the stages, the state of the loop.
 pub struct CoupledRun {
     plan: Plan,
     mesh: Arc<Mesh>,
-    mapper: Mapper<Arc<Mesh>>,
-    smoother: Smoother,
-    closures: Closures,
-    parts: RunParts,
-    mapped: Mapped,
-    clocks: Clocks,
-    /// Motion time for which the bed has been held so far.
-    held: Ticks,
-    windows: u64,
+    parts: Solvers,
+    bed: BedStage,
+    laws: LawStage,
+    interior: InteriorStage,
+    exchange: ExchangeStage,
+    motion: MotionStage,
     ledger: Ledger,
-    timing: Timing,
-    convergence: Convergence,
-    exchange_convergence: ExchangeConvergence,
-    work: Workspace,
-    paths: Paths,
+    meter: Meter,
+    clocks: Clocks,
+    windows: u64,
     /// What was set while the run goes on, each condition once.
     controls: Vec<Control>,
     /// The window committed last, and when the last checkpoint was written.
-    last: Option<crate::time::Window>,
+    last: Option<Window>,
     last_checkpoint: Instant,
 }
 
@@ -231,51 +216,56 @@ impl CoupledRun {
         closures: Closures,
         parts: RunParts,
     ) -> Result<Self, RunError> {
-        let mapper = Mapper::new(Arc::clone(&mesh));
-        let elements = elements(&closures, &*parts.interior).into_iter();
-        let mut timing = Timing::default();
-        let particles = &*parts.particles;
-        let mapped = window::map(&mapper, plan.mapping, &smoother, particles, &mut timing)?;
-        let mut work = Workspace::default();
-        work.exchange
-            .heat
-            .resize(parts.particles.fields().len(), 0.0);
-        work.begin(&parts.particles.fields(), &plan.free, plan.gravity);
-        let pores = &mut work.sampled_gas.void_fraction;
-        pores.resize(mapped.operator.particles(), 1.0);
-        mapped.operator.sample(&mapped.bed.void_fraction, pores);
+        let mut meter = Meter::default();
+        let RunParts {
+            gas,
+            particles,
+            models,
+            network,
+        } = parts;
+        let parts = Solvers { gas, particles };
+        let fields = parts.particles.fields();
+        let bed = BedStage::new(
+            Arc::clone(&mesh),
+            plan.mapping,
+            smoother,
+            &fields,
+            &mut meter,
+        )?;
+        let laws = LawStage::new(closures, &bed.mapped);
+        let names = elements(&laws.closures, &models).into_iter();
+        let ledger = Ledger {
+            elements: names.map(|name| (name, BalanceLine::default())).collect(),
+            ..Ledger::default()
+        };
+        let motion = MotionStage::new(plan.free.clone(), plan.gravity, &fields);
         let paths = Paths::new(plan.paths.clone());
+        let substance = plan.substance.clone();
+        let interior = InteriorStage::new(models, network, paths, substance, &fields);
+        let mut exchange = ExchangeStage::default();
+        exchange.exchange.heat.resize(fields.len(), 0.0);
+        exchange.agreement = ExchangeConvergence {
+            settled: true,
+            ..ExchangeConvergence::default()
+        };
         let mut run = Self {
-            paths,
             plan,
             mesh,
-            mapper,
-            smoother,
-            closures,
             parts,
-            mapped,
+            bed,
+            laws,
+            interior,
+            exchange,
+            motion,
+            ledger,
+            meter,
             clocks: Clocks::default(),
-            held: Ticks::ZERO,
             windows: 0,
-            ledger: Ledger {
-                elements: elements
-                    .map(|name| (name, BalanceLine::default()))
-                    .collect(),
-                ..Ledger::default()
-            },
-            timing,
-            convergence: Convergence::default(),
-            exchange_convergence: ExchangeConvergence {
-                settled: true,
-                ..ExchangeConvergence::default()
-            },
-            work,
             controls: Vec::new(),
             last: None,
             last_checkpoint: Instant::now(),
         };
-        run.find_contacts();
-        run.weigh();
+        run.find_neighbours();
         Ok(run)
     }
 
@@ -317,15 +307,16 @@ impl CoupledRun {
         let window = self.next_window()?;
         self.bring_to_rest(supervisor, &window)?;
         self.feed_and_discharge(supervisor, &window)?;
-        self.advance(supervisor, &window)?;
+        let used_up = self.advance(supervisor, &window)?;
+        self.take_out_used_up(supervisor, used_up)?;
         self.resize(supervisor)?;
         self.last = Some(window);
 
-        let output = Instant::now();
+        let output = Meter::start(Stage::Output);
         for observer in observers.iter_mut() {
             observer.window(&self.moment(Some(&window)))?;
         }
-        self.timing.output += output.elapsed();
+        self.meter.stop(output);
 
         if self.clocks.process >= self.plan.end {
             return self.finish(supervisor, observers).map(Some);
@@ -371,6 +362,145 @@ impl CoupledRun {
         self.moment(None)
     }
 
+    fn next_window(&self) -> Result<Window, RunError> {
+        let plan = &self.plan;
+        let (_, change) = plan.holds.at(self.clocks.process);
+        let span = next_span(
+            &plan.acceleration,
+            self.clocks,
+            plan.motion_window,
+            change.map_or(plan.end, |time| time.min(plan.end)),
+        )?;
+        Ok(Window {
+            index: self.windows,
+            attempt: 0,
+            start: self.clocks,
+            span,
+        })
+    }
+
+    /// Bed, laws, attempts of gas and interior, particles last, ledger, commit. The rows of particles that are used up.
+    fn advance(
+        &mut self,
+        supervisor: &Supervisor,
+        window: &Window,
+    ) -> Result<Vec<usize>, RunError> {
+        self.map()?;
+        let mut attempt = *window;
+        for _ in 0..self.evaluations() {
+            self.evaluate_laws(window)?;
+            self.exchange_with_gas(supervisor, &mut attempt)?;
+        }
+        self.move_particles(supervisor, window)?;
+        self.close_ledger(window);
+        self.commit(window)
+    }
+
+    /// How often the laws are evaluated in the coming window: once, on the gas of the window
+    /// before. The first window of a run has none before it (its gas may be at rest, and does not
+    /// know the bed yet), so it is repeated with the laws evaluated on what came out, by a gas that can.
+    fn evaluations(&self) -> u32 {
+        const IN_FIRST_WINDOW: u32 = 4;
+        if self.windows == 0 && self.plan.repeats {
+            IN_FIRST_WINDOW
+        } else {
+            1
+        }
+    }
+
+    fn map(&mut self) -> Result<(), RunError> {
+        let particles = self.parts.particles.fields();
+        if self.bed.update(&particles, &mut self.meter)? {
+            self.find_neighbours();
+        }
+        Ok(())
+    }
+
+    fn find_neighbours(&mut self) {
+        let (particles, time) = (self.parts.particles.fields(), self.clocks.process.seconds());
+        let interior = &mut self.interior;
+        self.meter.time(Stage::Interior, || {
+            interior.find_neighbours(&particles, time);
+        });
+    }
+
+    fn evaluate_laws(&mut self, window: &Window) -> Result<(), RunError> {
+        let running = Meter::start(Stage::Exchange);
+        let (particles, holds) = (self.parts.particles.fields(), self.holds(window));
+        self.laws.evaluate(&LawInputs {
+            mapped: &self.bed.mapped,
+            gas: self.parts.gas.fields(),
+            particles,
+            window,
+            inertia: self.motion.inertia(&particles, window, holds),
+            channels: self.interior.has_channels(),
+        })?;
+        self.meter.stop(running);
+        Ok(())
+    }
+
+    fn exchange_with_gas(
+        &mut self,
+        supervisor: &Supervisor,
+        attempt: &mut Window,
+    ) -> Result<(), RunError> {
+        let limits = ExchangeLimits {
+            tolerance: self.plan.exchange_tolerance,
+            attempts: self.plan.exchange_attempts,
+        };
+        let mut with = Participants {
+            gas: &mut *self.parts.gas,
+            interior: &mut self.interior,
+            laws: &mut self.laws,
+            mapped: &self.bed.mapped,
+            particles: self.parts.particles.fields(),
+            supervisor,
+            meter: &mut self.meter,
+        };
+        self.exchange.run(&mut with, limits, attempt)
+    }
+
+    fn move_particles(&mut self, supervisor: &Supervisor, window: &Window) -> Result<(), RunError> {
+        let inputs = MotionInputs {
+            mapped: &self.bed.mapped,
+            gas: self.parts.gas.fields(),
+            exchange: &self.exchange.exchange,
+            model: self.laws.closures.momentum,
+            window,
+            holds: self.holds(window),
+        };
+        let (particles, meter) = (&mut *self.parts.particles, &mut self.meter);
+        self.motion.advance(particles, &inputs, supervisor, meter)
+    }
+
+    fn close_ledger(&mut self, window: &Window) {
+        let balances = WindowBalances {
+            exchange: &self.exchange,
+            motion: &self.motion,
+            interior: self.interior.changed(),
+            gas: &self.laws.closures.gas,
+            channels: self.interior.has_channels(),
+        };
+        balances.book(&mut self.ledger, window, self.plan.storage);
+    }
+
+    fn commit(&mut self, window: &Window) -> Result<Vec<usize>, RunError> {
+        self.parts.gas.commit()?;
+        self.parts.particles.commit()?;
+        let particles = self.parts.particles.fields();
+        if self.holds(window) {
+            self.motion.held = self.motion.held.checked_add(window.span.motion)?;
+        } else {
+            let drag = &self.exchange.exchange.drag;
+            self.motion
+                .note_forces(&particles, drag, window, &mut self.ledger);
+        }
+        let used_up = self.interior.commit(&particles);
+        self.clocks = window.end()?;
+        self.windows += 1;
+        Ok(used_up)
+    }
+
     fn finish_parts(&mut self, supervisor: &Supervisor) -> Result<(), PartError> {
         let gas = self.parts.gas.finish_run(supervisor);
         let particles = self.parts.particles.finish_run(supervisor);
@@ -379,8 +509,8 @@ impl CoupledRun {
 
     /// What the solvers' own processes have used so far.
     fn note_processors(&mut self) {
-        self.timing.gas_processes = self.parts.gas.processor_time();
-        self.timing.particles_processes = self.parts.particles.processor_time();
+        self.meter.timing.gas_processes = self.parts.gas.processor_time();
+        self.meter.timing.particles_processes = self.parts.particles.processor_time();
     }
 
     /// True where a multiple of `checkpoint_every` lies in (start, now], or wall time is up.
@@ -396,37 +526,37 @@ impl CoupledRun {
                 .is_some_and(|wall| since_last >= wall)
     }
 
-    fn moment<'a>(&'a self, window: Option<&'a crate::time::Window>) -> CommittedState<'a> {
+    fn moment<'a>(&'a self, window: Option<&'a Window>) -> CommittedState<'a> {
         CommittedState {
             windows: self.windows,
             clocks: self.clocks,
             window,
             mesh: &self.mesh,
             gas: self.parts.gas.fields(),
-            bed: &self.mapped.bed,
+            bed: &self.bed.mapped.bed,
             particles: self.parts.particles.fields(),
-            particle_temperature: self.parts.interior.temperature(),
-            particle_heat: &self.work.exchange.heat,
-            particle_mass: &self.work.particle_mass,
-            solid_fractions: &self.work.solid_fractions,
+            particle_temperature: self.interior.models.temperature(),
+            particle_heat: &self.exchange.exchange.heat,
+            particle_mass: &self.interior.mass,
+            models: &self.interior.models,
             particle_gas: ParticleGasExchange {
-                force: &self.work.push.force,
-                void_fraction: &self.work.sampled_gas.void_fraction,
-                slip: &self.work.coefficients.slip,
+                force: &self.motion.push.force,
+                void_fraction: &self.laws.sampled_gas.void_fraction,
+                slip: &self.laws.coefficients.slip,
             },
-            reservoirs: self.paths.names(),
-            reservoir_heat: &self.work.reservoir_heat,
+            reservoirs: self.interior.reservoirs(),
+            reservoir_heat: &self.interior.reservoir_heat,
             ledger: &self.ledger,
-            convergence: &self.convergence,
-            exchange_convergence: &self.exchange_convergence,
-            timing: &self.timing,
+            convergence: &self.exchange.convergence,
+            exchange_convergence: &self.exchange.agreement,
+            timing: &self.meter.timing,
             about: [self.parts.gas.about(), self.parts.particles.about()],
         }
     }
 
     /// Wall times so far.
     pub fn timing(&self) -> &Timing {
-        &self.timing
+        &self.meter.timing
     }
 
     /// The ledger so far.
@@ -436,20 +566,12 @@ impl CoupledRun {
 }
 
 /// Symbols of the elements of gas and particles.
-fn elements(closures: &Closures, interior: &dyn ParticleModel) -> Vec<String> {
-    let mut names: Vec<String> = closures
-        .gas
-        .elements()
-        .into_iter()
-        .map(|one| one.0)
-        .collect();
-    if let Some(reacting) = interior.reactions() {
-        let solids = &reacting.chemistry().solids;
-        for element in Element::ALL {
-            let held = solids.iter().any(|one| one.atoms()[element as usize] > 0.0);
-            if held && !names.iter().any(|name| name == element.symbol()) {
-                names.push(element.symbol().to_owned());
-            }
+fn elements(closures: &Closures, models: &ParticleModels) -> Vec<String> {
+    let gas = closures.gas.elements().into_iter();
+    let mut names: Vec<String> = gas.map(|one| one.0).collect();
+    for element in models.elements() {
+        if !names.iter().any(|name| name == element.symbol()) {
+            names.push(element.symbol().to_owned());
         }
     }
     names

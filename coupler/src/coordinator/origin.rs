@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use calcine_physics::Vec3;
 use thiserror::Error;
 
-use super::{CheckpointError, CheckpointPaths, CoupledRun, RunError};
+use super::{CheckpointPaths, CoupledRun, RunError};
 use crate::checkpoint::{StateFile, StateFileError};
 use crate::mesh::Mesh;
 use crate::setup::ParticleSetup;
@@ -193,7 +193,7 @@ impl CoupledRun {
         let particles = self.parts.particles.fields();
         let centres = particles.position.iter();
         let centres: Vec<f64> = centres.flat_map(|x| [x.x, x.y, x.z]).collect();
-        let species = self.closures.gas.species().join(", ");
+        let species = self.laws.closures.gas.species().join(", ");
         let species: Vec<u64> = species.bytes().map(u64::from).collect();
         state.set_u64s("mesh", &identity(&self.mesh));
         state.set_u64s("species", &species);
@@ -202,23 +202,10 @@ impl CoupledRun {
         state.set_f64s("particle_radius", particles.radius);
     }
 
-    /// Takes over the particles' temperatures of another run of the same mesh and particles. The
+    /// Takes over the inside of the particles of another run of the same mesh and particles. The
     /// gas was built from it already (see [`Origin::check`]); clocks and ledger stay at zero.
     pub fn take_over(&mut self, origin: &Origin) -> Result<(), RunError> {
-        let expected = self.parts.particles.fields().len();
-        let temperature = origin.state.f64s("particle_temperature")?;
-        if temperature.len() != expected {
-            return Err(CheckpointError::Particles {
-                path: origin.path.clone(),
-                found: temperature.len(),
-                expected,
-            }
-            .into());
-        }
-        self.restore_amounts(&origin.state)?;
-        self.parts.interior.restore(temperature);
-        self.weigh();
-        Ok(())
+        self.restore_particles(&origin.state)
     }
 }
 

@@ -11,7 +11,7 @@ use calcine_physics::Vec3;
 use calcine_physics::contact::time_step::rayleigh;
 use thiserror::Error;
 
-use super::feeds::momentum;
+use super::particles::momentum;
 use super::{CoupledRun, RunError};
 use crate::motion::{Contacts, Elastic, ParticleChanges, Resized};
 use crate::supervisor::Supervisor;
@@ -85,17 +85,19 @@ impl CoupledRun {
     /// Tells the solver of the particles what the window has made of them. A bed that is held only
     /// needs to know where a radius has changed.
     pub(super) fn resize(&mut self, supervisor: &Supervisor) -> Result<(), RunError> {
-        let Some(reacting) = self.parts.interior.reactions() else {
+        let models = &self.interior.models;
+        if !models.change_bodies() {
             return Ok(());
-        };
+        }
         let fields = self.parts.particles.fields();
         let off = |now: f64, before: f64| (now - before).abs() > SAME * before;
         let held = self.plan.free.is_empty();
         let (mut change, mut asked, mut turned) = (ParticleChanges::default(), 0.0, 0.0);
         let mut carried = Vec3::zeros();
-        for row in 0..fields.len() {
-            let mass = self.work.particle_mass[row];
-            let radius = reacting.radius(row).unwrap_or(fields.radius[row]);
+        let mut radii = fields.radius.to_vec();
+        models.radii(&mut radii);
+        for (row, &radius) in radii.iter().enumerate() {
+            let mass = self.interior.mass[row];
             let heavier = off(mass, fields.mass[row]) && !held;
             if !heavier && !off(radius, fields.radius[row]) {
                 continue;
@@ -109,7 +111,7 @@ impl CoupledRun {
                 .plan
                 .step_limit
                 .as_ref()
-                .filter(|_| self.work.free[row])
+                .filter(|_| self.motion.free[row])
             {
                 step_limit.bears(fields.population[row], &new)?;
             }

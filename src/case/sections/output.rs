@@ -15,7 +15,7 @@ const GAS: [&str; 7] = [
     "turbulence",
 ];
 /// Particle fields of the snapshots.
-const PARTICLES: [&str; 8] = [
+const PARTICLES: [&str; 9] = [
     "temperature",
     "velocity",
     "heat",
@@ -24,6 +24,7 @@ const PARTICLES: [&str; 8] = [
     "slip",
     "mass",
     "solids",
+    "inside",
 ];
 
 pub(super) fn output(root: &TableReader<'_>) -> Option<Output> {

@@ -15,8 +15,6 @@ mod neighbours;
 mod radiation;
 mod solver;
 
-use std::f64::consts::PI;
-
 use calcine_physics::conduction::{
     Conduction, Conductivity, ContactArea, GasGap, SphereContact, SphereGap, Stiffness,
 };
@@ -28,7 +26,8 @@ pub use neighbours::{
 use radiation::Radiation;
 use solver::{NetworkSolver, NetworkSystem};
 
-use crate::{Newcomer, without};
+use crate::model::SurfaceLine;
+use crate::without;
 
 /// What heat between particles needs to know of a material.
 #[derive(Clone, Debug, PartialEq)]
@@ -116,6 +115,8 @@ struct Work {
     drive: Vec<f64>,
     temperature: Vec<f64>,
     last: Vec<f64>,
+    lines: Vec<SurfaceLine>,
+    last_lines: Vec<SurfaceLine>,
 }
 
 /// Changes of temperature below this share end the iteration over radiation and heat capacity.
@@ -124,20 +125,14 @@ const SETTLED: f64 = 1e-10;
 const ITERATIONS: usize = 60;
 
 impl HeatNetwork {
-    /// A network without contacts and views yet: laws, materials, the material of each particle and of each
-    /// wall that is a reservoir.
-    pub fn new(
-        laws: HeatLaws,
-        materials: Vec<ThermalProperties>,
-        material: Vec<usize>,
-        walls: Vec<usize>,
-    ) -> Self {
+    /// A network without particles yet: laws, materials, and the material of each wall that is a reservoir.
+    pub fn new(laws: HeatLaws, materials: Vec<ThermalProperties>, walls: Vec<usize>) -> Self {
         Self {
             laws,
-            heat: vec![0.0; material.len()],
+            heat: Vec::new(),
             reservoir_heat: Vec::new(),
             materials,
-            material,
+            material: Vec::new(),
             walls,
             pairs: Vec::new(),
             wall_touches: Vec::new(),
@@ -146,23 +141,26 @@ impl HeatNetwork {
         }
     }
 
-    /// Particles that go, by their rows in ascending order, and come; all contacts are forgotten. Views of those that
-    /// stay hold; those that come see nobody until views are found anew.
-    pub fn change(&mut self, gone: &[usize], new: &[Newcomer]) {
+    /// Particles that go, by their rows in ascending order, and come, each of a radius in m and a material; all
+    /// contacts are forgotten. Exchange areas of those that stay hold; those that come have none with others until
+    /// areas are found anew.
+    pub fn change(&mut self, gone: &[usize], new: &[(f64, usize)]) {
         let come: Vec<(f64, f64)> = new
             .iter()
-            .map(|one| {
-                let of = &self.materials[one.material];
-                let radius = (0.75 * one.mass / (PI * of.density)).cbrt();
-                (radius, of.emissivity)
-            })
+            .map(|&(radius, material)| (radius, self.materials[material].emissivity))
             .collect();
         self.radiation.change(gone, &come);
         without(&mut self.material, gone);
-        self.material.extend(new.iter().map(|one| one.material));
+        self.material.extend(new.iter().map(|one| one.1));
         self.heat = vec![0.0; self.material.len()];
         self.pairs.clear();
         self.wall_touches.clear();
+    }
+
+    /// The heat of the last attempt is no longer that of the coming one.
+    pub fn begin(&mut self) {
+        self.heat.fill(0.0);
+        self.reservoir_heat.fill(0.0);
     }
 
     /// Takes up what the particles meet at their present places.
@@ -182,39 +180,51 @@ impl HeatNetwork {
         self.pairs.is_empty() && self.wall_touches.is_empty() && self.radiation.is_empty()
     }
 
-    /// Sets `heat` to that of an implicit step: temperatures T with
-    /// C_i (T_i − T_i,old) = h_i (S_i − T_i) + Σ_j G_ij (T_j − T_i), where `capacity` gives C_i, the heat
-    /// capacity over the span in W/K, between the old and a present temperature of particle i in K, and
-    /// h_i and S_i are conductance and temperature of the gas beside it.
-    pub fn solve(
+    /// Sets `heat` to that of an implicit step: surface temperatures T with
+    /// k_i (T_i − T_i,free) = Σ_j G_ij (T_j − T_i), where `lines` fills k and T_free of all particles about given
+    /// surface temperatures in K; `start` holds those of the last commit in K, by which conductivities go. False where
+    /// the iteration over lines and radiation ended at its limit, or the linear solver did.
+    pub fn solve<E>(
         &mut self,
-        capacity: impl Fn(usize, f64) -> f64,
-        old: &[f64],
+        start: &[f64],
         surroundings: &NetworkSurroundings<'_>,
-    ) {
-        let count = old.len();
-        self.conduct(old, surroundings);
+        mut lines: impl FnMut(&[f64], &mut [SurfaceLine]) -> Result<(), E>,
+    ) -> Result<bool, E> {
+        let count = start.len();
+        self.conduct(start, surroundings);
         if self.laws.inside {
             let (materials, material) = (&self.materials, &self.material);
             self.radiation.limit(|p, diameter| {
                 let of = &materials[material[p]];
-                let conductivity = of.conductivity.at(old[p]);
-                conducted_share(of.emissivity, conductivity, diameter, old[p])
+                let conductivity = of.conductivity.at(start[p]);
+                conducted_share(of.emissivity, conductivity, diameter, start[p])
             });
         }
         let work = &mut self.work;
         let (solid, walled) = (work.bonds.len(), work.reservoir_links.len());
         let nodes = count + self.radiation.radiosities();
-        let repeats = !self.radiation.is_empty();
-        work.old.clear();
-        work.old.extend_from_slice(old);
-        work.old.extend_from_slice(&old[..nodes - count]);
-        work.temperature.clone_from(&work.old);
-        for _ in 0..ITERATIONS {
+        work.temperature.clear();
+        work.temperature.extend_from_slice(start);
+        work.temperature.extend_from_slice(&start[..nodes - count]);
+        work.lines.clear();
+        work.lines.resize(count, SurfaceLine::default());
+        let mut settled = false;
+        for iteration in 0..ITERATIONS {
+            work.last_lines.clone_from(&work.lines);
+            lines(&work.temperature[..count], &mut work.lines)?;
+            // Without radiation only the lines can bend.
+            if iteration > 0 && self.radiation.is_empty() && work.lines == work.last_lines {
+                settled = true;
+                break;
+            }
             work.capacity.clear();
             work.capacity
-                .extend((0..count).map(|i| capacity(i, work.temperature[i])));
+                .extend(work.lines.iter().map(|line| line.conductance));
             work.capacity.resize(nodes, 0.0);
+            work.old.clear();
+            work.old
+                .extend(work.lines.iter().map(|line| line.temperature));
+            work.old.extend_from_slice(&start[..nodes - count]);
             work.bonds.truncate(solid);
             work.reservoir_links.truncate(walled);
             self.radiation.linearise(
@@ -224,14 +234,8 @@ impl HeatNetwork {
                 &mut work.reservoir_links,
             );
             work.sink_conductance.clear();
-            work.sink_conductance
-                .extend_from_slice(surroundings.conductance);
             work.sink_conductance.resize(nodes, 0.0);
             work.drive.clear();
-            work.drive.extend(
-                (0..count)
-                    .map(|i| surroundings.conductance[i] * (surroundings.temperature[i] - old[i])),
-            );
             work.drive.resize(nodes, 0.0);
             for &([node, reservoir], g) in &work.reservoir_links {
                 work.sink_conductance[node] += g;
@@ -245,14 +249,18 @@ impl HeatNetwork {
                 sink_conductance: &work.sink_conductance,
                 drive: &work.drive,
             };
-            work.solver.solve(&system, &mut work.temperature);
+            if !work.solver.solve(&system, &mut work.temperature) {
+                settled = false;
+                break;
+            }
             let mut pairs = work.temperature.iter().zip(&work.last);
-            let settled = pairs.all(|(now, last)| (now - last).abs() <= SETTLED * last.abs());
-            if settled || !repeats {
+            settled = pairs.all(|(now, last)| (now - last).abs() <= SETTLED * last.abs());
+            if settled {
                 break;
             }
         }
         self.book(count, solid, surroundings.reservoirs);
+        Ok(settled)
     }
 
     /// Heat over every bond and link to a reservoir, the same on both of its sides.

@@ -54,10 +54,6 @@ pub struct Neighbours<'a> {
 /// What is beside the particles during an attempt.
 #[derive(Clone, Copy, Debug)]
 pub struct NetworkSurroundings<'a> {
-    /// Conductance h A to the gas of each particle in W/K.
-    pub conductance: &'a [f64],
-    /// Temperature of the gas that each particle sees in K.
-    pub temperature: &'a [f64],
     /// Conductivity of the gas that each particle sees in W/m/K.
     pub gas_conductivity: &'a [f64],
     /// Temperature of each reservoir in K: walls, then the surroundings.

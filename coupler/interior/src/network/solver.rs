@@ -4,12 +4,13 @@
 /// energy does not depend on it, because flows go from one node to the other whatever they are.
 const TOLERANCE: f64 = 1e-12;
 
-/// A symmetric network: node i holds C_i (T_i − T_i,old) = h_i (S_i − T_i) + Σ_j G_ij (T_j − T_i).
+/// A symmetric network: node i holds C_i (T_i − T_i,old) = h_i (S_i − T_i) + Σ_j G_ij (T_j − T_i); for a particle
+/// C and T_old are its surface line.
 #[derive(Clone, Copy, Debug)]
 pub struct NetworkSystem<'a> {
     /// Pairs of nodes and their conductance G in W/K.
     pub bonds: &'a [([usize; 2], f64)],
-    /// Heat capacity over the span C in W/K; zero for a node that stores nothing.
+    /// C in W/K; zero for a node that only passes heat on.
     pub capacity: &'a [f64],
     /// T_old in K.
     pub old: &'a [f64],
@@ -29,8 +30,9 @@ pub struct NetworkSolver {
 }
 
 impl NetworkSolver {
-    /// Solves for the temperatures in K, from those given on; preconditioned by the diagonal.
-    pub fn solve(&mut self, system: &NetworkSystem<'_>, temperature: &mut [f64]) {
+    /// Solves for the temperatures in K, from those given on; preconditioned by the diagonal. False where the
+    /// residual stayed above the tolerance, or is NaN.
+    pub fn solve(&mut self, system: &NetworkSystem<'_>, temperature: &mut [f64]) -> bool {
         let count = temperature.len();
         let NetworkSystem {
             bonds,
@@ -84,7 +86,10 @@ impl NetworkSolver {
         for step in 0..count.max(10) * 10 {
             let product = norm(r);
             if product <= goal || product == 0.0 {
-                return;
+                return true;
+            }
+            if !product.is_finite() {
+                return false;
             }
             let share = if step == 0 { 0.0 } else { product / before };
             before = product;
@@ -103,5 +108,6 @@ impl NetworkSolver {
                 r[i] -= length * q[i];
             }
         }
+        false
     }
 }

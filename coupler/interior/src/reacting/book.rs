@@ -1,15 +1,6 @@
-//! What an exchange with the gas turned over, booked so that nothing is used that is not there.
+//! Limits of what an exchange with the gas may turn over, so that nothing is used that is not there.
 
 use super::Reacting;
-
-/// What the exchange with the gas came to for all particles.
-#[derive(Clone, Copy, Debug)]
-pub struct ExchangeTotals<'a> {
-    /// Mean rate of each channel of each particle in mol/s, limited.
-    pub rates: &'a [f64],
-    /// Sensible heat in W that the exchanged gases bring into each particle.
-    pub carried: &'a [f64],
-}
 
 impl Reacting {
     /// Rates of each channel over the mass fraction of its key gas, in mol/s: slopes, and what goes off.
@@ -17,29 +8,20 @@ impl Reacting {
         (&self.lines[0], &self.lines[1])
     }
 
-    /// Temperature in K at which gases leave each particle: where the last integration ended.
-    pub fn end_temperature(&self) -> &[f64] {
-        &self.end
-    }
-
-    /// Shares of the rates of all channels (mol/s, channel by channel within each particle) that a window of
-    /// a span in s can have: no solid is used beyond what is there and what is made of it. Inner reactions are
-    /// limited alike.
-    pub fn limit(&mut self, rates: &[f64], span: f64, shares: &mut Vec<f64>) {
+    /// Lowers rates of all channels (mol/s, channel by channel within each particle) to what a window of a span in s
+    /// can have: no solid is used beyond what is there and what is made of it. Inner reactions are limited alike.
+    pub(super) fn limit_all(&mut self, rates: &mut [f64], span: f64) {
         let channels = self.channels.len();
-        shares.clear();
-        shares.resize(rates.len(), 1.0);
         for p in 0..self.count() {
-            let own = p * channels..(p + 1) * channels;
-            self.limit_one(p, &rates[own.clone()], span, &mut shares[own]);
+            self.limit_one(p, &mut rates[p * channels..(p + 1) * channels], span);
         }
     }
 
-    fn limit_one(&mut self, p: usize, rates: &[f64], span: f64, shares: &mut [f64]) {
+    fn limit_one(&mut self, p: usize, rates: &mut [f64], span: f64) {
         let (solids, count) = (self.chemistry.solids.len(), self.chemistry.reactions.len());
         let extents = &mut self.extents[p * count..(p + 1) * count];
-        for (channel, rate) in self.channels.iter().zip(rates) {
-            extents[channel.reaction] = rate * span;
+        for (reaction, rate) in self.reaction_of.iter().zip(&*rates) {
+            extents[*reaction] = rate * span;
         }
         let held = &self.committed.amount[p * solids..(p + 1) * solids];
         let all: f64 = held.iter().sum();
@@ -74,24 +56,11 @@ impl Reacting {
                 break;
             }
         }
-        for ((channel, rate), share) in self.channels.iter().zip(rates).zip(shares) {
-            *share = if *rate == 0.0 {
-                1.0
-            } else {
-                extents[channel.reaction] / (rate * span)
-            };
-        }
-    }
-
-    /// Takes up what the gas and the particles exchanged in the attempt over a span in s.
-    pub fn book(&mut self, booking: &ExchangeTotals<'_>, span: f64) {
-        let (count, channels) = (self.chemistry.reactions.len(), self.channels.len());
-        for p in 0..self.count() {
-            for (c, channel) in self.channels.iter().enumerate() {
-                let rate = booking.rates[p * channels + c];
-                self.extents[p * count + channel.reaction] = rate * span;
+        for (reaction, rate) in self.reaction_of.iter().zip(rates) {
+            let asked = *rate * span;
+            if asked != 0.0 && extents[*reaction] != asked {
+                *rate *= extents[*reaction] / asked;
             }
         }
-        self.carried.copy_from_slice(booking.carried);
     }
 }

@@ -18,41 +18,33 @@ pub mod ode;
 pub mod size;
 mod step;
 
-pub use book::ExchangeTotals;
 pub use chemistry::{Rate, Reaction, SolidChemistry};
 pub use layers::{LayerDiffusivity, LayersError};
 pub use size::SizeChange;
-pub use step::{ReactError, Surroundings};
+pub use step::ReactError;
 
-use crate::network::HeatNetwork;
+use crate::column::StateColumn;
+use crate::model::Channel;
 use chemistry::Rates;
 use ode::Rosenbrock;
 
-/// A reaction that exchanges gas.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Channel {
-    /// Its place among the reactions.
-    pub reaction: usize,
-    /// The gas in whose mass fraction its rate is a line.
-    pub key: usize,
-    /// Mass in kg that a mole of it makes (+) or takes (−) of each gas.
-    pub mass: Vec<f64>,
-}
-
-/// Particles that react, and the inert ones among them.
+/// Particles of one material that react.
 #[derive(Debug)]
 pub struct Reacting {
     chemistry: SolidChemistry,
+    columns: Vec<StateColumn>,
     channels: Vec<Channel>,
-    /// Amounts in mol of each solid in a kilogram of each material.
-    composition: Vec<Vec<f64>>,
-    /// How the particles of each material take up room.
-    sizes: Vec<SizeChange>,
-    /// Index of the material of each particle.
-    material: Vec<usize>,
+    /// Place of each channel among the reactions.
+    reaction_of: Vec<usize>,
+    /// Amounts in mol of each solid in a kilogram as it comes in.
+    composition: Vec<f64>,
+    /// How the particles take up room.
+    size: SizeChange,
     /// Amounts in mol, solid by solid within each particle.
     committed: Amounts,
     now: Amounts,
+    /// Masses in kg and radii in m of both; radii are empty where they stay.
+    bodies: [Measures; 2],
     /// Start of the exchange with the gas in K, and its conductance in W/K.
     start: Vec<f64>,
     conductance: Vec<f64>,
@@ -64,11 +56,15 @@ pub struct Reacting {
     extents: Vec<f64>,
     /// Sensible heat in W that exchanged gases bring in.
     carried: Vec<f64>,
-    /// Heat of what is booked, over the window: its sum and the sum of magnitudes in J.
-    released: (f64, f64),
-    network: Option<HeatNetwork>,
     capacity: Vec<f64>,
     scratch: Scratch,
+}
+
+/// Masses and radii that follow from amounts.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Measures {
+    mass: Vec<f64>,
+    radius: Vec<f64>,
 }
 
 /// What a particle is made of, and how hot it is.
@@ -91,51 +87,32 @@ struct Scratch {
 }
 
 impl Reacting {
-    /// Particles of masses in kg, each of one of the materials (each the mass fractions of the chemistry's
-    /// solids), at temperatures in K.
-    pub fn new(
-        chemistry: SolidChemistry,
-        materials: &[Vec<f64>],
-        mass: &[f64],
-        material: Vec<usize>,
-        temperature: Vec<f64>,
-        network: Option<HeatNetwork>,
-    ) -> Self {
-        let moles = |fractions: &Vec<f64>| {
-            let parts = chemistry.solids.iter().zip(fractions);
-            parts
-                .map(|(solid, share)| share / solid.molar_mass())
-                .collect()
-        };
-        let composition: Vec<Vec<f64>> = materials.iter().map(moles).collect();
-        let each = mass.iter().zip(&material);
-        let amount = each.flat_map(|(mass, &m)| composition[m].iter().map(move |n| n * mass));
-        let committed = Amounts {
-            amount: amount.collect(),
-            temperature,
-        };
-        let channels = channels(&chemistry);
-        let mut made = Self {
+    /// No particles yet, of a material that is at first made of these mass fractions of the chemistry's solids.
+    pub fn new(chemistry: SolidChemistry, fractions: &[f64]) -> Self {
+        let parts = chemistry.solids.iter().zip(fractions);
+        let composition = parts
+            .map(|(solid, share)| share / solid.molar_mass())
+            .collect();
+        let (channels, reaction_of) = channels(&chemistry);
+        Self {
+            columns: model::columns(&chemistry),
             chemistry,
             channels,
-            sizes: vec![SizeChange::Constant; composition.len()],
+            reaction_of,
             composition,
-            material,
-            now: committed.clone(),
-            committed,
+            size: SizeChange::Constant,
+            committed: Amounts::default(),
+            now: Amounts::default(),
+            bodies: Default::default(),
             start: Vec::new(),
             conductance: Vec::new(),
             end: Vec::new(),
-            lines: [Vec::new(), Vec::new()],
+            lines: Default::default(),
             extents: Vec::new(),
             carried: Vec::new(),
-            released: (0.0, 0.0),
-            network,
             capacity: Vec::new(),
             scratch: Scratch::default(),
-        };
-        made.begin();
-        made
+        }
     }
 
     /// The reactions.
@@ -143,25 +120,13 @@ impl Reacting {
         &self.chemistry
     }
 
-    /// Those that exchange gas.
-    pub fn channels(&self) -> &[Channel] {
-        &self.channels
-    }
-
     /// Amounts in mol at the last commit, solid by solid within each particle.
     pub fn amounts(&self) -> &[f64] {
         &self.committed.amount
     }
 
-    /// Takes up amounts from a checkpoint, as committed.
-    pub fn restore_amounts(&mut self, amounts: &[f64]) {
-        self.committed.amount.copy_from_slice(amounts);
-        self.now.amount.copy_from_slice(amounts);
-        self.begin();
-    }
-
     fn count(&self) -> usize {
-        self.material.len()
+        self.committed.temperature.len()
     }
 
     /// Everything as at the last commit.
@@ -186,17 +151,17 @@ impl Reacting {
                 .heat_capacity(amounts, self.committed.temperature[p])
         };
         self.capacity = (0..count).map(capacity).collect();
-        self.released = (0.0, 0.0);
-        if let Some(network) = &mut self.network {
-            network.heat.fill(0.0);
-            network.reservoir_heat.fill(0.0);
-        }
+        self.now.clone_from(&self.committed);
+        self.measure(1);
+        let [attempted, committed] = &mut self.bodies;
+        attempted.clone_from(committed);
     }
 }
 
-fn channels(chemistry: &SolidChemistry) -> Vec<Channel> {
+/// The reactions that exchange gas, and where they stand among all.
+fn channels(chemistry: &SolidChemistry) -> (Vec<Channel>, Vec<usize>) {
     let Some(gas) = &chemistry.gas else {
-        return Vec::new();
+        return (Vec::new(), Vec::new());
     };
     let reactions = chemistry.reactions.iter().enumerate();
     reactions
@@ -206,13 +171,14 @@ fn channels(chemistry: &SolidChemistry) -> Vec<Channel> {
             for &(g, n) in &one.gases {
                 mass[g] += n * gas.species()[g].molar_mass();
             }
-            Some(Channel {
-                reaction,
-                key,
+            let channel = Channel {
+                name: one.name.clone(),
+                key: Some(key),
                 mass,
-            })
+            };
+            Some((channel, reaction))
         })
-        .collect()
+        .unzip()
 }
 
 #[cfg(test)]

@@ -1,223 +1,280 @@
 //! Particles that react as the coordinator sees them.
 
-use super::Reacting;
-use crate::network::{Neighbours, NetworkSurroundings};
-use crate::{Newcomer, ParticleModel, without};
+use calcine_physics::thermo::Element;
+
+use super::{Amounts, Reacting, SolidChemistry};
+use crate::column::{ColumnKind, ColumnRole, Ragged, StateColumn};
+use crate::model::{
+    At, Bodies, Channel, GasLines, Inventory, ModelError, Newcomer, ParticleModel, SurfaceLine,
+    Surroundings, Tally, Transfer,
+};
+use crate::thin::{SECANT, TEMPERATURE};
+use crate::without;
+
+/// Name of the group of columns that hold the mass fraction of each solid.
+const SOLIDS: &str = "solids";
+
+/// Temperature, the amount of each solid in mol, and its mass fraction, which follows.
+pub(super) fn columns(chemistry: &SolidChemistry) -> Vec<StateColumn> {
+    let names = || chemistry.solids.iter().map(|solid| solid.name());
+    let amount = |name: &str| {
+        StateColumn::shown(&format!("amount.{name}"), "mol", "amount of this solid")
+            .with_role(ColumnRole::Private)
+    };
+    let fraction = |name: &str| {
+        StateColumn::shown(name, "1", "mass fraction of this solid")
+            .with_role(ColumnRole::Derived)
+            .in_group(SOLIDS)
+    };
+    let temperature = StateColumn::shown(TEMPERATURE, "K", "temperature of the particle");
+    let others = names().map(amount).chain(names().map(fraction));
+    std::iter::once(temperature).chain(others).collect()
+}
 
 impl ParticleModel for Reacting {
-    fn temperature(&self) -> &[f64] {
-        &self.now.temperature
+    fn columns(&self) -> &[StateColumn] {
+        &self.columns
     }
 
-    fn committed_temperature(&self) -> &[f64] {
-        &self.committed.temperature
-    }
-
-    fn reacting(&mut self) -> Option<&mut Reacting> {
-        Some(self)
-    }
-
-    fn reactions(&self) -> Option<&Reacting> {
-        Some(self)
-    }
-
-    fn conducts(&self) -> bool {
-        self.network.is_some()
-    }
-
-    fn set_neighbours(&mut self, neighbours: &Neighbours<'_>) {
-        if let Some(network) = &mut self.network {
-            network.set_neighbours(neighbours);
+    fn read(&self, column: usize, out: &mut Ragged) {
+        let solids = self.chemistry.solids.len();
+        let particles = self.committed.amount.chunks_exact(solids);
+        out.reset(ColumnKind::Real);
+        match column.checked_sub(1) {
+            None => {
+                for kelvin in &self.committed.temperature {
+                    out.push_reals(&[*kelvin]);
+                }
+            }
+            Some(solid) if solid < solids => {
+                particles.for_each(|amounts| out.push_reals(&[amounts[solid]]));
+            }
+            Some(place) => {
+                let solid = place - solids;
+                let molar = self.chemistry.solids[solid].molar_mass();
+                let masses = &self.bodies[1].mass;
+                for (amounts, mass) in particles.zip(masses) {
+                    out.push_reals(&[amounts[solid] * molar / mass]);
+                }
+            }
         }
+    }
+
+    fn load(&mut self, from: &[Ragged]) -> Result<(), ModelError> {
+        let (rows, solids) = (self.count(), self.chemistry.solids.len());
+        for (column, (of, values)) in self.columns.iter().zip(from).enumerate() {
+            if !of.is_state() {
+                continue;
+            }
+            let list = values.to_scalars(&of.name, rows)?;
+            match column.checked_sub(1) {
+                None => self.committed.temperature.copy_from_slice(list),
+                Some(solid) => {
+                    let amounts = self.committed.amount.chunks_exact_mut(solids);
+                    for (amounts, value) in amounts.zip(list) {
+                        amounts[solid] = *value;
+                    }
+                }
+            }
+        }
+        self.begin();
+        Ok(())
+    }
+
+    fn bodies(&self, at: At) -> Bodies<'_> {
+        let (state, measures) = match at {
+            At::Attempt => (&self.now, &self.bodies[0]),
+            At::Commit => (&self.committed, &self.bodies[1]),
+        };
+        Bodies {
+            temperature: &state.temperature,
+            mass: &measures.mass,
+            radius: &measures.radius,
+        }
+    }
+
+    fn channels(&self) -> &[Channel] {
+        &self.channels
+    }
+
+    fn elements(&self) -> Vec<Element> {
+        let solids = &self.chemistry.solids;
+        let held = |one: &Element| solids.iter().any(|s| s.atoms()[*one as usize] > 0.0);
+        Element::ALL.into_iter().filter(held).collect()
     }
 
     /// The heat of the last attempt's reactions counts as if it had come before.
-    fn conduct(&mut self, surroundings: &NetworkSurroundings<'_>, span: f64) {
-        let Some(network) = self.network.as_mut().filter(|network| !network.is_empty()) else {
-            return;
-        };
+    fn surface(
+        &mut self,
+        around: &Surroundings<'_>,
+        span: f64,
+        at: &[f64],
+        out: &mut [SurfaceLine],
+    ) -> Result<(), ModelError> {
         let count = self.chemistry.reactions.len();
-        let warmed = |p: usize| {
+        for (p, line) in out.iter_mut().enumerate() {
             let extents = &self.extents[p * count..(p + 1) * count];
             let heats = extents.iter().zip(&self.chemistry.heat);
             let heat: f64 = heats.map(|(extent, heat)| -extent * heat).sum();
-            self.committed.temperature[p] + (heat + self.carried[p] * span) / self.capacity[p]
-        };
-        let old: Vec<f64> = (0..self.capacity.len()).map(warmed).collect();
-        network.solve(|p, _| self.capacity[p] / span, &old, surroundings);
-    }
-
-    fn reservoir_heat(&self) -> &[f64] {
-        self.network
-            .as_ref()
-            .map_or(&[], |network| &network.reservoir_heat)
-    }
-
-    fn start_temperature(&self) -> &[f64] {
-        &self.start
-    }
-
-    fn eliminated(&self, conductance: &[f64], span: f64, out: &mut [f64]) {
-        let pairs = conductance.iter().zip(&self.capacity);
-        for ((k, (&ha, &mc)), own) in out.iter_mut().zip(pairs).zip(&self.conductance) {
-            *k = if *own > 0.0 {
-                *own
-            } else {
-                ha / (1.0 + ha * span / mc)
+            let capacity = self.secant(p, at[p]);
+            let warmed = self.committed.temperature[p] + (heat + self.carried[p] * span) / capacity;
+            let (gas, stored) = (around.conductance[p], capacity / span);
+            *line = SurfaceLine {
+                conductance: stored + gas,
+                temperature: warmed + gas * (around.temperature[p] - warmed) / (stored + gas),
             };
         }
+        Ok(())
     }
 
-    fn advance(&mut self, heat: &[f64], span: f64) {
+    fn respond(
+        &mut self,
+        around: &Surroundings<'_>,
+        span: f64,
+        network: &[f64],
+        out: &mut GasLines,
+    ) -> Result<(), ModelError> {
+        self.react(around, span, network)
+            .map_err(|cause| ModelError::Particle {
+                row: cause.row,
+                cause: Box::new(cause),
+            })?;
+        out.conductance.copy_from_slice(&self.conductance);
+        out.temperature.copy_from_slice(&self.start);
+        out.released.copy_from_slice(&self.end);
+        out.slope.copy_from_slice(&self.lines[0]);
+        out.offset.copy_from_slice(&self.lines[1]);
+        Ok(())
+    }
+
+    fn limit(&mut self, rates: &mut [f64], span: f64) {
+        self.limit_all(rates, span);
+    }
+
+    fn settle(&mut self, took: &Transfer<'_>, span: f64) -> Result<(), ModelError> {
         let chemistry = &self.chemistry;
         let (solids, count) = (chemistry.solids.len(), chemistry.reactions.len());
-        let (mut sum, mut magnitude) = (0.0, 0.0);
-        for p in 0..self.material.len() {
+        let channels = self.channels.len();
+        self.carried.copy_from_slice(took.carried);
+        for p in 0..self.committed.temperature.len() {
             let held = &self.committed.amount[p * solids..(p + 1) * solids];
             let amounts = &mut self.now.amount[p * solids..(p + 1) * solids];
             amounts.copy_from_slice(held);
-            let extents = &self.extents[p * count..(p + 1) * count];
+            let extents = &mut self.extents[p * count..(p + 1) * count];
+            for (c, reaction) in self.reaction_of.iter().enumerate() {
+                extents[*reaction] = took.rates[p * channels + c] * span;
+            }
             let mut released = 0.0;
-            for ((extent, reaction), heat) in extents
-                .iter()
-                .zip(&chemistry.reactions)
-                .zip(&chemistry.heat)
-            {
+            let turned = extents.iter().zip(&chemistry.reactions);
+            for ((extent, reaction), heat) in turned.zip(&chemistry.heat) {
                 for &(s, n) in &reaction.solids {
                     amounts[s] += n * extent;
                 }
                 released -= extent * heat;
-                magnitude += (extent * heat).abs();
             }
-            let conducted = self.network.as_ref().map_or(0.0, |network| network.heat[p]);
-            let gained = (heat[p] + conducted + self.carried[p]) * span + released;
+            let gained = (took.heat[p] + took.network[p] + took.carried[p]) * span + released;
             let before = chemistry.enthalpy(held, self.committed.temperature[p]);
             self.now.temperature[p] = chemistry.temperature(amounts, before + gained, self.end[p]);
-            sum -= released;
         }
-        self.released = (sum, magnitude);
+        self.measure(0);
+        Ok(())
     }
 
-    fn commit(&mut self) {
+    /// Energies count from the elements: of what is exchanged with the gas, the gas' own formation enthalpies stand
+    /// in its balance.
+    fn changed(&self) -> Inventory {
+        let chemistry = &self.chemistry;
+        let (solids, count) = (chemistry.solids.len(), chemistry.reactions.len());
+        let mut all = Inventory::default();
+        for p in 0..self.committed.temperature.len() {
+            let own = p * solids..(p + 1) * solids;
+            let (now, before) = (&self.now.amount[own.clone()], &self.committed.amount[own]);
+            let mut formed = 0.0;
+            for ((now, before), solid) in now.iter().zip(before).zip(&chemistry.solids) {
+                let change = now - before;
+                all.mass.add(solid.molar_mass() * change);
+                formed += change * solid.formation_enthalpy();
+                add_elements(&mut all, solid.atoms(), change);
+            }
+            let sensible = chemistry.enthalpy(now, self.now.temperature[p])
+                - chemistry.enthalpy(before, self.committed.temperature[p]);
+            let extents = &self.extents[p * count..(p + 1) * count];
+            let turned = extents.iter().zip(&chemistry.heat);
+            let heat: f64 = turned.map(|(extent, heat)| (extent * heat).abs()).sum();
+            all.energy += Tally {
+                sum: formed + sensible,
+                magnitude: sensible.abs() + heat,
+            };
+        }
+        all
+    }
+
+    fn held(&self, rows: &[usize]) -> Inventory {
+        let chemistry = &self.chemistry;
+        let solids = chemistry.solids.len();
+        let mut all = Inventory::default();
+        for &row in rows {
+            let amounts = &self.committed.amount[row * solids..(row + 1) * solids];
+            let mut formed = 0.0;
+            for (n, solid) in amounts.iter().zip(&chemistry.solids) {
+                formed += n * solid.formation_enthalpy();
+                add_elements(&mut all, solid.atoms(), *n);
+            }
+            all.mass.add(chemistry.mass(amounts));
+            let sensible = chemistry.enthalpy(amounts, self.committed.temperature[row]);
+            all.energy.add(formed + sensible);
+        }
+        all
+    }
+
+    fn commit(&mut self) -> Vec<usize> {
         self.committed.clone_from(&self.now);
         self.begin();
+        Vec::new()
     }
 
-    fn stored_change(&self) -> (f64, f64) {
+    fn change(&mut self, gone: &[usize], new: &[Newcomer<'_>]) -> Result<(), ModelError> {
         let solids = self.chemistry.solids.len();
-        (0..self.material.len()).fold(self.released, |(sum, magnitude), p| {
-            let own = p * solids..(p + 1) * solids;
-            let of = |state: &super::Amounts| {
-                let amounts = &state.amount[own.clone()];
-                self.chemistry.enthalpy(amounts, state.temperature[p])
-            };
-            let change = of(&self.now) - of(&self.committed);
-            (sum + change, magnitude + change.abs())
-        })
-    }
-
-    fn change(&mut self, gone: &[usize], new: &[Newcomer]) {
-        let solids = self.chemistry.solids.len();
-        let rows: Vec<usize> = gone
+        let places: Vec<usize> = gone
             .iter()
             .flat_map(|row| row * solids..(row + 1) * solids)
             .collect();
-        without(&mut self.committed.amount, &rows);
-        without(&mut self.committed.temperature, gone);
-        without(&mut self.material, gone);
+        let Amounts {
+            amount,
+            temperature,
+        } = &mut self.committed;
+        without(amount, &places);
+        without(temperature, gone);
         for one in new {
-            let made = self.composition[one.material].iter();
-            self.committed.amount.extend(made.map(|n| n * one.mass));
-            self.committed.temperature.push(one.temperature);
-            self.material.push(one.material);
-        }
-        self.now.clone_from(&self.committed);
-        if let Some(network) = &mut self.network {
-            network.change(gone, new);
+            one.only(&[TEMPERATURE])?;
+            temperature.push(one.scalar(TEMPERATURE)?);
+            amount.extend(self.composition.iter().map(|n| n * one.mass));
         }
         self.begin();
-    }
-
-    fn enthalpy(&self, row: usize) -> f64 {
-        let solids = self.chemistry.solids.len();
-        let amounts = &self.committed.amount[row * solids..(row + 1) * solids];
-        self.chemistry
-            .enthalpy(amounts, self.committed.temperature[row])
-    }
-
-    fn restore(&mut self, temperature: &[f64]) {
-        self.committed.temperature.copy_from_slice(temperature);
-        self.now.temperature.copy_from_slice(temperature);
-        self.begin();
+        Ok(())
     }
 }
 
 impl Reacting {
-    /// Change of each particle's mass in kg in the last attempt, and change of the mass of each element in all of
-    /// them, with the sum of magnitudes: in the order of [`calcine_physics::thermo::Element::ALL`].
-    pub fn mass_changes(&self) -> (f64, Vec<[f64; 2]>) {
-        use calcine_physics::thermo::Element;
-        let chemistry = &self.chemistry;
-        let solids = chemistry.solids.len();
-        let mut elements = vec![[0.0; 2]; Element::COUNT];
-        let mut mass = 0.0;
-        let pairs = self.now.amount.iter().zip(&self.committed.amount);
-        for (k, (now, before)) in pairs.enumerate() {
-            let change = now - before;
-            let solid = &chemistry.solids[k % solids];
-            mass += solid.molar_mass() * change;
-            for ((sum, atoms), element) in elements.iter_mut().zip(solid.atoms()).zip(Element::ALL)
-            {
-                let part = atoms * element.molar_mass() * change;
-                sum[0] += part;
-                sum[1] += part.abs();
-            }
+    /// Mean heat capacity in J/K of what a particle held at the last commit, between its temperature then and another
+    /// in K.
+    fn secant(&self, row: usize, kelvin: f64) -> f64 {
+        let before = self.committed.temperature[row];
+        let rise = kelvin - before;
+        if rise.abs() < SECANT * kelvin {
+            return self.capacity[row];
         }
-        (mass, elements)
-    }
-
-    /// Mass in kg of each element that particles of these rows hold at the last commit, in the order of
-    /// [`calcine_physics::thermo::Element::ALL`].
-    pub fn elements(&self, rows: impl Iterator<Item = usize>) -> Vec<f64> {
         let solids = self.chemistry.solids.len();
-        let mut held = vec![0.0; solids];
-        for row in rows {
-            let amounts = &self.committed.amount[row * solids..(row + 1) * solids];
-            for (sum, n) in held.iter_mut().zip(amounts) {
-                *sum += n;
-            }
-        }
-        self.elements_of(&held)
+        let amounts = &self.committed.amount[row * solids..(row + 1) * solids];
+        let enthalpy = |at: f64| self.chemistry.enthalpy(amounts, at);
+        (enthalpy(kelvin) - enthalpy(before)) / rise
     }
+}
 
-    /// The same of particles as they come in.
-    pub fn elements_brought(&self, new: &[Newcomer]) -> Vec<f64> {
-        let mut brought = vec![0.0; self.chemistry.solids.len()];
-        for one in new {
-            for (sum, n) in brought.iter_mut().zip(&self.composition[one.material]) {
-                *sum += n * one.mass;
-            }
-        }
-        self.elements_of(&brought)
-    }
-
-    fn elements_of(&self, amounts: &[f64]) -> Vec<f64> {
-        use calcine_physics::thermo::Element;
-        let atoms = |element: &Element| -> f64 {
-            let parts = self.chemistry.solids.iter().zip(amounts);
-            parts
-                .map(|(solid, n)| n * solid.atoms()[*element as usize])
-                .sum()
-        };
-        let masses = Element::ALL.iter().map(|one| atoms(one) * one.molar_mass());
-        masses.collect()
-    }
-
-    /// Mass in kg of each particle at the last commit.
-    pub fn masses(&self, out: &mut Vec<f64>) {
-        let solids = self.chemistry.solids.len();
-        out.clear();
-        let particles = self.committed.amount.chunks_exact(solids);
-        out.extend(particles.map(|amounts| self.chemistry.mass(amounts)));
+/// Adds the elements in an amount in mol.
+fn add_elements(all: &mut Inventory, atoms: &[f64; Element::COUNT], amount: f64) {
+    let each = all.elements.iter_mut().zip(atoms).zip(Element::ALL);
+    for ((sum, atoms), element) in each.filter(|((_, atoms), _)| **atoms != 0.0) {
+        sum.add(atoms * element.molar_mass() * amount);
     }
 }

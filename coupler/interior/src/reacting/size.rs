@@ -74,27 +74,33 @@ pub fn specific_volume(densities: &[f64], fractions: &[f64]) -> f64 {
 }
 
 impl Reacting {
-    /// The same particles with a law of size for each material; without it diameters stay.
-    pub fn with_sizes(mut self, sizes: Vec<SizeChange>) -> Self {
-        debug_assert!(sizes.len() == self.composition.len());
-        self.sizes = sizes;
+    /// The same particles with a law of size; without it diameters stay.
+    pub fn with_size(mut self, size: SizeChange) -> Self {
+        self.size = size;
         self
     }
 
-    /// True where some particle may get another radius.
-    pub fn changes_sizes(&self) -> bool {
-        self.sizes.iter().any(|size| *size != SizeChange::Constant)
+    pub(super) fn size(&self) -> &SizeChange {
+        &self.size
     }
 
-    pub(super) fn size(&self, row: usize) -> &SizeChange {
-        &self.sizes[self.material[row]]
-    }
-
-    /// Radius in m that a particle has come to at the last commit; `None` where its diameter stays.
-    pub fn radius(&self, row: usize) -> Option<f64> {
-        let solids = self.chemistry.solids.len();
-        self.size(row)
-            .radius(&self.committed.amount[row * solids..(row + 1) * solids])
+    /// Finds masses and radii: 0 of the last attempt, 1 of the last commit.
+    pub(super) fn measure(&mut self, which: usize) {
+        let state = [&self.now, &self.committed][which];
+        let measures = &mut self.bodies[which];
+        let particles = state.amount.chunks_exact(self.chemistry.solids.len());
+        measures.mass.clear();
+        measures.mass.extend(
+            particles
+                .clone()
+                .map(|amounts| self.chemistry.mass(amounts)),
+        );
+        measures.radius.clear();
+        if self.size != SizeChange::Constant {
+            measures
+                .radius
+                .extend(particles.filter_map(|amounts| self.size.radius(amounts)));
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use thiserror::Error;
 use super::chemistry::ParticleSurroundings;
 use super::ode::IntegrationStalled;
 use super::{Reacting, Scratch};
+use crate::model::Surroundings;
 
 /// Errors of extents as a share of a particle's solids, and of its temperature in K, in a step.
 const AMOUNT: f64 = 1e-6;
@@ -12,28 +13,9 @@ const KELVIN: f64 = 1e-2;
 /// By how much the gas temperature is varied in K to see what the heat flow does.
 const VARIED: f64 = 1.0;
 
-/// The gas about all particles, and what they exchange with it.
-#[derive(Clone, Copy, Debug)]
-pub struct Surroundings<'a> {
-    /// Temperature in K that each sees.
-    pub temperature: &'a [f64],
-    /// Pressure in Pa.
-    pub pressure: &'a [f64],
-    /// Mass fractions, species by species within each particle.
-    pub composition: &'a [f64],
-    /// h A in W/K.
-    pub conductance: &'a [f64],
-    /// Mass transfer coefficients in m/s, species by species within each particle.
-    pub film: &'a [f64],
-    /// Radii in m.
-    pub radius: &'a [f64],
-}
-
 /// A particle whose reactions cannot be followed.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
-#[error(
-    "the reactions of the particle in row {row}, at {temperature} K in gas of {gas_temperature} K: {cause}"
-)]
+#[error("the reactions of a particle at {temperature} K in gas of {gas_temperature} K: {cause}")]
 pub struct ReactError {
     /// Its row.
     pub row: usize,
@@ -54,10 +36,17 @@ struct Outcome {
 }
 
 impl Reacting {
-    /// Follows every particle over a process span in s and takes the lines from it that the exchange needs.
-    pub fn react(&mut self, around: &Surroundings<'_>, span: f64) -> Result<(), ReactError> {
+    /// Follows every particle over a process span in s, with the network's heat in W, and takes the lines from it
+    /// that the exchange needs.
+    pub(super) fn react(
+        &mut self,
+        around: &Surroundings<'_>,
+        span: f64,
+        network: &[f64],
+    ) -> Result<(), ReactError> {
         let mut scratch = std::mem::take(&mut self.scratch);
-        let done = (0..self.count()).try_for_each(|p| self.follow(p, around, span, &mut scratch));
+        let done = (0..self.count())
+            .try_for_each(|p| self.follow(p, around, (span, network[p]), &mut scratch));
         self.scratch = scratch;
         done
     }
@@ -66,12 +55,11 @@ impl Reacting {
         &mut self,
         p: usize,
         around: &Surroundings<'_>,
-        span: f64,
+        (span, heat): (f64, f64),
         scratch: &mut Scratch,
     ) -> Result<(), ReactError> {
         let count = self.chemistry.reactions.len();
         let (hot, exchanged) = (around.temperature[p], around.conductance[p]);
-        let heat = self.network.as_ref().map_or(0.0, |network| network.heat[p]);
         // Without reactions: the implicit step.
         let inert = exchanged / (1.0 + exchanged * span / self.capacity[p]);
         if !self.can_react(p) {
@@ -130,12 +118,15 @@ impl Reacting {
         let species = gas.names().len();
         let composition = &around.composition[p * species..(p + 1) * species];
         let molar = gas.molar_mass(composition);
-        for (c, channel) in self.channels.iter().enumerate() {
-            let mean = self.extents[p * count + channel.reaction] / span;
-            let by_mass = molar / gas.species()[channel.key].molar_mass();
-            let slope = slopes[channel.reaction] / span * by_mass;
+        for (c, reaction) in self.reaction_of.iter().copied().enumerate() {
+            let Some(key) = self.channels[c].key else {
+                continue;
+            };
+            let mean = self.extents[p * count + reaction] / span;
+            let by_mass = molar / gas.species()[key].molar_mass();
+            let slope = slopes[reaction] / span * by_mass;
             self.lines[0][p * channels + c] = slope;
-            self.lines[1][p * channels + c] = slope * composition[channel.key] - mean;
+            self.lines[1][p * channels + c] = slope * composition[key] - mean;
         }
     }
 
@@ -180,7 +171,7 @@ impl Reacting {
                 *fraction = fraction.max(0.0);
             }
         }
-        let size = self.size(p);
+        let size = self.size();
         let mut near = ParticleSurroundings {
             temperature: hot,
             pressure: around.pressure[p],

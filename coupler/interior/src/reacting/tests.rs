@@ -6,7 +6,7 @@ use calcine_physics::solids::SolidSpecies;
 use calcine_physics::thermo::{Element, Mixture};
 
 use super::*;
-use crate::ParticleModel;
+use crate::{At, GasLines, Newcomer, ParticleModel, Surroundings, TEMPERATURE, Transfer};
 
 const RADIUS: f64 = 6e-3;
 const PRESSURE: f64 = 101_325.0;
@@ -48,7 +48,19 @@ fn reduction(rate_constant: f64, diffusivity: f64) -> SolidChemistry {
 fn particle(chemistry: SolidChemistry) -> Reacting {
     let mut fractions = vec![0.0; chemistry.solids.len()];
     fractions[0] = 1.0;
-    Reacting::new(chemistry, &[fractions], &[1e-3], vec![0], vec![HOT], None)
+    particle_of(Reacting::new(chemistry, &fractions))
+}
+
+fn particle_of(mut reacting: Reacting) -> Reacting {
+    let state: [(&str, &[f64]); 1] = [(TEMPERATURE, &[HOT])];
+    let new = Newcomer {
+        id: 1,
+        mass: 1e-3,
+        radius: RADIUS,
+        state: &state,
+    };
+    reacting.change(&[], &[new]).unwrap();
+    reacting
 }
 
 /// Follows particles in gas of a composition for so many windows; the extents so far after each.
@@ -64,7 +76,8 @@ fn follow(
     (0..windows)
         .map(|_| {
             let film = vec![film; species];
-            let radius = [reacting.radius(0).unwrap_or(RADIUS)];
+            let measured = reacting.bodies(At::Commit).radius.first().copied();
+            let radius = [measured.unwrap_or(RADIUS)];
             let around = Surroundings {
                 temperature: &[HOT],
                 pressure: &[PRESSURE],
@@ -73,26 +86,20 @@ fn follow(
                 film: &film,
                 radius: &radius,
             };
-            reacting.react(&around, span).unwrap();
-            let rates: Vec<f64> = {
-                let (slope, off) = reacting.lines();
-                let keys = reacting.channels().iter().map(|channel| channel.key);
-                let lines = slope.iter().zip(off).zip(keys);
-                lines.map(|((s, o), k)| s * composition[k] - o).collect()
+            let mut lines = GasLines::default();
+            lines.reset(1, reacting.channels().len());
+            reacting.respond(&around, span, &[0.0], &mut lines).unwrap();
+            let keys = reacting.channels().iter().map(|one| one.key.unwrap());
+            let channels = lines.slope.iter().zip(&lines.offset).zip(keys);
+            let mut rates: Vec<f64> = channels.map(|((s, o), k)| s * composition[k] - o).collect();
+            reacting.limit(&mut rates, span);
+            let took = Transfer {
+                heat: &[lines.conductance[0] * (HOT - lines.temperature[0])],
+                network: &[0.0],
+                carried: &[carried(reacting, &rates)],
+                rates: &rates,
             };
-            let mut shares = Vec::new();
-            reacting.limit(&rates, span, &mut shares);
-            let rates: Vec<f64> = rates.iter().zip(&shares).map(|(r, s)| r * s).collect();
-            let heat = reacting.conductance[0] * (HOT - reacting.start[0]);
-            let carried = [carried(reacting, &rates)];
-            reacting.book(
-                &ExchangeTotals {
-                    rates: &rates,
-                    carried: &carried,
-                },
-                span,
-            );
-            reacting.advance(&[heat], span);
+            reacting.settle(&took, span).unwrap();
             sum += reacting.extents.iter().sum::<f64>();
             reacting.commit();
             sum
@@ -115,11 +122,7 @@ fn carried(reacting: &Reacting, rates: &[f64]) -> f64 {
                 .map(move |(k, m)| (k, m * rate))
         })
         .map(|(k, made)| {
-            let at = if made < 0.0 {
-                HOT
-            } else {
-                reacting.end_temperature()[0]
-            };
+            let at = if made < 0.0 { HOT } else { reacting.end[0] };
             -made * gas.species_enthalpy(k, at)
         })
         .sum()
@@ -202,7 +205,7 @@ fn swelling(rate_constant: f64, diffusivity: f64, swelling: f64) -> Reacting {
     let densities = [2.0 * own, 2.0 * own * molar / swelling];
     let start = (own, [1.0, 0.0].as_slice());
     let size = SizeChange::of_densities(&densities, start, &chemistry.solids, 1e-6);
-    particle(chemistry).with_sizes(vec![size])
+    particle_of(Reacting::new(chemistry, &[1.0, 0.0]).with_size(size))
 }
 
 #[test]
@@ -324,7 +327,7 @@ fn an_inner_reaction_heats_a_closed_particle_by_its_enthalpies() {
             low = middle
         }
     }
-    let rise = reacting.temperature()[0] - HOT;
+    let rise = reacting.bodies(At::Commit).temperature[0] - HOT;
     assert!(rise > 10.0, "{rise}");
     assert!(
         (rise / (low - HOT) - 1.0).abs() < 1e-6,
@@ -410,9 +413,9 @@ fn limestone_in_hot_gas_keeps_to_the_temperature_of_its_equilibrium() {
     let turned = sums[9] * 100.09e-3 / 1e-3;
     assert!(turned > 0.1 && turned < 0.9, "{turned}");
     assert!(
-        (reacting.temperature()[0] - rest).abs() < 3.0,
+        (reacting.bodies(At::Commit).temperature[0] - rest).abs() < 3.0,
         "{} {rest}",
-        reacting.temperature()[0]
+        reacting.bodies(At::Commit).temperature[0]
     );
 }
 

@@ -1,0 +1,157 @@
+//! Stage: the ledger of a window (requirements CON-2). Gas amounts count in process time.
+
+use calcine_interior::Inventory;
+use calcine_physics::Vec3;
+use calcine_physics::gas_model::GasModel;
+use calcine_physics::thermo::Element;
+
+use super::exchange::ExchangeStage;
+use super::particles::MotionStage;
+use crate::ledger::Ledger;
+use crate::part::{Balance, CellReceived};
+use crate::time::{GasStorage, Window};
+
+/// What a window comes to.
+pub(super) struct WindowBalances<'a> {
+    pub exchange: &'a ExchangeStage,
+    pub motion: &'a MotionStage,
+    /// What changed inside particles, and the heat in W from walls and surroundings into them.
+    pub interior: (Inventory, &'a [f64]),
+    pub gas: &'a GasModel,
+    /// True where mass passes between gas and particles.
+    pub channels: bool,
+}
+
+impl WindowBalances<'_> {
+    /// Books all of it.
+    pub fn book(&self, ledger: &mut Ledger, window: &Window, storage: GasStorage) {
+        let process = window.span.process.seconds();
+        let scale = process / storage.span(window);
+        let (sum, magnitude) = open(&self.exchange.received.mass);
+        ledger.mass.book(scale * sum, scale * magnitude);
+        self.book_elements(ledger, scale);
+        self.book_energy(ledger, scale, process);
+        self.book_momentum(ledger, window.span.motion.seconds());
+    }
+
+    /// The mass of each element in gas and particles together, and that of the particles: what they exchange drops
+    /// out of the one and stands in the other.
+    fn book_elements(&self, ledger: &mut Ledger, scale: f64) {
+        let (received, changes) = (&self.exchange.received, &self.interior.0);
+        let shares = self.gas.elements();
+        for (name, line) in &mut ledger.elements {
+            let (mut sum, mut magnitude) = (0.0, 0.0);
+            let own = shares.iter().find(|(element, _)| element == name);
+            for (share, balance) in own
+                .iter()
+                .flat_map(|own| own.1.iter().zip(&received.species))
+            {
+                // Reactions of the gas make no element, so that what they make of the species is left in.
+                let (open, terms) = open(balance);
+                let other = balance.exchange.abs() + balance.source_magnitude;
+                sum += scale * share * (open + balance.exchange + balance.source);
+                magnitude += scale * share * (terms - other);
+            }
+            if let Some(k) = place(name) {
+                sum += changes.elements[k].sum;
+                magnitude += changes.elements[k].magnitude;
+            }
+            line.book(sum, magnitude);
+        }
+        if self.channels {
+            let given = scale * received.mass.exchange;
+            let magnitude = received.species.iter().map(|one| one.exchange.abs());
+            let magnitude = scale * magnitude.sum::<f64>();
+            ledger
+                .particle_mass
+                .book(changes.mass.sum + given, magnitude);
+        }
+    }
+
+    /// Gas and particles together: the exchange drops out of the sum and is booked by itself. Particles count energy
+    /// from the elements; the gas counts sensible enthalpy, to which that of formation of what it received comes.
+    fn book_energy(&self, ledger: &mut Ledger, scale: f64, process: f64) {
+        let ExchangeStage {
+            exchange,
+            species,
+            received,
+            ..
+        } = self.exchange;
+        let gas = &received.energy;
+        let (changes, reservoirs) = (&self.interior.0.energy, self.interior.1);
+        let walls: f64 = reservoirs.iter().sum::<f64>() * process;
+        let walls_magnitude: f64 = reservoirs.iter().map(|q| q.abs()).sum::<f64>() * process;
+        let to_gas: f64 = received.heat.iter().sum::<f64>() * process;
+        let to_particles =
+            (exchange.heat.iter().sum::<f64>() + species.carried.iter().sum::<f64>()) * process;
+        let exchanged = process
+            * (received.heat.iter().map(|q| q.abs()).sum::<f64>()
+                + exchange.heat.iter().map(|q| q.abs()).sum::<f64>());
+        let formed = if self.channels {
+            formation(self.gas, received)
+        } else {
+            0.0
+        };
+        ledger.energy.book(
+            scale * (gas.stored - gas.boundary - gas.source + formed) + changes.sum - walls,
+            scale * (gas.stored_magnitude + gas.boundary_magnitude + gas.source_magnitude)
+                + changes.magnitude
+                + walls_magnitude
+                + exchanged,
+        );
+        ledger
+            .energy_exchange
+            .book(to_gas + to_particles, exchanged);
+    }
+
+    fn book_momentum(&self, ledger: &mut Ledger, motion: f64) {
+        let (received, moved) = (&self.exchange.received, self.motion);
+        let drag_on_gas: Vec3 = received.drag.iter().sum::<Vec3>() * motion;
+        let impulses = &moved.received.impulse;
+        let drag_on_particles: Vec3 = impulses
+            .iter()
+            .zip(&moved.pressure_force)
+            .map(|(impulse, pressure)| impulse - pressure * motion)
+            .sum();
+        let moved: f64 = received
+            .drag
+            .iter()
+            .map(|force| force.norm() * motion)
+            .sum();
+        ledger
+            .momentum_exchange
+            .book((drag_on_gas + drag_on_particles).norm(), 2.0 * moved);
+        for (balance, clock) in received.momentum.iter().zip(&received.storage_clock) {
+            let (sum, magnitude) = open(balance);
+            ledger.gas_momentum.book(sum, magnitude);
+            ledger.storage_clock.book(*clock, magnitude);
+        }
+    }
+}
+
+/// Enthalpy of formation in J of the gas that the particles gave.
+fn formation(gas: &GasModel, received: &CellReceived) -> f64 {
+    let GasModel::Mixture(mixture) = gas else {
+        return 0.0;
+    };
+    let parts = mixture.species().iter().zip(&received.species);
+    parts
+        .map(|(species, balance)| species.formation_enthalpy() * balance.exchange)
+        .sum()
+}
+
+/// Place of an element among all, by its symbol.
+pub(super) fn place(name: &str) -> Option<usize> {
+    Element::ALL.iter().position(|one| one.symbol() == name)
+}
+
+/// What a balance leaves open, and the sum of the magnitudes of its terms.
+fn open(balance: &Balance) -> (f64, f64) {
+    (
+        balance.stored - balance.boundary - balance.exchange - balance.source,
+        balance.stored_magnitude
+            + balance.boundary_magnitude
+            + balance.exchange.abs()
+            + balance.source_magnitude,
+    )
+}

@@ -1,0 +1,89 @@
+//! Stage: from places and radii of the particles to the operator W and the bed that the gas sees.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use calcine_physics::Vec3;
+
+use super::RunError;
+use super::meter::{Meter, Stage};
+use crate::mapping::{Mapper, Method};
+use crate::mesh::Mesh;
+use crate::part::{Bed, ParticleFields};
+use crate::smoother::{Operator, Smoother};
+
+/// Bed and operator, valid for the places and radii they were made from.
+pub(super) struct MappedBed {
+    pub operator: Operator,
+    pub bed: Bed,
+    pub solid_volume: Vec<f64>,
+    position: Vec<Vec3>,
+    radius: Vec<f64>,
+}
+
+/// Base mapping and smoother, and what they made of the particles last.
+pub(super) struct BedStage {
+    mapper: Mapper<Arc<Mesh>>,
+    method: Method,
+    smoother: Smoother,
+    pub mapped: MappedBed,
+}
+
+impl BedStage {
+    /// Maps the particles for the first time.
+    pub fn new(
+        mesh: Arc<Mesh>,
+        method: Method,
+        smoother: Smoother,
+        particles: &ParticleFields<'_>,
+        meter: &mut Meter,
+    ) -> Result<Self, RunError> {
+        let mapper = Mapper::new(mesh);
+        let mapped = map(&mapper, method, &smoother, particles, meter)?;
+        Ok(Self {
+            mapper,
+            method,
+            smoother,
+            mapped,
+        })
+    }
+
+    /// Maps the particles anew where any has moved or changed its radius; true where one has.
+    pub fn update(
+        &mut self,
+        particles: &ParticleFields<'_>,
+        meter: &mut Meter,
+    ) -> Result<bool, RunError> {
+        let before = &self.mapped;
+        if particles.position == before.position && particles.radius == before.radius {
+            return Ok(false);
+        }
+        self.mapped = map(&self.mapper, self.method, &self.smoother, particles, meter)?;
+        Ok(true)
+    }
+}
+
+fn map(
+    mapper: &Mapper<Arc<Mesh>>,
+    method: Method,
+    smoother: &Smoother,
+    particles: &ParticleFields<'_>,
+    meter: &mut Meter,
+) -> Result<MappedBed, RunError> {
+    let (position, radius) = (particles.position, particles.radius);
+    let volume = |r: &f64| 4.0 / 3.0 * PI * r.powi(3);
+    let solid_volume: Vec<f64> = radius.iter().map(volume).collect();
+    let weights = meter.time(Stage::Mapping, || mapper.fill(method, position, radius))?;
+    let operator = meter.time(Stage::Smoother, || {
+        smoother.operator(weights, &solid_volume)
+    })?;
+    let solid = operator.solid_fraction().iter();
+    let void_fraction = solid.map(|alpha| 1.0 - alpha).collect();
+    Ok(MappedBed {
+        operator,
+        bed: Bed { void_fraction },
+        solid_volume,
+        position: position.to_vec(),
+        radius: radius.to_vec(),
+    })
+}

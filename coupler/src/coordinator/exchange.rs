@@ -1,0 +1,258 @@
+//! Stage: the exchange of heat and mass between gas and particles within a window, a fixed point over cells and
+//! particles.
+
+use super::RunError;
+use super::bed::MappedBed;
+use super::interior::InteriorStage;
+use super::laws::LawStage;
+use super::meter::{Meter, Stage};
+use crate::exchange::{Exchange, ExchangeConvergence, ExchangeInputs};
+use crate::part::{CellReceived, Convergence, Gas, ParticleFields};
+use crate::species_coupling::{ChannelLines, SpeciesCoupling};
+use crate::supervisor::Supervisor;
+use crate::time::Window;
+use calcine_interior::Surroundings;
+
+/// What the gas and the particles exchanged in the last attempt.
+#[derive(Default)]
+pub(super) struct ExchangeStage {
+    pub exchange: Exchange,
+    pub species: SpeciesCoupling,
+    /// What the gas reports.
+    pub received: CellReceived,
+    /// How well the gas solved it.
+    pub convergence: Convergence,
+    /// How well both agree.
+    pub agreement: ExchangeConvergence,
+}
+
+/// When the attempts of a window end.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ExchangeLimits {
+    /// Share of the exchange that may be misplaced.
+    pub tolerance: f64,
+    /// Attempts at most.
+    pub attempts: u32,
+}
+
+/// What takes part in the attempts of a window.
+pub(super) struct Participants<'a> {
+    pub gas: &'a mut dyn Gas,
+    pub interior: &'a mut InteriorStage,
+    pub laws: &'a mut LawStage,
+    pub mapped: &'a MappedBed,
+    pub particles: ParticleFields<'a>,
+    pub supervisor: &'a Supervisor,
+    pub meter: &'a mut Meter,
+}
+
+impl Participants<'_> {
+    fn inputs(&self, window: &Window) -> ExchangeInputs<'_> {
+        ExchangeInputs {
+            operator: &self.mapped.operator,
+            particles: self.particles,
+            coefficients: &self.laws.coefficients,
+            acceleration: window.acceleration(),
+        }
+    }
+
+    fn lines(&self) -> ChannelLines<'_> {
+        ChannelLines {
+            channels: self.interior.models.channels(),
+            lines: &self.interior.lines,
+        }
+    }
+}
+
+impl ExchangeStage {
+    /// Repeats the window of gas and interior until the exchange is where it belongs, and what reacts is what the
+    /// gas has for it; then once more with what particles give and take fixed, where mass passes.
+    pub fn run(
+        &mut self,
+        with: &mut Participants<'_>,
+        limits: ExchangeLimits,
+        window: &mut Window,
+    ) -> Result<(), RunError> {
+        let first = window.attempt;
+        let fixes = u32::from(with.interior.has_channels());
+        self.begin(with, window);
+        let (settled, mut misplaced, off) = loop {
+            self.respond(with, window)?;
+            self.tell_rates(with);
+            let misplaced = self.attempt(with, window)?;
+            let off = misplaced.max(self.follow_rates(with));
+            let settled = off <= limits.tolerance;
+            if settled || window.attempt - first + fixes >= limits.attempts {
+                break (settled, misplaced, off);
+            }
+        };
+        if fixes > 0 {
+            self.fix_rates(with, window);
+            misplaced = self.attempt(with, window)?;
+        }
+        if !settled {
+            tracing::warn!(
+                window = window.index,
+                attempts = window.attempt - first,
+                misplaced = off,
+                "the attempts ended with a larger share of the exchange in the wrong cells \
+                 of a particle, or of what reacts off its rate, than coupling.exchange.tolerance allows"
+            );
+        }
+        self.settle(with, window)?;
+        self.agreement = ExchangeConvergence {
+            attempts: window.attempt,
+            misplaced: if settled { misplaced.min(off) } else { off },
+            settled,
+        };
+        Ok(())
+    }
+
+    /// Spreads what does not change between attempts.
+    fn begin(&mut self, with: &mut Participants<'_>, window: &Window) {
+        let running = Meter::start(Stage::Exchange);
+        let inputs = with.inputs(window);
+        self.exchange.begin(&inputs, &with.gas.fields());
+        with.meter.stop(running);
+    }
+
+    /// What the interior does over the window with the gas as it is.
+    fn respond(&mut self, with: &mut Participants<'_>, window: &Window) -> Result<(), RunError> {
+        let Participants {
+            gas,
+            interior,
+            laws,
+            mapped,
+            particles,
+            meter,
+            ..
+        } = with;
+        let channels = interior.has_channels();
+        if channels {
+            meter.time(Stage::Exchange, || laws.sample_again(mapped, &gas.fields()));
+        }
+        let around = Surroundings {
+            temperature: self.exchange.sampled_temperature(),
+            pressure: &laws.pressure,
+            composition: &laws.sampled_gas.composition,
+            conductance: &laws.coefficients.conductance,
+            film: &laws.coefficients.film,
+            radius: particles.radius,
+        };
+        let first = window.attempt == 0 && channels && interior.has_network();
+        let conductivity = &laws.coefficients.gas_conductivity;
+        meter.time(Stage::Interior, || {
+            interior.respond(&around, conductivity, window, 1 + u32::from(first))
+        })?;
+        self.exchange
+            .conductance
+            .clone_from(&interior.lines.conductance);
+        Ok(())
+    }
+
+    /// Tells the gas of the channels as lines.
+    fn tell_rates(&mut self, with: &mut Participants<'_>) {
+        if with.interior.has_channels() {
+            let running = Meter::start(Stage::Exchange);
+            let told = &mut self.exchange.cells.species;
+            let (operator, properties) = (&with.mapped.operator, &with.laws.closures.gas);
+            let gas = with.gas.fields();
+            self.species
+                .linearise(operator, with.lines(), &gas, properties, told);
+            with.meter.stop(running);
+        }
+    }
+
+    /// One attempt of the gas; the share of the exchange that it left misplaced.
+    fn attempt(
+        &mut self,
+        with: &mut Participants<'_>,
+        window: &mut Window,
+    ) -> Result<f64, RunError> {
+        let running = Meter::start(Stage::Exchange);
+        let inputs = with.inputs(window);
+        let start = &with.interior.lines.temperature;
+        self.exchange.linearise(&inputs, start);
+        with.meter.stop(running);
+        let Participants {
+            gas,
+            mapped,
+            supervisor,
+            meter,
+            ..
+        } = with;
+        self.convergence = meter.time(Stage::Gas, || {
+            gas.start(window, &mapped.bed, &self.exchange.cells)?;
+            gas.finish(supervisor, &mut self.received)
+        })?;
+        window.attempt += 1;
+        let running = Meter::start(Stage::Exchange);
+        let (gas, properties) = (with.gas.fields(), &with.laws.closures.gas);
+        let told = &self.exchange.cells.species;
+        self.species.heat_of_cells(&gas, properties, told);
+        let inputs = with.inputs(window);
+        let misplaced = self.exchange.credit_heat(
+            &inputs,
+            &with.interior.lines.temperature,
+            &gas,
+            &self.received,
+            &self.species.cell_heat,
+        );
+        with.meter.stop(running);
+        Ok(misplaced)
+    }
+
+    /// How far what passes through channels, by the gas of the attempt, is from what it was before.
+    fn follow_rates(&mut self, with: &Participants<'_>) -> f64 {
+        if !with.interior.has_channels() {
+            return 0.0;
+        }
+        let species = with.laws.closures.gas.species().len();
+        let operator = &with.mapped.operator;
+        self.species
+            .follow(operator, with.lines(), &with.gas.fields(), species)
+    }
+
+    /// Fixes what particles give and take, limited to what they hold.
+    fn fix_rates(&mut self, with: &mut Participants<'_>, window: &Window) {
+        let InteriorStage { models, lines, .. } = &mut *with.interior;
+        let span = window.span.process.seconds();
+        let channels = models.channels().to_vec();
+        let given = ChannelLines {
+            channels: &channels,
+            lines,
+        };
+        self.species.fix(
+            &with.mapped.operator,
+            given,
+            |rates| models.limit(rates, span),
+            &with.laws.closures.gas,
+            &mut self.exchange.cells.species,
+        );
+    }
+
+    /// Credits what the last attempt exchanged to the particles.
+    fn settle(&mut self, with: &mut Participants<'_>, window: &Window) -> Result<(), RunError> {
+        let running = Meter::start(Stage::Exchange);
+        let (gas, operator) = (with.gas.fields(), &with.mapped.operator);
+        if with.interior.has_channels() {
+            self.species
+                .credit(operator, with.lines(), &gas, &with.laws.closures.gas);
+        } else {
+            self.species.carried.clear();
+            self.species.carried.resize(with.particles.len(), 0.0);
+        }
+        let inputs = with.inputs(window);
+        self.exchange.credit_drag(&inputs, &gas, &self.received);
+        with.meter.stop(running);
+        let took: [&[f64]; 3] = [
+            &self.exchange.heat,
+            &self.species.carried,
+            &self.species.rates,
+        ];
+        let Participants {
+            interior, meter, ..
+        } = with;
+        meter.time(Stage::Interior, || interior.settle(took, window))
+    }
+}

@@ -1,0 +1,229 @@
+//! Stage: inside and between particles. The network of contacts and radiation is solved over the surfaces of all models;
+//! with its heat the models say what they exchange with the gas.
+
+use calcine_interior::{
+    GasLines, HeatNetwork, Inventory, NetworkSurroundings, Surroundings, Transfer,
+};
+
+use super::RunError;
+use crate::models::{ParticleModelError, ParticleModels, PopulationNewcomer};
+use crate::part::ParticleFields;
+use crate::paths::Paths;
+use crate::time::Window;
+
+/// The models of all particles, and the network between them.
+pub(super) struct InteriorStage {
+    pub models: ParticleModels,
+    network: Option<HeatNetwork>,
+    /// Material of each population, for the network.
+    substance: Vec<usize>,
+    paths: Paths,
+    /// Heat from the network into each particle in W, of the attempt.
+    heat: Vec<f64>,
+    /// What particles exchange with the gas.
+    pub lines: GasLines,
+    /// Masses in kg at the last commit.
+    pub mass: Vec<f64>,
+    /// Heat in W of the last window from walls and surroundings into the particles.
+    pub reservoir_heat: Vec<f64>,
+    /// Particles came, went or changed their size since the exchange areas of radiation were found.
+    changed: bool,
+}
+
+impl InteriorStage {
+    /// Models that hold the particles of a run, and a network without any yet.
+    pub fn new(
+        models: ParticleModels,
+        network: Option<HeatNetwork>,
+        paths: Paths,
+        substance: Vec<usize>,
+        particles: &ParticleFields<'_>,
+    ) -> Self {
+        let mut stage = Self {
+            heat: vec![0.0; particles.len()],
+            models,
+            network,
+            substance,
+            paths,
+            lines: GasLines::default(),
+            mass: Vec::new(),
+            reservoir_heat: Vec::new(),
+            changed: false,
+        };
+        stage.tell_network(&[], particles, 0);
+        stage.weigh(particles);
+        stage
+    }
+
+    /// True where mass passes between gas and particles.
+    pub fn has_channels(&self) -> bool {
+        !self.models.channels().is_empty()
+    }
+
+    /// True where particles exchange heat with each other or with walls.
+    pub fn has_network(&self) -> bool {
+        self.network.is_some()
+    }
+
+    /// Names of walls and surroundings.
+    pub fn reservoirs(&self) -> &[String] {
+        self.paths.names()
+    }
+
+    /// Finds what particles touch and see, at a process time in s.
+    pub fn find_neighbours(&mut self, particles: &ParticleFields<'_>, time: f64) {
+        if let Some(network) = &mut self.network {
+            self.paths.find_neighbours(particles, time, |neighbours| {
+                network.set_neighbours(neighbours);
+            });
+        }
+    }
+
+    /// Finds them as a run does that resumes here: exchange areas of radiation anew, unless they are the same.
+    pub fn find_neighbours_anew(&mut self, particles: &ParticleFields<'_>, time: f64, moves: bool) {
+        if moves || self.changed || self.models.change_sizes() {
+            self.forget_neighbours();
+            self.find_neighbours(particles, time);
+        }
+    }
+
+    /// The exchange areas of radiation are found anew next time.
+    pub fn forget_neighbours(&mut self) {
+        self.paths.forget();
+        self.changed = false;
+    }
+
+    /// An attempt with the gas as it is: surface, network, respond. The network takes the heat that reactions set free
+    /// from the attempt before; a first attempt has none, and is done `rounds` times: that heat would leave a window
+    /// late.
+    pub fn respond(
+        &mut self,
+        around: &Surroundings<'_>,
+        gas_conductivity: &[f64],
+        window: &Window,
+        rounds: u32,
+    ) -> Result<(), RunError> {
+        let failed = |cause| RunError::Interior {
+            window: window.index,
+            cause,
+        };
+        for _ in 0..rounds {
+            self.conduct(around, gas_conductivity, window)
+                .map_err(failed)?;
+            let span = window.span.process.seconds();
+            let lines = &mut self.lines;
+            let done = self.models.respond(around, span, &self.heat, lines);
+            done.map_err(failed)?;
+        }
+        Ok(())
+    }
+
+    fn conduct(
+        &mut self,
+        around: &Surroundings<'_>,
+        gas_conductivity: &[f64],
+        window: &Window,
+    ) -> Result<(), ParticleModelError> {
+        let Some(network) = self.network.as_mut().filter(|network| !network.is_empty()) else {
+            return Ok(());
+        };
+        let span = window.span.process.seconds();
+        let surroundings = NetworkSurroundings {
+            gas_conductivity,
+            reservoirs: self.paths.reservoirs(window.start.process.seconds() + span),
+        };
+        let models = &mut self.models;
+        let start = models.temperature().to_vec();
+        let settled = network.solve(&start, &surroundings, |at, lines| {
+            models.surface(around, span, at, lines)
+        })?;
+        if !settled {
+            tracing::warn!(
+                window = window.index,
+                "the heat between particles did not converge: its iteration over radiation and heat capacity, or its \
+                 linear solver, ended at the limit"
+            );
+        }
+        self.heat.copy_from_slice(&network.heat);
+        Ok(())
+    }
+
+    /// Ends the attempt: heat in W and sensible enthalpy that exchanged gas carries in W into each particle, and the
+    /// rates of all channels.
+    pub fn settle(
+        &mut self,
+        [heat, carried, rates]: [&[f64]; 3],
+        window: &Window,
+    ) -> Result<(), RunError> {
+        let took = Transfer {
+            heat,
+            network: &self.heat,
+            carried,
+            rates,
+        };
+        let done = self.models.settle(&took, window.span.process.seconds());
+        done.map_err(|cause| RunError::Interior {
+            window: window.index,
+            cause,
+        })
+    }
+
+    /// What the last attempt changed in the particles, and the heat in W from walls and surroundings.
+    pub fn changed(&self) -> (Inventory, &[f64]) {
+        let reservoirs = self.network.as_ref();
+        let heat = reservoirs.map_or(&[][..], |network| &network.reservoir_heat);
+        (self.models.changed(), heat)
+    }
+
+    /// Takes the last attempt as the new start; the rows of particles that are used up.
+    pub fn commit(&mut self, particles: &ParticleFields<'_>) -> Vec<usize> {
+        self.reservoir_heat.clear();
+        if let Some(network) = &mut self.network {
+            self.reservoir_heat
+                .extend_from_slice(&network.reservoir_heat);
+            network.begin();
+        }
+        self.heat.fill(0.0);
+        let used_up = self.models.commit();
+        self.weigh(particles);
+        used_up
+    }
+
+    /// Masses of all particles: those that their models change, and those that the solver of the motion has.
+    pub fn weigh(&mut self, particles: &ParticleFields<'_>) {
+        self.mass.clear();
+        self.mass.extend_from_slice(particles.mass);
+        self.models.masses(&mut self.mass);
+    }
+
+    /// Takes rows out and puts new particles, the last of `particles`, behind the others.
+    pub fn change(
+        &mut self,
+        gone: &[usize],
+        new: &[PopulationNewcomer<'_>],
+        particles: &ParticleFields<'_>,
+    ) -> Result<(), ParticleModelError> {
+        self.models.change(gone, new)?;
+        self.tell_network(gone, particles, particles.len() - new.len());
+        self.heat.clear();
+        self.heat.resize(particles.len(), 0.0);
+        self.changed = true;
+        self.weigh(particles);
+        Ok(())
+    }
+
+    /// Tells the network who went, and who came from a row on.
+    fn tell_network(&mut self, gone: &[usize], particles: &ParticleFields<'_>, first: usize) {
+        let Some(network) = &mut self.network else {
+            return;
+        };
+        let material = |row: usize| {
+            let population = particles.population[row] as usize;
+            self.substance.get(population).copied().unwrap_or_default()
+        };
+        let new: Vec<(f64, usize)> = (first..particles.len())
+            .map(|row| (particles.radius[row], material(row)))
+            .collect();
+        network.change(gone, &new);
+    }
+}

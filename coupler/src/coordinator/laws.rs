@@ -1,0 +1,85 @@
+//! Stage: from the gas about the particles to the coefficients of the exchange.
+
+use super::RunError;
+use super::bed::MappedBed;
+use crate::closures::{Closures, CouplingCoefficients, DragInertia, SampledGas};
+use crate::part::{GasFields, ParticleFields};
+use crate::time::Window;
+
+/// The laws, the gas that particles see, and what the laws made of it.
+pub(super) struct LawStage {
+    pub closures: Closures,
+    pub sampled_gas: SampledGas,
+    pub coefficients: CouplingCoefficients,
+    /// Pressure in Pa that each particle sees; empty where no mass passes between gas and particles.
+    pub pressure: Vec<f64>,
+}
+
+/// What the laws depend on in a window.
+pub(super) struct LawInputs<'a> {
+    pub mapped: &'a MappedBed,
+    pub gas: GasFields<'a>,
+    pub particles: ParticleFields<'a>,
+    pub window: &'a Window,
+    /// How particles that move follow their drag.
+    pub inertia: DragInertia<'a>,
+    /// True where mass passes between gas and particles.
+    pub channels: bool,
+}
+
+impl LawStage {
+    /// Before the first window the particles see the bed's voids only.
+    pub fn new(closures: Closures, mapped: &MappedBed) -> Self {
+        let mut stage = Self {
+            closures,
+            sampled_gas: SampledGas::default(),
+            coefficients: CouplingCoefficients::default(),
+            pressure: Vec::new(),
+        };
+        let count = mapped.operator.particles();
+        let pores = &mut stage.sampled_gas.void_fraction;
+        pores.resize(count, 1.0);
+        mapped.operator.sample(&mapped.bed.void_fraction, pores);
+        stage.coefficients.slip.resize(count, 0.0);
+        stage
+    }
+
+    /// Evaluates all laws on the gas as it is.
+    pub fn evaluate(&mut self, inputs: &LawInputs<'_>) -> Result<(), RunError> {
+        let (particles, window) = (&inputs.particles, inputs.window);
+        let (sampled, coefficients) = (&mut self.sampled_gas, &mut self.coefficients);
+        let mapped = inputs.mapped;
+        sampled.sample(&mapped.operator, &inputs.gas, &mapped.bed);
+        let acceleration = window.acceleration();
+        let evaluated = self
+            .closures
+            .evaluate(sampled, particles, acceleration, coefficients);
+        evaluated.map_err(|cause| RunError::Closure {
+            window: window.index,
+            cause,
+        })?;
+        coefficients.relax(&inputs.inertia);
+        if inputs.channels {
+            self.sample_pressure(mapped, &inputs.gas);
+            self.closures.evaluate_films(
+                &self.sampled_gas,
+                particles,
+                &self.pressure,
+                acceleration,
+                &mut self.coefficients,
+            );
+        }
+        Ok(())
+    }
+
+    /// Looks at the gas of the last attempt, with the coefficients as they are.
+    pub fn sample_again(&mut self, mapped: &MappedBed, gas: &GasFields<'_>) {
+        self.sampled_gas.sample(&mapped.operator, gas, &mapped.bed);
+        self.sample_pressure(mapped, gas);
+    }
+
+    fn sample_pressure(&mut self, mapped: &MappedBed, gas: &GasFields<'_>) {
+        self.pressure.resize(mapped.operator.particles(), 0.0);
+        mapped.operator.sample(gas.pressure, &mut self.pressure);
+    }
+}

@@ -1,0 +1,187 @@
+//! Stage: the motion of the particles over a window, with the force of the gas; last in a window.
+//!
+//! While the bed is held (see [`crate::hold`]) the solver is not asked for steps: only the coordinator knows of it.
+
+use calcine_interior::without;
+use calcine_physics::Vec3;
+
+use super::RunError;
+use super::bed::MappedBed;
+use super::meter::{Meter, Stage};
+use crate::closures::DragInertia;
+use crate::exchange::Exchange;
+use crate::ledger::Ledger;
+use crate::momentum_model::MomentumModel;
+use crate::part::{GasFields, ParticleFields, ParticlePush, ParticleReceived, Particles};
+use crate::supervisor::Supervisor;
+use crate::time::{Clocks, Ticks, Window};
+
+/// What acts on the particles, and what came of it.
+#[derive(Default)]
+pub(super) struct MotionStage {
+    /// True for each population that moves.
+    moves: Vec<bool>,
+    gravity: Vec3,
+    /// True for each particle that moves.
+    pub free: Vec<bool>,
+    /// As many, and none of them free.
+    still: Vec<bool>,
+    /// All but drag that acted on each particle in the last window, in N.
+    pub other: Vec<Vec3>,
+    /// Velocities in m/s at the start of the window.
+    velocity: Vec<Vec3>,
+    pub push: ParticlePush,
+    pub pressure_force: Vec<Vec3>,
+    pub received: ParticleReceived,
+    /// Motion time for which the bed has been held so far.
+    pub held: Ticks,
+}
+
+/// What the particles are told of a window.
+pub(super) struct MotionInputs<'a> {
+    pub mapped: &'a MappedBed,
+    pub gas: GasFields<'a>,
+    pub exchange: &'a Exchange,
+    pub model: MomentumModel,
+    pub window: &'a Window,
+    /// True where the bed is held.
+    pub holds: bool,
+}
+
+impl MotionStage {
+    /// Before the first window nothing but its weight is known to act on a particle.
+    pub fn new(moves: Vec<bool>, gravity: Vec3, particles: &ParticleFields<'_>) -> Self {
+        let mut stage = Self {
+            moves,
+            gravity,
+            ..Self::default()
+        };
+        stage.change(&[], particles, 0);
+        stage
+    }
+
+    /// How particles follow their drag in a window.
+    pub fn inertia<'a>(
+        &'a mut self,
+        particles: &ParticleFields<'a>,
+        window: &Window,
+        holds: bool,
+    ) -> DragInertia<'a> {
+        self.still.clear();
+        self.still.resize(self.free.len(), false);
+        DragInertia {
+            mass: particles.mass,
+            free: if holds { &self.still } else { &self.free },
+            other: &self.other,
+            span: window.span.motion.seconds(),
+            acceleration: window.acceleration(),
+        }
+    }
+
+    /// Moves the particles over a window.
+    pub fn advance(
+        &mut self,
+        particles: &mut dyn Particles,
+        inputs: &MotionInputs<'_>,
+        supervisor: &Supervisor,
+        meter: &mut Meter,
+    ) -> Result<(), RunError> {
+        meter.time(Stage::Exchange, || {
+            self.velocity.clear();
+            self.velocity.extend_from_slice(particles.fields().velocity);
+            inputs.exchange.push(
+                &inputs.mapped.operator,
+                &inputs.gas,
+                &inputs.mapped.solid_volume,
+                (inputs.model, self.gravity),
+                &mut self.pressure_force,
+                &mut self.push,
+            );
+        });
+        if inputs.holds {
+            self.hold(inputs.window);
+            return Ok(());
+        }
+        let own = self.own_window(inputs.window);
+        meter.time(Stage::Particles, || {
+            particles.start(&own, &self.push)?;
+            particles.finish(supervisor, &mut self.received)
+        })?;
+        Ok(())
+    }
+
+    /// A window in which the bed is held: what holds it takes up the force of the gas, and no balance of the
+    /// momentum of free particles is made.
+    fn hold(&mut self, window: &Window) {
+        let span = window.span.motion.seconds();
+        let impulses = self.push.force.iter().map(|force| force * span);
+        self.received.impulse.clear();
+        self.received.impulse.extend(impulses);
+        (self.received.acted, self.received.support) = (span, None);
+    }
+
+    /// A window on the particles' own clock, which stands while they are held.
+    fn own_window(&self, window: &Window) -> Window {
+        let start = Clocks {
+            motion: window.start.motion.since(self.held),
+            ..window.start
+        };
+        Window { start, ..*window }
+    }
+
+    /// What acted on each particle besides drag in N, contacts included: from its change of momentum. While the bed
+    /// is held that stays as it was: contacts go on from there.
+    pub fn note_forces(
+        &mut self,
+        particles: &ParticleFields<'_>,
+        drag: &[Vec3],
+        window: &Window,
+        ledger: &mut Ledger,
+    ) {
+        self.book_momentum(particles, ledger);
+        let span = window.span.motion.seconds();
+        for (p, drag) in drag.iter().enumerate() {
+            let change = particles.velocity[p] - self.velocity[p];
+            self.other[p] = particles.mass[p] * change / span - drag;
+        }
+    }
+
+    /// Books the momentum of the particles that move, where the solver says what walls and held particles
+    /// gave them: the forces between free particles cancel, whatever they are.
+    fn book_momentum(&self, particles: &ParticleFields<'_>, ledger: &mut Ledger) {
+        let received = &self.received;
+        let Some(support) = received.support else {
+            return;
+        };
+        let (mut left, mut moved) = (-support, support.norm());
+        for p in (0..particles.len()).filter(|&p| self.free[p]) {
+            let mass = particles.mass[p];
+            let change = mass * (particles.velocity[p] - self.velocity[p]);
+            let weight = mass * received.acted * self.gravity;
+            left += change - received.impulse[p] - weight;
+            moved += change.norm() + received.impulse[p].norm() + weight.norm();
+        }
+        ledger.particle_momentum.book(left.norm(), moved);
+    }
+
+    /// Rows went, and new ones came from one on.
+    pub fn change(&mut self, gone: &[usize], particles: &ParticleFields<'_>, first: usize) {
+        without(&mut self.other, gone);
+        without(&mut self.free, gone);
+        for row in first..particles.len() {
+            let population = particles.population[row] as usize;
+            let free = self.moves.get(population).copied().unwrap_or(false);
+            self.free.push(free);
+            self.other.push(particles.mass[row] * self.gravity);
+        }
+        self.push.force.clear();
+        self.push.force.resize(particles.len(), Vec3::zeros());
+        debug_assert!(self.other.len() == particles.len() && self.free.len() == particles.len());
+    }
+}
+
+/// Momentum of all particles in N s.
+pub(super) fn momentum(particles: &ParticleFields<'_>) -> Vec3 {
+    let pairs = particles.mass.iter().zip(particles.velocity);
+    pairs.map(|(mass, velocity)| *mass * velocity).sum()
+}

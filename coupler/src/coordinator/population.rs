@@ -1,0 +1,186 @@
+//! Stage: particles that come and go between two windows, in every part alike: by feeds and outlets, and because they
+//! are used up.
+
+use calcine_interior::{Inventory, Newcomer, TEMPERATURE, without};
+use calcine_physics::Vec3;
+
+use super::balances::place;
+use super::particles::momentum;
+use super::{CoupledRun, RunError};
+use crate::feeds::WindowSpan;
+use crate::ledger::{CarriedInventory, Ledger};
+use crate::models::{ParticleModels, PopulationNewcomer};
+use crate::motion::ParticleChanges;
+use crate::supervisor::Supervisor;
+use crate::time::Window;
+
+/// Particles that go and come.
+struct PopulationStep {
+    change: ParticleChanges,
+    /// Rows of those that go, ascending.
+    rows: Vec<usize>,
+    /// Temperatures in K of those that come.
+    temperature: Vec<f64>,
+}
+
+/// What went and came, as the particles' solver has it, and inside of them.
+struct Moved {
+    gone: CarriedInventory,
+    come: CarriedInventory,
+    elements: [Inventory; 2],
+}
+
+impl CoupledRun {
+    /// Lets feeds and outlets act before a window, and books what they moved. They stand while the bed is held.
+    pub(super) fn feed_and_discharge(
+        &mut self,
+        supervisor: &Supervisor,
+        window: &Window,
+    ) -> Result<(), RunError> {
+        if self.plan.feeds_and_outlets.is_none() || self.holds(window) {
+            return Ok(());
+        }
+        let moment = WindowSpan {
+            window: window.index,
+            span: window.span.process.seconds(),
+            acceleration: window.acceleration(),
+        };
+        let fields = self.parts.particles.fields();
+        let due = self.plan.feeds_and_outlets.decide(moment, &fields)?;
+        if due.change.is_empty() {
+            return Ok(());
+        }
+        let moved = self.exchange_particles(
+            supervisor,
+            PopulationStep {
+                change: due.change,
+                rows: due.rows,
+                temperature: due.temperature,
+            },
+        )?;
+        let [came, went] = &mut self.ledger.fed_and_discharged;
+        came.add_all(&moved.come);
+        went.add_all(&moved.gone);
+        Ok(())
+    }
+
+    /// Takes particles out that their models have used up, and books what is left of them.
+    pub(super) fn take_out_used_up(
+        &mut self,
+        supervisor: &Supervisor,
+        rows: Vec<usize>,
+    ) -> Result<(), RunError> {
+        if rows.is_empty() {
+            return Ok(());
+        }
+        let ids = self.parts.particles.fields().id;
+        let left: f64 = rows.iter().map(|&row| self.interior.mass[row]).sum();
+        let change = ParticleChanges {
+            remove: rows.iter().map(|&row| ids[row]).collect(),
+            ..ParticleChanges::default()
+        };
+        let step = PopulationStep {
+            change,
+            rows,
+            temperature: Vec::new(),
+        };
+        let mut moved = self.exchange_particles(supervisor, step)?;
+        // The solver of the motion has the masses from before the window.
+        moved.gone.mass = left;
+        self.ledger.used_up.add_all(&moved.gone);
+        Ok(())
+    }
+
+    fn exchange_particles(
+        &mut self,
+        supervisor: &Supervisor,
+        step: PopulationStep,
+    ) -> Result<Moved, RunError> {
+        let models = &self.interior.models;
+        let fields = self.parts.particles.fields();
+        let total = |masses: &[f64]| masses.iter().sum::<f64>();
+        let (before, momentum_before) = (total(fields.mass), momentum(&fields));
+        let held_before = all_held(models);
+        let held_gone = models.held(step.rows.iter().copied());
+        let mut gone = CarriedInventory::default();
+        for &row in &step.rows {
+            let enthalpy = models.held([row]).energy.sum;
+            gone.add(fields.mass[row], enthalpy, fields.velocity[row]);
+        }
+        self.parts.particles.change(supervisor, &step.change)?;
+
+        // New ids are the highest: their rows are the last ones.
+        let fields = self.parts.particles.fields();
+        let first = fields.len() - step.change.insert.len();
+        let states: Vec<[(&str, &[f64]); 1]> = step
+            .temperature
+            .chunks_exact(1)
+            .map(|kelvin| [(TEMPERATURE, kelvin)])
+            .collect();
+        let newcomers: Vec<PopulationNewcomer<'_>> = (first..fields.len())
+            .zip(&states)
+            .map(|(row, state)| PopulationNewcomer {
+                population: fields.population[row] as usize,
+                particle: Newcomer {
+                    id: fields.id[row],
+                    mass: fields.mass[row],
+                    radius: fields.radius[row],
+                    state,
+                },
+            })
+            .collect();
+        self.interior.change(&step.rows, &newcomers, &fields)?;
+        let models = &self.interior.models;
+        let held_come = models.held(first..fields.len());
+        let mut come = CarriedInventory::default();
+        for row in first..fields.len() {
+            let enthalpy = models.held([row]).energy.sum;
+            come.add(fields.mass[row], enthalpy, fields.velocity[row]);
+        }
+        let moved = Moved {
+            gone,
+            come,
+            elements: [held_gone, held_come],
+        };
+        moved.book(
+            &mut self.ledger,
+            total(fields.mass) - before,
+            momentum(&fields) - momentum_before,
+            [held_before, all_held(models)],
+        );
+        let heat = &mut self.exchange.exchange.heat;
+        without(heat, &step.rows);
+        heat.resize(fields.len(), 0.0);
+        self.motion.change(&step.rows, &fields, first);
+        Ok(moved)
+    }
+}
+
+/// What all particles hold.
+fn all_held(models: &ParticleModels) -> Inventory {
+    models.held(0..models.len())
+}
+
+impl Moved {
+    /// Books the change of mass in kg and of momentum in N s that the solver shows, and of elements that the models
+    /// show, against what went and came.
+    fn book(&self, ledger: &mut Ledger, mass: f64, momentum: Vec3, held: [Inventory; 2]) {
+        let (brought, taken) = (&self.come, &self.gone);
+        ledger
+            .particle_mass
+            .book(mass - brought.mass + taken.mass, brought.mass + taken.mass);
+        let left = momentum - brought.momentum + taken.momentum;
+        ledger
+            .particle_momentum
+            .book(left.norm(), brought.momentum.norm() + taken.momentum.norm());
+        let [before, after] = held;
+        let [gone, come] = &self.elements;
+        for (name, line) in &mut ledger.elements {
+            if let Some(k) = place(name) {
+                let of = |inventory: &Inventory| inventory.elements[k].sum;
+                let left = of(&after) - of(&before) - of(come) + of(gone);
+                line.book(left, of(come) + of(gone));
+            }
+        }
+    }
+}

@@ -1,0 +1,499 @@
+//! The models of all particles of a run: which row of the run is which row of which model.
+//!
+//! Every population has one model. What the coordinator asks of all particles is gathered from the models and put
+//! back row by row, in the order of the run's rows, which are in ascending id.
+
+mod columns;
+
+use calcine_interior::{
+    At, Channel, GasLines, Inventory, ModelError, Newcomer, ParticleModel, SurfaceLine,
+    Surroundings, TEMPERATURE, Transfer, without,
+};
+use calcine_physics::thermo::Element;
+use thiserror::Error;
+
+use columns::MergedColumn;
+pub use columns::{ParticleColumn, RestoreError};
+
+use crate::part::ParticleFields;
+
+/// Models of all particles.
+#[derive(Default)]
+pub struct ParticleModels {
+    members: Vec<Member>,
+    /// The model of each population.
+    model_of: Vec<usize>,
+    /// Model, and row in it, of each row of the run.
+    places: Vec<(usize, usize)>,
+    /// Id of each row of the run.
+    id: Vec<u64>,
+    /// Channels of all models; those that are the same in several stand once.
+    channels: Vec<Channel>,
+    columns: Vec<MergedColumn>,
+    /// Surface temperatures at the last commit in K.
+    temperature: Vec<f64>,
+}
+
+/// A model with the rows of the run that it has.
+struct Member {
+    model: Box<dyn ParticleModel>,
+    /// Its rows in the run.
+    rows: Vec<usize>,
+    /// Where its channels stand among all.
+    channels: Vec<usize>,
+    work: Work,
+}
+
+/// What a model is told and tells of its own rows.
+#[derive(Default)]
+struct Work {
+    inputs: [Vec<f64>; 6],
+    rates: Vec<f64>,
+    surface: Vec<SurfaceLine>,
+    lines: GasLines,
+}
+
+/// A model that cannot go on, with the id of the particle.
+#[derive(Debug, Error)]
+pub enum ParticleModelError {
+    /// The state of one particle.
+    #[error("particle {id}: {cause}")]
+    Particle {
+        /// Its id.
+        id: u64,
+        /// What is wrong.
+        cause: ModelError,
+    },
+    /// Values of a column.
+    #[error(transparent)]
+    Column(ModelError),
+    /// A column of two models that do not agree on it.
+    #[error("two models of this run have a column `{name}`, but one of {} and one of {}", .units[0], .units[1])]
+    ColumnClash {
+        /// Its name.
+        name: String,
+        /// What the two say of unit, type and shape.
+        units: [String; 2],
+    },
+    /// A population without a model.
+    #[error("population {population} has no model for what is inside its particles")]
+    Population {
+        /// Its index.
+        population: usize,
+    },
+}
+
+/// A particle that comes in, for its population's model.
+#[derive(Clone, Copy, Debug)]
+pub struct PopulationNewcomer<'a> {
+    /// Index of its population.
+    pub population: usize,
+    /// What the model is told.
+    pub particle: Newcomer<'a>,
+}
+
+impl ParticleModels {
+    /// Models without particles yet, and the model of each population. The columns of models that have the same name
+    /// must agree in unit, type and shape.
+    pub fn new(
+        models: Vec<Box<dyn ParticleModel>>,
+        model_of: Vec<usize>,
+    ) -> Result<Self, ParticleModelError> {
+        if let Some(population) = model_of.iter().position(|&k| k >= models.len()) {
+            return Err(ParticleModelError::Population { population });
+        }
+        let columns = columns::merge(&models)?;
+        let mut channels: Vec<Channel> = Vec::new();
+        let mut members = Vec::new();
+        for model in models {
+            let mut places: Vec<usize> = Vec::new();
+            for own in model.channels() {
+                let same = |(k, other): (usize, &Channel)| {
+                    (other.key, &other.mass) == (own.key, &own.mass) && !places.contains(&k)
+                };
+                let found = channels.iter().enumerate().position(same);
+                places.push(found.unwrap_or(channels.len()));
+                if found.is_none() {
+                    channels.push(own.clone());
+                }
+            }
+            members.push(Member {
+                model,
+                rows: Vec::new(),
+                channels: places,
+                work: Work::default(),
+            });
+        }
+        Ok(Self {
+            members,
+            model_of,
+            channels,
+            columns,
+            ..Self::default()
+        })
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// True where there is no particle.
+    pub fn is_empty(&self) -> bool {
+        self.places.is_empty()
+    }
+
+    /// Channels of all models.
+    pub fn channels(&self) -> &[Channel] {
+        &self.channels
+    }
+
+    /// Elements that the models count, in the order of [`Element::ALL`].
+    pub fn elements(&self) -> Vec<Element> {
+        let held: Vec<Element> = self
+            .members
+            .iter()
+            .flat_map(|member| member.model.elements())
+            .collect();
+        let all = Element::ALL.into_iter();
+        all.filter(|element| held.contains(element)).collect()
+    }
+
+    /// Surface temperature of each particle at the last commit in K.
+    pub fn temperature(&self) -> &[f64] {
+        &self.temperature
+    }
+
+    /// Takes the masses of particles that their models change, in kg.
+    pub fn masses(&self, of: &mut [f64]) {
+        self.members.iter().for_each(|member| {
+            scatter(&member.rows, member.model.bodies(At::Commit).mass, of);
+        });
+    }
+
+    /// Takes the radii of particles that their models change, in m.
+    pub fn radii(&self, of: &mut [f64]) {
+        self.members.iter().for_each(|member| {
+            scatter(&member.rows, member.model.bodies(At::Commit).radius, of);
+        });
+    }
+
+    /// True where some model changes the radius of its particles.
+    pub fn change_sizes(&self) -> bool {
+        let mut members = self.members.iter();
+        members.any(|member| !member.model.bodies(At::Commit).radius.is_empty())
+    }
+
+    /// True where some model changes mass or radius of its particles.
+    pub fn change_bodies(&self) -> bool {
+        let mut members = self.members.iter();
+        members.any(|member| !member.model.bodies(At::Commit).mass.is_empty())
+            || self.change_sizes()
+    }
+
+    /// Takes in all particles of a run, with their masses in kg and temperatures in K.
+    pub fn fill(
+        &mut self,
+        particles: &ParticleFields<'_>,
+        mass: &[f64],
+        temperature: &[f64],
+    ) -> Result<(), ParticleModelError> {
+        let states: Vec<[(&str, &[f64]); 1]> = temperature
+            .chunks_exact(1)
+            .map(|kelvin| [(TEMPERATURE, kelvin)])
+            .collect();
+        let new: Vec<PopulationNewcomer<'_>> = states
+            .iter()
+            .enumerate()
+            .map(|(row, state)| PopulationNewcomer {
+                population: particles.population[row] as usize,
+                particle: Newcomer {
+                    id: particles.id[row],
+                    mass: mass[row],
+                    radius: particles.radius[row],
+                    state,
+                },
+            })
+            .collect();
+        self.change(&[], &new)
+    }
+
+    /// Fills the line of each surface about surface temperatures in K; see [`ParticleModel::surface`].
+    pub fn surface(
+        &mut self,
+        around: &Surroundings<'_>,
+        span: f64,
+        at: &[f64],
+        out: &mut [SurfaceLine],
+    ) -> Result<(), ParticleModelError> {
+        let (count, id) = (self.places.len(), &self.id);
+        for Member {
+            model, rows, work, ..
+        } in &mut self.members
+        {
+            let Work {
+                inputs, surface, ..
+            } = work;
+            let [first, rest @ ..] = inputs;
+            let own = gathered(rows, count, around, rest);
+            let mut buffer = std::mem::take(first);
+            let at = gather(rows, count, at, &mut buffer);
+            surface.clear();
+            surface.resize(rows.len(), SurfaceLine::default());
+            let done = model.surface(&own, span, at, surface);
+            for (row, line) in rows.iter().zip(&*surface) {
+                out[*row] = *line;
+            }
+            work.inputs[0] = buffer;
+            done.map_err(|cause| named(cause, rows, id))?;
+        }
+        Ok(())
+    }
+
+    /// Fills the lines to the gas of all particles and channels; see [`ParticleModel::respond`].
+    pub fn respond(
+        &mut self,
+        around: &Surroundings<'_>,
+        span: f64,
+        network: &[f64],
+        out: &mut GasLines,
+    ) -> Result<(), ParticleModelError> {
+        let (count, id) = (self.places.len(), &self.id);
+        let all = self.channels.len();
+        out.reset(count, all);
+        for Member {
+            model,
+            rows,
+            channels,
+            work,
+        } in &mut self.members
+        {
+            let [first, rest @ ..] = &mut work.inputs;
+            let own = gathered(rows, count, around, rest);
+            let mut buffer = std::mem::take(first);
+            let network = gather(rows, count, network, &mut buffer);
+            let lines = &mut work.lines;
+            lines.reset(rows.len(), channels.len());
+            let done = model.respond(&own, span, network, lines);
+            scatter(rows, &lines.conductance, &mut out.conductance);
+            scatter(rows, &lines.temperature, &mut out.temperature);
+            scatter(rows, &lines.released, &mut out.released);
+            for (from, to) in [
+                (&lines.slope, &mut out.slope),
+                (&lines.offset, &mut out.offset),
+            ] {
+                for (own, row) in rows.iter().enumerate() {
+                    for (c, channel) in channels.iter().enumerate() {
+                        to[row * all + channel] = from[own * channels.len() + c];
+                    }
+                }
+            }
+            work.inputs[0] = buffer;
+            done.map_err(|cause| named(cause, rows, id))?;
+        }
+        Ok(())
+    }
+
+    /// Lowers the rates of all channels to what the particles hold; see [`ParticleModel::limit`].
+    pub fn limit(&mut self, rates: &mut [f64], span: f64) {
+        let all = self.channels.len();
+        for member in &mut self.members {
+            member.take_rates(rates, all);
+            member.model.limit(&mut member.work.rates, span);
+            let width = member.channels.len();
+            for (own, row) in member.rows.iter().enumerate() {
+                for (c, channel) in member.channels.iter().enumerate() {
+                    rates[row * all + channel] = member.work.rates[own * width + c];
+                }
+            }
+        }
+    }
+
+    /// Ends the attempt with what passed; see [`ParticleModel::settle`].
+    pub fn settle(&mut self, took: &Transfer<'_>, span: f64) -> Result<(), ParticleModelError> {
+        let (count, all, id) = (self.places.len(), self.channels.len(), &self.id);
+        for member in &mut self.members {
+            member.take_rates(took.rates, all);
+            let Member {
+                model, rows, work, ..
+            } = member;
+            let [heat, network, carried, ..] = &mut work.inputs;
+            let own = Transfer {
+                heat: gather(rows, count, took.heat, heat),
+                network: gather(rows, count, took.network, network),
+                carried: gather(rows, count, took.carried, carried),
+                rates: &work.rates,
+            };
+            model
+                .settle(&own, span)
+                .map_err(|cause| named(cause, rows, id))?;
+        }
+        Ok(())
+    }
+
+    /// What the last attempt changed in all particles.
+    pub fn changed(&self) -> Inventory {
+        let mut all = Inventory::default();
+        for member in &self.members {
+            all += &member.model.changed();
+        }
+        all
+    }
+
+    /// What the particles of these rows hold.
+    pub fn held(&self, rows: impl IntoIterator<Item = usize>) -> Inventory {
+        let mut own = vec![Vec::new(); self.members.len()];
+        for row in rows {
+            let (model, place) = self.places[row];
+            own[model].push(place);
+        }
+        let mut all = Inventory::default();
+        for (member, rows) in self.members.iter().zip(&own) {
+            all += &member.model.held(rows);
+        }
+        all
+    }
+
+    /// Takes the last attempt as the new start; the rows, ascending, of particles that are used up.
+    pub fn commit(&mut self) -> Vec<usize> {
+        let mut used_up: Vec<usize> = Vec::new();
+        for member in &mut self.members {
+            let gone = member.model.commit();
+            used_up.extend(gone.iter().map(|&own| member.rows[own]));
+        }
+        used_up.sort_unstable();
+        self.note_temperatures();
+        used_up
+    }
+
+    /// Takes particles out, by their rows in ascending order, and puts new ones behind the others, in ascending id.
+    pub fn change(
+        &mut self,
+        gone: &[usize],
+        new: &[PopulationNewcomer<'_>],
+    ) -> Result<(), ParticleModelError> {
+        let mut out = vec![Vec::new(); self.members.len()];
+        for &row in gone {
+            let (model, place) = self.places[row];
+            out[model].push(place);
+        }
+        let mut come: Vec<Vec<Newcomer<'_>>> = vec![Vec::new(); self.members.len()];
+        without(&mut self.places, gone);
+        without(&mut self.id, gone);
+        for one in new {
+            let population = one.population;
+            let model = self.model_of.get(population);
+            let &model = model.ok_or(ParticleModelError::Population { population })?;
+            come[model].push(one.particle);
+            self.places.push((model, 0));
+            self.id.push(one.particle.id);
+        }
+        self.number_rows();
+        for ((member, gone), new) in self.members.iter_mut().zip(&out).zip(&come) {
+            if !(gone.is_empty() && new.is_empty()) {
+                let done = member.model.change(gone, new);
+                done.map_err(|cause| named(cause, &member.rows, &self.id))?;
+            }
+        }
+        self.note_temperatures();
+        Ok(())
+    }
+
+    /// Numbers the rows of each model anew.
+    fn number_rows(&mut self) {
+        self.members
+            .iter_mut()
+            .for_each(|member| member.rows.clear());
+        for (row, (model, place)) in self.places.iter_mut().enumerate() {
+            let rows = &mut self.members[*model].rows;
+            *place = rows.len();
+            rows.push(row);
+        }
+    }
+
+    fn note_temperatures(&mut self) {
+        self.temperature.resize(self.places.len(), 0.0);
+        for member in &self.members {
+            let temperature = member.model.bodies(At::Commit).temperature;
+            scatter(&member.rows, temperature, &mut self.temperature);
+        }
+    }
+}
+
+impl Member {
+    /// Gathers the rates of its own rows and channels.
+    fn take_rates(&mut self, rates: &[f64], all: usize) {
+        self.work.rates.clear();
+        for row in &self.rows {
+            let own = self.channels.iter().map(|c| rates[row * all + c]);
+            self.work.rates.extend(own);
+        }
+    }
+}
+
+impl std::fmt::Debug for ParticleModels {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ParticleModels")
+            .field("models", &self.members.len())
+            .field("particles", &self.places.len())
+            .finish_non_exhaustive()
+    }
+}
+
+/// Names the particle of an error by its id.
+fn named(cause: ModelError, rows: &[usize], id: &[u64]) -> ParticleModelError {
+    match &cause {
+        ModelError::Particle { row, .. } => match rows.get(*row).and_then(|row| id.get(*row)) {
+            Some(&id) => ParticleModelError::Particle { id, cause },
+            None => ParticleModelError::Column(cause),
+        },
+        ModelError::Column { .. } => ParticleModelError::Column(cause),
+    }
+}
+
+/// The values of some of so many rows, of as many values each as the list holds of all; nothing is copied where all
+/// rows are meant.
+fn gather<'a>(
+    rows: &[usize],
+    count: usize,
+    from: &'a [f64],
+    buffer: &'a mut Vec<f64>,
+) -> &'a [f64] {
+    if rows.len() == count || from.is_empty() {
+        return from;
+    }
+    let width = from.len() / count;
+    buffer.clear();
+    for row in rows {
+        buffer.extend_from_slice(&from[row * width..(row + 1) * width]);
+    }
+    buffer
+}
+
+fn gathered<'a>(
+    rows: &[usize],
+    count: usize,
+    around: &Surroundings<'a>,
+    buffers: &'a mut [Vec<f64>],
+) -> Surroundings<'a> {
+    let mut buffers = buffers.iter_mut();
+    let mut one = |from: &'a [f64]| match buffers.next() {
+        Some(buffer) => gather(rows, count, from, buffer),
+        None => from,
+    };
+    Surroundings {
+        temperature: one(around.temperature),
+        pressure: one(around.pressure),
+        composition: one(around.composition),
+        conductance: one(around.conductance),
+        film: one(around.film),
+        radius: one(around.radius),
+    }
+}
+
+/// Puts values of rows back; an empty list leaves them as they are.
+fn scatter(rows: &[usize], from: &[f64], to: &mut [f64]) {
+    for (row, value) in rows.iter().zip(from) {
+        to[*row] = *value;
+    }
+}
