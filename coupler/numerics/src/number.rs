@@ -59,11 +59,11 @@ pub trait Number:
         self.through(root, slope)
     }
 
-    /// The number itself where it is positive, zero elsewhere.
+    /// The number itself where it is not negative, zero elsewhere; at zero it has the slope from above.
     #[inline]
     #[must_use]
     fn positive(self) -> Self {
-        if self.value() > 0.0 {
+        if self.value() >= 0.0 {
             self
         } else {
             Self::constant(0.0)

@@ -47,6 +47,20 @@ impl HeatCapacity {
         linear(&self.points, temperature)
     }
 
+    /// dc_p/dT in J/kg/K² at a temperature in K.
+    pub fn slope(&self, temperature: f64) -> f64 {
+        let next = self
+            .points
+            .partition_point(|&(from, _)| from <= temperature);
+        match (next.checked_sub(1), self.points.get(next)) {
+            (Some(place), Some(after)) => {
+                let from = self.points[place];
+                (after.1 - from.1) / (after.0 - from.0)
+            }
+            _ => 0.0,
+        }
+    }
+
     /// Enthalpy in J/kg, counted from the first point.
     pub fn enthalpy(&self, temperature: f64) -> f64 {
         let next = self
@@ -114,7 +128,11 @@ mod tests {
         ] {
             assert!((law.at(t) - expected).abs() < 1e-12, "{t}");
         }
+        for (t, expected) in [(100.0, 0.0), (450.0, 1.0), (900.0, 0.3), (2000.0, 0.0)] {
+            assert!((law.slope(t) - expected).abs() < 1e-14, "{t}");
+        }
         assert_eq!(HeatCapacity::constant(840.0).at(77.0), 840.0);
+        assert_eq!(HeatCapacity::constant(840.0).slope(77.0), 0.0);
     }
 
     #[test]

@@ -1,20 +1,10 @@
-//! The reactions of particles, and their rates at a state of one particle.
+//! The reactions of particles, and the thermodynamics of their solids.
 
-use std::f64::consts::PI;
-
-use calcine_physics::gas::GAS_CONSTANT;
-use calcine_physics::reaction::equilibrium::STANDARD_PRESSURE;
-use calcine_physics::reaction::power_law;
-use calcine_physics::reaction::shrinking_core::{self, Interface, MOST_INTERFACES};
 use calcine_physics::reaction::{Arrhenius, Equilibrium, PowerLaw};
 use calcine_physics::solids::SolidSpecies;
 use calcine_physics::thermo::{Element, Mixture};
 
 use super::layers::{LayerDiffusivity, Layers, LayersError, gases, layers};
-
-/// Share of a particle's amount of solids below which what is left of one reacts the slower the less
-/// there is: rates end where nothing is left, without a step that no integration could follow.
-const TRACE: f64 = 1e-6;
 
 /// A reaction of solids, and of gases where it is heterogeneous.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,34 +50,12 @@ pub struct SolidChemistry {
     key: Vec<Option<usize>>,
     /// Heat of each reaction at 298.15 K in J/mol.
     pub heat: Vec<f64>,
-}
-
-/// The surroundings of one particle.
-#[derive(Clone, Copy, Debug)]
-pub struct ParticleSurroundings<'a> {
-    /// Temperature of the gas in K.
-    pub temperature: f64,
-    /// Its pressure in Pa.
-    pub pressure: f64,
-    /// Mole fractions.
-    pub fractions: &'a [f64],
-    /// Mass transfer coefficient of each species in m/s.
-    pub film: &'a [f64],
-    /// Radius of the particle in m.
-    pub radius: f64,
-    /// Volumes in m³/mol that its solids take up; `None`: its diameter stays, and layers share the room by what
-    /// they were made of.
-    pub volumes: Option<&'a [f64]>,
-}
-
-/// Rates of all reactions of a particle in mol/s, and how each changes with the mole fraction of its
-/// key gas.
-#[derive(Clone, Debug, Default)]
-pub struct Rates {
-    /// mol/s.
-    pub rate: Vec<f64>,
-    /// mol/s by mole fraction.
-    pub slope: Vec<f64>,
+    /// Solids that some reaction uses or makes, and what each reaction does to them by their place here.
+    moving: Vec<usize>,
+    effects: Vec<Vec<(usize, f64)>>,
+    /// Changes of the gas by which rates have slopes, and that of each reaction.
+    directions: Vec<(usize, Option<usize>)>,
+    direction: Vec<Option<usize>>,
 }
 
 impl SolidChemistry {
@@ -110,9 +78,69 @@ impl SolidChemistry {
             reactions,
             layers,
             key,
+            moving: Vec::new(),
+            effects: Vec::new(),
+            directions: Vec::new(),
+            direction: Vec::new(),
         };
         made.heat = made.reactions.iter().map(|one| made.heat_of(one)).collect();
+        made.index();
         Ok(made)
+    }
+
+    /// Fills what follows from the reactions for their integration.
+    fn index(&mut self) {
+        let used = |s: &usize| {
+            let mut solids = self.reactions.iter().flat_map(|one| &one.solids);
+            solids.any(|one| one.0 == *s && one.1 != 0.0)
+        };
+        self.moving = (0..self.solids.len()).filter(used).collect();
+        let place = |&(s, n): &(usize, f64)| {
+            let found = self.moving.iter().position(|one| *one == s);
+            found.map(|place| (place, n))
+        };
+        let reactions = self.reactions.iter();
+        self.effects = reactions
+            .map(|one| one.solids.iter().filter_map(place).collect())
+            .collect();
+        for (index, reaction) in self.reactions.iter().enumerate() {
+            let direction = self.key[index].map(|key| match &reaction.rate {
+                Rate::Core { .. } => gases(reaction).unwrap_or((key, None)),
+                Rate::Power(_) => (key, None),
+            });
+            if let Some(one) = direction.filter(|one| !self.directions.contains(one)) {
+                self.directions.push(one);
+            }
+            let found =
+                direction.and_then(|one| self.directions.iter().position(|other| *other == one));
+            self.direction.push(found);
+        }
+    }
+
+    /// The layers of its shrinking cores.
+    pub(super) fn layers(&self) -> &[Layers] {
+        &self.layers
+    }
+
+    /// Solids that some reaction uses or makes.
+    pub(super) fn moving(&self) -> &[usize] {
+        &self.moving
+    }
+
+    /// Moles that a mole of a reaction makes (+) or uses (−) of each solid, by its place in `moving`.
+    pub(super) fn effects(&self, reaction: usize) -> &[(usize, f64)] {
+        &self.effects[reaction]
+    }
+
+    /// Changes of the gas by which rates have slopes: the mole fraction of a key gas, and of the gas that diffuses back
+    /// for it by as much less.
+    pub(super) fn directions(&self) -> &[(usize, Option<usize>)] {
+        &self.directions
+    }
+
+    /// That of a reaction.
+    pub(super) fn direction(&self, reaction: usize) -> Option<usize> {
+        self.direction[reaction]
     }
 
     /// The gas by whose amount a reaction's rate is taken as linear.
@@ -219,235 +247,11 @@ impl SolidChemistry {
         temperature
     }
 
-    /// Rates at a particle's amounts (mol) and temperature in K.
-    pub fn rates(
-        &self,
-        around: &ParticleSurroundings<'_>,
-        amounts: &[f64],
-        temperature: f64,
-        out: &mut Rates,
-    ) {
-        let count = self.reactions.len();
-        for list in [&mut out.rate, &mut out.slope] {
-            list.clear();
-            list.resize(count, 0.0);
-        }
-        let all: f64 = amounts.iter().map(|n| n.max(0.0)).sum();
-        let there = Presence {
-            amounts,
-            trace: TRACE * all,
-        };
-        let all_gas = around.pressure / (GAS_CONSTANT * temperature);
-        for (index, reaction) in self.reactions.iter().enumerate() {
-            if let Rate::Power(law) = &reaction.rate {
-                let state = (temperature, all_gas);
-                (out.rate[index], out.slope[index]) =
-                    self.power(index, reaction, law, around, &there, state);
-            }
-        }
-        for layers in &self.layers {
-            self.core(layers, around, &there, (temperature, all_gas), out);
-        }
-    }
-
-    fn power(
-        &self,
-        index: usize,
-        reaction: &Reaction,
-        law: &PowerLaw,
-        around: &ParticleSurroundings<'_>,
-        there: &Presence<'_>,
-        (temperature, all_gas): (f64, f64),
-    ) -> (f64, f64) {
-        let left = there.share(reaction, -1.0);
-        let volume = 4.0 / 3.0 * PI * around.radius.powi(3);
-        let solid = |s: usize| there.amounts[s].max(0.0) / volume;
-        let gas = |g: usize| all_gas * around.fractions[g];
-        let key = self.key[index];
-        let (rest, order) = law.without(key, temperature, solid, gas);
-        let rest = left * volume * rest;
-        let back = self.quotient(reaction, around) * reaction.equilibrium.inverse(temperature);
-        let Some(key) = key else {
-            return (rest * (1.0 - back), 0.0);
-        };
-        let fraction = around.fractions[key];
-        let moles = reaction.gases.iter().find(|gas| gas.0 == key);
-        let moles = moles.map_or(0.0, |gas| gas.1);
-        if moles > 0.0 {
-            // The gas that is set free holds the reaction back.
-            let held = if fraction > 0.0 { back / fraction } else { 0.0 };
-            let full = rest * power_law::power(gas(key), order);
-            return self.backward(there, reaction, full * (1.0 - back), -full * held);
-        }
-        if order == 0.0 && fraction <= 0.0 {
-            return (0.0, 0.0);
-        }
-        let film = around.film[key] * 4.0 * PI * around.radius * around.radius / -moles;
-        let surface = power_law::at_surface(gas(key), film, rest, order);
-        let forward = if order == 0.0 && surface <= 0.0 {
-            film * gas(key)
-        } else {
-            rest * power_law::power(surface, order)
-        };
-        let slope = if fraction > 0.0 {
-            forward / fraction
-        } else {
-            0.0
-        };
-        self.backward(there, reaction, forward * (1.0 - back), slope)
-    }
-
-    /// Backwards a reaction goes as far as its products are there.
-    fn backward(
-        &self,
-        there: &Presence<'_>,
-        reaction: &Reaction,
-        rate: f64,
-        slope: f64,
-    ) -> (f64, f64) {
-        if rate >= 0.0 {
-            return (rate, slope);
-        }
-        let left = there.share(reaction, 1.0);
-        (left * rate, left * slope)
-    }
-
-    /// Π (p_i/p°)^ν of a reaction's gases.
-    fn quotient(&self, reaction: &Reaction, around: &ParticleSurroundings<'_>) -> f64 {
-        if reaction.equilibrium == Equilibrium::OneWay {
-            return 0.0;
-        }
-        let of = |&(g, n): &(usize, f64)| {
-            let over = around.fractions[g].max(0.0) * around.pressure / STANDARD_PRESSURE;
-            over.powf(n)
-        };
-        let quotient: f64 = reaction.gases.iter().map(of).product();
-        // Of a gas that is used up and not there, nothing reacts forwards either.
-        if quotient.is_finite() { quotient } else { 0.0 }
-    }
-
-    fn core(
-        &self,
-        layers: &Layers,
-        around: &ParticleSurroundings<'_>,
-        there: &Presence<'_>,
-        (temperature, all_gas): (f64, f64),
-        out: &mut Rates,
-    ) {
-        let count = layers.solids.len() - 1;
-        let mut radius = [0.0; MOST_INTERFACES];
-        let weighed = |k: usize| {
-            let solid = layers.solids[k];
-            let room = around.volumes.map_or(layers.weights[k], |each| each[solid]);
-            room * there.amounts[solid].max(0.0)
-        };
-        let all: f64 = (0..=count).map(weighed).sum();
-        if all <= 0.0 {
-            return;
-        }
-        let mut within = 0.0;
-        for (k, radius) in radius.iter_mut().enumerate().take(count) {
-            within += weighed(k);
-            *radius = (within / all).min(1.0).cbrt();
-        }
-        for path in &layers.paths {
-            let mut interfaces = [Interface::default(); MOST_INTERFACES];
-            let bulk = all_gas * around.fractions[path.key];
-            let both = bulk + path.product.map_or(0.0, |g| all_gas * around.fractions[g]);
-            for (k, interface) in interfaces.iter_mut().enumerate().take(count) {
-                interface.radius = radius[k];
-                interface.diffusivity = path.diffusivity[k].at(temperature);
-                let Some(index) = path.reactions[k] else {
-                    continue;
-                };
-                let reaction = &self.reactions[index];
-                let Rate::Core { rate_constant, .. } = &reaction.rate else {
-                    continue;
-                };
-                let back = reaction.equilibrium.inverse(temperature);
-                let forward = rate_constant.at(temperature);
-                // Forwards it goes as far as its solid is there, backwards as far as its layer is.
-                let (own, layer) = (there.of(layers.solids[k]), there.of(layers.solids[k + 1]));
-                (interface.rate_constant, interface.equilibrium) = match path.product {
-                    // k (s c − s' c'/K) with c + c' the same everywhere
-                    Some(_) => {
-                        let together = own + layer * back;
-                        let at_rest = if together > 0.0 {
-                            both * layer * back / together
-                        } else {
-                            0.0
-                        };
-                        (forward * together, at_rest)
-                    }
-                    None => {
-                        let moles = moles(reaction, path.key);
-                        let standard = STANDARD_PRESSURE / around.pressure * all_gas;
-                        let power = (-1.0 / moles) * back.ln();
-                        let at_rest = if back > 0.0 {
-                            standard * power.exp()
-                        } else {
-                            0.0
-                        };
-                        let forwards = (bulk - at_rest) * moles <= 0.0;
-                        (forward * if forwards { own } else { layer }, at_rest)
-                    }
-                };
-            }
-            take(
-                path,
-                &mut interfaces[..count],
-                (bulk, all_gas),
-                around,
-                |index, one| {
-                    let moles = moles(&self.reactions[index], path.key);
-                    out.rate[index] = -one[0] / moles;
-                    out.slope[index] = -one[1] / moles;
-                },
-            );
-        }
-    }
-
     /// Mass in kg of amounts of solids.
     pub fn mass(&self, amounts: &[f64]) -> f64 {
         let parts = self.solids.iter().zip(amounts);
         parts.map(|(solid, n)| solid.molar_mass() * n).sum()
     }
-}
-
-/// Flow of a gas into each interface in mol/s, and how it changes with the gas' mole fraction, told to `tell` with
-/// the reaction there.
-fn take(
-    path: &super::layers::GasPath,
-    interfaces: &mut [Interface],
-    (bulk, all_gas): (f64, f64),
-    around: &ParticleSurroundings<'_>,
-    mut tell: impl FnMut(usize, [f64; 2]),
-) {
-    let count = interfaces.len();
-    let (mut flow, mut slope) = ([0.0; MOST_INTERFACES], [0.0; MOST_INTERFACES]);
-    let film = around.film[path.key];
-    shrinking_core::flows(around.radius, film, bulk, interfaces, &mut flow[..count]);
-    for interface in interfaces.iter_mut() {
-        interface.equilibrium = 0.0;
-    }
-    shrinking_core::flows(
-        around.radius,
-        film,
-        all_gas,
-        interfaces,
-        &mut slope[..count],
-    );
-    for (k, reaction) in path.reactions.iter().enumerate() {
-        if let Some(index) = reaction {
-            tell(*index, [flow[k], slope[k]]);
-        }
-    }
-}
-
-/// Moles of a gas that a mole of a reaction makes.
-fn moles(reaction: &Reaction, gas: usize) -> f64 {
-    let found = reaction.gases.iter().find(|one| one.0 == gas);
-    found.map_or(-1.0, |one| one.1)
 }
 
 /// The gas by whose amount a power law's rate is taken as linear: the first that is used up, or else the
@@ -459,28 +263,4 @@ fn key_of(law: &PowerLaw, reaction: &Reaction) -> Option<usize> {
         .find(|gas| law.gases.iter().any(|one| one.0 == gas.0 && one.1 != 0.0));
     let found = with_order.or_else(|| reaction.gases.iter().find(|gas| gas.1 < 0.0));
     found.or_else(|| reaction.gases.first()).map(|gas| gas.0)
-}
-
-/// How much of what is there.
-struct Presence<'a> {
-    amounts: &'a [f64],
-    trace: f64,
-}
-
-impl Presence<'_> {
-    /// One as long as there is more than a trace of a solid.
-    fn of(&self, solid: usize) -> f64 {
-        let amount = self.amounts[solid];
-        if amount >= self.trace {
-            1.0
-        } else {
-            amount.max(0.0) / self.trace
-        }
-    }
-
-    /// The least of all solids on the side of a reaction with this sign.
-    fn share(&self, reaction: &Reaction, sign: f64) -> f64 {
-        let side = reaction.solids.iter().filter(|(_, n)| n * sign > 0.0);
-        side.map(|&(s, _)| self.of(s)).fold(1.0, f64::min)
-    }
 }

@@ -1,5 +1,6 @@
 //! Layers of a shrinking core: which solid lies within which, and which gas makes one of the other.
 
+use calcine_numerics::Number;
 use calcine_physics::reaction::shrinking_core::MOST_INTERFACES;
 use thiserror::Error;
 
@@ -18,12 +19,13 @@ pub struct LayerDiffusivity {
 
 impl LayerDiffusivity {
     /// D at a temperature in K in m²/s.
-    pub fn at(&self, temperature: f64) -> f64 {
+    pub fn at<N: Number>(&self, temperature: N) -> N {
         if self.exponent == 0.0 {
-            self.value
-        } else {
-            self.value * (temperature / self.at).powf(self.exponent)
+            return N::constant(self.value);
         }
+        let t = temperature.value();
+        let value = self.value * (t / self.at).powf(self.exponent);
+        temperature.through(value, self.exponent * value / t)
     }
 }
 

@@ -10,14 +10,16 @@
 //! the gas then says is booked, and the temperature follows from the enthalpies of what is there, so
 //! that elements and energy close whatever the lines were.
 
+pub mod attempt;
 mod book;
 pub mod chemistry;
 pub mod layers;
 mod model;
-pub mod ode;
+pub mod rates;
 pub mod size;
 mod step;
 
+pub use attempt::ParticleAccuracy;
 pub use chemistry::{Rate, Reaction, SolidChemistry};
 pub use layers::{LayerDiffusivity, LayersError};
 pub use size::SizeChange;
@@ -25,8 +27,6 @@ pub use step::ReactError;
 
 use crate::column::StateColumn;
 use crate::model::Channel;
-use chemistry::Rates;
-use ode::Rosenbrock;
 
 /// Particles of one material that react.
 #[derive(Debug)]
@@ -57,7 +57,9 @@ pub struct Reacting {
     /// Sensible heat in W that exchanged gases bring in.
     carried: Vec<f64>,
     capacity: Vec<f64>,
-    scratch: Scratch,
+    /// What the last attempt came to, row by row.
+    results: Vec<f64>,
+    accuracy: ParticleAccuracy,
 }
 
 /// Masses and radii that follow from amounts.
@@ -74,16 +76,6 @@ struct Amounts {
     amount: Vec<f64>,
     /// In K.
     temperature: Vec<f64>,
-}
-
-#[derive(Debug, Default)]
-struct Scratch {
-    method: Rosenbrock,
-    rates: Rates,
-    amounts: Vec<f64>,
-    fractions: Vec<f64>,
-    state: Vec<f64>,
-    tolerance: Vec<f64>,
 }
 
 impl Reacting {
@@ -111,8 +103,15 @@ impl Reacting {
             extents: Vec::new(),
             carried: Vec::new(),
             capacity: Vec::new(),
-            scratch: Scratch::default(),
+            results: Vec::new(),
+            accuracy: ParticleAccuracy::default(),
         }
+    }
+
+    /// The same particles, integrated with another accuracy.
+    pub fn with_accuracy(mut self, accuracy: ParticleAccuracy) -> Self {
+        self.accuracy = accuracy;
+        self
     }
 
     /// The reactions.

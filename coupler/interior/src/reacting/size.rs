@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use calcine_numerics::Number;
 use calcine_physics::solids::SolidSpecies;
 
 use super::Reacting;
@@ -58,12 +59,27 @@ impl SizeChange {
 
     /// Radius in m of a particle of amounts in mol; `None` where it stays as it is.
     pub fn radius(&self, amounts: &[f64]) -> Option<f64> {
+        match self {
+            Self::Constant => None,
+            Self::Volumes { .. } => Some(self.radius_of(amounts, 0.0)),
+        }
+    }
+
+    /// The same with derivatives; `own` in m where it stays as it is.
+    pub(super) fn radius_of<N: Number>(&self, amounts: &[N], own: f64) -> N {
         let Self::Volumes { each, least_radius } = self else {
-            return None;
+            return N::constant(own);
         };
         let parts = each.iter().zip(amounts);
-        let volume: f64 = parts.map(|(volume, n)| volume * n.max(0.0)).sum();
-        Some((0.75 * volume / PI).cbrt().max(*least_radius))
+        let volume = parts.fold(N::constant(0.0), |sum, (volume, n)| {
+            sum + n.positive().times(*volume)
+        });
+        let radius = volume.times(0.75 / PI).cbrt();
+        if radius.value() > *least_radius {
+            radius
+        } else {
+            N::constant(*least_radius)
+        }
     }
 }
 

@@ -1,21 +1,20 @@
 //! One window of particles that react, with the gas about them held.
 
+use calcine_numerics::IntegrationStalled;
+use calcine_numerics::batch::each_row;
 use thiserror::Error;
 
-use super::chemistry::ParticleSurroundings;
-use super::ode::IntegrationStalled;
-use super::{Reacting, Scratch};
+use super::Reacting;
+use super::attempt::{ParticleStart, ParticleWorkspace};
+use super::rates::ParticleSurroundings;
 use crate::model::Surroundings;
 
-/// Errors of extents as a share of a particle's solids, and of its temperature in K, in a step.
-const AMOUNT: f64 = 1e-6;
-const KELVIN: f64 = 1e-2;
-/// By how much the gas temperature is varied in K to see what the heat flow does.
-const VARIED: f64 = 1.0;
-
 /// A particle whose reactions cannot be followed.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-#[error("the reactions of a particle at {temperature} K in gas of {gas_temperature} K: {cause}")]
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error(
+    "the reactions of a particle at {temperature} K in gas of {gas_temperature} K: {cause}; the largest error is \
+     that of {reaction}: check its rate constant and its equilibrium there, or shorten the windows (time.process_step)"
+)]
 pub struct ReactError {
     /// Its row.
     pub row: usize,
@@ -23,110 +22,154 @@ pub struct ReactError {
     pub temperature: f64,
     /// That of the gas in K.
     pub gas_temperature: f64,
+    /// The reaction that its integration failed with.
+    pub reaction: String,
     /// What went wrong.
     pub cause: IntegrationStalled,
 }
 
-/// What a window does to one particle.
-struct Outcome {
-    /// Mean temperature of the particle in K.
-    mean: f64,
-    /// At the end.
-    end: f64,
-}
+/// Places of a particle's results in a row of them; extents, slopes and offsets follow.
+const CONDUCTANCE: usize = 0;
+const START: usize = 1;
+const END: usize = 2;
+const EXTENTS: usize = 3;
 
 impl Reacting {
-    /// Follows every particle over a process span in s, with the network's heat in W, and takes the lines from it
-    /// that the exchange needs.
+    /// Follows every particle over a process span in s, each by itself, with the network's heat in W, and takes the
+    /// lines from it that the exchange needs.
     pub(super) fn react(
         &mut self,
         around: &Surroundings<'_>,
         span: f64,
         network: &[f64],
     ) -> Result<(), ReactError> {
-        let mut scratch = std::mem::take(&mut self.scratch);
-        let done = (0..self.count())
-            .try_for_each(|p| self.follow(p, around, (span, network[p]), &mut scratch));
-        self.scratch = scratch;
+        let (count, channels) = (self.chemistry.reactions.len(), self.channels.len());
+        let width = EXTENTS + count + 2 * channels;
+        let mut results = std::mem::take(&mut self.results);
+        results.clear();
+        results.resize(self.count() * width, 0.0);
+        let done = each_row(
+            &mut results,
+            width,
+            ParticleScratch::default,
+            |p, row, scratch| self.react_one(p, around, (span, network[p]), row, scratch),
+        );
+        for (p, row) in results.chunks_exact(width).enumerate() {
+            let (head, rest) = row.split_at(EXTENTS);
+            let (extents, lines) = rest.split_at(count);
+            let (slopes, offsets) = lines.split_at(channels);
+            self.conductance[p] = head[CONDUCTANCE];
+            self.start[p] = head[START];
+            self.end[p] = head[END];
+            self.extents[p * count..(p + 1) * count].copy_from_slice(extents);
+            self.lines[0][p * channels..(p + 1) * channels].copy_from_slice(slopes);
+            self.lines[1][p * channels..(p + 1) * channels].copy_from_slice(offsets);
+        }
+        self.results = results;
         done
     }
 
-    fn follow(
-        &mut self,
+    /// One particle; a function of its committed state and its surroundings alone.
+    fn react_one(
+        &self,
         p: usize,
         around: &Surroundings<'_>,
         (span, heat): (f64, f64),
-        scratch: &mut Scratch,
+        row: &mut [f64],
+        scratch: &mut ParticleScratch,
     ) -> Result<(), ReactError> {
-        let count = self.chemistry.reactions.len();
         let (hot, exchanged) = (around.temperature[p], around.conductance[p]);
+        let begin = self.committed.temperature[p];
         // Without reactions: the implicit step.
         let inert = exchanged / (1.0 + exchanged * span / self.capacity[p]);
         if !self.can_react(p) {
-            self.conductance[p] = inert;
-            self.start[p] = self.committed.temperature[p] + heat * span / self.capacity[p];
-            self.end[p] = self.start[p] + inert * (hot - self.start[p]) * span / self.capacity[p];
+            row[CONDUCTANCE] = inert;
+            row[START] = begin + heat * span / self.capacity[p];
+            row[END] = row[START] + inert * (hot - row[START]) * span / self.capacity[p];
             return Ok(());
         }
-        let failed = |cause| ReactError {
-            row: p,
-            temperature: self.committed.temperature[p],
-            gas_temperature: hot,
-            cause,
+        let solids = self.chemistry.solids.len();
+        scratch.see(self, p, around);
+        let species = scratch.fractions.len();
+        let start = ParticleStart {
+            amounts: &self.committed.amount[p * solids..(p + 1) * solids],
+            temperature: begin,
+            around: ParticleSurroundings {
+                temperature: hot,
+                pressure: around.pressure[p],
+                fractions: &scratch.fractions,
+                film: &around.film[p * species..(p + 1) * species],
+                radius: around.radius[p],
+                size: self.size(),
+            },
+            conductance: exchanged,
+            heat,
         };
-        let varied = if exchanged > 0.0 {
-            let other = self.integrate(p, around, (hot + VARIED, heat, span), scratch, |_, _| ());
-            Some(other.map_err(failed)?)
-        } else {
-            None
-        };
-        let mut slopes = vec![0.0; count];
-        let mut state = (Vec::new(), 0.0);
-        let outcome = self.integrate(p, around, (hot, heat, span), scratch, |step, rates| {
-            for (sum, slope) in slopes.iter_mut().zip(rates) {
-                *sum += step * slope;
-            }
-            state.1 += step;
-        });
-        let outcome = outcome.map_err(failed)?;
-        state.0.extend_from_slice(&scratch.state);
-
-        self.end[p] = outcome.end;
+        let workspace = &mut scratch.workspace;
+        let outcome = self
+            .chemistry
+            .follow(&start, span, self.accuracy, workspace)
+            .map_err(|cause| ReactError {
+                row: p,
+                temperature: begin,
+                gas_temperature: hot,
+                reaction: self
+                    .chemistry
+                    .worst_reaction(cause.worst, workspace)
+                    .to_owned(),
+                cause,
+            })?;
+        row[END] = outcome.end;
         let flow = exchanged * (hot - outcome.mean);
-        let steeper = varied.map_or(0.0, |other| {
-            (exchanged * (hot + VARIED - other.mean) - flow) / VARIED
-        });
         // Only how fast attempts converge depends on the slope.
-        let slope = steeper.clamp(0.2 * inert, exchanged.max(0.2 * inert));
-        self.conductance[p] = slope;
-        self.start[p] = if slope > 0.0 {
+        let slope = exchanged * (1.0 - outcome.mean_slope);
+        let slope = slope.clamp(0.2 * inert, exchanged.max(0.2 * inert));
+        row[CONDUCTANCE] = slope;
+        row[START] = if slope > 0.0 {
             hot - flow / slope
         } else {
             outcome.mean
         };
-        self.extents[p * count..(p + 1) * count].copy_from_slice(&state.0[..count]);
-        self.draw_lines(p, around, span, &slopes);
+        let count = self.chemistry.reactions.len();
+        row[EXTENTS..EXTENTS + count].copy_from_slice(&workspace.extents);
+        let (slopes, offsets) = row[EXTENTS + count..].split_at_mut(self.channels.len());
+        self.draw_lines(p, around, span, workspace, [slopes, offsets]);
         Ok(())
     }
 
-    /// The lines of a particle's channels from its mean rates and slopes.
-    fn draw_lines(&mut self, p: usize, around: &Surroundings<'_>, span: f64, slopes: &[f64]) {
-        let (count, channels) = (self.chemistry.reactions.len(), self.channels.len());
+    /// The lines of a particle's channels: tangents of their mean rates.
+    fn draw_lines(
+        &self,
+        p: usize,
+        around: &Surroundings<'_>,
+        span: f64,
+        workspace: &ParticleWorkspace,
+        [slopes, offsets]: [&mut [f64]; 2],
+    ) {
         let Some(gas) = &self.chemistry.gas else {
             return;
         };
         let species = gas.names().len();
         let composition = &around.composition[p * species..(p + 1) * species];
         let molar = gas.molar_mass(composition);
-        for (c, reaction) in self.reaction_of.iter().copied().enumerate() {
-            let Some(key) = self.channels[c].key else {
+        let lines = slopes.iter_mut().zip(offsets);
+        let channels = self.channels.iter().zip(&self.reaction_of);
+        for ((channel, reaction), (line_slope, offset)) in channels.zip(lines) {
+            let Some(key) = channel.key else {
                 continue;
             };
-            let mean = self.extents[p * count + reaction] / span;
+            let mean = workspace.extents[*reaction] / span;
             let by_mass = molar / gas.species()[key].molar_mass();
-            let slope = slopes[reaction] / span * by_mass;
-            self.lines[0][p * channels + c] = slope;
-            self.lines[1][p * channels + c] = slope * composition[key] - mean;
+            let slope = workspace.slopes[*reaction] / span * by_mass;
+            // More of a gas that is used up lets a reaction go faster, more of one that is made slower; where others
+            // compete with it so hard that it is the other way round, the rate is told as fixed.
+            let slope = if slope * channel.mass[key] < 0.0 {
+                slope
+            } else {
+                0.0
+            };
+            *line_slope = slope;
+            *offset = slope * composition[key] - mean;
         }
     }
 
@@ -134,124 +177,30 @@ impl Reacting {
     fn can_react(&self, p: usize) -> bool {
         let solids = self.chemistry.solids.len();
         let amounts = &self.committed.amount[p * solids..(p + 1) * solids];
-        let reactions = self.chemistry.reactions.iter();
-        reactions
-            .flat_map(|reaction| &reaction.solids)
-            .any(|&(s, _)| amounts[s] > 0.0)
+        let moving = self.chemistry.moving().iter();
+        moving.copied().any(|s| amounts[s] > 0.0)
     }
+}
 
-    /// Integrates a particle's extents and temperature; they are left in the scratch. `follow` is told the length
-    /// of each step and the mean slopes of the rates in it.
-    fn integrate(
-        &self,
-        p: usize,
-        around: &Surroundings<'_>,
-        (hot, heat, span): (f64, f64, f64),
-        scratch: &mut Scratch,
-        mut follow: impl FnMut(f64, &[f64]),
-    ) -> Result<Outcome, IntegrationStalled> {
-        let Scratch {
-            method,
-            rates,
-            amounts,
-            fractions,
-            state,
-            tolerance,
-        } = scratch;
-        let chemistry = &self.chemistry;
-        let (solids, count) = (chemistry.solids.len(), chemistry.reactions.len());
-        let held = &self.committed.amount[p * solids..(p + 1) * solids];
-        let species = chemistry.gas.as_ref().map_or(0, |gas| gas.names().len());
-        fractions.clear();
-        fractions.resize(species, 0.0);
-        if let Some(gas) = &chemistry.gas {
+/// Memory of a thread.
+#[derive(Debug, Default)]
+struct ParticleScratch {
+    workspace: ParticleWorkspace,
+    fractions: Vec<f64>,
+}
+
+impl ParticleScratch {
+    /// Takes up the mole fractions about a particle.
+    fn see(&mut self, reacting: &Reacting, p: usize, around: &Surroundings<'_>) {
+        self.fractions.clear();
+        if let Some(gas) = &reacting.chemistry.gas {
+            let species = gas.names().len();
+            self.fractions.resize(species, 0.0);
             let composition = &around.composition[p * species..(p + 1) * species];
-            gas.mole_fractions(composition, fractions);
-            for fraction in fractions.iter_mut() {
+            gas.mole_fractions(composition, &mut self.fractions);
+            for fraction in &mut self.fractions {
                 *fraction = fraction.max(0.0);
             }
         }
-        let size = self.size();
-        let mut near = ParticleSurroundings {
-            temperature: hot,
-            pressure: around.pressure[p],
-            fractions,
-            film: &around.film[p * species..(p + 1) * species],
-            radius: around.radius[p],
-            volumes: size.volumes(),
-        };
-        let begin = self.committed.temperature[p];
-        // The heat of a reaction follows temperature so slowly that a line will do here; what is booked is exact.
-        let warmth: Vec<[f64; 2]> = (0..count)
-            .map(|j| {
-                let at = chemistry.warmth(j, begin, hot);
-                [at, (chemistry.warmth(j, begin + 10.0, hot) - at) / 10.0]
-            })
-            .collect();
-        let exchanged = around.conductance[p];
-        let all: f64 = held.iter().sum();
-        state.clear();
-        state.resize(count + 1, 0.0);
-        state[count] = begin;
-        tolerance.clear();
-        tolerance.resize(count, AMOUNT * all);
-        tolerance.push(KELVIN);
-        let mut evaluate = |y: &[f64], rates: &mut super::Rates| {
-            amounts.clear();
-            amounts.extend_from_slice(held);
-            for (extent, reaction) in y.iter().zip(&chemistry.reactions) {
-                for &(s, n) in &reaction.solids {
-                    amounts[s] += n * extent;
-                }
-            }
-            near.radius = size.radius(amounts).unwrap_or(near.radius);
-            chemistry.rates(&near, amounts, y[count], rates);
-            chemistry.heat_capacity(amounts, y[count])
-        };
-        let mut slopes = vec![0.0; count];
-        let mut first = true;
-        let mut before = vec![0.0; count];
-        let mut heated = 0.0;
-        // Rates at both ends of a step give the means of slopes; those at the end of one are those at the
-        // start of the next.
-        let mut own = super::Rates::default();
-        let mut steps: Vec<(f64, Vec<f64>)> = Vec::new();
-        method.integrate(
-            |y, out| {
-                let capacity = evaluate(y, rates);
-                out[..count].copy_from_slice(&rates.rate);
-                let warmed = rates.rate.iter().zip(&warmth);
-                let released: f64 = warmed
-                    .map(|(rate, [at, slope])| rate * (at + slope * (y[count] - begin)))
-                    .sum();
-                out[count] = (exchanged * (hot - y[count]) + heat + released) / capacity;
-            },
-            state,
-            span,
-            tolerance,
-            |step, from, to| {
-                heated += 0.5 * step * (from[count] + to[count]);
-                if first {
-                    steps.push((0.0, from.to_vec()));
-                    first = false;
-                }
-                steps.push((step, to.to_vec()));
-            },
-        )?;
-        for (k, (step, y)) in steps.iter().enumerate() {
-            evaluate(y, &mut own);
-            if k > 0 {
-                let ends = before.iter().zip(&own.slope);
-                for (mean, (a, b)) in slopes.iter_mut().zip(ends) {
-                    *mean = 0.5 * (a + b);
-                }
-                follow(*step, &slopes);
-            }
-            before.copy_from_slice(&own.slope);
-        }
-        Ok(Outcome {
-            mean: heated / span,
-            end: state[count],
-        })
     }
 }

@@ -2,7 +2,6 @@
 
 use calcine_numerics::Number;
 
-use crate::gas::GAS_CONSTANT;
 use crate::reaction::Arrhenius;
 
 /// How fast a reaction runs at unit concentrations.
@@ -47,28 +46,19 @@ pub enum Broadening {
     },
 }
 
-/// k of Arrhenius' law at a temperature in K.
-#[inline]
-fn arrhenius<N: Number>(law: &Arrhenius, temperature: N) -> N {
-    let t = temperature.value();
-    let k = law.at(t);
-    let slope = k * (law.exponent + law.activation_energy / (GAS_CONSTANT * t)) / t;
-    temperature.through(k, slope)
-}
-
 impl RateConstant {
     /// k at a temperature in K and a concentration of third bodies in mol/m³.
     #[inline]
     pub fn at<N: Number>(&self, temperature: N, bodies: N) -> N {
         match self {
-            Self::Arrhenius(law) => arrhenius(law, temperature),
+            Self::Arrhenius(law) => law.of(temperature),
             Self::Falloff {
                 high,
                 low,
                 broadening,
             } => {
-                let high = arrhenius(high, temperature);
-                let pressure = arrhenius(low, temperature) * bodies / high;
+                let high = high.of(temperature);
+                let pressure = low.of(temperature) * bodies / high;
                 if pressure.value() <= 0.0 {
                     return N::constant(0.0);
                 }

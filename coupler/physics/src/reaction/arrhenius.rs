@@ -1,5 +1,7 @@
 //! Arrhenius' rate constant, 1889.
 
+use calcine_numerics::Number;
+
 use crate::gas::GAS_CONSTANT;
 
 /// A rate constant k = A T^b exp(−E/(R T)), or two of them in series, 1/k = 1/k₁ + 1/k₂, where the
@@ -26,14 +28,25 @@ impl Arrhenius {
         };
         self.factor * power * (-self.activation_energy / (GAS_CONSTANT * temperature)).exp()
     }
+
+    /// The same with derivatives, dk/dT = k (b + E/(R T))/T.
+    #[inline]
+    pub fn of<N: Number>(&self, temperature: N) -> N {
+        let t = temperature.value();
+        let k = self.at(t);
+        let slope = k * (self.exponent + self.activation_energy / (GAS_CONSTANT * t)) / t;
+        temperature.through(k, slope)
+    }
 }
 
 /// k of one constant, or of two steps in series, at a temperature in K.
-pub fn in_series(first: &Arrhenius, second: Option<&Arrhenius>, temperature: f64) -> f64 {
-    let one = first.at(temperature);
-    match second.map(|second| second.at(temperature)) {
-        Some(other) if one > 0.0 && other > 0.0 => 1.0 / (1.0 / one + 1.0 / other),
-        Some(_) => 0.0,
+pub fn in_series<N: Number>(first: &Arrhenius, second: Option<&Arrhenius>, temperature: N) -> N {
+    let one = first.of(temperature);
+    match second.map(|second| second.of(temperature)) {
+        Some(other) if one.value() > 0.0 && other.value() > 0.0 => {
+            (one.inverse() + other.inverse()).inverse()
+        }
+        Some(_) => N::constant(0.0),
         None => one,
     }
 }
@@ -66,6 +79,14 @@ mod tests {
         };
         let slope = (law.at(1001.0) / law.at(999.0)).ln() / (1.0 / 999.0 - 1.0 / 1001.0);
         assert!((slope * GAS_CONSTANT / 125_520.0 - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_derivative_is_the_difference_quotient() {
+        let dual = LAW.of(calcine_numerics::Dual::<1>::along(1200.0, 0));
+        let quotient = (LAW.at(1200.01) - LAW.at(1199.99)) / 0.02;
+        assert_eq!(dual.value, LAW.at(1200.0));
+        assert!((dual.slope[0] / quotient - 1.0).abs() < 1e-7);
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Equilibria.
 
+use calcine_numerics::Number;
+
 use crate::gas::GAS_CONSTANT;
 
 /// Standard pressure of thermodynamic tables in Pa.
@@ -47,23 +49,29 @@ impl GibbsLine {
         }
     }
 
-    fn at(&self, temperature: f64) -> f64 {
-        let place = ((temperature - FIRST) / STEP).clamp(0.0, (self.values.len() - 2) as f64);
+    fn at<N: Number>(&self, temperature: N) -> N {
+        let t = temperature.value();
+        let place = ((t - FIRST) / STEP).clamp(0.0, (self.values.len() - 2) as f64);
         let low = place as usize;
-        let share = (temperature - FIRST) / STEP - low as f64;
-        self.values[low] + share * (self.values[low + 1] - self.values[low])
+        let share = (t - FIRST) / STEP - low as f64;
+        let rise = self.values[low + 1] - self.values[low];
+        temperature.through(self.values[low] + share * rise, rise / STEP)
     }
 }
 
 impl Equilibrium {
     /// 1/K at a temperature in K.
-    pub fn inverse(&self, temperature: f64) -> f64 {
+    pub fn inverse<N: Number>(&self, temperature: N) -> N {
         match self {
-            Self::OneWay => 0.0,
+            Self::OneWay => N::constant(0.0),
             Self::Line {
                 constant,
                 over_temperature,
-            } => (-constant - over_temperature / temperature).exp(),
+            } => {
+                let t = temperature.value();
+                let line = -constant - over_temperature / t;
+                temperature.through(line, over_temperature / (t * t)).exp()
+            }
             Self::Gibbs(line) => (-line.at(temperature)).exp(),
         }
     }

@@ -1,5 +1,7 @@
 //! Rates by powers of concentrations.
 
+use calcine_numerics::Number;
+
 use super::arrhenius::{self, Arrhenius};
 
 /// Rate of a reaction in the volume of a particle in mol/m³/s,
@@ -23,24 +25,24 @@ pub struct PowerLaw {
 
 impl PowerLaw {
     /// The rate in mol/m³/s, but for the factor of one gas (by its index), which comes with its order.
-    pub fn without(
+    pub fn without<N: Number>(
         &self,
         key: Option<usize>,
-        temperature: f64,
-        solid: impl Fn(usize) -> f64,
-        gas: impl Fn(usize) -> f64,
-    ) -> (f64, f64) {
+        temperature: N,
+        solid: impl Fn(usize) -> N,
+        gas: impl Fn(usize) -> N,
+    ) -> (N, f64) {
         let mut rate =
             arrhenius::in_series(&self.rate_constant, self.in_series.as_ref(), temperature);
         let mut order = 0.0;
         for &(s, n) in &self.solids {
-            rate *= power(solid(s), n);
+            rate = rate * power(solid(s), n);
         }
         for &(g, n) in &self.gases {
             if Some(g) == key {
                 order = n;
             } else {
-                rate *= power(gas(g), n);
+                rate = rate * power(gas(g), n);
             }
         }
         (rate, order)
@@ -48,32 +50,49 @@ impl PowerLaw {
 }
 
 /// c^n; nothing reacts of what is not there.
-pub fn power(concentration: f64, order: f64) -> f64 {
+pub fn power<N: Number>(concentration: N, order: f64) -> N {
+    let c = concentration.value();
     if order == 0.0 {
-        1.0
-    } else if concentration <= 0.0 {
-        0.0
+        N::constant(1.0)
     } else if order == 1.0 {
-        concentration
+        concentration.positive()
+    } else if c <= 0.0 {
+        N::constant(0.0)
     } else {
-        concentration.powf(order)
+        let value = c.powf(order);
+        concentration.through(value, order * value / c)
     }
 }
 
 /// Concentration c in mol/m³ at a surface to which a film brings m (b − c) and of which r cⁿ is used, both in
 /// mol/s: m (b − c) = r cⁿ with b the bulk concentration in mol/m³. By Newton's method on a function that is monotone;
 /// closed for n = 0 and 1.
-pub fn at_surface(bulk: f64, film: f64, rate: f64, order: f64) -> f64 {
-    if bulk <= 0.0 || rate <= 0.0 || film.is_infinite() {
-        return bulk.max(0.0);
-    }
-    if order == 0.0 {
-        return (bulk - rate / film).max(0.0);
+pub fn at_surface<N: Number>(bulk: N, film: N, rate: N, order: f64) -> N {
+    let bulk = bulk.positive();
+    if rate.value() <= 0.0 || film.value().is_infinite() {
+        return bulk;
     }
     if order == 1.0 {
         return bulk * film / (film + rate);
     }
-    // Bisection keeps hold of the root, Newton's steps find it.
+    if bulk.value() <= 0.0 {
+        return bulk;
+    }
+    if order == 0.0 {
+        return (bulk - rate / film).positive();
+    }
+    let c = balance(bulk.value(), film.value(), rate.value(), order);
+    if c <= 0.0 {
+        return N::constant(0.0);
+    }
+    // One more of Newton's steps, by the slope at the root, has the root's derivatives.
+    let used = power(N::constant(c), order) * rate;
+    let slope = film.value() + order * used.value() / c;
+    N::constant(c) + (film * (bulk - N::constant(c)) - used).times(1.0 / slope)
+}
+
+/// The concentration for any order; bisection keeps hold of the root, Newton's steps find it.
+fn balance(bulk: f64, film: f64, rate: f64, order: f64) -> f64 {
     let (mut low, mut high) = (0.0, bulk);
     let mut c = bulk;
     for _ in 0..200 {
@@ -131,6 +150,29 @@ mod tests {
                 } else {
                     assert!(order == 0.0 && rate >= brought);
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn derivatives_of_the_surface_s_concentration_are_difference_quotients() {
+        use calcine_numerics::Dual;
+        for order in [0.0, 0.4, 1.0, 1.7] {
+            let dual = at_surface(
+                Dual::<3>::along(4.0, 0),
+                Dual::along(0.02, 1),
+                Dual::along(0.03, 2),
+                order,
+            );
+            let of = |x: [f64; 3]| at_surface(x[0], x[1], x[2], order);
+            for (k, slope) in dual.slope.iter().enumerate() {
+                let mut x = [4.0, 0.02, 0.03];
+                let h = 1e-5 * x[k];
+                x[k] += h;
+                let above = of(x);
+                x[k] -= 2.0 * h;
+                let quotient = (above - of(x)) / (2.0 * h);
+                assert!((slope - quotient).abs() < 1e-6 * (1.0 + quotient.abs()));
             }
         }
     }

@@ -2,19 +2,37 @@
 
 use std::f64::consts::PI;
 
+use calcine_numerics::Number;
+
 /// One interface of a particle whose layers react from the outside inwards, innermost first.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Interface {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interface<N = f64> {
     /// Radius of the interface over that of the particle, 0 to 1.
-    pub radius: f64,
+    pub radius: N,
     /// Rate constant of the interface, both directions together, in m/s: the flux of the gas into an
     /// interface of concentration c is k (c − c*).
-    pub rate_constant: f64,
+    pub rate_constant: N,
     /// Concentration c* of the gas in mol/m³ with which the interface is in equilibrium.
-    pub equilibrium: f64,
-    /// Effective diffusivity of the gas in m²/s in the layer outside the interface, up to the next one or
-    /// to the surface.
-    pub diffusivity: f64,
+    pub equilibrium: N,
+    /// Thickness of the layer outside the interface, up to the next one or to the surface, over the radius of the particle; in
+    /// thin layers the difference of the radii has no digits.
+    pub thickness: N,
+    /// Effective diffusivity of the gas in that layer in m²/s.
+    pub diffusivity: N,
+}
+
+impl<N: Number> Interface<N> {
+    /// An interface at the centre, where nothing reacts.
+    pub fn none() -> Self {
+        let zero = N::constant(0.0);
+        Self {
+            radius: zero,
+            rate_constant: zero,
+            equilibrium: zero,
+            thickness: zero,
+            diffusivity: zero,
+        }
+    }
 }
 
 /// Flow of a gas into each interface of a sphere in mol/s, by film, layers and kinetics in series; layers
@@ -32,57 +50,96 @@ pub struct Interface {
 /// Source: Yagi and Kunii, 5th Symposium on Combustion (1955) 231, doi 10.1016/S0082-0784(55)80033-1, for one
 /// interface; Spitzer, Manning and Philbrook, Trans. Metall. Soc. AIME 236 (1966) 1715, and Tsay, Ray and
 /// Szekely, AIChE J. 22 (1976) 1064, doi 10.1002/aic.690220617, for three.
-pub fn flows(radius: f64, film: f64, bulk: f64, interfaces: &[Interface], flows: &mut [f64]) {
-    let area = 4.0 * PI * radius * radius;
+///
+/// `driving` is c − c* at each interface in mol/m³, also where a rate constant is zero.
+pub fn flows<N: Number>(
+    radius: N,
+    film: f64,
+    bulk: N,
+    interfaces: &[Interface<N>],
+    flows: &mut [N],
+    driving: &mut [f64],
+) {
+    let area = (radius * radius).times(4.0 * PI);
+    let count = interfaces.len();
+    flows[..count].fill(N::constant(0.0));
+    let layer = |i: usize| {
+        let one = &interfaces[i];
+        let outer = interfaces
+            .get(i + 1)
+            .map_or(N::constant(1.0), |next| next.radius);
+        (one.thickness.value() > 0.0)
+            .then(|| radius * one.thickness / (one.diffusivity * one.radius * outer))
+    };
     // From the inside out: what lies within has the resistance z to the concentration e; `None` where
     // nothing there takes gas.
-    let mut within: Option<(f64, f64)> = None;
-    let count = interfaces.len();
-    let mut sources = [(0.0, 0.0); MOST_INTERFACES];
-    let layer = |i: usize| {
-        let inner = interfaces[i].radius;
-        let outer = interfaces.get(i + 1).map_or(1.0, |next| next.radius);
-        if outer > inner {
-            radius * (outer - inner) / (interfaces[i].diffusivity * inner * outer)
-        } else {
-            0.0
-        }
-    };
+    let mut within: Option<(N, N)> = None;
+    let mut branches = [None; MOST_INTERFACES];
+    let mut resistances = [0.0; MOST_INTERFACES];
     for (i, one) in interfaces.iter().enumerate() {
         let taking = one.rate_constant * one.radius * one.radius;
-        if taking > 0.0 {
-            within = Some(match within {
-                None => (1.0 / taking, one.equilibrium),
-                Some((z, e)) => {
-                    let both = 1.0 / z + taking;
-                    (1.0 / both, (e / z + taking * one.equilibrium) / both)
-                }
-            });
+        if taking.value() > 0.0 {
+            let (branch, joined) = join(taking, one.equilibrium, within);
+            branches[i] = Some(branch);
+            within = Some(joined);
         }
-        if let Some((z, _)) = &mut within {
+        if let (Some((z, _)), Some(resistance)) = (&mut within, layer(i)) {
             // Without anything taken within, the layer carries nothing.
-            *z += layer(i);
+            *z = *z + resistance;
+            resistances[i] = resistance.value();
         }
-        sources[i] = within.unwrap_or((f64::INFINITY, 0.0));
     }
-    flows[..count].fill(0.0);
-    let Some((z, e)) = within else { return };
-    // From the outside in: concentrations at the interfaces, and what each takes of the flow.
-    let mut flow = (bulk - e) / (z + 1.0 / film);
-    let mut concentration = bulk - flow / film;
-    for i in (0..count).rev() {
-        if sources[i].0.is_infinite() {
-            break;
+    // From the outside in: what each interface takes of the flow that arrives.
+    let mut flow = match within {
+        Some((z, e)) => (bulk - e) / (z + N::constant(1.0 / film)),
+        None => N::constant(0.0),
+    };
+    let mut concentration = bulk.value() - flow.value() / film;
+    for (i, one) in interfaces.iter().enumerate().rev() {
+        concentration -= flow.value() * resistances[i];
+        driving[i] = concentration - one.equilibrium.value();
+        if let Some(branch) = branches[i] {
+            let taken = branch.drawn + branch.share * flow;
+            flows[i] = area * taken;
+            flow = flow - taken;
+            // Where the difference of the concentrations has no digits, the flow has them.
+            driving[i] = taken.value() / (one.rate_constant * one.radius * one.radius).value();
+            if branch.innermost {
+                flow = N::constant(0.0);
+            }
         }
-        concentration -= flow * layer(i);
-        let one = &interfaces[i];
-        let taken = one.rate_constant * one.radius * one.radius * (concentration - one.equilibrium);
-        // The innermost takes what arrives: the difference would lose digits.
-        let last = i == 0 || sources[i - 1].0.is_infinite();
-        let taken = if last { flow } else { taken };
-        flows[i] = area * taken;
-        flow -= taken;
     }
+}
+
+/// How an interface shares a flow F with what lies within: it takes drawn + share · F.
+#[derive(Clone, Copy)]
+struct Branch<N> {
+    share: N,
+    drawn: N,
+    innermost: bool,
+}
+
+/// An interface of conductance K and equilibrium c* beside what lies within, of resistance z to e; both together then are
+/// one of resistance 1/(K + 1/z). With the concentration eliminated, the interface takes K ((e − c*)/z + F)/(K + 1/z): no
+/// difference of concentrations loses digits, however large K is.
+fn join<N: Number>(taking: N, rest: N, within: Option<(N, N)>) -> (Branch<N>, (N, N)) {
+    let Some((z, e)) = within else {
+        let branch = Branch {
+            share: N::constant(1.0),
+            drawn: N::constant(0.0),
+            innermost: true,
+        };
+        return (branch, (taking.inverse(), rest));
+    };
+    let inner = z.inverse();
+    let together = (inner + taking).inverse();
+    let share = taking * together;
+    let branch = Branch {
+        share,
+        drawn: share * (e - rest) * inner,
+        innermost: false,
+    };
+    (branch, (together, e * inner * together + share * rest))
 }
 
 /// Most interfaces of a particle.
@@ -95,6 +152,7 @@ mod tests {
     fn one(radius: f64) -> Interface {
         Interface {
             radius,
+            thickness: 1.0 - radius,
             rate_constant: 0.02,
             equilibrium: 1.0,
             diffusivity: 1e-5,
@@ -102,8 +160,18 @@ mod tests {
     }
 
     fn of(interfaces: &[Interface]) -> Vec<f64> {
+        let mut interfaces = interfaces.to_vec();
+        for k in 1..interfaces.len() {
+            interfaces[k - 1].thickness = interfaces[k].radius - interfaces[k - 1].radius;
+        }
         let mut out = vec![f64::NAN; interfaces.len()];
-        flows(5e-3, 0.05, 8.0, interfaces, &mut out);
+        let mut driving = vec![f64::NAN; interfaces.len()];
+        flows(5e-3, 0.05, 8.0, &interfaces, &mut out, &mut driving);
+        for ((flow, driving), one) in out.iter().zip(driving).zip(&interfaces) {
+            let area = 4.0 * PI * 25e-6 * one.radius * one.radius;
+            let expected = area * one.rate_constant * driving;
+            assert!((flow - expected).abs() <= 1e-13 * expected.abs());
+        }
         out
     }
 
@@ -121,18 +189,21 @@ mod tests {
         let interfaces = [
             Interface {
                 radius: 0.4,
+                thickness: 1.0 - 0.4,
                 rate_constant: 0.03,
                 equilibrium: 0.1,
                 diffusivity: 2e-5,
             },
             Interface {
                 radius: 0.6,
+                thickness: 1.0 - 0.6,
                 rate_constant: 0.02,
                 equilibrium: 2.0,
                 diffusivity: 3e-5,
             },
             Interface {
                 radius: 0.9,
+                thickness: 1.0 - 0.9,
                 rate_constant: 0.01,
                 equilibrium: 5.0,
                 diffusivity: 4e-5,
@@ -176,6 +247,45 @@ mod tests {
         assert!((flows[1] / flows[0] - 3.0).abs() < 1e-12);
         let sum = 4.0 * PI * 25e-6 * 7.0 / (20.0 + 1.0 / 0.04);
         assert!(((flows[0] + flows[1]) / sum - 1.0).abs() < 1e-13);
+    }
+
+    #[test]
+    fn an_interface_that_is_infinitely_fast_leaves_what_lies_within_its_equilibrium() {
+        // Within: (c* − e)/(R (ξ₂ − ξ₁)/(D ξ₁ ξ₂) + 1/(k ξ₁²)), whatever the fast one takes.
+        let within = one(0.4);
+        for rate_constant in [1e12, 1e20, 1e100] {
+            let fast = Interface {
+                rate_constant,
+                equilibrium: 3.0,
+                ..one(0.6)
+            };
+            let flows = of(&[within, fast]);
+            let resistance = 5e-3 * 0.2 / (1e-5 * 0.4 * 0.6) + 1.0 / (0.02 * 0.16);
+            let expected = 4.0 * PI * 25e-6 * 2.0 / resistance;
+            assert!((flows[0] / expected - 1.0).abs() < 1e-9, "{rate_constant}");
+            let outer = 5.0 / (20.0 + 500.0 * (1.0 / 0.6 - 1.0)) * 4.0 * PI * 25e-6;
+            assert!(((flows[0] + flows[1]) / outer - 1.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn an_interface_that_takes_nothing_is_told_what_would_drive_it() {
+        let idle = Interface {
+            rate_constant: 0.0,
+            ..one(0.6)
+        };
+        let active = [one(0.4), idle];
+        let (mut flow, mut driving) = ([0.0; 2], [0.0; 2]);
+        let mut active = active;
+        active[0].thickness = 0.2;
+        flows(5e-3, 0.05, 8.0, &active, &mut flow, &mut driving);
+        let area = 4.0 * PI * 25e-6;
+        let layer = 5e-3 * 0.4 / (1e-5 * 0.6);
+        let expected = 8.0 - flow[0] / area * (20.0 + layer) - 1.0;
+        assert!((driving[1] / expected - 1.0).abs() < 1e-13);
+        let still = [idle];
+        flows(5e-3, 0.05, 8.0, &still, &mut flow, &mut driving);
+        assert_eq!((flow[0], driving[0]), (0.0, 7.0));
     }
 
     #[test]

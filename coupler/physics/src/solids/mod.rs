@@ -149,6 +149,11 @@ impl SolidSpecies {
         self.heat_capacity.at(temperature)
     }
 
+    /// Derivative of the specific heat capacity in J/kg/K².
+    pub fn heat_capacity_slope(&self, temperature: f64) -> f64 {
+        self.heat_capacity.slope(temperature)
+    }
+
     /// Sensible enthalpy in J/kg, zero at 298.15 K.
     pub fn enthalpy(&self, temperature: f64) -> f64 {
         self.heat_capacity.enthalpy(temperature) - self.reference[0]

@@ -1,0 +1,476 @@
+//! One particle over one window, with the gas about it held.
+
+use calcine_numerics::rosenbrock::{IntegrationAccuracy, MOST_STEPS, SystemDerivatives};
+use calcine_numerics::{
+    DenseMatrix, Dual, IntegrationStalled, IntegrationStatistics, Rosenbrock, RosenbrockTableau,
+    StiffSystem,
+};
+
+use super::chemistry::SolidChemistry;
+use super::rates::{ParticleSurroundings, RateState, TRACE};
+
+/// How exactly particles are integrated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParticleAccuracy {
+    /// Errors of amounts and of extents in a step, as a share of a particle's solids.
+    pub amount: f64,
+    /// Error of its temperature in a step in K.
+    pub temperature: f64,
+}
+
+impl Default for ParticleAccuracy {
+    fn default() -> Self {
+        Self {
+            amount: 1e-6,
+            temperature: 1e-2,
+        }
+    }
+}
+
+/// A particle at the start of a window, and what acts on it.
+#[derive(Clone, Copy, Debug)]
+pub struct ParticleStart<'a> {
+    /// Amounts of all solids in mol.
+    pub amounts: &'a [f64],
+    /// Its temperature in K.
+    pub temperature: f64,
+    /// The gas about it.
+    pub around: ParticleSurroundings<'a>,
+    /// h A in W/K.
+    pub conductance: f64,
+    /// Heat that it conducts and radiates, in W.
+    pub heat: f64,
+}
+
+/// What a window does to a particle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParticleOutcome {
+    /// Its mean temperature in K.
+    pub mean: f64,
+    /// Its temperature at the end in K.
+    pub end: f64,
+    /// Change of the mean temperature with that of the gas.
+    pub mean_slope: f64,
+    /// What its integration took.
+    pub statistics: IntegrationStatistics,
+}
+
+/// Memory of attempts, reused; no result depends on what it was used for before.
+#[derive(Clone, Debug)]
+pub struct ParticleWorkspace {
+    method: Rosenbrock<DenseMatrix>,
+    unknowns: Vec<f64>,
+    tolerance: Vec<f64>,
+    /// What each reaction turns over, in mol.
+    pub extents: Vec<f64>,
+    /// How that changes with the mole fraction of each reaction's key gas, in mol.
+    pub slopes: Vec<f64>,
+    buffers: Buffers,
+}
+
+impl Default for ParticleWorkspace {
+    fn default() -> Self {
+        Self {
+            method: Rosenbrock::new(&RosenbrockTableau::RODAS4, DenseMatrix::default()),
+            unknowns: Vec::new(),
+            tolerance: Vec::new(),
+            extents: Vec::new(),
+            slopes: Vec::new(),
+            buffers: Buffers::default(),
+        }
+    }
+}
+
+/// By how much temperatures are varied for the slopes of heats, in K.
+const VARIED: f64 = 10.0;
+/// Directions of derivatives that one evaluation gives.
+const WIDTH: usize = 8;
+type Slopes = Dual<WIDTH>;
+
+#[derive(Clone, Debug, Default)]
+struct Buffers {
+    amounts: Vec<f64>,
+    rates: Vec<f64>,
+    amounts_dual: Vec<Slopes>,
+    fractions_dual: Vec<Slopes>,
+    rates_dual: Vec<Slopes>,
+    /// Heat of each reaction in J/mol at the start, and its changes with the temperatures of the particle and the gas.
+    warmth: Vec<[f64; 3]>,
+    /// Molar heat capacity of each solid in J/mol/K, and its slope.
+    molar: Vec<[f64; 2]>,
+}
+
+impl SolidChemistry {
+    /// Follows a particle over a span in s. Extents and their slopes are left in the workspace.
+    ///
+    /// The unknowns are the amounts n of the solids that react, and the temperature T, the integrals the extents ξ:
+    ///
+    /// dn_s/dτ = Σ_j ν_sj r_j,   C dT/dτ = h A (T_gas − T) + Q + Σ_j r_j q_j,   dξ_j/dτ = r_j.
+    ///
+    /// Amounts, not extents, are the unknowns, because what is left of a solid that a fast reaction uses as
+    /// it is made is a difference of extents without digits. The extents keep all amounts: n = n₀ + ν ξ to round-off.
+    pub fn follow(
+        &self,
+        start: &ParticleStart<'_>,
+        span: f64,
+        accuracy: ParticleAccuracy,
+        workspace: &mut ParticleWorkspace,
+    ) -> Result<ParticleOutcome, IntegrationStalled> {
+        let ParticleWorkspace {
+            method,
+            unknowns,
+            tolerance,
+            extents,
+            slopes,
+            buffers,
+        } = workspace;
+        let (moving, count) = (self.moving().len(), self.reactions.len());
+        let all: f64 = start.amounts.iter().map(|n| n.max(0.0)).sum();
+        unknowns.clear();
+        unknowns.extend(self.moving().iter().map(|&s| start.amounts[s]));
+        unknowns.push(start.temperature);
+        tolerance.clear();
+        tolerance.resize(moving, accuracy.amount * all);
+        tolerance.push(accuracy.temperature);
+        tolerance.resize(moving + 1 + count, accuracy.amount * all);
+        // The integral of the temperature follows it.
+        tolerance.push(f64::INFINITY);
+        buffers.begin(self, start);
+        method.algebra().resize(moving + 1);
+        let mut system = ParticleSystem {
+            chemistry: self,
+            start,
+            trace: TRACE * all,
+            tolerance: accuracy.amount * all,
+            buffers,
+        };
+        let accuracy = IntegrationAccuracy {
+            relative: 0.0,
+            absolute: tolerance,
+            steps: MOST_STEPS,
+        };
+        let statistics = method.integrate(&mut system, unknowns, span, accuracy)?;
+        extents.clear();
+        extents.extend_from_slice(&method.integrals()[..count]);
+        slopes.clear();
+        let own = |j: usize| match self.direction(j) {
+            Some(direction) => method.tangent(direction)[moving + 1 + j],
+            None => 0.0,
+        };
+        slopes.extend((0..count).map(own));
+        let gas_temperature = self.directions().len();
+        Ok(ParticleOutcome {
+            mean: method.integrals()[count] / span,
+            end: unknowns[moving],
+            mean_slope: method.tangent(gas_temperature)[moving + 1 + count] / span,
+            statistics,
+        })
+    }
+
+    /// The reaction that does most to the value that an integration ended at.
+    pub fn worst_reaction(&self, worst: usize, workspace: &ParticleWorkspace) -> &str {
+        let moving = self.moving().len();
+        let rates = &workspace.buffers.rates;
+        let effect = |j: usize| match worst {
+            _ if worst > moving => f64::from(u8::from(worst - moving - 1 == j)),
+            _ if worst == moving => rates[j] * workspace.buffers.warmth[j][0],
+            _ => self
+                .effects(j)
+                .iter()
+                .filter(|one| one.0 == worst)
+                .map(|one| one.1 * rates[j])
+                .sum(),
+        };
+        let largest = |best: usize, j: usize| {
+            if effect(j).abs() > effect(best).abs() {
+                j
+            } else {
+                best
+            }
+        };
+        let found = (0..self.reactions.len()).fold(0, largest);
+        self.reactions.get(found).map_or("", |one| &one.name)
+    }
+}
+
+impl Buffers {
+    fn begin(&mut self, chemistry: &SolidChemistry, start: &ParticleStart<'_>) {
+        let (begin, hot) = (start.temperature, start.around.temperature);
+        let zero = Slopes {
+            value: 0.0,
+            slope: [0.0; WIDTH],
+        };
+        self.amounts.clear();
+        self.amounts.extend_from_slice(start.amounts);
+        self.rates.clear();
+        self.rates.resize(chemistry.reactions.len(), 0.0);
+        self.rates_dual.resize(chemistry.reactions.len(), zero);
+        self.amounts_dual.resize(start.amounts.len(), zero);
+        self.fractions_dual
+            .resize(start.around.fractions.len(), zero);
+        self.molar.resize(start.amounts.len(), [0.0; 2]);
+        // The heat of a reaction follows temperature so slowly that a line will do here; what is booked is exact.
+        self.warmth.clear();
+        self.warmth.extend((0..chemistry.reactions.len()).map(|j| {
+            let at = chemistry.warmth(j, begin, hot);
+            let rise = |begin: f64, hot: f64| (chemistry.warmth(j, begin, hot) - at) / VARIED;
+            [at, rise(begin + VARIED, hot), rise(begin, hot + VARIED)]
+        }));
+    }
+}
+
+/// The equations of a particle ([`SolidChemistry::follow`]).
+struct ParticleSystem<'a> {
+    chemistry: &'a SolidChemistry,
+    start: &'a ParticleStart<'a>,
+    /// In mol.
+    trace: f64,
+    /// What an amount may be below zero, in mol.
+    tolerance: f64,
+    buffers: &'a mut Buffers,
+}
+
+impl ParticleSystem<'_> {
+    /// Heat capacity in J/K and its change with temperature; the molar ones stay in the buffer.
+    fn capacity(&mut self, temperature: f64) -> [f64; 2] {
+        let mut all = [0.0; 2];
+        let solids = self.chemistry.solids.iter().zip(&self.buffers.amounts);
+        for ((solid, n), molar) in solids.zip(&mut self.buffers.molar) {
+            let mass = solid.molar_mass();
+            *molar = [
+                mass * solid.heat_capacity(temperature),
+                mass * solid.heat_capacity_slope(temperature),
+            ];
+            all[0] += n * molar[0];
+            all[1] += n * molar[1];
+        }
+        all
+    }
+
+    /// Takes up the unknowns; their temperature in K.
+    fn place(&mut self, y: &[f64]) -> f64 {
+        for (&s, n) in self.chemistry.moving().iter().zip(y) {
+            self.buffers.amounts[s] = *n;
+        }
+        y[self.chemistry.moving().len()]
+    }
+
+    /// What follows from the rates: changes of amounts, of temperature, of extents, of its integral. The result is
+    /// the capacity, and the heat of reaction in W with its change with temperature at fixed rates.
+    fn fill(&mut self, temperature: f64, out: &mut [f64]) -> ([f64; 2], [f64; 2]) {
+        let moving = self.chemistry.moving().len();
+        out.fill(0.0);
+        let mut released = [0.0; 2];
+        for (j, (rate, warmth)) in self
+            .buffers
+            .rates
+            .iter()
+            .zip(&self.buffers.warmth)
+            .enumerate()
+        {
+            for &(k, n) in self.chemistry.effects(j) {
+                out[k] += n * rate;
+            }
+            released[0] += rate * (warmth[0] + warmth[1] * (temperature - self.start.temperature));
+            released[1] += rate * warmth[1];
+            out[moving + 1 + j] = *rate;
+        }
+        let capacity = self.capacity(temperature);
+        let taken = self.start.conductance * (self.start.around.temperature - temperature);
+        out[moving] = (taken + self.start.heat + released[0]) / capacity[0];
+        let last = out.len() - 1;
+        out[last] = temperature;
+        (capacity, released)
+    }
+}
+
+impl StiffSystem for ParticleSystem<'_> {
+    fn unknowns(&self) -> usize {
+        self.chemistry.moving().len() + 1
+    }
+
+    fn integrals(&self) -> usize {
+        self.chemistry.reactions.len() + 1
+    }
+
+    fn parameters(&self) -> usize {
+        self.chemistry.directions().len() + 1
+    }
+
+    fn rates(&mut self, y: &[f64], out: &mut [f64]) {
+        let temperature = self.place(y);
+        let state = RateState {
+            amounts: &self.buffers.amounts,
+            fractions: self.start.around.fractions,
+            temperature,
+            trace: self.trace,
+        };
+        let rates = &mut self.buffers.rates;
+        self.chemistry.rates(&self.start.around, &state, rates);
+        self.fill(temperature, out);
+    }
+
+    fn differentiate(&mut self, y: &[f64], out: &mut [f64], derivatives: &mut SystemDerivatives) {
+        let chemistry = self.chemistry;
+        let n = y.len();
+        let (temperature, place_of_temperature) = (self.place(y), n - 1);
+        let directions = n + chemistry.directions().len();
+        for first in (0..directions).step_by(WIDTH) {
+            let last = (first + WIDTH).min(directions);
+            self.differentiate_by(first..last, temperature);
+            if first == 0 {
+                let values = self.buffers.rates_dual.iter().map(|one| one.value);
+                self.buffers.rates.clear();
+                self.buffers.rates.extend(values);
+            }
+            for (j, rate) in self.buffers.rates_dual.iter().enumerate() {
+                let warmth = self.buffers.warmth[j];
+                let heat = warmth[0] + warmth[1] * (temperature - self.start.temperature);
+                for (direction, slope) in (first..last).zip(rate.slope) {
+                    if direction < n {
+                        for &(k, moles) in chemistry.effects(j) {
+                            derivatives.jacobian[k * n + direction] += moles * slope;
+                        }
+                        derivatives.jacobian[place_of_temperature * n + direction] += heat * slope;
+                        derivatives.integrals[j * n + direction] = slope;
+                    } else {
+                        let column = &mut derivatives.parameters[(direction - n) * out.len()..];
+                        for &(k, moles) in chemistry.effects(j) {
+                            column[k] += moles * slope;
+                        }
+                        column[place_of_temperature] += heat * slope;
+                        column[n + j] = slope;
+                    }
+                }
+            }
+        }
+        let (capacity, released) = self.fill(temperature, out);
+        // C dT/dτ = …: the row of the temperature holds the slopes of its right side so far.
+        let rise = out[place_of_temperature];
+        let row = &mut derivatives.jacobian[place_of_temperature * n..];
+        for (slope, &s) in row.iter_mut().zip(chemistry.moving()) {
+            *slope -= rise * self.buffers.molar[s][0];
+        }
+        row[place_of_temperature] += released[1] - self.start.conductance - rise * capacity[1];
+        row.iter_mut().for_each(|slope| *slope /= capacity[0]);
+        derivatives.integrals[chemistry.reactions.len() * n + place_of_temperature] = 1.0;
+        for column in derivatives.parameters.chunks_exact_mut(out.len()) {
+            column[place_of_temperature] /= capacity[0];
+        }
+        let last = chemistry.directions().len() * out.len();
+        let heats = self.buffers.rates.iter().zip(&self.buffers.warmth);
+        let brought: f64 = heats.map(|(rate, warmth)| rate * warmth[2]).sum();
+        derivatives.parameters[last + place_of_temperature] =
+            (self.start.conductance + brought) / capacity[0];
+    }
+
+    fn admissible(&self, from: &[f64], to: &[f64]) -> f64 {
+        let amounts = from.iter().zip(to).take(self.chemistry.moving().len());
+        amounts.fold(1.0, |least: f64, (from, to)| {
+            if *to < -self.tolerance {
+                least.min((from / (from - to)).max(0.0))
+            } else {
+                least
+            }
+        })
+    }
+
+    /// Takes back what reactions used of a solid beyond what was there, by their shares in all that was used of it.
+    fn correct(&mut self, y: &mut [f64], extents: &mut [f64], tangent: &mut [f64]) {
+        let chemistry = self.chemistry;
+        let (moving, count) = (chemistry.moving().len(), chemistry.reactions.len());
+        let width = y.len() + extents.len();
+        for _ in 0..=moving {
+            let Some(solid) = (0..moving).find(|&k| y[k] < 0.0) else {
+                return;
+            };
+            let uses = |j: usize, extent: f64| {
+                let effects = chemistry.effects(j).iter();
+                let moles: f64 = effects.filter(|one| one.0 == solid).map(|one| one.1).sum();
+                (moles, (-moles * extent).max(0.0))
+            };
+            let used: f64 = (0..count).map(|j| uses(j, extents[j]).1).sum();
+            if used <= 0.0 {
+                return;
+            }
+            for j in 0..count {
+                let (moles, own) = uses(j, extents[j]);
+                if own == 0.0 {
+                    continue;
+                }
+                // What a unit of the lack takes back of this reaction.
+                let share = own / (used * moles);
+                let give_back = |lack: f64, amounts: &mut [f64], extent: usize| {
+                    amounts[extent] -= share * lack;
+                    for &(k, n) in chemistry.effects(j).iter().filter(|one| one.0 != solid) {
+                        amounts[k] -= n * share * lack;
+                    }
+                };
+                for column in tangent.chunks_exact_mut(width) {
+                    give_back(column[solid], column, moving + 1 + j);
+                }
+                let lack = y[solid];
+                extents[j] -= share * lack;
+                for &(k, n) in chemistry.effects(j).iter().filter(|one| one.0 != solid) {
+                    y[k] -= n * share * lack;
+                }
+            }
+            y[solid] = 0.0;
+            for column in tangent.chunks_exact_mut(width) {
+                column[solid] = 0.0;
+            }
+        }
+    }
+}
+
+impl ParticleSystem<'_> {
+    /// Rates with their derivatives in a range of the directions: amounts, temperature, gases.
+    fn differentiate_by(&mut self, directions: std::ops::Range<usize>, temperature: f64) {
+        let chemistry = self.chemistry;
+        let (moving, first) = (chemistry.moving().len(), directions.start);
+        let buffers = &mut *self.buffers;
+        let zero = [0.0; WIDTH];
+        for (dual, value) in buffers.amounts_dual.iter_mut().zip(&buffers.amounts) {
+            *dual = Slopes {
+                value: *value,
+                slope: zero,
+            };
+        }
+        let fractions = self.start.around.fractions;
+        for (dual, value) in buffers.fractions_dual.iter_mut().zip(fractions) {
+            *dual = Slopes {
+                value: *value,
+                slope: zero,
+            };
+        }
+        let mut warm = Slopes {
+            value: temperature,
+            slope: zero,
+        };
+        for direction in directions {
+            let lane = direction - first;
+            if direction < moving {
+                let solid = chemistry.moving()[direction];
+                buffers.amounts_dual[solid].slope[lane] = 1.0;
+            } else if direction == moving {
+                warm.slope[lane] = 1.0;
+            } else {
+                let (key, product) = chemistry.directions()[direction - moving - 1];
+                buffers.fractions_dual[key].slope[lane] = 1.0;
+                if let Some(product) = product {
+                    buffers.fractions_dual[product].slope[lane] = -1.0;
+                }
+            }
+        }
+        let state = RateState {
+            amounts: &buffers.amounts_dual,
+            fractions: &buffers.fractions_dual,
+            temperature: warm,
+            trace: self.trace,
+        };
+        chemistry.rates(&self.start.around, &state, &mut buffers.rates_dual);
+    }
+}
+
+#[cfg(test)]
+mod tests;

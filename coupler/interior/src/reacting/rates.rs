@@ -1,0 +1,375 @@
+//! Rates of a particle's reactions, with or without derivatives.
+
+use std::f64::consts::PI;
+
+use calcine_numerics::Number;
+use calcine_physics::gas::GAS_CONSTANT;
+use calcine_physics::reaction::equilibrium::STANDARD_PRESSURE;
+use calcine_physics::reaction::shrinking_core::{self, Interface, MOST_INTERFACES};
+use calcine_physics::reaction::{Equilibrium, PowerLaw, power_law};
+
+use super::chemistry::{Rate, Reaction, SolidChemistry};
+use super::layers::{GasPath, Layers};
+use super::size::SizeChange;
+
+/// A trace: the share of a particle's solids at the start of a window below which the rate of what uses a solid goes to
+/// zero with what is left of it. With x the amount in traces, the factor is
+///
+/// - of a rate that does not follow the amount, x (2 − x): its slope has no jump at x = 1 and is steep at x = 0;
+/// - of a power law of order m < 1 in that solid, x ((2 − m) + (m − 1) x) times the law at one trace, with the law's own slope at
+///   x = 1; orders of one and more end by themselves;
+/// - of a shrinking core, x (2 − x) of its flow, with the radius of the interface no smaller than that of a core of one trace.
+///
+/// So rates end where nothing is left, and have a slope there by which an implicit step finds that end.
+pub const TRACE: f64 = 1e-6;
+
+/// What is left of that factor where nothing is there, so that its slope is not lost; what it uses is taken back.
+const NOTHING: f64 = 1e-9;
+
+/// The surroundings of one particle, fixed over a window.
+#[derive(Clone, Copy, Debug)]
+pub struct ParticleSurroundings<'a> {
+    /// Temperature of the gas in K.
+    pub temperature: f64,
+    /// Its pressure in Pa.
+    pub pressure: f64,
+    /// Mole fractions.
+    pub fractions: &'a [f64],
+    /// Mass transfer coefficient of each species in m/s.
+    pub film: &'a [f64],
+    /// Radius of the particle in m at the start, which stays where its diameter does.
+    pub radius: f64,
+    /// How it takes up room.
+    pub size: &'a SizeChange,
+}
+
+/// What the rates of a particle depend on within a window.
+#[derive(Clone, Copy, Debug)]
+pub struct RateState<'a, N> {
+    /// Amounts of all solids in mol.
+    pub amounts: &'a [N],
+    /// Mole fractions of the gas.
+    pub fractions: &'a [N],
+    /// Temperature of the particle in K.
+    pub temperature: N,
+    /// The amount in mol that is a trace ([`TRACE`]).
+    pub trace: f64,
+}
+
+impl<N: Number> RateState<'_, N> {
+    /// The factor of what uses a solid by an order below one ([`TRACE`]).
+    fn presence(&self, solid: usize, order: f64) -> N {
+        let amount = self.amounts[solid];
+        let x = amount.value() / self.trace;
+        if x >= 1.0 {
+            N::constant(1.0)
+        } else if x >= 0.0 {
+            let (steep, bend) = (2.0 - order, order - 1.0);
+            amount.through(
+                x * (steep + bend * x),
+                (steep + 2.0 * bend * x) / self.trace,
+            )
+        } else {
+            N::constant(0.0)
+        }
+    }
+
+    /// The factor of what uses a solid at an interface.
+    fn core_presence(&self, solid: usize) -> N {
+        let factor = self.presence(solid, 0.0);
+        if factor.value() >= 1.0 || self.amounts[solid].value() < 0.0 {
+            factor
+        } else {
+            factor.times(1.0 - NOTHING) + N::constant(NOTHING)
+        }
+    }
+
+    /// An amount in mol, at least a trace.
+    fn at_least_a_trace(&self, solid: usize) -> N {
+        let amount = self.amounts[solid];
+        if amount.value() > self.trace {
+            amount
+        } else {
+            N::constant(self.trace)
+        }
+    }
+}
+
+impl SolidChemistry {
+    /// Rates of all reactions of a particle in mol/s.
+    pub fn rates<N: Number>(
+        &self,
+        around: &ParticleSurroundings<'_>,
+        state: &RateState<'_, N>,
+        out: &mut [N],
+    ) {
+        out.fill(N::constant(0.0));
+        let radius = around.size.radius_of(state.amounts, around.radius);
+        let all_gas = state
+            .temperature
+            .inverse()
+            .times(around.pressure / GAS_CONSTANT);
+        for (index, reaction) in self.reactions.iter().enumerate() {
+            if let Rate::Power(law) = &reaction.rate {
+                let key = self.key(index);
+                out[index] = power(reaction, (law, key), around, state, (radius, all_gas));
+            }
+        }
+        for layers in self.layers() {
+            self.core(layers, around, state, (radius, all_gas), out);
+        }
+    }
+
+    fn core<N: Number>(
+        &self,
+        layers: &Layers,
+        around: &ParticleSurroundings<'_>,
+        state: &RateState<'_, N>,
+        (radius, all_gas): (N, N),
+        out: &mut [N],
+    ) {
+        let count = layers.solids.len() - 1;
+        let volumes = around.size.volumes();
+        let weighed = |k: usize| {
+            let solid = layers.solids[k];
+            let room = volumes.map_or(layers.weights[k], |each| each[solid]);
+            state.amounts[solid].positive().times(room)
+        };
+        let sum = |sum: N, k: usize| sum + weighed(k);
+        let all = (0..=count).fold(N::constant(0.0), sum);
+        if all.value() <= 0.0 {
+            return;
+        }
+        let mut places = [N::constant(0.0); MOST_INTERFACES];
+        let mut within = N::constant(0.0);
+        // Thicknesses of layers times all volumes, without differences: those of thin ones have no digits.
+        let mut layers_of = [N::constant(0.0); MOST_INTERFACES];
+        for (k, place) in places.iter_mut().enumerate().take(count) {
+            layers_of[k] = weighed(k + 1) / all;
+            within = within + weighed(k);
+            let share = within / all;
+            *place = if share.value() >= 1.0 {
+                N::constant(1.0)
+            } else if share.value() > TRACE {
+                share.cbrt()
+            } else {
+                N::constant(TRACE.cbrt())
+            };
+        }
+        for path in &layers.paths {
+            let mut interfaces = [Interface::<N>::none(); MOST_INTERFACES];
+            let mut sides = [None; MOST_INTERFACES];
+            let bulk = all_gas * state.fractions[path.key];
+            for (k, interface) in interfaces.iter_mut().enumerate().take(count) {
+                let (inner, outer) = (places[k], places.get(k + 1).copied());
+                let outer = outer.filter(|_| k + 1 < count).unwrap_or(N::constant(1.0));
+                interface.radius = inner;
+                interface.thickness =
+                    layers_of[k] / (inner * inner + inner * outer + outer * outer);
+                interface.diffusivity = path.diffusivity[k].at(state.temperature);
+                if let Some(index) = path.reactions[k] {
+                    let reaction = &self.reactions[index];
+                    let (constant, at_rest) =
+                        both_ways(reaction, path, around, state, (bulk, all_gas));
+                    interface.equilibrium = at_rest;
+                    sides[k] = Some(Sides {
+                        constant,
+                        // What film and a layer of the particle's size let pass.
+                        passed: interface.diffusivity.times(1.0 / around.radius)
+                            + N::constant(around.film[path.key]),
+                        inner: state.core_presence(layers.solids[k]),
+                        outer: state.core_presence(layers.solids[k + 1]),
+                        used: moles(reaction, path.key) < 0.0,
+                        forwards: true,
+                    });
+                }
+            }
+            let mut flows = [N::constant(0.0); MOST_INTERFACES];
+            let mut driving = [0.0; MOST_INTERFACES];
+            let film = around.film[path.key];
+            // Forwards a reaction goes as far as its solid is there, backwards as far as its layer is; where that
+            // matters, which of the two it is follows from what drives it.
+            for _ in 0..=2 * count {
+                for (interface, side) in interfaces.iter_mut().zip(&sides) {
+                    if let Some(side) = side {
+                        interface.rate_constant = side.rate_constant();
+                    }
+                }
+                let known = &interfaces[..count];
+                shrinking_core::flows(radius, film, bulk, known, &mut flows, &mut driving);
+                let pairs = sides.iter_mut().flatten().zip(&driving);
+                let turned = pairs.filter_map(|(side, driving)| side.turn(*driving));
+                if turned.count() == 0 {
+                    break;
+                }
+            }
+            for (flow, index) in flows.iter().zip(&path.reactions) {
+                if let Some(index) = *index {
+                    out[index] = flow.times(-1.0 / moles(&self.reactions[index], path.key));
+                }
+            }
+        }
+    }
+}
+
+/// A reaction at an interface between two solids.
+#[derive(Clone, Copy)]
+struct Sides<N> {
+    /// Rate constant of both directions together in m/s, with all solids there.
+    constant: N,
+    /// What film and layer let pass in m/s.
+    passed: N,
+    inner: N,
+    outer: N,
+    /// True for a gas that the reaction uses forwards.
+    used: bool,
+    forwards: bool,
+}
+
+impl<N: Number> Sides<N> {
+    /// The rate constant by what is there of the solid that is used, s: that of the flow s J, with J the flow through
+    /// film, layer and interface in series of the full constant. So the end of a solid is as smooth as s, however
+    /// fast its reaction.
+    fn rate_constant(&self) -> N {
+        let there = if self.forwards {
+            self.inner
+        } else {
+            self.outer
+        };
+        if there.value() >= 1.0 {
+            return self.constant;
+        }
+        let rest = (N::constant(1.0) - there) * self.constant / self.passed;
+        there * self.constant / (N::constant(1.0) + rest)
+    }
+
+    /// Takes up the direction in which it is driven; `Some` where that changes its rate.
+    fn turn(&mut self, driving: f64) -> Option<()> {
+        let forwards = (driving >= 0.0) == self.used;
+        let same = forwards == self.forwards || self.inner.value() == self.outer.value();
+        self.forwards = forwards;
+        (!same).then_some(())
+    }
+}
+
+/// Rate constant of an interface, both directions together, and the concentration at which it rests.
+fn both_ways<N: Number>(
+    reaction: &Reaction,
+    path: &GasPath,
+    around: &ParticleSurroundings<'_>,
+    state: &RateState<'_, N>,
+    (bulk, all_gas): (N, N),
+) -> (N, N) {
+    let Rate::Core { rate_constant, .. } = &reaction.rate else {
+        return (N::constant(0.0), N::constant(0.0));
+    };
+    let back = reaction.equilibrium.inverse(state.temperature);
+    let forward = rate_constant.of(state.temperature);
+    if let Some(product) = path.product {
+        // k (c − c'/K) with c + c' the same everywhere
+        let both = bulk + all_gas * state.fractions[product];
+        let together = N::constant(1.0) + back;
+        return (forward * together, both * back / together);
+    }
+    let moles = moles(reaction, path.key);
+    let at_rest = if back.value() > 0.0 {
+        let power = back.ln().times(-1.0 / moles).exp();
+        all_gas.times(STANDARD_PRESSURE / around.pressure) * power
+    } else {
+        N::constant(0.0)
+    };
+    (forward, at_rest)
+}
+
+/// Rate of a reaction in the whole volume of a particle in mol/s.
+fn power<N: Number>(
+    reaction: &Reaction,
+    (law, key): (&PowerLaw, Option<usize>),
+    around: &ParticleSurroundings<'_>,
+    state: &RateState<'_, N>,
+    (radius, all_gas): (N, N),
+) -> N {
+    let zero = N::constant(0.0);
+    let order_in = |s: usize| {
+        let found = law.solids.iter().find(|one| one.0 == s);
+        found.map_or(0.0, |one| one.1)
+    };
+    let ends = |s: usize| {
+        let used = reaction.solids.iter().any(|one| one.0 == s && one.1 < 0.0);
+        used && order_in(s) < 1.0
+    };
+    let area = (radius * radius).times(4.0 * PI);
+    let volume = (area * radius).times(1.0 / 3.0);
+    let solid = |s: usize| {
+        if ends(s) {
+            state.at_least_a_trace(s) / volume
+        } else {
+            state.amounts[s].positive() / volume
+        }
+    };
+    let used = reaction.solids.iter().filter(|one| ends(one.0));
+    let left = used.fold(N::constant(1.0), |left, one| {
+        left * state.presence(one.0, order_in(one.0))
+    });
+    let gas = |g: usize| all_gas * state.fractions[g];
+    let (rest, order) = law.without(key, state.temperature, solid, gas);
+    let rest = left * volume * rest;
+    let back = quotient(reaction, around, state) * reaction.equilibrium.inverse(state.temperature);
+    let distance = N::constant(1.0) - back;
+    let Some(key) = key else {
+        return rest * distance;
+    };
+    let moles = moles_of(reaction, key).unwrap_or(0.0);
+    let rate = if moles > 0.0 {
+        rest * power_law::power(gas(key), order) * distance
+    } else if order == 0.0 && state.fractions[key].value() <= 0.0 {
+        zero
+    } else {
+        let film = area.times(around.film[key] / -moles);
+        let surface = power_law::at_surface(gas(key), film, rest, order);
+        let forward = if order == 0.0 && surface.value() <= 0.0 {
+            film * gas(key)
+        } else {
+            rest * power_law::power(surface, order)
+        };
+        forward * distance
+    };
+    if rate.value() >= 0.0 {
+        rate
+    } else {
+        // Backwards a reaction goes as far as its products are there.
+        let made = reaction.solids.iter().filter(|one| one.1 > 0.0);
+        made.fold(rate, |rate, one| rate * state.presence(one.0, 0.0))
+    }
+}
+
+/// Π (p_i/p°)^ν of a reaction's gases.
+fn quotient<N: Number>(
+    reaction: &Reaction,
+    around: &ParticleSurroundings<'_>,
+    state: &RateState<'_, N>,
+) -> N {
+    if reaction.equilibrium == Equilibrium::OneWay {
+        return N::constant(0.0);
+    }
+    let mut product = N::constant(1.0);
+    for &(g, n) in &reaction.gases {
+        let over = state.fractions[g].times(around.pressure / STANDARD_PRESSURE);
+        // Of a gas that is used up and not there, nothing reacts forwards either.
+        if over.value() <= 0.0 {
+            return N::constant(0.0);
+        }
+        product = product * power_law::power(over, n);
+    }
+    product
+}
+
+/// Moles of a gas that a mole of a reaction makes.
+fn moles_of(reaction: &Reaction, gas: usize) -> Option<f64> {
+    let found = reaction.gases.iter().find(|one| one.0 == gas);
+    found.map(|one| one.1)
+}
+
+fn moles(reaction: &Reaction, gas: usize) -> f64 {
+    moles_of(reaction, gas).unwrap_or(-1.0)
+}
