@@ -9,7 +9,7 @@ pub const OK: u8 = 0;
 pub const OTHER: u8 = 1;
 /// The case, or the command line, is wrong.
 pub const CASE: u8 = 2;
-/// A solver diverged.
+/// A solver diverged, did not converge, or lost particles.
 pub const DIVERGED: u8 = 3;
 /// A peer died, was silent, or could not be started.
 pub const PEER: u8 = 4;
@@ -22,14 +22,18 @@ pub const CHECKPOINTED: u8 = 75;
 pub fn of(error: &RunError) -> u8 {
     match error {
         RunError::Part(part) => match part.kind {
-            FailureKind::Diverged => DIVERGED,
-            FailureKind::Io => OTHER,
+            FailureKind::Diverged
+            | FailureKind::NotFinite
+            | FailureKind::NotConverged
+            | FailureKind::LostParticles => DIVERGED,
+            FailureKind::Io | FailureKind::OutOfMemory => OTHER,
             FailureKind::Refused => CASE,
             FailureKind::Interrupted => CHECKPOINTED,
             FailureKind::Died
             | FailureKind::Silent
             | FailureKind::NotStarted
             | FailureKind::Protocol
+            | FailureKind::InvalidInput
             | FailureKind::Reported => PEER,
         },
         RunError::Smoother(_) | RunError::Mapping(_) | RunError::Origin(_) => CASE,

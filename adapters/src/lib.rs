@@ -1,8 +1,10 @@
-//! External solvers as parts of a run: OpenFOAM for the gas, LIGGGHTS for the particles.
+//! External solvers as parts of a run: OpenFOAM for the gas, LIGGGHTS for the particles, and those of users.
 //!
 //! [`launch`] starts and ends processes, [`solver`] speaks with them; an adapter only says what its
 //! columns mean.
 
+pub mod gas;
+mod gas_columns;
 pub mod launch;
 pub mod liggghts;
 pub mod openfoam;

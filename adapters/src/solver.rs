@@ -6,12 +6,14 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use calcine_coupler::error::{FailureKind, PartError};
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::physics::Vec3;
 use calcine_coupler::supervisor::{SolverWait, Supervisor, log_end};
 use calcine_coupler::time::Window;
 use calcine_wire::shared_memory::LinkEnd;
 use calcine_wire::{
-    ColumnSet, Header, Hello, Link, MessageKind, RunDirectory, SharedMemory, SolverNetwork,
-    WireError,
+    ColumnSet, Header, Hello, Link, MessageKind, RunDirectory, SharedMemory, SolverFailure,
+    SolverNetwork, WireError,
 };
 
 use crate::launch::{Launcher, Processes, Program, Spawner, spawn};
@@ -29,6 +31,8 @@ pub struct Launch {
     pub log: PathBuf,
     /// What the solver must agree with; `ranks` says how many are started.
     pub hello: Hello,
+    /// The mesh with whose cells those of a gas are compared, where no hash is.
+    pub cells: Option<Arc<Mesh>>,
     /// Longest silence during the handshake.
     pub handshake: Duration,
     /// Longest silence while it writes a checkpoint or ends.
@@ -37,6 +41,10 @@ pub struct Launch {
 
 /// How long somebody may take who starts a solver by hand.
 const BY_HAND: Duration = Duration::from_secs(24 * 3600);
+
+/// How far a solver's cells may be from the mesh's: of a cell's size, and of its volume. Far above what rounding
+/// and another way to weigh warped faces make, far below another mesh.
+const GEOMETRY: f64 = 1e-6;
 
 /// Who is at the other end, for errors and for waits of its own.
 struct Peer {
@@ -80,6 +88,21 @@ pub fn header(kind: MessageKind, window: &Window) -> Header {
         span_motion: window.span.motion.count(),
         span_process: window.span.process.count(),
         ..Header::of(kind)
+    }
+}
+
+/// The kind of failure that a solver reported.
+fn reported(kind: SolverFailure) -> FailureKind {
+    match kind {
+        SolverFailure::Other => FailureKind::Reported,
+        SolverFailure::Diverged => FailureKind::Diverged,
+        SolverFailure::NotConverged => FailureKind::NotConverged,
+        SolverFailure::InvalidInput => FailureKind::InvalidInput,
+        SolverFailure::LostParticles => FailureKind::LostParticles,
+        SolverFailure::OutOfMemory => FailureKind::OutOfMemory,
+        SolverFailure::NotFinite => FailureKind::NotFinite,
+        SolverFailure::File => FailureKind::Io,
+        SolverFailure::Unsupported => FailureKind::Refused,
     }
 }
 
@@ -155,7 +178,7 @@ impl Peer {
         let who = self.who(rank);
         let log = log_end(&self.log);
         let mut part = match error {
-            WireError::Failed { text } => PartError::new(who, FailureKind::Reported, text),
+            WireError::Failed { kind, text } => PartError::new(who, reported(kind), text),
             WireError::Mismatch { .. } => {
                 PartError::new(who, FailureKind::NotStarted, error.to_string())
             }
@@ -209,7 +232,7 @@ impl Peer {
             // The last word of a solver that ended says more than its end.
             Err(death) if death.kind == FailureKind::Died => match poll(Duration::ZERO) {
                 Ok(Some(())) => Ok(()),
-                Err(word) if word.kind == FailureKind::Reported => Err(word),
+                Err(word) if word.kind.is_reported() => Err(word),
                 _ => Err(death),
             },
             Err(mut silence) if silence.kind == FailureKind::Silent => {
@@ -303,12 +326,16 @@ impl ExternalSolver {
             asked: Duration::ZERO,
             used_at_start: Duration::ZERO,
         };
-        solver.shake_hands(supervisor)?;
+        solver.shake_hands(supervisor, launch.cells.as_deref())?;
         solver.used_at_start = solver.used();
         Ok(solver)
     }
 
-    fn shake_hands(&mut self, supervisor: &mut Supervisor) -> Result<(), PartError> {
+    fn shake_hands(
+        &mut self,
+        supervisor: &mut Supervisor,
+        mesh: Option<&Mesh>,
+    ) -> Result<(), PartError> {
         let ours = self.hello.clone();
         self.wait_alone(MessageKind::Hello)?;
         let mut local = Vec::new();
@@ -336,6 +363,9 @@ impl ExternalSolver {
             let owned = self.claims();
             self.owned = owned.map_err(|error| self.failure(None, error))?.into();
             self.check_claims()?;
+            if let Some(mesh) = mesh {
+                self.check_geometry(mesh)?;
+            }
         }
         self.wait_alone(MessageKind::State)
     }
@@ -366,6 +396,35 @@ impl ExternalSolver {
                 Err(self.refuse(None, message))
             }
         }
+    }
+
+    /// Every cell must lie where the mesh has it, and be as large.
+    fn check_geometry(&self, mesh: &Mesh) -> Result<(), PartError> {
+        for (link, cells) in self.links.iter().zip(self.owned.iter()) {
+            let columns = link.column("centre").and_then(|centres| {
+                let volumes = link.column("volume")?;
+                Ok((centres.as_chunks::<3>().0, volumes))
+            });
+            let (centres, volumes) = columns.map_err(|error| self.failure(None, error))?;
+            for ((&cell, &centre), &volume) in cells.iter().zip(centres).zip(volumes) {
+                let (own, size) = (mesh.cell_centre()[cell], mesh.cell_volume()[cell]);
+                let shift = (own - Vec3::from(centre)).norm();
+                let is_close =
+                    shift <= GEOMETRY * size.cbrt() && (volume - size).abs() <= GEOMETRY * size;
+                if !is_close {
+                    let [x, y, z] = centre;
+                    let message = format!(
+                        "its cell {cell} has {volume} m^3 about ({x}, {y}, {z}) m, that of the case's mesh {size} m^3 \
+                         about ({}, {}, {}) m; both must have the same mesh, numbered alike",
+                        own.x, own.y, own.z
+                    );
+                    let mut error = self.refuse(None, message);
+                    error.kind = FailureKind::NotStarted;
+                    return Err(error);
+                }
+            }
+        }
+        Ok(())
     }
 
     /// By rank: the cells of the whole mesh that it has, in the order of its columns.

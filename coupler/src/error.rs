@@ -9,8 +9,18 @@ use crate::time::Window;
 /// What kind of failure a part met; decides the exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FailureKind {
-    /// The solver diverged or produced a number that is not finite.
+    /// The solver's solution left what is physical.
     Diverged,
+    /// The solver produced a number that is not finite.
+    NotFinite,
+    /// An iteration of the solver ended at its limit, and it does not go on with that.
+    NotConverged,
+    /// Particles left the space in which they may be.
+    LostParticles,
+    /// What the solver was told is outside its range, or its own inputs are wrong.
+    InvalidInput,
+    /// There was too little memory.
+    OutOfMemory,
     /// Its process ended, with the status as words ("signal 9 (SIGKILL)", "exit code 1").
     Died,
     /// It did not answer within the deadline.
@@ -27,6 +37,26 @@ pub enum FailureKind {
     Refused,
     /// The user interrupted the run.
     Interrupted,
+}
+
+impl FailureKind {
+    /// True where the solver itself said what went wrong, before it ended.
+    pub fn is_reported(self) -> bool {
+        match self {
+            Self::Diverged
+            | Self::NotFinite
+            | Self::NotConverged
+            | Self::LostParticles
+            | Self::InvalidInput
+            | Self::Refused
+            | Self::OutOfMemory
+            | Self::Reported
+            | Self::Io => true,
+            Self::Died | Self::Silent | Self::NotStarted | Self::Protocol | Self::Interrupted => {
+                false
+            }
+        }
+    }
 }
 
 /// The failure of one part.

@@ -7,7 +7,7 @@ use calcine_adapters::liggghts::inputs::Inputs;
 use calcine_adapters::liggghts::template::ScriptTemplate;
 use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch, LiggghtsParticles};
 use calcine_adapters::openfoam::case::OpenfoamCase;
-use calcine_adapters::openfoam::{LIBRARY, OpenfoamGas, OpenfoamLaunch};
+use calcine_adapters::openfoam::{LIBRARY, OpenfoamLaunch};
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::held::HeldGas;
 use calcine_coupler::motion::Motion;
@@ -153,7 +153,7 @@ impl Assembly<'_> {
                     resume: from,
                     deadline: self.case.coupling.deadline,
                 };
-                Ok(Box::new(OpenfoamGas::launch(launch, supervisor)?))
+                Ok(Box::new(launch.launch(supervisor)?))
             }
         }
     }

@@ -6,10 +6,11 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use calcine_wire::hello::NEW;
 use calcine_wire::shared_memory::LinkEnd;
 use calcine_wire::{
     CarriedTransport, Catalogue, Header, Hello, Link, LinkAddress, MessageKind, SharedMemory,
-    Transport, TransportKind, WireError,
+    SolverFailure, Transport, TransportKind, WireError,
 };
 use thiserror::Error;
 
@@ -106,6 +107,19 @@ pub enum HostError {
     },
 }
 
+impl HostError {
+    /// Its kind on the wire.
+    pub fn failure(&self) -> SolverFailure {
+        match self {
+            HostError::Usage | HostError::Wire(_) => SolverFailure::Other,
+            HostError::File { .. } => SolverFailure::File,
+            HostError::Lost { .. } => SolverFailure::LostParticles,
+            HostError::Missing { .. } | HostError::NoStep { .. } => SolverFailure::InvalidInput,
+            HostError::Change { .. } | HostError::Push { .. } => SolverFailure::InvalidInput,
+        }
+    }
+}
+
 /// A running LIGGGHTS and what it must keep.
 pub struct Host {
     liggghts: Liggghts,
@@ -153,9 +167,13 @@ impl Host {
             version: version(),
             case_hash: host.start.case_hash.clone(),
             mesh_hash,
+            origin: host.start.restart.as_ref().map_or_else(
+                || NEW.to_owned(),
+                |file| file.to_string_lossy().into_owned(),
+            ),
             count: host.particles,
             ranks,
-            catalogue: Catalogue::standard("particles")?,
+            catalogue: Catalogue::particles(&[]),
         };
         host.tell(&format!("{} with {} particles", hello.version, hello.count));
         on_link(|link| link.greet(&hello, GREETING).map(|_| ()))?;

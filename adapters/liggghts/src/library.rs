@@ -9,8 +9,7 @@ use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::ptr;
 use std::sync::{Mutex, PoisonError};
 
-use calcine_wire::Link;
-use calcine_wire::record::{Header, MessageKind};
+use calcine_wire::{Header, Link, MessageKind, SolverFailure};
 
 #[allow(non_camel_case_types)]
 type MPI_Comm = *mut c_void;
@@ -70,12 +69,12 @@ pub fn with_link<T>(work: impl FnOnce(&mut Link) -> T) -> Option<T> {
 }
 
 /// Tells the coordinator of a failure, if there is a link that can.
-pub fn report(text: &str) {
+pub fn report(failure: SolverFailure, text: &str) {
     if let Ok(mut link) = LINK.try_lock()
         && let Some(link) = link.as_mut()
     {
         // Whoever started this process sees its end, even if the link is what failed.
-        let _ = link.send_last_word(Header::of(MessageKind::Failed), text);
+        let _ = link.send_last_word(Header::of(MessageKind::Failed), failure, text);
     }
 }
 
@@ -104,7 +103,7 @@ fn fail(file: *const c_char, line: c_int, parts: [*const c_char; 2]) -> ! {
     let message = parts.map(words).join(" ");
     let text = format!("LIGGGHTS: {} ({}:{line})", message.trim(), words(file));
     eprintln!("ERROR: {text}");
-    report(&text);
+    report(SolverFailure::Other, &text);
     end(1)
 }
 

@@ -19,7 +19,7 @@ fn main() {
     let outcome = run();
     if let Err(error) = &outcome {
         eprintln!("calcine-liggghts: {error}");
-        library::report(&error.to_string());
+        library::report(error.failure(), &error.to_string());
     }
     library::end(i32::from(outcome.is_err()));
 }

@@ -63,8 +63,10 @@ void receiveSpecies(const calcine::link& link, const char* name, List<scalarFiel
             fields[k][celli] = flat[celli*fields.size() + k];
             if (!(mag(fields[k][celli]) < GREAT))
             {
-                FatalErrorInFunction
-                    << name << " is no finite number" << exit(FatalError);
+                throw calcine::solverFailure
+                (
+                    CALCINE_FAILURE_INPUT, std::string("the column ") + name + " holds a value that is not finite"
+                );
             }
         }
     }
@@ -98,11 +100,12 @@ void receive
          && mag(given.heatSource[celli]) < GREAT && mag(given.dragSource[celli]) < GREAT;
         if (!allowed)
         {
-            FatalErrorInFunction
-                << "in cell " << numbers.cells[celli] << ": void fraction " << pores << " (must be in (0, 1]), "
+            OStringStream text;
+            text<< "in cell " << numbers.cells[celli] << ": void fraction " << pores << " (must be in (0, 1]), "
                 << given.dragCoefficient[celli] << " kg/s, " << given.dragSource[celli] << " N, "
                 << given.heatCoefficient[celli] << " W/K, " << given.heatSource[celli]
-                << " W (coefficients must be finite and not negative)" << exit(FatalError);
+                << " W (coefficients must be finite and not negative)";
+            throw calcine::solverFailure(CALCINE_FAILURE_INPUT, text.str());
         }
     }
 }
@@ -240,9 +243,11 @@ void serve
                 link.send();
                 return;
             default:
-                FatalErrorInFunction
-                    << "a request of kind " << label(header.kind) << " arrived, which a gas "
-                    << "does not serve" << exit(FatalError);
+                throw calcine::solverFailure
+                (
+                    CALCINE_FAILURE_UNSUPPORTED,
+                    "a request of kind " + std::to_string(header.kind) + " arrived, which a gas does not serve"
+                );
         }
     }
 }
@@ -267,16 +272,18 @@ void run(const argList& args, calcine::link& link)
         IOobject("calcineGas", runTime.constant(), mesh, IOobject::MUST_READ)
     );
     calcine::gas gas(mesh, properties, numbers);
+    calcine::introduction own;
     if (args.found("resume"))
     {
-        gas.resume(args.opt<fileName>("resume"));
+        own.origin = args.opt<fileName>("resume");
+        gas.resume(own.origin);
     }
     else if (args.found("from"))
     {
-        gas.takeOver(args.opt<fileName>("from"));
+        own.origin = args.opt<fileName>("from");
+        gas.takeOver(own.origin);
     }
 
-    calcine::introduction own;
     own.version = std::to_string(OPENFOAM);
     own.caseHash = properties.get<string>("caseHash");
     own.meshHash = calcine::meshHash(mesh, numbers);
@@ -294,10 +301,10 @@ void run(const argList& args, calcine::link& link)
     Info<< "End" << endl;
 }
 
-[[noreturn]] void fail(calcine::link& link, const std::string& text)
+[[noreturn]] void fail(calcine::link& link, calcine_failure kind, const std::string& text)
 {
     Serr<< "calcineGasFoam failed: " << text.c_str() << endl;
-    link.failed(text);
+    link.failed(kind, text);
     // Other ranks may wait for this one somewhere: MPI cannot be ended in an orderly way. And OpenFOAM's own end
     // would say that all went well (exit code 0).
     std::cout.flush();
@@ -340,19 +347,27 @@ int main(int argc, char* argv[])
         {
             std::ostringstream place;
             place << " (" << what.ioFileName() << ", line " << what.ioStartLineNumber() << ")";
-            fail(link, words(what, place.str()));
+            fail(link, CALCINE_FAILURE_INPUT, words(what, place.str()));
         }
         catch (const error& what)
         {
-            fail(link, words(what, ""));
+            fail(link, CALCINE_FAILURE_OTHER, words(what, ""));
         }
         catch (const calcine::coordinatorGone&)
         {
             throw;
         }
+        catch (const calcine::solverFailure& what)
+        {
+            fail(link, what.kind, what.what());
+        }
+        catch (const std::bad_alloc&)
+        {
+            fail(link, CALCINE_FAILURE_MEMORY, "there is too little memory");
+        }
         catch (const std::exception& what)
         {
-            fail(link, what.what());
+            fail(link, CALCINE_FAILURE_OTHER, what.what());
         }
     }
     catch (const calcine::coordinatorGone& what)

@@ -1,5 +1,9 @@
 #include "gas.H"
 #include "clockValue.H"
+#include "link.H"
+#include "OStringStream.H"
+
+#include <cmath>
 
 namespace
 {
@@ -485,11 +489,16 @@ void Foam::calcine::gas::guard(bool early) const
         {
             continue;
         }
-        FatalErrorInFunction
-            << "diverged: temperature " << T << " K, speed " << speed
+        OStringStream text;
+        text<< "diverged: temperature " << T << " K, speed " << speed
             << " m/s, pressure above the reference " << p_[celli] << " Pa, gas mass "
             << mass_[celli] << " kg in cell " << numbers_.cells[celli] << " at "
-            << mesh_.cellCentres()[celli] << " m" << exit(FatalError);
+            << mesh_.cellCentres()[celli] << " m";
+        const bool finite = std::isfinite(T + speed + p_[celli] + mass_[celli]);
+        throw solverFailure
+        (
+            finite ? CALCINE_FAILURE_DIVERGED : CALCINE_FAILURE_NOT_FINITE, text.str()
+        );
     }
 }
 

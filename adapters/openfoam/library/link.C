@@ -71,7 +71,7 @@ void Foam::calcine::link::greet(const introduction& own)
     const calcine_hello hello =
     {
         "gas", "OpenFOAM", own.version.c_str(), own.caseHash.c_str(), own.meshHash.c_str(),
-        own.catalogue.c_str(), static_cast<uint64_t>(own.cells), static_cast<uint32_t>(own.ranks)
+        own.origin.empty() ? nullptr : own.origin.c_str(), own.catalogue.c_str(), static_cast<uint64_t>(own.cells), static_cast<uint32_t>(own.ranks)
     };
     check(calcine_link_handshake(link_, &hello, handshakePatience));
 }
@@ -172,7 +172,7 @@ void Foam::calcine::link::send()
 }
 
 
-void Foam::calcine::link::failed(const std::string& text) noexcept
+void Foam::calcine::link::failed(calcine_failure kind, const std::string& text) noexcept
 {
-    calcine_link_failed(link_, text.c_str());
+    calcine_link_failed(link_, kind, text.c_str());
 }

@@ -18,7 +18,7 @@ use calcine_coupler::part::{
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::Window;
-use calcine_wire::hello::{hash_text, particles_hash};
+use calcine_wire::hello::{NEW, hash_text, particles_hash};
 use calcine_wire::{Catalogue, Hello, Link, MessageKind, WireError};
 
 use crate::launch::{Launcher, Program, find_program};
@@ -131,11 +131,13 @@ impl LiggghtsParticles {
         let host = find_program(HOST_VARIABLE, HOST, remedy)?;
         launch.inputs.write(&launch.folder)?;
         let mut arguments = vec![SCRIPT.into(), launch.case_hash.clone().into()];
+        let mut origin = NEW.to_owned();
         if let Some(folder) = &launch.resume {
             let file = std::path::absolute(folder.join(RESTART)).map_err(|error| {
                 let message = format!("the checkpoint {} cannot be used", folder.display());
                 PartError::new(NAME, FailureKind::Io, message).caused_by(error)
             })?;
+            origin = file.to_string_lossy().into_owned();
             arguments.push(file.into());
         }
         let setup = launch.inputs.setup;
@@ -149,11 +151,10 @@ impl LiggghtsParticles {
             version: env!("CARGO_PKG_VERSION").into(),
             case_hash: launch.case_hash,
             mesh_hash: hash_text(particles_hash(&identity.0, &identity.1)),
+            origin,
             count: identity.0.len() as u64,
             ranks: launch.inputs.ranks,
-            catalogue: Catalogue::standard("particles").map_err(|error| {
-                PartError::new(NAME, FailureKind::NotStarted, "its columns").caused_by(error)
-            })?,
+            catalogue: Catalogue::particles(&[]),
         };
         let ranks = launch.inputs.ranks;
         let alone = matches!(&setup.motion, Motion::Free(contacts)
@@ -170,6 +171,7 @@ impl LiggghtsParticles {
                 launcher: launch.launcher,
                 log: launch.log,
                 hello,
+                cells: None,
                 handshake: launch.deadline,
                 deadline: launch.deadline,
             },

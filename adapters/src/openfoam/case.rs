@@ -42,9 +42,7 @@ impl OpenfoamCase<'_> {
         self.check()?;
         let turbulent = !self.setup.turbulence.is_laminar();
         let species = self.setup.properties.species().len();
-        let catalogue = Catalogue::gas(species, turbulent).map_err(|error| {
-            PartError::new(NAME, FailureKind::NotStarted, "its columns").caused_by(error)
-        })?;
+        let catalogue = Catalogue::gas(species, turbulent);
         make(folder)?;
         if let Some(template) = self.template {
             copy(template, folder)?;

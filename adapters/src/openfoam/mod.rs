@@ -2,7 +2,6 @@
 
 pub mod case;
 pub mod chemistry;
-mod columns;
 mod decompose;
 mod dictionaries;
 mod identity;
@@ -16,21 +15,17 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use calcine_coupler::boundary_value::BoundaryValue;
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::Mesh;
-use calcine_coupler::part::{
-    Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
-};
-use calcine_coupler::setup::{GasPatch, GasSetup};
+use calcine_coupler::setup::GasSetup;
 use calcine_coupler::supervisor::Supervisor;
-use calcine_coupler::time::{GasStorage, Window};
-use calcine_wire::{Catalogue, Hello, MessageKind};
+use calcine_wire::hello::NEW;
+use calcine_wire::{Catalogue, Hello};
 
+use crate::gas::LinkedGas;
 use crate::launch::{Launcher, Program, find_program};
-use crate::solver::{ExternalSolver, Launch, header};
+use crate::solver::{ExternalSolver, Launch};
 use case::OpenfoamCase;
-use columns::{GasRanks, ReceivedGas};
 use stock::StockSolver;
 
 /// Name in messages.
@@ -78,30 +73,10 @@ pub struct OpenfoamLaunch<'a> {
     pub deadline: Duration,
 }
 
-/// The gas of a running calcineGasFoam.
-pub struct OpenfoamGas {
-    solver: ExternalSolver,
-    about: SolverInfo,
-    mesh: Arc<Mesh>,
-    storage: GasStorage,
-    /// Number of species; zero for a single gas.
-    species: usize,
-    /// True where it has eddies.
-    turbulent: bool,
-    /// Which program computes it.
-    program: StockSolver,
-    /// Conditions of the patches as they were set last.
-    patches: Vec<(String, GasPatch)>,
-    state: ReceivedGas,
-    window: Option<Window>,
-}
-
-impl OpenfoamGas {
+impl OpenfoamLaunch<'_> {
     /// Writes the case, starts the solver and takes over the state it starts from.
-    pub fn launch(
-        launch: OpenfoamLaunch<'_>,
-        supervisor: &mut Supervisor,
-    ) -> Result<Self, PartError> {
+    pub fn launch(self, supervisor: &mut Supervisor) -> Result<LinkedGas, PartError> {
+        let launch = self;
         let remedy = "`cargo xtask setup` installs OpenFOAM and builds it";
         let own = find_program(SOLVER_VARIABLE, SOLVER, remedy)?;
         let library = own.with_file_name(LIBRARY);
@@ -149,12 +124,14 @@ impl OpenfoamGas {
             decompose::run(&launch.folder, launch.ranks, &variables, &alone)?;
             arguments.push("-parallel".into());
         }
+        let mut origin = NEW.to_owned();
         for (option, folder) in given {
             let Some(folder) = folder else { continue };
             let folder = std::path::absolute(folder).map_err(|error| {
                 let message = format!("the checkpoint {} cannot be used", folder.display());
                 PartError::new(NAME, FailureKind::Io, message).caused_by(error)
             })?;
+            origin = folder.to_string_lossy().into_owned();
             arguments.extend([option.into(), folder.into()]);
         }
         let species = launch.setup.properties.species().len();
@@ -164,12 +141,11 @@ impl OpenfoamGas {
             name: "Calcine".into(),
             version: env!("CARGO_PKG_VERSION").into(),
             mesh_hash: identity::mesh_hash(&launch.mesh),
+            origin,
             case_hash: launch.case_hash,
             count: launch.mesh.cells() as u64,
             ranks: launch.ranks,
-            catalogue: Catalogue::gas(species, turbulent).map_err(|error| {
-                PartError::new(NAME, FailureKind::NotStarted, "its columns").caused_by(error)
-            })?,
+            catalogue: Catalogue::gas(species, turbulent),
         };
         let program = Program {
             path,
@@ -184,47 +160,13 @@ impl OpenfoamGas {
                 launcher: launch.launcher,
                 log: launch.log,
                 hello,
+                cells: None,
                 handshake: launch.deadline,
                 deadline: launch.deadline,
             },
             supervisor,
         )?;
-        let about = SolverInfo {
-            name: solver.hello().name.clone(),
-            version: solver.hello().version.clone(),
-            ranks: launch.ranks as usize,
-        };
-        let mut gas = Self {
-            solver,
-            about,
-            mesh: launch.mesh,
-            storage: launch.setup.storage,
-            species,
-            turbulent,
-            program: launch.solver,
-            patches: launch.setup.patches.clone(),
-            state: ReceivedGas::default(),
-            window: None,
-        };
-        gas.read_state(None)?;
-        Ok(gas)
-    }
-
-    /// Process id of the solver.
-    pub fn pid(&self) -> u32 {
-        self.solver.pid()
-    }
-
-    /// Process ids of the ranks.
-    pub fn rank_pids(&self) -> &[u32] {
-        self.solver.rank_pids()
-    }
-
-    /// Takes the state out of the messages that the links hold.
-    fn read_state(&mut self, window: Option<&Window>) -> Result<(), PartError> {
-        let ranks = ranks(&self.solver, &self.mesh);
-        let read = self.state.read(ranks, self.species, self.turbulent);
-        read.map_err(|error| self.solver.failure(window, error))
+        LinkedGas::new(solver, launch.setup, launch.mesh, !launch.solver.is_stock())
     }
 }
 
@@ -257,14 +199,6 @@ fn without_spaces(folder: &Path) -> Result<(), PartError> {
     Err(PartError::new(NAME, FailureKind::NotStarted, message))
 }
 
-fn ranks<'a>(solver: &'a ExternalSolver, mesh: &Mesh) -> GasRanks<'a> {
-    GasRanks {
-        links: solver.links(),
-        owned: solver.owned(),
-        cells: mesh.cells(),
-    }
-}
-
 /// OpenFOAM compares PWD with the folder it runs in, and looks for its `etc` where WM_PROJECT_DIR
 /// says: Debian's, unless the user has set both another solver and its OpenFOAM.
 fn environment(folder: &Path) -> Vec<(OsString, OsString)> {
@@ -274,107 +208,4 @@ fn environment(folder: &Path) -> Vec<(OsString, OsString)> {
         variables.push(("WM_PROJECT_DIR".into(), PROJECT.into()));
     }
     variables
-}
-
-impl Part for OpenfoamGas {
-    fn about(&self) -> &SolverInfo {
-        &self.about
-    }
-
-    fn commit(&mut self) -> Result<(), PartError> {
-        self.solver.commit()
-    }
-
-    fn checkpoint(&mut self, directory: &Path) -> Result<(), PartError> {
-        self.solver.checkpoint(directory)?;
-        self.read_state(None)
-    }
-
-    fn processor_time(&self) -> Duration {
-        self.solver.processor_time()
-    }
-
-    fn finish_run(&mut self, supervisor: &Supervisor) -> Result<(), PartError> {
-        let _ = supervisor;
-        self.solver.goodbye()
-    }
-}
-
-impl Gas for OpenfoamGas {
-    fn mesh(&self) -> &Mesh {
-        &self.mesh
-    }
-
-    fn set_boundary(&mut self, value: &BoundaryValue) -> Result<(), PartError> {
-        let refused = |message: String| PartError::new(NAME, FailureKind::Refused, message);
-        if self.program.is_stock() {
-            return Err(refused(format!(
-                "a stock solver takes its conditions from its own case: `{value}` cannot be set while it runs"
-            )));
-        }
-        let set = value.apply(&mut self.patches);
-        set.map_err(|error| refused(error.to_string()).caused_by(error))?;
-        self.solver.set_boundary(&value.line())
-    }
-
-    fn fields(&self) -> GasFields<'_> {
-        self.state.fields()
-    }
-
-    fn start(
-        &mut self,
-        window: &Window,
-        bed: &Bed,
-        exchange: &CellExchange,
-    ) -> Result<(), PartError> {
-        let cells = self.mesh.cells();
-        for (field, found) in [
-            ("void fraction", bed.void_fraction.len()),
-            ("drag coefficient", exchange.drag_coefficient.len()),
-            ("drag source", exchange.drag_source.len()),
-            ("heat coefficient", exchange.heat_coefficient.len()),
-            ("heat source", exchange.heat_source.len()),
-        ] {
-            if found != cells {
-                let message = format!("the {field} has {found} values for {cells} cells");
-                return Err(self.solver.refuse(Some(window), message));
-            }
-        }
-        let mut request = header(MessageKind::Start, window);
-        request.storage_span = match self.storage {
-            GasStorage::Process => request.span_process,
-            GasStorage::Accelerated => request.span_motion,
-        };
-        self.window = Some(*window);
-        let owned = Arc::clone(self.solver.owned());
-        let species = self.species;
-        self.solver.send_columns(
-            window,
-            request,
-            |rank| owned[rank].len(),
-            |rank, link| columns::write(link, &owned[rank], bed, exchange, species),
-        )
-    }
-
-    fn finish(
-        &mut self,
-        supervisor: &Supervisor,
-        received: &mut CellReceived,
-    ) -> Result<Convergence, PartError> {
-        let Some(window) = self.window.take() else {
-            return Err(self.solver.refuse(None, "finished without a start".into()));
-        };
-        self.solver
-            .wait(supervisor, &window, MessageKind::Finished)
-            .map_err(|mut error| {
-                if error.message.starts_with("diverged") {
-                    error.kind = FailureKind::Diverged;
-                }
-                error
-            })?;
-        let convergence = columns::read(ranks(&self.solver, &self.mesh), received);
-        let convergence = convergence.map_err(|error| self.solver.failure(Some(&window), error))?;
-        self.read_state(Some(&window))?;
-        Ok(convergence)
-    }
 }

@@ -7,9 +7,10 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
+use calcine_adapters::gas::LinkedGas;
 use calcine_adapters::launch::Launcher;
+use calcine_adapters::openfoam::OpenfoamLaunch;
 use calcine_adapters::openfoam::stock::StockSolver;
-use calcine_adapters::openfoam::{OpenfoamGas, OpenfoamLaunch};
 use calcine_coupler::error::PartError;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
@@ -129,7 +130,7 @@ pub fn bed(void_fraction: f64) -> Bed {
 
 /// A running gas with its supervisor, and the window to come.
 pub struct Duct {
-    pub gas: OpenfoamGas,
+    pub gas: LinkedGas,
     pub supervisor: Supervisor,
     pub window: Window,
     pub received: CellReceived,
@@ -170,7 +171,7 @@ impl Duct {
             from: None,
             deadline: Duration::from_secs(30),
         };
-        let gas = OpenfoamGas::launch(launch, &mut supervisor)?;
+        let gas = launch.launch(&mut supervisor)?;
         let span = Clocks {
             motion: Ticks::from_seconds(1e-3).unwrap(),
             process: Ticks::from_seconds(0.05).unwrap(),

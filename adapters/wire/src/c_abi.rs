@@ -13,7 +13,8 @@ use std::time::Duration;
 
 use crate::carried::{CarriedTransport, Carrier, Message};
 use crate::catalogue::Catalogue;
-use crate::hello::Hello;
+use crate::failure::SolverFailure;
+use crate::hello::{Hello, NEW, NOT_COMPARED};
 use crate::link::Link;
 use crate::record::{Header, MessageKind};
 use crate::run::{LinkAddress, TransportKind};
@@ -48,12 +49,13 @@ pub struct CHello {
     version: *const c_char,
     case_hash: *const c_char,
     mesh_hash: *const c_char,
+    origin: *const c_char,
     catalogue: *const c_char,
     count: u64,
     ranks: u32,
 }
 
-const _: () = assert!(size_of::<CHello>() == 64);
+const _: () = assert!(size_of::<CHello>() == 72);
 
 thread_local! {
     static LAST_ERROR: RefCell<CString> = RefCell::default();
@@ -120,6 +122,14 @@ fn text_of(text: *const c_char) -> Result<String, WireError> {
     // SAFETY: C passes a text that ends with a zero and lives during the call.
     let text = unsafe { CStr::from_ptr(text) };
     Ok(text.to_string_lossy().into_owned())
+}
+
+/// The same, with words in the place of NULL.
+fn text_or(text: *const c_char, other: &str) -> Result<String, WireError> {
+    if text.is_null() {
+        return Ok(other.into());
+    }
+    text_of(text)
 }
 
 /// `calcine_carrier` of C: what moves messages there, by functions that give a negative number where
@@ -246,17 +256,19 @@ extern "C" fn calcine_link_handshake(
         // SAFETY: C passes NULL or a filled-in struct that lives during the call.
         let hello = unsafe { hello.as_ref() }.ok_or(NULL)?;
         let role = text_of(hello.role)?;
-        let catalogue = if hello.catalogue.is_null() {
-            Catalogue::standard(&role)?
-        } else {
-            text_of(hello.catalogue)?.parse()?
+        let catalogue = match (hello.catalogue.is_null(), hello.mesh_hash.is_null()) {
+            (true, false) => Catalogue::standard(&role)?,
+            (true, true) if role == "gas" => Catalogue::standard(&role)?.with_geometry(),
+            (true, true) => Catalogue::standard(&role)?,
+            (false, _) => text_of(hello.catalogue)?.parse()?,
         };
         let ours = Hello {
             role,
             name: text_of(hello.name)?,
             version: text_of(hello.version)?,
-            case_hash: text_of(hello.case_hash)?,
-            mesh_hash: text_of(hello.mesh_hash)?,
+            case_hash: text_or(hello.case_hash, NOT_COMPARED)?,
+            mesh_hash: text_or(hello.mesh_hash, NOT_COMPARED)?,
+            origin: text_or(hello.origin, NEW)?,
             count: hello.count,
             ranks: hello.ranks,
             catalogue,
@@ -356,11 +368,12 @@ extern "C" fn calcine_link_send(link: *mut CLink) -> Status {
 }
 
 #[unsafe(no_mangle)]
-extern "C" fn calcine_link_failed(link: *mut CLink, text: *const c_char) -> Status {
+extern "C" fn calcine_link_failed(link: *mut CLink, failure: u32, text: *const c_char) -> Status {
     guarded(|| {
         let link = of(link)?;
+        let failure = SolverFailure::from_number(failure.into());
         let header = link.last.answer(MessageKind::Failed);
-        link.link.send_last_word(header, &text_of(text)?)?;
+        link.link.send_last_word(header, failure, &text_of(text)?)?;
         Ok(Status::Ok)
     })
 }

@@ -4,6 +4,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::columns::{self, ColumnPresence, ProtocolColumn};
 use crate::record::MessageKind;
 use crate::transport::WireError;
 
@@ -41,7 +42,8 @@ impl ColumnSet {
         }
     }
 
-    fn name(self) -> &'static str {
+    /// Its name in a line of the catalogue.
+    pub fn name(self) -> &'static str {
         match self {
             ColumnSet::Start => "start",
             ColumnSet::State => "state",
@@ -123,80 +125,65 @@ pub struct Catalogue {
     fields: Vec<Field>,
 }
 
-/// The standard catalogue of a gas; one value per cell, signs as in the coordinator's exchange.
-const GAS: &str = "\
-owned cell 1 u64 item
-start void_fraction 1 1 item
-start drag_coefficient 1 kg/s item
-start drag_source 3 N item
-start heat_coefficient 1 W/K item
-start heat_source 1 W item
-state heat 1 W item
-state drag 3 N item
-state temperature 1 K item
-state pressure 1 Pa item
-state density 1 kg/m^3 item
-state velocity 3 m/s item
-state pressure_gradient 3 Pa/m item
-state balances 35 kg,J,Ns rank
-state storage_clock 3 Ns rank
-state convergence 5 1 rank";
-
-/// The standard catalogue of particles, in ascending id.
-const PARTICLES: &str = "\
-start id 1 u64 item
-start force 3 N item
-state id 1 u64 item
-state population 1 u64 item
-state position 3 m item
-state velocity 3 m/s item
-state angular_velocity 3 rad/s item
-state radius 1 m item
-state mass 1 kg item
-state impulse 3 Ns item
-state support 4 s,Ns rank";
-
 impl Catalogue {
-    /// The standard catalogue of a role, "gas" or "particles".
+    /// The columns of a table that a link of so many species has.
+    fn of_table(
+        table: &[ProtocolColumn],
+        species: usize,
+        has: impl Fn(ColumnPresence) -> bool,
+    ) -> Self {
+        let kept = table.iter().filter(|column| has(column.presence));
+        let fields = kept.map(|column| Field {
+            record: column.record,
+            name: column.name.into(),
+            components: column.components.count(species),
+            unit: column.unit.into(),
+            per_item: column.per_item,
+        });
+        Self {
+            fields: fields.collect(),
+        }
+    }
+
+    /// The standard catalogue of a role, "gas" (a single gas, laminar) or "particles".
     pub fn standard(role: &str) -> Result<Self, WireError> {
         match role {
-            "gas" => GAS.parse(),
-            "particles" => PARTICLES.parse(),
+            "gas" => Ok(Self::gas(0, false)),
+            "particles" => Ok(Self::particles(&[])),
             _ => Err(WireError::Role { role: role.into() }),
         }
     }
 
-    /// That of a gas of so many species (0: a single gas): the standard one with the composition, species by
-    /// species within each cell, what particles exchange of it, and a balance of each species after the momentum's.
-    /// That of a turbulent gas has the eddies too.
-    pub fn gas(species: usize, turbulent: bool) -> Result<Self, WireError> {
-        let mut gas = Self::standard("gas")?;
-        if species > 0 {
-            for field in &mut gas.fields {
-                if field.name == "balances" {
-                    field.components += 7 * species;
-                }
-            }
-            for line in [
-                format!("state composition {species} 1 item"),
-                format!("start species_source {species} kg/s item"),
-                format!("start species_coefficient {species} kg/s item"),
-                format!("start species_taken {species} kg/s item"),
-                "start species_heat 1 W item".into(),
-            ] {
-                gas.fields.push(line.parse()?);
-            }
-        }
-        if turbulent {
-            for line in [
-                "state turbulent_energy 1 m^2/s^2 item",
-                "state dissipation 1 m^2/s^3 item",
-                "state eddy_viscosity 1 Pas item",
-            ] {
-                gas.fields.push(line.parse()?);
-            }
-        }
-        Ok(gas)
+    /// That of a gas of so many species (0: a single gas), turbulent or not.
+    pub fn gas(species: usize, turbulent: bool) -> Self {
+        Self::of_table(columns::GAS, species, |presence| match presence {
+            ColumnPresence::Always => true,
+            ColumnPresence::Species => species > 0,
+            ColumnPresence::Turbulent => turbulent,
+            ColumnPresence::ForeignInputs | ColumnPresence::MovingDrag => false,
+        })
+    }
+
+    /// The same catalogue with what a gas says of its cells where no hash of the mesh is compared.
+    pub fn with_geometry(mut self) -> Self {
+        let own = |presence| presence == ColumnPresence::ForeignInputs;
+        let geometry = Self::of_table(columns::GAS, 0, own);
+        self.fields.extend(geometry.fields);
+        self
+    }
+
+    /// That of particles, with further columns that are pushed or received.
+    pub fn particles(further: &[Field]) -> Self {
+        let own = |presence| presence == ColumnPresence::Always;
+        let mut particles = Self::of_table(columns::PARTICLES, 0, own);
+        particles.fields.extend_from_slice(further);
+        particles
+    }
+
+    /// The columns of drag that particles evaluate as they move: a coefficient and the gas' velocity.
+    pub fn moving_drag() -> Vec<Field> {
+        let own = |presence| presence == ColumnPresence::MovingDrag;
+        Self::of_table(columns::PARTICLES, 0, own).fields
     }
 
     /// The fields, in the order of the columns.
@@ -240,6 +227,11 @@ impl Catalogue {
             name: name.into(),
             record: record.name(),
         })
+    }
+
+    /// True where a record has a column of a name.
+    pub fn has(&self, record: ColumnSet, name: &str) -> bool {
+        self.of(record).any(|field| field.name == name)
     }
 }
 
@@ -307,14 +299,41 @@ mod tests {
 
     #[test]
     fn species_add_a_column_of_mass_fractions_and_a_balance_each() {
-        let gas = Catalogue::gas(3, false).unwrap();
+        let gas = Catalogue::gas(3, false);
         let length = |name| gas.column(ColumnSet::State, name, 12).unwrap().1.len();
         assert_eq!(length("composition"), 36);
         assert_eq!(length("balances"), 35 + 21);
         let single = Catalogue::standard("gas").unwrap();
-        assert_eq!(Catalogue::gas(0, false).unwrap(), single);
-        let turbulent = Catalogue::gas(0, true).unwrap();
+        assert_eq!(Catalogue::gas(0, false), single);
+        let turbulent = Catalogue::gas(0, true);
         assert_eq!(turbulent.fields().len(), single.fields().len() + 3);
+    }
+
+    #[test]
+    fn cells_are_told_by_their_geometry_where_no_hash_of_the_mesh_is_compared() {
+        let gas = Catalogue::gas(0, false).with_geometry();
+        let length = |name| gas.column(ColumnSet::Owned, name, 4).unwrap().1.len();
+        assert_eq!(
+            (length("cell"), length("centre"), length("volume")),
+            (4, 12, 4)
+        );
+    }
+
+    #[test]
+    fn particles_may_have_further_columns_both_ways() {
+        let mut further = Catalogue::moving_drag();
+        further.push("state film 1 m item".parse().unwrap());
+        let particles = Catalogue::particles(&further);
+        assert!(
+            particles
+                .column(ColumnSet::Start, "gas_velocity", 2)
+                .is_ok()
+        );
+        assert!(particles.column(ColumnSet::State, "film", 2).is_ok());
+        assert_eq!(
+            particles.to_string().parse::<Catalogue>().unwrap(),
+            particles
+        );
     }
 
     #[test]

@@ -7,6 +7,11 @@ use crate::catalogue::Catalogue;
 use crate::record::VERSION;
 use crate::transport::WireError;
 
+/// Said in place of a hash by a solver whose inputs Calcine does not write: its cells are compared one by one.
+pub const NOT_COMPARED: &str = "-";
+/// The origin of a solver that takes up no checkpoint.
+pub const NEW: &str = "new";
+
 /// One end's introduction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Hello {
@@ -16,10 +21,12 @@ pub struct Hello {
     pub name: String,
     /// The solver's version; not compared.
     pub version: String,
-    /// Hash of the case that the inputs were written for.
+    /// Hash of the case that the inputs were written for, or [`NOT_COMPARED`].
     pub case_hash: String,
-    /// Hash of the mesh, or of the initial particles.
+    /// Hash of the mesh, or of the initial particles, or [`NOT_COMPARED`].
     pub mesh_hash: String,
+    /// The checkpoint that the state at the start is from, as the solver was given it, or [`NEW`].
+    pub origin: String,
     /// Cells or particles of all ranks.
     pub count: u64,
     /// Ranks of the solver.
@@ -33,12 +40,13 @@ impl Hello {
     pub fn to_text(&self) -> String {
         let line = |value: &str| value.replace('\n', " ");
         let mut text = format!(
-            "protocol {VERSION}\nrole {}\nname {}\nversion {}\ncase {}\nmesh {}\ncount {}\nranks {}\n",
+            "protocol {VERSION}\nrole {}\nname {}\nversion {}\ncase {}\nmesh {}\norigin {}\ncount {}\nranks {}\n",
             line(&self.role),
             line(&self.name),
             line(&self.version),
             line(&self.case_hash),
             line(&self.mesh_hash),
+            line(&self.origin),
             self.count,
             self.ranks
         );
@@ -86,6 +94,7 @@ impl Hello {
             version: value("version")?,
             case_hash: value("case")?,
             mesh_hash: value("mesh")?,
+            origin: value("origin")?,
             count: number("count")?,
             ranks: u32::try_from(number("ranks")?).unwrap_or(u32::MAX),
             catalogue: fields.join("\n").parse()?,
@@ -97,6 +106,7 @@ impl Hello {
         compare("role", &self.role, &theirs.role)?;
         compare("case hash", &self.case_hash, &theirs.case_hash)?;
         compare("mesh hash", &self.mesh_hash, &theirs.mesh_hash)?;
+        compare("checkpoint to start from", &self.origin, &theirs.origin)?;
         let counts = (self.count.to_string(), theirs.count.to_string());
         compare("number of cells or particles", &counts.0, &counts.1)?;
         let ranks = (self.ranks.to_string(), theirs.ranks.to_string());
@@ -151,6 +161,7 @@ mod tests {
             version: "1912".into(),
             case_hash: "0a".into(),
             mesh_hash: "0b".into(),
+            origin: NEW.into(),
             count: 12,
             ranks: 1,
             catalogue: Catalogue::standard("gas").unwrap(),
@@ -165,7 +176,10 @@ mod tests {
     #[test]
     fn a_difference_is_told_with_both_values() {
         type Change = fn(&mut Hello);
-        let cases: [(&str, Change); 4] = [
+        let cases: [(&str, Change); 5] = [
+            ("start from is new here, but /run/checkpoint", |h| {
+                h.origin = "/run/checkpoint".into()
+            }),
             ("case hash is 0a here, but 0c", |h| {
                 h.case_hash = "0c".into()
             }),

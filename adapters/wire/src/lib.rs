@@ -6,10 +6,13 @@
 
 pub mod carried;
 pub mod catalogue;
+pub mod columns;
+pub mod failure;
 pub mod hello;
 pub mod link;
 pub mod process;
 pub mod record;
+pub mod reference;
 pub mod run;
 pub mod shared_memory;
 pub mod transport;
@@ -23,6 +26,7 @@ mod words;
 
 pub use carried::{CarriedTransport, Carrier, Message};
 pub use catalogue::{Catalogue, ColumnSet, Field};
+pub use failure::SolverFailure;
 pub use hello::Hello;
 pub use link::Link;
 pub use process::Process;

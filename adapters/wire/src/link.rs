@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use crate::catalogue::{Catalogue, ColumnSet};
+use crate::failure::SolverFailure;
 use crate::hello::Hello;
 use crate::process::Process;
 use crate::record::{Header, MAGIC, MessageKind, VERSION};
@@ -91,7 +92,14 @@ impl Link {
         let greeting = self.read_greeting(ours);
         match &greeting {
             Ok(_) => self.send_text(Header::of(MessageKind::Hello), &introduction(ours))?,
-            Err(error) => self.send_text(Header::of(MessageKind::Failed), &error.to_string())?,
+            Err(error) => {
+                let header = Header::of(MessageKind::Failed);
+                self.send_words(
+                    header,
+                    SolverFailure::InvalidInput as u64,
+                    &error.to_string(),
+                )?;
+            }
         }
         self.catalogue = ours.catalogue.clone();
         greeting
@@ -127,16 +135,25 @@ impl Link {
 
     /// Sends a text.
     pub fn send_text(&mut self, header: Header, text: &str) -> Result<(), WireError> {
+        self.send_words(header, 0, text)
+    }
+
+    fn send_words(&mut self, header: Header, count: u64, text: &str) -> Result<(), WireError> {
         self.reserved = None;
-        let header = self.addressed(header, 0, text.len() as u64);
+        let header = self.addressed(header, count, text.len() as u64);
         let payload = self.transport.loan(header, text.len().div_ceil(8))?;
         words::bytes_mut(payload)[..text.len()].copy_from_slice(text.as_bytes());
         self.transport.send()
     }
 
     /// Tells the other end why this process ends, and stays until it has heard, 2 s at most.
-    pub fn send_last_word(&mut self, header: Header, text: &str) -> Result<(), WireError> {
-        self.send_text(header, text)?;
+    pub fn send_last_word(
+        &mut self,
+        header: Header,
+        kind: SolverFailure,
+        text: &str,
+    ) -> Result<(), WireError> {
+        self.send_words(header, kind as u64, text)?;
         self.transport.settle(LAST_WORD)
     }
 
@@ -205,6 +222,7 @@ impl Link {
         self.check(&header)?;
         if header.kind() == Some(MessageKind::Failed) {
             return Err(WireError::Failed {
+                kind: SolverFailure::from_number(header.count),
                 text: self.text()?.to_owned(),
             });
         }

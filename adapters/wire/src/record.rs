@@ -5,7 +5,7 @@ use iceoryx2::prelude::ZeroCopySend;
 /// Marks a header of this wire: "calcine" and a one.
 pub const MAGIC: u64 = u64::from_le_bytes(*b"calcine\x01");
 /// Version of the protocol; both ends must have the same.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 
 /// What a message is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub enum MessageKind {
     Checkpoint = 6,
     /// The checkpoint is written; the state after re-initialisation (columns).
     Checkpointed = 7,
-    /// The sender cannot go on; why, in words (text).
+    /// The sender cannot go on; why, in words (text), and of which kind (a `SolverFailure`, in the header's count).
     Failed = 8,
     /// The run ends; asked by the coordinator, answered by the solver.
     Bye = 9,
@@ -93,7 +93,7 @@ pub struct Header {
     pub span_process: i64,
     /// Span over which the gas stores mass, enthalpy and species.
     pub storage_span: i64,
-    /// Cells or particles in the columns.
+    /// Cells or particles in the columns; of `Failed` the kind of failure.
     pub count: u64,
     /// Bytes of the payload: columns, or a text in UTF-8.
     pub bytes: u64,

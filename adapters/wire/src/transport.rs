@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use thiserror::Error;
 
+use crate::failure::SolverFailure;
 use crate::record::Header;
 use crate::run::LinkAddress;
 
@@ -82,6 +83,8 @@ pub enum WireError {
     /// The other end reported a failure.
     #[error("{text}")]
     Failed {
+        /// Of which kind it is.
+        kind: SolverFailure,
         /// Its words.
         text: String,
     },

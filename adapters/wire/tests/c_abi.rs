@@ -7,11 +7,12 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
+use calcine_wire::hello::NEW;
 use calcine_wire::run::VARIABLE;
 use calcine_wire::shared_memory::LinkEnd;
 use calcine_wire::{
     Catalogue, Header, Hello, Link, LinkAddress, MessageKind, RunDirectory, SharedMemory,
-    TransportKind, WireError,
+    SolverFailure, TransportKind, WireError,
 };
 
 /// The directory of the test's own binaries' parent, where the static library lies.
@@ -63,6 +64,7 @@ fn hello() -> Hello {
         version: "0".into(),
         case_hash: "case".into(),
         mesh_hash: "mesh".into(),
+        origin: NEW.into(),
         count: 3,
         ranks: 1,
         catalogue: Catalogue::standard("gas").unwrap(),
@@ -148,6 +150,10 @@ fn a_solver_in_cpp_shakes_hands_answers_fails_and_ends() {
         .unwrap();
     let failure = receive(link).unwrap_err();
     assert_eq!(failure.to_string(), "/a/directory");
+    let WireError::Failed { kind, .. } = failure else {
+        panic!("{failure:?}");
+    };
+    assert_eq!(kind, SolverFailure::NotConverged);
     assert_eq!(solver.child.wait().unwrap().code(), Some(1));
 
     let mut solver = start(&program, "mesh");

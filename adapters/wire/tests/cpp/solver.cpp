@@ -12,7 +12,7 @@
 static_assert(sizeof(calcine_header) == 96, "header");
 static_assert(offsetof(calcine_header, window) == 32, "header");
 static_assert(offsetof(calcine_header, count) == 80, "header");
-static_assert(sizeof(calcine_hello) == 64, "hello");
+static_assert(sizeof(calcine_hello) == 72, "hello");
 static_assert(sizeof(calcine_status) == 4 && sizeof(calcine_kind) == 4, "enums");
 
 static calcine_link* wire = nullptr;
@@ -47,7 +47,7 @@ int main(int count, char** words)
 {
     need(calcine_link_open(0, nullptr, &wire));
     const char* mesh = count > 1 ? words[1] : "mesh";
-    calcine_hello hello = {"gas", "test", "1", "case", mesh, nullptr, 3, 1};
+    calcine_hello hello = {"gas", "test", "1", "case", mesh, nullptr, nullptr, 3, 1};
     if (std::strcmp(mesh, "busy") == 0) {
         calcine_link_handshake(wire, &hello, 0); // nobody answers in no time
         for (;;) ::sleep(1);                     // computes without looking at its link
@@ -70,7 +70,7 @@ int main(int count, char** words)
         if (header.kind == CALCINE_CHECKPOINT) {
             const char* directory = nullptr;
             need(calcine_link_text(wire, &directory));
-            need(calcine_link_failed(wire, directory));
+            need(calcine_link_failed(wire, CALCINE_FAILURE_NOT_CONVERGED, directory));
             return 1;
         }
         if (header.kind == CALCINE_START) {

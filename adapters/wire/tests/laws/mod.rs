@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use calcine_wire::hello::NEW;
 use calcine_wire::{
     Catalogue, Header, Hello, Link, MessageKind, RunDirectory, Transport, WireError,
 };
@@ -23,6 +24,7 @@ fn hello(name: &str) -> Hello {
         version: "1".into(),
         case_hash: "c".into(),
         mesh_hash: "m".into(),
+        origin: NEW.into(),
         count: 4,
         ranks: 1,
         catalogue: Catalogue::standard("gas").unwrap(),
