@@ -8,6 +8,7 @@ mod case_files;
 mod contacts_agree;
 mod continuation;
 mod drag_ripple;
+mod external_gas;
 mod frank_kamenetskii;
 mod heat_paths;
 mod heated_column;

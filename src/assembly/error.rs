@@ -36,6 +36,9 @@ pub enum AssemblyError {
     /// A native solver refuses the case or a checkpoint.
     #[error(transparent)]
     Native(#[from] NativeError),
+    /// A gas of the user's own that the case does not name.
+    #[error("the case names no gas solver of your own; add [external.gas] with program = \"…\"")]
+    NoExternalGas,
     /// A part could not start.
     #[error(transparent)]
     Part(#[from] PartError),

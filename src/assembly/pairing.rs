@@ -10,6 +10,8 @@ pub enum GasBackend {
     Native,
     /// calcineGasFoam on Debian's OpenFOAM.
     Openfoam,
+    /// The program of `external.gas`, which couples through Calcine's C ABI.
+    External,
 }
 
 /// Who computes the particles.
@@ -32,7 +34,7 @@ pub struct Pairing {
 }
 
 impl Pairing {
-    /// All four pairings.
+    /// The four pairings of the solvers that every case has.
     pub const ALL: [Pairing; 4] = [
         Pairing {
             gas: GasBackend::Native,
@@ -59,7 +61,12 @@ impl Pairing {
 
     /// The pairing of a name.
     pub fn parse(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|pairing| pairing.name() == name)
+        let (gas, particles) = name.split_once('+')?;
+        let all = GasBackend::value_variants().iter();
+        let gas = all.copied().find(|one| one.name() == gas)?;
+        let all = ParticleBackend::value_variants().iter();
+        let particles = all.copied().find(|one| one.name() == particles)?;
+        Some(Self { gas, particles })
     }
 
     /// True where no external solver takes part.
@@ -74,6 +81,7 @@ impl GasBackend {
         match self {
             GasBackend::Native => "native",
             GasBackend::Openfoam => "openfoam",
+            GasBackend::External => "external",
         }
     }
 }

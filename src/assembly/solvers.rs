@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use calcine_adapters::external::ExternalGasLaunch;
 use calcine_adapters::liggghts::inputs::Inputs;
 use calcine_adapters::liggghts::template::ScriptTemplate;
 use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch, LiggghtsParticles};
@@ -31,7 +32,7 @@ pub fn write_inputs(
     pairing: Pairing,
     folder: &Path,
 ) -> Result<Vec<std::path::PathBuf>, AssemblyError> {
-    let starts = SolverStarts::of(case);
+    let starts = SolverStarts::of(case, pairing.gas);
     let mut written = Vec::new();
     if pairing.gas == GasBackend::Openfoam {
         let target = folder.join("openfoam");
@@ -150,6 +151,28 @@ impl Assembly<'_> {
                     },
                     ranks: self.settings.starts.gas.ranks,
                     launcher: self.settings.starts.gas.launcher.clone(),
+                    resume: from,
+                    deadline: self.case.coupling.deadline,
+                };
+                Ok(Box::new(launch.launch(supervisor)?))
+            }
+            GasBackend::External => {
+                let external = self.case.external_gas.as_ref();
+                let external = external.ok_or(AssemblyError::NoExternalGas)?;
+                let launch = ExternalGasLaunch {
+                    setup: &self.case.gas,
+                    mesh: Arc::clone(&self.prepared.mesh),
+                    program: external.program.clone(),
+                    arguments: external.arguments.clone(),
+                    case: &self.case.effective,
+                    folder: self.absolute("solvers/external")?,
+                    log: self.absolute("log/external-gas.log")?,
+                    ranks: self.settings.starts.gas.ranks,
+                    launcher: self.settings.starts.gas.launcher.clone(),
+                    from: match (&from, self.settings.from) {
+                        (None, Some(origin)) => Some(origin.path.join("gas")),
+                        _ => None,
+                    },
                     resume: from,
                     deadline: self.case.coupling.deadline,
                 };

@@ -99,7 +99,9 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
 /// What each backend makes of the case.
 fn honoured(text: &mut String, case: &Case) {
     let _ = writeln!(text, "  backends:");
-    for name in ["native gas", "OpenFOAM", "native particles", "LIGGGHTS"] {
+    let external = case.external_gas.as_ref().map(|_| "external gas");
+    let names = ["native gas", "OpenFOAM", "native particles", "LIGGGHTS"];
+    for name in names.into_iter().chain(external) {
         let foam = openfoam(case);
         let note = match name {
             "OpenFOAM" => foam.as_str(),
@@ -115,6 +117,9 @@ fn honoured(text: &mut String, case: &Case) {
             }
             "native particles" if case.liggghts.template.is_some() => {
                 "every key but `liggghts.template`: what only the script states is left out"
+            }
+            "external gas" => {
+                "its own settings: of the case's gas it is told what the particles exchange, and must have the same mesh"
             }
             _ => "every key",
         };

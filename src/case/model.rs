@@ -79,6 +79,8 @@ pub struct Case {
     pub openfoam: ExternalSpec,
     /// What only LIGGGHTS particles need.
     pub liggghts: ExternalSpec,
+    /// The gas solver of the user's own, where the case names one.
+    pub external_gas: Option<ExternalProgram>,
     /// What is written.
     pub output: Output,
     /// Points at which fields are sampled.
@@ -217,6 +219,17 @@ pub struct ExternalSpec {
     pub solver: StockSolver,
     /// Whether LIGGGHTS counts the impulse of walls.
     pub wall_impulse: bool,
+    /// MPI ranks, unless the command line states others.
+    pub ranks: u32,
+}
+
+/// `[external.gas]`: a solver of the user's own, which couples through Calcine's C ABI.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExternalProgram {
+    /// The program (absolute path).
+    pub program: PathBuf,
+    /// Its arguments.
+    pub arguments: Vec<String>,
     /// MPI ranks, unless the command line states others.
     pub ranks: u32,
 }

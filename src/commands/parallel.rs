@@ -33,7 +33,7 @@ impl Transport {
 /// Options of external solvers.
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct Parallel {
-    /// MPI ranks of OpenFOAM [default: as the case says, or 1].
+    /// MPI ranks of an external gas solver [default: as the case says, or 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     ranks_gas: Option<u16>,
     /// MPI ranks of LIGGGHTS [default: as the case says, or 1].
@@ -42,7 +42,7 @@ pub(super) struct Parallel {
     /// What carries messages between Calcine and external solvers.
     #[arg(long, value_enum, default_value_t)]
     transport: Transport,
-    /// Starts OpenFOAM's ranks instead of `mpirun`, for example "srun -n 16"; state as many with
+    /// Starts an external gas solver's ranks instead of `mpirun`, for example "srun -n 16"; state as many with
     /// `--ranks-gas`.
     #[arg(long, value_name = "WORDS", value_parser = Launcher::parse)]
     launch_gas: Option<Launcher>,
@@ -68,7 +68,7 @@ impl Parallel {
         case: &SolverStarts,
         network: Option<&Arc<dyn SolverNetwork>>,
     ) -> Result<SolverStarts, Failure> {
-        let gas = pairing.gas == GasBackend::Openfoam;
+        let gas = pairing.gas != GasBackend::Native;
         let particles = pairing.particles == ParticleBackend::Liggghts;
         for (option, given, taken, remedy) in [
             (

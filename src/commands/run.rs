@@ -74,9 +74,11 @@ pub(super) fn run(
     };
     let settings = Settings {
         pairing,
-        starts: &arguments
-            .parallel
-            .starts(pairing, &SolverStarts::of(&case), network)?,
+        starts: &arguments.parallel.starts(
+            pairing,
+            &SolverStarts::of(&case, pairing.gas),
+            network,
+        )?,
         transport: arguments.parallel.transport(),
         out: &out,
         resume: arguments.resume,

@@ -101,7 +101,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
 fn one(arguments: &Arguments, settings: &[String], folder: &Path) -> Result<(), Failure> {
     let (case, prepared) = read_and_prepare(&arguments.case, settings)?;
     let settings = Settings {
-        starts: &SolverStarts::of(&case),
+        starts: &SolverStarts::of(&case, arguments.gas),
         transport: Transport::default(),
         pairing: Pairing {
             gas: arguments.gas,

@@ -104,7 +104,7 @@ fn a_liggghts_that_loses_particles_says_which_and_where() {
     let output = run.wait_with_output().unwrap();
     let text = words(&output);
     println!("{text}");
-    assert_eq!(output.status.code(), Some(4), "{text}");
+    assert_eq!(output.status.code(), Some(3), "{text}");
     for word in [
         "LIGGGHTS (particles)",
         "left the box",

@@ -1,4 +1,4 @@
-//! `[coupling]`, `[openfoam]`, `[liggghts]`.
+//! `[coupling]`, `[openfoam]`, `[liggghts]`, `[external]`.
 
 use std::path::Path;
 use std::time::Duration;
@@ -12,7 +12,7 @@ use calcine_coupler::time::GasStorage;
 use super::existing;
 use super::zone::zones;
 use crate::case::model::{
-    Coupling, ExternalSpec, Laws, MappingSpec, MotionSpec, Population, TimeSpec,
+    Coupling, ExternalProgram, ExternalSpec, Laws, MappingSpec, MotionSpec, Population, TimeSpec,
 };
 use crate::case::table::TableReader;
 use crate::case::units::Dimension;
@@ -144,6 +144,43 @@ pub(super) fn check_script(
         let (rule, help) = error.parts();
         section.fail("template", format!("cannot be used: {rule}"), &help);
     }
+}
+
+/// `[external]`: solvers of the user's own.
+pub(super) fn programs(root: &TableReader<'_>, folder: &Path) -> Option<ExternalProgram> {
+    let section = root.table("external")?;
+    let gas = section.table("gas").and_then(|table| {
+        if !table.has("program") {
+            table.missing("program", "\"column-gas\"");
+        }
+        let program = existing(&table, "program", folder);
+        if let Some(path) = &program
+            && !is_executable(path)
+        {
+            let rule = format!("names {}, which is no executable file", path.display());
+            table.fail(
+                "program",
+                rule,
+                "name the program itself; compile it, or chmod +x it",
+            );
+        }
+        let arguments = table.texts("arguments").unwrap_or_default();
+        let ranks = table.whole("ranks", 1..=100_000).unwrap_or(1);
+        table.finish();
+        Some(ExternalProgram {
+            program: program?,
+            arguments,
+            ranks: u32::try_from(ranks).unwrap_or(1),
+        })
+    });
+    section.finish();
+    gas
+}
+
+fn is_executable(path: &Path) -> bool {
+    use std::os::unix::fs::PermissionsExt;
+    path.metadata()
+        .is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0)
 }
 
 /// `[openfoam]` or `[liggghts]`.

@@ -77,6 +77,7 @@ pub(super) fn case(
     let coupling = coupling::read(root);
     let openfoam = coupling::external(root, "openfoam", folder);
     let liggghts = coupling::external(root, "liggghts", folder);
+    let external_gas = coupling::programs(root, folder);
     if let (Some(laws), Some(particles)) = (&laws, &particles) {
         heat::need_properties(root, laws, &materials, particles, &walls);
     }
@@ -161,6 +162,7 @@ pub(super) fn case(
         coupling: coupling?,
         openfoam,
         liggghts,
+        external_gas,
         output: output?,
         probes,
         quantities,
