@@ -148,7 +148,9 @@ impl SimulationBuilder {
         let from = resume.then_some(checkpoint.as_path());
         let mut recorder = Recorder::create(case, info, &out, from)?;
         let log = folder::log(&out)?;
-        let starts = self.starts.unwrap_or_else(|| SolverStarts::of(case, self.pairing.gas));
+        let starts = self
+            .starts
+            .unwrap_or_else(|| SolverStarts::of(case, self.pairing.gas));
         let settings = assembly::RunSettings {
             pairing: self.pairing,
             starts: &starts,
