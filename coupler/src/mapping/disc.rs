@@ -59,6 +59,8 @@ struct Sums {
     seen: Turns,
     /// Angle of the disc's sectors before edges beyond it.
     sectors: Turns,
+    /// Half the solid angle of the triangles whose edges lie beyond the disc.
+    beyond: Turns,
 }
 
 impl Plane {
@@ -83,10 +85,14 @@ impl Plane {
 
     /// h/3 · area(F ∩ D) + sign(h) R³/3 · Ω(F ∖ D) in m³: the cone's part in the sphere.
     pub fn cone(&self, corners: &[Point], foot: Point) -> f64 {
-        let mut whole = Turns::NONE;
-        edges(corners, foot, |a, b| self.triangle(a, b, &mut whole));
-        let (area, angle) = self.in_disc(corners, foot);
-        self.volume(area, 2.0 * whole.sum() - angle)
+        let sums = self.sums(corners, foot);
+        let (sectors, beyond) = (sums.sectors.sum(), 2.0 * sums.beyond.sum());
+        // Without the triangles in the disc: their angles are ill-conditioned where the centre lies next to a corner.
+        let angle = beyond - sectors * (1.0 - self.height.abs() / self.radius);
+        if self.disc <= 0.0 {
+            return self.volume(0.0, beyond);
+        }
+        self.volume(self.area(&sums, sectors), angle)
     }
 
     fn volume(&self, area: f64, angle: f64) -> f64 {
@@ -98,16 +104,25 @@ impl Plane {
         if self.disc <= 0.0 {
             return (0.0, 0.0);
         }
+        let sums = self.sums(corners, foot);
+        let sectors = sums.sectors.sum();
+        let angle = 2.0 * sums.seen.sum() + sectors * (1.0 - self.height.abs() / self.radius);
+        (self.area(&sums, sectors), angle)
+    }
+
+    fn area(&self, sums: &Sums, sectors: f64) -> f64 {
+        0.5 * (sums.triangles + self.disc * sectors)
+    }
+
+    fn sums(&self, corners: &[Point], foot: Point) -> Sums {
         let mut sums = Sums {
             triangles: 0.0,
             seen: Turns::NONE,
             sectors: Turns::NONE,
+            beyond: Turns::NONE,
         };
         edges(corners, foot, |a, b| self.edge(a, b, &mut sums));
-        let sectors = sums.sectors.sum();
-        let area = 0.5 * (sums.triangles + self.disc * sectors);
-        let angle = 2.0 * sums.seen.sum() + sectors * (1.0 - self.height.abs() / self.radius);
-        (area, angle)
+        sums
     }
 
     /// Adds an edge from `a` to `b`: the stretch that lies in the disc, and those before and after it.
@@ -116,7 +131,7 @@ impl Plane {
         let (square, slope) = (along.norm_squared(), a.dot(&along));
         let root = slope * slope - square * (a.norm_squared() - self.disc);
         if square == 0.0 || root <= 0.0 {
-            return sector(a, b, sums);
+            return self.sector(a, b, sums);
         }
         let root = root.sqrt();
         let enter = ((-slope - root) / square).clamp(0.0, 1.0);
@@ -126,10 +141,19 @@ impl Plane {
         self.triangle(p, q, &mut sums.seen);
         // An edge that ends in the disc has no stretch beyond it.
         if enter > 0.0 {
-            sector(a, p, sums);
+            self.sector(a, p, sums);
         }
         if leave < 1.0 {
-            sector(q, b, sums);
+            self.sector(q, b, sums);
+        }
+    }
+
+    /// Adds the stretch of an edge that lies beyond the disc.
+    fn sector(&self, p: Point, q: Point, sums: &mut Sums) {
+        let turn = p.perp(&q);
+        if turn != 0.0 {
+            sums.sectors.add(p.dot(&q), turn);
+            self.triangle(p, q, &mut sums.beyond);
         }
     }
 
@@ -145,13 +169,6 @@ impl Plane {
         let (far_p, far_q) = (far(p), far(q));
         let along = far_p * far_q + height * (far_p + far_q + height) + p.dot(&q);
         sum.add(along, turn);
-    }
-}
-
-fn sector(p: Point, q: Point, sums: &mut Sums) {
-    let turn = p.perp(&q);
-    if turn != 0.0 {
-        sums.sectors.add(p.dot(&q), turn);
     }
 }
 

@@ -1,9 +1,14 @@
 //! The base mapping W₀: which share of each particle lies in which cell.
 
 mod disc;
+mod lanes;
 mod overlap;
+mod passage;
 mod satellites;
 mod weights;
+mod wide;
+
+use std::f64::consts::PI;
 
 use std::ops::Deref;
 
@@ -16,6 +21,7 @@ pub use weights::Weights;
 use crate::mesh::Mesh;
 use crate::mesh::locate::Locator;
 use overlap::{Overlap, Scratch};
+use passage::{Parts, Passage};
 pub(crate) use weights::Amount;
 use weights::Piece;
 
@@ -75,6 +81,7 @@ pub enum Method {
 pub struct Mapper<M> {
     locator: Locator<M>,
     overlap: Overlap,
+    passage: Passage,
 }
 
 impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
@@ -82,12 +89,19 @@ impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
     const ROUND_OFF: f64 = 1e-14;
     /// Particles that one thread takes at a time.
     const PIECE: usize = 256;
+    /// Up to so many particles one thread finds their regions alone.
+    const ALONE: usize = 4096;
 
     /// The mapper of a mesh.
     pub fn new(mesh: M) -> Self {
         let locator = Locator::new(mesh);
         let overlap = Overlap::new(&locator);
-        Self { locator, overlap }
+        let passage = Passage::new(&locator, &overlap);
+        Self {
+            locator,
+            overlap,
+            passage,
+        }
     }
 
     /// Weights of spheres, given by centres and radii in m. What of a sphere lies beyond a wall is
@@ -105,85 +119,164 @@ impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
             });
         }
         let cells = self.locator.mesh().cells();
-        // Neighbours one after the other: they need the same cells, which memory is slow to give.
-        let mut order: Vec<(usize, u32)> = positions
-            .iter()
-            .zip(0..)
-            .map(|(&position, particle)| (self.locator.bin(position), particle))
-            .collect();
-        order.sort_unstable();
+        let order = self.order(positions);
         let pieces: Vec<Piece> = order
             .par_chunks(Self::PIECE)
             .map_init(Memory::default, |memory, particles| {
                 let mut piece = Piece::default();
-                for &(_, particle) in particles {
-                    let index = particle as usize;
-                    let (position, radius) = (positions[index], radii[index]);
-                    match self.row(method, index, position, radius, memory) {
-                        Ok(()) => piece.push(particle, &mut memory.row, cells),
-                        Err(error) => piece.fail(particle, error),
-                    }
-                }
+                self.piece(method, (positions, radii), particles, memory, &mut piece);
                 piece
             })
             .collect();
         Weights::from_pieces(cells, positions.len(), &pieces)
     }
 
-    /// Leaves the cells of a particle, ascending, and its share in each in `memory.row`.
-    fn row(
+    /// Particles in the order of space: neighbours need the same cells, which memory is slow to give.
+    fn order(&self, positions: &[Vec3]) -> Vec<u32> {
+        let region = |position: &Vec3| self.locator.region(*position) as u32;
+        let regions: Vec<u32> = if positions.len() <= Self::ALONE {
+            positions.iter().map(region).collect()
+        } else {
+            positions
+                .par_iter()
+                .with_min_len(1024)
+                .map(region)
+                .collect()
+        };
+        let mut next = vec![0u32; self.locator.regions() + 1];
+        for &region in &regions {
+            next[region as usize + 1] += 1;
+        }
+        for region in 1..next.len() {
+            next[region] += next[region - 1];
+        }
+        let mut order = vec![0; positions.len()];
+        for (particle, &region) in regions.iter().enumerate() {
+            let slot = &mut next[region as usize];
+            order[*slot as usize] = particle as u32;
+            *slot += 1;
+        }
+        order
+    }
+
+    /// Adds the rows of some particles to a piece.
+    fn piece(
+        &self,
+        method: Method,
+        (positions, radii): (&[Vec3], &[f64]),
+        particles: &[u32],
+        memory: &mut Memory,
+        piece: &mut Piece,
+    ) {
+        let mesh = self.locator.mesh();
+        memory.spheres.clear();
+        memory.parts.clear();
+        for &particle in particles {
+            let index = particle as usize;
+            let (position, radius) = (positions[index], radii[index]);
+            match self.sphere(method, index, (position, radius), memory) {
+                Ok(first) => memory
+                    .spheres
+                    .push((particle, first as u32, memory.home as u32)),
+                Err(error) => piece.fail(particle, error),
+            }
+        }
+        memory.parts.finish(mesh);
+        for (sphere, &(particle, first, home)) in memory.spheres.iter().enumerate() {
+            let first = first as usize;
+            let end = memory
+                .spheres
+                .get(sphere + 1)
+                .map_or(memory.parts.len(), |next| next.1 as usize);
+            let volumes = &memory.parts.volumes[first..end];
+            let cells = &memory.parts.cells[first..end];
+            let whole = 4.0 / 3.0 * PI * radii[particle as usize].powi(3);
+            memory.row.clear();
+            if let &[cell] = cells {
+                memory.row.push((cell, 1.0));
+            } else {
+                let shares = cells
+                    .iter()
+                    .zip(volumes)
+                    .map(|(&cell, volume)| (cell, volume / whole));
+                memory
+                    .row
+                    .extend(shares.filter(|&(_, share)| share > Self::ROUND_OFF));
+            }
+            if memory.row.is_empty() {
+                memory.row.push((home, 1.0));
+            }
+            piece.push(particle, &mut memory.row, mesh.cells());
+        }
+    }
+
+    /// Adds the cells of a particle to `memory.parts`, the first of which is returned.
+    fn sphere(
         &self,
         method: Method,
         particle: usize,
-        position: Vec3,
-        radius: f64,
+        (position, radius): (Vec3, f64),
         memory: &mut Memory,
-    ) -> Result<(), MappingError> {
+    ) -> Result<usize, MappingError> {
         if !(radius >= 0.0 && radius.is_finite()) {
             return Err(MappingError::Radius { particle, radius });
         }
+        let mesh = self.locator.mesh();
         let (home, depth) = self
-            .locator
-            .cell_and_depth(position)
+            .passage
+            .home(mesh, position, memory.home)
+            .or_else(|| self.locator.cell_and_depth(position))
             .ok_or(MappingError::Outside { particle, position })?;
-        memory.row.clear();
-        match method {
-            Method::Divided if depth < radius => self.by_satellites(position, radius, memory),
-            Method::Overlap if depth < radius => self.by_overlap(position, radius, memory),
-            _ => {}
-        }
+        memory.home = home;
+        let first = memory.parts.len();
+        let whole = 4.0 / 3.0 * PI * radius.powi(3);
         // All of it lies in one cell; a sphere too small for its volume to be a number is a point.
-        if memory.row.is_empty() {
-            memory.row.push((home as u32, 1.0));
+        if depth >= radius || whole == 0.0 || method == Method::Centroid {
+            memory.parts.push(home as u32, whole);
+            return Ok(first);
         }
-        Ok(())
+        match method {
+            Method::Divided => self.by_satellites((position, radius), whole, memory),
+            _ => {
+                let sphere = (position, radius);
+                let Memory { parts, .. } = memory;
+                if !self
+                    .passage
+                    .gather(mesh, &self.overlap, home, sphere, parts)
+                {
+                    self.by_overlap(sphere, memory);
+                }
+            }
+        }
+        Ok(first)
     }
 
-    fn by_satellites(&self, position: Vec3, radius: f64, memory: &mut Memory) {
+    fn by_satellites(&self, (position, radius): (Vec3, f64), whole: f64, memory: &mut Memory) {
         let cells = satellites::points(position, radius)
             .filter_map(|point| self.locator.cell_at(point))
             .map(|cell| cell as u32);
         memory.cells.clear();
         memory.cells.extend(cells);
         memory.cells.sort_unstable();
-        let shares = memory.cells.chunk_by(|a, b| a == b);
-        let shares = shares.map(|same| (same[0], same.len() as f64));
-        memory.row.extend(shares);
+        let share = whole / memory.cells.len() as f64;
+        for same in memory.cells.chunk_by(|a, b| a == b) {
+            memory.parts.push(same[0], same.len() as f64 * share);
+        }
     }
 
-    fn by_overlap(&self, position: Vec3, radius: f64, memory: &mut Memory) {
+    fn by_overlap(&self, (position, radius): (Vec3, f64), memory: &mut Memory) {
         let Memory {
             cells,
             scratch,
-            row,
+            parts,
+            ..
         } = memory;
-        let sphere = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
         self.locator.cells_near(position, radius, cells);
         let mesh = self.locator.mesh();
         let volumes = self.overlap.volumes(mesh, cells, position, radius, scratch);
-        let shares = volumes.iter().map(|volume| volume / sphere);
-        let shares = cells.iter().copied().zip(shares);
-        row.extend(shares.filter(|&(_, share)| share > Self::ROUND_OFF));
+        for (&cell, &volume) in cells.iter().zip(volumes) {
+            parts.push(cell, volume);
+        }
     }
 }
 
@@ -193,4 +286,12 @@ struct Memory {
     cells: Vec<u32>,
     scratch: Scratch,
     row: Vec<(u32, f64)>,
+    parts: Parts,
+    /// Particles, the first of each one's cells in `parts`, and the cell of its centre.
+    spheres: Vec<(u32, u32, u32)>,
+    /// The cell of the particle before.
+    home: usize,
 }
+
+#[cfg(test)]
+mod tests;

@@ -33,7 +33,7 @@ pub(super) struct Overlap {
 
 /// What a plane face is to spheres, in one piece of memory.
 #[derive(Clone, Debug)]
-struct Face {
+pub(super) struct Face {
     centre: Vec3,
     /// Unit normal, out of the owner, and two axes of the plane.
     axes: Axes,
@@ -83,8 +83,9 @@ pub(super) struct Scratch {
     volumes: Vec<f64>,
 }
 
-/// Below this height of the centre over a face, as a share of the radius, its side is not certain.
-const GRAZING: f64 = 1e-10;
+/// Below this height of the centre over a face, as a share of the radius, cones are used: next to a corner the
+/// solid angle in the disc is known to round-off of the coordinates over this height.
+pub(super) const GRAZING: f64 = 1e-3;
 
 impl Overlap {
     pub fn new<M: Deref<Target = Mesh>>(locator: &Locator<M>) -> Self {
@@ -178,7 +179,8 @@ impl Overlap {
                         if other.is_some_and(|other| other < place) {
                             continue;
                         }
-                        let within = mesh.side(cell, index) * self.within(face, centre, &plane);
+                        let within =
+                            mesh.side(cell, index) * self.plane_within(face, centre, &plane);
                         volumes[place] += within;
                         if let Some(other) = other {
                             volumes[other] -= within;
@@ -194,7 +196,7 @@ impl Overlap {
         if !self.convex[cell] {
             return Way::Cones;
         }
-        if (mesh.cell_centre()[cell] - centre).norm() + self.reach[cell] <= radius {
+        if self.holds_all(cell, (mesh.cell_centre()[cell] - centre).norm(), radius) {
             return Way::Whole;
         }
         let mut inside = true;
@@ -209,8 +211,8 @@ impl Overlap {
     }
 
     /// What a plane face takes of the sphere: h/3 · area(F ∩ D) − sign(h) R³/3 · Ω(F ∩ D).
-    fn within(&self, face: &Face, centre: Vec3, plane: &Plane) -> f64 {
-        let foot = face.axes.in_plane(centre - face.centre);
+    fn plane_within(&self, face: &Face, centre: Vec3, plane: &Plane) -> f64 {
+        let foot = face.foot(centre);
         let span = plane.disc().sqrt() + face.reach;
         if foot.norm_squared() >= span * span {
             return 0.0;
@@ -218,7 +220,27 @@ impl Overlap {
         plane.inside(self.corners_of(face), foot)
     }
 
-    fn corners_of(&self, face: &Face) -> &[Point] {
+    /// The same for a plane at some height over the centre.
+    pub fn within(&self, face: &Face, centre: Vec3, height: f64, radius: f64) -> f64 {
+        self.plane_within(face, centre, &Plane::new(height, radius))
+    }
+
+    /// Whether all faces of a cell are plane and all its points lie behind each.
+    pub fn is_convex(&self, cell: usize) -> bool {
+        self.convex[cell]
+    }
+
+    /// Whether a sphere holds all of a cell, with its centre at some distance in m from the cell's.
+    pub fn holds_all(&self, cell: usize, distance: f64, radius: f64) -> bool {
+        distance + self.reach[cell] <= radius
+    }
+
+    pub fn face(&self, index: u32) -> &Face {
+        &self.faces[index as usize]
+    }
+
+    /// Corners of a plane face in its axes from its centre, counter-clockwise about the normal.
+    pub fn corners_of(&self, face: &Face) -> &[Point] {
         &self.corners[face.corners.start as usize..face.corners.end as usize]
     }
 
@@ -227,7 +249,7 @@ impl Overlap {
         let face = &self.faces[index];
         let corners = self.corners_of(face);
         if !corners.is_empty() {
-            let foot = face.axes.in_plane(centre - face.centre);
+            let foot = face.foot(centre);
             let plane = face.plane(centre, radius);
             return plane.cone(corners, foot);
         }
@@ -251,6 +273,11 @@ impl Overlap {
 }
 
 impl Face {
+    /// The foot of a place in the face's axes from its centre.
+    pub fn foot(&self, place: Vec3) -> Point {
+        self.axes.in_plane(place - self.centre)
+    }
+
     /// Signed height in m of the face's plane over a place.
     fn height(&self, place: Vec3) -> f64 {
         self.axes.normal.dot(&(self.centre - place))

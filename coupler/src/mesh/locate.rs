@@ -115,9 +115,15 @@ impl<M: Deref<Target = Mesh>> Locator<M> {
         least
     }
 
-    /// The number of a region of space that holds a position, or is nearest to it: neighbours have the same.
-    pub fn bin(&self, position: Vec3) -> usize {
-        self.bins.place(position)
+    /// The number of a region of space that holds a position, or is nearest to it: neighbours have the same, or one
+    /// near it.
+    pub fn region(&self, position: Vec3) -> usize {
+        self.bins.region(position)
+    }
+
+    /// Number of these regions.
+    pub fn regions(&self) -> usize {
+        self.bins.blocks().iter().product::<usize>() * BLOCK.pow(3)
     }
 
     /// Sets `cells` to those whose bounding boxes reach into a sphere, ascending.
@@ -212,6 +218,8 @@ struct Bins {
 const WITHIN: f64 = 1e-10;
 /// Cells of a bin from which on it gets a finer grid; a bin may lie across eight equal cells.
 const CROWDED: usize = 64;
+/// Bins along the edge of a block: as many as keep what is known of their cells in a processor's own memory.
+const BLOCK: usize = 4;
 /// Grids inside one another at most.
 const DEPTH: usize = 4;
 
@@ -309,6 +317,20 @@ impl Bins {
         (0..3)
             .all(inside)
             .then(|| self.around(position - slack, position + slack))
+    }
+
+    /// Blocks of bins along each axis.
+    fn blocks(&self) -> [usize; 3] {
+        self.count.map(|count| count.div_ceil(BLOCK))
+    }
+
+    /// The bin of a position, or the nearest one, counted block by block.
+    fn region(&self, position: Vec3) -> usize {
+        let at = [0, 1, 2].map(|axis| self.index(axis, position[axis]));
+        let place =
+            |of: [usize; 3], count: [usize; 3]| of[0] + count[0] * (of[1] + count[1] * of[2]);
+        let block = place(at.map(|i| i / BLOCK), self.blocks());
+        block * BLOCK.pow(3) + place(at.map(|i| i % BLOCK), [BLOCK; 3])
     }
 
     /// The bin of a position, or the nearest one.
