@@ -32,6 +32,7 @@ mod resume;
 mod resume_facets;
 mod resume_ranks;
 mod schema;
+mod second_model;
 mod shipped_cases;
 mod simulation;
 mod stock_solver;

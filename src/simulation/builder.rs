@@ -1,8 +1,10 @@
 //! How a simulation is begun.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use calcine_coupler::coordinator::Ending;
+use calcine_coupler::interior::ParticleModel;
 use calcine_coupler::observer::Observer;
 use calcine_coupler::supervisor::{Interrupts, Supervisor};
 use tracing::dispatcher::with_default;
@@ -10,7 +12,7 @@ use tracing::{info, warn};
 
 use super::{Simulation, SimulationError, folder};
 use crate::assembly::{
-    self, GasBackend, Pairing, ParticleBackend, PreparedCase, SolverStarts, assemble,
+    self, GasBackend, Pairing, ParticleBackend, PreparedCase, SolverStarts, assemble_with,
 };
 use crate::case::buoyancy;
 use crate::case::model::Case;
@@ -28,6 +30,23 @@ pub struct SimulationBuilder {
     resume: bool,
     from: Option<PathBuf>,
     interrupts: Interrupts,
+    models: Vec<GivenModel>,
+}
+
+/// A model of particles that the case file does not know, and the material that it is for.
+#[derive(Clone)]
+struct GivenModel {
+    material: String,
+    make: Arc<MakeModel>,
+}
+
+/// Makes a model without particles, with what it needs to know of the case.
+type MakeModel = dyn Fn(&Case) -> Box<dyn ParticleModel> + Send + Sync;
+
+impl std::fmt::Debug for GivenModel {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "a model of particles of {}", self.material)
+    }
 }
 
 impl SimulationBuilder {
@@ -42,6 +61,7 @@ impl SimulationBuilder {
             resume: false,
             from: None,
             interrupts: Interrupts::default(),
+            models: Vec::new(),
         }
     }
 
@@ -105,6 +125,21 @@ impl SimulationBuilder {
         self
     }
 
+    /// Computes the inside of the particles of a material by a model of one's own, without particles as it is made;
+    /// it takes the place of the case's. Columns that it shows come to the results by `output.particles = ["inside"]`.
+    #[must_use]
+    pub fn model(
+        mut self,
+        material: impl Into<String>,
+        make: impl Fn(&Case) -> Box<dyn ParticleModel> + Send + Sync + 'static,
+    ) -> Self {
+        self.models.push(GivenModel {
+            material: material.into(),
+            make: Arc::new(make),
+        });
+        self
+    }
+
     /// Reads and checks the case, makes mesh and particles, starts the solvers, and stands before the first window.
     pub fn start(self) -> Result<Simulation, SimulationError> {
         let mut case = crate::case::read(&self.case, &self.set)?;
@@ -161,7 +196,12 @@ impl SimulationBuilder {
         let mut supervisor = Supervisor::new(case.coupling.deadline, self.interrupts);
         let run = with_default(&log, || {
             info!(case = %case.name, pairing = %self.pairing.name(), resume, "start");
-            let mut run = assemble(case, prepared, &settings, &mut supervisor)?;
+            let own = |material: &str| {
+                let given = self.models.iter().rev();
+                let found = given.into_iter().find(|one| one.material == material);
+                found.map(|one| (one.make)(case))
+            };
+            let mut run = assemble_with(case, prepared, &settings, &mut supervisor, &own)?;
             let number = buoyancy::number(case, &prepared.mesh);
             info!("N sqrt(AF) dt is {number:.2e}");
             if let Some(warning) = buoyancy::warning(number) {
