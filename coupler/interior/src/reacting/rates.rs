@@ -18,13 +18,14 @@ use super::size::SizeChange;
 /// - of a rate that does not follow the amount, x (2 − x): its slope has no jump at x = 1 and is steep at x = 0;
 /// - of a power law of order m < 1 in that solid, x ((2 − m) + (m − 1) x) times the law at one trace, with the law's own slope at
 ///   x = 1; orders of one and more end by themselves;
-/// - of a shrinking core, x (2 − x) of its flow, with the radius of the interface no smaller than that of a core of one trace.
+/// - of a shrinking core, x (2 − x) of its rate constant, with the radius of the interface no smaller than that of a core of one trace.
 ///
 /// So rates end where nothing is left, and have a slope there by which an implicit step finds that end.
 pub const TRACE: f64 = 1e-6;
 
-/// What is left of that factor where nothing is there, so that its slope is not lost; what it uses is taken back.
-const NOTHING: f64 = 1e-9;
+/// How much faster than film and a layer of the particle's size (β + D/R) an interface is at most: a resistance of this share
+/// of theirs is in series with its own. So amounts of what fast reactions use as it is made stay within what digits resolve.
+const FAST: f64 = 1e5;
 
 /// The surroundings of one particle, fixed over a window.
 #[derive(Clone, Copy, Debug)]
@@ -71,16 +72,6 @@ impl<N: Number> RateState<'_, N> {
             )
         } else {
             N::constant(0.0)
-        }
-    }
-
-    /// The factor of what uses a solid at an interface.
-    fn core_presence(&self, solid: usize) -> N {
-        let factor = self.presence(solid, 0.0);
-        if factor.value() >= 1.0 || self.amounts[solid].value() < 0.0 {
-            factor
-        } else {
-            factor.times(1.0 - NOTHING) + N::constant(NOTHING)
         }
     }
 
@@ -158,8 +149,8 @@ impl SolidChemistry {
         }
         for path in &layers.paths {
             let mut interfaces = [Interface::<N>::none(); MOST_INTERFACES];
-            let mut sides = [None; MOST_INTERFACES];
             let bulk = all_gas * state.fractions[path.key];
+            let film = around.film[path.key];
             for (k, interface) in interfaces.iter_mut().enumerate().take(count) {
                 let (inner, outer) = (places[k], places.get(k + 1).copied());
                 let outer = outer.filter(|_| k + 1 < count).unwrap_or(N::constant(1.0));
@@ -168,41 +159,22 @@ impl SolidChemistry {
                     layers_of[k] / (inner * inner + inner * outer + outer * outer);
                 interface.diffusivity = path.diffusivity[k].at(state.temperature);
                 if let Some(index) = path.reactions[k] {
-                    let reaction = &self.reactions[index];
-                    let (constant, at_rest) =
-                        both_ways(reaction, path, around, state, (bulk, all_gas));
-                    interface.equilibrium = at_rest;
-                    sides[k] = Some(Sides {
-                        constant,
-                        // What film and a layer of the particle's size let pass.
-                        passed: interface.diffusivity.times(1.0 / around.radius)
-                            + N::constant(around.film[path.key]),
-                        inner: state.core_presence(layers.solids[k]),
-                        outer: state.core_presence(layers.solids[k + 1]),
-                        used: moles(reaction, path.key) < 0.0,
-                        forwards: true,
-                    });
+                    let solids = [layers.solids[k], layers.solids[k + 1]];
+                    let passed =
+                        interface.diffusivity.times(1.0 / around.radius) + N::constant(film);
+                    (interface.rate_constant, interface.equilibrium) = interface_of(
+                        &self.reactions[index],
+                        (path, passed.times(FAST)),
+                        solids,
+                        around,
+                        state,
+                        (bulk, all_gas),
+                    );
                 }
             }
             let mut flows = [N::constant(0.0); MOST_INTERFACES];
-            let mut driving = [0.0; MOST_INTERFACES];
-            let film = around.film[path.key];
-            // Forwards a reaction goes as far as its solid is there, backwards as far as its layer is; where that
-            // matters, which of the two it is follows from what drives it.
-            for _ in 0..=2 * count {
-                for (interface, side) in interfaces.iter_mut().zip(&sides) {
-                    if let Some(side) = side {
-                        interface.rate_constant = side.rate_constant();
-                    }
-                }
-                let known = &interfaces[..count];
-                shrinking_core::flows(radius, film, bulk, known, &mut flows, &mut driving);
-                let pairs = sides.iter_mut().flatten().zip(&driving);
-                let turned = pairs.filter_map(|(side, driving)| side.turn(*driving));
-                if turned.count() == 0 {
-                    break;
-                }
-            }
+            let known = &interfaces[..count];
+            shrinking_core::flows(radius, film, bulk, known, &mut flows);
             for (flow, index) in flows.iter().zip(&path.reactions) {
                 if let Some(index) = *index {
                     out[index] = flow.times(-1.0 / moles(&self.reactions[index], path.key));
@@ -212,50 +184,12 @@ impl SolidChemistry {
     }
 }
 
-/// A reaction at an interface between two solids.
-#[derive(Clone, Copy)]
-struct Sides<N> {
-    /// Rate constant of both directions together in m/s, with all solids there.
-    constant: N,
-    /// What film and layer let pass in m/s.
-    passed: N,
-    inner: N,
-    outer: N,
-    /// True for a gas that the reaction uses forwards.
-    used: bool,
-    forwards: bool,
-}
-
-impl<N: Number> Sides<N> {
-    /// The rate constant by what is there of the solid that is used, s: that of the flow s J, with J the flow through
-    /// film, layer and interface in series of the full constant. So the end of a solid is as smooth as s, however
-    /// fast its reaction.
-    fn rate_constant(&self) -> N {
-        let there = if self.forwards {
-            self.inner
-        } else {
-            self.outer
-        };
-        if there.value() >= 1.0 {
-            return self.constant;
-        }
-        let rest = (N::constant(1.0) - there) * self.constant / self.passed;
-        there * self.constant / (N::constant(1.0) + rest)
-    }
-
-    /// Takes up the direction in which it is driven; `Some` where that changes its rate.
-    fn turn(&mut self, driving: f64) -> Option<()> {
-        let forwards = (driving >= 0.0) == self.used;
-        let same = forwards == self.forwards || self.inner.value() == self.outer.value();
-        self.forwards = forwards;
-        (!same).then_some(())
-    }
-}
-
-/// Rate constant of an interface, both directions together, and the concentration at which it rests.
-fn both_ways<N: Number>(
+/// Rate constant of an interface, both directions together, and the concentration at which it rests; between two solids,
+/// the inner one first.
+fn interface_of<N: Number>(
     reaction: &Reaction,
-    path: &GasPath,
+    (path, fastest): (&GasPath, N),
+    [inner, outer]: [usize; 2],
     around: &ParticleSurroundings<'_>,
     state: &RateState<'_, N>,
     (bulk, all_gas): (N, N),
@@ -265,11 +199,24 @@ fn both_ways<N: Number>(
     };
     let back = reaction.equilibrium.inverse(state.temperature);
     let forward = rate_constant.of(state.temperature);
+    let turnover = match path.product {
+        Some(_) => forward * (N::constant(1.0) + back),
+        None => forward,
+    };
+    let forward = forward / (N::constant(1.0) + turnover / fastest);
+    // Forwards it goes as far as its solid is there, backwards as far as its layer is.
+    let (own, layer) = (state.presence(inner, 0.0), state.presence(outer, 0.0));
     if let Some(product) = path.product {
-        // k (c − c'/K) with c + c' the same everywhere
+        // k (s c − s' c'/K) with c + c' the same everywhere
         let both = bulk + all_gas * state.fractions[product];
-        let together = N::constant(1.0) + back;
-        return (forward * together, both * back / together);
+        let returning = layer * back;
+        let together = own + returning;
+        let at_rest = if together.value() > 0.0 {
+            both * returning / together
+        } else {
+            N::constant(0.0)
+        };
+        return (forward * together, at_rest);
     }
     let moles = moles(reaction, path.key);
     let at_rest = if back.value() > 0.0 {
@@ -278,7 +225,8 @@ fn both_ways<N: Number>(
     } else {
         N::constant(0.0)
     };
-    (forward, at_rest)
+    let forwards = (bulk.value() - at_rest.value()) * moles <= 0.0;
+    (forward * if forwards { own } else { layer }, at_rest)
 }
 
 /// Rate of a reaction in the whole volume of a particle in mol/s.
