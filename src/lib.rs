@@ -12,3 +12,4 @@ mod progress;
 pub mod report;
 pub mod results;
 pub mod simulation;
+mod vtk_xml;

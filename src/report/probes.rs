@@ -9,7 +9,7 @@ use super::number::span;
 use super::page::escape;
 use super::plot::{Curve, Plot, Stroke, TIME};
 use crate::results::read::collection;
-use crate::results::{ResultsError, files};
+use crate::results::{ResultsError, files, sheet};
 
 /// Snapshots shown of a line at most.
 const SHOWN: usize = 5;
@@ -109,25 +109,28 @@ fn plot(probe: &str, field: &str, times: &[f64], snapshots: &[(&[f64], &[f64])])
 
 /// The probes of a snapshot by name, in the order of names.
 fn read(path: &Path) -> Result<BTreeMap<String, Sampled>, ResultsError> {
-    let text = files::read(path)?;
-    let mut lines = text.lines();
-    let head: Vec<&str> = lines.next().unwrap_or("").split(',').collect();
+    let mut rows = sheet::rows(path, &files::read(path)?)?.into_iter();
+    let head = rows.next().unwrap_or_default();
     let mut probes: BTreeMap<String, Sampled> = BTreeMap::new();
-    for line in lines {
-        let (name, rest) = line.split_once(',').unwrap_or((line, ""));
-        let values: Vec<f64> = rest
-            .split(',')
+    for row in rows {
+        let name = row.get(0).unwrap_or("");
+        let values: Vec<f64> = row
+            .iter()
+            .skip(1)
             .map(|word| word.parse().unwrap_or(f64::NAN))
             .collect();
-        if values.len() + 1 != head.len() || values.len() < 4 {
-            return Err(ResultsError::content(path, format!("a line is `{line}`")));
+        if row.len() != head.len() || values.len() < 4 {
+            return Err(ResultsError::content(
+                path,
+                format!("a line is `{}`", sheet::words(&row)),
+            ));
         }
         let probe = probes.entry(name.to_owned()).or_default();
         probe.distance.push(values[0]);
-        for (field, &value) in head[5..].iter().zip(&values[4..]) {
+        for (field, &value) in head.iter().skip(5).zip(&values[4..]) {
             let bare = field.split(" [").next().unwrap_or(field);
             if !OF_ITSELF.contains(&bare) {
-                let list = probe.fields.entry((*field).to_owned()).or_default();
+                let list = probe.fields.entry(field.to_owned()).or_default();
                 list.push(value);
             }
         }

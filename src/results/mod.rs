@@ -16,6 +16,7 @@ pub mod read;
 mod recorder;
 mod resume;
 mod series;
+pub(crate) mod sheet;
 #[cfg_attr(not(feature = "hdf5"), allow(dead_code))]
 mod snapshot;
 mod status;

@@ -8,7 +8,7 @@ use calcine_coupler::mesh::locate::Locator;
 use calcine_coupler::physics::Vec3;
 
 use super::snapshot::{Field, Values};
-use super::{ResultsError, files};
+use super::{ResultsError, files, sheet};
 use crate::case::model::Probe;
 
 /// The points of a probe, and the cell of each.
@@ -168,12 +168,9 @@ pub(super) fn write(path: &Path, samples: &[Sample<'_>]) -> Result<(), ResultsEr
             names.push(name);
         }
     }
-    let mut text = String::from("probe,distance [m],x [m],y [m],z [m]");
-    for name in &names {
-        text.push(',');
-        text.push_str(name);
-    }
-    text.push('\n');
+    let fixed = ["probe", "distance [m]", "x [m]", "y [m]", "z [m]"];
+    let first: Vec<String> = fixed.into_iter().map(str::to_owned).collect();
+    let mut text = sheet::line(path, &[&first[..], &names].concat())?;
     for sample in samples {
         let columns: Vec<Option<&Column>> = names
             .iter()
@@ -183,18 +180,16 @@ pub(super) fn write(path: &Path, samples: &[Sample<'_>]) -> Result<(), ResultsEr
         for (index, point) in sample.site.probe.points.iter().enumerate() {
             distance += before.map_or(0.0, |before: &Vec3| (point - before).norm());
             before = Some(point);
-            text.push_str(&sample.site.probe.name);
             let place = [distance, point.x, point.y, point.z];
             let values = columns
                 .iter()
                 .map(|column| column.map_or(f64::NAN, |column| column.values[index]));
-            for value in place.into_iter().chain(values) {
-                text.push_str(&format!(",{value:?}"));
-            }
-            text.push('\n');
+            let mut words = vec![sample.site.probe.name.clone()];
+            words.extend(place.into_iter().chain(values).map(sheet::number));
+            text.extend(sheet::line(path, &words)?);
         }
     }
-    files::replace(path, text.as_bytes())
+    files::replace(path, &text)
 }
 
 #[cfg(test)]

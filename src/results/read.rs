@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{ResultsError, SERIES, files};
+use super::{ResultsError, SERIES, files, sheet};
+use crate::vtk_xml;
 
 /// The time series of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,9 +23,11 @@ impl Series {
     pub fn read(directory: &Path) -> Result<Self, ResultsError> {
         let path = directory.join(SERIES);
         let text = files::read(&path)?;
-        let mut lines = text.lines();
+        // What a run that was killed wrote last may end inside a number.
+        let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+        let mut rows = sheet::rows(&path, whole)?.into_iter();
         let mut series = Self::default();
-        for head in lines.next().unwrap_or_default().split(',') {
+        for head in &rows.next().unwrap_or_default() {
             let (name, unit) = head
                 .strip_suffix(']')
                 .and_then(|head| head.rsplit_once(" ["))
@@ -33,13 +36,10 @@ impl Series {
             series.units.push(unit.into());
         }
         series.columns = vec![Vec::new(); series.names.len()];
-        for line in lines {
-            let row: Vec<f64> = line
-                .split(',')
-                .map_while(|value| value.parse().ok())
-                .collect();
-            if row.len() == series.names.len() {
-                for (column, value) in series.columns.iter_mut().zip(row) {
+        for row in rows {
+            let values: Vec<f64> = row.iter().map_while(|value| value.parse().ok()).collect();
+            if values.len() == series.names.len() {
+                for (column, value) in series.columns.iter_mut().zip(values) {
                     column.push(value);
                 }
             }
@@ -80,69 +80,26 @@ pub type Arrays = BTreeMap<String, Array>;
 /// The snapshots of a `.pvd` file: process time in s and file.
 pub fn collection(directory: &Path, name: &str) -> Result<Vec<(f64, PathBuf)>, ResultsError> {
     let path = directory.join(name);
-    let text = files::read(&path)?;
-    text.split("<DataSet ")
-        .skip(1)
-        .map(|element| {
-            let time = attribute(element, "timestep").and_then(|time| time.parse().ok());
-            let file = attribute(element, "file");
-            match (time, file) {
-                (Some(time), Some(file)) => Ok((time, directory.join(file))),
-                _ => Err(ResultsError::content(
-                    &path,
-                    "a data set has no time or file",
-                )),
-            }
-        })
-        .collect()
+    let entries = vtk_xml::collection(&files::read(&path)?);
+    let entries = entries.map_err(|error| ResultsError::content(&path, error.to_string()))?;
+    let entries = entries.into_iter();
+    Ok(entries
+        .map(|(time, file)| (time, directory.join(file)))
+        .collect())
 }
 
 /// Reads the arrays of a `.vtu` or `.vtp` file that the recorder wrote.
 pub fn arrays(path: &Path) -> Result<Arrays, ResultsError> {
+    let wrong = |error: vtk_xml::VtkError| ResultsError::content(path, error.to_string());
     let bytes = fs::read(path).map_err(ResultsError::file("read", path))?;
-    let mark = b"<AppendedData encoding=\"raw\">\n_";
-    let short = || ResultsError::content(path, "it is cut short");
-    let begin = bytes
-        .windows(mark.len())
-        .position(|window| window == mark)
-        .ok_or_else(short)?;
-    let head = String::from_utf8_lossy(&bytes[..begin]);
-    let data = &bytes[begin + mark.len()..];
+    let file = vtk_xml::read(&bytes).map_err(wrong)?;
     let mut arrays = Arrays::new();
-    for element in head.split("<DataArray ").skip(1) {
-        let Some(offset) = attribute(element, "offset") else {
-            continue;
+    for array in file.pieces.iter().flatten() {
+        let read = Array {
+            components: array.components,
+            values: file.values(array).map_err(wrong)?,
         };
-        let array = decode(element, offset, data).ok_or_else(short)?;
-        let name = attribute(element, "Name").unwrap_or_default();
-        arrays.insert(name.to_owned(), array);
+        arrays.insert(array.name.clone(), read);
     }
     Ok(arrays)
-}
-
-fn attribute<'a>(element: &'a str, name: &str) -> Option<&'a str> {
-    let element = element.split('>').next()?;
-    let rest = element.split_once(&format!("{name}=\""))?.1;
-    rest.split_once('"').map(|(value, _)| value)
-}
-
-fn decode(element: &str, offset: &str, data: &[u8]) -> Option<Array> {
-    let block = data.get(offset.parse::<usize>().ok()?..)?;
-    let length = u64::from_le_bytes(block.get(..8)?.try_into().ok()?);
-    let block = block.get(8..usize::try_from(length).ok()?.checked_add(8)?)?;
-    let eights = || {
-        block
-            .chunks_exact(8)
-            .filter_map(|bytes| bytes.try_into().ok())
-    };
-    let values = match attribute(element, "type")? {
-        "Float64" => eights().map(f64::from_le_bytes).collect(),
-        "Int64" => eights()
-            .map(|bytes| i64::from_le_bytes(bytes) as f64)
-            .collect(),
-        "UInt8" => block.iter().map(|&byte| f64::from(byte)).collect(),
-        _ => return None,
-    };
-    let components = attribute(element, "NumberOfComponents")?.parse().ok()?;
-    Some(Array { components, values })
 }

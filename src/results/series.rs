@@ -1,6 +1,5 @@
 //! The time series: columns that stay the same over a run, and `series.csv`.
 
-use std::fmt::Write as _;
 use std::fs::{File, OpenOptions};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -10,7 +9,7 @@ use calcine_coupler::time::Window;
 
 use super::probe::Site;
 use super::quantities::{evaluate, statistic};
-use super::{ResultsError, SERIES, inertial_number};
+use super::{ResultsError, SERIES, inertial_number, sheet};
 use crate::case::model::{Case, MotionKind, MotionSpec, Statistic};
 
 /// Up to so many particles each has a column of its own; beyond, the series holds statistics.
@@ -229,7 +228,8 @@ impl Table {
             path,
             file: BufWriter::new(file),
         };
-        table.write(&head(columns, tracked))?;
+        let head = head(&table.path, columns, tracked)?;
+        table.write(&head)?;
         Ok(table)
     }
 
@@ -241,7 +241,7 @@ impl Table {
     ) -> Result<Self, ResultsError> {
         let path = directory.join(SERIES);
         let text = super::files::read(&path)?;
-        if !text.starts_with(&head(columns, tracked)) {
+        if !text.as_bytes().starts_with(&head(&path, columns, tracked)?) {
             return Err(ResultsError::content(
                 &path,
                 "its columns are not this case's",
@@ -259,14 +259,9 @@ impl Table {
 
     /// Appends a row; numbers are written so that they read back to the same bits.
     pub fn append(&mut self, row: &Row) -> Result<(), ResultsError> {
-        let mut line = String::new();
-        for (place, value) in row.values.iter().chain(&row.particles).enumerate() {
-            let comma = if place == 0 { "" } else { "," };
-            // Writing to a String cannot fail.
-            let _ = write!(line, "{comma}{value:?}");
-        }
-        line.push('\n');
-        self.write(&line)
+        let values = row.values.iter().chain(&row.particles);
+        let words: Vec<String> = values.map(|&value| sheet::number(value)).collect();
+        self.write(&sheet::line(&self.path, &words)?)
     }
 
     /// Hands what is buffered to the operating system.
@@ -276,14 +271,15 @@ impl Table {
             .map_err(ResultsError::file("write", &self.path))
     }
 
-    fn write(&mut self, text: &str) -> Result<(), ResultsError> {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), ResultsError> {
         self.file
-            .write_all(text.as_bytes())
+            .write_all(bytes)
             .map_err(ResultsError::file("write", &self.path))
     }
 }
 
-fn head(columns: &[Column], tracked: &[u64]) -> String {
+/// The first line.
+fn head(path: &Path, columns: &[Column], tracked: &[u64]) -> Result<Vec<u8>, ResultsError> {
     let mut names: Vec<String> = columns
         .iter()
         .map(|column| format!("{} [{}]", column.full_name(), column.unit))
@@ -293,5 +289,5 @@ fn head(columns: &[Column], tracked: &[u64]) -> String {
             .iter()
             .map(|id| format!("particle_temperature.{id} [K]")),
     );
-    names.join(",") + "\n"
+    sheet::line(path, &names)
 }

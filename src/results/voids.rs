@@ -2,7 +2,6 @@
 //! from the wall. `voids.csv` holds them.
 
 use std::f64::consts::PI;
-use std::fmt::Write as _;
 use std::path::Path;
 
 use calcine_coupler::motion::WallShape;
@@ -10,7 +9,7 @@ use calcine_coupler::part::ParticleFields;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::quadrature::gauss;
 
-use super::{ResultsError, files};
+use super::{ResultsError, files, sheet};
 use crate::case::model::{Case, MeshSpec};
 
 /// Name of the file in a result directory.
@@ -199,21 +198,18 @@ fn over_distance(
 }
 
 impl VoidProfiles {
-    /// The file's text: the name of the profile, the place, the void fraction.
-    fn text(&self) -> String {
-        let mut text = String::from("profile,place [m],void_fraction [1]\n");
+    /// Writes the file: the name of the profile, the place, the void fraction.
+    pub(super) fn write(&self, directory: &Path) -> Result<(), ResultsError> {
+        let path = directory.join(VOIDS);
+        let head = ["profile", "place [m]", "void_fraction [1]"];
+        let mut text = sheet::line(&path, &head.map(str::to_owned))?;
         for (name, profile) in [("height", &self.height), ("wall", &self.wall)] {
-            for (place, void_fraction) in profile.place.iter().zip(&profile.void_fraction) {
-                // Writing to a String cannot fail.
-                let _ = writeln!(text, "{name},{place:?},{void_fraction:?}");
+            for (&place, &value) in profile.place.iter().zip(&profile.void_fraction) {
+                let words = [name.to_owned(), sheet::number(place), sheet::number(value)];
+                text.extend(sheet::line(&path, &words)?);
             }
         }
-        text
-    }
-
-    /// Writes the file.
-    pub(super) fn write(&self, directory: &Path) -> Result<(), ResultsError> {
-        files::replace(&directory.join(VOIDS), self.text().as_bytes())
+        files::replace(&path, &text)
     }
 
     /// Reads the file of a result directory; `None` where there is none.
@@ -223,16 +219,19 @@ impl VoidProfiles {
             return Ok(None);
         }
         let mut voids = Self::default();
-        for line in files::read(&path)?.lines().skip(1) {
-            let mut words = line.split(',');
-            let profile = match words.next() {
+        for row in &sheet::rows(&path, &files::read(&path)?)?[..] {
+            let number = |place: usize| row.get(place)?.parse::<f64>().ok();
+            let profile = match row.get(0) {
+                Some("profile") => continue,
                 Some("height") => Some(&mut voids.height),
                 Some("wall") => Some(&mut voids.wall),
                 _ => None,
             };
-            let mut number = || words.next().and_then(|word| word.parse::<f64>().ok());
-            let (Some(profile), Some(place), Some(value)) = (profile, number(), number()) else {
-                return Err(ResultsError::content(&path, format!("a line is `{line}`")));
+            let (Some(profile), Some(place), Some(value)) = (profile, number(1), number(2)) else {
+                return Err(ResultsError::content(
+                    &path,
+                    format!("a line is `{}`", sheet::words(row)),
+                ));
             };
             profile.place.push(place);
             profile.void_fraction.push(value);

@@ -1,36 +1,61 @@
 //! Comma-separated values; the first line names the columns.
 
+use ::csv::{ReaderBuilder, StringRecord, Trim};
+
 use super::{Fault, Row, Sheet, number};
 
 pub(super) fn sheet(text: &str) -> Result<Sheet, Fault> {
-    let mut lines = (1..)
-        .zip(text.lines())
-        .filter(|(_, line)| !line.trim().is_empty());
-    let bare = |word: &str| word.trim().trim_matches('"').to_owned();
-    let head: Vec<String> = lines.next().map_or(Vec::new(), |(_, line)| {
-        line.trim_start_matches('\u{feff}')
-            .split(',')
-            .map(|word| bare(word).to_lowercase())
-            .collect()
-    });
-    let mut sheet = Sheet {
-        columns: head.into_iter().map(|name| (name, Vec::new())).collect(),
-        lines: Vec::new(),
-    };
-    for (line, content) in lines {
-        let words: Vec<&str> = content.split(',').collect();
-        if words.len() != sheet.columns.len() {
-            let what = format!(
-                "there are {} values, but {} columns",
-                words.len(),
-                sheet.columns.len()
-            );
-            return Err((Some(Row::Line(line)), what));
+    let mut reader = ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .trim(Trim::All)
+        .from_reader(text.as_bytes());
+    let mut sheet: Option<Sheet> = None;
+    for record in reader.records() {
+        let record = record.map_err(|error| (None, error.to_string()))?;
+        let blank = record.len() == 1 && record[0].is_empty();
+        match &mut sheet {
+            _ if blank => {}
+            None => sheet = Some(head(&record)),
+            Some(sheet) => row(sheet, &record)?,
         }
-        for ((_, column), word) in sheet.columns.iter_mut().zip(words) {
-            column.push(number(&bare(word), line)?);
-        }
-        sheet.lines.push(line);
     }
-    Ok(sheet)
+    Ok(sheet.unwrap_or_default())
+}
+
+fn head(record: &StringRecord) -> Sheet {
+    let column = |name: &str| (name.to_lowercase(), Vec::new());
+    Sheet {
+        columns: record.iter().map(column).collect(),
+        lines: Vec::new(),
+    }
+}
+
+fn row(sheet: &mut Sheet, record: &StringRecord) -> Result<(), Fault> {
+    let line = record.position().map_or(0, |position| position.line());
+    let line = usize::try_from(line).unwrap_or(usize::MAX);
+    let (found, needed) = (record.len(), sheet.columns.len());
+    if found != needed {
+        let what = format!("there are {found} values, but {needed} columns");
+        return Err((Some(Row::Line(line)), what));
+    }
+    for ((_, column), word) in sheet.columns.iter_mut().zip(record) {
+        column.push(number(word, line)?);
+    }
+    sheet.lines.push(line);
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn empty_lines_carriage_returns_quotes_and_a_byte_order_mark_leave_lines_and_values() {
+        let text = "\u{feff}\"X\", y\r\n\r\n 1 ,\"2\"\r\n   \n3,4\n";
+        let sheet = sheet(text).unwrap();
+        let columns = [("x".into(), vec![1.0, 3.0]), ("y".into(), vec![2.0, 4.0])];
+        assert_eq!(sheet.columns, columns);
+        assert_eq!(sheet.lines, [3, 5]);
+    }
 }
