@@ -2,6 +2,8 @@
 //! values are of the motion clock.
 
 use calcine_physics::Vec3;
+use calcine_physics::dimension::Dimension;
+use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
 /// How the particles of a run move.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -126,6 +128,85 @@ pub enum Cohesion {
     /// Simplified Johnson, Kendall, Roberts: cohesion energy density times the contact area.
     Sjkr,
 }
+
+/// The forces of contacts that a case may choose; the solvers of particles say which of them they have.
+pub static CONTACT_LAWS: &[&LawEntry<ContactForce>] = &[
+    &LawEntry {
+        name: "hertz-mindlin",
+        summary: "Hertz, Mindlin and Tsuji with tangential history.",
+        source: "Tsuji, Tanaka and Ishida, Powder Technol. 71 (1992) 239, doi 10.1016/0032-5910(92)88030-L",
+        parameters: &[],
+        make: |_| Box::new(ContactForce::HertzMindlin),
+    },
+    &LawEntry {
+        name: "linear",
+        summary: "Linear spring and dashpot with tangential history.",
+        source: "Cundall and Strack, Geotechnique 29 (1979) 47, doi 10.1680/geot.1979.29.1.47",
+        parameters: &[LawParameter {
+            name: "characteristic_speed",
+            dimension: Dimension::VELOCITY,
+            bound: Bound::Positive,
+            default: None,
+            meaning: "Speed of impact at which the linear spring overlaps as much as by the law of Hertz.",
+            example: "\"1 m/s\"",
+        }],
+        make: |values| {
+            Box::new(ContactForce::Linear {
+                characteristic_speed: values[0],
+            })
+        },
+    },
+    &LawEntry {
+        name: "spring-slider-dashpot",
+        summary: "OpenFOAM's pair of spring, slider and dashpot.",
+        source: "OpenFOAM 6, `PairSpringSliderDashpot.C`",
+        parameters: &[],
+        make: |_| Box::new(ContactForce::SpringSliderDashpot),
+    },
+];
+
+/// The resistances to rolling that a case may choose.
+pub static ROLLING_LAWS: &[&LawEntry<Rolling>] = &[
+    &LawEntry {
+        name: "none",
+        summary: "No resistance to rolling.",
+        source: "",
+        parameters: &[],
+        make: |_| Box::new(Rolling::None),
+    },
+    &LawEntry {
+        name: "constant-torque",
+        summary: "A torque of one size against the relative rotation.",
+        source: "Zhou, Wright, Yang, Xu and Yu, Physica A 269 (1999) 536, doi 10.1016/S0378-4371(99)00183-1",
+        parameters: &[],
+        make: |_| Box::new(Rolling::ConstantTorque),
+    },
+    &LawEntry {
+        name: "elastic-plastic",
+        summary: "A spring and dashpot of rolling that yields.",
+        source: "Ai, Chen, Rotter and Ooi, Powder Technol. 206 (2011) 269, doi 10.1016/j.powtec.2010.09.030",
+        parameters: &[],
+        make: |_| Box::new(Rolling::ElasticPlastic),
+    },
+];
+
+/// The attractions between surfaces that a case may choose.
+pub static COHESION_LAWS: &[&LawEntry<Cohesion>] = &[
+    &LawEntry {
+        name: "none",
+        summary: "No attraction.",
+        source: "",
+        parameters: &[],
+        make: |_| Box::new(Cohesion::None),
+    },
+    &LawEntry {
+        name: "sjkr",
+        summary: "Simplified Johnson, Kendall and Roberts: cohesion energy density times the contact area.",
+        source: "Johnson, Kendall and Roberts, Proc. R. Soc. Lond. A 324 (1971) 301, doi 10.1098/rspa.1971.0141",
+        parameters: &[],
+        make: |_| Box::new(Cohesion::Sjkr),
+    },
+];
 
 /// A wall.
 #[derive(Clone, Debug, PartialEq)]

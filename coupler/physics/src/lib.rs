@@ -4,12 +4,14 @@
 pub mod bed_conductivity;
 pub mod conduction;
 pub mod contact;
+pub mod dimension;
 pub mod drag;
 pub mod gas;
 pub mod gas_model;
 pub mod heat_transfer;
 pub mod inertial_number;
 pub mod kinetics;
+pub mod law;
 pub mod local;
 pub mod mass_transfer;
 pub mod numbers;

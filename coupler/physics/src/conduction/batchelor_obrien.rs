@@ -1,6 +1,7 @@
 //! Batchelor and O'Brien 1977.
 
 use super::{Conduction, SphereContact};
+use crate::law::LawEntry;
 
 /// Conduction through the circular contact of two spheres in a poorly conducting gas.
 ///
@@ -15,9 +16,18 @@ use super::{Conduction, SphereContact};
 #[derive(Clone, Copy, Debug)]
 pub struct BatchelorObrien;
 
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn Conduction> = LawEntry {
+    name: "batchelor-obrien",
+    summary: "By Hertz' contact radius.",
+    source: "Batchelor and O'Brien, Proc. R. Soc. Lond. A 355 (1977) 313, doi 10.1098/rspa.1977.0100",
+    parameters: &[],
+    make: |_| Box::new(BatchelorObrien),
+};
+
 impl Conduction for BatchelorObrien {
     fn name(&self) -> &'static str {
-        "batchelor-obrien"
+        LAW.name
     }
 
     fn conductance(&self, contact: &SphereContact) -> f64 {

@@ -1,6 +1,8 @@
 //! Cheng, Yu and Zulli 1999.
 
 use super::{GasGap, SphereGap};
+use crate::dimension::Dimension;
+use crate::law::{Bound, LawEntry, LawParameter};
 
 /// Conduction along parallel paths through one solid, the gas and the other solid, in series.
 ///
@@ -23,9 +25,40 @@ pub struct Cheng {
     pub widest: f64,
 }
 
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn GasGap> = LawEntry {
+    name: "cheng",
+    summary: "Paths through solid, gas and solid in series.",
+    source: "Cheng, Yu and Zulli, Chem. Eng. Sci. 54 (1999) 4199, doi 10.1016/S0009-2509(99)00125-6",
+    parameters: &[
+        LawParameter {
+            name: "cone",
+            dimension: Dimension::NONE,
+            bound: Bound::Positive,
+            default: Some(0.66),
+            meaning: "Radius of the cone of paths between two neighbours over the smaller radius, 0.56 (1 - eps)^(-1/3).",
+            example: "0.66",
+        },
+        LawParameter {
+            name: "widest",
+            dimension: Dimension::NONE,
+            bound: Bound::Positive,
+            default: Some(1.0),
+            meaning: "Widest gap over the smaller radius.",
+            example: "1",
+        },
+    ],
+    make: |values| {
+        Box::new(Cheng {
+            cone: values[0],
+            widest: values[1],
+        })
+    },
+};
+
 impl GasGap for Cheng {
     fn name(&self) -> &'static str {
-        "cheng"
+        LAW.name
     }
 
     fn reach(&self, radius: [f64; 2]) -> f64 {

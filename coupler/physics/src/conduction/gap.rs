@@ -2,6 +2,7 @@
 
 use std::fmt::Debug;
 
+use crate::law::LawEntry;
 use crate::quadrature::gauss;
 
 /// Two spheres with gas between them; a flat wall is one of endless radius and stands second.
@@ -66,9 +67,18 @@ pub trait GasGap: Debug + Send + Sync {
 #[derive(Clone, Copy, Debug)]
 pub struct NoGap;
 
+/// Its entry in a case file.
+pub(super) static NO_GAP: LawEntry<dyn GasGap> = LawEntry {
+    name: "none",
+    summary: "No conduction through the gas between surfaces.",
+    source: "",
+    parameters: &[],
+    make: |_| Box::new(NoGap),
+};
+
 impl GasGap for NoGap {
     fn name(&self) -> &'static str {
-        "none"
+        NO_GAP.name
     }
 
     fn reach(&self, _: [f64; 2]) -> f64 {

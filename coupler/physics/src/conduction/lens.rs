@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::{Conduction, SphereContact};
+use crate::law::LawEntry;
 
 /// Conduction through the circle in which two spheres cut each other.
 ///
@@ -19,9 +20,18 @@ use super::{Conduction, SphereContact};
 #[derive(Clone, Copy, Debug)]
 pub struct Lens;
 
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn Conduction> = LawEntry {
+    name: "lens",
+    summary: "By the circle in which two spheres cut each other, as LIGGGHTS has it; for comparison with it.",
+    source: "Chaudhuri, Muzzio and Tomassone, Chem. Eng. Sci. 61 (2006) 6348, doi 10.1016/j.ces.2006.05.034",
+    parameters: &[],
+    make: |_| Box::new(Lens),
+};
+
 impl Conduction for Lens {
     fn name(&self) -> &'static str {
-        "lens"
+        LAW.name
     }
 
     fn conductance(&self, contact: &SphereContact) -> f64 {

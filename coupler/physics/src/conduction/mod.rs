@@ -24,6 +24,15 @@ pub use lens::Lens;
 pub use none::NoConduction;
 pub use rong_horio::RongHorio;
 
+use crate::law::LawEntry;
+
+/// The laws of contacts that a case may choose. A new one is a file beside these, declared above and listed here.
+pub static CONDUCTION_LAWS: &[&LawEntry<dyn Conduction>] =
+    &[&batchelor_obrien::LAW, &lens::LAW, &none::LAW];
+
+/// The laws of the gas between surfaces that a case may choose.
+pub static GAP_LAWS: &[&LawEntry<dyn GasGap>] = &[&rong_horio::LAW, &cheng::LAW, &gap::NO_GAP];
+
 /// Two spheres that overlap; a flat wall is one of endless radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphereContact {

@@ -1,6 +1,8 @@
 //! Rong and Horio 1999.
 
 use super::{GasGap, SphereGap};
+use crate::dimension::Dimension;
+use crate::law::{Bound, LawEntry, LawParameter};
 
 /// Conduction through the lens of gas that surrounds a particle, between two surfaces of one temperature
 /// each.
@@ -46,9 +48,40 @@ impl RongHorio {
     }
 }
 
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn GasGap> = LawEntry {
+    name: "rong-horio",
+    summary: "Surfaces of one temperature each, for solids that conduct far better than the gas.",
+    source: "Rong and Horio, Second Int. Conf. on CFD in the Minerals and Process Industries (1999) 65",
+    parameters: &[
+        LawParameter {
+            name: "lens",
+            dimension: Dimension::NONE,
+            bound: Bound::Positive,
+            default: Some(0.2),
+            meaning: "Thickness of the film of gas over the radius.",
+            example: "0.2",
+        },
+        LawParameter {
+            name: "least_width",
+            dimension: Dimension::LENGTH,
+            bound: Bound::Positive,
+            default: None,
+            meaning: "Least width of a gap (roughness).",
+            example: "\"1 um\"",
+        },
+    ],
+    make: |values| {
+        Box::new(RongHorio {
+            lens: values[0],
+            least_width: values[1],
+        })
+    },
+};
+
 impl GasGap for RongHorio {
     fn name(&self) -> &'static str {
-        "rong-horio"
+        LAW.name
     }
 
     fn reach(&self, radius: [f64; 2]) -> f64 {

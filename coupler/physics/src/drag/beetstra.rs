@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::Drag;
+use crate::law::LawEntry;
 use crate::local::LocalGas;
 
 /// Drag in random arrays of equal spheres from lattice-Boltzmann simulations.
@@ -29,9 +30,18 @@ use crate::local::LocalGas;
 #[derive(Clone, Copy, Debug)]
 pub struct Beetstra;
 
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn Drag> = LawEntry {
+    name: "beetstra",
+    summary: "Random arrays of equal spheres by lattice-Boltzmann simulations, to Reynolds numbers of 1000.",
+    source: "Beetstra, van der Hoef and Kuipers, AIChE J. 53 (2007) 489, doi 10.1002/aic.11065",
+    parameters: &[],
+    make: |_| Box::new(Beetstra),
+};
+
 impl Drag for Beetstra {
     fn name(&self) -> &'static str {
-        "beetstra"
+        LAW.name
     }
 
     fn coefficient(&self, gas: &LocalGas, d: f64) -> f64 {

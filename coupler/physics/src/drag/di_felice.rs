@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::Drag;
+use crate::law::LawEntry;
 use crate::local::LocalGas;
 
 /// Drag of a lone sphere in the same superficial flow times a power of the void fraction.
@@ -28,9 +29,18 @@ use crate::local::LocalGas;
 #[derive(Clone, Copy, Debug)]
 pub struct DiFelice;
 
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn Drag> = LawEntry {
+    name: "di-felice",
+    summary: "A lone sphere times a power of the void fraction, packed to dilute.",
+    source: "Di Felice, Int. J. Multiphase Flow 20 (1994) 153, doi 10.1016/0301-9322(94)90011-6",
+    parameters: &[],
+    make: |_| Box::new(DiFelice),
+};
+
 impl Drag for DiFelice {
     fn name(&self) -> &'static str {
-        "di-felice"
+        LAW.name
     }
 
     fn coefficient(&self, gas: &LocalGas, d: f64) -> f64 {

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::Drag;
+use crate::law::LawEntry;
 use crate::local::LocalGas;
 use crate::pressure_drop::{ERGUN_INERTIAL, ERGUN_VISCOUS};
 
@@ -21,9 +22,18 @@ use crate::pressure_drop::{ERGUN_INERTIAL, ERGUN_VISCOUS};
 #[derive(Clone, Copy, Debug)]
 pub struct Ergun;
 
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn Drag> = LawEntry {
+    name: "ergun",
+    summary: "Packed beds.",
+    source: "Ergun, Chem. Eng. Prog. 48 (1952) 89",
+    parameters: &[],
+    make: |_| Box::new(Ergun),
+};
+
 impl Drag for Ergun {
     fn name(&self) -> &'static str {
-        "ergun"
+        LAW.name
     }
 
     fn coefficient(&self, gas: &LocalGas, d: f64) -> f64 {

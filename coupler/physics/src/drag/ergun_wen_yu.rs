@@ -1,6 +1,7 @@
 //! Ergun below, Wen and Yu above a void fraction of 0.8.
 
 use super::{Drag, Ergun, WenYu};
+use crate::law::LawEntry;
 use crate::local::LocalGas;
 
 /// Drag in dense beds after Ergun and in dilute ones after Wen and Yu (Gidaspow's switch).
@@ -27,9 +28,18 @@ pub struct ErgunWenYu;
 /// Void fraction at which Wen and Yu take over from Ergun.
 const SWITCH: f64 = 0.8;
 
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn Drag> = LawEntry {
+    name: "ergun-wen-yu",
+    summary: "Ergun below a void fraction of 0.8, Wen and Yu above.",
+    source: "Gidaspow, Multiphase Flow and Fluidization (1994), doi 10.1016/C2009-0-21244-X",
+    parameters: &[],
+    make: |_| Box::new(ErgunWenYu),
+};
+
 impl Drag for ErgunWenYu {
     fn name(&self) -> &'static str {
-        "ergun-wen-yu"
+        LAW.name
     }
 
     fn coefficient(&self, gas: &LocalGas, d: f64) -> f64 {

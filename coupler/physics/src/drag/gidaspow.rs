@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::{Drag, Ergun, WenYu};
+use crate::law::LawEntry;
 use crate::local::LocalGas;
 
 /// Ergun in dense, Wen and Yu in dilute beds, with a smooth passage at ε = 0.8.
@@ -30,9 +31,18 @@ const PASSAGE: f64 = 0.8;
 /// Steepness of the passage, 150 · 1.75.
 const STEEPNESS: f64 = 262.5;
 
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn Drag> = LawEntry {
+    name: "gidaspow",
+    summary: "Ergun and Wen and Yu with a smooth passage at a void fraction of 0.8.",
+    source: "Huilin and Gidaspow, Chem. Eng. Sci. 58 (2003) 3777, doi 10.1016/S0009-2509(03)00238-0",
+    parameters: &[],
+    make: |_| Box::new(Gidaspow),
+};
+
 impl Drag for Gidaspow {
     fn name(&self) -> &'static str {
-        "gidaspow"
+        LAW.name
     }
 
     fn coefficient(&self, gas: &LocalGas, d: f64) -> f64 {

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::Drag;
+use crate::law::LawEntry;
 use crate::local::LocalGas;
 
 /// Drag in random arrays of spheres from lattice-Boltzmann simulations.
@@ -43,9 +44,18 @@ pub struct KochHill;
 /// Solid fraction from which F₀ is Carman's.
 const DENSE: f64 = 0.4;
 
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn Drag> = LawEntry {
+    name: "koch-hill",
+    summary: "Random arrays of spheres by lattice-Boltzmann simulations.",
+    source: "Koch and Hill, Annu. Rev. Fluid Mech. 33 (2001) 619, doi 10.1146/annurev.fluid.33.1.619",
+    parameters: &[],
+    make: |_| Box::new(KochHill),
+};
+
 impl Drag for KochHill {
     fn name(&self) -> &'static str {
-        "koch-hill"
+        LAW.name
     }
 
     fn coefficient(&self, gas: &LocalGas, d: f64) -> f64 {

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::Drag;
+use crate::law::LawEntry;
 use crate::local::LocalGas;
 
 /// Drag in suspensions after Wen and Yu.
@@ -23,9 +24,18 @@ use crate::local::LocalGas;
 #[derive(Clone, Copy, Debug)]
 pub struct WenYu;
 
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn Drag> = LawEntry {
+    name: "wen-yu",
+    summary: "Suspensions, void fractions above 0.8.",
+    source: "Wen and Yu, Chem. Eng. Prog. Symp. Ser. 62 (1966) 100",
+    parameters: &[],
+    make: |_| Box::new(WenYu),
+};
+
 impl Drag for WenYu {
     fn name(&self) -> &'static str {
-        "wen-yu"
+        LAW.name
     }
 
     fn coefficient(&self, gas: &LocalGas, d: f64) -> f64 {

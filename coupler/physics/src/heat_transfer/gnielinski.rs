@@ -1,6 +1,7 @@
 //! Gnielinski 1980.
 
 use super::HeatTransfer;
+use crate::law::LawEntry;
 use crate::local::LocalGas;
 
 /// Heat transfer in packed beds from that of a single sphere in the gaps' flow.
@@ -23,9 +24,18 @@ pub struct Gnielinski;
 /// Lowest denominator of Nu_t.
 const LOWEST: f64 = 0.25;
 
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn HeatTransfer> = LawEntry {
+    name: "gnielinski",
+    summary: "Packed beds, from a single sphere in the flow of the gaps.",
+    source: "VDI Heat Atlas, chapter G9, doi 10.1007/978-3-540-77877-6_42",
+    parameters: &[],
+    make: |_| Box::new(Gnielinski),
+};
+
 impl HeatTransfer for Gnielinski {
     fn name(&self) -> &'static str {
-        "gnielinski"
+        LAW.name
     }
 
     fn nusselt(&self, gas: &LocalGas, d: f64) -> f64 {

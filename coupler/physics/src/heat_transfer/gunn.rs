@@ -1,6 +1,7 @@
 //! Gunn 1978.
 
 use super::HeatTransfer;
+use crate::law::LawEntry;
 use crate::local::LocalGas;
 
 /// Heat transfer in fixed and fluidised beds.
@@ -16,9 +17,18 @@ use crate::local::LocalGas;
 #[derive(Clone, Copy, Debug)]
 pub struct Gunn;
 
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn HeatTransfer> = LawEntry {
+    name: "gunn",
+    summary: "Fixed and fluidised beds, void fractions of 0.35 to 1.",
+    source: "Gunn, Int. J. Heat Mass Transfer 21 (1978) 467, doi 10.1016/0017-9310(78)90080-7",
+    parameters: &[],
+    make: |_| Box::new(Gunn),
+};
+
 impl HeatTransfer for Gunn {
     fn name(&self) -> &'static str {
-        "gunn"
+        LAW.name
     }
 
     fn nusselt(&self, gas: &LocalGas, d: f64) -> f64 {

@@ -14,7 +14,18 @@ pub use none::NoHeatTransfer;
 pub use ranz_marshall::RanzMarshall;
 pub use wakao::Wakao;
 
+use crate::law::LawEntry;
 use crate::local::LocalGas;
+
+/// The laws of heat transfer, and by analogy of mass transfer, that a case may choose. A new one is a file beside
+/// these, declared above and listed here.
+pub static HEAT_TRANSFER_LAWS: &[&LawEntry<dyn HeatTransfer>] = &[
+    &gunn::LAW,
+    &wakao::LAW,
+    &gnielinski::LAW,
+    &ranz_marshall::LAW,
+    &none::LAW,
+];
 
 /// Heat transfer between the gas and the surface of one particle.
 pub trait HeatTransfer: Debug + Send + Sync {

@@ -1,6 +1,7 @@
 //! Ranz and Marshall 1952.
 
 use super::HeatTransfer;
+use crate::law::LawEntry;
 use crate::local::LocalGas;
 
 /// Heat transfer of a single sphere.
@@ -13,9 +14,18 @@ use crate::local::LocalGas;
 #[derive(Clone, Copy, Debug)]
 pub struct RanzMarshall;
 
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn HeatTransfer> = LawEntry {
+    name: "ranz-marshall",
+    summary: "A single sphere.",
+    source: "Ranz and Marshall, Chem. Eng. Prog. 48 (1952) 141",
+    parameters: &[],
+    make: |_| Box::new(RanzMarshall),
+};
+
 impl HeatTransfer for RanzMarshall {
     fn name(&self) -> &'static str {
-        "ranz-marshall"
+        LAW.name
     }
 
     fn nusselt(&self, gas: &LocalGas, d: f64) -> f64 {

@@ -1,6 +1,7 @@
 //! Wakao and Kaguei 1982.
 
 use super::HeatTransfer;
+use crate::law::LawEntry;
 use crate::local::LocalGas;
 
 /// Heat transfer in packed beds.
@@ -14,9 +15,18 @@ use crate::local::LocalGas;
 #[derive(Clone, Copy, Debug)]
 pub struct Wakao;
 
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn HeatTransfer> = LawEntry {
+    name: "wakao",
+    summary: "Packed beds, Reynolds numbers of 3 to 3000.",
+    source: "Wakao, Kaguei and Funazkri, Chem. Eng. Sci. 34 (1979) 325, doi 10.1016/0009-2509(79)85064-2",
+    parameters: &[],
+    make: |_| Box::new(Wakao),
+};
+
 impl HeatTransfer for Wakao {
     fn name(&self) -> &'static str {
-        "wakao"
+        LAW.name
     }
 
     fn nusselt(&self, gas: &LocalGas, d: f64) -> f64 {

@@ -1,0 +1,262 @@
+//! Laws by name: each law declares beside its code what a case file writes to choose it.
+
+use std::fmt;
+
+use crate::dimension::Dimension;
+
+/// The name of the law that does nothing, in every family.
+pub const NONE: &str = "none";
+
+/// A law of a family such as `dyn Drag`: its name and keys in a case file, and its constructor.
+///
+/// A new law is one file that holds the law and its entry, and one line in the family's list:
+///
+/// ```
+/// use calcine_physics::drag::Drag;
+/// use calcine_physics::law::{LawChoice, LawEntry};
+/// use calcine_physics::local::LocalGas;
+///
+/// /// Drag of a lone sphere in creeping flow, K_A = 3π μ d.
+/// #[derive(Debug)]
+/// struct Stokes;
+///
+/// impl Drag for Stokes {
+///     fn name(&self) -> &'static str {
+///         STOKES.name
+///     }
+///
+///     fn coefficient(&self, gas: &LocalGas, diameter: f64) -> f64 {
+///         3.0 * std::f64::consts::PI * gas.viscosity * diameter
+///     }
+/// }
+///
+/// static STOKES: LawEntry<dyn Drag> = LawEntry {
+///     name: "stokes",
+///     summary: "A lone sphere in creeping flow.",
+///     source: "Stokes, Trans. Camb. Phil. Soc. 9 (1851) 8",
+///     parameters: &[],
+///     make: |_| Box::new(Stokes),
+/// };
+///
+/// let chosen = LawChoice::new(&STOKES, Vec::new());
+/// assert_eq!(chosen.make().name(), "stokes");
+/// ```
+pub struct LawEntry<L: ?Sized + 'static> {
+    /// Name as case files write it.
+    pub name: &'static str,
+    /// What it is, in a sentence.
+    pub summary: &'static str,
+    /// Where it was published; empty for the law that does nothing.
+    pub source: &'static str,
+    /// The numbers that it takes from the case.
+    pub parameters: &'static [LawParameter],
+    /// Makes it from the values of its parameters, in their order and in SI units.
+    pub make: fn(&[f64]) -> Box<L>,
+}
+
+/// What a law declares, whatever its family.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LawSummary {
+    /// Name as case files write it.
+    pub name: &'static str,
+    /// What it is, in a sentence.
+    pub summary: &'static str,
+    /// Where it was published.
+    pub source: &'static str,
+    /// The numbers that it takes from the case.
+    pub parameters: &'static [LawParameter],
+}
+
+impl<L: ?Sized> LawEntry<L> {
+    /// What it declares.
+    pub fn about(&self) -> LawSummary {
+        LawSummary {
+            name: self.name,
+            summary: self.summary,
+            source: self.source,
+            parameters: self.parameters,
+        }
+    }
+}
+
+/// A number that a law takes from the case: a key beside `law`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LawParameter {
+    /// The key.
+    pub name: &'static str,
+    /// Dimension of its value.
+    pub dimension: Dimension,
+    /// The values that it may have.
+    pub bound: Bound,
+    /// Its value in SI units where the case does not state it; `None` where the case must.
+    pub default: Option<f64>,
+    /// What it means.
+    pub meaning: &'static str,
+    /// An example of a value, as a case writes it.
+    pub example: &'static str,
+}
+
+/// The values that a number may have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bound {
+    /// Any finite one.
+    Any,
+    /// Above zero.
+    Positive,
+    /// Zero or above.
+    NotNegative,
+    /// Above the first and below the second.
+    Within(f64, f64),
+    /// Above the first, and the second at most.
+    UpTo(f64, f64),
+    /// From the first to the second.
+    Between(f64, f64),
+    /// Not below it.
+    AtLeast(f64),
+}
+
+impl Bound {
+    /// True where a value may be this.
+    pub fn holds(self, value: f64) -> bool {
+        match self {
+            Bound::Any => value.is_finite(),
+            Bound::Positive => value > 0.0,
+            Bound::NotNegative => value >= 0.0,
+            Bound::Within(low, high) => value > low && value < high,
+            Bound::UpTo(low, high) => value > low && value <= high,
+            Bound::Between(low, high) => (low..=high).contains(&value),
+            Bound::AtLeast(low) => value >= low,
+        }
+    }
+
+    /// What a value must be, as the rest of a sentence that begins with "it".
+    pub fn words(self) -> String {
+        match self {
+            Bound::Any => "must be finite".into(),
+            Bound::Positive => "must be above zero".into(),
+            Bound::NotNegative => "is zero or above".into(),
+            Bound::Within(low, high) => {
+                format!("must lie between {low} and {high}, both excluded")
+            }
+            Bound::UpTo(low, high) => format!("lies above {low} and up to {high}"),
+            Bound::Between(low, high) => format!("lies between {low} and {high}"),
+            Bound::AtLeast(low) => format!("is {low} or more"),
+        }
+    }
+}
+
+impl<L: ?Sized> fmt::Debug for LawEntry<L> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("LawEntry")
+            .field("name", &self.name)
+            .field("parameters", &self.parameters)
+            .finish_non_exhaustive()
+    }
+}
+
+/// A law that a case chose, with the values of its parameters.
+pub struct LawChoice<L: ?Sized + 'static> {
+    entry: &'static LawEntry<L>,
+    values: Vec<f64>,
+}
+
+impl<L: ?Sized> LawChoice<L> {
+    /// A law with its values in the order of its parameters, in SI units.
+    pub fn new(entry: &'static LawEntry<L>, values: Vec<f64>) -> Self {
+        debug_assert_eq!(values.len(), entry.parameters.len());
+        Self { entry, values }
+    }
+
+    /// The law of a list by its name; `None` where it has none of that name.
+    pub fn named(laws: &[&'static LawEntry<L>], name: &str, values: Vec<f64>) -> Option<Self> {
+        let entry = laws.iter().find(|law| law.name == name)?;
+        Some(Self::new(entry, values))
+    }
+
+    /// What the law declares.
+    pub fn entry(&self) -> &'static LawEntry<L> {
+        self.entry
+    }
+
+    /// True of the law that does nothing.
+    pub fn is_none(&self) -> bool {
+        self.entry.name == NONE
+    }
+
+    /// The law.
+    pub fn make(&self) -> Box<L> {
+        (self.entry.make)(&self.values)
+    }
+}
+
+impl<L: ?Sized> Clone for LawChoice<L> {
+    fn clone(&self) -> Self {
+        Self {
+            entry: self.entry,
+            values: self.values.clone(),
+        }
+    }
+}
+
+impl<L: ?Sized> PartialEq for LawChoice<L> {
+    fn eq(&self, other: &Self) -> bool {
+        self.entry.name == other.entry.name && self.values == other.values
+    }
+}
+
+impl<L: ?Sized> fmt::Debug for LawChoice<L> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{:?}", self.entry.name, self.values)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conduction::{CONDUCTION_LAWS, GAP_LAWS};
+    use crate::drag::DRAG_LAWS;
+    use crate::heat_transfer::HEAT_TRANSFER_LAWS;
+
+    fn sound<L: ?Sized>(laws: &[&'static LawEntry<L>], name_of: fn(&L) -> &'static str) {
+        let mut names: Vec<&str> = laws.iter().map(|law| law.name).collect();
+        assert!(names.contains(&NONE));
+        for law in laws {
+            assert!(law.summary.ends_with('.'), "{}", law.name);
+            assert_eq!(law.source.is_empty(), law.name == NONE, "{}", law.name);
+            let values = law.parameters.iter();
+            let values: Vec<f64> = values.map(|one| one.default.unwrap_or(1.0)).collect();
+            for (parameter, value) in law.parameters.iter().zip(&values) {
+                assert!(parameter.bound.holds(*value), "{}", parameter.name);
+            }
+            let made = LawChoice::new(law, values).make();
+            assert_eq!(name_of(&made), law.name);
+        }
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), laws.len());
+    }
+
+    #[test]
+    fn laws_have_names_of_their_own_sources_and_defaults_within_their_bounds() {
+        sound(DRAG_LAWS, |law| law.name());
+        sound(HEAT_TRANSFER_LAWS, |law| law.name());
+        sound(CONDUCTION_LAWS, |law| law.name());
+        sound(GAP_LAWS, |law| law.name());
+    }
+
+    #[test]
+    fn bounds_hold_their_ends_as_their_words_say() {
+        for (bound, inside, outside) in [
+            (Bound::Positive, 1e-300, 0.0),
+            (Bound::NotNegative, 0.0, -1e-300),
+            (Bound::Within(0.0, 1.0), 0.5, 1.0),
+            (Bound::UpTo(0.0, 1.0), 1.0, 0.0),
+            (Bound::Between(-1.0, 0.5), -1.0, 0.6),
+            (Bound::AtLeast(1.0), 1.0, 0.9),
+            (Bound::Any, -1.0, f64::NAN),
+        ] {
+            assert!(bound.holds(inside) && !bound.holds(outside), "{bound:?}");
+            assert!(!bound.holds(f64::NAN), "{bound:?}");
+        }
+    }
+}
