@@ -1,44 +1,96 @@
-//! The laws that a case names.
+//! The laws that cases may choose.
 
 use calcine_coupler::interior::{HeatLaws, ThermalProperties};
-use calcine_coupler::motion::ContactForce;
+use calcine_coupler::motion::{
+    COHESION_LAWS, CONTACT_LAWS, Cohesion, ContactForce, ROLLING_LAWS, Rolling,
+};
 use calcine_coupler::physics::conduction::{
-    BatchelorObrien, Cheng, Conduction, Conductivity, ContactArea, ElasticLaw, GasGap, Lens,
-    NoConduction, NoGap, RongHorio, Stiffness,
+    CONDUCTION_LAWS, Conduction, Conductivity, ContactArea, ElasticLaw, GAP_LAWS, GasGap, Stiffness,
 };
-use calcine_coupler::physics::drag::{
-    Beetstra, DiFelice, Drag, Ergun, ErgunWenYu, Gidaspow, KochHill, NoDrag, WenYu,
-};
-use calcine_coupler::physics::heat_transfer::{
-    Gnielinski, Gunn, HeatTransfer, NoHeatTransfer, RanzMarshall, Wakao,
-};
+use calcine_coupler::physics::drag::{DRAG_LAWS, Drag};
+use calcine_coupler::physics::heat_transfer::{HEAT_TRANSFER_LAWS, HeatTransfer};
+use calcine_coupler::physics::law::{LawEntry, LawSummary};
 
-use crate::case::model::{Case, ConductionArea, ConductionLaw, DragLaw, GapSpec, HeatLaw};
+use crate::case::model::{Case, ConductionArea};
 
-/// The drag law of a case.
-pub fn drag(law: DragLaw) -> Box<dyn Drag> {
-    match law {
-        DragLaw::None => Box::new(NoDrag),
-        DragLaw::ErgunWenYu => Box::new(ErgunWenYu),
-        DragLaw::Ergun => Box::new(Ergun),
-        DragLaw::WenYu => Box::new(WenYu),
-        DragLaw::Gidaspow => Box::new(Gidaspow),
-        DragLaw::DiFelice => Box::new(DiFelice),
-        DragLaw::KochHill => Box::new(KochHill),
-        DragLaw::Beetstra => Box::new(Beetstra),
+/// The laws that a case may choose: Calcine's own, and those that a program adds to them.
+#[derive(Clone, Debug)]
+pub struct LawCatalogue {
+    /// Drag on a particle.
+    pub drag: Vec<&'static LawEntry<dyn Drag>>,
+    /// Heat transfer between gas and particle, and by analogy mass transfer.
+    pub heat_transfer: Vec<&'static LawEntry<dyn HeatTransfer>>,
+    /// Conduction through contacts.
+    pub conduction: Vec<&'static LawEntry<dyn Conduction>>,
+    /// Conduction through the gas between surfaces.
+    pub gap: Vec<&'static LawEntry<dyn GasGap>>,
+    /// Force of a contact.
+    pub contact: Vec<&'static LawEntry<ContactForce>>,
+    /// Resistance to rolling.
+    pub rolling: Vec<&'static LawEntry<Rolling>>,
+    /// Attraction between surfaces.
+    pub cohesion: Vec<&'static LawEntry<Cohesion>>,
+}
+
+impl Default for LawCatalogue {
+    fn default() -> Self {
+        Self {
+            drag: DRAG_LAWS.to_vec(),
+            heat_transfer: HEAT_TRANSFER_LAWS.to_vec(),
+            conduction: CONDUCTION_LAWS.to_vec(),
+            gap: GAP_LAWS.to_vec(),
+            contact: CONTACT_LAWS.to_vec(),
+            rolling: ROLLING_LAWS.to_vec(),
+            cohesion: COHESION_LAWS.to_vec(),
+        }
     }
 }
 
-/// The heat transfer law of a case.
-pub fn heat_transfer(law: HeatLaw) -> Box<dyn HeatTransfer> {
-    match law {
-        HeatLaw::None => Box::new(NoHeatTransfer),
-        HeatLaw::Gunn => Box::new(Gunn),
-        HeatLaw::RanzMarshall => Box::new(RanzMarshall),
-        HeatLaw::Wakao => Box::new(Wakao),
-        HeatLaw::Gnielinski => Box::new(Gnielinski),
+fn summaries<L: ?Sized>(laws: &[&'static LawEntry<L>]) -> Vec<LawSummary> {
+    laws.iter().map(|law| law.about()).collect()
+}
+
+impl LawCatalogue {
+    /// Adds a drag law.
+    #[must_use]
+    pub fn with_drag(mut self, law: &'static LawEntry<dyn Drag>) -> Self {
+        self.drag.push(law);
+        self
+    }
+
+    /// All families by the table in which a law is chosen.
+    pub fn families(&self) -> Vec<(&'static str, Vec<LawSummary>)> {
+        vec![
+            ("laws.drag", summaries(&self.drag)),
+            ("laws.heat_transfer", summaries(&self.heat_transfer)),
+            ("laws.mass_transfer", summaries(&self.heat_transfer)),
+            ("laws.conduction", summaries(&self.conduction)),
+            ("laws.conduction.gap", summaries(&self.gap)),
+            ("motion.contact", summaries(&self.contact)),
+            ("motion.rolling", summaries(&self.rolling)),
+            ("motion.cohesion", summaries(&self.cohesion)),
+        ]
     }
 }
+
+/// Families for the declarations of keys.
+macro_rules! families {
+    ($($name:ident),*) => {
+        $(pub(crate) fn $name(laws: &LawCatalogue) -> Vec<LawSummary> {
+            summaries(&laws.$name)
+        })*
+    };
+}
+
+families!(
+    drag,
+    heat_transfer,
+    conduction,
+    gap,
+    contact,
+    rolling,
+    cohesion
+);
 
 /// The laws of heat between particles of a case; `None` where there are none.
 pub fn heat(case: &Case) -> Option<HeatLaws> {
@@ -46,11 +98,6 @@ pub fn heat(case: &Case) -> Option<HeatLaws> {
     if !case.laws.conducts() && !radiates {
         return None;
     }
-    let conduction: Box<dyn Conduction> = match laws.law {
-        ConductionLaw::None => Box::new(NoConduction),
-        ConductionLaw::BatchelorObrien => Box::new(BatchelorObrien),
-        ConductionLaw::Lens => Box::new(Lens),
-    };
     let area = match laws.area {
         ConductionArea::Overlap => ContactArea::Overlap,
         ConductionArea::Load { force, within } => ContactArea::Load { force, within },
@@ -63,15 +110,10 @@ pub fn heat(case: &Case) -> Option<HeatLaws> {
             })
         }
     };
-    let gap: Box<dyn GasGap> = match laws.gap {
-        GapSpec::None => Box::new(NoGap),
-        GapSpec::RongHorio { lens, least_width } => Box::new(RongHorio { lens, least_width }),
-        GapSpec::Cheng { cone, widest } => Box::new(Cheng { cone, widest }),
-    };
     Some(HeatLaws {
-        conduction,
+        conduction: laws.law.make(),
         area,
-        gap,
+        gap: laws.gap.make(),
         radiates,
         inside: case.laws.radiation.as_ref().is_some_and(|one| one.inside),
     })

@@ -6,7 +6,7 @@ pub mod commands;
 pub mod compare;
 mod error_chain;
 pub mod exit;
-mod laws;
+pub mod laws;
 pub mod mechanism;
 mod progress;
 pub mod report;

@@ -105,9 +105,9 @@ fn paths(case: &Case, prepared: &PreparedCase) -> PathsSetup {
 pub(super) fn closures(case: &Case) -> Closures {
     Closures {
         gas: case.gas.properties.clone(),
-        drag: laws::drag(case.laws.drag),
+        drag: case.laws.drag.make(),
         momentum: case.gas.momentum,
-        heat_transfer: laws::heat_transfer(case.laws.heat_transfer),
-        mass_transfer: laws::heat_transfer(case.laws.mass_transfer),
+        heat_transfer: case.laws.heat_transfer.make(),
+        mass_transfer: case.laws.mass_transfer.make(),
     }
 }

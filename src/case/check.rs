@@ -7,13 +7,13 @@ use calcine_adapters::openfoam::{chemistry, turbulence};
 use calcine_coupler::gas_chemistry::Combustion;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::gas_model::GasModel;
+use calcine_coupler::physics::law::NONE;
 use calcine_coupler::physics::local::LocalGas;
 use calcine_coupler::physics::numbers::VoidFraction;
 use calcine_coupler::setup::{GasPatch, InletFlow};
 
-use super::model::{Case, DragLaw, Population};
+use super::model::{Case, Population};
 use super::{buoyancy, sizes};
-use crate::laws;
 
 /// Above this, a number of the time splitting gets a warning (requirements TSM-6, TSM-8).
 const WARNING: f64 = 0.1;
@@ -71,6 +71,7 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
             gas.mechanism.steps().len()
         );
     }
+    laws(&mut text, case);
     let memory = sizes::memory(case, cells as f64, particles as f64);
     let _ = writeln!(
         text,
@@ -94,6 +95,21 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
     }
     honoured(&mut text, case);
     text
+}
+
+/// The laws that the case chose, with their sources.
+fn laws(text: &mut String, case: &Case) {
+    let laws = &case.laws;
+    let chosen = [
+        ("drag", laws.drag.entry().about()),
+        ("heat transfer", laws.heat_transfer.entry().about()),
+        ("mass transfer", laws.mass_transfer.entry().about()),
+        ("conduction", laws.conduction.law.entry().about()),
+        ("through gaps", laws.conduction.gap.entry().about()),
+    ];
+    for (what, law) in chosen.iter().filter(|(_, law)| law.name != NONE) {
+        let _ = writeln!(text, "  {what:<14} {} ({})", law.name, law.source);
+    }
 }
 
 /// What each backend makes of the case.
@@ -209,7 +225,7 @@ fn splitting(text: &mut String, case: &Case, population: &Population, eps: f64) 
     let Ok(d) = population.sizes.mean() else {
         return;
     };
-    let nusselt = laws::heat_transfer(case.laws.heat_transfer).nusselt(&local, d);
+    let nusselt = case.laws.heat_transfer.make().nusselt(&local, d);
     let volume = PI / 6.0 * d.powi(3);
     let rate = nusselt * local.conductivity * PI * d / (material.density * volume * solid_capacity);
     // Requirements TSM-8: the error of process storage in shares of the span.
@@ -236,8 +252,8 @@ fn splitting(text: &mut String, case: &Case, population: &Population, eps: f64) 
         "    0.11 hA AF dt/(m c), error of process storage       {error:.2e}{}",
         warn(error)
     );
-    if case.laws.drag != DragLaw::None {
-        let coefficient = laws::drag(case.laws.drag).coefficient(&local, d);
+    if !case.laws.drag.is_none() {
+        let coefficient = case.laws.drag.make().coefficient(&local, d);
         let response = material.density * volume / coefficient;
         let window = case.time.motion_window.seconds();
         let _ = writeln!(

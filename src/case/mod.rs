@@ -17,6 +17,7 @@ mod step;
 mod stl;
 mod table;
 pub mod units;
+mod words;
 
 use std::path::Path;
 
@@ -33,8 +34,15 @@ use calcine_coupler::motion::WallShape;
 use model::Case;
 use table::{Problems, TableReader};
 
+use crate::laws::LawCatalogue;
+
 /// Reads and checks a case file with `--set key=value` applied; all its errors at once.
 pub fn read(path: &Path, set: &[String]) -> Result<Case, CaseErrors> {
+    read_with(path, set, &LawCatalogue::default())
+}
+
+/// Reads a case file that may choose among these laws.
+pub fn read_with(path: &Path, set: &[String], laws: &LawCatalogue) -> Result<Case, CaseErrors> {
     let text = std::fs::read_to_string(path).map_err(|cause| {
         one(
             path,
@@ -44,15 +52,25 @@ pub fn read(path: &Path, set: &[String]) -> Result<Case, CaseErrors> {
             "name a file that exists, such as cases/heated-column.toml",
         )
     })?;
-    parse(path, &text, set)
+    parse_with(path, &text, set, laws)
 }
 
 /// Checks the text of a case file; `path` places relative paths and messages.
 pub fn parse(path: &Path, text: &str, set: &[String]) -> Result<Case, CaseErrors> {
+    parse_with(path, text, set, &LawCatalogue::default())
+}
+
+/// Checks the text of a case file that may choose among these laws.
+pub fn parse_with(
+    path: &Path,
+    text: &str,
+    set: &[String],
+    laws: &LawCatalogue,
+) -> Result<Case, CaseErrors> {
     let effective = apply(path, text, set)?;
     let document = syntax(path, &effective)?;
     let problems = Problems::default();
-    let root = TableReader::root(&problems, document.as_table());
+    let root = TableReader::root(&problems, laws, document.as_table());
     let case = sections::case(&root, path, &effective, hash(document.as_table()));
     root.finish();
     let mut problems = problems.take();
@@ -65,6 +83,11 @@ pub fn parse(path: &Path, text: &str, set: &[String]) -> Result<Case, CaseErrors
         Some(mut case) if problems.is_empty() => {
             case.hash = with_files(&case);
             Ok(case)
+        }
+        _ if problems.is_empty() => {
+            let message = "the case could not be read, but nothing says why".into();
+            let help = "report it: this is a fault of Calcine, not of the case";
+            Err(one(path, &effective, 0..0, message, help))
         }
         _ => Err(CaseErrors::new(path, &effective, problems)),
     }

@@ -20,9 +20,7 @@ use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::setup::{GasSetup, Schedule};
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
 
-pub use laws::{
-    ConductionArea, ConductionLaw, ConductionSpec, DragLaw, GapSpec, HeatLaw, Laws, RadiationSpec,
-};
+pub use laws::{ConductionArea, ConductionSpec, Laws, RadiationSpec};
 pub use material::{MaterialSpec, SizeLaw};
 pub use mesh::MeshSpec;
 pub use particles::{FeedSpec, MotionSpec, PlacementSpec, Population};

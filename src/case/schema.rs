@@ -4,21 +4,16 @@ use std::str::FromStr;
 
 use serde_json::{Map, Value, json};
 
-use super::keys::{Key, KeyPresence, keys};
-use super::units;
+use super::keys::{Key, KeyPresence, KeyValue, ROOT, number_words};
+use super::units::{self, Dimension};
+use crate::laws::LawCatalogue;
 
 /// A number as a quantity writes it.
 const NUMBER: &str = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?";
-/// What stands in the table of keys for a name that the user chooses.
-const NAME: &str = "NAME";
 
-/// The schema, draft 2020-12.
-pub fn schema() -> Value {
-    let mut root = YamlNode::default();
-    for key in keys() {
-        root.insert(key.key, key);
-    }
-    let mut schema = root.object();
+/// The schema, draft 2020-12, of cases that choose among these laws.
+pub fn schema(laws: &LawCatalogue) -> Value {
+    let mut schema = object(ROOT, laws);
     let head = [
         ("$schema", "https://json-schema.org/draft/2020-12/schema"),
         ("title", "A case of Calcine"),
@@ -29,171 +24,143 @@ pub fn schema() -> Value {
     Value::Object(schema)
 }
 
-/// A key with the keys below it, in the order of the table.
-#[derive(Default)]
-struct YamlNode {
-    key: Option<&'static Key>,
-    below: Vec<(&'static str, YamlNode)>,
+/// Names of the keys that are needed so.
+fn named(keys: &[Key], presence: KeyPresence) -> Vec<&'static str> {
+    let needed = keys.iter().filter(|key| key.presence == presence);
+    needed.map(|key| key.name).collect()
 }
 
-impl YamlNode {
-    fn insert(&mut self, path: &'static str, key: &'static Key) {
-        let (name, rest) = match path.split_once('.') {
-            Some((name, rest)) => (name, Some(rest)),
-            None => (path, None),
-        };
-        let at = self.below.iter().position(|(other, _)| *other == name);
-        let at = at.unwrap_or_else(|| {
-            self.below.push((name, YamlNode::default()));
-            self.below.len() - 1
-        });
-        let node = &mut self.below[at].1;
-        match rest {
-            Some(rest) => node.insert(rest, key),
-            None => node.key = Some(key),
+/// The table of some keys.
+fn object(keys: &[Key], laws: &LawCatalogue) -> Map<String, Value> {
+    let mut schema = Map::new();
+    schema.insert("type".into(), "object".into());
+    let properties = keys.iter();
+    let properties = properties.map(|key| (key.name.to_owned(), described(key, laws)));
+    schema.insert("properties".into(), Value::Object(properties.collect()));
+    schema.insert("additionalProperties".into(), false.into());
+    let required = named(keys, KeyPresence::Required);
+    if !required.is_empty() {
+        schema.insert("required".into(), json!(required));
+    }
+    let one_of = named(keys, KeyPresence::OneOf);
+    if !one_of.is_empty() {
+        let each = one_of.iter().map(|name| json!({"required": [name]}));
+        let each: Vec<Value> = each.collect();
+        schema.insert("oneOf".into(), each.into());
+    }
+    let together = together(keys);
+    if !together.is_empty() {
+        schema.insert("dependentRequired".into(), Value::Object(together));
+    }
+    schema
+}
+
+/// Keys of which neither stands without the other.
+fn together(keys: &[Key]) -> Map<String, Value> {
+    let mut pairs = Map::new();
+    for key in keys {
+        if let KeyPresence::With(partner) = key.presence {
+            pairs.insert(key.name.into(), json!([partner]));
+            pairs.insert(partner.into(), json!([key.name]));
         }
     }
+    pairs
+}
 
-    /// Names of the keys below that are needed so.
-    fn named(&self, wanted: impl Fn(&KeyPresence) -> bool) -> Vec<&'static str> {
-        let keys = self.below.iter().filter_map(|(name, node)| {
-            let need = &node.key?.need;
-            wanted(need).then_some(*name)
-        });
-        keys.collect()
+/// The value of a key, with what an editor shows of it.
+fn described(key: &Key, laws: &LawCatalogue) -> Value {
+    let mut schema = match form(key.value, laws) {
+        Value::Object(schema) => schema,
+        other => Map::from_iter([("const".into(), other)]),
+    };
+    let mut description = format!("{} ({})", key.meaning, key.value.words(laws));
+    let without = match (key.presence, key.value) {
+        (KeyPresence::Default(text) | KeyPresence::Without(text), _) => Some(text.to_owned()),
+        (KeyPresence::With(partner), _) => Some(format!("goes with `{partner}`")),
+        (KeyPresence::OfLaw(Some(value)), KeyValue::Number(dimension, _)) => {
+            Some(number_words(value, dimension))
+        }
+        _ => None,
+    };
+    if let Some(without) = without {
+        description.push_str(&format!(" Without it: {without}."));
     }
-
-    /// The table of the keys below.
-    fn object(&self) -> Map<String, Value> {
-        let mut schema = Map::new();
-        schema.insert("type".into(), "object".into());
-        if let [(NAME, node)] = &self.below[..] {
-            let named = Value::Object(node.object());
-            schema.insert("additionalProperties".into(), named);
-            return schema;
-        }
-        let properties = self.below.iter();
-        let properties = properties.map(|(name, node)| ((*name).to_owned(), node.schema()));
-        schema.insert("properties".into(), Value::Object(properties.collect()));
-        schema.insert("additionalProperties".into(), false.into());
-        let required = self.named(|need| *need == KeyPresence::Required);
-        if !required.is_empty() {
-            schema.insert("required".into(), json!(required));
-        }
-        let one_of = self.named(|need| *need == KeyPresence::OneOf);
-        if !one_of.is_empty() {
-            let each = one_of.iter().map(|name| json!({"required": [name]}));
-            let each: Vec<Value> = each.collect();
-            schema.insert("oneOf".into(), each.into());
-        }
-        let together = self.together();
-        if !together.is_empty() {
-            schema.insert("dependentRequired".into(), Value::Object(together));
-        }
-        schema
+    if let Some(value) = default(key) {
+        schema.insert("default".into(), value);
     }
+    schema.insert("description".into(), description.into());
+    if let Some(example) = toml(key.example) {
+        schema.insert("examples".into(), json!([example]));
+    }
+    Value::Object(schema)
+}
 
-    /// Keys of which neither stands without the other: "goes with `species`".
-    fn together(&self) -> Map<String, Value> {
-        let mut pairs = Map::new();
-        for (name, node) in &self.below {
-            if let Some(KeyPresence::Default(without)) = node.key.map(|key| key.need)
-                && let Some(partner) = without.strip_prefix("goes with ")
-            {
-                let partner = partner.trim_matches('`');
-                pairs.insert((*name).into(), json!([partner]));
-                pairs.insert(partner.into(), json!([name]));
+/// What a value may be.
+fn form(value: KeyValue, laws: &LawCatalogue) -> Value {
+    let table = |keys: &[Key]| Value::Object(object(keys, laws));
+    let texts = || json!({"type": "string"});
+    match value {
+        KeyValue::Text | KeyValue::Path => texts(),
+        KeyValue::Texts(0) => list(texts()),
+        KeyValue::Texts(count) => tuple(count, texts()),
+        KeyValue::Truth => json!({"type": "boolean"}),
+        KeyValue::Whole(least, most) => {
+            let mut schema = json!({"type": "integer", "minimum": least});
+            if most < i64::MAX {
+                schema["maximum"] = most.into();
             }
+            schema
         }
-        pairs
-    }
-
-    /// The value of this key, with what an editor shows of it.
-    fn schema(&self) -> Value {
-        let Some(key) = self.key else {
-            return Value::Object(self.object());
-        };
-        let mut schema = match self.form(key.value) {
-            Value::Object(schema) => schema,
-            other => Map::from_iter([("const".into(), other)]),
-        };
-        let mut description = format!("{} ({})", key.meaning, key.value);
-        if let KeyPresence::Default(without) = key.need {
-            description.push_str(&format!(" Without it: {without}."));
-            if let Some(value) = default(key, without) {
-                schema.insert("default".into(), value);
-            }
+        KeyValue::Wholes(count) => tuple(count, json!({"type": "integer", "minimum": 1})),
+        KeyValue::Number(dimension, _) => number(dimension),
+        KeyValue::Numbers(count) => tuple(count, json!({"type": "number"})),
+        KeyValue::Vector(dimension) => vector(dimension),
+        KeyValue::Vectors(dimension) => list(vector(dimension)),
+        KeyValue::Schedule(dimension, _) | KeyValue::Curve(dimension, _) => {
+            let value = number(dimension);
+            either(value.clone(), pairs(quantity(1), value))
         }
-        schema.insert("description".into(), description.into());
-        if let Some(example) = toml(key.example) {
-            schema.insert("examples".into(), json!([example]));
+        KeyValue::Choice(_) | KeyValue::LawName(_) => json!({"enum": value.choices(laws)}),
+        KeyValue::Choices(words) => list(json!({"enum": words})),
+        KeyValue::Band => json!({"type": "string", "pattern": plain()["pattern"]}),
+        KeyValue::Measured => plain(),
+        KeyValue::Spans => pairs(quantity(1), quantity(1)),
+        KeyValue::Shares => pairs(quantity(1), plain()),
+        KeyValue::Grading => either(plain(), list(tuple(3, plain()))),
+        KeyValue::Table(keys) => table(keys),
+        KeyValue::Tables(keys) => list(table(keys)),
+        KeyValue::Dated(keys) => either(table(keys), pairs(quantity(1), table(keys))),
+        KeyValue::Named(keys) => {
+            json!({"type": "object", "additionalProperties": table(keys)})
         }
-        Value::Object(schema)
-    }
-
-    /// What a value may be, from the words in the table of keys.
-    fn form(&self, words: &str) -> Value {
-        let object = || Value::Object(self.object());
-        let stripped = |ending: &str| {
-            let words = words.strip_suffix(ending)?;
-            Some(self.form(words.strip_suffix(',').unwrap_or(words)))
-        };
-        if let Some(value) = stripped(" or `closed`") {
-            return either(value, json!({"const": "closed"}));
+        KeyValue::ByName(dimension) => {
+            let value = match dimension {
+                Dimension::NONE => json!({"type": "number"}),
+                _ => quantity(1),
+            };
+            json!({"type": "object", "additionalProperties": value})
         }
-        if let Some(value) = stripped(" or a number") {
-            return either(value, json!({"type": "number"}));
+        KeyValue::Law(..) => table(&value.below(laws)),
+        // A number in quotes would be both.
+        KeyValue::Either(one, KeyValue::Number(Dimension::NONE, _)) => {
+            either(form(*one, laws), json!({"type": "number"}))
         }
-        if let Some(value) = stripped(" or schedule") {
-            return either(value.clone(), pairs(quantity(1), value));
-        }
-        if let Some(value) = stripped(" or points over temperature") {
-            return either(value.clone(), pairs(quantity(1), value));
-        }
-        if let Some(value) = stripped(" or table") {
-            return either(value, object());
-        }
-        if let Some(choices) = words.strip_prefix("list of `") {
-            return list(json!({"enum": choices_of(&format!("`{choices}"))}));
-        }
-        if let Some(each) = words.strip_prefix("list of three ") {
-            return list(self.form(&format!("three {each}")));
-        }
-        match words {
-            "table" => object(),
-            "list of tables" => list(object()),
-            "table, or schedule of tables" => either(object(), pairs(quantity(1), object())),
-            "table of numbers" => {
-                json!({"type": "object", "additionalProperties": {"type": "number"}})
-            }
-            "text" | "path" => json!({"type": "string"}),
-            "list of texts" => list(json!({"type": "string"})),
-            "two texts" => tuple(2, json!({"type": "string"})),
-            "six texts" => tuple(6, json!({"type": "string"})),
-            "whole number" => json!({"type": "integer", "minimum": 0}),
-            "two whole numbers" => tuple(2, json!({"type": "integer", "minimum": 1})),
-            "three whole numbers" => tuple(3, json!({"type": "integer", "minimum": 1})),
-            "true or false" => json!({"type": "boolean"}),
-            "three numbers" => direction(),
-            "seven numbers" => tuple(7, json!({"type": "number"})),
-            "number" | "plain number" | "as the field measured" => plain(),
-            "number, or list" => either(plain(), list(tuple(3, plain()))),
-            "list of pairs" => pairs(quantity(1), plain()),
-            "list of [begin, end]" => pairs(quantity(1), quantity(1)),
-            "band" => json!({"type": "string", "pattern": plain()["pattern"]}),
-            _ if words.starts_with('`') => json!({"enum": choices_of(words)}),
-            _ if words.starts_with("table of ") => {
-                json!({"type": "object", "additionalProperties": quantity(1)})
-            }
-            _ if words.starts_with("three ") => quantity(3),
-            _ => quantity(1),
-        }
+        KeyValue::Either(one, other) => either(form(*one, laws), form(*other, laws)),
     }
 }
 
-/// The words in backticks.
-fn choices_of(words: &str) -> Vec<&str> {
-    words.split('`').skip(1).step_by(2).collect()
+fn number(dimension: Dimension) -> Value {
+    match dimension {
+        Dimension::NONE => plain(),
+        _ => quantity(1),
+    }
+}
+
+fn vector(dimension: Dimension) -> Value {
+    match dimension {
+        Dimension::NONE => direction(),
+        _ => quantity(3),
+    }
 }
 
 fn either(one: Value, other: Value) -> Value {
@@ -242,20 +209,26 @@ fn unit() -> String {
     format!(r"\s*{one}(?:[/*· ]{one})*|\s+1(?:/{one})+|\s*(?:degC|°C)")
 }
 
-/// The value that holds without a key, where the table's words say it.
-fn default(key: &Key, without: &str) -> Option<Value> {
-    let word = without
-        .strip_prefix('`')
-        .and_then(|rest| rest.strip_suffix('`'))
-        .filter(|word| !word.contains('`'));
-    if let Some(word) = word {
-        let in_list = key.value.starts_with("list of ");
-        return Some(if in_list { json!([word]) } else { json!(word) });
-    }
-    if let Ok(number) = serde_json::Number::from_str(without) {
-        return Some(Value::Number(number));
-    }
-    units::quantities(without).is_ok().then(|| json!(without))
+/// The value that holds without a key, where it is one that a case could write.
+fn default(key: &Key) -> Option<Value> {
+    let text = match (key.presence, key.value) {
+        (KeyPresence::Default(text), _) => text,
+        (KeyPresence::OfLaw(Some(value)), KeyValue::Number(Dimension::NONE, _)) => {
+            return Some(json!(value));
+        }
+        (KeyPresence::OfLaw(Some(value)), KeyValue::Number(dimension, _)) => {
+            return Some(number_words(value, dimension).into());
+        }
+        _ => return None,
+    };
+    Some(match key.value {
+        KeyValue::Choices(_) => json!([text]),
+        KeyValue::Truth => (text == "true").into(),
+        _ => match serde_json::Number::from_str(text) {
+            Ok(number) => Value::Number(number),
+            Err(_) => text.into(),
+        },
+    })
 }
 
 /// A value of TOML in JSON; `None` for the heading of a table.
@@ -298,7 +271,7 @@ mod tests {
                 .find(|value| value["type"] == "object")
                 .unwrap();
             match name {
-                NAME => &table["additionalProperties"],
+                "NAME" => &table["additionalProperties"],
                 name => &table["properties"][name],
             }
         })
@@ -306,16 +279,21 @@ mod tests {
 
     #[test]
     fn a_key_has_its_form_its_default_its_example_and_what_it_means() {
-        let schema = schema();
-        let window = at(&schema, "time.gas_storage");
-        assert_eq!(window["enum"], json!(["process", "accelerated"]));
-        assert_eq!(window["default"], "process");
+        let schema = schema(&LawCatalogue::default());
+        let storage = at(&schema, "time.gas_storage");
+        assert_eq!(storage["enum"], json!(["process", "accelerated"]));
+        assert_eq!(storage["default"], "process");
         let density = at(&schema, "materials.NAME.density");
         assert_eq!(density["type"], "string");
         assert_eq!(density["examples"], json!(["2500 kg/m^3"]));
         let meaning = density["description"].as_str().unwrap();
         assert_eq!(meaning, "Density. (density, kg/m^3)");
-        assert_eq!(at(&schema, "gas.controls.outer_iterations")["default"], 20);
+        let iterations = at(&schema, "gas.controls.outer_iterations");
+        assert_eq!(iterations["default"], 20);
+        assert_eq!(
+            [&iterations["minimum"], &iterations["maximum"]],
+            [1, 10_000]
+        );
         assert_eq!(
             at(&schema, "output.particles")["default"],
             json!(["temperature"])
@@ -333,18 +311,12 @@ mod tests {
     }
 
     #[test]
-    fn every_value_of_the_table_has_a_form_of_its_own_or_a_dimension_with_a_unit() {
-        for key in keys() {
-            let form = YamlNode::default().form(key.value);
-            let text = form.to_string();
-            let quantity = form == quantity(1) || form == quantity(3);
-            let dimensional = key.value.contains(", ");
-            assert!(
-                !quantity || dimensional,
-                "{}: {} is {text}",
-                key.key,
-                key.value
-            );
-        }
+    fn laws_and_their_keys_come_from_where_the_laws_are() {
+        let schema = schema(&LawCatalogue::default());
+        let laws = at(&schema, "laws.drag.law")["enum"].as_array().unwrap();
+        assert!(laws.contains(&json!("tenneti")) && laws.contains(&json!("none")));
+        assert_eq!(at(&schema, "laws.conduction.gap.cone")["default"], 0.66);
+        let width = at(&schema, "laws.conduction.gap.least_width");
+        assert_eq!(width["examples"], json!(["1 um"]));
     }
 }

@@ -8,6 +8,7 @@ use super::console::say;
 use super::failure::Failure;
 use super::schema;
 use crate::exit;
+use crate::laws::LawCatalogue;
 
 /// Name of the schema beside a new case.
 const SCHEMA: &str = "case.schema.json";
@@ -61,7 +62,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         Failure::new(exit::OTHER, format_args!("{}: {cause}", file.display()))
     };
     std::fs::create_dir_all(folder).map_err(failed)?;
-    let text = format!("#:schema {SCHEMA}\n{}", arguments.like.text());
+    let text = with_laws(arguments.like.text());
+    let text = format!("#:schema {SCHEMA}\n{text}");
     std::fs::write(&file, text).map_err(failed)?;
     std::fs::write(folder.join(SCHEMA), schema::text()).map_err(failed)?;
     say(format_args!(
@@ -69,4 +71,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         file.display()
     ));
     Ok(exit::OK)
+}
+
+/// The text of a case with the laws that it may choose above its section `[laws]`.
+fn with_laws(text: &str) -> String {
+    let catalogue = LawCatalogue::default();
+    let mut comment = String::from("# To choose from (docs/case-file.md says what each is):\n");
+    for (family, laws) in catalogue.families() {
+        if let Some(key) = family.strip_prefix("laws.") {
+            let names: Vec<&str> = laws.iter().map(|law| law.name).collect();
+            comment.push_str(&format!("#   {key}: {}\n", names.join(", ")));
+        }
+    }
+    match text.find("[laws]") {
+        Some(at) => format!("{}{comment}{}", &text[..at], &text[at..]),
+        None => text.to_owned(),
+    }
 }

@@ -8,6 +8,7 @@ use super::console::say;
 use super::failure::Failure;
 use crate::case::schema::schema;
 use crate::exit;
+use crate::laws::LawCatalogue;
 
 /// Prints the JSON schema of case files, by which editors complete and check them.
 #[derive(Debug, Args)]
@@ -34,5 +35,5 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
 
 /// The schema as it stands in a file.
 pub(super) fn text() -> String {
-    format!("{:#}\n", schema())
+    format!("{:#}\n", schema(&LawCatalogue::default()))
 }

@@ -219,10 +219,9 @@ impl VoidProfiles {
             return Ok(None);
         }
         let mut voids = Self::default();
-        for row in &sheet::rows(&path, &files::read(&path)?)?[..] {
+        for row in sheet::rows(&path, &files::read(&path)?)?.iter().skip(1) {
             let number = |place: usize| row.get(place)?.parse::<f64>().ok();
             let profile = match row.get(0) {
-                Some("profile") => continue,
                 Some("height") => Some(&mut voids.height),
                 Some("wall") => Some(&mut voids.wall),
                 _ => None,

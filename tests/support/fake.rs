@@ -14,7 +14,11 @@ use calcine_coupler::models::ParticleModels;
 use calcine_coupler::observer::{CommittedState, Observer, Timing};
 use calcine_coupler::part::{Bed, Convergence, GasFields, ParticleFields, SolverInfo};
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::conduction::{CONDUCTION_LAWS, GAP_LAWS};
+use calcine_coupler::physics::drag::DRAG_LAWS;
 use calcine_coupler::physics::gas::GasProperties;
+use calcine_coupler::physics::heat_transfer::HEAT_TRANSFER_LAWS;
+use calcine_coupler::physics::law::{LawChoice, NONE};
 use calcine_coupler::setup::{Convection, GasControls, GasSetup};
 use calcine_coupler::time::{Acceleration, Clocks, GasStorage, Ticks, Window};
 
@@ -81,15 +85,15 @@ pub fn case() -> Case {
         particles: vec![],
         laws: Laws {
             momentum: Default::default(),
-            drag: DragLaw::ErgunWenYu,
+            drag: LawChoice::named(DRAG_LAWS, "ergun-wen-yu", Vec::new()).unwrap(),
             conduction: ConductionSpec {
-                law: ConductionLaw::None,
+                law: LawChoice::named(CONDUCTION_LAWS, NONE, Vec::new()).unwrap(),
                 area: ConductionArea::Overlap,
-                gap: GapSpec::None,
+                gap: LawChoice::named(GAP_LAWS, NONE, Vec::new()).unwrap(),
             },
             radiation: None,
-            heat_transfer: HeatLaw::Gunn,
-            mass_transfer: HeatLaw::None,
+            heat_transfer: LawChoice::named(HEAT_TRANSFER_LAWS, "gunn", Vec::new()).unwrap(),
+            mass_transfer: LawChoice::named(HEAT_TRANSFER_LAWS, NONE, Vec::new()).unwrap(),
         },
         coupling: Coupling {
             mapping: MappingSpec::Overlap,

@@ -17,7 +17,7 @@ pub(super) fn sheet(text: &str) -> Result<Sheet, Fault> {
         match &mut sheet {
             _ if blank => {}
             None => sheet = Some(head(&record)),
-            Some(sheet) => row(sheet, &record)?,
+            Some(sheet) => row(sheet, &record, line_of(&record, text))?,
         }
     }
     Ok(sheet.unwrap_or_default())
@@ -31,9 +31,18 @@ fn head(record: &StringRecord) -> Sheet {
     }
 }
 
-fn row(sheet: &mut Sheet, record: &StringRecord) -> Result<(), Fault> {
-    let line = record.position().map_or(0, |position| position.line());
-    let line = usize::try_from(line).unwrap_or(usize::MAX);
+/// The line of a record. The reader's position is before the empty lines that it skips.
+fn line_of(record: &StringRecord, text: &str) -> usize {
+    let Some(position) = record.position() else {
+        return 0;
+    };
+    let (line, byte) = (position.line() as usize, position.byte() as usize);
+    let rest = text.as_bytes().get(byte..).unwrap_or_default();
+    let empty = rest.iter().take_while(|byte| b"\r\n".contains(byte));
+    line + empty.filter(|byte| **byte == b'\n').count()
+}
+
+fn row(sheet: &mut Sheet, record: &StringRecord, line: usize) -> Result<(), Fault> {
     let (found, needed) = (record.len(), sheet.columns.len());
     if found != needed {
         let what = format!("there are {found} values, but {needed} columns");

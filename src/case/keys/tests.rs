@@ -5,10 +5,12 @@ use std::path::Path;
 
 use super::*;
 use crate::case::table::{Problems, TableReader};
+use crate::laws::LawCatalogue;
 
 #[test]
-fn the_table_holds_exactly_the_keys_that_the_reader_asks_for() {
+fn the_keys_that_are_declared_are_exactly_those_that_the_reader_asks_for() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let laws = LawCatalogue::default();
     let mut asked = BTreeSet::new();
     for folder in ["cases", "tests/inputs/good"] {
         for entry in std::fs::read_dir(root.join(folder)).unwrap() {
@@ -19,31 +21,49 @@ fn the_table_holds_exactly_the_keys_that_the_reader_asks_for() {
             let text = std::fs::read_to_string(&path).unwrap();
             let document = toml_edit::Document::parse(text.as_str()).unwrap();
             let problems = Problems::default();
-            let reader = TableReader::root(&problems, document.as_table());
+            let reader = TableReader::root(&problems, &laws, document.as_table());
             crate::case::sections::case(&reader, &path, &text, String::new());
             asked.append(&mut problems.asked());
         }
     }
-    let known: BTreeSet<String> = KEYS.iter().map(|key| key.key.to_owned()).collect();
-    assert_eq!(known.len(), KEYS.len(), "a key stands twice");
+    let all = keys(&laws);
+    let known: BTreeSet<String> = all.iter().map(|key| key.place.clone()).collect();
+    assert_eq!(known.len(), all.len(), "a key is declared twice");
     let missing: Vec<_> = asked.difference(&known).collect();
     let never: Vec<_> = known.difference(&asked).collect();
-    assert!(missing.is_empty(), "not in the table: {missing:?}");
+    assert!(missing.is_empty(), "not declared: {missing:?}");
     assert!(never.is_empty(), "the reader never asks for: {never:?}");
 }
 
 #[test]
-fn every_example_is_toml() {
-    for key in KEYS
-        .iter()
-        .filter(|key| !key.example.starts_with("[[") || key.example.contains('"'))
-    {
-        let text = if key.value == "table" && key.example.starts_with('[') {
-            key.example.to_owned()
-        } else {
-            format!("x = {}", key.example)
+fn every_example_is_toml_and_every_default_a_value_of_its_key() {
+    let laws = LawCatalogue::default();
+    for placed in keys(&laws) {
+        let example = placed.example(&laws);
+        let heading = example.starts_with('[') && !example.contains(['"', ',', '{']);
+        let text = match heading {
+            true => example,
+            false => format!("x = {example}"),
         };
         assert!(toml_edit::Document::parse(text.as_str()).is_ok(), "{text}");
+        let KeyPresence::Default(text) = placed.key.presence else {
+            continue;
+        };
+        let sound = match placed.key.value {
+            KeyValue::Number(dimension, bound) => {
+                let found = crate::case::units::quantities(text).unwrap();
+                found.1 == dimension && bound.holds(found.0[0])
+            }
+            KeyValue::Vector(dimension) => {
+                let found = crate::case::units::quantities(text).unwrap();
+                found.1 == dimension && found.0.len() == 3
+            }
+            KeyValue::Schedule(..) => parse_number(text).is_some(),
+            KeyValue::Whole(least, most) => (least..=most).contains(&text.parse().unwrap()),
+            KeyValue::Truth => ["true", "false"].contains(&text),
+            value => value.choices(&laws).contains(&text),
+        };
+        assert!(sound, "{}: {text}", placed.place);
     }
 }
 

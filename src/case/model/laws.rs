@@ -1,6 +1,10 @@
 //! Laws between and inside the phases.
 
 use calcine_coupler::momentum_model::MomentumModel;
+use calcine_coupler::physics::conduction::{Conduction, GasGap};
+use calcine_coupler::physics::drag::Drag;
+use calcine_coupler::physics::heat_transfer::HeatTransfer;
+use calcine_coupler::physics::law::LawChoice;
 use calcine_coupler::setup::Schedule;
 use calcine_coupler::view_factors::ViewFactors;
 
@@ -8,15 +12,15 @@ use calcine_coupler::view_factors::ViewFactors;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Laws {
     /// Drag on a particle.
-    pub drag: DragLaw,
+    pub drag: LawChoice<dyn Drag>,
     /// How gas and particles share their momentum.
     pub momentum: MomentumModel,
     /// Heat transfer between gas and particle.
-    pub heat_transfer: HeatLaw,
+    pub heat_transfer: LawChoice<dyn HeatTransfer>,
     /// Heat conduction between particles.
     pub conduction: ConductionSpec,
     /// Mass transfer between gas and particles that react.
-    pub mass_transfer: HeatLaw,
+    pub mass_transfer: LawChoice<dyn HeatTransfer>,
     /// Radiation between particles; `None`: none.
     pub radiation: Option<RadiationSpec>,
 }
@@ -24,19 +28,19 @@ pub struct Laws {
 impl Laws {
     /// True where heat passes contacts or gaps.
     pub fn conducts(&self) -> bool {
-        self.conduction.law != ConductionLaw::None || self.conduction.gap != GapSpec::None
+        !self.conduction.law.is_none() || !self.conduction.gap.is_none()
     }
 }
 
 /// How particles conduct heat to each other.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ConductionSpec {
     /// Through contacts.
-    pub law: ConductionLaw,
+    pub law: LawChoice<dyn Conduction>,
     /// By which overlap.
     pub area: ConductionArea,
     /// Through the gas between surfaces.
-    pub gap: GapSpec,
+    pub gap: LawChoice<dyn GasGap>,
 }
 
 /// The overlap by which contacts conduct.
@@ -55,27 +59,6 @@ pub enum ConductionArea {
     },
 }
 
-/// Conduction through the gas between surfaces.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum GapSpec {
-    /// None.
-    None,
-    /// Rong and Horio 1999.
-    RongHorio {
-        /// Thickness of the film over the radius.
-        lens: f64,
-        /// Least width of a gap in m.
-        least_width: f64,
-    },
-    /// Cheng, Yu and Zulli 1999.
-    Cheng {
-        /// Radius of the cones' base over the particle's.
-        cone: f64,
-        /// Widest gap over the radius.
-        widest: f64,
-    },
-}
-
 /// How particles radiate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RadiationSpec {
@@ -87,51 +70,4 @@ pub struct RadiationSpec {
     pub surroundings: Option<Schedule>,
     /// Views of moving particles hold for so much process time in s.
     pub refresh: f64,
-}
-
-/// Conduction laws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ConductionLaw {
-    /// No conduction.
-    None,
-    /// Batchelor and O'Brien 1977 (requirements COR-17).
-    BatchelorObrien,
-    /// By the circle of intersection, as LIGGGHTS has it.
-    Lens,
-}
-
-/// Drag laws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DragLaw {
-    /// No drag.
-    None,
-    /// Ergun below a void fraction of 0.8, Wen and Yu above (requirements COR-6).
-    ErgunWenYu,
-    /// Ergun 1952.
-    Ergun,
-    /// Wen and Yu 1966.
-    WenYu,
-    /// Ergun and Wen-Yu, blended.
-    Gidaspow,
-    /// Di Felice 1994.
-    DiFelice,
-    /// Koch and Hill 2001.
-    KochHill,
-    /// Beetstra, van der Hoef and Kuipers 2007.
-    Beetstra,
-}
-
-/// Heat transfer laws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum HeatLaw {
-    /// No heat transfer.
-    None,
-    /// Gunn 1978 (requirements COR-3).
-    Gunn,
-    /// Ranz and Marshall (requirements COR-1).
-    RanzMarshall,
-    /// Wakao and Kaguei 1982 (requirements COR-2).
-    Wakao,
-    /// Gnielinski 1980 (requirements COR-4).
-    Gnielinski,
 }

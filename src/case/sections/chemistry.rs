@@ -16,6 +16,7 @@ use super::existing;
 use super::reactions::{arrhenius, heat_agrees, lacking};
 use crate::case::table::TableReader;
 use crate::case::units::Dimension;
+use crate::case::words::CombustionModel;
 use crate::mechanism;
 
 /// Gas at the start and at the boundary, in which species may be missing.
@@ -37,7 +38,6 @@ pub(super) fn chemistry(
     };
     let combustion = combustion(&table);
     let tolerances = tolerances(&table);
-    let own = table.has("reactions");
     let named = table.has("mechanism");
     let Some(GasModel::Mixture(mixture)) = around.gas else {
         if around.gas.is_some() {
@@ -46,19 +46,15 @@ pub(super) fn chemistry(
         }
         return None;
     };
-    let found = match (named, own) {
-        (true, false) => file(&table, mixture, folder),
-        (false, true) if table.has("thermo") => {
+    let found = match table.exactly_one() {
+        Some("mechanism") => file(&table, mixture, folder),
+        Some(_) if table.has("thermo") => {
             let help = "remove it: the case's own reactions take Calcine's thermodynamics";
             table.fail("thermo", "stands beside reactions of the case's own", help);
             None
         }
-        (false, true) => reactions(&table, mixture, around).map(|made| (made, Vec::new())),
-        _ => {
-            let help = "for example mechanism = \"jones-lindstedt\"";
-            table.fail_whole("needs exactly one of mechanism and reactions", help);
-            None
-        }
+        Some(_) => reactions(&table, mixture, around).map(|made| (made, Vec::new())),
+        None => None,
     };
     table.finish();
     let (mechanism, files) = found?;
@@ -91,18 +87,13 @@ pub(super) fn chemistry(
 }
 
 fn combustion(table: &TableReader<'_>) -> Option<Combustion> {
-    let stirred = table.choice("model", &[("laminar", false), ("pasr", true)]);
-    let stirred = match table.has("model") {
-        true => stirred?,
-        false => false,
-    };
-    let constant = table.positive("mixing_constant", Dimension::NONE);
-    if stirred {
+    let model: CombustionModel = table.choice("model")?;
+    if model == CombustionModel::Pasr {
         return Some(Combustion::Pasr {
-            mixing_constant: constant.unwrap_or(1.0),
+            mixing_constant: table.number("mixing_constant")?,
         });
     }
-    if constant.is_some() {
+    if table.has("mixing_constant") {
         let help = "write model = \"pasr\", or remove it";
         table.fail("mixing_constant", "stands beside the laminar model", help);
         return None;
@@ -112,7 +103,7 @@ fn combustion(table: &TableReader<'_>) -> Option<Combustion> {
 
 fn tolerances(table: &TableReader<'_>) -> Tolerances {
     let default = Tolerances::default();
-    let number = |key| table.positive(key, Dimension::NONE);
+    let number = |key| table.number(key);
     Tolerances {
         relative: number("tolerance").unwrap_or(default.relative),
         fraction: number("fraction_tolerance").unwrap_or(default.fraction),
@@ -204,24 +195,20 @@ fn reaction(
     mixture: &Mixture,
     around: &Around<'_>,
 ) -> Option<ReactionStatement> {
-    let name = table.required_text("name", "\"shift\"");
-    let text = table.required_text("equation", "\"CO + H2O <=> CO2 + H2\"");
-    let example = "rate = { factor = 2.75e6, activation_energy = \"83.6 kJ/mol\" }";
-    let rate = table.required_table("rate", example);
+    let name = table.text("name");
+    let text = table.text("equation");
+    let rate = table.table("rate");
     let (mut constant, mut orders) = (None, None);
     if let Some(rate) = &rate {
-        constant = arrhenius(rate, None);
-        orders = rate.table("orders").map(|table| {
-            let numbers = table.numbers();
-            (table, numbers)
-        });
+        constant = arrhenius(rate, Dimension::NONE);
+        orders = rate.by_name("orders");
         rate.finish();
     }
     let collider = match table.table("third_body") {
         Some(body) => Some(third_body(&body, mixture)?),
         None => None,
     };
-    let heat = table.quantity("heat", Dimension::MOLAR_ENERGY);
+    let heat = table.number("heat");
     table.finish();
     let equation = match Equation::parse(text?) {
         Ok(equation) => equation,
@@ -275,13 +262,13 @@ fn reaction(
 }
 
 fn third_body(table: &TableReader<'_>, mixture: &Mixture) -> Option<Collider> {
-    let others = table.quantity("others", Dimension::NONE).unwrap_or(1.0);
-    let stated = table.table("efficiencies");
-    let efficiencies = stated
-        .as_ref()
-        .map_or(Some(Vec::new()), TableReader::numbers);
+    let others = table.number("others");
+    let stated = table.by_name("efficiencies");
     table.finish();
-    let efficiencies = efficiencies?;
+    let (stated, efficiencies) = match stated {
+        Some((stated, efficiencies)) => (Some(stated), efficiencies?),
+        None => (None, Vec::new()),
+    };
     for (species, _) in &efficiencies {
         let table = stated.as_ref()?;
         if !mixture.names().contains(species) {
@@ -292,7 +279,7 @@ fn third_body(table: &TableReader<'_>, mixture: &Mixture) -> Option<Collider> {
     }
     Some(Collider {
         efficiencies,
-        others,
+        others: others?,
     })
 }
 

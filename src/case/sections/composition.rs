@@ -4,25 +4,15 @@ use calcine_coupler::physics::thermo::Mixture;
 
 use crate::case::table::TableReader;
 
-/// An example of the form.
-pub(super) const EXAMPLE: &str = "{ mole = { N2 = 0.79, O2 = 0.21 } }";
 /// How far fractions may be from summing to 1: what printed digits leave; they are then scaled.
 const SLACK: f64 = 1e-3;
 
 /// The mass fractions that a table states, in the order of the mixture's species.
 pub(super) fn fractions(table: &TableReader<'_>, mixture: &Mixture) -> Option<Vec<f64>> {
-    let mut given = ["mole", "mass"].into_iter().filter(|key| table.has(key));
-    let (kind, more) = (given.next(), given.next());
-    let (Some(kind), None) = (kind, more) else {
-        table.fail_whole(
-            "needs exactly one of mole and mass",
-            &format!("for example {EXAMPLE}"),
-        );
-        return None;
-    };
-    let inner = table.table(kind)?;
+    let kind = table.exactly_one()?;
+    let (inner, numbers) = table.by_name(kind)?;
     let mut fractions = vec![0.0; mixture.names().len()];
-    for (name, value) in inner.numbers()? {
+    for (name, value) in numbers? {
         let Some(k) = mixture.names().iter().position(|other| *other == name) else {
             let help = format!("the species of the gas are {}", mixture.names().join(", "));
             inner.fail(&name, "is no species of the gas", help);

@@ -7,18 +7,10 @@ use calcine_coupler::physics::solids::SolidSpecies;
 
 use crate::case::model::{MaterialSpec, Population, ReactionSpec, SizeLaw};
 use crate::case::table::TableReader;
-use crate::case::units::Dimension;
+use crate::case::words::SizeLawName;
 
 /// By how much the density that stated densities of solids come to may differ from the material's.
 const DENSITY: f64 = 0.01;
-
-/// Laws by their names.
-#[derive(Clone, Copy)]
-enum Law {
-    Constant,
-    ConstantDensity,
-    Densities,
-}
 
 /// The law of a material.
 pub(super) fn read(material: &TableReader<'_>, solids: &[SolidSpecies]) -> SizeLaw {
@@ -29,22 +21,17 @@ pub(super) fn read(material: &TableReader<'_>, solids: &[SolidSpecies]) -> SizeL
         let help = "add a composition, or remove it: only what reacts changes its size";
         material.fail("size", "stands beside no `composition`", help);
     }
-    let laws = [
-        ("constant-diameter", Law::Constant),
-        ("constant-density", Law::ConstantDensity),
-        ("densities", Law::Densities),
-    ];
-    let law = table.required_choice("law", &laws);
+    let law = table.choice("law");
     let least = |table: &TableReader<'_>| {
-        let diameter = table.required_positive("least_diameter", Dimension::LENGTH);
-        0.5 * diameter.unwrap_or(f64::NAN)
+        table.need("least_diameter");
+        0.5 * table.number("least_diameter").unwrap_or(f64::NAN)
     };
     let made = match law {
-        None | Some(Law::Constant) => SizeLaw::Constant,
-        Some(Law::ConstantDensity) => SizeLaw::ConstantDensity {
+        None | Some(SizeLawName::ConstantDiameter) => SizeLaw::Constant,
+        Some(SizeLawName::ConstantDensity) => SizeLaw::ConstantDensity {
             least_radius: least(&table),
         },
-        Some(Law::Densities) => SizeLaw::Densities {
+        Some(SizeLawName::Densities) => SizeLaw::Densities {
             densities: densities(&table, solids).unwrap_or_default(),
             least_radius: least(&table),
         },
@@ -55,10 +42,10 @@ pub(super) fn read(material: &TableReader<'_>, solids: &[SolidSpecies]) -> SizeL
 
 /// Density of each solid, by the names of the table; `None` where one could not be read.
 fn densities(table: &TableReader<'_>, solids: &[SolidSpecies]) -> Option<Vec<Option<f64>>> {
-    let example = "{ CaCO3 = \"2700 kg/m^3\", CaO = \"1600 kg/m^3\" }";
-    let inner = table.required_table("densities", example)?;
+    table.need("densities");
+    let (inner, stated) = table.by_name("densities")?;
     let mut found = vec![None; solids.len()];
-    for (name, value) in inner.quantities(Dimension::DENSITY)? {
+    for (name, value) in stated? {
         let Some(k) = solids.iter().position(|one| one.name() == name) else {
             let help = "name solids of the composition, and those that reactions make of them";
             inner.fail(&name, "is no solid of the case", help);

@@ -1,7 +1,6 @@
 //! `[coupling]`, `[openfoam]`, `[liggghts]`, `[external]`.
 
 use std::path::Path;
-use std::time::Duration;
 
 use calcine_adapters::liggghts::template::ScriptTemplate;
 use calcine_adapters::openfoam::stock::{StockSolver, refusal};
@@ -12,76 +11,35 @@ use calcine_coupler::time::GasStorage;
 use super::existing;
 use super::zone::zones;
 use crate::case::model::{
-    Coupling, ExternalProgram, ExternalSpec, Laws, MappingSpec, MotionSpec, Population, TimeSpec,
+    Coupling, ExternalProgram, ExternalSpec, Laws, MotionSpec, Population, TimeSpec,
 };
 use crate::case::table::TableReader;
-use crate::case::units::Dimension;
 
 pub(super) fn read(root: &TableReader<'_>) -> Option<Coupling> {
-    let section = root.required_table("coupling", "[coupling] with mapping = \"overlap\"")?;
-    let mappings = [
-        ("overlap", MappingSpec::Overlap),
-        ("divided", MappingSpec::Divided),
-        ("centroid", MappingSpec::Centroid),
-    ];
-    let mapping = section.required_choice("mapping", &mappings);
-    let mut coupling = Coupling {
-        mapping: mapping.unwrap_or(MappingSpec::Overlap),
-        max_solid_fraction: 0.64,
-        excluded: Vec::new(),
-        smoother_tolerance: 1e-4,
-        diffusion_length: None,
-        exchange_tolerance: 1e-3,
-        exchange_attempts: 4,
-        deadline: Duration::from_secs(60),
-    };
-    if let Some(table) = section.table("smoother") {
-        if let Some(fraction) = fraction(&table, "max_solid_fraction") {
-            coupling.max_solid_fraction = fraction;
-        }
-        coupling.excluded = zones(&table, "excluded");
-        coupling.smoother_tolerance =
-            fraction(&table, "tolerance").unwrap_or(coupling.smoother_tolerance);
-        if let Some(length) = table.quantity("diffusion_length", Dimension::LENGTH) {
-            if length < 0.0 {
-                table.fail(
-                    "diffusion_length",
-                    format!("is {length} m"),
-                    "it is zero or above",
-                );
-            }
-            coupling.diffusion_length = Some(length);
-        }
-        table.finish();
-    }
-    if let Some(table) = section.table("exchange") {
-        coupling.exchange_tolerance =
-            fraction(&table, "tolerance").unwrap_or(coupling.exchange_tolerance);
-        let attempts = table
-            .whole("attempts", 1..=1000)
-            .and_then(|n| u32::try_from(n).ok());
-        coupling.exchange_attempts = attempts.unwrap_or(coupling.exchange_attempts);
-        table.finish();
-    }
-    if let Some(deadline) = section.wall_time("deadline") {
-        coupling.deadline = deadline;
-    }
+    let section = root.table("coupling")?;
+    let mapping = section.choice("mapping");
+    let smoother = section.table_or_empty("smoother")?;
+    let max_solid_fraction = smoother.number("max_solid_fraction");
+    let excluded = zones(&smoother, "excluded");
+    let smoother_tolerance = smoother.number("tolerance");
+    let diffusion_length = smoother.number("diffusion_length");
+    smoother.finish();
+    let exchange = section.table_or_empty("exchange")?;
+    let exchange_tolerance = exchange.number("tolerance");
+    let exchange_attempts = exchange.small_whole("attempts");
+    exchange.finish();
+    let deadline = section.wall_time("deadline");
     section.finish();
-    mapping.map(|_| coupling)
-}
-
-/// A plain number in (0, 1).
-fn fraction(table: &TableReader<'_>, key: &str) -> Option<f64> {
-    let value = table.quantity(key, Dimension::NONE)?;
-    if value > 0.0 && value < 1.0 {
-        return Some(value);
-    }
-    table.fail(
-        key,
-        format!("is {value}"),
-        "it must lie between 0 and 1, both excluded",
-    );
-    None
+    Some(Coupling {
+        mapping: mapping?,
+        max_solid_fraction: max_solid_fraction?,
+        excluded,
+        smoother_tolerance: smoother_tolerance?,
+        diffusion_length,
+        exchange_tolerance: exchange_tolerance?,
+        exchange_attempts: exchange_attempts?,
+        deadline: deadline?,
+    })
 }
 
 /// A stock solver does less than calcineGasFoam: what this case asks of it in vain.
@@ -150,9 +108,6 @@ pub(super) fn check_script(
 pub(super) fn programs(root: &TableReader<'_>, folder: &Path) -> Option<ExternalProgram> {
     let section = root.table("external")?;
     let gas = section.table("gas").and_then(|table| {
-        if !table.has("program") {
-            table.missing("program", "\"column-gas\"");
-        }
         let program = existing(&table, "program", folder);
         if let Some(path) = &program
             && !is_executable(path)
@@ -165,12 +120,12 @@ pub(super) fn programs(root: &TableReader<'_>, folder: &Path) -> Option<External
             );
         }
         let arguments = table.texts("arguments").unwrap_or_default();
-        let ranks = table.whole("ranks", 1..=100_000).unwrap_or(1);
+        let ranks = table.small_whole("ranks");
         table.finish();
         Some(ExternalProgram {
             program: program?,
             arguments,
-            ranks: u32::try_from(ranks).unwrap_or(1),
+            ranks: ranks?,
         })
     });
     section.finish();
@@ -196,14 +151,11 @@ pub(super) fn external(root: &TableReader<'_>, key: &str, folder: &Path) -> Exte
         external.template = existing(&section, "template", folder);
         if key == "openfoam" {
             external.start = existing(&section, "start", folder);
-            let solvers = StockSolver::ALL.map(|solver| (solver.name(), solver));
-            external.solver = section.choice("solver", &solvers).unwrap_or_default();
+            external.solver = section.choice("solver").unwrap_or_default();
         } else {
             external.wall_impulse = section.truth("wall_impulse").unwrap_or(false);
         }
-        if let Some(ranks) = section.whole("ranks", 1..=100_000) {
-            external.ranks = u32::try_from(ranks).unwrap_or(1);
-        }
+        external.ranks = section.small_whole("ranks").unwrap_or(1);
         section.finish();
     }
     external

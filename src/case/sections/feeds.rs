@@ -7,12 +7,9 @@ use calcine_coupler::physics::Vec3;
 use super::zone::zone;
 use crate::case::model::{FeedSpec, MotionSpec, Population};
 use crate::case::table::TableReader;
-use crate::case::units::Dimension;
-
-const REGION: &str = "region = { box = { from = \"0 0 80 mm\", to = \"50 50 100 mm\" } }";
 
 fn region(table: &TableReader<'_>) -> Option<Zone> {
-    let region = table.required_table("region", REGION)?;
+    let region = table.table("region")?;
     let zone = zone(&region);
     region.finish();
     zone
@@ -27,21 +24,18 @@ pub(super) fn feeds(root: &TableReader<'_>, particles: Option<&[Population]>) ->
 }
 
 fn feed(table: &TableReader<'_>, particles: Option<&[Population]>) -> Option<FeedSpec> {
-    let name = table.required_text("name", "\"charge\"");
-    let population = table.required_text("population", "\"beads\"");
+    let name = table.text("name");
+    let population = table.text("population");
     let region = region(table);
-    let rate = table.positive("mass_rate", Dimension::MASS_FLOW);
-    let batch = table.positive("batch", Dimension::MASS);
+    let rate = table.number("mass_rate");
+    let batch = table.number("batch");
     if !table.has("mass_rate") && !table.has("batch") {
         let help = "add mass_rate = \"1 kg/h\", or batch = \"20 g\" for what is there at the start";
         table.fail_whole("needs `mass_rate` or `batch`", help);
     }
-    let velocity = table.vector("velocity", Dimension::VELOCITY);
-    let temperature = table.positive("temperature", Dimension::TEMPERATURE);
-    if !table.has("seed") {
-        table.missing("seed", "1");
-    }
-    let seed = table.whole("seed", 0..=i64::MAX);
+    let velocity = table.vector("velocity");
+    let temperature = table.number("temperature");
+    let seed = table.whole("seed");
     table.finish();
     let (particles, population) = (particles?, population?);
     let index = particles.iter().position(|one| one.name == population);
@@ -69,9 +63,9 @@ fn feed(table: &TableReader<'_>, particles: Option<&[Population]>) -> Option<Fee
 
 pub(super) fn outlets(root: &TableReader<'_>) -> Vec<Outlet> {
     let one = |table: &TableReader<'_>| {
-        let name = table.required_text("name", "\"discharge\"");
+        let name = table.text("name");
         let zone = region(table);
-        let rate = table.positive("mass_rate", Dimension::MASS_FLOW);
+        let rate = table.number("mass_rate");
         table.finish();
         Some(Outlet {
             name: name?.into(),

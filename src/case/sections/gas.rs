@@ -7,7 +7,7 @@ use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
 use calcine_coupler::physics::gas_model::{ConstantGas, GasModel};
-use calcine_coupler::setup::{Convection, GasControls, GasSetup};
+use calcine_coupler::setup::{GasControls, GasSetup};
 use calcine_coupler::time::GasStorage;
 
 use super::chemistry::{Around, chemistry};
@@ -17,7 +17,6 @@ use super::species_data;
 use super::turbulence::turbulence;
 use crate::case::model::MeshSpec;
 use crate::case::table::TableReader;
-use crate::case::units::Dimension;
 
 /// What the section says.
 pub(super) struct GasRead {
@@ -33,17 +32,15 @@ pub(super) fn read(
     storage: Option<GasStorage>,
     folder: &Path,
 ) -> Option<GasRead> {
-    let section = root.required_table("gas", "[gas] with mixture = \"air\"")?;
-    let mixture = section.required_text("mixture", "\"air\"");
+    let section = root.table("gas")?;
+    let mixture = section.text("mixture");
     let (properties, mut files) = match properties(&section, mixture, folder) {
         Some((gas, files)) => (Some(gas), files),
         None => (None, Vec::new()),
     };
     let schmidt = schmidt(&section, properties.as_ref());
     let initial = initial(&section, properties.as_ref());
-    let gravity = section
-        .vector("gravity", Dimension::ACCELERATION)
-        .unwrap_or([0.0; 3]);
+    let gravity = section.vector("gravity").unwrap_or([0.0; 3]);
     let held = section.truth("held").unwrap_or(false);
     let turbulence = turbulence(&section);
     let turbulent = turbulence.map(|model| !model.is_laminar());
@@ -86,7 +83,7 @@ pub(super) fn read(
         turbulence: turbulence?,
         momentum: MomentumModel::default(), // `laws.drag.model` says
         patches: patches?,
-        controls,
+        controls: controls?,
     };
     Some(GasRead { setup, held, files })
 }
@@ -114,10 +111,10 @@ fn properties(
 /// A gas without species.
 fn single(section: &TableReader<'_>, mixture: Option<&str>) -> Option<GasModel> {
     if let Some(table) = section.table("constant") {
-        let density = table.required_positive("density", Dimension::DENSITY);
-        let heat_capacity = table.required_positive("heat_capacity", Dimension::HEAT_CAPACITY);
-        let viscosity = table.required_positive("viscosity", Dimension::VISCOSITY);
-        let conductivity = table.required_positive("conductivity", Dimension::CONDUCTIVITY);
+        let density = table.number("density");
+        let heat_capacity = table.number("heat_capacity");
+        let viscosity = table.number("viscosity");
+        let conductivity = table.number("conductivity");
         table.finish();
         if section.has("properties") {
             section.fail(
@@ -135,11 +132,11 @@ fn single(section: &TableReader<'_>, mixture: Option<&str>) -> Option<GasModel> 
         }));
     }
     if let Some(table) = section.table("properties") {
-        let molar_mass = table.required_positive("molar_mass", Dimension::MOLAR_MASS);
-        let heat_capacity = table.required_positive("heat_capacity", Dimension::HEAT_CAPACITY);
-        let viscosity = table.required_positive("viscosity", Dimension::VISCOSITY);
-        let at = table.required_positive("viscosity_at", Dimension::TEMPERATURE);
-        let sutherland = table.required_positive("sutherland_temperature", Dimension::TEMPERATURE);
+        let molar_mass = table.number("molar_mass");
+        let heat_capacity = table.number("heat_capacity");
+        let viscosity = table.number("viscosity");
+        let at = table.number("viscosity_at");
+        let sutherland = table.number("sutherland_temperature");
         table.finish();
         let (viscosity, at, sutherland_temperature) = (viscosity?, at?, sutherland?);
         let made = GasProperties {
@@ -171,71 +168,53 @@ fn single(section: &TableReader<'_>, mixture: Option<&str>) -> Option<GasModel> 
 
 /// The Schmidt number of a mixture; 1 where there are no species.
 fn schmidt(section: &TableReader<'_>, gas: Option<&GasModel>) -> Option<f64> {
-    if !matches!(gas, Some(GasModel::Mixture(_))) {
-        return Some(1.0);
+    match gas {
+        Some(GasModel::Mixture(_)) => section.need("schmidt"),
+        Some(_) => return Some(1.0),
+        // What could not be read is told already.
+        None => return section.has("schmidt").then_some(1.0),
     }
-    if !section.has("schmidt") {
-        section.missing("schmidt", "0.7");
-    }
-    section.positive("schmidt", Dimension::NONE)
+    section.number("schmidt")
 }
 
 fn initial(
     section: &TableReader<'_>,
     gas: Option<&GasModel>,
 ) -> Option<(f64, f64, Vec3, Vec<f64>)> {
-    let initial = section.required_table(
-        "initial",
-        "initial = { temperature = \"300 K\", pressure = \"1 atm\" }",
-    )?;
-    let temperature = initial.required_positive("temperature", Dimension::TEMPERATURE);
-    let pressure = initial.required_positive("pressure", Dimension::PRESSURE);
-    let velocity = initial
-        .vector("velocity", Dimension::VELOCITY)
-        .unwrap_or([0.0; 3]);
+    let initial = section.table("initial")?;
+    let temperature = initial.number("temperature");
+    let pressure = initial.number("pressure");
+    let velocity = initial.vector("velocity").unwrap_or([0.0; 3]);
     let composition = match gas {
         Some(GasModel::Mixture(mixture)) => {
-            let table = initial.required_table(
-                "composition",
-                "composition = { mole = { N2 = 0.79, O2 = 0.21 } }",
-            );
+            initial.need("composition");
+            let table = initial.table("composition");
             table.and_then(|table| fractions(&table, mixture))
         }
-        _ => Some(Vec::new()),
+        Some(_) => Some(Vec::new()),
+        None => {
+            initial.has("composition");
+            None
+        }
     };
     initial.finish();
     Some((temperature?, pressure?, Vec3::from(velocity), composition?))
 }
 
-/// Defaults: 20 outer iterations to 1e-8, 2 pressure corrections, linear solvers to 1e-13, van Leer's
-/// limiter.
-fn controls(section: &TableReader<'_>) -> GasControls {
-    let mut controls = GasControls {
-        outer_iterations: 20,
-        convection: Convection::default(),
-        pressure_corrections: 2,
-        outer_tolerance: 1e-8,
-        linear_tolerance: 1e-13,
-    };
-    if let Some(table) = section.table("controls") {
-        let count = |key| {
-            table
-                .whole(key, 1..=10_000)
-                .and_then(|n| u32::try_from(n).ok())
-        };
-        controls.outer_iterations = count("outer_iterations").unwrap_or(controls.outer_iterations);
-        controls.pressure_corrections =
-            count("pressure_corrections").unwrap_or(controls.pressure_corrections);
-        let schemes = [
-            ("van-leer", Convection::VanLeer),
-            ("upwind", Convection::Upwind),
-        ];
-        controls.convection = table.choice("convection", &schemes).unwrap_or_default();
-        let tolerance = |key| table.positive(key, Dimension::NONE);
-        controls.outer_tolerance = tolerance("outer_tolerance").unwrap_or(controls.outer_tolerance);
-        controls.linear_tolerance =
-            tolerance("linear_tolerance").unwrap_or(controls.linear_tolerance);
-        table.finish();
-    }
-    controls
+/// Accuracy, with its defaults where the case says nothing.
+fn controls(section: &TableReader<'_>) -> Option<GasControls> {
+    let table = section.table_or_empty("controls")?;
+    let outer_iterations = table.small_whole("outer_iterations");
+    let convection = table.choice("convection");
+    let pressure_corrections = table.small_whole("pressure_corrections");
+    let outer_tolerance = table.number("outer_tolerance");
+    let linear_tolerance = table.number("linear_tolerance");
+    table.finish();
+    Some(GasControls {
+        outer_iterations: outer_iterations?,
+        convection: convection?,
+        pressure_corrections: pressure_corrections?,
+        outer_tolerance: outer_tolerance?,
+        linear_tolerance: linear_tolerance?,
+    })
 }

@@ -3,16 +3,14 @@
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::thermo::Mixture;
-use calcine_coupler::setup::{
-    CompositionSchedule, GasPatch, InletFlow, Schedule, WallHeat, WallVelocity,
-};
+use calcine_coupler::setup::{CompositionSchedule, GasPatch, InletFlow, WallHeat, WallVelocity};
 
-use super::composition::{EXAMPLE, fractions};
+use super::composition::fractions;
 use super::patches;
 use super::turbulence::of_inlet;
 use crate::case::model::MeshSpec;
 use crate::case::table::TableReader;
-use crate::case::units::Dimension;
+use crate::case::words::Adiabatic;
 
 /// Conditions of all patches, for a gas, turbulent or not; one of constant density cannot flow into a closed domain.
 pub(super) fn boundary(
@@ -21,7 +19,7 @@ pub(super) fn boundary(
     gas: Option<&GasModel>,
     turbulent: Option<bool>,
 ) -> Option<Vec<(String, GasPatch)>> {
-    let table = section.required_table("patch", "[gas.patch.bottom]")?;
+    let table = section.table("patch")?;
     let named = table.named();
     let mut made = Vec::new();
     let mut complete = true;
@@ -41,7 +39,7 @@ pub(super) fn boundary(
         }
         for name in known {
             if !named.iter().any(|(other, _)| other == name) {
-                table.missing(
+                table.missing_like(
                     name,
                     "{ wall = { velocity = \"no-slip\", heat = \"adiabatic\" } }",
                 );
@@ -70,19 +68,12 @@ fn patch(
     gas: Option<&GasModel>,
     turbulent: Option<bool>,
 ) -> Option<GasPatch> {
-    let kinds = ["inlet", "outlet", "wall", "symmetry"];
-    let mut given = kinds.iter().filter(|kind| reader.has(kind));
-    let (kind, more) = (given.next(), given.next());
-    let (Some(kind), None) = (kind, more) else {
-        let message = "needs exactly one of inlet, outlet, wall and symmetry";
-        reader.fail_whole(message, "for example outlet = { pressure = \"1 atm\" }");
-        return None;
-    };
+    let kind = reader.exactly_one()?;
     let table = reader.table(kind)?;
-    let made = match *kind {
+    let made = match kind {
         "inlet" => inlet(&table, gas, turbulent),
         "outlet" => table
-            .pressures("pressure")
+            .schedule("pressure")
             .map(|pressure| GasPatch::Outlet { pressure }),
         "symmetry" => Some(GasPatch::Symmetry),
         _ => wall(&table),
@@ -97,14 +88,18 @@ fn inlet(
     turbulent: Option<bool>,
 ) -> Option<GasPatch> {
     let flow = flow(table);
-    let temperature = table.temperatures("temperature");
+    let temperature = table.schedule("temperature");
     let turbulence = of_inlet(table, turbulent);
     Some(GasPatch::Inlet {
         flow: flow?,
         temperature: temperature?,
         composition: match gas {
             Some(GasModel::Mixture(mixture)) => Some(composition(table, mixture)?),
-            _ => None,
+            Some(_) => None,
+            None => {
+                table.has("composition");
+                None
+            }
         },
         turbulence: turbulence?,
     })
@@ -112,10 +107,8 @@ fn inlet(
 
 /// `composition` of the gas that flows in.
 fn composition(table: &TableReader<'_>, mixture: &Mixture) -> Option<CompositionSchedule> {
-    let Some(dated) = table.dated_tables("composition", EXAMPLE) else {
-        if !table.has("composition") {
-            table.missing("composition", EXAMPLE);
-        }
+    let Some(dated) = table.dated_tables("composition") else {
+        table.need("composition");
         return None;
     };
     let mut entries = Vec::new();
@@ -138,18 +131,9 @@ fn flow(table: &TableReader<'_>) -> Option<InletFlow> {
         );
         return None;
     }
-    let velocity = key == keys[0];
-    let schedule = if velocity {
-        table.schedule(key, Dimension::VELOCITY)?
-    } else {
-        table.schedule(key, Dimension::MASS_FLOW)?
-    };
-    if schedule.0.iter().any(|entry| entry.1 < 0.0) {
-        let help = "it counts into the domain; make the patch an outlet";
-        table.fail(key, "is negative", help);
-        return None;
-    }
-    Some(if velocity {
+    table.need(key);
+    let schedule = table.schedule(key)?;
+    Some(if key == keys[0] {
         InletFlow::SuperficialVelocity(schedule)
     } else {
         InletFlow::MassFlow(schedule)
@@ -158,20 +142,14 @@ fn flow(table: &TableReader<'_>) -> Option<InletFlow> {
 
 fn wall(table: &TableReader<'_>) -> Option<GasPatch> {
     let velocity = wall_velocity(table);
-    let heat = match table.raw("heat") {
-        None => {
-            table.missing("heat", "\"adiabatic\"");
-            None
-        }
-        Some(item) if item.as_table_like().is_some() => {
-            let inner = table.table("heat")?;
-            let heat = wall_heat(&inner);
-            inner.finish();
-            heat
-        }
-        Some(_) => table
-            .choice("heat", &[("adiabatic", ())])
-            .map(|()| WallHeat::Adiabatic),
+    let heat = if table.is_table("heat") {
+        let inner = table.table("heat")?;
+        let heat = wall_heat(&inner);
+        inner.finish();
+        heat
+    } else {
+        let word = table.choice("heat");
+        word.map(|Adiabatic| WallHeat::Adiabatic)
     };
     Some(GasPatch::Wall {
         velocity: velocity?,
@@ -181,21 +159,13 @@ fn wall(table: &TableReader<'_>) -> Option<GasPatch> {
 
 /// `"no-slip"`, `"slip"`, or `{ moving = "1 0 0 m/s" }`.
 fn wall_velocity(table: &TableReader<'_>) -> Option<WallVelocity> {
-    match table.raw("velocity") {
-        Some(item) if item.as_table_like().is_some() => {
-            let inner = table.table("velocity")?;
-            let velocity = inner.required_vector("moving", Dimension::VELOCITY);
-            inner.finish();
-            velocity.map(|v| WallVelocity::Moving(Vec3::from(v)))
-        }
-        _ => table.required_choice(
-            "velocity",
-            &[
-                ("no-slip", WallVelocity::NoSlip),
-                ("slip", WallVelocity::Slip),
-            ],
-        ),
+    if !table.is_table("velocity") {
+        return table.choice("velocity");
     }
+    let inner = table.table("velocity")?;
+    let velocity = inner.vector("moving");
+    inner.finish();
+    velocity.map(|v| WallVelocity::Moving(Vec3::from(v)))
 }
 
 /// `{ temperature = … }`, `{ flux = … }`, or `{ coefficient = …, ambient = … }`.
@@ -211,20 +181,14 @@ fn wall_heat(table: &TableReader<'_>) -> Option<WallHeat> {
         return None;
     };
     match kind {
-        "temperature" => table.temperatures(kind).map(WallHeat::Temperature),
-        "flux" => table
-            .schedule(kind, Dimension::HEAT_FLUX)
-            .map(WallHeat::Flux),
+        "temperature" => table.schedule(kind).map(WallHeat::Temperature),
+        "flux" => table.schedule(kind).map(WallHeat::Flux),
         _ => {
-            let coefficient = table.schedule(kind, Dimension::HEAT_TRANSFER);
-            let ambient = table.temperatures("ambient");
-            let coefficient: Schedule = coefficient?;
-            if coefficient.0.iter().any(|entry| entry.1 < 0.0) {
-                table.fail(kind, "is negative", "heat flows from hot to cold");
-                return None;
-            }
+            let coefficient = table.schedule(kind);
+            table.need("ambient");
+            let ambient = table.schedule("ambient");
             Some(WallHeat::Convective {
-                coefficient,
+                coefficient: coefficient?,
                 ambient: ambient?,
             })
         }

@@ -5,26 +5,17 @@ use calcine_coupler::setup::Schedule;
 use calcine_coupler::view_factors::ViewFactors;
 
 use crate::case::model::{
-    ConductionArea, ConductionLaw, ConductionSpec, GapSpec, Laws, MaterialSpec, Population,
-    RadiationSpec,
+    ConductionArea, ConductionSpec, Laws, MaterialSpec, Population, RadiationSpec,
 };
 use crate::case::table::TableReader;
-use crate::case::units::Dimension;
+use crate::case::words::{AreaName, InsideName, RadiationName};
 
 /// `laws.conduction`.
 pub(super) fn conduction(section: &TableReader<'_>) -> Option<ConductionSpec> {
-    let table = section.required_table("conduction", "conduction = { law = \"none\" }")?;
-    let laws = [
-        ("batchelor-obrien", ConductionLaw::BatchelorObrien),
-        ("lens", ConductionLaw::Lens),
-        ("none", ConductionLaw::None),
-    ];
-    let law = table.required_choice("law", &laws);
+    let known = section.laws();
+    let (law, table) = section.law("conduction", &known.conduction)?;
     let area = area(&table);
-    let gap = match table.table("gap") {
-        Some(table) => gap(&table),
-        None => Some(GapSpec::None),
-    };
+    let gap = table.optional_law("gap", &known.gap);
     table.finish();
     Some(ConductionSpec {
         law: law?,
@@ -35,19 +26,12 @@ pub(super) fn conduction(section: &TableReader<'_>) -> Option<ConductionSpec> {
 
 /// `area`, with `load` and `within` where it is a load.
 fn area(table: &TableReader<'_>) -> Option<ConductionArea> {
-    let areas = [("overlap", 0), ("force", 1), ("load", 2)];
-    let chosen = match table.has("area") {
-        true => table.choice("area", &areas)?,
-        false => 0,
-    };
-    let force = table.positive("load", Dimension::FORCE);
-    let within = table.positive("within", Dimension::LENGTH);
-    if chosen == 2 {
-        for (key, example) in [("load", "\"50 mN\""), ("within", "\"20 um\"")] {
-            if !table.has(key) {
-                table.missing(key, example);
-            }
-        }
+    let chosen: AreaName = table.choice("area")?;
+    let force = table.number("load");
+    let within = table.number("within");
+    if chosen == AreaName::Load {
+        table.need("load");
+        table.need("within");
         return Some(ConductionArea::Load {
             force: force?,
             within: within?,
@@ -59,78 +43,26 @@ fn area(table: &TableReader<'_>) -> Option<ConductionArea> {
         }
     }
     Some(match chosen {
-        1 => ConductionArea::Force,
+        AreaName::Force => ConductionArea::Force,
         _ => ConductionArea::Overlap,
-    })
-}
-
-/// `gap`: conduction through the gas between surfaces.
-fn gap(table: &TableReader<'_>) -> Option<GapSpec> {
-    let laws = [("rong-horio", 1), ("cheng", 2), ("none", 0)];
-    let law = table.required_choice("law", &laws);
-    let number = |key, usual: f64| match table.has(key) {
-        true => table.positive(key, Dimension::NONE),
-        false => Some(usual),
-    };
-    let (lens, cone, widest) = (
-        number("lens", 0.2),
-        number("cone", 0.66),
-        number("widest", 1.0),
-    );
-    let least = table.positive("least_width", Dimension::LENGTH);
-    let own: &[&str] = match law {
-        Some(1) => &["lens", "least_width"],
-        Some(2) => &["cone", "widest"],
-        _ => &[],
-    };
-    for key in ["lens", "least_width", "cone", "widest"] {
-        if law.is_some() && table.has(key) && !own.contains(&key) {
-            table.fail(key, "belongs to another law of the gap", "remove it");
-        }
-    }
-    if law == Some(1) && !table.has("least_width") {
-        table.missing("least_width", "\"1 um\"");
-    }
-    table.finish();
-    Some(match law? {
-        1 => GapSpec::RongHorio {
-            lens: lens?,
-            least_width: least?,
-        },
-        2 => GapSpec::Cheng {
-            cone: cone?,
-            widest: widest?,
-        },
-        _ => GapSpec::None,
     })
 }
 
 /// `laws.radiation`; `Some(None)` where surfaces do not radiate.
 pub(super) fn radiation(section: &TableReader<'_>) -> Option<Option<RadiationSpec>> {
-    let table = section.required_table("radiation", "radiation = { law = \"none\" }")?;
-    let laws = [("view-factors", 1), ("distance", 2), ("none", 0)];
-    let law = table.required_choice("law", &laws);
-    let rays = match table.has("rays") {
-        true => table.whole("rays", 16..=1_000_000),
-        false => Some(1024),
-    };
-    let range = match table.has("range") {
-        true => table.positive("range", Dimension::NONE),
-        false => Some(3.0),
-    };
+    let table = section.table("radiation")?;
+    let law = table.choice("law");
+    let rays = table.whole("rays");
+    let range = table.number("range");
     let refresh = match table.has("refresh") {
-        true => table.positive("refresh", Dimension::TIME),
+        true => table.number("refresh"),
         false => Some(0.0),
     };
-    let insides = [("isothermal", false), ("singh-kaviany", true)];
-    let inside = match table.has("inside") {
-        true => table.choice("inside", &insides),
-        false => Some(false),
-    };
+    let inside: Option<InsideName> = table.choice("inside");
     let surroundings = surroundings(&table, law);
     let own: &[&str] = match law {
-        Some(1) => &["rays", "range", "refresh", "surroundings", "inside"],
-        Some(2) => &["range", "refresh", "surroundings", "inside"],
+        Some(RadiationName::ViewFactors) => &["rays", "range", "refresh", "surroundings", "inside"],
+        Some(RadiationName::Distance) => &["range", "refresh", "surroundings", "inside"],
         _ => &[],
     };
     for key in ["rays", "range", "refresh", "surroundings", "inside"] {
@@ -138,40 +70,36 @@ pub(super) fn radiation(section: &TableReader<'_>) -> Option<Option<RadiationSpe
             table.fail(key, "does not go with this law of radiation", "remove it");
         }
     }
-    if range.is_some_and(|range| range < 1.0) {
-        let help = "neighbours that touch are 1 apart; write 3, or more where it is to be exact";
-        table.fail("range", "is below 1 diameter", help);
-    }
     table.finish();
     let rays = usize::try_from(rays?).ok()?;
     let range = range?;
     let view_factors = match law? {
-        1 => ViewFactors::Rays { rays, range },
-        2 => ViewFactors::Distance { range },
-        _ => return Some(None),
+        RadiationName::ViewFactors => ViewFactors::Rays { rays, range },
+        RadiationName::Distance => ViewFactors::Distance { range },
+        RadiationName::None => return Some(None),
     };
     Some(Some(RadiationSpec {
         view_factors,
-        inside: inside?,
+        inside: inside? == InsideName::SinghKaviany,
         surroundings: surroundings?,
         refresh: refresh?,
     }))
 }
 
 /// `surroundings`: a temperature, or "closed".
-fn surroundings(table: &TableReader<'_>, law: Option<i32>) -> Option<Option<Schedule>> {
+fn surroundings(table: &TableReader<'_>, law: Option<RadiationName>) -> Option<Option<Schedule>> {
     if !table.has("surroundings") {
-        if matches!(law, Some(1 | 2)) {
-            table.missing("surroundings", "\"300 K\", or \"closed\"");
+        if law.is_some_and(|law| law != RadiationName::None) {
+            table.missing("surroundings");
         }
         return Some(None);
     }
-    let closed = table.raw("surroundings").and_then(|item| item.as_str()) == Some("closed");
-    if closed {
+    let word = table.raw("surroundings").and_then(|item| item.as_str());
+    if word == Some("closed") {
         return Some(None);
     }
-    let schedule = table.temperatures("surroundings")?;
-    if law == Some(2) {
+    let schedule = table.schedule("surroundings")?;
+    if law == Some(RadiationName::Distance) {
         table.fail(
             "surroundings",
             "does not go with law = \"distance\", which does not see where the bed ends",
@@ -193,8 +121,8 @@ pub(super) fn need_properties(
         return;
     };
     let conducts = laws.conducts();
-    let pressed = !matches!(laws.conduction.area, ConductionArea::Overlap)
-        && laws.conduction.law != ConductionLaw::None;
+    let pressed =
+        !matches!(laws.conduction.area, ConductionArea::Overlap) && !laws.conduction.law.is_none();
     for (k, material) in materials.iter().enumerate() {
         let in_bed = particles.iter().any(|population| population.material == k);
         let at_wall = walls

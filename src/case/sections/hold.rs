@@ -60,9 +60,9 @@ fn periodic(
     time: Option<&TimeSpec>,
 ) -> Option<Result<Holds, HoldError>> {
     let table = section.table(KEY)?;
-    let from = table.quantity("from", Dimension::TIME).unwrap_or(0.0);
-    let length = ticks(&table, "for", true);
-    let every = ticks(&table, "every", true);
+    let from = table.number("from")?;
+    let length = ticks(&table, "for");
+    let every = ticks(&table, "every");
     table.finish();
     let begin = Ticks::from_seconds(from).ok();
     let begin = begin.filter(|&begin| begin >= Ticks::ZERO);

@@ -10,7 +10,6 @@ use super::existing;
 use super::zone::{openings, refinements};
 use crate::case::model::MeshSpec;
 use crate::case::table::TableReader;
-use crate::case::units::Dimension;
 
 /// Patch names of x−, x+, y−, y+, z−, z+ where the case names none.
 const PATCHES: [&str; 6] = ["side", "side", "side", "side", "bottom", "top"];
@@ -18,24 +17,12 @@ const PATCHES: [&str; 6] = ["side", "side", "side", "side", "bottom", "top"];
 const MOST_CELLS: f64 = 2e9;
 
 pub(super) fn read(root: &TableReader<'_>, folder: &Path) -> Option<MeshSpec> {
-    let section = root.required_table(
-        "mesh",
-        "[mesh] with box = { size = \"10 10 110 mm\", cells = [1, 1, 11] }",
-    )?;
-    let kinds = ["box", "cylinder", "polymesh"];
-    let given: Vec<&str> = kinds.into_iter().filter(|kind| section.has(kind)).collect();
-    let made = match given[..] {
-        ["box"] => cuboid(&section),
-        ["cylinder"] => cylinder(&section),
-        ["polymesh"] => polymesh(&section, folder),
-        _ => {
-            root.fail(
-                "mesh",
-                "needs exactly one of `box`, `cylinder` and `polymesh`",
-                "for example box = { size = \"10 10 110 mm\", cells = [1, 1, 11] }",
-            );
-            None
-        }
+    let section = root.table("mesh")?;
+    let made = match section.exactly_one() {
+        Some("box") => cuboid(&section),
+        Some("cylinder") => cylinder(&section),
+        Some(_) => polymesh(&section, folder),
+        None => None,
     };
     section.finish();
     made
@@ -43,11 +30,9 @@ pub(super) fn read(root: &TableReader<'_>, folder: &Path) -> Option<MeshSpec> {
 
 fn cylinder(section: &TableReader<'_>) -> Option<MeshSpec> {
     let cylinder = section.table("cylinder")?;
-    let origin = cylinder
-        .vector("origin", Dimension::LENGTH)
-        .unwrap_or([0.0; 3]);
-    let diameter = cylinder.required_positive("diameter", Dimension::LENGTH);
-    let length = cylinder.required_positive("length", Dimension::LENGTH);
+    let origin = cylinder.vector("origin").unwrap_or([0.0; 3]);
+    let diameter = cylinder.number("diameter");
+    let length = cylinder.number("length");
     let cells = cylinder.wholes::<2>("cells");
     let grading = gradings(&cylinder, ["z"], cells.map(|cells| [cells[1]]));
     let refine = refinements(&cylinder);
@@ -87,10 +72,8 @@ fn polymesh(section: &TableReader<'_>, folder: &Path) -> Option<MeshSpec> {
 
 fn cuboid(section: &TableReader<'_>) -> Option<MeshSpec> {
     let cuboid = section.table("box")?;
-    let origin = cuboid
-        .vector("origin", Dimension::LENGTH)
-        .unwrap_or([0.0; 3]);
-    let size = cuboid.required_vector("size", Dimension::LENGTH);
+    let origin = cuboid.vector("origin").unwrap_or([0.0; 3]);
+    let size = cuboid.vector("size");
     let cells = cuboid.wholes::<3>("cells");
     let grading = gradings(&cuboid, ["x", "y", "z"], cells);
     let refine = refinements(&cuboid);

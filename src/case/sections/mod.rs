@@ -43,19 +43,14 @@ pub(super) fn case(
     effective: &str,
     hash: String,
 ) -> Option<Case> {
-    if !root.has("format") {
-        root.missing("format", "1");
-    } else if root
-        .whole("format", 0..=i64::MAX)
-        .is_some_and(|format| format != FORMAT)
-    {
+    if root.whole("format").is_some_and(|format| format != FORMAT) {
         root.fail(
             "format",
             "is not 1, the only one there is",
             "write format = 1",
         );
     }
-    let title = root.required_text("title", "\"Hot air heats glass spheres\"");
+    let title = root.text("title");
     let folder = path.parent().unwrap_or(Path::new("."));
     let time = time::read(root);
     let mesh = mesh::read(root, folder);

@@ -1,93 +1,34 @@
 //! `[motion]`: how particles that are free move, and what their contacts need to be told.
 
-use calcine_coupler::motion::{Cohesion, ContactForce, ContactLaw, Rolling, Wall};
+use calcine_coupler::motion::{Cohesion, ContactLaw, Rolling, Wall};
 
 use super::hold;
 use crate::case::model::{
     ContactSpec, FreeMotion, MaterialSpec, MotionKind, MotionSpec, Population, TimeSpec,
 };
 use crate::case::table::TableReader;
-use crate::case::units::Dimension;
-
-const EXAMPLE: &str =
-    "[motion] with kind = \"real-time\" and contact = { law = \"hertz-mindlin\" }";
-
-/// The laws that `contact.law` chooses from.
-#[derive(Clone, Copy)]
-enum Law {
-    Hertz,
-    SpringSliderDashpot,
-    Linear,
-}
 
 pub(super) fn motion(root: &TableReader<'_>, time: Option<&TimeSpec>) -> Option<FreeMotion> {
     let section = root.table("motion")?;
-    let kinds = [
-        ("real-time", MotionKind::RealTime),
-        ("accelerated", MotionKind::Accelerated),
-    ];
-    let kind = section.required_choice("kind", &kinds);
-    let step = section.positive("motion_step", Dimension::TIME);
-    let force = force(&section);
-    let attractive = section.truth("attractive_damping").unwrap_or(true);
-    let rollings = [
-        ("none", Rolling::None),
-        ("constant-torque", Rolling::ConstantTorque),
-        ("elastic-plastic", Rolling::ElasticPlastic),
-    ];
-    let rolling = law(&section, "rolling", &rollings);
-    let cohesions = [("none", Cohesion::None), ("sjkr", Cohesion::Sjkr)];
-    let cohesion = law(&section, "cohesion", &cohesions);
+    let known = section.laws();
+    let kind = section.choice("kind");
+    let step = section.number("motion_step");
+    let force = section.plain_law("contact", &known.contact);
+    let attractive = section.truth("attractive_damping");
+    let rolling = section.plain_law("rolling", &known.rolling);
+    let cohesion = section.plain_law("cohesion", &known.cohesion);
     let held = hold::holds(&section, time);
     section.finish();
     Some(FreeMotion {
         kind: kind?,
         step,
         law: ContactLaw {
-            force: force?,
-            attractive_damping: attractive,
-            rolling: rolling?,
-            cohesion: cohesion?,
+            force: *force?.make(),
+            attractive_damping: attractive?,
+            rolling: *rolling?.make(),
+            cohesion: *cohesion?.make(),
         },
         held,
-    })
-}
-
-fn law<T: Copy>(section: &TableReader<'_>, key: &str, choices: &[(&str, T)]) -> Option<T> {
-    let table = section.required_table(key, &format!("{key} = {{ law = \"none\" }}"))?;
-    let law = table.required_choice("law", choices);
-    table.finish();
-    law
-}
-
-fn force(section: &TableReader<'_>) -> Option<ContactForce> {
-    let table = section.required_table("contact", "contact = { law = \"hertz-mindlin\" }")?;
-    let laws = [
-        ("hertz-mindlin", Law::Hertz),
-        ("spring-slider-dashpot", Law::SpringSliderDashpot),
-        ("linear", Law::Linear),
-    ];
-    let law = table.required_choice("law", &laws);
-    let speed = table.positive("characteristic_speed", Dimension::VELOCITY);
-    let linear = matches!(law, Some(Law::Linear));
-    if linear && !table.has("characteristic_speed") {
-        table.missing("characteristic_speed", "\"1 m/s\"");
-    }
-    if law.is_some() && !linear && table.has("characteristic_speed") {
-        let help = "remove it: only the linear law derives its stiffness from a speed";
-        table.fail(
-            "characteristic_speed",
-            "belongs to the law \"linear\"",
-            help,
-        );
-    }
-    table.finish();
-    Some(match law? {
-        Law::Hertz => ContactForce::HertzMindlin,
-        Law::SpringSliderDashpot => ContactForce::SpringSliderDashpot,
-        Law::Linear => ContactForce::Linear {
-            characteristic_speed: speed?,
-        },
     })
 }
 
@@ -108,9 +49,7 @@ pub(super) fn fits(
         let help = "write `motion_window`, and `acceleration` where the motion is slow";
         clock.fail("process_step", rule, help);
     }
-    if !root.has("motion") {
-        root.missing("motion", EXAMPLE);
-    }
+    root.need("motion");
     let (Some(motion), Some(section)) = (motion, root.table("motion")) else {
         return;
     };

@@ -14,11 +14,9 @@ use super::reactions::{composition, mixed};
 use super::sizes::sizes;
 use crate::case::model::{ContactSpec, MaterialSpec, MeshSpec, MotionSpec, Population};
 use crate::case::table::TableReader;
-use crate::case::units::Dimension;
 
 pub(super) fn materials(root: &TableReader<'_>, solids: &[SolidSpecies]) -> Vec<MaterialSpec> {
-    let example = "[materials.glass] with density = \"2500 kg/m^3\"";
-    let Some(section) = root.required_table("materials", example) else {
+    let Some(section) = root.table("materials") else {
         return Vec::new();
     };
     section
@@ -30,7 +28,6 @@ pub(super) fn materials(root: &TableReader<'_>, solids: &[SolidSpecies]) -> Vec<
 
 fn material(name: String, table: &TableReader<'_>, solids: &[SolidSpecies]) -> MaterialSpec {
     // A value that could not be read is recorded as an error; its stand-in is never used.
-    let positive = |key, dimension| table.required_positive(key, dimension).unwrap_or(f64::NAN);
     let composed = table.table("composition");
     let composition = composed.and_then(|table| composition(&table, solids));
     let heat_capacity = match &composition {
@@ -45,83 +42,44 @@ fn material(name: String, table: &TableReader<'_>, solids: &[SolidSpecies]) -> M
     };
     let made = MaterialSpec {
         name,
-        density: positive("density", Dimension::DENSITY),
+        density: table.number("density").unwrap_or(f64::NAN),
         heat_capacity,
         size: conversion::read(table, solids),
         composition,
         conductivity: conductivity(table),
-        emissivity: table.quantity("emissivity", Dimension::NONE),
-        young: table.positive("young", Dimension::PRESSURE),
-        real_young: table.positive("real_young", Dimension::PRESSURE),
-        poisson: table.quantity("poisson", Dimension::NONE),
+        emissivity: table.number("emissivity"),
+        young: table.number("young"),
+        real_young: table.number("real_young"),
+        poisson: table.number("poisson"),
     };
-    if made
-        .poisson
-        .is_some_and(|poisson| !(-1.0..=0.5).contains(&poisson))
-    {
-        table.fail(
-            "poisson",
-            "is out of range",
-            "Poisson's ratio lies between -1 and 0.5",
-        );
-    }
-    if made.emissivity.is_some_and(|e| !(e > 0.0 && e <= 1.0)) {
-        table.fail(
-            "emissivity",
-            "is out of range",
-            "it lies above 0 and up to 1",
-        );
-    }
     table.finish();
     made
 }
 
 /// A number, or points over temperature.
 fn conductivity(table: &TableReader<'_>) -> Option<Conductivity> {
-    if !table.has("conductivity") {
-        return None;
-    }
-    let points = table.curve(
-        "conductivity",
-        Dimension::TEMPERATURE,
-        Dimension::CONDUCTIVITY,
-    )?;
-    if let Some((_, value)) = points.iter().find(|point| point.1 <= 0.0) {
-        let rule = format!("is {value} W/m/K");
-        table.fail("conductivity", rule, "it is above zero at all temperatures");
-    }
-    Some(Conductivity::table(points))
+    table.curve("conductivity").map(Conductivity::table)
 }
 
 /// A number, points over temperature, or a table with NASA's polynomials.
 fn heat_capacity(table: &TableReader<'_>) -> HeatCapacity {
-    let polynomials = table
-        .raw("heat_capacity")
-        .is_some_and(|item| item.as_table_like().is_some());
-    let points = if polynomials {
-        let inner = table.table("heat_capacity");
-        inner.and_then(|inner| {
+    let points = if table.is_table("heat_capacity") {
+        table.table("heat_capacity").and_then(|inner| {
             let made = polynomial(&inner);
             inner.finish();
             made
         })
     } else {
-        table.curve(
-            "heat_capacity",
-            Dimension::TEMPERATURE,
-            Dimension::HEAT_CAPACITY,
-        )
+        table.need("heat_capacity");
+        table.curve("heat_capacity")
     };
     let Some(points) = points else {
         return HeatCapacity::constant(f64::NAN);
     };
-    if let Some((_, value)) = points.iter().find(|point| point.1 <= 0.0) {
-        let rule = format!("is {value} J/kg/K");
-        table.fail(
-            "heat_capacity",
-            rule,
-            "it is above zero at all temperatures",
-        );
+    if let Some((kelvin, value)) = points.iter().find(|point| point.1 <= 0.0) {
+        let rule = format!("is {value} J/kg/K at {kelvin} K");
+        let help = "it is above zero at all temperatures";
+        table.fail("heat_capacity", rule, help);
     }
     HeatCapacity::table(points)
 }
@@ -133,8 +91,8 @@ const HOTTEST: f64 = 20_000.0;
 /// its exact integral.
 fn polynomial(table: &TableReader<'_>) -> Option<Vec<(f64, f64)>> {
     const STEP: f64 = 2.0;
-    let molar_mass = table.required_positive("molar_mass", Dimension::MOLAR_MASS);
-    let ends = table.required_vector("ranges", Dimension::TEMPERATURE);
+    let molar_mass = table.number("molar_mass");
+    let ends = table.vector("ranges");
     let low = coefficients(table, "low");
     let high = coefficients(table, "high");
     let (molar_mass, ends) = (molar_mass?, ends?);
@@ -163,12 +121,7 @@ fn polynomial(table: &TableReader<'_>) -> Option<Vec<(f64, f64)>> {
 }
 
 fn coefficients(table: &TableReader<'_>, key: &str) -> Option<[f64; 7]> {
-    let example = "[2.5, 0, 0, 0, 0, 0, 0]";
-    let Some(item) = table.raw(key) else {
-        table.missing(key, example);
-        return None;
-    };
-    let numbers = item.as_array().map(|array| {
+    let numbers = table.raw(key)?.as_array().map(|array| {
         let number = |value: &toml_edit::Value| {
             let whole = value.as_integer().map(|number| number as f64);
             value.as_float().or(whole)
@@ -179,7 +132,7 @@ fn coefficients(table: &TableReader<'_>, key: &str) -> Option<[f64; 7]> {
         .flatten()
         .and_then(|numbers| <[f64; 7]>::try_from(numbers).ok());
     if seven.is_none() {
-        let help = format!("write a1 to a7 of NASA's polynomials, for example {example}");
+        let help = "write a1 to a7 of NASA's polynomials, for example [2.5, 0, 0, 0, 0, 0, 0]";
         table.fail(key, "is not a list of seven numbers", help);
     }
     seven
@@ -190,29 +143,12 @@ pub(super) fn contacts(root: &TableReader<'_>, materials: &[MaterialSpec]) -> Ve
         .iter()
         .filter_map(|table| {
             let between = table.texts("between");
-            if between.is_none() && !table.has("between") {
-                table.missing("between", "[\"glass\", \"glass\"]");
-            }
-            let restitution = table.quantity("restitution", Dimension::NONE);
-            if restitution.is_some_and(|e| !(e > 0.0 && e <= 1.0)) {
-                table.fail(
-                    "restitution",
-                    "is out of range",
-                    "it lies above 0 and up to 1",
-                );
-            }
-            let zero_or_above = |key, dimension| {
-                let value = table.quantity(key, dimension);
-                if value.is_some_and(|value| value < 0.0) {
-                    table.fail(key, "is negative", "it is zero or above");
-                }
-                value
-            };
-            let friction = zero_or_above("friction", Dimension::NONE);
-            let rolling_friction = zero_or_above("rolling_friction", Dimension::NONE);
-            let rolling_damping = zero_or_above("rolling_damping", Dimension::NONE);
-            // J/m³ is Pa.
-            let cohesion_energy = zero_or_above("cohesion_energy", Dimension::PRESSURE);
+            let number = |key| table.number(key);
+            let restitution = number("restitution");
+            let friction = number("friction");
+            let rolling_friction = number("rolling_friction");
+            let rolling_damping = number("rolling_damping");
+            let cohesion_energy = number("cohesion_energy");
             table.finish();
             let index = |name: &String| materials.iter().position(|other| other.name == *name);
             let pair: Option<Vec<usize>> = between?.iter().map(index).collect();
@@ -243,9 +179,6 @@ pub(super) fn populations(
     folder: &Path,
 ) -> Option<Vec<Population>> {
     let tables = root.tables("particles");
-    if tables.is_empty() && root.raw("particles").is_none() {
-        root.missing("particles", "a list: [[particles]] with name = \"beads\"");
-    }
     let all: Vec<Option<Population>> = tables
         .iter()
         .map(|table| population(table, materials, mesh, folder))
@@ -272,43 +205,36 @@ fn population(
     mesh: Option<&MeshSpec>,
     folder: &Path,
 ) -> Option<Population> {
-    let name = table.required_text("name", "\"beads\"");
-    let material = table
-        .required_text("material", "\"glass\"")
-        .and_then(|name| {
-            let found = materials.iter().position(|material| material.name == name);
-            if found.is_none() {
-                let known: Vec<&str> = materials
-                    .iter()
-                    .map(|material| material.name.as_str())
-                    .collect();
-                table.fail(
-                    "material",
-                    format!("is \"{name}\""),
-                    format!("the materials are {}", known.join(", ")),
-                );
-            }
-            found
-        });
+    let name = table.text("name");
+    let material = table.text("material").and_then(|name| {
+        let found = materials.iter().position(|material| material.name == name);
+        if found.is_none() {
+            let known: Vec<&str> = materials
+                .iter()
+                .map(|material| material.name.as_str())
+                .collect();
+            table.fail(
+                "material",
+                format!("is \"{name}\""),
+                format!("the materials are {}", known.join(", ")),
+            );
+        }
+        found
+    });
     let sizes = sizes(table);
-    let motion = table.required_choice(
-        "motion",
-        &[("frozen", MotionSpec::Frozen), ("free", MotionSpec::Free)],
-    );
-    let velocity = table.vector("velocity", Dimension::VELOCITY);
+    let motion = table.choice("motion");
+    let velocity = table.vector("velocity");
     if velocity.is_some() && motion == Some(MotionSpec::Frozen) {
         let help = "remove it, or write motion = \"free\"";
         table.fail("velocity", "does not go with motion = \"frozen\"", help);
     }
-    let temperature = table.required_positive("temperature", Dimension::TEMPERATURE);
-    let placed = table
-        .required_table("place", "place = { grid = { first = \"5 5 5 mm\", spacing = \"10 10 10 mm\", counts = [1, 1, 10] } }")
-        .and_then(|reader| {
-            let sizes = sizes.as_ref().map(|(sizes, _)| sizes);
-            let made = place(&reader, sizes, mesh, folder);
-            reader.finish();
-            made
-        });
+    let temperature = table.number("temperature");
+    let placed = table.table("place").and_then(|reader| {
+        let sizes = sizes.as_ref().map(|(sizes, _)| sizes);
+        let made = place(&reader, sizes, mesh, folder);
+        reader.finish();
+        made
+    });
     table.finish();
     let (sizes, size_seed) = sizes?;
     Some(Population {

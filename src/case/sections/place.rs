@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use calcine_coupler::packing::Sizes;
-use calcine_coupler::packing::regular::Lattice;
 use calcine_coupler::physics::Vec3;
 
 use super::existing;
 use crate::case::model::{MeshSpec, PlacementSpec};
 use crate::case::overlap::PRESSED;
 use crate::case::table::TableReader;
-use crate::case::units::{Dimension, shown};
+use crate::case::units::shown;
+use crate::case::words::PackingName;
 
 /// Most particles of a grid.
 const MOST_PARTICLES: f64 = 1e9;
@@ -23,23 +23,17 @@ pub(super) fn place(
     mesh: Option<&MeshSpec>,
     folder: &Path,
 ) -> Option<PlacementSpec> {
-    let kinds = ["grid", "file", "packing"];
-    let given: Vec<&str> = kinds.into_iter().filter(|kind| place.has(kind)).collect();
-    match given[..] {
-        ["grid"] => grid(&place.table("grid")?, sizes, mesh),
-        ["file"] => file(place, folder),
-        ["packing"] => packing(place, sizes, mesh),
-        _ => {
-            place.fail_whole("needs exactly one of grid, file and packing", "for example grid = { first = \"5 5 5 mm\", spacing = \"10 10 10 mm\", counts = [1, 1, 10] }");
-            None
-        }
+    match place.exactly_one()? {
+        "grid" => grid(&place.table("grid")?, sizes, mesh),
+        "file" => file(place, folder),
+        _ => packing(place, sizes, mesh),
     }
 }
 
 fn file(place: &TableReader<'_>, folder: &Path) -> Option<PlacementSpec> {
     let path = existing(place, "file", folder);
-    let timestep = place.whole("timestep", 0..=i64::MAX);
-    let kind = place.whole("type", 0..=i64::MAX);
+    let timestep = place.whole("timestep");
+    let kind = place.whole("type");
     Some(PlacementSpec::File {
         path: path?,
         timestep,
@@ -53,15 +47,9 @@ fn packing(
     sizes: Option<&Sizes>,
     mesh: Option<&MeshSpec>,
 ) -> Option<PlacementSpec> {
-    let kinds = [
-        ("random", None),
-        ("simple-cubic", Some(Lattice::SimpleCubic)),
-        ("hexagonal", Some(Lattice::HexagonalClose)),
-        ("face-centred", Some(Lattice::FaceCentred)),
-    ];
-    let lattice = place.required_choice("packing", &kinds);
+    let lattice = place.choice("packing");
     let layer = layer(place, sizes, mesh);
-    let lattice = lattice?;
+    let PackingName(lattice) = lattice?;
     let Some(lattice) = lattice else {
         return random(place, layer);
     };
@@ -81,23 +69,11 @@ fn packing(
 }
 
 fn random(place: &TableReader<'_>, layer: Option<[f64; 2]>) -> Option<PlacementSpec> {
-    if !place.has("solid_fraction") {
-        place.missing("solid_fraction", "0.58");
-    }
-    let solid_fraction = place.quantity("solid_fraction", Dimension::NONE);
-    if !place.has("seed") {
-        place.missing("seed", "1");
-    }
-    let seed = place.whole("seed", 0..=i64::MAX);
+    place.need("solid_fraction");
+    let solid_fraction = place.number("solid_fraction");
+    place.need("seed");
+    let seed = place.whole("seed");
     let (layer, solid_fraction, seed) = (layer?, solid_fraction?, seed?);
-    if !(solid_fraction > 0.0 && solid_fraction < 0.74) {
-        place.fail(
-            "solid_fraction",
-            format!("is {solid_fraction}"),
-            "it lies between 0 and 0.74, the densest stacking",
-        );
-        return None;
-    }
     Some(PlacementSpec::Random {
         layer,
         solid_fraction,
@@ -112,15 +88,15 @@ fn layer(
     mesh: Option<&MeshSpec>,
 ) -> Option<[f64; 2]> {
     let given = [place.has("height"), place.has("region")];
-    let height = place.positive("height", Dimension::LENGTH);
+    let height = place.number("height");
     let region = if given[1] {
         place.table("region")
     } else {
         None
     };
     let ends = region.map(|region| {
-        let from = region.required_quantity("from", Dimension::LENGTH);
-        let to = region.required_quantity("to", Dimension::LENGTH);
+        let from = region.number("from");
+        let to = region.number("to");
         region.finish();
         from.zip(to)
     });
@@ -182,8 +158,8 @@ fn grid(
     sizes: Option<&Sizes>,
     mesh: Option<&MeshSpec>,
 ) -> Option<PlacementSpec> {
-    let first = grid.required_vector("first", Dimension::LENGTH);
-    let spacing = grid.required_vector("spacing", Dimension::LENGTH);
+    let first = grid.vector("first");
+    let spacing = grid.vector("spacing");
     let counts = grid.wholes::<3>("counts");
     grid.finish();
     let (first, spacing, counts) = (Vec3::from(first?), Vec3::from(spacing?), counts?);

@@ -6,14 +6,12 @@ use crate::case::model::Probe;
 use crate::case::table::TableReader;
 use crate::case::units::{Dimension, UnitError, quantities};
 
-const LINE: &str = "line = { from = \"0 0 0 mm\", to = \"0 0 300 mm\", points = 100 }";
-
 pub(super) fn probes(root: &TableReader<'_>) -> Vec<Probe> {
     let mut names = Vec::new();
     root.tables("probes")
         .iter()
         .filter_map(|table| {
-            let name = table.required_text("name", "\"axis\"");
+            let name = table.text("name");
             if let Some(name) = name {
                 if names.contains(&name) {
                     let rule = format!("is \"{name}\" a second time");
@@ -26,12 +24,11 @@ pub(super) fn probes(root: &TableReader<'_>) -> Vec<Probe> {
                 names.push(name);
             }
             let points = places(table);
-            let of = table.texts("of").unwrap_or_else(|| vec!["gas".into()]);
+            let of = table.choices("of").unwrap_or_default();
             table.finish();
-            let known = |phase: &String| ["gas", "particles"].contains(&phase.as_str());
-            if of.is_empty() || !of.iter().all(known) {
-                let rule = format!("is {of:?}");
-                table.fail("of", rule, "it holds \"gas\", \"particles\" or both");
+            if of.is_empty() {
+                let help = "it holds \"gas\", \"particles\" or both";
+                table.fail("of", "is empty", help);
             }
             let holds = |phase: &str| of.iter().any(|name| name == phase);
             Some(Probe {
@@ -45,30 +42,20 @@ pub(super) fn probes(root: &TableReader<'_>) -> Vec<Probe> {
 }
 
 fn places(table: &TableReader<'_>) -> Option<Vec<Vec3>> {
-    let kinds = ["line", "point", "points"];
-    let given: Vec<&str> = kinds.into_iter().filter(|kind| table.has(kind)).collect();
-    match given[..] {
-        ["line"] => line(&table.table("line")?),
-        ["point"] => {
-            let point = table.vector("point", Dimension::LENGTH)?;
+    match table.exactly_one()? {
+        "line" => line(&table.table("line")?),
+        "point" => {
+            let point = table.vector("point")?;
             Some(vec![Vec3::from(point)])
         }
-        ["points"] => points(table),
-        _ => {
-            let rule = "needs exactly one of line, point and points";
-            table.fail_whole(rule, &format!("for example {LINE}"));
-            None
-        }
+        _ => points(table),
     }
 }
 
 fn line(line: &TableReader<'_>) -> Option<Vec<Vec3>> {
-    let from = line.required_vector("from", Dimension::LENGTH);
-    let to = line.required_vector("to", Dimension::LENGTH);
-    if !line.has("points") {
-        line.missing("points", "100");
-    }
-    let points = line.whole("points", 2..=1_000_000);
+    let from = line.vector("from");
+    let to = line.vector("to");
+    let points = line.whole("points");
     line.finish();
     let (from, to) = (Vec3::from(from?), Vec3::from(to?));
     let last = points? - 1;

@@ -14,6 +14,7 @@ use calcine_coupler::physics::solids::SolidSpecies;
 
 use crate::case::table::TableReader;
 use crate::case::units::{Dimension, difference};
+use crate::case::words::{DifferenceField, GasField, ParticleField};
 
 pub(super) fn quantities(root: &TableReader<'_>, known: &Known<'_>) -> Vec<Quantity> {
     let mut made: Vec<Quantity> = Vec::new();
@@ -34,9 +35,8 @@ pub(super) fn quantities(root: &TableReader<'_>, known: &Known<'_>) -> Vec<Quant
 }
 
 fn quantity(table: &TableReader<'_>, known: &Known<'_>) -> Option<Quantity> {
-    let name = table.required_text("name", "\"pressure_drop\"");
-    let example = "measure = { difference = \"pressure\", patches = [\"bottom\", \"top\"] }";
-    let measure = table.required_table("measure", example).and_then(|reader| {
+    let name = table.text("name");
+    let measure = table.table("measure").and_then(|reader| {
         let measure = measure(&reader, known);
         let of = reader.text("of");
         let column = measure
@@ -47,12 +47,12 @@ fn quantity(table: &TableReader<'_>, known: &Known<'_>) -> Option<Quantity> {
     });
     // Keys are read even where the measure could not be, so that they are not called unknown.
     let (agree, expected) = (table.has("agree"), table.table("expect"));
-    let from = table.quantity("agree_from", Dimension::TIME);
+    let from = table.number("agree_from");
     if !agree && table.has("agree_from") {
         let help = "add agree = \"1 %\", or remove it";
         table.fail("agree_from", "stands without `agree`", help);
     }
-    let over = table.positive("agree_over", Dimension::TIME);
+    let over = table.number("agree_over");
     if over.is_some() && !agree {
         let help = "add agree = \"5 %\", or remove it";
         table.fail("agree_over", "stands without `agree`", help);
@@ -79,11 +79,8 @@ fn quantity(table: &TableReader<'_>, known: &Known<'_>) -> Option<Quantity> {
         None
     };
     let expect = expected.and_then(|reader| {
-        let at = reader.quantity("at", Dimension::TIME);
-        let value = reader.required_quantity("value", dimension);
-        if !reader.has("within") {
-            reader.missing("within", "\"5 %\"");
-        }
+        let at = reader.number("at");
+        let value = reader.number_as("value", dimension);
         let within = band(&reader, "within", dimension);
         reader.finish();
         Some(Expect {
@@ -157,7 +154,7 @@ fn column(
         return None;
     }
     let Some(name) = of else {
-        reader.missing("of", "\"CO2\"");
+        reader.missing("of");
         return None;
     };
     let solids: Vec<&str> = known.solids.iter().map(SolidSpecies::name).collect();
@@ -177,57 +174,22 @@ fn column(
     found
 }
 
-/// Fields whose difference between patches can be asked for.
-const DIFFERENCES: [(&str, &str); 2] = [("pressure", "pressure"), ("temperature", "temperature")];
-/// Fields of the gas.
-const GAS: [(&str, &str); 6] = [
-    ("temperature", "temperature"),
-    ("pressure", "pressure"),
-    ("density", "density"),
-    ("speed", "speed"),
-    ("void_fraction", "void_fraction"),
-    ("mass_fraction", "mass_fraction"),
-];
-/// Fields of particles.
-const PARTICLES: [(&str, &str); 6] = [
-    ("temperature", "temperature"),
-    ("speed", "speed"),
-    ("height", "height"),
-    ("mass", "mass"),
-    ("diameter", "diameter"),
-    ("mass_fraction", "mass_fraction"),
-];
-
 /// The measure and the field that it is of.
 fn measure(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
-    let kinds = [
-        "difference",
-        "gas",
-        "particles",
-        "particle",
-        "wall_heat",
-        "surface_angle",
-    ];
-    let given: Vec<&str> = kinds.into_iter().filter(|kind| reader.has(kind)).collect();
-    match given[..] {
-        ["difference"] => difference_of(reader, known),
-        ["gas"] => gas(reader, known),
-        ["particles"] => particles(reader, known),
-        ["particle"] => particle(reader, known),
-        ["wall_heat"] => wall_heat(reader, known),
-        ["surface_angle"] => surface_angle(reader, known),
-        _ => {
-            reader.fail_whole(
-                "needs exactly one of difference, gas, particles, particle, wall_heat and surface_angle",
-                "for example { particles = \"temperature\", statistic = \"mean\" }",
-            );
-            None
-        }
+    match reader.exactly_one()? {
+        "difference" => difference_of(reader, known),
+        "gas" => gas(reader, known),
+        "particles" => particles(reader, known),
+        "particle" => particle(reader, known),
+        "wall_heat" => wall_heat(reader, known),
+        _ => surface_angle(reader, known),
     }
 }
 
 fn difference_of(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
-    let field = reader.choice("difference", &DIFFERENCES);
+    let field = reader
+        .choice("difference")
+        .map(|DifferenceField(field)| field);
     let names = reader
         .texts("patches")
         .and_then(|names| <[String; 2]>::try_from(names).ok());
@@ -253,7 +215,7 @@ fn difference_of(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure
 }
 
 fn gas(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
-    let field = reader.choice("gas", &GAS);
+    let field = reader.choice("gas").map(|GasField(field)| field);
     let patch = reader.text("patch");
     let probe = reader.text("probe");
     let statistic = statistic(reader, probe.is_some());
@@ -281,7 +243,7 @@ fn gas(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static
 }
 
 fn particles(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
-    let field = reader.choice("particles", &PARTICLES);
+    let field = reader.choice("particles").map(|ParticleField(field)| field);
     let population = reader.text("population");
     let probe = reader.text("probe");
     let statistic = statistic(reader, probe.is_some());
@@ -316,11 +278,9 @@ fn particles(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'
 }
 
 fn particle(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
-    let field = reader.choice("particle", &PARTICLES);
-    if !reader.has("number") {
-        reader.missing("number", "1");
-    }
-    let number = usize::try_from(reader.whole("number", 1..=i64::MAX)?).ok()?;
+    let field = reader.choice("particle").map(|ParticleField(field)| field);
+    reader.need("number");
+    let number = usize::try_from(reader.whole("number")?).ok()?;
     if let Some(count) = known.populations.and_then(count)
         && number > count
     {
@@ -358,7 +318,7 @@ fn wall_heat(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'
 
 fn surface_angle(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure, &'static str)> {
     let table = reader.table("surface_angle")?;
-    let point = table.required_vector("point", Dimension::LENGTH);
+    let point = table.vector("point");
     let axis = direction(&table, "axis");
     table.finish();
     let (point, axis) = (Vec3::from(point?), axis?);
@@ -377,15 +337,11 @@ fn surface_angle(reader: &TableReader<'_>, known: &Known<'_>) -> Option<(Measure
 
 /// The statistic; on a probe the mean, where none is named: it may be a single point.
 fn statistic(reader: &TableReader<'_>, probe: bool) -> Option<Statistic> {
-    let statistics = [
-        ("mean", Statistic::Mean),
-        ("min", Statistic::Min),
-        ("max", Statistic::Max),
-    ];
     if probe && !reader.has("statistic") {
         return Some(Statistic::Mean);
     }
-    reader.required_choice("statistic", &statistics)
+    reader.need("statistic");
+    reader.choice("statistic")
 }
 
 fn check_patch(reader: &TableReader<'_>, key: &str, name: &str, mesh: Option<&MeshSpec>) {

@@ -10,9 +10,10 @@ use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{GasPatch, GasSetup};
 
-use crate::case::model::{HeatLaw, Laws, ReactionSpec};
+use crate::case::model::{Laws, ReactionSpec};
 use crate::case::table::TableReader;
 use crate::case::units::Dimension;
+use crate::case::words::RateLawName;
 
 /// How far fractions may be from summing to 1, as of gases.
 const SLACK: f64 = 1e-3;
@@ -21,15 +22,10 @@ const HEAT: f64 = 0.02;
 
 /// Mass fractions of the solids that `{ mass = { … } }` or `{ mole = { … } }` states.
 pub(super) fn composition(table: &TableReader<'_>, solids: &[SolidSpecies]) -> Option<Vec<f64>> {
-    let mut given = ["mole", "mass"].into_iter().filter(|key| table.has(key));
-    let (Some(kind), None) = (given.next(), given.next()) else {
-        let help = "for example { mass = { Fe2O3 = 0.95, Al2O3 = 0.05 } }";
-        table.fail_whole("needs exactly one of mole and mass", help);
-        return None;
-    };
-    let inner = table.table(kind)?;
+    let kind = table.exactly_one()?;
+    let (inner, numbers) = table.by_name(kind)?;
     let mut fractions = vec![0.0; solids.len()];
-    for (name, value) in inner.numbers()? {
+    for (name, value) in numbers? {
         let Some(k) = solids.iter().position(|one| one.name() == name) else {
             let help = format!("the solids are {}; others go into [solids]", names(solids));
             inner.fail(&name, "is no solid of the case", help);
@@ -117,13 +113,13 @@ pub(super) fn reactions(
 }
 
 fn reaction(table: &TableReader<'_>, known: &Known<'_>) -> Option<Reaction> {
-    let name = table.required_text("name", "\"reduction\"");
-    let text = table.required_text("equation", "\"CaCO3 <=> CaO + CO2\"");
-    let core = table.required_choice("law", &[("shrinking-core", true), ("power-law", false)]);
+    let name = table.text("name");
+    let text = table.text("equation");
+    let law = table.choice("law");
     let equation = text.and_then(|text| equation(table, text, known));
-    let rate = match core {
-        Some(true) => core_rate(table),
-        Some(false) => power_rate(table, known, equation.as_ref()),
+    let rate = match law {
+        Some(RateLawName::ShrinkingCore) => core_rate(table),
+        Some(RateLawName::PowerLaw) => power_rate(table, known, equation.as_ref()),
         None => None,
     };
     // Known, even where the equation could not be read.
@@ -131,7 +127,7 @@ fn reaction(table: &TableReader<'_>, known: &Known<'_>) -> Option<Reaction> {
     let equilibrium = equation
         .as_ref()
         .and_then(|(equation, parts)| equilibrium(table, equation, parts, known));
-    let heat = table.quantity("heat", Dimension::MOLAR_ENERGY);
+    let heat = table.number("heat");
     table.finish();
     let (equation, parts) = equation?;
     let made = Reaction {
@@ -232,37 +228,33 @@ fn balanced(table: &TableReader<'_>, parts: &Parts, known: &Known<'_>) -> Option
 }
 
 /// Factor, exponent and activation energy of a rate constant.
-pub(super) fn arrhenius(table: &TableReader<'_>, unit: Option<Dimension>) -> Option<Arrhenius> {
-    let factor = table.required_positive("factor", unit.unwrap_or(Dimension::NONE));
-    let exponent = table.quantity("exponent", Dimension::NONE).unwrap_or(0.0);
-    let energy = table
-        .quantity("activation_energy", Dimension::MOLAR_ENERGY)
-        .unwrap_or(0.0);
+pub(super) fn arrhenius(table: &TableReader<'_>, unit: Dimension) -> Option<Arrhenius> {
+    let factor = table.number_as("factor", unit);
+    let exponent = table.number("exponent");
+    let energy = table.number("activation_energy");
     Some(Arrhenius {
         factor: factor?,
-        exponent,
-        activation_energy: energy,
+        exponent: exponent?,
+        activation_energy: energy?,
     })
 }
 
 fn core_rate(table: &TableReader<'_>) -> Option<Rate> {
-    let example = "rate = { factor = \"0.3 m/s\", activation_energy = \"70 kJ/mol\" }";
-    let rate = table.required_table("rate", example);
+    let rate = table.table("rate");
     let constant = rate.and_then(|rate| {
-        let made = arrhenius(&rate, Some(Dimension::VELOCITY));
+        let made = arrhenius(&rate, Dimension::VELOCITY);
         rate.finish();
         made
     });
-    let example =
-        "layer_diffusivity = { value = \"1e-5 m^2/s\", at = \"1100 K\", exponent = 1.75 }";
-    let layer = table.required_table("layer_diffusivity", example);
+    table.need("layer_diffusivity");
+    let layer = table.table("layer_diffusivity");
     let diffusivity = layer.and_then(|layer| {
-        let value = layer.required_positive("value", Dimension::DIFFUSIVITY);
-        let exponent = layer.quantity("exponent", Dimension::NONE).unwrap_or(0.0);
-        if exponent != 0.0 && !layer.has("at") {
-            layer.missing("at", "\"1100 K\"");
+        let value = layer.number("value");
+        let exponent = layer.number("exponent")?;
+        if exponent != 0.0 {
+            layer.need("at");
         }
-        let at = layer.positive("at", Dimension::TEMPERATURE).unwrap_or(1.0);
+        let at = layer.number("at").unwrap_or(1.0);
         layer.finish();
         Some(LayerDiffusivity {
             value: value?,
@@ -281,20 +273,17 @@ fn power_rate(
     known: &Known<'_>,
     equation: Option<&(Equation, Parts)>,
 ) -> Option<Rate> {
-    let example =
-        "rate = { factor = 3e4, activation_energy = \"60 kJ/mol\", orders = { Fe = 1, O2 = 1 } }";
-    let rate = table.required_table("rate", example)?;
-    let constant = arrhenius(&rate, None);
+    let rate = table.table("rate")?;
+    let constant = arrhenius(&rate, Dimension::NONE);
     let in_series = rate.table("in_series").map(|slow| {
-        let made = arrhenius(&slow, None);
+        let made = arrhenius(&slow, Dimension::NONE);
         slow.finish();
         made
     });
-    let orders = rate.required_table("orders", "orders = { Fe = 1, O2 = 1 }");
-    let orders = orders.and_then(|orders| {
-        let given = orders.numbers()?;
+    rate.need("orders");
+    let orders = rate.by_name("orders").and_then(|(orders, given)| {
         let mut made: [Vec<(usize, f64)>; 2] = Default::default();
-        for (name, order) in given {
+        for (name, order) in given? {
             let solid = known.solids.iter().position(|one| one.name() == name);
             let gas = known
                 .gas
@@ -391,8 +380,8 @@ fn equilibrium(
         return Some(Equilibrium::OneWay);
     }
     if let Some(line) = given {
-        let constant = line.required_quantity("constant", Dimension::NONE);
-        let over = line.required_quantity("over_temperature", Dimension::TEMPERATURE);
+        let constant = line.number("constant");
+        let over = line.number("over_temperature");
         line.finish();
         return Some(Equilibrium::Line {
             constant: constant?,
@@ -446,7 +435,7 @@ pub(super) fn fits(
     if !chemistry.exchanges() {
         return;
     }
-    if laws.mass_transfer == HeatLaw::None {
+    if laws.mass_transfer.is_none() {
         let help = "add mass_transfer = { law = \"gunn\" } to [laws]";
         root.fail(
             "laws",

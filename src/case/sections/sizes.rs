@@ -11,24 +11,15 @@ const EXAMPLE: &str = "for example { normal = { mean = \"4 mm\", deviation = \"0
 
 /// Diameters, and the seed by which they are drawn.
 pub(super) fn sizes(population: &TableReader<'_>) -> Option<(Sizes, u64)> {
-    let table = population
-        .raw("diameter")
-        .is_some_and(|item| item.as_table_like().is_some());
-    if !table {
-        let one = population.required_positive("diameter", Dimension::LENGTH)?;
+    if !population.is_table("diameter") {
+        let one = population.number("diameter")?;
         return Some((Sizes::Equal(one), 0));
     }
     let table = population.table("diameter")?;
-    let kinds = ["normal", "log_normal", "uniform", "table"];
-    let given: Vec<&str> = kinds.into_iter().filter(|kind| table.has(kind)).collect();
-    let shares = [("number", Share::Number), ("mass", Share::Mass)];
-    let share = table.required_choice("share", &shares);
-    if !table.has("seed") {
-        table.missing("seed", "1");
-    }
-    let seed = table.whole("seed", 0..=i64::MAX);
-    let made = match given[..] {
-        ["table"] => parts(&table)
+    let share = table.choice("share");
+    let seed = table.whole("seed");
+    let made = match table.exactly_one() {
+        Some("table") => parts(&table)
             .map(|parts| (parts, share))
             .and_then(|(parts, share)| {
                 Some(Sizes::Mixture {
@@ -36,12 +27,8 @@ pub(super) fn sizes(population: &TableReader<'_>) -> Option<(Sizes, u64)> {
                     share: share?,
                 })
             }),
-        [kind] => range(&table, kind, share),
-        _ => {
-            let rule = "needs exactly one of normal, log_normal, uniform and table";
-            table.fail_whole(rule, EXAMPLE);
-            None
-        }
+        Some(kind) => range(&table, kind, share),
+        None => None,
     };
     table.finish();
     let sizes = made?;
@@ -56,25 +43,22 @@ fn range(table: &TableReader<'_>, kind: &str, share: Option<Share>) -> Option<Si
     let range = table.table(kind)?;
     let shape = match kind {
         "normal" => {
-            let mean = range.required_positive("mean", Dimension::LENGTH);
-            let deviation = range.required_positive("deviation", Dimension::LENGTH);
+            let mean = range.number("mean");
+            let deviation = range.number("deviation");
             mean.zip(deviation)
                 .map(|(mean, deviation)| Shape::Normal { mean, deviation })
         }
         "log_normal" => {
-            let median = range.required_positive("median", Dimension::LENGTH);
-            if !range.has("deviation") {
-                range.missing("deviation", "1.3");
-            }
-            let deviation = range.quantity("deviation", Dimension::NONE);
+            let median = range.number("median");
+            let deviation = range.number("deviation");
             median
                 .zip(deviation)
                 .map(|(median, deviation)| Shape::LogNormal { median, deviation })
         }
         _ => Some(Shape::Uniform),
     };
-    let min = range.required_positive("min", Dimension::LENGTH);
-    let max = range.required_positive("max", Dimension::LENGTH);
+    let min = range.number("min");
+    let max = range.number("max");
     range.finish();
     Some(Sizes::Range {
         shape: shape?,

@@ -4,7 +4,6 @@ use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::physics::solids::SolidSpecies;
 
 use crate::case::table::TableReader;
-use crate::case::units::Dimension;
 
 /// All solids that a case may name: its own, and the built-in ones that it does not redefine.
 pub(super) fn solids(root: &TableReader<'_>) -> Vec<SolidSpecies> {
@@ -24,21 +23,12 @@ pub(super) fn solids(root: &TableReader<'_>) -> Vec<SolidSpecies> {
 }
 
 fn solid(name: &str, table: &TableReader<'_>) -> Option<SolidSpecies> {
-    let formula = table.required_text("formula", "\"SiO2\"");
-    let enthalpy = table.required_quantity("formation_enthalpy", Dimension::MOLAR_ENERGY);
-    let entropy = table.required_positive("entropy", Dimension::MOLAR_ENTROPY);
-    let points = table.curve(
-        "heat_capacity",
-        Dimension::TEMPERATURE,
-        Dimension::HEAT_CAPACITY,
-    );
+    let formula = table.text("formula");
+    let enthalpy = table.number("formation_enthalpy");
+    let entropy = table.number("entropy");
+    let points = table.curve("heat_capacity");
     table.finish();
     let points = points?;
-    if let Some((_, value)) = points.iter().find(|point| point.1 <= 0.0) {
-        let help = "it is above zero at all temperatures";
-        table.fail("heat_capacity", format!("is {value} J/kg/K"), help);
-        return None;
-    }
     let law = match points[..] {
         [(_, value)] => HeatCapacity::constant(value),
         _ => HeatCapacity::table(points),

@@ -6,7 +6,6 @@ use calcine_coupler::physics::thermo::{LennardJones, Mixture, Species, fuller};
 
 use super::existing;
 use crate::case::table::TableReader;
-use crate::case::units::Dimension;
 use crate::mechanism::{self, Thermo};
 
 /// What the case says of the transport of a species; the rest is by its file.
@@ -61,9 +60,6 @@ pub(super) fn mixture(
 }
 
 fn data<'a>(table: TableReader<'a>, names: &[String], folder: &Path) -> Option<Data<'a>> {
-    if !table.has("thermo") {
-        table.missing("thermo", "\"therm.dat\"");
-    }
     let path = existing(&table, "thermo", folder);
     let mut stated = Vec::new();
     if let Some(transport) = table.table("transport") {
@@ -74,9 +70,9 @@ fn data<'a>(table: TableReader<'a>, names: &[String], folder: &Path) -> Option<D
             }
             stated.push(ParsedReaction {
                 name,
-                diameter: own.positive("diameter", Dimension::LENGTH),
-                well_depth: own.positive("well_depth", Dimension::TEMPERATURE),
-                diffusion_volume: own.positive("diffusion_volume", Dimension::NONE),
+                diameter: own.number("diameter"),
+                well_depth: own.number("well_depth"),
+                diffusion_volume: own.number("diffusion_volume"),
             });
             own.finish();
         }

@@ -4,23 +4,21 @@ use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
 
 use crate::case::model::TimeSpec;
 use crate::case::table::TableReader;
-use crate::case::units::Dimension;
 
 pub(super) fn read(root: &TableReader<'_>) -> Option<(TimeSpec, GasStorage)> {
-    let section = root.required_table("time", "[time] with end = \"10 min\"")?;
-    let end = ticks(&section, "end", true);
-    let process_step = ticks(&section, "process_step", false);
+    let section = root.table("time")?;
+    let end = ticks(&section, "end");
+    let process_step = ticks(&section, "process_step");
     let stepped = section.has("process_step");
-    let motion_window = ticks(&section, "motion_window", !stepped);
+    if !stepped {
+        section.need("motion_window");
+    }
+    let motion_window = ticks(&section, "motion_window");
     let acceleration = acceleration(&section);
-    let storages = [
-        ("process", GasStorage::Process),
-        ("accelerated", GasStorage::Accelerated),
-    ];
-    let storage = section.choice("gas_storage", &storages).unwrap_or_default();
+    let storage = section.choice("gas_storage").unwrap_or_default();
     let (mut every, mut wall) = (None, None);
     if let Some(checkpoint) = section.table("checkpoint") {
-        every = ticks(&checkpoint, "every", false);
+        every = ticks(&checkpoint, "every");
         wall = checkpoint.wall_time("wall");
         checkpoint.finish();
     }
@@ -70,12 +68,8 @@ fn exclusive(section: &TableReader<'_>, storage: GasStorage) {
 }
 
 /// A time of the case's clock; errors where it is below the tick or too long.
-pub(super) fn ticks(section: &TableReader<'_>, key: &str, required: bool) -> Option<Ticks> {
-    let seconds = if required {
-        section.required_positive(key, Dimension::TIME)?
-    } else {
-        section.positive(key, Dimension::TIME)?
-    };
+pub(super) fn ticks(section: &TableReader<'_>, key: &str) -> Option<Ticks> {
+    let seconds = section.number(key)?;
     match Ticks::from_seconds(seconds) {
         Ok(ticks) if ticks > Ticks::ZERO => Some(ticks),
         Ok(_) => {
@@ -96,13 +90,7 @@ pub(super) fn ticks(section: &TableReader<'_>, key: &str, required: bool) -> Opt
 /// A number, or a list of [process time, number].
 fn acceleration(section: &TableReader<'_>) -> Option<Acceleration> {
     let key = "acceleration";
-    let Some(item) = section.raw(key) else {
-        return Acceleration::constant(1.0).ok();
-    };
-    let steps = match item.as_array() {
-        None => vec![(0.0, section.quantity(key, Dimension::NONE)?)],
-        Some(_) => section.schedule(key, Dimension::NONE)?.0,
-    };
+    let steps = section.schedule(key)?.0;
     let steps = steps
         .into_iter()
         .map(|(time, factor)| Ok((Ticks::from_seconds(time)?, factor)))

@@ -4,45 +4,34 @@ use calcine_coupler::setup::{InletTurbulence, Turbulence};
 
 use crate::case::model::Output;
 use crate::case::table::TableReader;
-use crate::case::units::Dimension;
-
-/// Turbulent Prandtl number of shear flows near walls: Kays 1994, doi 10.1115/1.2911398.
-const PRANDTL: f64 = 0.85;
-/// Turbulent Schmidt number of jets and shear layers: 0.7 to 0.9, Tominaga and Stathopoulos 2007, doi
-/// 10.1016/j.atmosenv.2007.06.054.
-const SCHMIDT: f64 = 0.7;
-/// Eddies of gas that flows in, as an example.
-const EXAMPLE: &str = "{ intensity = 0.05, length_scale = \"5 mm\" }";
+use crate::case::words::TurbulenceModel;
 
 /// Laminar where the table is not there; `None` where it is wrong.
 pub(super) fn turbulence(section: &TableReader<'_>) -> Option<Turbulence> {
     let Some(table) = section.table("turbulence") else {
         return (!section.has("turbulence")).then_some(Turbulence::Laminar);
     };
-    let laminar = table.required_choice("model", &[("laminar", true), ("k-epsilon", false)]);
+    let model: Option<TurbulenceModel> = table.choice("model");
     let initial = table.table("initial");
-    let prandtl = table.positive("prandtl", Dimension::NONE);
-    let schmidt = table.positive("schmidt", Dimension::NONE);
+    let prandtl = table.number("prandtl");
+    let schmidt = table.number("schmidt");
     let start = initial.and_then(|initial| {
-        let energy = initial.required_positive("energy", Dimension::ENERGY_OF_MASS);
-        let length_scale = initial.required_positive("length_scale", Dimension::LENGTH);
+        let energy = initial.number("energy");
+        let length_scale = initial.number("length_scale");
         initial.finish();
         Some((energy?, length_scale?))
     });
     table.finish();
-    if laminar? {
+    if model? == TurbulenceModel::Laminar {
         return Some(Turbulence::Laminar);
     }
-    if !table.has("initial") {
-        let example = "{ energy = \"0.01 m^2/s^2\", length_scale = \"5 mm\" }";
-        table.missing("initial", example);
-    }
+    table.need("initial");
     let (energy, length_scale) = start?;
     Some(Turbulence::KEpsilon {
         energy,
         length_scale,
-        prandtl: prandtl.unwrap_or(PRANDTL),
-        schmidt: schmidt.unwrap_or(SCHMIDT),
+        prandtl: prandtl?,
+        schmidt: schmidt?,
     })
 }
 
@@ -54,12 +43,12 @@ pub(super) fn of_inlet(
 ) -> Option<Option<InletTurbulence>> {
     let Some(given) = table.table("turbulence") else {
         if turbulent == Some(true) && !table.has("turbulence") {
-            table.missing("turbulence", EXAMPLE);
+            table.missing("turbulence");
         }
         return (turbulent != Some(true) && !table.has("turbulence")).then_some(None);
     };
-    let intensity = given.required_positive("intensity", Dimension::NONE);
-    let length_scale = given.required_positive("length_scale", Dimension::LENGTH);
+    let intensity = given.number("intensity");
+    let length_scale = given.number("length_scale");
     given.finish();
     if turbulent == Some(false) {
         let help = "write `model = \"k-epsilon\"` in [gas.turbulence], or remove it";

@@ -11,9 +11,6 @@ use crate::case::model::{MaterialSpec, MeshSpec};
 use crate::case::place::inner_diameter;
 use crate::case::stl;
 use crate::case::table::TableReader;
-use crate::case::units::Dimension;
-
-const SHAPES: [&str; 5] = ["plane", "cylinder", "cone", "stl", "patches"];
 
 pub(super) fn walls(
     root: &TableReader<'_>,
@@ -23,24 +20,19 @@ pub(super) fn walls(
 ) -> Vec<(Wall, Option<Schedule>)> {
     let mut all: Vec<(Wall, Option<Schedule>)> = Vec::new();
     for table in root.tables("walls") {
-        let name = table.required_text("name", "\"container\"");
-        let material = table
-            .required_text("material", "\"steel\"")
-            .and_then(|name| {
-                let found = materials.iter().position(|one| one.name == name);
-                if found.is_none() {
-                    let known: Vec<&str> = materials.iter().map(|one| one.name.as_str()).collect();
-                    let help = format!("the materials are {}", known.join(", "));
-                    table.fail("material", format!("is \"{name}\""), help);
-                }
-                found
-            });
+        let name = table.text("name");
+        let material = table.text("material").and_then(|name| {
+            let found = materials.iter().position(|one| one.name == name);
+            if found.is_none() {
+                let known: Vec<&str> = materials.iter().map(|one| one.name.as_str()).collect();
+                let help = format!("the materials are {}", known.join(", "));
+                table.fail("material", format!("is \"{name}\""), help);
+            }
+            found
+        });
         let shapes = shapes(&table, mesh, folder);
         let motion = motion(&table);
-        let temperature = match table.has("temperature") {
-            true => table.temperatures("temperature"),
-            false => None,
-        };
+        let temperature = table.schedule("temperature");
         table.finish();
         let (Some(name), Some(material), Some(shapes)) = (name, material, shapes) else {
             continue;
@@ -76,18 +68,18 @@ fn shapes(
     mesh: Option<&MeshSpec>,
     folder: &Path,
 ) -> Option<Vec<(&'static str, WallShape)>> {
-    let given: Vec<&str> = SHAPES.into_iter().filter(|kind| table.has(kind)).collect();
-    let scale = table.positive("scale", Dimension::NONE);
-    if scale.is_some() && given != ["stl"] {
+    let scale = table.number("scale");
+    let kind = table.exactly_one()?;
+    if table.has("scale") && kind != "stl" {
         table.fail("scale", "goes with `stl` only", "remove it");
     }
-    match given[..] {
-        ["plane"] => plane(&table.table("plane")?).map(|shape| vec![("", shape)]),
-        ["cylinder"] => cylinder(&table.table("cylinder")?).map(|shape| vec![("", shape)]),
-        ["cone"] => cone(&table.table("cone")?).map(|shape| vec![("", shape)]),
-        ["stl"] => {
+    match kind {
+        "plane" => plane(&table.table("plane")?).map(|shape| vec![("", shape)]),
+        "cylinder" => cylinder(&table.table("cylinder")?).map(|shape| vec![("", shape)]),
+        "cone" => cone(&table.table("cone")?).map(|shape| vec![("", shape)]),
+        "stl" => {
             let path = existing(table, "stl", folder)?;
-            match stl::read(&path, scale.unwrap_or(1.0)) {
+            match stl::read(&path, scale?) {
                 Ok(triangles) => Some(vec![("", WallShape::Mesh { triangles })]),
                 Err(error) => {
                     table.fail(
@@ -99,25 +91,13 @@ fn shapes(
                 }
             }
         }
-        ["patches"] => of_mesh(table, mesh),
-        _ => {
-            let help = "for example patches = [\"side\", \"bottom\"], or plane = { point = \"0 0 0 m\", \
-                        normal = \"0 0 1\" }";
-            table.fail_whole(
-                "needs exactly one of plane, cylinder, cone, stl and patches",
-                help,
-            );
-            None
-        }
+        _ => of_mesh(table, mesh),
     }
 }
 
 /// A direction, made one long.
 pub(super) fn direction(table: &TableReader<'_>, key: &str) -> Option<Vec3> {
-    if !table.has(key) {
-        table.missing(key, "\"0 0 1\"");
-    }
-    let vector = Vec3::from(table.vector(key, Dimension::NONE)?);
+    let vector = Vec3::from(table.vector(key)?);
     if vector.norm() == 0.0 {
         table.fail(key, "has no length", "write a direction such as \"0 0 1\"");
         return None;
@@ -126,7 +106,7 @@ pub(super) fn direction(table: &TableReader<'_>, key: &str) -> Option<Vec3> {
 }
 
 fn plane(table: &TableReader<'_>) -> Option<WallShape> {
-    let point = table.required_vector("point", Dimension::LENGTH);
+    let point = table.vector("point");
     let normal = direction(table, "normal");
     table.finish();
     Some(WallShape::Plane {
@@ -136,9 +116,9 @@ fn plane(table: &TableReader<'_>) -> Option<WallShape> {
 }
 
 fn cylinder(table: &TableReader<'_>) -> Option<WallShape> {
-    let point = table.required_vector("point", Dimension::LENGTH);
+    let point = table.vector("point");
     let axis = direction(table, "axis");
-    let radius = table.required_positive("radius", Dimension::LENGTH);
+    let radius = table.number("radius");
     table.finish();
     Some(WallShape::Cylinder {
         point: point?.into(),
@@ -148,10 +128,10 @@ fn cylinder(table: &TableReader<'_>) -> Option<WallShape> {
 }
 
 fn cone(table: &TableReader<'_>) -> Option<WallShape> {
-    let from = table.required_vector("from", Dimension::LENGTH);
-    let to = table.required_vector("to", Dimension::LENGTH);
-    let low = table.required_quantity("from_radius", Dimension::LENGTH);
-    let high = table.required_quantity("to_radius", Dimension::LENGTH);
+    let from = table.vector("from");
+    let to = table.vector("to");
+    let low = table.number("from_radius");
+    let high = table.number("to_radius");
     table.finish();
     let ends: [Vec3; 2] = [from?.into(), to?.into()];
     let radii = [low?, high?];
@@ -244,12 +224,10 @@ fn parts(mesh: &MeshSpec) -> Vec<(String, &'static str, WallShape)> {
 }
 
 fn motion(table: &TableReader<'_>) -> WallMotion {
-    let translating = table
-        .vector("velocity", Dimension::VELOCITY)
-        .map(Vec3::from);
+    let translating = table.vector("velocity").map(Vec3::from);
     let rotating = table.table("rotating").and_then(|rotating| {
-        let point = rotating.required_vector("point", Dimension::LENGTH);
-        let speed = rotating.required_vector("angular_velocity", Dimension::ANGULAR_VELOCITY);
+        let point = rotating.vector("point");
+        let speed = rotating.vector("angular_velocity");
         rotating.finish();
         Some(WallMotion::Rotating {
             point: point?.into(),

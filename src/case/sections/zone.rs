@@ -1,32 +1,21 @@
 //! Parts of space: zones of a mesh that are refined, or excluded from the smoother.
 
 use calcine_coupler::mesh::openings::Opening;
-use calcine_coupler::mesh::refine::{MOST_LEVELS, Refinement};
+use calcine_coupler::mesh::refine::Refinement;
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::physics::Vec3;
 
 use crate::case::table::TableReader;
-use crate::case::units::{Dimension, shown};
-
-const EXAMPLE: &str = "for example box = { from = \"0 0 0 mm\", to = \"10 10 50 mm\" }";
+use crate::case::units::shown;
 
 /// A zone from the keys of its own table: `box` or `cylinder`.
 pub(super) fn zone(table: &TableReader<'_>) -> Option<Zone> {
-    let kinds = ["box", "cylinder"];
-    let given: Vec<&str> = kinds.into_iter().filter(|kind| table.has(kind)).collect();
-    let [kind] = given[..] else {
-        table.fail_whole("needs exactly one of box and cylinder", EXAMPLE);
-        return None;
-    };
+    let kind = table.exactly_one()?;
     let shape = table.table(kind)?;
-    let from = shape.required_vector("from", Dimension::LENGTH);
-    let to = shape.required_vector("to", Dimension::LENGTH);
+    let from = shape.vector("from");
+    let to = shape.vector("to");
     let round = kind == "cylinder";
-    let radius = if round {
-        shape.required_positive("radius", Dimension::LENGTH)
-    } else {
-        None
-    };
+    let radius = if round { shape.number("radius") } else { None };
     shape.finish();
     let (from, to) = (Vec3::from(from?), Vec3::from(to?));
     if round {
@@ -66,17 +55,12 @@ pub(super) fn zones(above: &TableReader<'_>, key: &str) -> Vec<Zone> {
 pub(super) fn refinements(mesh: &TableReader<'_>) -> Vec<Refinement> {
     let tables = mesh.tables("refine");
     let one = |table: &TableReader<'_>| {
-        let levels = if table.has("levels") {
-            table.whole("levels", 1..=i64::from(MOST_LEVELS))
-        } else {
-            Some(1)
-        };
+        let levels = table.small_whole("levels");
         let zone = zone(table);
         table.finish();
-        let levels = u32::try_from(levels?).ok()?;
         Some(Refinement {
             zone: zone?,
-            levels,
+            levels: levels?,
         })
     };
     tables.iter().filter_map(one).collect()
@@ -86,7 +70,7 @@ pub(super) fn refinements(mesh: &TableReader<'_>) -> Vec<Refinement> {
 pub(super) fn openings(mesh: &TableReader<'_>, sides: &[String]) -> Vec<Opening> {
     let tables = mesh.tables("openings");
     let one = |table: &TableReader<'_>| {
-        let name = table.required_text("name", "\"burners\"");
+        let name = table.text("name");
         let zone = zone(table);
         table.finish();
         let name = name?.to_owned();

@@ -1,84 +1,92 @@
 //! Tables below a table: one by its key, lists of them, those named by the user.
 
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::ops::Range;
+use std::sync::LazyLock;
 
 use toml_edit::{Item, TableLike, Value};
 
-use super::{TableReader, dotted};
+use super::{Key, KeyValue, TableReader, dotted};
 use crate::case::units::Dimension;
+
+/// What stands for a table that a case leaves out.
+static EMPTY: LazyLock<toml_edit::Table> = LazyLock::new(toml_edit::Table::new);
 
 impl<'a> TableReader<'a> {
     /// A list or single value as it stands, for forms of its own.
     pub fn raw(&self, key: &str) -> Option<&'a Item> {
-        self.item(key)
+        self.item_of(&self.declared(key)?)
+    }
+
+    /// True where the value of a key, which may be something else too, is a table.
+    pub fn is_table(&self, key: &str) -> bool {
+        self.has(key)
+            && self
+                .table
+                .get(key)
+                .is_some_and(|item| item.as_table_like().is_some())
     }
 
     /// A table below a key.
     pub fn table(&self, key: &str) -> Option<TableReader<'a>> {
-        let item = self.item(key)?;
+        let (declared, ()) = self.declared_as(key, |value| match value {
+            KeyValue::Table(_) | KeyValue::Named(_) | KeyValue::ByName(_) | KeyValue::Law(..) => {
+                Some(())
+            }
+            _ => None,
+        })?;
+        let item = self.item_of(&declared)?;
         let Some(table) = item.as_table_like() else {
             self.wrong_type(key, "a table", item);
             return None;
         };
-        Some(self.below(self.place_of(key), key, table, item.span()))
+        Some(self.below(self.place_of(key), key, &declared, table, item.span()))
     }
 
-    /// A table that must be there.
-    pub fn required_table(&self, key: &str, example: &str) -> Option<TableReader<'a>> {
-        if !self.has(key) {
-            let message = format!("`{}` is missing", self.place_of(key));
-            self.problems.add(
-                self.span.clone(),
-                message,
-                format!("add it, for example {example}"),
-            );
+    /// A table below a key, or one without keys: then its defaults hold.
+    pub fn table_or_empty(&self, key: &str) -> Option<TableReader<'a>> {
+        if self.has(key) {
+            return self.table(key);
         }
-        self.table(key)
+        let declared = self.declared(key)?;
+        let span = Some(self.span.clone());
+        Some(self.below(self.place_of(key), key, &declared, &*EMPTY, span))
     }
 
     /// All tables of a list such as `[[particles]]`.
     pub fn tables(&self, key: &str) -> Vec<TableReader<'a>> {
-        let Some(item) = self.item(key) else {
+        let declared = self.declared_as(key, |value| {
+            matches!(value, KeyValue::Tables(_)).then_some(())
+        });
+        let Some((declared, ())) = declared else {
             return Vec::new();
+        };
+        let Some(item) = self.item_of(&declared) else {
+            return Vec::new();
+        };
+        let reader = |index: usize, table: &'a dyn TableLike, span| {
+            let place = format!("{}[{index}]", self.place_of(key));
+            self.below(place, key, &declared, table, span)
         };
         if let Some(list) = item.as_array_of_tables() {
             let tables = list.iter().enumerate();
             return tables
-                .map(|(i, table)| {
-                    self.below(
-                        format!("{}[{i}]", self.place_of(key)),
-                        key,
-                        table,
-                        table.span(),
-                    )
-                })
+                .map(|(index, table)| reader(index, table, table.span()))
                 .collect();
         }
         let inline = item.as_array().map(|array| {
-            array
-                .iter()
-                .map(Value::as_inline_table)
-                .collect::<Option<Vec<_>>>()
+            let tables = array.iter().map(Value::as_inline_table);
+            tables.collect::<Option<Vec<_>>>()
         });
         if let Some(Some(list)) = inline {
             let tables = list.into_iter().enumerate();
             return tables
-                .map(|(i, table)| {
-                    self.below(
-                        format!("{}[{i}]", self.place_of(key)),
-                        key,
-                        table,
-                        table.span(),
-                    )
-                })
+                .map(|(index, table)| reader(index, table, table.span()))
                 .collect();
         }
-        self.wrong_type(
-            key,
-            &format!("a list of tables: [[{}]]", self.place_of(key)),
-            item,
-        );
+        let needs = format!("a list of tables: [[{}]]", self.place_of(key));
+        self.wrong_type(key, &needs, item);
         Vec::new()
     }
 
@@ -86,12 +94,21 @@ impl<'a> TableReader<'a> {
     pub fn named(&self) -> Vec<(String, TableReader<'a>)> {
         let mut found = Vec::new();
         for (name, item) in self.table.iter() {
-            self.known.borrow_mut().push(name.into());
+            self.asked.borrow_mut().push(name.into());
             match item.as_table_like() {
-                Some(table) => found.push((
-                    name.to_owned(),
-                    self.below(self.place_of(name), "NAME", table, item.span()),
-                )),
+                Some(table) => {
+                    let span = item.span().unwrap_or_else(|| self.span.clone());
+                    let reader = TableReader {
+                        keys: self.keys.clone(),
+                        ..self.reader(
+                            self.place_of(name),
+                            dotted(&self.pattern, "NAME"),
+                            table,
+                            span,
+                        )
+                    };
+                    found.push((name.to_owned(), reader));
+                }
                 None => self.wrong_type(name, "a table", item),
             }
         }
@@ -99,21 +116,26 @@ impl<'a> TableReader<'a> {
     }
 
     /// A table at a time of 0 s, or a list of [time, table] with increasing times in s.
-    pub fn dated_tables(&self, key: &str, example: &str) -> Option<Vec<(f64, TableReader<'a>)>> {
-        let item = self.item(key)?;
+    pub fn dated_tables(&self, key: &str) -> Option<Vec<(f64, TableReader<'a>)>> {
+        let (declared, ()) = self.declared_as(key, |value| {
+            matches!(value, KeyValue::Dated(_)).then_some(())
+        })?;
+        let item = self.item_of(&declared)?;
         let Some(array) = item.as_array() else {
-            return Some(vec![(0.0, self.table(key)?)]);
+            let Some(table) = item.as_table_like() else {
+                self.wrong_type(key, "a table", item);
+                return None;
+            };
+            let reader = self.below(self.place_of(key), key, &declared, table, item.span());
+            return Some(vec![(0.0, reader)]);
         };
         let mut found: Vec<(f64, TableReader<'a>)> = Vec::new();
         for (i, entry) in array.iter().enumerate() {
             let pair = entry.as_array().filter(|pair| pair.len() == 2);
             let pair = pair.and_then(|pair| Some((pair.get(0)?, pair.get(1)?.as_inline_table()?)));
             let Some((time, table)) = pair else {
-                self.fail(
-                    key,
-                    "needs a table, or pairs of time and table",
-                    format!("for example [[\"0 s\", {example}], [\"10 s\", {example}]]"),
-                );
+                let help = format!("for example {}", declared.example);
+                self.fail(key, "needs a table, or pairs of time and table", help);
                 return None;
             };
             let time = self.value(key, time, Dimension::TIME)?;
@@ -126,7 +148,7 @@ impl<'a> TableReader<'a> {
                 return None;
             }
             let place = format!("{}[{i}]", self.place_of(key));
-            found.push((time, self.below(place, key, table, table.span())));
+            found.push((time, self.below(place, key, &declared, table, table.span())));
         }
         if found.is_empty() {
             let help = "write at least one pair of time and table";
@@ -136,33 +158,37 @@ impl<'a> TableReader<'a> {
         Some(found)
     }
 
-    /// All numbers of a table whose keys are names of the user's.
-    pub fn numbers(&self) -> Option<Vec<(String, f64)>> {
+    /// All numbers of a table whose keys are names of the user's, with the table; quantities where it is declared so.
+    pub fn by_name(&self, key: &str) -> Option<(TableReader<'a>, Option<Vec<(String, f64)>>)> {
+        let (_, dimension) = self.declared_as(key, |value| match value {
+            KeyValue::ByName(dimension) => Some(dimension),
+            _ => None,
+        })?;
+        let table = self.table(key)?;
+        let numbers = table.all(dimension);
+        Some((table, numbers))
+    }
+
+    fn all(&self, dimension: Dimension) -> Option<Vec<(String, f64)>> {
         let mut found = Vec::new();
         for (name, item) in self.table.iter() {
-            self.known.borrow_mut().push(name.into());
+            self.asked.borrow_mut().push(name.into());
             let number = item
                 .as_float()
                 .or_else(|| item.as_integer().map(|n| n as f64));
-            let Some(number) = number else {
-                self.wrong_type(name, "a number", item);
-                return None;
+            let value = match (dimension, number, item.as_value()) {
+                (Dimension::NONE, Some(number), _) => number,
+                (Dimension::NONE, None, _) => {
+                    self.wrong_type(name, "a number", item);
+                    return None;
+                }
+                (_, _, Some(value)) => self.value(name, value, dimension)?,
+                (_, _, None) => {
+                    self.wrong_type(name, "a quantity", item);
+                    return None;
+                }
             };
-            found.push((name.to_owned(), number));
-        }
-        Some(found)
-    }
-
-    /// All quantities of a table whose keys are names of the user's.
-    pub fn quantities(&self, dimension: Dimension) -> Option<Vec<(String, f64)>> {
-        let mut found = Vec::new();
-        for (name, item) in self.table.iter() {
-            self.known.borrow_mut().push(name.into());
-            let Some(value) = item.as_value() else {
-                self.wrong_type(name, "a quantity", item);
-                return None;
-            };
-            found.push((name.to_owned(), self.value(name, value, dimension)?));
+            found.push((name.to_owned(), value));
         }
         Some(found)
     }
@@ -171,17 +197,33 @@ impl<'a> TableReader<'a> {
         &self,
         place: String,
         key: &str,
+        declared: &Key,
         table: &'a dyn TableLike,
         span: Option<Range<usize>>,
     ) -> TableReader<'a> {
         let span = span.unwrap_or_else(|| self.span.clone());
         TableReader {
+            keys: Cow::Owned(declared.below(self.laws)),
+            ..self.reader(place, dotted(&self.pattern, key), table, span)
+        }
+    }
+
+    fn reader(
+        &self,
+        place: String,
+        pattern: String,
+        table: &'a dyn TableLike,
+        span: Range<usize>,
+    ) -> TableReader<'a> {
+        TableReader {
             problems: self.problems,
+            laws: self.laws,
             table,
+            keys: Cow::Borrowed(&[]),
             place,
-            pattern: dotted(&self.pattern, key),
+            pattern,
             span,
-            known: RefCell::default(),
+            asked: RefCell::default(),
         }
     }
 }

@@ -1,63 +1,64 @@
 //! Quantities with units: single ones, vectors, schedules.
 
+use calcine_coupler::physics::law::Bound;
 use calcine_coupler::setup::Schedule;
 use toml_edit::Value;
 
-use super::TableReader;
-use crate::case::units::{Dimension, UnitError, quantities};
+use super::{Key, KeyPresence, KeyValue, TableReader};
+use crate::case::keys::parse_number;
+use crate::case::units::{Dimension, UnitError, quantities, shown};
 
 impl TableReader<'_> {
-    /// A quantity with its unit, in SI.
-    pub fn quantity(&self, key: &str, dimension: Dimension) -> Option<f64> {
-        let item = self.item(key)?;
-        match item.as_value() {
-            Some(value) => self.value(key, value, dimension),
-            None => {
-                self.wrong_type(
-                    key,
-                    &format!("{} such as \"{}\"", dimension.words(), dimension.example()),
-                    item,
-                );
-                None
-            }
+    /// A quantity with its unit, in SI, or a plain number, as it is declared; without it its default.
+    pub fn number(&self, key: &str) -> Option<f64> {
+        let (declared, (dimension, bound)) = self.declared_as(key, |value| match value {
+            KeyValue::Number(dimension, bound) => Some((dimension, bound)),
+            _ => None,
+        })?;
+        self.number_of(&declared, dimension, bound)
+    }
+
+    /// A quantity of the dimension that goes with another choice of the table, of those that are declared.
+    pub fn number_as(&self, key: &str, dimension: Dimension) -> Option<f64> {
+        let (declared, bound) = self.declared_as(key, |value| match value {
+            KeyValue::Number(own, bound) => (own == dimension).then_some(bound),
+            KeyValue::Measured => Some(Bound::Any),
+            _ => None,
+        })?;
+        self.number_of(&declared, dimension, bound)
+    }
+
+    fn number_of(&self, key: &Key, dimension: Dimension, bound: Bound) -> Option<f64> {
+        let Some(item) = self.item_of(key) else {
+            return match key.presence {
+                KeyPresence::Default(text) => parse_number(text),
+                KeyPresence::OfLaw(value) => value,
+                _ => None,
+            };
+        };
+        let Some(value) = item.as_value() else {
+            let needs = format!("{} such as {}", dimension.words(), key.example);
+            self.wrong_type(key.name, &needs, item);
+            return None;
+        };
+        let value = self.value(key.name, value, dimension)?;
+        self.within(key.name, value, dimension, bound)
+            .then_some(value)
+    }
+
+    /// True where a value is within the bound of its key; an error else.
+    fn within(&self, key: &str, value: f64, dimension: Dimension, bound: Bound) -> bool {
+        let holds = bound.holds(value);
+        if !holds {
+            let rule = format!("is {} {}", shown(value), dimension.unit());
+            self.fail(key, rule.trim_end(), format!("it {}", bound.words()));
         }
-    }
-
-    /// A quantity that must be there.
-    pub fn required_quantity(&self, key: &str, dimension: Dimension) -> Option<f64> {
-        if !self.has(key) {
-            self.missing(key, &format!("\"{}\"", dimension.example()));
-        }
-        self.quantity(key, dimension)
-    }
-
-    /// A quantity above zero.
-    pub fn positive(&self, key: &str, dimension: Dimension) -> Option<f64> {
-        self.quantity(key, dimension)
-            .and_then(|value| self.above_zero(key, value))
-    }
-
-    /// A quantity above zero that must be there.
-    pub fn required_positive(&self, key: &str, dimension: Dimension) -> Option<f64> {
-        self.required_quantity(key, dimension)
-            .and_then(|value| self.above_zero(key, value))
-    }
-
-    fn above_zero(&self, key: &str, value: f64) -> Option<f64> {
-        if value > 0.0 {
-            return Some(value);
-        }
-        self.fail(
-            key,
-            format!("is {value} (in SI units)"),
-            "it must be above zero",
-        );
-        None
+        holds
     }
 
     /// A wall time above zero.
     pub fn wall_time(&self, key: &str) -> Option<std::time::Duration> {
-        let seconds = self.positive(key, Dimension::TIME)?;
+        let seconds = self.number(key)?;
         let time = std::time::Duration::try_from_secs_f64(seconds).ok();
         if time.is_none() {
             self.fail(
@@ -70,13 +71,26 @@ impl TableReader<'_> {
     }
 
     /// Three components with one unit: "x y z unit".
-    pub fn vector(&self, key: &str, dimension: Dimension) -> Option<[f64; 3]> {
-        let item = self.item(key)?;
-        let example = dimension
-            .example()
-            .split_once(' ')
-            .map_or("", |(_, unit)| unit);
-        let needs = format!("three numbers and a unit such as \"0 0 1 {example}\"");
+    pub fn vector(&self, key: &str) -> Option<[f64; 3]> {
+        let (declared, dimension) = self.declared_as(key, |value| match value {
+            KeyValue::Vector(dimension) => Some(dimension),
+            _ => None,
+        })?;
+        let needs = format!(
+            "three numbers{} such as {}",
+            match dimension {
+                Dimension::NONE => "",
+                _ => " and a unit",
+            },
+            declared.example
+        );
+        let Some(item) = self.item_of(&declared) else {
+            let KeyPresence::Default(text) = declared.presence else {
+                return None;
+            };
+            let (numbers, _) = quantities(text).ok()?;
+            return <[f64; 3]>::try_from(numbers).ok();
+        };
         let Some(text) = item.as_str() else {
             self.wrong_type(key, &needs, item);
             return None;
@@ -93,49 +107,61 @@ impl TableReader<'_> {
         vector
     }
 
-    /// A vector that must be there.
-    pub fn required_vector(&self, key: &str, dimension: Dimension) -> Option<[f64; 3]> {
-        if !self.has(key) {
-            let unit = dimension
-                .example()
-                .split_once(' ')
-                .map_or("", |(_, unit)| unit);
-            self.missing(key, &format!("\"0 0 1 {unit}\""));
-        }
-        self.vector(key, dimension)
-    }
-
     /// A value, or a list of [time, value] with increasing times.
-    pub fn schedule(&self, key: &str, dimension: Dimension) -> Option<Schedule> {
-        self.points(key, (Dimension::TIME, "time"), dimension)
-            .map(Schedule)
+    pub fn schedule(&self, key: &str) -> Option<Schedule> {
+        let (declared, (dimension, bound)) = self.declared_as(key, |value| match value {
+            KeyValue::Schedule(dimension, bound) => Some((dimension, bound)),
+            _ => None,
+        })?;
+        let points = self.points(&declared, (Dimension::TIME, "time"), dimension)?;
+        self.all_within(key, &points, dimension, bound)
+            .then_some(Schedule(points))
     }
 
-    /// A value, or a list of [argument, value] with increasing arguments, such as temperatures in K; the
-    /// argument of a single value is 0.
-    pub fn curve(
+    /// A value, or a list of [temperature, value] with increasing temperatures in K; the temperature of a single
+    /// value is 0.
+    pub fn curve(&self, key: &str) -> Option<Vec<(f64, f64)>> {
+        let (declared, (dimension, bound)) = self.declared_as(key, |value| match value {
+            KeyValue::Curve(dimension, bound) => Some((dimension, bound)),
+            _ => None,
+        })?;
+        let over = (Dimension::TEMPERATURE, "temperature");
+        let points = self.points(&declared, over, dimension)?;
+        self.all_within(key, &points, dimension, bound)
+            .then_some(points)
+    }
+
+    fn all_within(
         &self,
         key: &str,
-        over: Dimension,
+        points: &[(f64, f64)],
         dimension: Dimension,
-    ) -> Option<Vec<(f64, f64)>> {
-        self.points(key, (over, "temperature"), dimension)
+        bound: Bound,
+    ) -> bool {
+        let outside = points.iter().find(|point| !bound.holds(point.1));
+        outside.is_none_or(|point| self.within(key, point.1, dimension, bound))
     }
 
     fn points(
         &self,
-        key: &str,
+        declared: &Key,
         (over, word): (Dimension, &str),
         dimension: Dimension,
     ) -> Option<Vec<(f64, f64)>> {
-        let Some(item) = self.item(key) else {
-            self.missing(key, &format!("\"{}\"", dimension.example()));
-            return None;
+        let key = declared.name;
+        let Some(item) = self.item_of(declared) else {
+            return match declared.presence {
+                KeyPresence::Default(text) => Some(vec![(0.0, parse_number(text)?)]),
+                _ => None,
+            };
         };
         let Some(array) = item.as_array() else {
-            return self
-                .quantity(key, dimension)
-                .map(|value| vec![(0.0, value)]);
+            let Some(value) = item.as_value() else {
+                let needs = format!("{} such as {}", dimension.words(), declared.example);
+                self.wrong_type(key, &needs, item);
+                return None;
+            };
+            return Some(vec![(0.0, self.value(key, value, dimension)?)]);
         };
         let unit = if word == "time" { "s" } else { "K" };
         let mut entries: Vec<(f64, f64)> = Vec::new();
@@ -178,40 +204,6 @@ impl TableReader<'_> {
             return None;
         }
         Some(entries)
-    }
-
-    /// A schedule of absolute temperatures.
-    pub fn temperatures(&self, key: &str) -> Option<Schedule> {
-        self.all_above_zero(
-            key,
-            Dimension::TEMPERATURE,
-            "temperatures are absolute: above 0 K",
-        )
-    }
-
-    /// A schedule of absolute pressures.
-    pub fn pressures(&self, key: &str) -> Option<Schedule> {
-        self.all_above_zero(
-            key,
-            Dimension::PRESSURE,
-            "pressures are absolute: above 0 Pa",
-        )
-    }
-
-    fn all_above_zero(&self, key: &str, dimension: Dimension, help: &str) -> Option<Schedule> {
-        let schedule = self.schedule(key, dimension)?;
-        if let Some((_, value)) = schedule.0.iter().find(|entry| entry.1 <= 0.0) {
-            let example = dimension.example();
-            let unit = example.split_once(' ').map_or("", |(_, unit)| unit);
-            let unit = if dimension == Dimension::PRESSURE {
-                "Pa"
-            } else {
-                unit
-            };
-            self.fail(key, format!("is {value} {unit}"), help);
-            return None;
-        }
-        Some(schedule)
     }
 
     /// One value of a key (or of an entry of its list) as a quantity.

@@ -1,11 +1,16 @@
 //! Texts, choices between words, whole numbers; what a misspelt word may have meant.
 
-use super::TableReader;
+use super::{KeyPresence, KeyValue, TableReader};
+use crate::case::words::CaseWord;
 
 impl<'a> TableReader<'a> {
-    /// A text.
+    /// A text, or a path.
     pub fn text(&self, key: &str) -> Option<&'a str> {
-        let item = self.item(key)?;
+        let (declared, ()) = self.declared_as(key, |value| match value {
+            KeyValue::Text | KeyValue::Path | KeyValue::Band => Some(()),
+            _ => None,
+        })?;
+        let item = self.item_of(&declared)?;
         let text = item.as_str();
         if text.is_none() {
             self.wrong_type(key, "a text in quotes", item);
@@ -13,54 +18,85 @@ impl<'a> TableReader<'a> {
         text
     }
 
-    /// A text that must be there.
-    pub fn required_text(&self, key: &str, example: &str) -> Option<&'a str> {
-        if !self.has(key) {
-            self.missing(key, example);
-        }
-        self.text(key)
+    /// One of several words.
+    pub fn choice<T: CaseWord>(&self, key: &str) -> Option<T> {
+        let (declared, words) = self.declared_as(key, |value| match value {
+            KeyValue::Choice(words) => Some(words()),
+            _ => None,
+        })?;
+        debug_assert!(
+            words.iter().eq(T::ALL.iter().map(|(word, _)| word)),
+            "{key}"
+        );
+        let word = match (self.item_of(&declared), declared.presence) {
+            (None, KeyPresence::Default(word)) => word,
+            (None, _) => return None,
+            (Some(_), _) => self.word(key, &words)?,
+        };
+        let found = T::ALL.iter().find(|(name, _)| *name == word);
+        found.map(|(_, value)| *value)
     }
 
-    /// One of several words.
-    pub fn choice<T: Copy>(&self, key: &str, choices: &[(&str, T)]) -> Option<T> {
-        let text = self.text(key)?;
-        let found = choices
-            .iter()
-            .find(|(name, _)| *name == text)
-            .map(|(_, value)| *value);
-        if found.is_none() {
-            let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
-            let near = nearest(text, names.iter().copied());
+    /// One of these words, as it stands in the file.
+    pub(super) fn word(&self, key: &str, names: &[&str]) -> Option<&'a str> {
+        let item = self.item_of(&self.declared(key)?)?;
+        let Some(text) = item.as_str() else {
+            self.wrong_type(key, "a text in quotes", item);
+            return None;
+        };
+        if names.contains(&text) {
+            return Some(text);
+        }
+        let near = nearest(text, names.iter().copied());
+        let hint = near
+            .map(|name| format!("; did you mean \"{name}\"?"))
+            .unwrap_or_default();
+        let help = format!("it may be {}{hint}", quoted(names));
+        self.fail(key, format!("is \"{text}\""), help);
+        None
+    }
+
+    /// A list of words.
+    pub fn choices(&self, key: &str) -> Option<Vec<String>> {
+        let (declared, words) = self.declared_as(key, |value| match value {
+            KeyValue::Choices(words) => Some(words),
+            _ => None,
+        })?;
+        if self.item_of(&declared).is_none() {
+            let KeyPresence::Default(word) = declared.presence else {
+                return None;
+            };
+            return Some(vec![word.to_owned()]);
+        }
+        let found = self.list_of_texts(key)?;
+        for name in found.iter().filter(|name| !words.contains(&name.as_str())) {
+            let near = nearest(name, words.iter().copied());
             let hint = near
                 .map(|name| format!("; did you mean \"{name}\"?"))
                 .unwrap_or_default();
-            self.fail(
-                key,
-                format!("is \"{text}\""),
-                format!("it may be {}{hint}", quoted(&names)),
-            );
+            let help = format!("known are {}{hint}", words.join(", "));
+            self.fail(key, format!("names \"{name}\""), help);
         }
-        found
+        Some(found)
     }
 
-    /// One of several words that must be there.
-    pub fn required_choice<T: Copy>(&self, key: &str, choices: &[(&str, T)]) -> Option<T> {
-        if !self.has(key) {
-            let example = choices.first().map_or("", |(name, _)| name);
-            self.missing(key, &format!("\"{example}\""));
-        }
-        self.choice(key, choices)
-    }
-
-    /// A whole number in a range.
-    pub fn whole(&self, key: &str, range: std::ops::RangeInclusive<i64>) -> Option<u64> {
-        let item = self.item(key)?;
+    /// A whole number.
+    pub fn whole(&self, key: &str) -> Option<u64> {
+        let (declared, (least, most)) = self.declared_as(key, |value| match value {
+            KeyValue::Whole(least, most) => Some((least, most)),
+            _ => None,
+        })?;
+        let Some(item) = self.item_of(&declared) else {
+            return match declared.presence {
+                KeyPresence::Default(number) => number.parse().ok(),
+                _ => None,
+            };
+        };
         match item.as_integer() {
-            Some(number) if range.contains(&number) => u64::try_from(number).ok(),
+            Some(number) if (least..=most).contains(&number) => u64::try_from(number).ok(),
             Some(number) => {
-                let rule = format!("is {number}");
-                let help = format!("it must lie between {} and {}", range.start(), range.end());
-                self.fail(key, rule, help);
+                let help = format!("it must lie between {least} and {most}");
+                self.fail(key, format!("is {number}"), help);
                 None
             }
             None => {
@@ -70,9 +106,22 @@ impl<'a> TableReader<'a> {
         }
     }
 
+    /// A whole number of 32 bits.
+    pub fn small_whole(&self, key: &str) -> Option<u32> {
+        self.whole(key)
+            .and_then(|number| u32::try_from(number).ok())
+    }
+
     /// `true` or `false`.
     pub fn truth(&self, key: &str) -> Option<bool> {
-        let item = self.item(key)?;
+        let (declared, ()) =
+            self.declared_as(key, |value| matches!(value, KeyValue::Truth).then_some(()))?;
+        let Some(item) = self.item_of(&declared) else {
+            return match declared.presence {
+                KeyPresence::Default(word) => Some(word == "true"),
+                _ => None,
+            };
+        };
         let truth = item.as_bool();
         if truth.is_none() {
             self.wrong_type(key, "true or false", item);
@@ -82,11 +131,11 @@ impl<'a> TableReader<'a> {
 
     /// Several whole numbers, at least 1 each.
     pub fn wholes<const N: usize>(&self, key: &str) -> Option<[usize; N]> {
-        let Some(item) = self.item(key) else {
-            self.missing(key, &format!("[{}]", vec!["10"; N].join(", ")));
-            return None;
-        };
-        let numbers: Option<Vec<usize>> = item.as_array().and_then(|array| {
+        let (declared, ()) = self.declared_as(key, |value| match value {
+            KeyValue::Wholes(count) => (count == N).then_some(()),
+            _ => None,
+        })?;
+        let numbers: Option<Vec<usize>> = self.item_of(&declared)?.as_array().and_then(|array| {
             array
                 .iter()
                 .map(|value| {
@@ -102,7 +151,7 @@ impl<'a> TableReader<'a> {
             self.fail(
                 key,
                 format!("needs {N} whole numbers of at least 1"),
-                format!("for example [{}]", vec!["10"; N].join(", ")),
+                format!("for example {}", declared.example),
             );
         }
         numbers
@@ -110,6 +159,16 @@ impl<'a> TableReader<'a> {
 
     /// A list of texts.
     pub fn texts(&self, key: &str) -> Option<Vec<String>> {
+        let (declared, ()) = self.declared_as(key, |value| match value {
+            KeyValue::Texts(_) | KeyValue::Vectors(_) => Some(()),
+            _ => None,
+        })?;
+        self.item_of(&declared)?;
+        self.list_of_texts(key)
+    }
+
+    fn list_of_texts(&self, key: &str) -> Option<Vec<String>> {
+        let declared = self.declared(key)?;
         let item = self.item(key)?;
         let texts: Option<Vec<String>> = item.as_array().and_then(|array| {
             array
@@ -118,13 +177,14 @@ impl<'a> TableReader<'a> {
                 .collect()
         });
         if texts.is_none() {
-            self.wrong_type(key, "a list of texts such as [\"temperature\"]", item);
+            let needs = format!("a list of texts such as {}", declared.example);
+            self.wrong_type(key, &needs, item);
         }
         texts
     }
 }
 
-fn quoted(names: &[&str]) -> String {
+pub(super) fn quoted(names: &[&str]) -> String {
     names
         .iter()
         .map(|name| format!("\"{name}\""))

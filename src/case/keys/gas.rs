@@ -1,0 +1,175 @@
+//! Keys of `gas`.
+
+use super::prelude::*;
+
+#[rustfmt::skip]
+const INITIAL_COMPOSITION: &[Key] = &[
+    key("mole", ByName(D::NONE), OneOf, "Mole fractions by species, which sum to 1; what is not named is 0. Either this or `mass`.", "{ N2 = 0.79, O2 = 0.21 }"),
+    key("mass", ByName(D::NONE), OneOf, "Mass fractions by species, which sum to 1. Either this or `mole`.", "{ N2 = 1 }"),
+];
+
+#[rustfmt::skip]
+const INITIAL: &[Key] = &[
+    key("temperature", Number(D::TEMPERATURE, Positive), Required, "Temperature.", "\"300 K\""),
+    key("pressure", Number(D::PRESSURE, Positive), Required, "Absolute pressure.", "\"1 atm\""),
+    key("composition", Table(INITIAL_COMPOSITION), Without("a single gas"), "Composition at the start, by amounts (`mole`) or masses (`mass`).", "{ mole = { N2 = 0.79, O2 = 0.21 } }"),
+    key("velocity", Vector(D::VELOCITY), Default("0 0 0 m/s"), "Velocity.", "\"0 0 0.5 m/s\""),
+];
+
+#[rustfmt::skip]
+const SPECIES_DATA_TRANSPORT: &[Key] = &[
+    key("diameter", Number(D::LENGTH, Positive), Without("that of the file"), "Collision diameter of Lennard and Jones' potential.", "\"3.971e-10 m\""),
+    key("well_depth", Number(D::TEMPERATURE, Positive), Without("that of the file"), "Depth of the potential over Boltzmann's constant.", "\"280.8 K\""),
+    key("diffusion_volume", Number(D::NONE, Positive), Without("the sum of its atoms' (C, H, O, N, S)"), "Diffusion volume of Fuller, Schettler and Giddings.", "41.04"),
+];
+
+#[rustfmt::skip]
+const SPECIES_DATA: &[Key] = &[
+    key("thermo", Path, Required, "Their thermodynamics: NASA's seven coefficients in a file of Cantera (.yaml), which may have the transport data too, or of CHEMKIN (any other name).", "\"ethene.yaml\""),
+    key("transport", Named(SPECIES_DATA_TRANSPORT), Without("that of the file"), "What the file does not say of the molecules, or what counts in its place; by species.", "{ C2H4 = { diameter = \"3.971e-10 m\", well_depth = \"280.8 K\" } }"),
+];
+
+#[rustfmt::skip]
+const CHEMISTRY_REACTIONS_RATE: &[Key] = &[
+    key("factor", Number(D::NONE, Positive), Required, "In mol, m and s, of the rate in mol/m^3/s by concentrations in mol/m^3.", "2.75e6"),
+    key("exponent", Number(D::NONE, Any), Default("0"), "Exponent of the temperature in K.", "-1"),
+    key("activation_energy", Number(D::MOLAR_ENERGY, Any), Default("0 J/mol"), "Activation energy.", "\"83.6 kJ/mol\""),
+    key("orders", ByName(D::NONE), Without("the numbers of the left side"), "Order of each gas, of all of them. Below 1e-6 mol/m^3 a power of an order below one goes on as a straight line; a negative one only of a gas that is always there.", "{ CH4 = 0.5, O2 = 1.25 }"),
+];
+
+#[rustfmt::skip]
+const CHEMISTRY_REACTIONS_THIRD_BODY: &[Key] = &[
+    key("efficiencies", ByName(D::NONE), Without("`others` for all"), "Efficiencies by species.", "{ H2O = 6, CO2 = 2 }"),
+    key("others", Number(D::NONE, Any), Default("1"), "Efficiency of all others.", "1"),
+];
+
+#[rustfmt::skip]
+const CHEMISTRY_REACTIONS: &[Key] = &[
+    key("name", Text, Required, "Its name.", "\"shift\""),
+    key("equation", Text, Required, "Moles of gases of `gas.species`, with => (one way) or <=> (both ways, by the Gibbs energies); balanced. The last species of the gas reacts in none.", "\"CO + H2O <=> CO2 + H2\""),
+    key("rate", Table(CHEMISTRY_REACTIONS_RATE), Required, "Rate constant k = factor T^exponent exp(-activation_energy/RT) of the forward reaction.", "{ factor = 2.75e6, activation_energy = \"83.6 kJ/mol\" }"),
+    key("third_body", Table(CHEMISTRY_REACTIONS_THIRD_BODY), Without("none"), "The rate is also proportional to the concentration of all gases, each by its efficiency.", "{ efficiencies = { H2O = 6 } }"),
+    key("heat", Number(D::MOLAR_ENERGY, Any), Without("not stated"), "Heat that the reaction takes up at 298.15 K, to be compared with that of the enthalpies of formation, which counts; more than 2 % off is an error.", "\"-41.2 kJ/mol\""),
+];
+
+#[rustfmt::skip]
+const CHEMISTRY: &[Key] = &[
+    key("mechanism", Text, OneOf, "`jones-lindstedt` (refined), `jones-lindstedt-original`, or a file of Cantera (.yaml) or CHEMKIN (any other name). Either this or `reactions`.", "\"jones-lindstedt\""),
+    key("thermo", Path, Without("that of the mechanism's file"), "A CHEMKIN file of thermodynamics; those of `gas.species` count, the file's must agree.", "\"therm.dat\""),
+    key("reactions", Tables(CHEMISTRY_REACTIONS), OneOf, "Reactions of the case's own. Either this or `mechanism`.", "[{ name = \"shift\", equation = \"CO + H2O <=> CO2 + H2\", rate = { factor = 2.75e6, activation_energy = \"83.6 kJ/mol\" } }]"),
+    key("model", Choice(words::<CombustionModel>), Default("laminar"), "A cell is mixed; or the partially stirred reactor: only what turbulence mixes reacts.", "\"laminar\""),
+    key("mixing_constant", Number(D::NONE, Positive), Default("1"), "C_mix of the partially stirred reactor.", "1"),
+    key("tolerance", Number(D::NONE, Positive), Default("1e-6"), "Error of a step of the integration, relative to temperature and each mass fraction.", "1e-6"),
+    key("fraction_tolerance", Number(D::NONE, Positive), Default("1e-10"), "Error of a step in a mass fraction that counts as none.", "1e-10"),
+    key("negligible", Number(D::NONE, Positive), Default("1e-12"), "Change of a mass fraction over a step of the gas below which reactions are not integrated.", "1e-12"),
+];
+
+#[rustfmt::skip]
+const CONSTANT: &[Key] = &[
+    key("density", Number(D::DENSITY, Positive), Required, "Density.", "\"1.2 kg/m^3\""),
+    key("heat_capacity", Number(D::HEAT_CAPACITY, Positive), Required, "Specific heat capacity c_p.", "\"1005 J/kg/K\""),
+    key("viscosity", Number(D::VISCOSITY, Positive), Required, "Viscosity.", "\"18.5e-6 Pa s\""),
+    key("conductivity", Number(D::CONDUCTIVITY, Positive), Required, "Thermal conductivity.", "\"0.026 W/m/K\""),
+];
+
+#[rustfmt::skip]
+const PROPERTIES: &[Key] = &[
+    key("molar_mass", Number(D::MOLAR_MASS, Positive), Required, "Molar mass.", "\"28.96 g/mol\""),
+    key("heat_capacity", Number(D::HEAT_CAPACITY, Positive), Required, "Specific heat capacity c_p; above R/M.", "\"1005 J/kg/K\""),
+    key("viscosity", Number(D::VISCOSITY, Positive), Required, "Viscosity at `viscosity_at`.", "\"18.5e-6 Pa s\""),
+    key("viscosity_at", Number(D::TEMPERATURE, Positive), Required, "Temperature of `viscosity`.", "\"300 K\""),
+    key("sutherland_temperature", Number(D::TEMPERATURE, Positive), Required, "Temperature of Sutherland's law.", "\"120 K\""),
+];
+
+#[rustfmt::skip]
+const TURBULENCE_INITIAL: &[Key] = &[
+    key("energy", Number(D::ENERGY_OF_MASS, Positive), Required, "Turbulent energy k, above 0.", "\"0.01 m^2/s^2\""),
+    key("length_scale", Number(D::LENGTH, Positive), Required, "Length scale L; the dissipation is 0.09^0.75 k^1.5/L.", "\"5 mm\""),
+];
+
+#[rustfmt::skip]
+const TURBULENCE: &[Key] = &[
+    key("model", Choice(words::<TurbulenceModel>), Required, "The standard k-epsilon model with wall functions (on walls with `no-slip` or `moving`), or none.", "\"k-epsilon\""),
+    key("initial", Table(TURBULENCE_INITIAL), Without("none; `k-epsilon` needs it"), "Eddies at the start, everywhere.", "{ energy = \"0.01 m^2/s^2\", length_scale = \"5 mm\" }"),
+    key("prandtl", Number(D::NONE, Positive), Default("0.85"), "Turbulent Prandtl number: eddies carry heat with c_p times their viscosity over this.", "0.9"),
+    key("schmidt", Number(D::NONE, Positive), Default("0.7"), "Turbulent Schmidt number of all species.", "0.7"),
+];
+
+#[rustfmt::skip]
+const PATCH_INLET_COMPOSITION: &[Key] = &[
+    key("mole", ByName(D::NONE), OneOf, "Mole fractions by species. Either this or `mass`.", "{ CO2 = 1 }"),
+    key("mass", ByName(D::NONE), OneOf, "Mass fractions by species. Either this or `mole`.", "{ CO2 = 1 }"),
+];
+
+#[rustfmt::skip]
+const PATCH_INLET_TURBULENCE: &[Key] = &[
+    key("intensity", Number(D::NONE, Positive), Required, "Root mean square of one component of the fluctuation over the interstitial speed.", "0.05"),
+    key("length_scale", Number(D::LENGTH, Positive), Required, "Length scale, see `gas.turbulence.initial`; some 0.07 of the diameter of a long pipe.", "\"5 mm\""),
+];
+
+#[rustfmt::skip]
+const PATCH_INLET: &[Key] = &[
+    key("superficial_velocity", Schedule(D::VELOCITY, NotNegative), OneOf, "Superficial velocity into the domain, zero or above, of gas at the pressure of `gas.initial`. Either this or `mass_flow`.", "\"0.5 m/s\""),
+    key("mass_flow", Schedule(D::MASS_FLOW, NotNegative), OneOf, "Mass flow through the whole patch, zero or above, evenly spread. Either this or `superficial_velocity`.", "\"2 kg/h\""),
+    key("composition", Dated(PATCH_INLET_COMPOSITION), Without("a single gas"), "Composition of the gas that enters, as `gas.initial.composition`.", "[[\"0 s\", { mole = { N2 = 1 } }], [\"10 s\", { mole = { CO2 = 1 } }]]"),
+    key("temperature", Schedule(D::TEMPERATURE, Positive), Required, "Temperature of the gas that enters.", "[[\"0 s\", \"300 K\"], [\"10 s\", \"400 K\"]]"),
+    key("turbulence", Table(PATCH_INLET_TURBULENCE), Without("none; a turbulent gas needs it"), "Eddies of the gas that enters.", "{ intensity = 0.05, length_scale = \"5 mm\" }"),
+];
+
+#[rustfmt::skip]
+const PATCH_OUTLET: &[Key] = &[
+    key("pressure", Schedule(D::PRESSURE, Positive), Required, "Absolute pressure.", "\"1 atm\""),
+];
+
+#[rustfmt::skip]
+const PATCH_WALL_VELOCITY: &[Key] = &[
+    key("moving", Vector(D::VELOCITY), Required, "Velocity of a wall that slides in its own plane; gas sticks to it.", "\"0.1 0 0 m/s\""),
+];
+
+#[rustfmt::skip]
+const PATCH_WALL_HEAT: &[Key] = &[
+    key("temperature", Schedule(D::TEMPERATURE, Positive), OneOf, "Temperature of the wall. One of `temperature`, `flux`, `coefficient`.", "\"350 K\""),
+    key("flux", Schedule(D::HEAT_FLUX, Any), OneOf, "Heat flux into the gas per area of wall. One of `temperature`, `flux`, `coefficient`.", "\"1 kW/m^2\""),
+    key("coefficient", Schedule(D::HEAT_TRANSFER, NotNegative), OneOf, "Overall coefficient between the inner face of the wall and surroundings of `ambient`. One of `temperature`, `flux`, `coefficient`.", "\"10 W/m^2/K\""),
+    key("ambient", Schedule(D::TEMPERATURE, Positive), With("coefficient"), "Temperature of the surroundings.", "\"300 K\""),
+];
+
+#[rustfmt::skip]
+const PATCH_WALL: &[Key] = &[
+    key("velocity", Either(&Choice(words::<WallVelocity>), &Table(PATCH_WALL_VELOCITY)), Required, "Gas velocity at the wall.", "\"no-slip\""),
+    key("heat", Either(&Choice(words::<Adiabatic>), &Table(PATCH_WALL_HEAT)), Required, "Heat through the wall.", "\"adiabatic\""),
+];
+
+#[rustfmt::skip]
+const PATCH: &[Key] = &[
+    key("inlet", Table(PATCH_INLET), OneOf, "Gas flows in. One of `inlet`, `outlet`, `wall`, `symmetry`.", "{ superficial_velocity = \"0.5 m/s\", temperature = \"400 K\" }"),
+    key("outlet", Table(PATCH_OUTLET), OneOf, "Gas flows out. One of `inlet`, `outlet`, `wall`, `symmetry`.", "{ pressure = \"1 atm\" }"),
+    key("wall", Table(PATCH_WALL), OneOf, "A wall. One of `inlet`, `outlet`, `wall`, `symmetry`.", "{ velocity = \"slip\", heat = \"adiabatic\" }"),
+    key("symmetry", Table(&[]), OneOf, "A plane of symmetry. One of `inlet`, `outlet`, `wall`, `symmetry`.", "{}"),
+];
+
+#[rustfmt::skip]
+const CONTROLS: &[Key] = &[
+    key("outer_iterations", Whole(1, 10_000), Default("20"), "Outer iterations per window at most.", "20"),
+    key("convection", Choice(words::<Convection>), Default("van-leer"), "How velocity, enthalpy and composition are carried to faces: second order with van Leer's limiter, or first-order upwind.", "\"upwind\""),
+    key("pressure_corrections", Whole(1, 10_000), Default("2"), "Pressure corrections per outer iteration.", "2"),
+    key("outer_tolerance", Number(D::NONE, Positive), Default("1e-8"), "The outer iterations end below this scaled residual.", "1e-8"),
+    key("linear_tolerance", Number(D::NONE, Positive), Default("1e-13"), "Tolerance of the linear solvers.", "1e-13"),
+];
+
+#[rustfmt::skip]
+pub(super) const GAS: &[Key] = &[
+    key("mixture", Text, Required, "`air`, or any name together with `gas.properties` or `gas.constant`.", "\"air\""),
+    key("initial", Table(INITIAL), Required, "The gas at the start, everywhere.", "{ temperature = \"300 K\", pressure = \"1 atm\" }"),
+    key("gravity", Vector(D::ACCELERATION), Default("0 0 0 m/s^2"), "Gravity on gas and free particles.", "\"0 0 -9.81 m/s^2\""),
+    key("held", Truth, Default("false"), "The gas stays as it is at the start, at any exchange: superficial velocity, temperature, and a pressure gradient of its own weight. No gas solver runs.", "true"),
+    key("species", Texts(0), Without("a single gas"), "Species of a mixture of ideal gases: N2, O2, Ar, CO2, H2O, CO, H2, CH4 are built in, others are of `species_data`; with `gas.schmidt`, and a composition wherever gas stands at the start or flows in.", "[\"N2\", \"O2\"]"),
+    key("schmidt", Number(D::NONE, Positive), With("species"), "Schmidt number of all species: they diffuse alike, with viscosity over density over this.", "0.7"),
+    key("species_data", Table(SPECIES_DATA), Without("built-in species alone"), "Where the species come from that are not built in.", "{ thermo = \"ethene.yaml\" }"),
+    key("chemistry", Table(CHEMISTRY), Without("the gas does not react with itself"), "Reactions of the gas with itself; of a mixture of `gas.species`.", "{ mechanism = \"jones-lindstedt\" }"),
+    key("constant", Table(CONSTANT), Without("an ideal gas"), "A fluid of constant properties; not with `gas.properties`. Its enthalpy is c_p (T - 298.15 K).", "[gas.constant]"),
+    key("properties", Table(PROPERTIES), Without("those of `gas.mixture`"), "An ideal gas by its properties.", "[gas.properties]"),
+    key("turbulence", Table(TURBULENCE), Without("a laminar gas"), "Eddies outside the bed, that is, where the solid fraction is 0.1 or less.", "[gas.turbulence]"),
+    key("patch", Named(PATCH), Required, "Boundary condition of every patch by its name. Without an outlet the domain is closed: an ideal gas then takes the pressure at which it fills the pores.", "[gas.patch.bottom]"),
+    key("controls", Table(CONTROLS), Without("see its keys"), "Accuracy of the gas solver.", "{ outer_tolerance = 1e-8 }"),
+];

@@ -1,0 +1,36 @@
+//! Keys of `laws`.
+
+use super::prelude::*;
+use crate::laws;
+
+#[rustfmt::skip]
+const DRAG: &[Key] = &[
+    key("model", Choice(words::<MomentumModel>), Default("a"), "How gas and particles share the pressure gradient: `a`, each by its share of the volume; `b`, the gas takes all, and a particle is as much lighter as the gas it displaces. The same for a bed at rest or in steady flow.", "\"b\""),
+];
+
+#[rustfmt::skip]
+const CONDUCTION: &[Key] = &[
+    key("area", Choice(words::<AreaName>), Default("overlap"), "By which overlap contacts conduct: the computed one; that of the real materials (`real_young`) under the computed elastic force; or that under `load`.", "\"force\""),
+    key("load", Number(D::FORCE, Positive), Without("required with `load`"), "Force on every contact, where area is `load`.", "\"50 mN\""),
+    key("within", Number(D::LENGTH, Positive), Without("required with `load`"), "Widest gap that counts as a contact, where area is `load`.", "\"20 um\""),
+    key("gap", Law(laws::gap, &[]), Without("none"), "Conduction through the gas between surfaces that are near.", "{ law = \"cheng\" }"),
+];
+
+#[rustfmt::skip]
+const RADIATION: &[Key] = &[
+    key("law", Choice(words::<RadiationName>), Required, "View factors by rays, with what stands between; by the distance alone, fitted to rays in random beds; or no radiation.", "\"view-factors\""),
+    key("surroundings", Either(&Schedule(D::TEMPERATURE, Positive), &Choice(words::<Closed>)), Without("required with a law"), "Temperature of what rays reach that meet no wall; `closed`: nothing leaves.", "\"300 K\""),
+    key("inside", Choice(words::<InsideName>), Default("isothermal"), "Spheres of one temperature, or less radiation through the bed where they conduct so badly that their warm side cannot pass on what it receives; the materials then need a conductivity.", "\"singh-kaviany\""),
+    key("rays", Whole(16, 1_000_000), Default("1024"), "Rays a particle; of `view-factors`.", "1024"),
+    key("range", Number(D::NONE, AtLeast(1.0)), Default("3"), "Distance of centres in largest diameters up to which particles see each other, 1 or more.", "3"),
+    key("refresh", Number(D::TIME, Positive), Without("with every window"), "Views of moving particles hold for so much process time.", "\"10 s\""),
+];
+
+#[rustfmt::skip]
+pub(super) const LAWS: &[Key] = &[
+    key("drag", Law(laws::drag, DRAG), Required, "Drag on a particle.", "{ law = \"ergun-wen-yu\" }"),
+    key("heat_transfer", Law(laws::heat_transfer, &[]), Required, "Heat transfer between gas and particle.", "{ law = \"gunn\" }"),
+    key("mass_transfer", Law(laws::heat_transfer, &[]), Without("none"), "Mass transfer between gas and particles that react, by a law of heat transfer with the Schmidt number in place of the Prandtl number; required where reactions exchange gas.", "{ law = \"gunn\" }"),
+    key("conduction", Law(laws::conduction, CONDUCTION), Required, "Heat conduction between particles and to walls of a temperature.", "{ law = \"none\" }"),
+    key("radiation", Table(RADIATION), Required, "Radiation between particles, to walls and surroundings; the gas is transparent.", "{ law = \"none\" }"),
+];

@@ -1,0 +1,45 @@
+//! Keys of `materials` and `solids`.
+
+use super::prelude::*;
+
+#[rustfmt::skip]
+const COMPOSITION: &[Key] = &[
+    key("mole", ByName(D::NONE), OneOf, "Mole fractions by the names of solids. Either this or `mass`.", "{ Fe2O3 = 0.7, Fe3O4 = 0.3 }"),
+    key("mass", ByName(D::NONE), OneOf, "Mass fractions by the names of solids. Either this or `mole`.", "{ CaCO3 = 1 }"),
+];
+
+#[rustfmt::skip]
+const HEAT_CAPACITY: &[Key] = &[
+    key("molar_mass", Number(D::MOLAR_MASS, Positive), Required, "Molar mass that the polynomials are of.", "\"55.845 g/mol\""),
+    key("ranges", Vector(D::TEMPERATURE), Required, "Lowest, common and highest temperature of the two polynomials; c_p is constant beyond.", "\"200 1000 6000 K\""),
+    key("low", Numbers(7), Required, "NASA's coefficients a1 to a7 below the common temperature.", "[2.5, 0, 0, 0, 0, 0, 0]"),
+    key("high", Numbers(7), Required, "NASA's coefficients a1 to a7 above it.", "[2.5, 0, 0, 0, 0, 0, 0]"),
+];
+
+#[rustfmt::skip]
+const SIZE: &[Key] = &[
+    key("law", Choice(words::<SizeLawName>), Required, "The diameter stays and the density follows the mass; the density stays and particles shrink or grow; or each solid has its own density in the particle.", "\"constant-density\""),
+    key("densities", ByName(D::DENSITY), Without("required with `densities`"), "Density of each solid that the particles hold or come to hold, with the pores that it has in them; together they give the material's density at the start.", "{ CaCO3 = \"2700 kg/m^3\", CaO = \"1600 kg/m^3\" }"),
+    key("least_diameter", Number(D::LENGTH, Positive), Without("required but for `constant-diameter`"), "Below it no particle shrinks: from there on its density falls.", "\"1 mm\""),
+];
+
+#[rustfmt::skip]
+pub(super) const MATERIALS: &[Key] = &[
+    key("density", Number(D::DENSITY, Positive), Required, "Density.", "\"2500 kg/m^3\""),
+    key("composition", Table(COMPOSITION), OneOf, "What the material is made of, where it reacts: mass or mole fractions of solids, which sum to 1. Either this or `heat_capacity`.", "{ mass = { Fe2O3 = 0.95, Al2O3 = 0.05 } }"),
+    key("heat_capacity", Either(&Curve(D::HEAT_CAPACITY, Positive), &Table(HEAT_CAPACITY)), OneOf, "Specific heat capacity; linear between points, constant outside them; or NASA's polynomials as a table.", "[[\"300 K\", \"780 J/kg/K\"], [\"800 K\", \"1150 J/kg/K\"]]"),
+    key("size", Table(SIZE), Without("diameters stay"), "How particles of the material take up room while they react; goes with `composition`.", "{ law = \"constant-density\", least_diameter = \"1 mm\" }"),
+    key("conductivity", Curve(D::CONDUCTIVITY, Positive), Without("not known"), "Thermal conductivity; linear between points, constant outside them.", "[[\"300 K\", \"80 W/m/K\"], [\"1000 K\", \"33 W/m/K\"]]"),
+    key("emissivity", Number(D::NONE, UpTo(0.0, 1.0)), Without("not known"), "Emissivity of the surface, above 0 and up to 1.", "0.9"),
+    key("young", Number(D::PRESSURE, Positive), Without("not known"), "Young's modulus by which contacts are computed.", "\"50 MPa\""),
+    key("real_young", Number(D::PRESSURE, Positive), Without("that of `young`"), "Young's modulus of the real material, where `young` is softened; by it contacts conduct where `laws.conduction.area` says so.", "\"210 GPa\""),
+    key("poisson", Number(D::NONE, Between(-1.0, 0.5)), Without("not known"), "Poisson's ratio, -1 to 0.5.", "0.22"),
+];
+
+#[rustfmt::skip]
+pub(super) const SOLIDS: &[Key] = &[
+    key("formula", Text, Required, "Chemical formula.", "\"SiO2\""),
+    key("formation_enthalpy", Number(D::MOLAR_ENERGY, Any), Required, "Enthalpy of formation at 298.15 K.", "\"-910.7 kJ/mol\""),
+    key("entropy", Number(D::MOLAR_ENTROPY, Positive), Required, "Entropy at 298.15 K and 1 bar.", "\"41.5 J/mol/K\""),
+    key("heat_capacity", Curve(D::HEAT_CAPACITY, Positive), Required, "Specific heat capacity; linear between points, constant outside them.", "[[\"300 K\", \"745 J/kg/K\"], [\"800 K\", \"1230 J/kg/K\"]]"),
+];

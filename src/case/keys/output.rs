@@ -1,0 +1,27 @@
+//! Keys of `output` and `probes`.
+
+use super::prelude::*;
+
+#[rustfmt::skip]
+pub(super) const OUTPUT: &[Key] = &[
+    key("every", Number(D::TIME, Positive), Required, "A snapshot each so much process time, and one at the start and the end.", "\"60 s\""),
+    key("series_every", Number(D::TIME, Positive), Without("with every snapshot"), "A row of the time series each so much process time.", "\"1 s\""),
+    key("gas", Choices(&["temperature", "velocity", "pressure", "density", "void_fraction", "mass_fractions", "turbulence"]), Default("temperature"), "Gas fields; `mass_fractions` of each species of a mixture, by its name; `turbulence`: `turbulent_energy`, `dissipation` and `eddy_viscosity` of a turbulent gas.", "[\"temperature\", \"velocity\"]"),
+    key("particles", Choices(&["temperature", "velocity", "heat", "force", "void_fraction", "slip", "mass", "solids", "inside"]), Default("temperature"), "Particle fields; `force` is that of the gas, `void_fraction` and `slip` what the laws saw, `solids` the mass fractions of what particles that react are made of, `inside` all columns that the models of the particles show.", "[\"temperature\"]"),
+];
+
+#[rustfmt::skip]
+const LINE: &[Key] = &[
+    key("from", Vector(D::LENGTH), Required, "First point.", "\"0 0 0 mm\""),
+    key("to", Vector(D::LENGTH), Required, "Last point.", "\"0 0 300 mm\""),
+    key("points", Whole(2, 1_000_000), Required, "Number of points.", "100"),
+];
+
+#[rustfmt::skip]
+pub(super) const PROBES: &[Key] = &[
+    key("name", Text, Required, "Name; no two alike.", "\"axis\""),
+    key("of", Choices(&["gas", "particles"]), Default("gas"), "What is sampled: `gas` (the cell that holds a point), `particles` (the one that holds a point, else the nearest whose surface is within its own diameter).", "[\"gas\", \"particles\"]"),
+    key("line", Table(LINE), OneOf, "Points on a line. One of `line`, `point`, `points`.", "{ from = \"0 0 0 mm\", to = \"0 0 300 mm\", points = 100 }"),
+    key("point", Vector(D::LENGTH), OneOf, "A single point. One of `line`, `point`, `points`.", "\"0 0 10 mm\""),
+    key("points", Vectors(D::LENGTH), OneOf, "Points. One of `line`, `point`, `points`.", "[\"0 0 10 mm\", \"0 0 20 mm\"]"),
+];

@@ -1,0 +1,92 @@
+//! Keys of `particles`, `feeds` and `outlets`.
+
+use super::prelude::*;
+use super::zone::ZONE;
+
+#[rustfmt::skip]
+const DIAMETER_NORMAL: &[Key] = &[
+    key("mean", Number(D::LENGTH, Positive), Required, "Mean before it is cut off; between `min` and `max`.", "\"4 mm\""),
+    key("deviation", Number(D::LENGTH, Positive), Required, "Standard deviation before it is cut off.", "\"0.4 mm\""),
+    key("min", Number(D::LENGTH, Positive), Required, "Smallest diameter.", "\"3 mm\""),
+    key("max", Number(D::LENGTH, Positive), Required, "Largest diameter.", "\"5 mm\""),
+];
+
+#[rustfmt::skip]
+const DIAMETER_LOG_NORMAL: &[Key] = &[
+    key("median", Number(D::LENGTH, Positive), Required, "Median before it is cut off; between `min` and `max`.", "\"4 mm\""),
+    key("deviation", Number(D::NONE, Positive), Required, "Geometric standard deviation, above 1.", "1.3"),
+    key("min", Number(D::LENGTH, Positive), Required, "Smallest diameter.", "\"2 mm\""),
+    key("max", Number(D::LENGTH, Positive), Required, "Largest diameter.", "\"8 mm\""),
+];
+
+#[rustfmt::skip]
+const DIAMETER_UNIFORM: &[Key] = &[
+    key("min", Number(D::LENGTH, Positive), Required, "Smallest diameter.", "\"3 mm\""),
+    key("max", Number(D::LENGTH, Positive), Required, "Largest diameter.", "\"5 mm\""),
+];
+
+#[rustfmt::skip]
+const DIAMETER: &[Key] = &[
+    key("normal", Table(DIAMETER_NORMAL), OneOf, "A normal distribution, cut off.", "{ mean = \"4 mm\", deviation = \"0.4 mm\", min = \"3 mm\", max = \"5 mm\" }"),
+    key("log_normal", Table(DIAMETER_LOG_NORMAL), OneOf, "A log-normal distribution, cut off.", "{ median = \"4 mm\", deviation = 1.3, min = \"2 mm\", max = \"8 mm\" }"),
+    key("uniform", Table(DIAMETER_UNIFORM), OneOf, "All diameters of a range alike.", "{ min = \"3 mm\", max = \"5 mm\" }"),
+    key("table", Shares, OneOf, "Diameters, each with its share; shares are scaled to sum to 1.", "[[\"4 mm\", 0.3], [\"6 mm\", 0.7]]"),
+    key("share", Choice(words::<Share>), Required, "What the distribution is of.", "\"number\""),
+    key("seed", Whole(0, MOST), Required, "Equal seeds draw equal diameters.", "1"),
+];
+
+#[rustfmt::skip]
+const PLACE_GRID: &[Key] = &[
+    key("first", Vector(D::LENGTH), Required, "Centre of the first particle.", "\"5 5 5 mm\""),
+    key("spacing", Vector(D::LENGTH), Required, "Distances of centres along x, y, z; at least the diameter.", "\"10 10 10 mm\""),
+    key("counts", Wholes(3), Required, "Particles along x, y, z; 1e9 in all at most.", "[1, 1, 10]"),
+];
+
+#[rustfmt::skip]
+const PLACE_REGION: &[Key] = &[
+    key("from", Number(D::LENGTH, Any), Required, "Lowest z.", "\"60 mm\""),
+    key("to", Number(D::LENGTH, Any), Required, "Highest z.", "\"90 mm\""),
+];
+
+#[rustfmt::skip]
+const PLACE: &[Key] = &[
+    key("grid", Table(PLACE_GRID), OneOf, "A regular stacking. Either this or `file`.", "{ first = \"5 5 5 mm\", spacing = \"10 10 10 mm\", counts = [1, 1, 10] }"),
+    key("file", Path, OneOf, "Particles of a file: `.csv`, a LIGGGHTS text dump, `.vtk` (ASCII), `.vtp` or `.vtu` (ASCII or raw). Lengths in m; diameter or radius and temperature where it has them.", "\"bed.csv\""),
+    key("height", Number(D::LENGTH, Positive), Without("with `packing`, either this or `region`"), "Height of the packing above the bottom of the mesh.", "\"145 mm\""),
+    key("region", Table(PLACE_REGION), Without("with `packing`, either this or `height`"), "Layer of the packing, so that populations lie one above the other.", "{ from = \"60 mm\", to = \"90 mm\" }"),
+    key("solid_fraction", Number(D::NONE, Within(0.0, 0.74)), Without("required with `random`"), "Volume of spheres over the filled space, layers at the walls included; up to about 0.59 with equal spheres.", "0.58"),
+    key("seed", Whole(0, MOST), Without("required with `random`"), "Equal seeds give equal packings, bit for bit.", "1"),
+    key("packing", Choice(words::<PackingName>), OneOf, "A packing from wall to wall of a box or cylinder mesh: random by geometry alone, without gravity, or a regular stacking of whole spheres from the bottom on.", "\"random\""),
+    key("timestep", Whole(0, MOST), Without("the last one"), "The snapshot of a dump.", "20000"),
+    key("type", Whole(0, MOST), Without("all"), "Only particles whose column `type` says so.", "1"),
+];
+
+#[rustfmt::skip]
+pub(super) const PARTICLES: &[Key] = &[
+    key("name", Text, Required, "Name; no two alike.", "\"beads\""),
+    key("material", Text, Required, "One of `materials`.", "\"glass\""),
+    key("diameter", Either(&Number(D::LENGTH, Positive), &Table(DIAMETER)), Required, "Diameter, or a distribution: exactly one of `normal`, `log_normal`, `uniform` and `table`. Where a file of particles states diameters, those count.", "\"10 mm\""),
+    key("motion", Choice(words::<MotionSpec>), Required, "How the particles move: not at all, or by gravity, contacts and the force of the gas (then with a section `[motion]`).", "\"frozen\""),
+    key("velocity", Vector(D::VELOCITY), Without("at rest"), "Velocity at the start; of free particles.", "\"0 0 -0.1 m/s\""),
+    key("temperature", Number(D::TEMPERATURE, Positive), Required, "Temperature at the start.", "\"300 K\""),
+    key("place", Table(PLACE), Required, "Where the particles are: exactly one of `grid`, `file` and `packing`. Spheres may overlap by 5 % of their diameter, as where they are pressed together.", "{ file = \"bed.csv\" }"),
+];
+
+#[rustfmt::skip]
+pub(super) const FEEDS: &[Key] = &[
+    key("name", Text, Required, "Name.", "\"charge\""),
+    key("population", Text, Required, "Of which population they are: it gives material and diameters.", "\"beads\""),
+    key("region", Table(ZONE), Required, "Where: a box or a cylinder.", "{ box = { from = \"0 0 80 mm\", to = \"50 50 100 mm\" } }"),
+    key("mass_rate", Number(D::MASS_FLOW, Positive), Without("none"), "Mass flow; particles wait where there is no room. This or `batch`, or both.", "\"1 kg/h\""),
+    key("batch", Number(D::MASS, Positive), Without("none"), "Mass that comes before the first window; what finds no room follows. This or `mass_rate`, or both.", "\"20 g\""),
+    key("velocity", Vector(D::VELOCITY), Without("at rest"), "Velocity at which they come.", "\"0 0 -0.01 m/s\""),
+    key("temperature", Number(D::TEMPERATURE, Positive), Without("that of the population"), "Their temperature.", "\"300 K\""),
+    key("seed", Whole(0, MOST), Required, "Equal seeds give equal particles at equal places.", "1"),
+];
+
+#[rustfmt::skip]
+pub(super) const OUTLETS: &[Key] = &[
+    key("name", Text, Required, "Name.", "\"discharge\""),
+    key("region", Table(ZONE), Required, "Where: a box or a cylinder.", "{ box = { from = \"0 0 80 mm\", to = \"50 50 100 mm\" } }"),
+    key("mass_rate", Number(D::MASS_FLOW, Positive), Without("all that come there"), "Mass flow at most, the lowest along gravity first.", "\"1 kg/h\""),
+];

@@ -1,0 +1,43 @@
+//! Keys of `quantities`.
+
+use super::prelude::*;
+
+#[rustfmt::skip]
+const MEASURE_SURFACE_ANGLE: &[Key] = &[
+    key("point", Vector(D::LENGTH), Required, "A point of the axis.", "\"0 0 0 mm\""),
+    key("axis", Vector(D::NONE), Required, "Direction of the axis; angles count as rotations about it do.", "\"0 1 0\""),
+];
+
+#[rustfmt::skip]
+const MEASURE: &[Key] = &[
+    key("difference", Choice(words::<DifferenceField>), OneOf, "Area mean on the first of `patches` minus that on the second.", "\"pressure\""),
+    key("patches", Texts(2), Without("none"), "The two patches; required with `difference`.", "[\"bottom\", \"top\"]"),
+    key("gas", Choice(words::<GasField>), OneOf, "A statistic of the gas: over all cells (the mean over the volume of gas), over `patch` or over `probe`.", "\"temperature\""),
+    key("patch", Text, Without("all cells"), "The patch, with `gas`; the mean is over its area.", "\"top\""),
+    key("probe", Text, Without("everywhere"), "The probe, with `gas` or `particles`.", "\"axis\""),
+    key("of", Text, Without("none"), "The species of the gas, or the solid of particles that react, of which a `mass_fraction` is; required with it.", "\"CO2\""),
+    key("particles", Choice(words::<ParticleField>), OneOf, "A statistic (of the height, z, of the centre, or of the speed in process time, too) over all particles, over those of `population` or over those at `probe`.", "\"temperature\""),
+    key("population", Text, Without("all"), "The population, with `particles`.", "\"beads\""),
+    key("statistic", Choice(words::<Statistic>), Without("with `probe` the mean"), "The statistic; required with `gas` and `particles`.", "\"mean\""),
+    key("particle", Choice(words::<ParticleField>), OneOf, "The value of one particle.", "\"temperature\""),
+    key("number", Whole(1, MOST), Without("none"), "Which particle, counted from 1; required with `particle`.", "10"),
+    key("wall_heat", Text, OneOf, "Heat in W from a wall of a temperature, or from `surroundings`, into the particles.", "\"hot\""),
+    key("surface_angle", Table(MEASURE_SURFACE_ANGLE), OneOf, "Slope of the bed in a drum, in rad: the angle by which the centre of mass of all particles has turned about an axis from straight below it; a flat surface stands across the line between them.", "{ point = \"0 0 0 mm\", axis = \"0 1 0\" }"),
+];
+
+#[rustfmt::skip]
+const EXPECT: &[Key] = &[
+    key("at", Number(D::TIME, Any), Without("the end"), "Process time at which it holds.", "\"10 min\""),
+    key("value", Measured, Required, "The value.", "\"180 Pa\""),
+    key("within", Band, Required, "How far off it may be.", "\"5 %\""),
+];
+
+#[rustfmt::skip]
+pub(super) const QUANTITIES: &[Key] = &[
+    key("name", Text, Required, "Name; no two alike.", "\"pressure_drop\""),
+    key("measure", Table(MEASURE), Required, "Exactly one of `difference`, `gas`, `particles`, `particle`, `wall_heat` and `surface_angle`.", "{ particles = \"temperature\", statistic = \"mean\" }"),
+    key("agree", Band, Without("not compared"), "Largest difference between pairings: a share of the value at each time, or, for what runs to zero, in the unit of the quantity.", "\"1 %\""),
+    key("agree_from", Number(D::TIME, Any), Without("the start"), "Process time from which `agree` holds: before it the quantity may depend on how single particles collide.", "\"0.3 s\""),
+    key("agree_over", Number(D::TIME, Positive), Without("values as they are"), "Process time over which recorded values are averaged before pairings are compared; for what fluctuates. With `agree`.", "\"1 s\""),
+    key("expect", Table(EXPECT), Without("none"), "Expected value.", "{ at = \"10 min\", value = \"180 Pa\", within = \"5 %\" }"),
+];

@@ -1,0 +1,196 @@
+//! The words of a case file that stand for a choice, each with what it means to the program: the declarations of
+//! keys and the readers take them from here.
+
+pub(super) use calcine_adapters::openfoam::stock::StockSolver;
+pub(super) use calcine_coupler::momentum_model::MomentumModel;
+pub(super) use calcine_coupler::packing::Share;
+use calcine_coupler::packing::regular::Lattice;
+pub(super) use calcine_coupler::setup::{Convection, WallVelocity};
+pub(super) use calcine_coupler::time::GasStorage;
+
+pub(super) use super::model::{MappingSpec, MotionKind, MotionSpec, Statistic};
+
+/// A choice between words.
+pub(super) trait CaseWord: Copy + 'static {
+    /// All words with what they mean.
+    const ALL: &'static [(&'static str, Self)];
+}
+
+macro_rules! case_words {
+    ($($(#[$doc:meta])* $type:ty { $($word:literal => $value:expr),* $(,)? })*) => {
+        $($(#[$doc])* impl CaseWord for $type {
+            const ALL: &'static [(&'static str, Self)] = &[$(($word, $value)),*];
+        })*
+    };
+}
+
+/// `materials.NAME.size.law`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum SizeLawName {
+    /// The diameter stays.
+    ConstantDiameter,
+    /// The density stays.
+    ConstantDensity,
+    /// Each solid has its own density.
+    Densities,
+}
+
+/// `reactions.law`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum RateLawName {
+    /// At the surface of a core.
+    ShrinkingCore,
+    /// In the whole particle.
+    PowerLaw,
+}
+
+/// `gas.chemistry.model`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum CombustionModel {
+    /// A cell is mixed.
+    Laminar,
+    /// Only what turbulence mixes reacts.
+    Pasr,
+}
+
+/// `gas.turbulence.model`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum TurbulenceModel {
+    /// Standard k-epsilon.
+    KEpsilon,
+    /// None.
+    Laminar,
+}
+
+/// `laws.conduction.area`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum AreaName {
+    /// The computed overlap.
+    Overlap,
+    /// That of the real materials under the computed force.
+    Force,
+    /// That of the real materials under one force.
+    Load,
+}
+
+/// `laws.radiation.law`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum RadiationName {
+    /// By rays.
+    ViewFactors,
+    /// By the distance alone.
+    Distance,
+    /// No radiation.
+    None,
+}
+
+/// `laws.radiation.inside`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum InsideName {
+    /// One temperature.
+    Isothermal,
+    /// Less radiation where spheres conduct badly.
+    SinghKaviany,
+}
+
+/// `particles.place.packing`: a stacking, or at random.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PackingName(pub Option<Lattice>);
+
+/// The word `adiabatic`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Adiabatic;
+
+/// The word `closed`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Closed;
+
+/// A field of the gas whose difference between patches is measured.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DifferenceField(pub &'static str);
+
+/// A field of the gas that is measured.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct GasField(pub &'static str);
+
+/// A field of particles that is measured.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ParticleField(pub &'static str);
+
+case_words! {
+    GasStorage { "process" => GasStorage::Process, "accelerated" => GasStorage::Accelerated }
+    SizeLawName {
+        "constant-diameter" => SizeLawName::ConstantDiameter,
+        "constant-density" => SizeLawName::ConstantDensity,
+        "densities" => SizeLawName::Densities,
+    }
+    RateLawName {
+        "shrinking-core" => RateLawName::ShrinkingCore,
+        "power-law" => RateLawName::PowerLaw,
+    }
+    MotionKind { "real-time" => MotionKind::RealTime, "accelerated" => MotionKind::Accelerated }
+    CombustionModel { "laminar" => CombustionModel::Laminar, "pasr" => CombustionModel::Pasr }
+    TurbulenceModel {
+        "k-epsilon" => TurbulenceModel::KEpsilon,
+        "laminar" => TurbulenceModel::Laminar,
+    }
+    WallVelocity { "no-slip" => WallVelocity::NoSlip, "slip" => WallVelocity::Slip }
+    Adiabatic { "adiabatic" => Adiabatic }
+    Closed { "closed" => Closed }
+    Convection { "van-leer" => Convection::VanLeer, "upwind" => Convection::Upwind }
+    Share { "number" => Share::Number, "mass" => Share::Mass }
+    MotionSpec { "frozen" => MotionSpec::Frozen, "free" => MotionSpec::Free }
+    PackingName {
+        "random" => PackingName(None),
+        "simple-cubic" => PackingName(Some(Lattice::SimpleCubic)),
+        "hexagonal" => PackingName(Some(Lattice::HexagonalClose)),
+        "face-centred" => PackingName(Some(Lattice::FaceCentred)),
+    }
+    MomentumModel { "a" => MomentumModel::A, "b" => MomentumModel::B }
+    AreaName {
+        "overlap" => AreaName::Overlap,
+        "force" => AreaName::Force,
+        "load" => AreaName::Load,
+    }
+    RadiationName {
+        "view-factors" => RadiationName::ViewFactors,
+        "distance" => RadiationName::Distance,
+        "none" => RadiationName::None,
+    }
+    InsideName {
+        "isothermal" => InsideName::Isothermal,
+        "singh-kaviany" => InsideName::SinghKaviany,
+    }
+    MappingSpec {
+        "overlap" => MappingSpec::Overlap,
+        "divided" => MappingSpec::Divided,
+        "centroid" => MappingSpec::Centroid,
+    }
+    StockSolver {
+        "calcineGasFoam" => StockSolver::CalcineGasFoam,
+        "buoyantPimpleFoam" => StockSolver::BuoyantPimpleFoam,
+        "rhoPimpleFoam" => StockSolver::RhoPimpleFoam,
+        "reactingFoam" => StockSolver::ReactingFoam,
+    }
+    DifferenceField {
+        "pressure" => DifferenceField("pressure"),
+        "temperature" => DifferenceField("temperature"),
+    }
+    GasField {
+        "temperature" => GasField("temperature"),
+        "pressure" => GasField("pressure"),
+        "density" => GasField("density"),
+        "speed" => GasField("speed"),
+        "void_fraction" => GasField("void_fraction"),
+        "mass_fraction" => GasField("mass_fraction"),
+    }
+    ParticleField {
+        "temperature" => ParticleField("temperature"),
+        "speed" => ParticleField("speed"),
+        "height" => ParticleField("height"),
+        "mass" => ParticleField("mass"),
+        "diameter" => ParticleField("diameter"),
+        "mass_fraction" => ParticleField("mass_fraction"),
+    }
+    Statistic { "mean" => Statistic::Mean, "min" => Statistic::Min, "max" => Statistic::Max }
+}
