@@ -12,4 +12,5 @@ mod progress;
 pub mod report;
 pub mod results;
 pub mod simulation;
+pub mod valid;
 mod vtk_xml;

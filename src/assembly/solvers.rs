@@ -59,6 +59,24 @@ pub fn write_inputs(
     Ok(written)
 }
 
+/// Refuses what the native solvers of a pairing would refuse at their start, and an external gas that is not named.
+pub fn native_parts(
+    case: &Case,
+    prepared: &PreparedCase,
+    pairing: Pairing,
+) -> Result<(), AssemblyError> {
+    if pairing.gas == GasBackend::Native && !case.gas_held {
+        NativeGas::new(Arc::clone(&prepared.mesh), &case.gas)?;
+    }
+    if pairing.gas == GasBackend::External && case.external_gas.is_none() {
+        return Err(AssemblyError::NoExternalGas);
+    }
+    if pairing.particles == ParticleBackend::Native {
+        NativeParticles::new(&prepared.particles)?;
+    }
+    Ok(())
+}
+
 /// The user's own script of the particles, where the case names one.
 fn own_script(case: &Case) -> Result<Option<ScriptTemplate>, PartError> {
     let Some(path) = &case.liggghts.template else {

@@ -4,38 +4,51 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::case::contacts;
-
 use super::console::say;
 use super::failure::{Failure, chain};
-use super::inputs::read_and_prepare;
-use crate::assembly::check_own_script;
+use crate::assembly::{GasBackend, Pairing, ParticleBackend, check_own_script};
+use crate::case::{check_report, contacts};
 use crate::exit;
+use crate::valid::ValidCase;
 
-/// Checks a case: all its errors at once, or both clocks, sizes and what each backend honours.
+/// Checks a case as a run would: all its errors at once, or both clocks, sizes, laws and what each backend honours.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The case file.
     case: PathBuf,
+    /// Whose gas is to run it.
+    #[arg(long, value_enum, default_value_t)]
+    gas: GasBackend,
+    /// Whose particles are to run it.
+    #[arg(long, value_enum, default_value_t)]
+    particles: ParticleBackend,
     /// Changes a key of the case, for example `--set time.acceleration=200`.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
-    let (case, prepared) = read_and_prepare(&arguments.case, &arguments.set)?;
+    let valid = ValidCase::open(&arguments.case, &arguments.set)?;
+    valid.honoured_by(Pairing {
+        gas: arguments.gas,
+        particles: arguments.particles,
+    })?;
+    let ValidCase {
+        case,
+        prepared,
+        void_fraction,
+    } = &valid;
     let particles = prepared.particles.id.len();
-    let void_fraction = prepared.void_fraction(&case)?;
-    say(crate::case::check_report(
-        &case,
+    say(check_report(
+        case,
         &prepared.mesh,
         particles,
-        void_fraction,
+        *void_fraction,
     ));
-    if let Some(text) = contacts::report(&case, &prepared.mesh, &prepared.particles) {
+    if let Some(text) = contacts::report(case, &prepared.mesh, &prepared.particles) {
         say(text);
     }
-    if let Err(error) = check_own_script(&case, &prepared) {
+    if let Err(error) = check_own_script(case, prepared) {
         say(format_args!("    not with LIGGGHTS: {}", chain(&error)));
     }
     Ok(exit::OK)

@@ -6,6 +6,7 @@ use crate::assembly::AssemblyError;
 pub(super) use crate::error_chain::chain;
 use crate::exit;
 use crate::simulation::SimulationError;
+use crate::valid::InvalidCase;
 
 /// Why a command failed: an exit code and what to tell the user.
 #[derive(Debug)]
@@ -43,5 +44,11 @@ impl From<SimulationError> for Failure {
             .map(|help| format!("\n  help: {help}"))
             .unwrap_or_default();
         Failure::new(error.exit_code(), chain(&error) + &remedy)
+    }
+}
+
+impl From<InvalidCase> for Failure {
+    fn from(error: InvalidCase) -> Self {
+        SimulationError::from(error).into()
     }
 }

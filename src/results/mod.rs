@@ -26,10 +26,21 @@ pub mod summary;
 pub mod voids;
 mod vtk;
 
+use calcine_coupler::mesh::Mesh;
+
+use crate::case::model::Case;
 pub use error::ResultsError;
 pub use recorder::{Recorder, RunInfo};
 pub use resume::clear_start;
 pub use summary::{Summary, Verdict};
+
+/// Refuses probes outside a mesh, and quantities of patches that it lacks.
+pub fn fits(case: &Case, mesh: &Mesh) -> Result<(), ResultsError> {
+    probe::sites(&case.probes, mesh)?;
+    case.quantities
+        .iter()
+        .try_for_each(|quantity| quantities::check(quantity, mesh))
+}
 
 /// Name of the summary in a result directory.
 pub const SUMMARY: &str = "summary.json";

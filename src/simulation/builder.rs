@@ -16,13 +16,16 @@ use crate::assembly::{
 };
 use crate::case::buoyancy;
 use crate::case::model::Case;
+use crate::laws::LawCatalogue;
 use crate::results::{self, Recorder, RunInfo};
+use crate::valid::ValidCase;
 
 /// A simulation that is not begun yet: the case, and how it is to be run.
 #[derive(Clone, Debug)]
 pub struct SimulationBuilder {
     case: PathBuf,
     set: Vec<String>,
+    laws: LawCatalogue,
     pairing: Pairing,
     starts: Option<SolverStarts>,
     transport: String,
@@ -54,6 +57,7 @@ impl SimulationBuilder {
         Self {
             case,
             set: Vec::new(),
+            laws: LawCatalogue::default(),
             pairing: Pairing::default(),
             starts: None,
             transport: "shared-memory".into(),
@@ -69,6 +73,13 @@ impl SimulationBuilder {
     #[must_use]
     pub fn set(mut self, assignment: impl Into<String>) -> Self {
         self.set.push(assignment.into());
+        self
+    }
+
+    /// The laws that the case may choose among; Calcine's own unless told.
+    #[must_use]
+    pub fn laws(mut self, laws: LawCatalogue) -> Self {
+        self.laws = laws;
         self
     }
 
@@ -142,10 +153,8 @@ impl SimulationBuilder {
 
     /// Reads and checks the case, makes mesh and particles, starts the solvers, and stands before the first window.
     pub fn start(self) -> Result<Simulation, SimulationError> {
-        let mut case = crate::case::read(&self.case, &self.set)?;
-        let prepared = PreparedCase::new(&case)?;
-        crate::case::settle(&mut case, &prepared.mesh);
-        self.start_prepared(&case, &prepared, Vec::new())
+        let valid = ValidCase::open_with(&self.case, &self.set, &self.laws)?;
+        self.start_prepared(&valid.case, &valid.prepared, Vec::new())
     }
 
     /// The same with what was made of the case before, and observers that see the run from its start.

@@ -12,6 +12,7 @@ use crate::assembly::AssemblyError;
 use crate::case::CaseErrors;
 use crate::exit;
 use crate::results::ResultsError;
+use crate::valid::InvalidCase;
 
 /// Why a simulation cannot be begun, or cannot go on; the words are those that `calcine run` prints.
 #[derive(Debug, Error)]
@@ -102,6 +103,16 @@ fn words(ending: &Ending) -> String {
 impl From<CaseErrors> for SimulationError {
     fn from(errors: CaseErrors) -> Self {
         Self::Case(errors)
+    }
+}
+
+impl From<InvalidCase> for SimulationError {
+    fn from(error: InvalidCase) -> Self {
+        match error {
+            InvalidCase::File(errors) => Self::Case(errors),
+            InvalidCase::Assembly(error) => Self::Assembly(error),
+            InvalidCase::Results(error) => Self::Results(error),
+        }
     }
 }
 

@@ -1,0 +1,82 @@
+//! The one place that says whether a case can be run: `calcine check` and everything that runs a case ask here.
+
+use std::path::Path;
+
+use thiserror::Error;
+
+use crate::assembly::{
+    AssemblyError, GasBackend, Pairing, PreparedCase, native_parts, write_inputs,
+};
+use crate::case::model::Case;
+use crate::case::{CaseErrors, read_with, settle};
+use crate::laws::LawCatalogue;
+use crate::results::{self, ResultsError};
+
+/// A case that is in order, with what is made of it before a run.
+#[derive(Debug)]
+pub struct ValidCase {
+    /// The case.
+    pub case: Case,
+    /// Its mesh and particles at the start.
+    pub prepared: PreparedCase,
+    /// Mean void fraction that the particles see at the start.
+    pub void_fraction: f64,
+}
+
+/// Why a case cannot be run.
+#[derive(Debug, Error)]
+pub enum InvalidCase {
+    /// Errors of its file, all at once.
+    #[error("{}", .0.render())]
+    File(#[from] CaseErrors),
+    /// A mesh, particles or a bed that cannot be made of it, or solvers that refuse them.
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
+    /// Results that cannot be written of it.
+    #[error(transparent)]
+    Results(#[from] ResultsError),
+}
+
+impl ValidCase {
+    /// Reads a case with `--set key=value` applied, makes its mesh and particles, and fits the bed into the mesh.
+    pub fn open(path: &Path, set: &[String]) -> Result<Self, InvalidCase> {
+        Self::open_with(path, set, &LawCatalogue::default())
+    }
+
+    /// The same of a case that may choose among these laws.
+    pub fn open_with(
+        path: &Path,
+        set: &[String],
+        laws: &LawCatalogue,
+    ) -> Result<Self, InvalidCase> {
+        let mut case = read_with(path, set, laws)?;
+        let prepared = PreparedCase::new(&case)?;
+        settle(&mut case, &prepared.mesh);
+        let void_fraction = prepared.void_fraction(&case)?;
+        results::fits(&case, &prepared.mesh)?;
+        Ok(Self {
+            case,
+            prepared,
+            void_fraction,
+        })
+    }
+
+    /// Refuses what the solvers of a pairing would refuse at their start: makes the native ones, and writes the inputs
+    /// of the external ones into a folder that is removed again.
+    pub fn honoured_by(&self, pairing: Pairing) -> Result<(), InvalidCase> {
+        native_parts(&self.case, &self.prepared, pairing)?;
+        let written = Pairing {
+            gas: match self.case.gas_held {
+                true => GasBackend::Native,
+                false => pairing.gas,
+            },
+            ..pairing
+        };
+        if !written.is_native() {
+            let place = std::env::temp_dir();
+            let folder = tempfile::tempdir_in(&place).map_err(ResultsError::file("create", &place));
+            write_inputs(&self.case, &self.prepared, written, folder?.path())?;
+        }
+        Ok(())
+    }
+}
