@@ -5,6 +5,7 @@ mod balances;
 mod bed;
 mod checkpoint;
 mod controls;
+mod error;
 mod exchange;
 mod hold;
 mod interior;
@@ -12,6 +13,7 @@ mod laws;
 mod meter;
 mod origin;
 mod particles;
+mod plan;
 mod population;
 mod resize;
 mod span;
@@ -21,12 +23,12 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use calcine_interior::HeatNetwork;
-use calcine_physics::Vec3;
-use thiserror::Error;
 
 pub use checkpoint::{CheckpointError, CheckpointPaths};
 pub use controls::{Control, ControlError};
+pub use error::RunError;
 pub use origin::{Origin, OriginError};
+pub use plan::Plan;
 pub use resize::{ContactStepLimit, LONGEST_STEP, TooLight};
 
 use balances::WindowBalances;
@@ -38,66 +40,18 @@ use meter::{Meter, Stage};
 use particles::{MotionInputs, MotionStage};
 use span::next_span;
 
-use crate::checkpoint::StateFileError;
-use crate::closures::{ClosureError, Closures};
+use crate::closures::Closures;
 use crate::error::PartError;
 use crate::exchange::ExchangeConvergence;
-use crate::feeds::FeedsAndOutlets;
-use crate::hold::Holds;
 use crate::ledger::{BalanceLine, Ledger};
-use crate::mapping::{MappingError, Method};
 use crate::mesh::Mesh;
-use crate::models::{ParticleModelError, ParticleModels, RestoreError};
-use crate::observer::{CommittedState, Observer, ObserverError, ParticleGasExchange, Timing};
-use crate::packing::PackingError;
+use crate::models::ParticleModels;
+use crate::observer::{CommittedState, Observer, ParticleGasExchange, Timing};
 use crate::part::{Gas, Particles};
-use crate::paths::{Paths, PathsSetup};
-use crate::smoother::{Smoother, SmootherError};
+use crate::paths::Paths;
+use crate::smoother::Smoother;
 use crate::supervisor::Supervisor;
-use crate::time::{Acceleration, Clocks, GasStorage, Ticks, TimeError, Window};
-
-/// When windows, checkpoints and the run end, and how exactly a window is exchanged.
-#[derive(Clone, Debug)]
-pub struct Plan {
-    /// End of the run, process time.
-    pub end: Ticks,
-    /// Length of a window, motion time.
-    pub motion_window: Ticks,
-    /// Acceleration factor over process time.
-    pub acceleration: Acceleration,
-    /// Over which clock the gas stores.
-    pub storage: GasStorage,
-    /// A checkpoint each so much process time.
-    pub checkpoint_every: Option<Ticks>,
-    /// A checkpoint each so much wall time.
-    pub checkpoint_wall: Option<Duration>,
-    /// Base mapping.
-    pub mapping: Method,
-    /// A window is repeated while more than this share of the exchange is misplaced.
-    pub exchange_tolerance: f64,
-    /// Attempts per window at most.
-    pub exchange_attempts: u32,
-    /// False for a gas that cannot go back to the start of a window: then there is one attempt at each.
-    pub repeats: bool,
-    /// Hash of the case, compared on resume.
-    pub case_hash: String,
-    /// Where checkpoints go.
-    pub checkpoint: CheckpointPaths,
-    /// True for each population that moves; empty where none does.
-    pub free: Vec<bool>,
-    /// When those that move are held.
-    pub holds: Holds,
-    /// Gravity in m/s².
-    pub gravity: Vec3,
-    /// Feeds and outlets.
-    pub feeds_and_outlets: FeedsAndOutlets,
-    /// Material of each population, for the heat between particles.
-    pub substance: Vec<usize>,
-    /// Heat between particles and to walls.
-    pub paths: PathsSetup,
-    /// How light particles that move may become by what reacts in them; `None` where none moves.
-    pub step_limit: Option<ContactStepLimit>,
-}
+use crate::time::{Clocks, Ticks, Window};
 
 /// How a run ended without an error.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -106,66 +60,6 @@ pub enum Ending {
     Finished,
     /// On the user's interrupt, with a checkpoint in this folder.
     Checkpointed(PathBuf),
-}
-
-/// A run that could not go on.
-#[derive(Debug, Error)]
-pub enum RunError {
-    /// A part failed.
-    #[error(transparent)]
-    Part(#[from] PartError),
-    /// Particles could not be mapped onto cells.
-    #[error(transparent)]
-    Mapping(#[from] MappingError),
-    /// The bed does not fit the mesh.
-    #[error(transparent)]
-    Smoother(#[from] SmootherError),
-    /// A law met a state that it is not defined for.
-    #[error("window {window}: {cause}")]
-    Closure {
-        /// Index of the window.
-        window: u64,
-        /// What the law said.
-        cause: ClosureError,
-    },
-    /// The inside of a particle that cannot be followed.
-    #[error("window {window}: {cause}")]
-    Interior {
-        /// Index of the window.
-        window: u64,
-        /// Which particle, and why.
-        cause: ParticleModelError,
-    },
-    /// Particles that their models do not take.
-    #[error(transparent)]
-    Models(#[from] ParticleModelError),
-    /// State of particles that cannot be taken up.
-    #[error(transparent)]
-    Restore(#[from] RestoreError),
-    /// A particle too light for the solver's time step.
-    #[error(transparent)]
-    TooLight(#[from] TooLight),
-    /// Something that cannot be set.
-    #[error(transparent)]
-    Control(#[from] ControlError),
-    /// A feed whose particles cannot be drawn.
-    #[error("feeds: {0}")]
-    Feed(#[from] PackingError),
-    /// The clock ended.
-    #[error(transparent)]
-    Time(#[from] TimeError),
-    /// An observer failed, for example because a disk is full.
-    #[error(transparent)]
-    Observer(#[from] ObserverError),
-    /// A checkpoint could not be written or read.
-    #[error(transparent)]
-    Checkpoint(#[from] CheckpointError),
-    /// Another run's results that this case cannot continue from.
-    #[error(transparent)]
-    Origin(#[from] OriginError),
-    /// A state file could not be written or read.
-    #[error(transparent)]
-    StateFile(#[from] StateFileError),
 }
 
 /// The parts that a run is made of.

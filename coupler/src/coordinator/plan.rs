@@ -1,0 +1,56 @@
+//! What a run is told beside its parts and laws.
+
+use std::time::Duration;
+
+use calcine_physics::Vec3;
+
+use super::checkpoint::CheckpointPaths;
+use super::resize::ContactStepLimit;
+use crate::feeds::FeedsAndOutlets;
+use crate::hold::Holds;
+use crate::mapping::Method;
+use crate::paths::PathsSetup;
+use crate::time::{Acceleration, GasStorage, Ticks};
+
+/// When windows, checkpoints and the run end, and how exactly a window is exchanged.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// End of the run, process time.
+    pub end: Ticks,
+    /// Length of a window, motion time.
+    pub motion_window: Ticks,
+    /// Acceleration factor over process time.
+    pub acceleration: Acceleration,
+    /// Over which clock the gas stores.
+    pub storage: GasStorage,
+    /// A checkpoint each so much process time.
+    pub checkpoint_every: Option<Ticks>,
+    /// A checkpoint each so much wall time.
+    pub checkpoint_wall: Option<Duration>,
+    /// Base mapping.
+    pub mapping: Method,
+    /// A window is repeated while more than this share of the exchange is misplaced.
+    pub exchange_tolerance: f64,
+    /// Attempts per window at most.
+    pub exchange_attempts: u32,
+    /// False for a gas that cannot go back to the start of a window: then there is one attempt at each.
+    pub repeats: bool,
+    /// Hash of the case, compared on resume.
+    pub case_hash: String,
+    /// Where checkpoints go.
+    pub checkpoint: CheckpointPaths,
+    /// True for each population that moves; empty where none does.
+    pub free: Vec<bool>,
+    /// When those that move are held.
+    pub holds: Holds,
+    /// Gravity in m/s².
+    pub gravity: Vec3,
+    /// Feeds and outlets.
+    pub feeds_and_outlets: FeedsAndOutlets,
+    /// Material of each population, for the heat between particles.
+    pub substance: Vec<usize>,
+    /// Heat between particles and to walls.
+    pub paths: PathsSetup,
+    /// How light particles that move may become by what reacts in them; `None` where none moves.
+    pub step_limit: Option<ContactStepLimit>,
+}
