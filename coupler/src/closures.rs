@@ -9,11 +9,15 @@ use calcine_physics::heat_transfer::HeatTransfer;
 use calcine_physics::local::LocalGas;
 use calcine_physics::mass_transfer;
 use calcine_physics::numbers::VoidFraction;
+use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::momentum_model::MomentumModel;
 use crate::part::{Bed, GasFields, ParticleFields};
 use crate::smoother::Operator;
+
+/// Particles that one thread takes at a time.
+const CHUNK: usize = 1024;
 
 /// The laws of a run.
 #[derive(Debug)]
@@ -197,30 +201,34 @@ impl Closures {
             return;
         };
         let species = mixture.names().len();
-        let mut diffusivities = vec![0.0; species];
         coefficients.film.resize(species * particles.len(), 0.0);
-        for (p, &pressure) in pressure.iter().enumerate() {
-            let own = p * species..(p + 1) * species;
-            let composition = &sampled_gas.composition[own.clone()];
-            let temperature = sampled_gas.temperature[p];
-            let Ok(void_fraction) = VoidFraction::new(sampled_gas.void_fraction[p]) else {
-                continue;
-            };
-            let local = LocalGas {
-                void_fraction,
-                density: sampled_gas.density[p],
-                viscosity: self.gas.viscosity(temperature, composition),
-                conductivity: 0.0,
-                heat_capacity: self.gas.heat_capacity(temperature, composition),
-                slip: (sampled_gas.velocity[p] - particles.velocity[p] / acceleration).norm(),
-            };
-            mixture.diffusivities(pressure, temperature, composition, &mut diffusivities);
-            let diameter = 2.0 * particles.radius[p];
-            for (film, diffusivity) in coefficients.film[own].iter_mut().zip(&diffusivities) {
-                let law = &*self.mass_transfer;
-                *film = mass_transfer::coefficient(law, &local, *diffusivity, diameter);
+        let chunks = coefficients.film.par_chunks_mut((species * CHUNK).max(1));
+        chunks.enumerate().for_each(|(chunk, films)| {
+            let mut diffusivities = vec![0.0; species];
+            for (row, film) in films.chunks_exact_mut(species).enumerate() {
+                let p = chunk * CHUNK + row;
+                let own = p * species..(p + 1) * species;
+                let composition = &sampled_gas.composition[own];
+                let temperature = sampled_gas.temperature[p];
+                let Ok(void_fraction) = VoidFraction::new(sampled_gas.void_fraction[p]) else {
+                    continue;
+                };
+                let local = LocalGas {
+                    void_fraction,
+                    density: sampled_gas.density[p],
+                    viscosity: self.gas.viscosity(temperature, composition),
+                    conductivity: 0.0,
+                    heat_capacity: self.gas.heat_capacity(temperature, composition),
+                    slip: (sampled_gas.velocity[p] - particles.velocity[p] / acceleration).norm(),
+                };
+                mixture.diffusivities(pressure[p], temperature, composition, &mut diffusivities);
+                let diameter = 2.0 * particles.radius[p];
+                for (film, diffusivity) in film.iter_mut().zip(&diffusivities) {
+                    let law = &*self.mass_transfer;
+                    *film = mass_transfer::coefficient(law, &local, *diffusivity, diameter);
+                }
             }
-        }
+        });
     }
 
     /// Evaluates all laws. Slip is u − v/AF (requirements TSM-7).
@@ -232,58 +240,78 @@ impl Closures {
         coefficients: &mut CouplingCoefficients,
     ) -> Result<(), ClosureError> {
         let count = particles.len();
-        let species = self.gas.species().len();
         coefficients.drag.resize(count, 0.0);
         coefficients.conductance.resize(count, 0.0);
         coefficients.slip.resize(count, 0.0);
         coefficients.gas_conductivity.resize(count, 0.0);
-        for p in 0..count {
-            let id = particles.id[p];
-            let temperature = sampled_gas.temperature[p];
-            let void_fraction = VoidFraction::new(sampled_gas.void_fraction[p]).map_err(|_| {
-                ClosureError::VoidFraction {
+        let chunks = (coefficients.drag.par_chunks_mut(CHUNK))
+            .zip(coefficients.conductance.par_chunks_mut(CHUNK))
+            .zip(coefficients.slip.par_chunks_mut(CHUNK))
+            .zip(coefficients.gas_conductivity.par_chunks_mut(CHUNK));
+        let outcomes: Vec<Result<(), ClosureError>> = chunks
+            .enumerate()
+            .map(|(chunk, (((drag, conductance), slip), gas_conductivity))| {
+                for row in 0..drag.len() {
+                    let p = chunk * CHUNK + row;
+                    [
+                        drag[row],
+                        conductance[row],
+                        slip[row],
+                        gas_conductivity[row],
+                    ] = self.of_particle(p, sampled_gas, particles, acceleration)?;
+                }
+                Ok(())
+            })
+            .collect();
+        // The error of the first particle that has one.
+        outcomes.into_iter().collect()
+    }
+
+    /// Coefficients of drag and heat, slip and the gas' conductivity of one particle.
+    fn of_particle(
+        &self,
+        p: usize,
+        sampled_gas: &SampledGas,
+        particles: &ParticleFields<'_>,
+        acceleration: f64,
+    ) -> Result<[f64; 4], ClosureError> {
+        let (id, species) = (particles.id[p], self.gas.species().len());
+        let temperature = sampled_gas.temperature[p];
+        let value = sampled_gas.void_fraction[p];
+        let void_fraction =
+            VoidFraction::new(value).map_err(|_| ClosureError::VoidFraction { id, value })?;
+        let composition = &sampled_gas.composition[p * species..(p + 1) * species];
+        let local = LocalGas {
+            void_fraction,
+            density: sampled_gas.density[p],
+            viscosity: self.gas.viscosity(temperature, composition),
+            conductivity: self.gas.conductivity(temperature, composition),
+            heat_capacity: self.gas.heat_capacity(temperature, composition),
+            slip: (sampled_gas.velocity[p] - particles.velocity[p] / acceleration).norm(),
+        };
+        let diameter = 2.0 * particles.radius[p];
+        let drag = self.drag.coefficient(&local, diameter);
+        // h A = (Nu κ/d) π d²
+        let conductance =
+            self.heat_transfer.nusselt(&local, diameter) * local.conductivity * PI * diameter;
+        let laws = [
+            (self.drag.name(), drag, "kg/s"),
+            (self.heat_transfer.name(), conductance, "W/K"),
+        ];
+        for (law, value, unit) in laws {
+            if !(value.is_finite() && value >= 0.0) {
+                let slip = local.slip;
+                return Err(ClosureError::Coefficient {
+                    law,
                     id,
-                    value: sampled_gas.void_fraction[p],
-                }
-            })?;
-            let composition = &sampled_gas.composition[p * species..(p + 1) * species];
-            let local = LocalGas {
-                void_fraction,
-                density: sampled_gas.density[p],
-                viscosity: self.gas.viscosity(temperature, composition),
-                conductivity: self.gas.conductivity(temperature, composition),
-                heat_capacity: self.gas.heat_capacity(temperature, composition),
-                slip: (sampled_gas.velocity[p] - particles.velocity[p] / acceleration).norm(),
-            };
-            let diameter = 2.0 * particles.radius[p];
-            let drag = self.drag.coefficient(&local, diameter);
-            // h A = (Nu κ/d) π d²
-            let conductance =
-                self.heat_transfer.nusselt(&local, diameter) * local.conductivity * PI * diameter;
-            let laws = [
-                (self.drag.name(), drag, "kg/s"),
-                (self.heat_transfer.name(), conductance, "W/K"),
-            ];
-            for (law, value, unit) in laws {
-                if !(value.is_finite() && value >= 0.0) {
-                    let slip = local.slip;
-                    return Err(ClosureError::Coefficient {
-                        law,
-                        id,
-                        value,
-                        unit,
-                        temperature,
-                        slip,
-                    });
-                }
+                    value,
+                    unit,
+                    temperature,
+                    slip,
+                });
             }
-            coefficients.drag[p] = self
-                .momentum
-                .coefficient(drag, sampled_gas.void_fraction[p]);
-            coefficients.conductance[p] = conductance;
-            coefficients.slip[p] = local.slip;
-            coefficients.gas_conductivity[p] = local.conductivity;
         }
-        Ok(())
+        let drag = self.momentum.coefficient(drag, value);
+        Ok([drag, conductance, local.slip, local.conductivity])
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::graph::Graph;
 use super::parallel;
 use super::scratch::{Kept, Scratch};
-use super::sparse::Sparse;
+use super::sparse::{Sparse, Stencil};
 
 /// Diffusion over a length ℓ: F = Xᵐ with X = I − τ L V⁻¹ and mτ = ℓ², L the Laplacian of the
 /// conductances and V the cell volumes. It approaches the heat kernel of variance 2ℓ² per axis, as the
@@ -23,7 +23,7 @@ pub(super) struct Diffusion {
     /// Share of each of Chebyshev's polynomials, the first that of T₀.
     series: Arc<Vec<f64>>,
     /// 2τ V⁻¹ times the conductances: what a product with Yᵀ takes of each neighbour's difference.
-    shares: Arc<Sparse>,
+    shares: Arc<Stencil>,
 }
 
 /// What of the series may be left out.
@@ -75,7 +75,7 @@ impl Diffusion {
         Ok(Self {
             graph,
             series: Arc::new(series(needed as u32)),
-            shares: Arc::new(shares.padded()),
+            shares: Arc::new(Stencil::new(&shares)),
         })
     }
 
@@ -109,12 +109,10 @@ impl Diffusion {
     /// From T_{k−1} f in `last` and T_{k−2} f in `next` (k > 1) to T_k f in `next`, its share added to the sum.
     fn polynomial<T: Kept>(&self, k: usize, last: &[T], next: &mut [T], sum: &mut [T], share: f64) {
         let shares = &self.shares;
+        let factor = if k == 1 { 1.0 } else { 2.0 };
         parallel::update_both(next, sum, |cell, next, sum| {
-            let own = last[cell];
-            let mut product = own;
-            for (neighbour, share) in shares.row(cell) {
-                product += (last[neighbour] - own) * share;
-            }
+            let mut product = last[cell];
+            product += shares.differences(cell, last);
             *next = if k == 1 {
                 product
             } else {
@@ -122,6 +120,11 @@ impl Diffusion {
             };
             *sum += *next * share;
         });
+        for (place, &cell) in shares.long.iter().enumerate() {
+            let rest = shares.differences_beyond(place, last) * factor;
+            next[cell as usize] += rest;
+            sum[cell as usize] += rest * share;
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use calcine_physics::Vec3;
 
 use super::diffusion::Diffusion;
 use super::kernel::Kernel;
-use super::scratch::{Kept, Scratch};
+use super::scratch::{Kept, Recent, Scratch};
 use crate::mapping::Weights;
 
 /// W = F S W₀ for the bed that it was made for. Every column sums to 1: what particles spread
@@ -16,6 +16,7 @@ pub struct Operator {
     diffusion: Option<Diffusion>,
     solid_fraction: Vec<f64>,
     scratch: Scratch,
+    recent: Recent,
 }
 
 impl Operator {
@@ -32,6 +33,7 @@ impl Operator {
             kernel,
             diffusion,
             scratch: Scratch::default(),
+            recent: Recent::default(),
         };
         let mut fraction = vec![0.0; operator.cells()];
         operator.spread(solid_volume, &mut fraction);
@@ -87,7 +89,12 @@ impl Operator {
 
     /// Wᵀ y: what each particle sees of a field of cells.
     pub fn sample(&self, per_cell: &[f64], per_particle: &mut [f64]) {
-        self.sample_any(per_cell, per_particle);
+        if self.kernel.is_none() && self.diffusion.is_none() {
+            return self.sample_any(per_cell, per_particle);
+        }
+        self.recent.sample(per_cell, per_particle, |field, seen| {
+            self.sample_any(field, seen);
+        });
     }
 
     /// W x for vectors.
@@ -116,8 +123,11 @@ impl Operator {
     }
 
     fn sample_any<T: Kept>(&self, per_cell: &[T], per_particle: &mut [T]) {
-        if per_cell.iter().all(|value| *value == T::ZERO) {
-            per_particle.fill(T::ZERO);
+        // A uniform field is sampled as it is.
+        if let Some(first) = per_cell.first()
+            && per_cell.iter().all(|value| value == first)
+        {
+            per_particle.fill(*first);
             return;
         }
         if self.kernel.is_none() && self.diffusion.is_none() {

@@ -169,3 +169,64 @@ impl Sparse {
         matrix
     }
 }
+
+/// A square matrix that is multiplied by differences: six entries in each row, those that some rows have beyond in
+/// a matrix of their own. Loops over rows of a length that is known when they are compiled need no branches.
+#[derive(Clone, Debug)]
+pub(super) struct Stencil {
+    columns: Vec<[u32; 6]>,
+    values: Vec<[f64; 6]>,
+    /// Rows with more entries, ascending, and these entries.
+    pub long: Vec<u32>,
+    beyond: Sparse,
+}
+
+impl Stencil {
+    pub fn new(matrix: &Sparse) -> Self {
+        let rows = matrix.rows();
+        let (mut columns, mut values) = (vec![[0; 6]; rows], vec![[0.0; 6]; rows]);
+        let (mut long, mut beyond) = (Vec::new(), Sparse::with_capacity(0, 0));
+        for row in 0..rows {
+            columns[row] = [row as u32; 6];
+            for (place, (column, value)) in matrix.row(row).enumerate() {
+                if place < 6 {
+                    columns[row][place] = column as u32;
+                    values[row][place] = value;
+                } else {
+                    beyond.push(column as u32, value);
+                }
+            }
+            if matrix.row(row).count() > 6 {
+                long.push(row as u32);
+                beyond.end_row();
+            }
+        }
+        Self {
+            columns,
+            values,
+            long,
+            beyond,
+        }
+    }
+
+    /// Σ a_rj (x_j − x_r) over the first entries of a row.
+    #[inline(always)]
+    pub fn differences<T: Amount>(&self, row: usize, x: &[T]) -> T {
+        let (own, columns, values) = (x[row], &self.columns[row], &self.values[row]);
+        let mut sum = T::ZERO;
+        for k in 0..6 {
+            sum += (x[columns[k] as usize] - own) * values[k];
+        }
+        sum
+    }
+
+    /// The same over what the row at a place of `long` has beyond them.
+    pub fn differences_beyond<T: Amount>(&self, place: usize, x: &[T]) -> T {
+        let own = x[self.long[place] as usize];
+        let mut sum = T::ZERO;
+        for (column, value) in self.beyond.row(place) {
+            sum += (x[column] - own) * value;
+        }
+        sum
+    }
+}
