@@ -32,8 +32,10 @@ const BETWEEN: usize = 3;
 
 /// All tables of runs.
 pub fn tables(workspace: &Workspace, native: bool) -> TaskResult<Vec<Table>> {
-    let mut tables = vec![phases(workspace)?];
+    let mut tables = vec![phases(workspace)?, fine_and_fluidised(workspace, &[])?];
     if !native {
+        let pairing = ["--gas", "openfoam", "--particles", "liggghts"];
+        tables.push(fine_and_fluidised(workspace, &pairing)?);
         tables.push(between(workspace)?);
         tables.push(gases(workspace)?);
     }
@@ -46,7 +48,7 @@ fn sizes() -> &'static [[u32; 3]] {
     &SIZES[..SIZES.len() - usize::from(!large)]
 }
 
-/// The summary of a run of a shipped case, its results below the target folder.
+/// The summary of a run of a case, its file below the workspace's folder, its results below the target folder.
 fn summary(
     workspace: &Workspace,
     (case, name): (&str, &str),
@@ -59,7 +61,7 @@ fn summary(
     let mut command = Command::new(program.join("calcine"));
     command
         .arg("run")
-        .arg(workspace.root.join("cases").join(case))
+        .arg(workspace.root.join(case))
         .arg("--quiet")
         .args(words)
         .arg("--out")
@@ -107,7 +109,11 @@ fn phases(workspace: &Workspace) -> TaskResult<Table> {
     ]);
     for size in sizes() {
         let name = format!("heated-bed-{}-{}", size[0], size[1]);
-        let run = summary(workspace, ("heated-bed.toml", &name), &heated_bed(*size))?;
+        let run = summary(
+            workspace,
+            ("cases/heated-bed.toml", &name),
+            &heated_bed(*size),
+        )?;
         add_phases(&mut table, &run, true)?;
     }
     Ok(table)
@@ -148,6 +154,43 @@ fn phase_rows(summary: &Json, frozen: bool) -> Option<Vec<[String; 6]>> {
     Some(times.into_iter().map(row).collect())
 }
 
+/// Beds in which mapping or exchange weigh most. Natively: 2000 particles held in 78 k cells much smaller than they are,
+/// without splitting of time; with any pairing: a flat fluidised bed in windows of 0.2 ms.
+fn fine_and_fluidised(workspace: &Workspace, pairing: &[&str]) -> TaskResult<Table> {
+    let title = match pairing.is_empty() {
+        true => "fine cells, and fluidised, natively",
+        false => "fluidised bed with OpenFOAM and LIGGGHTS",
+    };
+    let mut table = Table::new([
+        title,
+        "cells",
+        "particles",
+        "wall time per window",
+        "per cell",
+        "share",
+    ]);
+    if pairing.is_empty() {
+        let settings = [
+            "mesh.cylinder.cells=[32, 76]",
+            "time.acceleration=1",
+            "time.motion_window=2 ms",
+            "time.end=40 ms",
+        ];
+        let words = set(&settings.map(str::to_owned));
+        let case = ("cases/heated-bed.toml", "heated-bed-fine");
+        add_phases(&mut table, &summary(workspace, case, &words)?, true)?;
+    }
+    let case = "coupler/benches/cases/flat-bed.toml";
+    let name = format!("flat-bed{}", pairing.concat());
+    let words: Vec<String> = pairing.iter().map(|&word| word.into()).collect();
+    add_phases(
+        &mut table,
+        &summary(workspace, (case, &name), &words)?,
+        false,
+    )?;
+    Ok(table)
+}
+
 /// 100 k cells of OpenFOAM and 50 k moving beads of LIGGGHTS: the shipped moving bed with beads of 1.7 mm in
 /// cells of 1.5 mm, so that the smoother and the short diffusion work too.
 fn between(workspace: &Workspace) -> TaskResult<Table> {
@@ -174,7 +217,7 @@ fn between(workspace: &Workspace) -> TaskResult<Table> {
     words.extend(["--gas", "openfoam", "--particles", "liggghts"].map(str::to_owned));
     let run = summary(
         workspace,
-        ("moving-bed.toml", "moving-bed-100k-50k"),
+        ("cases/moving-bed.toml", "moving-bed-100k-50k"),
         &words,
     )?;
     add_phases(&mut table, &run, false)?;
@@ -238,7 +281,7 @@ fn gases(workspace: &Workspace) -> TaskResult<Table> {
                 let name = format!("{gas}-{}-{}-{cores}", size[0], size[1]);
                 let mut all = heated_bed(*size);
                 all.extend_from_slice(words);
-                let read = summary(workspace, ("heated-bed.toml", &name), &all)?;
+                let read = summary(workspace, ("cases/heated-bed.toml", &name), &all)?;
                 Gas::of(&read).ok_or_else(|| Stop::new("a summary lacks the gas' times"))
             };
             let number = cores.to_string();
