@@ -315,3 +315,82 @@ impl Closures {
         Ok([drag, conductance, local.slip, local.conductivity])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use calcine_physics::drag::ErgunWenYu;
+    use calcine_physics::gas_model::ConstantGas;
+    use calcine_physics::heat_transfer::Gunn;
+
+    /// Coefficients on some threads of three chunks of particles, the last not full, that all differ.
+    fn evaluated(
+        threads: usize,
+        spoil: impl Fn(&mut SampledGas),
+    ) -> Result<CouplingCoefficients, ClosureError> {
+        let closures = Closures {
+            gas: GasModel::Constant(ConstantGas {
+                density: 1.2,
+                heat_capacity: 1000.0,
+                viscosity: 1.8e-5,
+                conductivity: 0.026,
+            }),
+            drag: Box::new(ErgunWenYu),
+            momentum: MomentumModel::A,
+            heat_transfer: Box::new(Gunn),
+            mass_transfer: Box::new(Gunn),
+        };
+        let count = 2 * CHUNK + 700;
+        let of = |scale: f64| -> Vec<f64> {
+            let share = |p: usize| (p as f64 * 0.618_033_988_749_895 * scale).fract();
+            (0..count).map(share).collect()
+        };
+        let mut gas = SampledGas {
+            temperature: of(1.0).iter().map(|x| 300.0 + x).collect(),
+            density: of(2.0).iter().map(|x| 1.0 + x).collect(),
+            composition: Vec::new(),
+            velocity: of(3.0).iter().map(|x| Vec3::new(*x, 0.1, 1.0)).collect(),
+            void_fraction: of(4.0).iter().map(|x| 0.4 + 0.5 * x).collect(),
+        };
+        spoil(&mut gas);
+        let (ids, zero) = (Vec::from_iter(0..count as u64), vec![Vec3::zeros(); count]);
+        let (radius, population) = (vec![1e-3; count], vec![0; count]);
+        let particles = ParticleFields {
+            id: &ids,
+            population: &population,
+            position: &zero,
+            velocity: &zero,
+            angular_velocity: &zero,
+            radius: &radius,
+            mass: &radius,
+        };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let mut coefficients = CouplingCoefficients::default();
+        pool.build()
+            .unwrap()
+            .install(|| closures.evaluate(&gas, &particles, 1.0, &mut coefficients))?;
+        Ok(coefficients)
+    }
+
+    #[test]
+    fn coefficients_are_the_same_bits_on_one_thread_and_on_two() {
+        let [one, two] = [1, 2].map(|threads| evaluated(threads, |_| {}).unwrap());
+        let bits = |values: &[f64]| -> Vec<u64> { values.iter().map(|x| x.to_bits()).collect() };
+        assert_eq!(bits(&one.drag), bits(&two.drag));
+        assert_eq!(bits(&one.conductance), bits(&two.conductance));
+        assert_eq!(bits(&one.slip), bits(&two.slip));
+    }
+
+    #[test]
+    fn the_first_particle_that_a_law_refuses_is_named_on_any_number_of_threads() {
+        let refused = |gas: &mut SampledGas| {
+            gas.void_fraction[CHUNK + 3] = 1.5;
+            gas.void_fraction[2 * CHUNK + 5] = -1.0;
+        };
+        for threads in [1, 2] {
+            let error = evaluated(threads, refused).unwrap_err();
+            let (id, value) = (CHUNK as u64 + 3, 1.5);
+            assert_eq!(error, ClosureError::VoidFraction { id, value });
+        }
+    }
+}

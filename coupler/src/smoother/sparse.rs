@@ -230,3 +230,30 @@ impl Stencil {
         sum
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stencil_takes_the_differences_of_short_and_long_rows_alike() {
+        // Rows of 0 to 9 entries.
+        let matrix = Sparse::build(10, 5, |row, matrix| {
+            for k in 0..row {
+                matrix.push(((row + 1 + k) % 10) as u32, (row * 10 + k) as f64);
+            }
+        });
+        let x: Vec<f64> = (0..10).map(|i| f64::from(i * i)).collect();
+        let stencil = Stencil::new(&matrix);
+        assert_eq!(stencil.long, [7, 8, 9]);
+        for row in 0..10 {
+            let wanted: f64 = matrix.row(row).map(|(c, a)| a * (x[c] - x[row])).sum();
+            let mut found = stencil.differences(row, &x);
+            if let Some(place) = stencil.long.iter().position(|&long| long as usize == row) {
+                found += stencil.differences_beyond(place, &x);
+            }
+            // Whole numbers: exact.
+            assert_eq!(found, wanted, "row {row}");
+        }
+    }
+}
