@@ -3,6 +3,8 @@
 pub mod boundary_value;
 pub mod checkpoint;
 pub mod closures;
+#[cfg(feature = "conformance")]
+pub mod conformance;
 pub mod contacts;
 pub mod coordinator;
 pub mod error;

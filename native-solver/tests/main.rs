@@ -4,6 +4,7 @@ mod boxes;
 mod burner;
 mod column;
 mod common;
+mod conformance;
 mod dem_beds;
 mod dem_impacts;
 mod dem_momentum;

@@ -29,6 +29,7 @@ use calcine_coupler::physics::thermo::mixture::MOST_SPECIES;
 use rayon::prelude::*;
 
 use super::attempt::{AttemptFrame, CellProperties};
+use super::failure::{GasFailure, Place};
 use super::state::GasState;
 use super::stirring::reacting_share;
 use crate::numerics::parallel::{fill, largest};
@@ -108,7 +109,7 @@ pub fn is_dual(frame: &AttemptFrame<'_>) -> bool {
 impl CellChemistry {
     /// Takes up the start of an attempt, which may continue the one before: rates of the window's start are the
     /// same in all its attempts.
-    pub fn begin(&mut self, frame: &AttemptFrame<'_>, continues: bool) -> Result<(), String> {
+    pub fn begin(&mut self, frame: &AttemptFrame<'_>, continues: bool) -> Result<(), GasFailure> {
         self.fresh = false;
         self.change = 0.0;
         let Some(gas) = frame.chemistry.reacting() else {
@@ -135,7 +136,7 @@ impl CellChemistry {
     }
 
     /// Follows the fields, where a window's reactions take pseudo-steps.
-    pub fn follow(&mut self, frame: &AttemptFrame<'_>, now: &GasState) -> Result<(), String> {
+    pub fn follow(&mut self, frame: &AttemptFrame<'_>, now: &GasState) -> Result<(), GasFailure> {
         match frame.chemistry.reacting() {
             Some(gas) if is_dual(frame) && !self.fresh => self.evaluate(frame, gas, now),
             _ => Ok(()),
@@ -147,7 +148,7 @@ impl CellChemistry {
         frame: &AttemptFrame<'_>,
         gas: &ReactingGas,
         at: &GasState,
-    ) -> Result<(), String> {
+    ) -> Result<(), GasFailure> {
         let species = frame.species();
         let dual = is_dual(frame);
         self.spans.resize(frame.grid.cells(), 0.0);
@@ -179,15 +180,15 @@ impl CellChemistry {
             for (rate, (after, before)) in rates.iter_mut().zip(after.iter().zip(before.iter())) {
                 *rate = share * (after - before) / span;
             }
-            reacted.map(|_| ()).map_err(|error| {
-                let place = frame.grid.centre[cell];
-                format!(
-                    "the reactions of the gas in cell {cell} at ({:.6}, {:.6}, {:.6}) m: {error}",
-                    place.x, place.y, place.z
-                )
+            reacted.map(|_| ()).map_err(|cause| GasFailure::Reactions {
+                place: Place {
+                    cell,
+                    centre: frame.grid.centre[cell],
+                },
+                cause,
             })
         };
-        let failed: Vec<String> = self
+        let failed: Vec<GasFailure> = self
             .rates
             .par_chunks_mut(GRAIN * species)
             .enumerate()
@@ -199,7 +200,7 @@ impl CellChemistry {
             .collect();
         self.fresh = true;
         match failed.into_iter().next() {
-            Some(words) => Err(words),
+            Some(failure) => Err(failure),
             None => Ok(()),
         }
     }

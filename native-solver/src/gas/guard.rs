@@ -2,6 +2,7 @@
 
 use calcine_coupler::physics::Vec3;
 
+use super::failure::{GasFailure, Place};
 use super::state::GasState;
 use crate::numerics::parallel::largest;
 
@@ -11,9 +12,8 @@ const HIGHEST_TEMPERATURE: f64 = 1e4;
 /// Above this speed in m/s, some thirty times that of sound in cold air, neither does.
 const HIGHEST_SPEED: f64 = 1e4;
 
-/// What is wrong with an iterate's fields, in words: what is not a number, or a temperature that no
-/// property is defined for; `None` where nothing is.
-pub fn nonsense(now: &GasState, centre: &[Vec3]) -> Option<String> {
+/// Refuses an iterate's fields that are not finite, or a temperature that no property is defined for.
+pub fn nonsense(now: &GasState, centre: &[Vec3]) -> Result<(), GasFailure> {
     let (cell, strangeness) = largest(centre.len(), |cell| {
         let sum = now.temperature[cell] + now.velocity[cell].sum() + now.pressure[cell];
         if now.temperature[cell] > 0.0 && (sum + now.mass[cell]).is_finite() {
@@ -23,32 +23,35 @@ pub fn nonsense(now: &GasState, centre: &[Vec3]) -> Option<String> {
         }
     });
     if strangeness == 0.0 {
-        return None;
+        return Ok(());
     }
-    complaint(now, centre).or_else(|| {
-        let place = centre[cell];
-        Some(format!(
-            "diverged: fields that are not finite in cell {cell} at ({:.6}, {:.6}, {:.6}) m; \
-             a shorter `motion_window` may help",
-            place.x, place.y, place.z
-        ))
+    complaint(now, centre)?;
+    Err(GasFailure::NotFinite {
+        place: Place {
+            cell,
+            centre: centre[cell],
+        },
     })
 }
 
-/// What is wrong with an attempt's fields, in words; `None` where nothing is.
-pub fn complaint(now: &GasState, centre: &[Vec3]) -> Option<String> {
+/// Refuses an attempt's fields that no gas of this model can have.
+pub fn complaint(now: &GasState, centre: &[Vec3]) -> Result<(), GasFailure> {
     let cells = centre.len();
     let worst = |strangeness: &(dyn Fn(usize) -> f64 + Sync)| {
         let (cell, value) = largest(cells, strangeness);
         (value.is_nan() || value > 1.0).then_some(cell)
     };
-    let say = |field: &str, value: String, cell: usize| {
-        let place = centre[cell];
-        Some(format!(
-            "diverged: {field} of {value} in cell {cell} at ({:.6}, {:.6}, {:.6}) m; \
-             a shorter `motion_window` may help",
-            place.x, place.y, place.z
-        ))
+    let say = |field, value, unit, cell: usize| {
+        let place = Place {
+            cell,
+            centre: centre[cell],
+        };
+        Err(GasFailure::OutOfRange {
+            field,
+            value,
+            unit,
+            place,
+        })
     };
     // Each measure is at most 1 where all is well, larger the worse it is, and NaN where it must be.
     let mass = |cell: usize| {
@@ -75,20 +78,16 @@ pub fn complaint(now: &GasState, centre: &[Vec3]) -> Option<String> {
         }
     };
     if let Some(cell) = worst(&temperature) {
-        return say("temperature", format!("{} K", now.temperature[cell]), cell);
+        return say("temperature", now.temperature[cell], "K", cell);
     }
     if let Some(cell) = worst(&speed) {
-        return say("speed", format!("{} m/s", now.velocity[cell].norm()), cell);
+        return say("speed", now.velocity[cell].norm(), "m/s", cell);
     }
     if let Some(cell) = worst(&pressure) {
-        return say(
-            "relative pressure",
-            format!("{} Pa", now.pressure[cell]),
-            cell,
-        );
+        return say("relative pressure", now.pressure[cell], "Pa", cell);
     }
     if let Some(cell) = worst(&mass) {
-        return say("gas mass", format!("{} kg", now.mass[cell]), cell);
+        return say("gas mass", now.mass[cell], "kg", cell);
     }
-    None
+    Ok(())
 }

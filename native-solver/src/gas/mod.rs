@@ -8,6 +8,7 @@ mod chemistry;
 mod continuation;
 mod enthalpy;
 mod error;
+mod failure;
 mod guard;
 mod momentum;
 mod outer;
@@ -36,6 +37,8 @@ use calcine_coupler::time::Window;
 use attempt::AttemptFrame;
 use boundary::Boundaries;
 pub use error::NativeError;
+pub use failure::GasFailure;
+use failure::Place;
 use outer::Equations;
 use state::GasState;
 pub(crate) use state::{flat, vectors};
@@ -146,8 +149,14 @@ impl NativeGas {
         PartError::new(self.about.name.clone(), kind, message)
     }
 
+    /// The failure of an attempt.
+    fn failed(&self, cause: GasFailure) -> PartError {
+        self.failure(cause.kind(), cause.to_string())
+            .caused_by(cause)
+    }
+
     /// Eddies over the motion span of the window that is committed, if there is one.
-    fn advance_eddies(&mut self) -> Result<(), String> {
+    fn advance_eddies(&mut self) -> Result<(), GasFailure> {
         let (Some(eddies), Some(window)) = (&mut self.eddies, self.attempted) else {
             return Ok(());
         };
@@ -163,7 +172,7 @@ impl NativeGas {
         eddies.advance(&step, &mut self.equations.krylov, &mut self.now)
     }
 
-    fn check_inputs(&self, bed: &Bed, exchange: &CellExchange) -> Result<(), String> {
+    fn check_inputs(&self, bed: &Bed, exchange: &CellExchange) -> Result<(), GasFailure> {
         let cells = self.mesh.cells();
         for (field, found) in [
             ("void fraction", bed.void_fraction.len()),
@@ -173,7 +182,11 @@ impl NativeGas {
             ("heat source", exchange.heat_source.len()),
         ] {
             if found != cells {
-                return Err(format!("the {field} has {found} values for {cells} cells"));
+                return Err(GasFailure::Length {
+                    field,
+                    found,
+                    cells,
+                });
             }
         }
         let species = &exchange.species;
@@ -188,29 +201,27 @@ impl NativeGas {
         ] {
             let odd = list.iter().find(|value| !value.is_finite());
             if list.len() != wanted || odd.is_some() {
-                return Err(format!(
-                    "the {field} of species has {} values of {wanted}, {} among them",
-                    list.len(),
-                    odd.copied().unwrap_or_default()
-                ));
+                return Err(GasFailure::Species {
+                    field,
+                    found: list.len(),
+                    wanted,
+                    odd: odd.copied().unwrap_or_default(),
+                });
             }
         }
-        let place = |cell: usize| {
-            let centre = self.grid.centre[cell];
-            format!(
-                "cell {cell} at ({:.6}, {:.6}, {:.6}) m",
-                centre.x, centre.y, centre.z
-            )
+        let place = |cell: usize| Place {
+            cell,
+            centre: self.grid.centre[cell],
         };
         let finite = |value: f64| value.is_finite();
         let coefficient = |value: f64| value.is_finite() && value >= 0.0;
         for cell in 0..cells {
             let pores = bed.void_fraction[cell];
             if !(pores > 0.0 && pores <= 1.0) {
-                let place = place(cell);
-                return Err(format!(
-                    "a void fraction of {pores} in {place}; it must be in (0, 1]"
-                ));
+                return Err(GasFailure::VoidFraction {
+                    value: pores,
+                    place: place(cell),
+                });
             }
             let source = exchange.drag_source[cell];
             let allowed = coefficient(exchange.drag_coefficient[cell])
@@ -218,15 +229,13 @@ impl NativeGas {
                 && finite(exchange.heat_source[cell])
                 && source.iter().all(|&value| finite(value));
             if !allowed {
-                return Err(format!(
-                    "an exchange of {} kg/s, {} N, {} W/K, {} W in {}; coefficients must be \
-                     finite and not negative",
-                    exchange.drag_coefficient[cell],
-                    source.norm(),
-                    exchange.heat_coefficient[cell],
-                    exchange.heat_source[cell],
-                    place(cell)
-                ));
+                return Err(GasFailure::Exchange {
+                    drag_coefficient: exchange.drag_coefficient[cell],
+                    drag_source: source.norm(),
+                    heat_coefficient: exchange.heat_coefficient[cell],
+                    heat_source: exchange.heat_source[cell],
+                    place: place(cell),
+                });
             }
         }
         Ok(())
@@ -239,8 +248,7 @@ impl Part for NativeGas {
     }
 
     fn commit(&mut self) -> Result<(), PartError> {
-        self.advance_eddies()
-            .map_err(|words| self.failure(FailureKind::Diverged, words))?;
+        self.advance_eddies().map_err(|cause| self.failed(cause))?;
         self.committed.take(&self.now);
         self.started = !self.committed.mass.is_empty();
         self.attempted = None;
@@ -301,10 +309,8 @@ impl Gas for NativeGas {
         bed: &Bed,
         exchange: &CellExchange,
     ) -> Result<(), PartError> {
-        self.check_inputs(bed, exchange).map_err(|message| {
-            self.failure(FailureKind::Protocol, message)
-                .in_window(window)
-        })?;
+        self.check_inputs(bed, exchange)
+            .map_err(|cause| self.failed(cause).in_window(window))?;
         self.window = Some(*window);
         self.void_fraction.clone_from(&bed.void_fraction);
         let share = |&pores: &f64| self.setup.momentum.pressure_share(pores);
@@ -360,10 +366,7 @@ impl Gas for NativeGas {
         let solved = self
             .equations
             .solve(&frame, &self.setup.controls, continues, &mut self.now);
-        let convergence = solved.map_err(|words| {
-            self.failure(FailureKind::Diverged, words)
-                .in_window(&window)
-        })?;
+        let convergence = solved.map_err(|cause| self.failed(cause).in_window(&window))?;
         let Equations {
             momentum,
             enthalpy,

@@ -8,6 +8,7 @@ use calcine_coupler::setup::GasControls;
 use super::attempt::{AttemptFrame, CellProperties};
 use super::chemistry::{self, CellChemistry};
 use super::enthalpy::Enthalpy;
+use super::failure::GasFailure;
 use super::guard;
 use super::momentum::Momentum;
 use super::pressure::{self, Pressure};
@@ -73,7 +74,7 @@ impl Equations {
         }
     }
 
-    /// Advances `now` to the end of the window; the words of what diverged otherwise. `now` holds the
+    /// Advances `now` to the end of the window; what diverged otherwise. `now` holds the
     /// old state, or, where the attempt `continues` the one before, what that one found.
     pub fn solve(
         &mut self,
@@ -81,7 +82,7 @@ impl Equations {
         controls: &GasControls,
         continues: bool,
         now: &mut GasState,
-    ) -> Result<Convergence, String> {
+    ) -> Result<Convergence, GasFailure> {
         let mut convergence = Convergence::default();
         if !continues {
             self.pressure.begin(frame);
@@ -100,9 +101,7 @@ impl Equations {
             }
             // Early iterates may be no state of a gas (after a start from rest a cell may give more than it
             // holds), as long as they are numbers; the last one must be one.
-            if let Some(words) = guard::nonsense(now, &frame.grid.centre) {
-                return Err(words);
-            }
+            guard::nonsense(now, &frame.grid.centre)?;
             convergence.residual = self.assess(frame, now)?;
             if convergence.residual <= controls.outer_tolerance {
                 convergence.converged = true;
@@ -110,9 +109,7 @@ impl Equations {
             }
         }
         convergence.linear_iterations += self.close(frame, controls.linear_tolerance, now);
-        if let Some(words) = guard::complaint(now, &frame.grid.centre) {
-            return Err(words);
-        }
+        guard::complaint(now, &frame.grid.centre)?;
         convergence.volume_residual = self.volume_residual(frame, now);
         if !frame.turbulence.is_laminar() {
             self.momentum.update_gradients(frame, &now.velocity);
@@ -122,7 +119,7 @@ impl Equations {
 
     /// Assembles momentum and enthalpy with the fields at hand; how far these are from solving
     /// all equations at once: the largest scaled residual.
-    fn assess(&mut self, frame: &AttemptFrame<'_>, now: &mut GasState) -> Result<f64, String> {
+    fn assess(&mut self, frame: &AttemptFrame<'_>, now: &mut GasState) -> Result<f64, GasFailure> {
         self.material.update(frame, now);
         self.chemistry.follow(frame, now)?;
         self.react(frame, false, now);
@@ -150,7 +147,7 @@ impl Equations {
         frame: &AttemptFrame<'_>,
         controls: &GasControls,
         now: &mut GasState,
-    ) -> Result<u32, String> {
+    ) -> Result<u32, GasFailure> {
         let tolerance = controls.linear_tolerance;
         let (krylov, material) = (&mut self.krylov, &self.material);
         let mut iterations = self.momentum.predict(frame, krylov, tolerance, now);
@@ -187,15 +184,13 @@ impl Equations {
         frame: &AttemptFrame<'_>,
         tolerance: f64,
         now: &mut GasState,
-    ) -> Result<u32, String> {
+    ) -> Result<u32, GasFailure> {
         let mut iterations = self.conserve(frame, tolerance, now)?;
         self.chemistry.follow(frame, now)?;
         self.react(frame, true, now);
         iterations += self.scalars(frame, tolerance, SCALARS, now);
         self.chemistry.spoil();
-        if let Some(words) = guard::nonsense(now, &frame.grid.centre) {
-            return Err(words);
-        }
+        guard::nonsense(now, &frame.grid.centre)?;
         self.material.update(frame, now);
         let sources = [&self.species.reactions, &self.enthalpy.reactions];
         let heat = &self.material.heat_capacity;
@@ -209,7 +204,7 @@ impl Equations {
         frame: &AttemptFrame<'_>,
         absolute: f64,
         now: &mut GasState,
-    ) -> Result<u32, String> {
+    ) -> Result<u32, GasFailure> {
         let Some(elements) = self.chemistry.elements() else {
             return Ok(0);
         };
@@ -229,9 +224,7 @@ impl Equations {
             .assemble(frame, material, carried, self.share, now);
         let iterations = iterations + self.enthalpy.solve(frame, krylov, goal, now);
         self.chemistry.spoil();
-        if let Some(words) = guard::nonsense(now, &frame.grid.centre) {
-            return Err(words);
-        }
+        guard::nonsense(now, &frame.grid.centre)?;
         self.material.update(frame, now);
         Ok(iterations)
     }

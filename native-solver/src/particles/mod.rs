@@ -18,7 +18,7 @@ use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::{Ticks, Window};
 
 pub use crate::gas::NativeError;
-use check::{check, length};
+use check::check;
 use dem::energy::BedEnergy;
 use dem::{Engine, EscapedParticle, InsertedSphere, StoredContact, StoredWallContact};
 
@@ -202,7 +202,7 @@ impl NativeParticles {
             if let Err(stray) = engine.advance(done, steps) {
                 let error = self.outside(stray);
                 return Err(self
-                    .failure(FailureKind::Diverged, error.to_string())
+                    .failure(FailureKind::LostParticles, error.to_string())
                     .in_window(window)
                     .caused_by(error));
             }
@@ -233,8 +233,11 @@ impl NativeParticles {
     }
 
     fn refused(&self, error: NativeError) -> PartError {
-        self.failure(FailureKind::Protocol, error.to_string())
-            .caused_by(error)
+        let kind = match &error {
+            NativeError::OutOfBounds { .. } => FailureKind::LostParticles,
+            _ => FailureKind::InvalidInput,
+        };
+        self.failure(kind, error.to_string()).caused_by(error)
     }
 
     /// Gives particles that stay another radius and mass.
@@ -392,7 +395,8 @@ impl Particles for NativeParticles {
 
     fn start(&mut self, window: &Window, push: &ParticlePush) -> Result<(), PartError> {
         if push.force.len() != self.id.len() {
-            let message = length("the push", push.force.len(), self.id.len()).to_string();
+            let (found, count) = (push.force.len(), self.id.len());
+            let message = format!("{found} forces for {count} particles");
             return Err(self
                 .failure(FailureKind::Protocol, message)
                 .in_window(window));

@@ -13,6 +13,7 @@ use calcine_coupler::physics::turbulence::KEpsilon;
 use calcine_coupler::turbulence::is_free;
 use nalgebra::Matrix3;
 
+use super::super::failure::{GasFailure, Place};
 use super::eddies::Eddies;
 use super::update_viscosity;
 use super::wall::{self, WallFace, WallLaw, wall_faces};
@@ -113,13 +114,13 @@ impl KEpsilonEquations {
         }
     }
 
-    /// Advances k, ε_t and the eddy viscosities of a state by the step; the words of what diverged otherwise.
+    /// Advances k, ε_t and the eddy viscosities of a state by the step; what diverged otherwise.
     pub fn advance(
         &mut self,
         step: &TurbulenceStep<'_>,
         krylov: &mut Krylov,
         now: &mut GasState,
-    ) -> Result<(), String> {
+    ) -> Result<(), GasFailure> {
         self.measure(step, now);
         let mut eddies = std::mem::take(&mut now.turbulence);
         let dissipation = self.dissipation(step, krylov, now, &eddies);
@@ -127,7 +128,7 @@ impl KEpsilonEquations {
         (eddies.energy, eddies.dissipation) = (energy, dissipation);
         now.turbulence = eddies;
         update_viscosity(step.grid, step.boundary, step.gas, now);
-        complaint(step.grid, &now.turbulence).map_or(Ok(()), Err)
+        check(step.grid, &now.turbulence)
     }
 
     /// What velocity and walls do to both: P, ∇·u, and the values of cells at walls.
@@ -422,8 +423,8 @@ fn strain(gradient: &Matrix3<f64>) -> f64 {
     0.5 * twice.norm_squared() - 2.0 / 3.0 * trace * trace
 }
 
-/// What is wrong with eddies, in words; `None` where nothing is.
-fn complaint(grid: &MeshGraph, eddies: &Eddies) -> Option<String> {
+/// Refuses turbulence that is not positive and finite.
+fn check(grid: &MeshGraph, eddies: &Eddies) -> Result<(), GasFailure> {
     let (cell, strangeness) = largest(grid.cells(), |cell| {
         let [k, rate] = [eddies.energy[cell], eddies.dissipation[cell]];
         if k > 0.0 && rate > 0.0 && (k + rate + eddies.viscosity[cell]).is_finite() {
@@ -433,14 +434,16 @@ fn complaint(grid: &MeshGraph, eddies: &Eddies) -> Option<String> {
         }
     });
     if strangeness == 0.0 {
-        return None;
+        return Ok(());
     }
-    let place = grid.centre[cell];
-    Some(format!(
-        "diverged: turbulent energy of {} m^2/s^2 with a dissipation of {} m^2/s^3 in cell {cell} at \
-         ({:.6}, {:.6}, {:.6}) m; a shorter `motion_window` may help",
-        eddies.energy[cell], eddies.dissipation[cell], place.x, place.y, place.z
-    ))
+    Err(GasFailure::Turbulence {
+        energy: eddies.energy[cell],
+        dissipation: eddies.dissipation[cell],
+        place: Place {
+            cell,
+            centre: grid.centre[cell],
+        },
+    })
 }
 
 #[cfg(test)]

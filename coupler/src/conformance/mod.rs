@@ -1,0 +1,94 @@
+//! Laws that every [`Gas`](crate::part::Gas) and every [`Particles`](crate::part::Particles) must obey, written once
+//! and run against each solver by its own tests (feature `conformance`).
+//!
+//! A solver joins with a function that makes it from a setup; `gas::run` and `particles::run` give the laws that it
+//! breaks. Each law starts with a fresh solver.
+
+pub mod gas;
+pub mod particles;
+
+use std::fmt;
+
+use thiserror::Error;
+
+use crate::error::{FailureKind, PartError};
+use crate::time::{Clocks, Ticks, TimeError, Window};
+
+/// Why a law does not hold.
+#[derive(Debug, Error)]
+pub enum LawError {
+    /// The solver failed where it must not.
+    #[error("{0}")]
+    Part(#[from] PartError),
+    /// It does something else than the law says.
+    #[error("{0}")]
+    Broken(String),
+    /// A time that is none.
+    #[error("{0}")]
+    Time(#[from] TimeError),
+    /// The folder for checkpoints cannot be used.
+    #[error("{0}")]
+    Folder(#[from] std::io::Error),
+}
+
+/// A law that a solver breaks.
+#[derive(Debug)]
+pub struct BrokenLaw {
+    /// The law, a sentence.
+    pub law: &'static str,
+    /// How it is broken.
+    pub cause: LawError,
+}
+
+impl fmt::Display for BrokenLaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.law.replace('_', " "), self.cause)
+    }
+}
+
+/// Holds, or says what does not.
+fn holds(condition: bool, words: impl FnOnce() -> String) -> Result<(), LawError> {
+    match condition {
+        true => Ok(()),
+        false => Err(LawError::Broken(words())),
+    }
+}
+
+/// The window of a number, all of one length: so many seconds of motion time, and of process time.
+fn window(index: u64, motion: f64, process: f64) -> Result<Window, LawError> {
+    let span = Clocks {
+        motion: Ticks::from_seconds(motion)?,
+        process: Ticks::from_seconds(process)?,
+    };
+    let times = i64::try_from(index).unwrap_or(i64::MAX);
+    Ok(Window {
+        index,
+        attempt: 0,
+        start: Clocks {
+            motion: Ticks::new(times.saturating_mul(span.motion.count())),
+            process: Ticks::new(times.saturating_mul(span.process.count())),
+        },
+        span,
+    })
+}
+
+/// The same bits.
+fn same(what: &str, one: &[u64], other: &[u64]) -> Result<(), LawError> {
+    let differing = one.iter().zip(other).filter(|(a, b)| a != b).count();
+    holds(one.len() == other.len() && differing == 0, || {
+        format!("{what}: {differing} of {} numbers differ", one.len())
+    })
+}
+
+/// Fails of this kind, with a word in its message.
+fn is_refused(error: &PartError, kinds: &[FailureKind], word: &str) -> Result<(), LawError> {
+    holds(
+        kinds.contains(&error.kind) && error.to_string().contains(word),
+        || {
+            format!(
+                "it fails as {:?}, {error}; the kind must be of {kinds:?}, with `{word}`",
+                error.kind
+            )
+        },
+    )
+}
