@@ -243,7 +243,7 @@ fn keys(table: &toml::Table, place: &str, found: &mut Vec<String>) {
 #[test]
 fn every_key_of_the_shipped_and_good_cases_is_documented() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let docs = fs::read_to_string(folder.join("docs/case-file.md")).unwrap();
+    let docs = fs::read_to_string(folder.join("docs/reference/case-file.md")).unwrap();
     let mut found = Vec::new();
     for path in [files("cases"), files("tests/inputs/good")].concat() {
         keys(
@@ -257,7 +257,7 @@ fn every_key_of_the_shipped_and_good_cases_is_documented() {
         let last = key.rsplit('.').next().unwrap();
         assert!(
             docs.contains(last),
-            "docs/case-file.md says nothing of `{key}`"
+            "docs/reference/case-file.md says nothing of `{key}`"
         );
     }
 }

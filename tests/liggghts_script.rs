@@ -1,4 +1,4 @@
-//! A LIGGGHTS script of the user's own, as docs/own-liggghts-script.md says, step by step.
+//! A LIGGGHTS script of the user's own, as docs/how-to/own-liggghts-script.md says, step by step.
 
 #![allow(clippy::unwrap_used)]
 

@@ -221,7 +221,7 @@ fn hexadecimal_numbers_of_python_are_read_to_the_bit() {
 
 #[test]
 fn the_example_of_the_docs_prints_the_series_in_ten_lines() {
-    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/results.md");
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/reference/results.md");
     let docs = fs::read_to_string(docs).unwrap();
     let (_, after) = docs.split_once("```python\n").unwrap();
     let (script, _) = after.split_once("```").unwrap();

@@ -159,7 +159,7 @@ fn openfoam(case: &Case) -> String {
     }
     if case.openfoam.solver.is_stock() {
         text += ", approximately: a stock solver (`openfoam.solver`) has no void fraction in its storage; \
-                 see docs/stock-solvers.md";
+                 see docs/how-to/stock-solvers.md";
     }
     if let Some(template) = &case.openfoam.template {
         let mut names = Vec::new();

@@ -11,7 +11,7 @@ use crate::case::{check_report, contacts};
 use crate::exit;
 use crate::valid::ValidCase;
 
-/// Checks a case as a run would: all its errors at once, or both clocks, sizes, laws and what each backend honours.
+/// Checks a case as a run would: prints all its errors at once, or its clocks, sizes, laws and what each backend honours.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The case file.

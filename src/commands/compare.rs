@@ -12,21 +12,21 @@ use super::parallel::Transport;
 use crate::assembly::{Pairing, SolverStarts};
 use crate::exit;
 
-/// Runs several pairings of one case and says how far they differ against the case's bands.
+/// Runs several pairings of one case and reports how far they differ against the case's bands.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The case file.
     case: PathBuf,
-    /// Pairings such as `native+native,openfoam+liggghts`, or `all`.
+    /// Pairings of gas and particles such as `native+native,openfoam+liggghts`, or `all`.
     #[arg(long, default_value = "all", value_parser = pairings)]
     pairings: Chosen,
-    /// The folder of the comparison [default: results/NAME-compare].
+    /// Folder of the comparison [default: results/NAME-compare].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Changes a key of the case, for example `--set time.acceleration=200`.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// No progress bar.
+    /// Shows no progress bar.
     #[arg(long)]
     quiet: bool,
 }
@@ -44,12 +44,12 @@ fn pairings(text: &str) -> Result<Chosen, String> {
         .split(',')
         .map(|name| {
             Pairing::parse(name.trim())
-                .ok_or_else(|| format!("`{name}` is not a pairing; there are {known}, and all"))
+                .ok_or_else(|| format!("`{name}` is not a pairing: choose of {known}, or all"))
         })
         .collect::<Result<_, _>>()?;
     if chosen.len() < 2 {
         return Err(format!(
-            "a comparison needs two pairings at least, of {known}"
+            "a comparison needs at least two pairings of {known}"
         ));
     }
     Ok(Chosen(chosen))

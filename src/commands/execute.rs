@@ -30,7 +30,7 @@ pub(super) struct Settings<'a> {
     pub(super) transport: Transport,
     /// The results folder.
     pub(super) out: &'a Path,
-    /// Goes on from the checkpoint in it, or starts again if there was none yet.
+    /// Continues from the checkpoint in it; starts again if there is none yet.
     pub(super) resume: bool,
     /// The results folder of another run to continue from.
     pub(super) from: Option<&'a Path>,
@@ -100,7 +100,7 @@ pub(super) fn execute(
         }
         Ok(Ending::Checkpointed(path)) => {
             let text = format!(
-                "stopped with a checkpoint in {}; go on with\n  calcine run {} --out {} --resume{}{}",
+                "stopped with a checkpoint in {}; continue with\n  calcine run {} --out {} --resume{}{}",
                 path.display(),
                 case.path.display(),
                 out.display(),
@@ -128,11 +128,11 @@ fn tell_buoyancy(case: &Case, prepared: &PreparedCase, shown: bool) {
     }
 }
 
-/// `--resume` of a run that came to its end: there is nothing to do.
+/// `--resume` of a run that is complete: there is nothing to do.
 fn over(case: &Case, out: &Path, summary: &Summary) -> Result<Done, Failure> {
     if summary.case.hash != case.hash {
         let message = format!(
-            "the run in {} came to its end, and its case differs from this one (hash {} there, {} \
+            "the run in {} is complete, and its case differs from this one (hash {} there, {} \
              here): `--from {0}` continues from it, into another folder",
             out.display(),
             summary.case.hash,
@@ -144,7 +144,7 @@ fn over(case: &Case, out: &Path, summary: &Summary) -> Result<Done, Failure> {
         Verdict::Fail => exit::OUTSIDE_BANDS,
         _ => exit::OK,
     };
-    let text = format!("the run in {} had come to its end already", out.display());
+    let text = format!("the run in {} is already complete", out.display());
     Ok(Done { code, text })
 }
 
@@ -173,7 +173,7 @@ fn closing(summary: &Summary) -> String {
         .chain(elements)
     {
         let what = match name.as_str() {
-            STORAGE_CLOCK => "of what moved, by two clocks; no error",
+            STORAGE_CLOCK => "of all that moved (time splitting; not an error)",
             _ => "relative error",
         };
         let _ = writeln!(
@@ -217,7 +217,7 @@ fn failed(out: &Path, failure: &SimulationError) -> Failure {
     let mut message = chain(failure);
     if simulation::has_checkpoint(out) {
         message.push_str(&format!(
-            "\nthe last checkpoint is in {}: `--resume` goes on from it",
+            "\nthe last checkpoint is in {}: `--resume` continues from it",
             out.join("checkpoint").display()
         ));
     }

@@ -10,6 +10,8 @@ mod inputs;
 mod new;
 mod parallel;
 mod prepare;
+#[cfg(test)]
+mod reference;
 mod report;
 mod run;
 mod schema;
@@ -28,7 +30,7 @@ use console::say;
 pub use failure::Failure;
 use failure::chain;
 
-/// Reactive granular beds: gas and particles coupled, natively or with OpenFOAM and LIGGGHTS.
+/// Computes reactive granular beds: gas and particles coupled, natively or with OpenFOAM and LIGGGHTS.
 #[derive(Debug, Parser)]
 #[command(name = "calcine", version, propagate_version = true)]
 struct Arguments {
@@ -46,7 +48,7 @@ enum Command {
     Prepare(prepare::Arguments),
     New(new::Arguments),
     Schema(schema::Arguments),
-    /// Shows which solvers, MPI and HDF5 are here, and what installs what is missing.
+    /// Lists the solvers, MPI and HDF5 of this machine and the command that installs what is missing.
     Doctor,
 }
 

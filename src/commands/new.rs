@@ -13,12 +13,12 @@ use crate::laws::LawCatalogue;
 /// Name of the schema beside a new case.
 const SCHEMA: &str = "case.schema.json";
 
-/// Starts a case of one's own from a shipped one, in one folder.
+/// Creates a new case from a shipped one, in a folder of its own.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// Name of the new case; the folder of this name must not exist.
     name: PathBuf,
-    /// The shipped case to start from.
+    /// Shipped case to start from.
     #[arg(long, value_enum, default_value_t = Shipped::HeatedColumn)]
     like: Shipped,
 }
@@ -26,13 +26,13 @@ pub(super) struct Arguments {
 /// Shipped cases.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Shipped {
-    /// Hot air heats a column of ten spheres.
+    /// Column of ten spheres heated by hot air.
     HeatedColumn,
-    /// Hot air heats a random packing in a tube.
+    /// Random packing in a tube heated by hot air.
     HeatedBed,
-    /// Air flows through a tube of 14 mm spheres.
+    /// Pressure drop of air through a tube of 14 mm spheres.
     PackedColumn,
-    /// Nitrogen drives carbon dioxide out of a warm bed.
+    /// Carbon dioxide purged from a warm bed by nitrogen.
     PurgedBed,
 }
 
@@ -50,11 +50,11 @@ impl Shipped {
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let folder = &arguments.name;
     let Some(stem) = folder.file_name() else {
-        let message = format!("`{}` is no name for a case", folder.display());
+        let message = format!("`{}` is not a valid case name", folder.display());
         return Err(Failure::new(exit::CASE, message));
     };
     if folder.exists() {
-        let message = format!("{} is already there: choose another name", folder.display());
+        let message = format!("{} exists already: choose another name", folder.display());
         return Err(Failure::new(exit::CASE, message));
     }
     let file = folder.join(stem).with_extension("toml");
@@ -76,7 +76,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
 /// The text of a case with the laws that it may choose above its section `[laws]`.
 fn with_laws(text: &str) -> String {
     let catalogue = LawCatalogue::default();
-    let mut comment = String::from("# To choose from (docs/case-file.md says what each is):\n");
+    let mut comment = String::from("# To choose from (docs/reference/case-file.md says what each is):\n");
     for (family, laws) in catalogue.families() {
         if let Some(key) = family.strip_prefix("laws.") {
             let names: Vec<&str> = laws.iter().map(|law| law.name).collect();

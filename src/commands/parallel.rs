@@ -13,10 +13,10 @@ use crate::exit;
 /// What carries messages between Calcine and external solvers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(super) enum Transport {
-    /// Memory of this machine.
+    /// Shared memory of this machine.
     #[default]
     SharedMemory,
-    /// MPI, also between machines; the program `calcine-mpi` takes over.
+    /// MPI, also between machines; the program `calcine-mpi` runs in place of the command.
     Mpi,
 }
 
@@ -33,24 +33,25 @@ impl Transport {
 /// Options of external solvers.
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct Parallel {
-    /// MPI ranks of an external gas solver [default: as the case says, or 1].
+    /// MPI ranks of an external gas solver [default: that of the case, or 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     ranks_gas: Option<u16>,
-    /// MPI ranks of LIGGGHTS [default: as the case says, or 1].
+    /// MPI ranks of LIGGGHTS [default: that of the case, or 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     ranks_particles: Option<u16>,
     /// What carries messages between Calcine and external solvers.
     #[arg(long, value_enum, default_value_t)]
     transport: Transport,
-    /// Starts an external gas solver's ranks instead of `mpirun`, for example "srun -n 16"; state as many with
-    /// `--ranks-gas`.
+    /// Launcher of an external gas solver's ranks in place of `mpirun`, for example "srun -n 16"; give
+    /// the same number with `--ranks-gas`.
     #[arg(long, value_name = "WORDS", value_parser = Launcher::parse)]
     launch_gas: Option<Launcher>,
-    /// Starts LIGGGHTS' ranks instead of `mpirun`; state as many with `--ranks-particles`.
+    /// Launcher of LIGGGHTS' ranks in place of `mpirun`; give the same number with
+    /// `--ranks-particles`.
     #[arg(long, value_name = "WORDS", value_parser = Launcher::parse)]
     launch_particles: Option<Launcher>,
-    /// Says what to start by hand, for debuggers and queues, and waits for it; messages go through
-    /// shared memory.
+    /// Prints the commands that start the solvers by hand, for debuggers and queues, and waits for
+    /// them; messages go through shared memory.
     #[arg(long, conflicts_with_all = ["launch_gas", "launch_particles"])]
     attach: bool,
 }

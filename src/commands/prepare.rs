@@ -10,18 +10,18 @@ use super::inputs::{read_and_prepare, results_folder};
 use crate::assembly::{self, GasBackend, Pairing, ParticleBackend};
 use crate::exit;
 
-/// Writes the exact OpenFOAM and LIGGGHTS inputs of a run, without running.
+/// Writes the exact OpenFOAM and LIGGGHTS inputs of a run without running it.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The case file.
     case: PathBuf,
-    /// Whose gas inputs are written.
+    /// Gas solver whose inputs are written.
     #[arg(long, value_enum, default_value_t = GasBackend::Openfoam)]
     gas: GasBackend,
-    /// Whose particle inputs are written.
+    /// Particle solver whose inputs are written.
     #[arg(long, value_enum, default_value_t = ParticleBackend::Liggghts)]
     particles: ParticleBackend,
-    /// Where to [default: results/NAME-inputs].
+    /// Output folder [default: results/NAME-inputs].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Changes a key of the case, for example `--set time.acceleration=200`.

@@ -8,7 +8,7 @@ use super::console::say;
 use super::failure::{Failure, chain};
 use crate::exit;
 
-/// Writes one self-contained HTML page about a results folder.
+/// Writes a self-contained HTML report of a results folder.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The results folder.

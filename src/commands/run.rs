@@ -20,32 +20,32 @@ use crate::exit;
 pub(super) struct Arguments {
     /// The case file.
     case: PathBuf,
-    /// Who computes the gas.
+    /// Solver of the gas.
     #[arg(long, value_enum, default_value_t)]
     gas: GasBackend,
-    /// Who computes the particles.
+    /// Solver of the particles.
     #[arg(long, value_enum, default_value_t)]
     particles: ParticleBackend,
     #[command(flatten)]
     parallel: Parallel,
-    /// The results folder [default: results/NAME].
+    /// Results folder [default: results/NAME].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Changes a key of the case, for example `--set time.acceleration=200`.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Goes on from the last checkpoint in the results folder, or starts again if there is none yet.
+    /// Continues from the last checkpoint in the results folder; starts again if there is none yet.
     #[arg(long)]
     resume: bool,
-    /// Continues from the last checkpoint of another run of the same mesh and particles, with
-    /// this case's settings and clocks that start at zero.
+    /// Starts from the last checkpoint of another run of the same mesh and particles, with this
+    /// case's settings and clocks at zero.
     #[arg(long, value_name = "DIR")]
     from: Option<PathBuf>,
-    /// Threads of Calcine's own solvers and of the coupling [default: one a core]. Results do not depend
-    /// on it.
+    /// Threads of Calcine's own solvers and of the coupling [default: one a core]. Results do not
+    /// depend on their number.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
-    /// No progress bar.
+    /// Shows no progress bar.
     #[arg(long)]
     quiet: bool,
     /// Writes a checkpoint and stops after this wall time, for example `23h30m`.

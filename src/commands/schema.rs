@@ -10,10 +10,10 @@ use crate::case::schema::schema;
 use crate::exit;
 use crate::laws::LawCatalogue;
 
-/// Prints the JSON schema of case files, by which editors complete and check them.
+/// Prints the JSON schema of case files, for completion and checks in editors.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Writes it into this file instead.
+    /// Writes the schema to this file instead.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }

@@ -24,28 +24,28 @@ use crate::results::read::Series;
 pub(super) struct Arguments {
     /// The case file.
     case: PathBuf,
-    /// Who computes the gas.
+    /// Solver of the gas.
     #[arg(long, value_enum, default_value_t)]
     gas: GasBackend,
-    /// Who computes the particles.
+    /// Solver of the particles.
     #[arg(long, value_enum, default_value_t)]
     particles: ParticleBackend,
     /// Values of a key, separated by commas: `--set time.acceleration=1,50,200`.
     #[arg(long, value_name = "KEY=A,B,C", required = true)]
     set: Vec<String>,
-    /// The value of one swept key that the others are compared with.
+    /// Value of one swept key with which the others are compared.
     #[arg(long, value_name = "KEY=VALUE")]
     reference: Option<String>,
     /// What deviations are divided by, in K [default: the reference's own span of temperatures].
     #[arg(long, value_name = "KELVIN", requires = "reference")]
     span: Option<f64>,
-    /// The folder of the sweep [default: results/NAME-sweep].
+    /// Folder of the sweep [default: results/NAME-sweep].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Also writes the table, as Markdown, to this file.
+    /// Also writes the table to this file, as Markdown.
     #[arg(long, value_name = "FILE")]
     table: Option<PathBuf>,
-    /// No progress bar.
+    /// Shows no progress bar.
     #[arg(long)]
     quiet: bool,
 }

@@ -244,7 +244,7 @@ fn ledger(summary: &Summary) -> String {
         .map(|(name, line)| {
             vec![
                 escape(&match name.as_str() {
-                    STORAGE_CLOCK => "storage clock (no error)".to_owned(),
+                    STORAGE_CLOCK => "storage clock (not an error)".to_owned(),
                     _ => name.replace('_', " "),
                 }),
                 figure(line.relative_error, 3),

@@ -15,7 +15,7 @@ pub enum ResultsError {
         path.display()
     )]
     #[diagnostic(help(
-        "write elsewhere with `--out DIR`, go on with that run by `--resume`, or remove the \
+        "write elsewhere with `--out DIR`, continue that run by `--resume`, or remove the \
          directory"
     ))]
     Occupied {

@@ -275,12 +275,12 @@ fn what_attach_prints_can_be_started_by_hand() {
     assert!(by_hand.wait().unwrap().success());
 }
 
-/// The script for one node in docs/parallel.md, as it stands there but for its numbers, with a stand-in
+/// The script for one node in docs/how-to/parallel.md, as it stands there but for its numbers, with a stand-in
 /// for srun that hands its tasks to mpirun: this machine has no SLURM.
 #[test]
 fn the_script_for_a_queue_in_the_docs_runs_and_resumes_with_a_stand_in_for_srun() {
     use std::os::unix::fs::PermissionsExt;
-    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/parallel.md");
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/how-to/parallel.md");
     let docs = fs::read_to_string(docs).unwrap();
     let blocks = docs.split("```sh\n").skip(1);
     let mut blocks = blocks.filter_map(|block| block.split("```").next());

@@ -25,25 +25,28 @@ use workspace::Workspace;
 const USAGE: &str = "\
 usage: cargo xtask TASK
 
-  run CASE …              set up and build what the run needs, then `calcine run CASE …`
+  run CASE …              install and build what the run needs, then `calcine run CASE …`
   calcine SUBCOMMAND …    the same for any other subcommand, for example `compare CASE`
-  test [--native] …       set up and build everything and run all tests; words go to `cargo test`
+  test [--native] …       install and build everything and run all tests; further arguments go
+                          to `cargo test`
   setup [--native|--all]  install packages, prepare headers, build (default: --all)
         [--no-build]      without building
   install --prefix DIR    build, then copy to DIR/bin and DIR/libexec/calcine
         [--native]        without the adapters for OpenFOAM and LIGGGHTS
-  bench …                 run the benchmarks and print one table; words go to `cargo bench`
+  bench …                 run the benchmarks and print one table; further arguments go to
+                          `cargo bench`
         [--native]        without OpenFOAM, LIGGGHTS and MPI
         [--runs]          whole runs only
-        [--table]         the table of what was measured last
-  fuzz [--minutes N]      fuzz what reads users' files, ten minutes each unless told
+        [--table]         print the table of the last measurement only
+  fuzz [--minutes N]      fuzz the readers of users' files, ten minutes each by default
         [--seed S] [case|polymesh]
-  torture [--kills N]     kill -9 at random moments, resume, compare every bit (50 unless told)
-        [--seed S]        from a seed; [--from K] begins with the K-th kill, to deal one again
-  faults [--kills N]      kill or stop random processes of coupled runs at random moments (500
-        [--seed S]        unless told): each is named, and everything ends and is cleaned up
-        [--from K]
-  validate [NAME …]       long validations, all unless named: backward-step, elastic-box, flame,
+  torture [--kills N]     kill runs at random moments, resume, compare every bit (default: 50)
+        [--seed S]        the seed of the random numbers
+        [--from K]        begin with the K-th kill, to repeat one
+  faults [--kills N]      random fault injection: kill or stop a process of a coupled run at a
+        [--seed S]        random moment and check that it is named, that everything ends and
+        [--from K]        that nothing is left (default: 500 trials)
+  validate [NAME …]       long validations, all by default: backward-step, elastic-box, flame,
                           fluidised-bed, hopper, moving-bed, repose, shaft-flames,
                           shaft-furnace, voids";
 
@@ -200,6 +203,8 @@ fn perform(task: Task) -> TaskResult<()> {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
 
     fn words(line: &str) -> Vec<OsString> {
@@ -268,5 +273,38 @@ mod tests {
         assert_eq!(read(&words("install --prefix=/opt/calcine")), task);
         assert_eq!(read(&words("install")), None);
         assert_eq!(read(&words("install /opt/calcine")), None);
+    }
+
+    /// Tasks in the lines of the docs that begin with `cargo xtask`, without comments.
+    fn tasks_of_the_docs() -> Vec<String> {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+        let mut folders = vec![root.join("docs")];
+        let mut pages = vec![root.join("README.md"), root.join("CONTRIBUTING.md")];
+        while let Some(folder) = folders.pop() {
+            for entry in std::fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else if path.extension().is_some_and(|ending| ending == "md") {
+                    pages.push(path);
+                }
+            }
+        }
+        let texts = pages.iter().map(|page| std::fs::read_to_string(page).unwrap());
+        let text: String = texts.collect();
+        let lines = text.lines().map(str::trim_start);
+        let tasks = lines.filter_map(|line| line.strip_prefix("cargo xtask "));
+        tasks
+            .map(|task| task.split(" #").next().unwrap().to_owned())
+            .collect()
+    }
+
+    #[test]
+    fn every_task_of_the_docs_is_one() {
+        let tasks = tasks_of_the_docs();
+        assert!(tasks.len() > 15, "{tasks:?}");
+        for task in tasks {
+            assert!(read(&words(&task)).is_some(), "cargo xtask {task}");
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! The reference part of `docs/case-file.md`, made from the keys and the laws.
+//! The reference part of `docs/reference/case-file.md`, made from the keys and the laws.
 
 use calcine_coupler::physics::law::LawSummary;
 
@@ -7,7 +7,7 @@ use super::key::{KeyPresence, KeyValue};
 use super::placed::{PlacedKey, keys};
 use crate::laws::LawCatalogue;
 
-/// Where the part of `docs/case-file.md` that is made from the keys begins.
+/// Where the part of `docs/reference/case-file.md` that is made from the keys begins.
 pub const BEGIN: &str = "## All keys\n";
 
 const HEAD: &str = "
@@ -24,7 +24,7 @@ const LAWS: &str = "
 What a case may choose by `law`, and the keys that go with it.
 ";
 
-/// The last part of `docs/case-file.md`, from [`BEGIN`] on.
+/// The last part of `docs/reference/case-file.md`, from [`BEGIN`] on.
 pub fn markdown() -> String {
     let laws = &LawCatalogue::default();
     let mut text = format!("{BEGIN}{HEAD}");

@@ -5,14 +5,14 @@ use super::prelude::*;
 #[rustfmt::skip]
 pub(super) const OPENFOAM: &[Key] = &[
     key("template", Path, Without("none"), "Folder of OpenFOAM files to start from.", "\"foam\""),
-    key("solver", Choice(words::<StockSolver>), Default("calcineGasFoam"), "Program of an OpenFOAM gas: Calcine's own, or a stock solver with Calcine's sources in it, which is approximate (docs/stock-solvers.md).", "\"buoyantPimpleFoam\""),
+    key("solver", Choice(words::<StockSolver>), Default("calcineGasFoam"), "Program of an OpenFOAM gas: Calcine's own, or a stock solver with Calcine's sources in it, which is approximate (docs/how-to/stock-solvers.md).", "\"buoyantPimpleFoam\""),
     key("start", Path, Without("`gas.initial`"), "Time directory that OpenFOAM wrote on the same mesh, of a whole (reconstructed) case: its T, p (absolute), U (superficial) and mass fractions, as far as they are there, are the start of the gas.", "\"foam/0.5\""),
     key("ranks", Whole(1, 100_000), Default("1"), "MPI ranks; `--ranks-gas` overrides it.", "4"),
 ];
 
 #[rustfmt::skip]
 pub(super) const LIGGGHTS: &[Key] = &[
-    key("template", Path, Without("none"), "LIGGGHTS script of the user's own for particles that move, in place of the generated one (docs/own-liggghts-script.md).", "\"in.bed\""),
+    key("template", Path, Without("none"), "LIGGGHTS script of the user's own for particles that move, in place of the generated one (docs/how-to/own-liggghts-script.md).", "\"in.bed\""),
     key("wall_impulse", Truth, Default("false"), "Whether LIGGGHTS counts the impulse of walls, for the line `particle_momentum` of the ledger; it then goes step by step. Native particles always count it.", "true"),
     key("ranks", Whole(1, 100_000), Default("1"), "MPI ranks; `--ranks-particles` overrides it.", "2"),
 ];

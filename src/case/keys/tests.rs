@@ -69,7 +69,7 @@ fn every_example_is_toml_and_every_default_a_value_of_its_key() {
 
 #[test]
 fn the_page_of_the_docs_is_made_from_the_table() {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/case-file.md");
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/reference/case-file.md");
     let mut written = std::fs::read_to_string(&page).unwrap();
     let begin = written.find(BEGIN).unwrap_or(written.len());
     if std::env::var_os("CALCINE_WRITE_DOCS").is_some() {
@@ -81,6 +81,6 @@ fn the_page_of_the_docs_is_made_from_the_table() {
     assert_eq!(
         &written[begin..],
         markdown(),
-        "set CALCINE_WRITE_DOCS=1 and run this test again to write docs/case-file.md"
+        "set CALCINE_WRITE_DOCS=1 and run this test again to write docs/reference/case-file.md"
     );
 }
