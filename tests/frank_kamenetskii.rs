@@ -1,5 +1,5 @@
 //! Thermal runaway of beds of particles in idealised containers, through the program: beyond the limit of Frank
-//! and Kamenetskii it appears, below it does not (requirements DRI-V1).
+//! and Kamenetskii it appears, below it does not (docs/theory.md, DRI-V1).
 //!
 //! A zero-order reaction sets heat free in particles on a cubic lattice, whose contacts conduct as a continuum of
 //! k = G/d does: a slab between walls, whose contacts leave a Biot number, and pieces of an endless cylinder and a

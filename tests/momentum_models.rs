@@ -1,4 +1,4 @@
-//! Models A and B of the momentum between gas and particles (requirements DRG-1): the same force on every
+//! Models A and B of the momentum between gas and particles (docs/theory.md, DRG-1): the same force on every
 //! particle of a uniform bed at rest, and the same terminal speed, by the native gas and by OpenFOAM's.
 
 #![cfg(feature = "hdf5")]

@@ -1,4 +1,4 @@
-//! Time splitting through the program (requirements TSM-V1, TSM-8): deviations from the unsplit run
+//! Time splitting through the program (docs/theory.md, TSM-V1, TSM-8): deviations from the unsplit run
 //! over materials and storages, `time.process_step`, buoyant waves, and cases beyond any memory.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]

@@ -92,7 +92,7 @@ fn taken(combustion: Combustion, void_fraction: f64, folder: &Path) -> f64 {
     taken
 }
 
-/// κ = t_c/(t_c + t_k) of the start (requirement COR-16), from the tables of the four steps (CHM-1) and of k-epsilon
+/// κ = t_c/(t_c + t_k) of the start (docs/theory.md, COR-16), from the tables of the four steps (CHM-1) and of k-epsilon
 /// (COR-15) by hand; the gas' own viscosity of 5.4e-5 Pa s (air of 1500 K) is a hundredth of the eddies'.
 fn share() -> f64 {
     // kmol/m³; of the four steps the first alone runs before there is anything else.

@@ -120,7 +120,7 @@ pub struct CouplingCoefficients {
     /// Mass transfer coefficient of each species in m/s, species by species within each particle; empty where
     /// none reacts.
     pub film: Vec<f64>,
-    /// Drag coefficient in kg/s: K_A by model A, K_A/ε by model B (requirements DRG-1).
+    /// Drag coefficient in kg/s: K_A by model A, K_A/ε by model B (docs/theory.md, DRG-1).
     pub drag: Vec<f64>,
     /// Heat conductance h A in W/K.
     pub conductance: Vec<f64>,
@@ -128,7 +128,7 @@ pub struct CouplingCoefficients {
     pub slip: Vec<f64>,
     /// Conductivity of the gas in W/m/K.
     pub gas_conductivity: Vec<f64>,
-    /// Share of the other forces in N that drag holds back within the window (requirements
+    /// Share of the other forces in N that drag holds back within the window (docs/theory.md,
     /// DRG-2, see [`CouplingCoefficients::relax`]); zero, or empty, where particles are held.
     pub held_back: Vec<Vec3>,
 }
@@ -149,7 +149,7 @@ pub struct DragInertia<'a> {
 }
 
 impl CouplingCoefficients {
-    /// Stiff drag (requirements DRG-2). The force on a particle is constant over a window; it is the
+    /// Stiff drag (docs/theory.md, DRG-2). The force on a particle is constant over a window; it is the
     /// mean of what acts on one that moves by drag and by all else as in the last window:
     /// m dv/dt = K (u − v/AF) + F. With a = K Δt/(m AF) and φ = (1 − e^−a)/a that mean is
     ///
@@ -231,7 +231,7 @@ impl Closures {
         });
     }
 
-    /// Evaluates all laws. Slip is u − v/AF (requirements TSM-7).
+    /// Evaluates all laws. Slip is u − v/AF (docs/theory.md, TSM-7).
     pub fn evaluate(
         &self,
         sampled_gas: &SampledGas,

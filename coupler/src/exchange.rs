@@ -1,4 +1,4 @@
-//! The exchange between gas and particles: stored once, the other side derived (requirements
+//! The exchange between gas and particles: stored once, the other side derived (docs/theory.md,
 //! CON-4, TSM-9, DRG-1).
 //!
 //! A particle p that spans cells with the weights W_cp exchanges with each by that cell's own
@@ -23,7 +23,7 @@
 //! is given over a window, so that it does not couple its cells (for stiff drag K_A is what
 //! `CouplingCoefficients::relax` makes of it).
 //!
-//! Momentum is exchanged by model A or B (requirements DRG-1, [`crate::momentum_model`]): the coefficients
+//! Momentum is exchanged by model A or B (docs/theory.md, DRG-1, [`crate::momentum_model`]): the coefficients
 //! here are those that the model makes of the laws' K_A, and `push` adds what else the gas does to a
 //! particle, −V_p Σ_c W_cp ∇p or the weight of what it displaces.
 
@@ -212,7 +212,7 @@ impl Exchange {
     }
 
     /// The force pushed to the particles: drag, and the force of pressure or buoyancy as the model has it
-    /// (requirements DRG-1), which alone goes to `pressure_force`. Gravity in m/s².
+    /// (docs/theory.md, DRG-1), which alone goes to `pressure_force`. Gravity in m/s².
     pub fn push(
         &self,
         operator: &Operator,

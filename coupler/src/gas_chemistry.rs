@@ -29,7 +29,7 @@ pub enum Combustion {
     /// A cell is mixed: laminar rates.
     #[default]
     Laminar,
-    /// The partially stirred reactor of requirement COR-16: only what eddies mix reacts.
+    /// The partially stirred reactor of docs/theory.md, COR-16: only what eddies mix reacts.
     Pasr {
         /// C_mix.
         mixing_constant: f64,

@@ -1,4 +1,4 @@
-//! The ledger: every window's mass, momentum and energy, summed over the run (requirements CON-2).
+//! The ledger: every window's mass, momentum and energy, summed over the run (docs/theory.md, CON-2).
 
 use calcine_physics::Vec3;
 
@@ -82,7 +82,7 @@ impl CarriedInventory {
 }
 
 /// The ledger of a run. Gas amounts count in process time: where the gas stores over the motion
-/// span (`accelerated`), what it stored counts AF times (requirements TSM-4).
+/// span (`accelerated`), what it stored counts AF times (docs/theory.md, TSM-4).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ledger {
     /// Gas mass in kg; where none passes the boundary, relative to what circulates within.
@@ -95,7 +95,7 @@ pub struct Ledger {
     pub momentum_exchange: BalanceLine,
     /// The gas' own momentum balance (residual of pressure and momentum solves), in N s.
     pub gas_momentum: BalanceLine,
-    /// The momentum of that balance that two clocks make, Σ u (1 − 1/AF) Δ(ε ρ V) (requirements TSM-8), in N s: no
+    /// The momentum of that balance that two clocks make, Σ u (1 − 1/AF) Δ(ε ρ V) (docs/theory.md, TSM-8), in N s: no
     /// error, but what the balance would leave open without it.
     pub storage_clock: BalanceLine,
     /// Particle mass in kg: what the particles hold against what feeds and outlets moved.

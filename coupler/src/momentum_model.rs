@@ -1,5 +1,5 @@
 //! How gas and particles share their momentum: models A and B, named here and nowhere else
-//! (requirements DRG-1).
+//! (docs/theory.md, DRG-1).
 //!
 //! With the drag coefficient K_A of the laws, the weights W of mapping and smoother, and α = 1 − ε:
 //!

@@ -95,9 +95,9 @@ pub struct ContactLaw {
 /// Force of an elastic contact with damping and friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ContactForce {
-    /// Hertz, Mindlin and Tsuji with tangential history (requirements COR-12).
+    /// Hertz, Mindlin and Tsuji with tangential history (docs/theory.md, COR-12).
     HertzMindlin,
-    /// OpenFOAM's pair of spring, slider and dashpot (requirements COR-13).
+    /// OpenFOAM's pair of spring, slider and dashpot (docs/theory.md, COR-13).
     SpringSliderDashpot,
     /// Linear spring and dashpot with tangential history: the stiffness at which a pair that meets with this
     /// speed in m/s overlaps as much as by Hertz' law.

@@ -92,7 +92,7 @@ pub struct Bed {
 /// force on the gas in N:          F_c = `drag_source` − `drag_coefficient` · u_c.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CellExchange {
-    /// Σ W K_A in kg/s (requirements DRG-1, model A: the pressure force is separate).
+    /// Σ W K_A in kg/s (docs/theory.md, DRG-1, model A: the pressure force is separate).
     pub drag_coefficient: Vec<f64>,
     /// Explicit part of the drag on the gas in N.
     pub drag_source: Vec<Vec3>,
@@ -190,7 +190,7 @@ pub struct CellReceived {
     /// Gas momentum along x, y, z in N s.
     pub momentum: [Balance; 3],
     /// What the form of the momentum equation gives the gas in N s because it stores mass over another span than
-    /// momentum (requirements TSM-8), Σ u (1 − Δt/Δτ) Δ(ε ρ V); a part of the momentum's sources.
+    /// momentum (docs/theory.md, TSM-8), Σ u (1 − Δt/Δτ) Δ(ε ρ V); a part of the momentum's sources.
     pub storage_clock: Vec3,
 }
 
@@ -204,7 +204,7 @@ pub struct Convergence {
     /// Largest scaled initial residual in the last outer iteration.
     pub residual: f64,
     /// Mismatch between the mass that continuity carries and the equation of state, largest over
-    /// the cells, relative to the cell's gas mass (requirements CON-2).
+    /// the cells, relative to the cell's gas mass (docs/theory.md, CON-2).
     pub volume_residual: f64,
     /// False where the outer loop ended at its limit; said in words by the log.
     pub converged: bool,

@@ -34,7 +34,7 @@ pub struct GasSetup {
     pub mixture: String,
     /// Properties of the mixture.
     pub properties: GasModel,
-    /// Schmidt number of all species of a mixture (requirements SPC-1); 1 where there are none.
+    /// Schmidt number of all species of a mixture (docs/theory.md, SPC-1); 1 where there are none.
     pub schmidt: f64,
     /// Reactions of the gas with itself.
     pub chemistry: GasChemistry,

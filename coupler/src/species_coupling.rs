@@ -1,4 +1,4 @@
-//! What particles exchange with the gas through channels, heterogeneous reactions for example (requirements RXN-1, 2).
+//! What particles exchange with the gas through channels, heterogeneous reactions for example (docs/theory.md, RXN-1, 2).
 //!
 //! The rate of a channel j of particle p is a line in the mass fraction of its key gas,
 //! r = b Y − a, and each cell that p spans has its share W_cp of it by the cell's own Y. A first attempt of

@@ -123,7 +123,7 @@ impl Window {
     }
 }
 
-/// Over which clock the gas stores mass, enthalpy and species (requirements TSM-2, TSM-8).
+/// Over which clock the gas stores mass, enthalpy and species (docs/theory.md, TSM-2, TSM-8).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GasStorage {
     /// What the gas stores is stepped implicitly with the process span (AF dt).

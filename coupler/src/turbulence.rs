@@ -3,7 +3,7 @@
 use calcine_physics::turbulence::{KEpsilon, energy_of_intensity};
 
 /// Solid fraction above which a cell belongs to the bed, where eddies are neither made nor carry anything
-/// (requirements FLO-2).
+/// (docs/theory.md, FLO-2).
 pub const BED: f64 = 0.1;
 
 /// True where a cell of this void fraction is free of the bed.

@@ -279,7 +279,7 @@ fn no_cell_is_driven_beyond_its_particle_and_its_neighbours() {
 
 #[test]
 fn a_stiff_particle_relaxes_without_overshoot() {
-    // h A Δτ/(m c) = 1e4: a lagged particle temperature would diverge (requirements TSM-9).
+    // h A Δτ/(m c) = 1e4: a lagged particle temperature would diverge (docs/theory.md, TSM-9).
     let (.., thin, gas) = attempts(100.0, 0.5, 200, 0.0);
     for &temperature in thin
         .bodies(At::Attempt)

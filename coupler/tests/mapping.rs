@@ -1,4 +1,4 @@
-//! Base mappings of particles onto cells (requirements VFS-1, CON-6) and cell location.
+//! Base mappings of particles onto cells (docs/theory.md, VFS-1, CON-6) and cell location.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,4 +1,4 @@
-//! The Volume Fraction Smoother (requirements VFS-1..8, VFS-V1).
+//! The Volume Fraction Smoother (docs/theory.md, VFS-1..8, VFS-V1).
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,4 +1,4 @@
-//! What the smoother refuses: beds that do not fit, settings out of range (requirements VFS-4, VFS-5).
+//! What the smoother refuses: beds that do not fit, settings out of range (docs/theory.md, VFS-4, VFS-5).
 
 #![allow(clippy::unwrap_used)]
 

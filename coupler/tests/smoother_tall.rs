@@ -1,5 +1,5 @@
 //! Tall beds near the threshold, where sweeps from neighbour to neighbour take tens of thousands:
-//! active sets and multigrid must find what sweeps would (requirements VFS-3, 4, 6, 8).
+//! active sets and multigrid must find what sweeps would (docs/theory.md, VFS-3, 4, 6, 8).
 
 #![allow(clippy::unwrap_used)]
 

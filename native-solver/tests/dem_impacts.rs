@@ -171,7 +171,7 @@ impl Impact {
 
 /// What an impact exchanges, integrated apart, with the line of centres where it stays: the overlap, the velocity
 /// along the surface and both rotations, m* δ'' = −F_n, m* v' = −F_t, I ω' = a F_t with the arms a = R − δ/2.
-/// Leapfrog in 40 000 steps; the laws in their papers' letters (requirements COR-12). Gives the tangential
+/// Leapfrog in 40 000 steps; the laws in their papers' letters (docs/theory.md, COR-12). Gives the tangential
 /// impulse in N s and what of it turns the first sphere: the angular impulse over its radius.
 fn apart(impact: &Impact) -> [f64; 2] {
     let (radius, mass) = impact.effective();

@@ -76,7 +76,7 @@ pub(super) fn smoother(case: &Case, prepared: &PreparedCase) -> Result<Smoother,
 }
 
 /// Settings of the smoother. Where the case does not state the diffusion's length, it is half the
-/// mean diameter where particles are larger than a third of the cells about them (requirements VFS-6): without
+/// mean diameter where particles are larger than a third of the cells about them (docs/theory.md, VFS-6): without
 /// it a particle that spans several cells would give heat to cells that have nothing to give.
 fn smoothing(case: &Case, prepared: &PreparedCase) -> Smoothing {
     let radii = &prepared.particles.radius;

@@ -1,4 +1,4 @@
-//! Buoyant waves on the motion clock (requirements TSM-8).
+//! Buoyant waves on the motion clock (docs/theory.md, TSM-8).
 //!
 //! With what the gas stores on the process clock, buoyant waves run √AF times faster on the motion
 //! clock: a motion span Δt resolves them where N √AF Δt < 2, N the buoyancy frequency.

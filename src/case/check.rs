@@ -15,7 +15,7 @@ use calcine_coupler::setup::{GasPatch, InletFlow};
 use super::model::{Case, Population};
 use super::{buoyancy, sizes};
 
-/// Above this, a number of the time splitting gets a warning (requirements TSM-6, TSM-8).
+/// Above this, a number of the time splitting gets a warning (docs/theory.md, TSM-6, TSM-8).
 const WARNING: f64 = 0.1;
 
 /// Clocks, sizes, and how far the time splitting may be from the unsplit run.

@@ -157,7 +157,7 @@ pub struct FreeMotion {
     pub held: Holds,
 }
 
-/// Which clock the motion of particles belongs to (requirements TSM-7).
+/// Which clock the motion of particles belongs to (docs/theory.md, TSM-7).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionKind {
     /// Fluidised beds, drums, sprays: the motion is what it is in process time, so that AF is 1.
@@ -183,7 +183,7 @@ pub struct Coupling {
     pub excluded: Vec<Zone>,
     /// The smoother stops when the excess left is below this share of the solid volume.
     pub smoother_tolerance: f64,
-    /// Length ℓ of the diffusion F in m (requirements VFS-6); `None`: half the particles' mean
+    /// Length ℓ of the diffusion F in m (docs/theory.md, VFS-6); `None`: half the particles' mean
     /// diameter where that is above a third of the cell size, else zero.
     pub diffusion_length: Option<f64>,
     /// A window is repeated while the mismatch of the exchange, relative to its magnitude, is

@@ -1,7 +1,7 @@
 //! The motion span of a case that states `time.process_step`.
 //!
 //! Where no particle moves, the motion clock carries nothing but the gas' inertia, and its momentum
-//! is quasi-steady. Its span then is a matter of convergence alone (requirements TSM-8).
+//! is quasi-steady. Its span then is a matter of convergence alone (docs/theory.md, TSM-8).
 
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::setup::{GasPatch, InletFlow, Schedule};
@@ -13,7 +13,7 @@ use super::model::Case;
 /// Cells of mean size that the gas crosses in a motion span at its largest speed: few enough for the
 /// outer loop to converge in about as many iterations as with a window chosen by hand.
 const CELLS_CROSSED: f64 = 1.0;
-/// N √AF Δt is kept below half of its limit of 2 (requirements TSM-8).
+/// N √AF Δt is kept below half of its limit of 2 (docs/theory.md, TSM-8).
 const BUOYANT_NUMBER: f64 = 1.0;
 
 /// Chooses motion window and acceleration factor where the case states a process step: the shorter

@@ -1,4 +1,4 @@
-//! How far a bed that moves accelerated is from quasi-static (requirements TSM-7): its inertial number.
+//! How far a bed that moves accelerated is from quasi-static (docs/theory.md, TSM-7): its inertial number.
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,7 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::inertial_number::inertial_number;
 use serde::{Deserialize, Serialize};
 
-/// Above this the motion of a bed depends on its pace (requirements TSM-7).
+/// Above this the motion of a bed depends on its pace (docs/theory.md, TSM-7).
 pub const QUASI_STATIC: f64 = 1e-2;
 
 /// Inertial number of the bed in motion time: the mean over all pairs of particles that touch. The shear

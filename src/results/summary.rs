@@ -160,7 +160,7 @@ pub struct LedgerSummary {
 /// One line of the ledger.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LedgerLineSummary {
-    /// Error over throughput (requirements CON-2).
+    /// Error over throughput (docs/theory.md, CON-2).
     #[serde(deserialize_with = "number")]
     pub relative_error: f64,
     /// Signed sum of what did not close, in `unit`.
@@ -258,7 +258,7 @@ pub struct ConvergenceSummary {
     /// Largest scaled residual at the end of a window.
     #[serde(deserialize_with = "number")]
     pub largest_residual: f64,
-    /// Largest volume residual of a window (requirements CON-2).
+    /// Largest volume residual of a window (docs/theory.md, CON-2).
     #[serde(deserialize_with = "number")]
     pub largest_volume_residual: f64,
 }

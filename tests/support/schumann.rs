@@ -53,7 +53,7 @@ fn solid_fraction() -> f64 {
     4.0 * std::f64::consts::PI / 6.0 * DIAMETER.powi(3) / 5e-7
 }
 
-/// h a in W/m³/K by Gunn's law (requirements COR-3), transcribed apart from the program.
+/// h a in W/m³/K by Gunn's law (docs/theory.md, COR-3), transcribed apart from the program.
 fn exchange() -> f64 {
     let [density, capacity, viscosity, conductivity] = GAS;
     let (eps, alpha) = (1.0 - solid_fraction(), solid_fraction());

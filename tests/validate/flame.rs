@@ -1,4 +1,4 @@
-//! A flat flame on a burner whose place and peak do not depend on the acceleration factor (requirement TSM-10), with OpenFOAM's own
+//! A flat flame on a burner whose place and peak do not depend on the acceleration factor (docs/theory.md, TSM-10), with OpenFOAM's own
 //! chemistry as natively, and one flame by both. The native flame alone, at more factors: `native-solver/tests/flame.rs`.
 
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Flames in the shaft furnace (requirements SHF-1): premixed burners whose fuel burns in the bed, natively and with OpenFOAM and
+//! Flames in the shaft furnace (docs/theory.md, SHF-1): premixed burners whose fuel burns in the bed, natively and with OpenFOAM and
 //! LIGGGHTS, within the case's bands, and against the same burners that let in burnt gas.
 
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! The shaft furnace in small (requirements SHF): peaks beside the paper's, counter-current profiles, flames that leave no fuel, nothing
+//! The shaft furnace in small (docs/theory.md, SHF-1): peaks beside the paper's, counter-current profiles, flames that leave no fuel, nothing
 //! lost of the particles in cells smaller than they are, and AF 678 against a slower one.
 //!
 //! The paper's figures, 2243 K in the gas and 2209 K in the particles (seed of the Volume Fraction Smoother), are

@@ -132,7 +132,7 @@ impl ParticleModel for Thin {
         Ok(())
     }
 
-    /// K = h A/(1 + h A Δτ/(m c)) (requirements TSM-9), from the committed temperature moved by the network's heat.
+    /// K = h A/(1 + h A Δτ/(m c)) (docs/theory.md, TSM-9), from the committed temperature moved by the network's heat.
     fn respond(
         &mut self,
         around: &Surroundings<'_>,

@@ -8,7 +8,7 @@ pub const REFERENCE_TEMPERATURE: f64 = 298.15;
 /// An ideal gas with constant heat capacity and Sutherland transport.
 ///
 /// ρ = p M/(R T);  h = c_p (T − 298.15 K);  μ = A_s √T/(1 + T_s/T);
-/// κ = μ c_v (1.32 + 1.77 (R/M)/c_v), the modified Eucken form (requirements COR-7).
+/// κ = μ c_v (1.32 + 1.77 (R/M)/c_v), the modified Eucken form (docs/theory.md, COR-7).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GasProperties {
     /// Molar mass M in kg/mol.
@@ -25,7 +25,7 @@ impl GasProperties {
     /// Dry air: M = 28.96 g/mol (US Standard Atmosphere 1976: 28.9644); c_p = 1007 J/kg/K, the
     /// mean of 1006.4 at 300 K and 1013.5 at 400 K weighted towards room temperature (Incropera,
     /// Fundamentals of Heat and Mass Transfer, table A.4); Sutherland's constants as in
-    /// requirement COR-7.
+    /// docs/theory.md, COR-7.
     pub fn air() -> Self {
         Self {
             molar_mass: 28.96e-3,

@@ -44,7 +44,7 @@ mod tests {
     }
 
     #[test]
-    fn agrees_with_the_independent_values_of_requirement_cor_5() {
+    fn agrees_with_the_independent_values_of_cor_5() {
         // 14 mm spheres, ε = 0.4, 145 mm; in Python, from the equation.
         let oracle = [
             (0.5, 56.65680803571427),

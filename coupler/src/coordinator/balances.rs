@@ -1,4 +1,4 @@
-//! Stage: the ledger of a window (requirements CON-2). Gas amounts count in process time.
+//! Stage: the ledger of a window (docs/theory.md, CON-2). Gas amounts count in process time.
 
 use calcine_interior::Inventory;
 use calcine_physics::Vec3;

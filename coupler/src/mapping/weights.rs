@@ -8,7 +8,7 @@ use super::MappingError;
 const ALONE: usize = 16_384;
 
 /// For each particle the cells it lies in and its share in each; the shares of a particle sum to 1
-/// (requirements CON-6). Kept by particle and by cell, so that both directions gather and results
+/// (docs/theory.md, CON-6). Kept by particle and by cell, so that both directions gather and results
 /// do not depend on the number of threads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Weights {

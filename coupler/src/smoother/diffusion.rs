@@ -1,4 +1,4 @@
-//! The optional diffusion F of what particles spread over cells (requirements VFS-6).
+//! The optional diffusion F of what particles spread over cells (docs/theory.md, VFS-6).
 
 use std::sync::Arc;
 

@@ -51,7 +51,7 @@ pub enum SmootherError {
         /// Its solid volume in m³.
         volume: f64,
     },
-    /// A bed that does not fit below α_max (requirements VFS-5).
+    /// A bed that does not fit below α_max (docs/theory.md, VFS-5).
     #[error(
         "the bed does not fit: {left_over} m^3 of solid are left over above a solid fraction of \
          {max_solid_fraction} in a region of {cells} cells with centres between \

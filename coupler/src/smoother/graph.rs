@@ -6,7 +6,7 @@ use crate::mapping::Amount;
 use crate::mesh::Mesh;
 
 /// Symmetric conductances g = |S_f|/|d_f| in m between neighbouring cells, fixed by the mesh
-/// (requirements VFS-4), zero into excluded cells. L is their Laplacian,
+/// (docs/theory.md, VFS-4), zero into excluded cells. L is their Laplacian,
 /// (L y)_i = Σ_j g_ij (y_i − y_j).
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Graph {

@@ -1,4 +1,4 @@
-//! The Volume Fraction Smoother (requirements VFS-1..8) as part of the operator W = F S W₀ that
+//! The Volume Fraction Smoother (docs/theory.md, VFS-1..8) as part of the operator W = F S W₀ that
 //! carries whatever the solid has to the cells, and whose transpose shows particles the gas.
 //!
 //! In three steps: how much of the solid must pass through each cell so that none stays above α_max is
@@ -53,7 +53,7 @@ pub struct SmootherSettings {
 }
 
 impl Default for SmootherSettings {
-    /// Random close packing, 0.64, and an excess of 1e-4 (requirements VFS-1, VFS-4).
+    /// Random close packing, 0.64, and an excess of 1e-4 (docs/theory.md, VFS-1, VFS-4).
     fn default() -> Self {
         Self {
             max_solid_fraction: 0.64,

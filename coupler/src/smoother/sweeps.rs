@@ -28,7 +28,7 @@ pub(super) struct Enough {
 /// Sweeps that are not worth doing: active sets take as long as some hundreds.
 pub(super) const MOST: u32 = 500;
 
-/// Sweeps (requirements VFS-2): each moves the excess max(0, A − C) of every cell to its neighbours
+/// Sweeps (docs/theory.md, VFS-2): each moves the excess max(0, A − C) of every cell to its neighbours
 /// in proportion to the conductances. All cells move at once, so that the result does not depend on
 /// their numbering. `excess` is A₀ − C. Ends with little enough excess, or without where it decays
 /// so slowly that more than `MOST` sweeps are to be expected. Cells far from any excess cost

@@ -1,5 +1,5 @@
 //! Who sees whom: view factors between particles, to walls and to the surroundings, with what stands in
-//! between (requirements COR-11, THP-5).
+//! between (docs/theory.md, COR-11, THP-5).
 //!
 //! Rays leave each particle by a quasi-random sequence over its surface and the cosine law. For a pair the
 //! view factor with nothing between is known (COR-11); rays only say what share of it is left. With n the rays

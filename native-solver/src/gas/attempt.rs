@@ -32,7 +32,7 @@ pub struct AttemptFrame<'a> {
     pub gravity: Vec3,
     /// Void fraction at the end of the window.
     pub void_fraction: &'a [f64],
-    /// Share of −∇p and ρ g that the gas of each cell takes: ε by model A, 1 by model B (requirements
+    /// Share of −∇p and ρ g that the gas of each cell takes: ε by model A, 1 by model B (docs/theory.md,
     /// DRG-1).
     pub pressure_share: &'a [f64],
     /// Exchange with the particles.

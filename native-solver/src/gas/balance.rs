@@ -139,7 +139,7 @@ fn momenta(
 }
 
 /// Σ u (1 − Δt/Δτ) Δ(ε ρ V): what momentum on the motion clock and mass on the storage clock leave between them
-/// (requirements TSM-8).
+/// (docs/theory.md, TSM-8).
 fn storage_clock(frame: &AttemptFrame<'_>, now: &GasState) -> Vec3 {
     let share = 1.0 - frame.motion_span / frame.storage_span;
     let sum: [f64; 3] = sums(frame.grid.cells(), |cell| {

@@ -1,4 +1,4 @@
-//! Reactions of the gas with itself (requirements CHM-1, TSM-10), in species and enthalpy alike:
+//! Reactions of the gas with itself (docs/theory.md, CHM-1, TSM-10), in species and enthalpy alike:
 //!
 //! w_k = (R_k(Y, T; Δt) − Y_k)/Δt,   q = −Σ_k h°_k w_k,
 //!

@@ -1,10 +1,10 @@
 //! Momentum of the gas, for its interstitial velocity u, in the form that subtracts u times the
-//! continuity residual (requirements TSM-8), per cell:
+//! continuity residual (docs/theory.md, TSM-8), per cell:
 //!
 //! m_old (u − u_old)/Δt + Σ φ_f u_f − u Σ φ_f − Σ (εμ)_f (∇u + ∇uᵀ − ⅔ ∇·u)·S
 //!     = −χ ∇p V + χ ρ V g + S_d − K_d u
 //!
-//! (requirements FLO-5, Newtonian), χ the share of the pressure gradient: ε by model A, 1 by model B. Implicit Euler; u_f upwind, what a second-order value has beyond it
+//! (docs/theory.md, FLO-5, Newtonian), χ the share of the pressure gradient: ε by model A, 1 by model B. Implicit Euler; u_f upwind, what a second-order value has beyond it
 //! explicitly from the last iterate; of the viscous stress the part ∇u·S implicitly, the rest explicitly;
 //! no viscous stress on free-slip walls and planes of symmetry; gas leaves an outlet as if the flow were developed there.
 

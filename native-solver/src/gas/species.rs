@@ -3,7 +3,7 @@
 //! (m Y − m_old Y_old)/Δτ + Σ φ_f Y_f − Σ (εμ/Sc + μ_t/Sc_t)_f ∇Y·S = S − C Y + m w
 //!
 //! with what particles give and take, S − C Y (continuity has their sum), and what reactions make (chemistry.rs),
-//! (requirements SPC-1; all species diffuse alike, so that Fick's fluxes sum to zero). Implicit Euler,
+//! (docs/theory.md, SPC-1; all species diffuse alike, so that Fick's fluxes sum to zero). Implicit Euler,
 //! Y_f upwind, what a second-order value has beyond it explicitly from the last iterate, with one limiter
 //! for all species, so that the fractions go on summing to one. The last species is what the others leave.
 

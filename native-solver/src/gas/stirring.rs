@@ -1,4 +1,4 @@
-//! The partially stirred reactor (requirement COR-16): eddies mix a share of a cell finely enough to react.
+//! The partially stirred reactor (docs/theory.md, COR-16): eddies mix a share of a cell finely enough to react.
 
 use calcine_coupler::gas_chemistry::{Combustion, ReactingGas};
 use calcine_coupler::physics::kinetics::{MixtureState, pasr};

@@ -153,7 +153,8 @@ fn file(
                 .line
                 .map_or(String::new(), |line| format!(", line {line}"));
             let rule = format!("is refused: {place}{line}: {}", error.what);
-            let help = "docs/reference/case-file.md says what of Cantera's and CHEMKIN's files is read";
+            let help =
+                "docs/reference/case-file.md says what of Cantera's and CHEMKIN's files is read";
             table.fail("mechanism", rule, help);
             None
         }

@@ -4,7 +4,7 @@
 //!
 //! dn_s/dτ = Σ_j ν_sj r_j,   C dT/dτ = h A (T_gas − T) + Q + Σ_j r_j q_j,
 //!
-//! with Q what it conducts and q_j the heat of reaction j at the temperatures at hand (requirements RXN-1,
+//! with Q what it conducts and q_j the heat of reaction j at the temperatures at hand (docs/theory.md, RXN-1,
 //! 2, as amounts). What comes of it is given to the exchange with the gas as lines: the rate of a
 //! heterogeneous reaction over the mass fraction of its key gas, the heat flow over the gas temperature. What
 //! the gas then says is booked, and the temperature follows from the enthalpies of what is there, so

@@ -1,4 +1,4 @@
-//! How the volume of a particle follows its conversion (requirements RXN-1, 2).
+//! How the volume of a particle follows its conversion (docs/theory.md, RXN-1, 2).
 
 use std::f64::consts::PI;
 

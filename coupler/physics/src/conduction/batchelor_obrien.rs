@@ -5,7 +5,7 @@ use crate::law::LawEntry;
 
 /// Conduction through the circular contact of two spheres in a poorly conducting gas.
 ///
-/// G = 2 k r_c, k = 2 k₁k₂/(k₁ + k₂), r_c = √(R* δ), R* = R₁R₂/(R₁ + R₂) (requirements COR-17)
+/// G = 2 k r_c, k = 2 k₁k₂/(k₁ + k₂), r_c = √(R* δ), R* = R₁R₂/(R₁ + R₂) (docs/theory.md, COR-17)
 ///
 /// r_c is Hertz' contact radius for the overlap δ, so that G rests on the overlap of the real material:
 /// with a softened Young's modulus the overlap, and G with its square root, is too large.

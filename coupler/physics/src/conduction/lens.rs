@@ -7,7 +7,7 @@ use crate::law::LawEntry;
 
 /// Conduction through the circle in which two spheres cut each other.
 ///
-/// G = 4 k₁k₂/(k₁ + k₂) √A, A = π r², with the radius r of the circle of intersection (requirements
+/// G = 4 k₁k₂/(k₁ + k₂) √A, A = π r², with the radius r of the circle of intersection (docs/theory.md,
 /// COR-17). The circle of equal spheres has r² ≈ R δ = 2 R* δ at small overlaps, so that G is there √π times
 /// the form of Batchelor and O'Brien with the same contact radius, and √(2π) = 2.51 times with the same
 /// overlap.

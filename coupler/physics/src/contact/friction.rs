@@ -15,8 +15,8 @@ pub struct Tangential {
 /// Force of the tangential spring of elongation ξ at a slip velocity v_t, limited by friction.
 ///
 /// F = −k_t ξ − γ_t v_t where k_t |ξ| ≤ μ |F_n|; beyond it the contact slips with |F| = μ |F_n|:
-/// along −ξ, which keeps the length μ |F_n|/k_t (requirements COR-12), or along −v_t, and ξ is forgotten
-/// (requirements COR-13). The dashpot does not count against the limit, as in LIGGGHTS and OpenFOAM, nor does
+/// along −ξ, which keeps the length μ |F_n|/k_t (docs/theory.md, COR-12), or along −v_t, and ξ is forgotten
+/// (docs/theory.md, COR-13). The dashpot does not count against the limit, as in LIGGGHTS and OpenFOAM, nor does
 /// cohesion add to F_n, as in LIGGGHTS.
 ///
 /// Source: Cundall and Strack, Géotechnique 29 (1979) 47, doi 10.1680/geot.1979.29.1.47.

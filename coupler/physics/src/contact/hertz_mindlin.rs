@@ -6,7 +6,7 @@ use super::{ContactModel, PairConstants, Springs};
 /// speed of impact.
 ///
 /// S_n = 2 E* √(R* δ), F = ⅔ S_n δ (that is 4/3 E* √R* δ^1.5), γ_n = 2 √(5/6) β √(S_n m*),
-/// k_t = 8 G* √(R* δ), γ_t = 2 √(5/6) β √(k_t m*) (requirements COR-12)
+/// k_t = 8 G* √(R* δ), γ_t = 2 √(5/6) β √(k_t m*) (docs/theory.md, COR-12)
 ///
 /// γ_n is Tsuji's α √(m* k) δ^¼ with α = √5 β. The tangential spring keeps μ |F_n| when it slips.
 ///

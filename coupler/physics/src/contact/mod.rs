@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn the_damping_ratio_is_the_published_one() {
-        // requirements COR-12 print α = √5 β.
+        // docs/theory.md, COR-12 prints α = √5 β.
         for (restitution, alpha) in [(0.9, 0.074_949_5), (0.8, 0.158_426), (0.5, 0.481_769)] {
             let beta = glass(restitution).damping;
             assert!((5f64.sqrt() * beta / alpha - 1.0).abs() < 2e-6, "{beta}");
@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn the_moduli_of_equal_materials_are_those_of_openfoam() {
-        // E* = E/(2(1 − ν²)) and G* = G/(2(2 − ν)) with G = E/(2(1 + ν)) (requirements COR-13).
+        // E* = E/(2(1 − ν²)) and G* = G/(2(2 − ν)) with G = E/(2(1 + ν)) (docs/theory.md, COR-13).
         let pair = glass(0.9);
         assert!((pair.young / (1e7 / (2.0 * 0.9375)) - 1.0).abs() < 1e-15);
         assert!((pair.shear / (4e6 / (2.0 * 1.75)) - 1.0).abs() < 1e-15);

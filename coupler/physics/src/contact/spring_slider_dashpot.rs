@@ -6,7 +6,7 @@ use super::{ContactModel, PairConstants, Springs};
 /// OpenFOAM's `pairSpringSliderDashpot` with b = 1.5.
 ///
 /// k_N = 4/3 E* √R*, F = k_N δ^1.5, η_N = α √(m* k_N) δ^¼ with α = √5 β, k_T = 8 G* √(R* δ), η_T = η_N
-/// (requirements COR-13)
+/// (docs/theory.md, COR-13)
 ///
 /// It differs from `HertzMindlin` in the tangential damping, and in that slip forgets the tangential
 /// spring and acts against the slip's velocity.
@@ -51,7 +51,7 @@ mod tests {
     fn agrees_with_openfoams_formula() {
         let (pair, overlap, radius, mass) = (glass(0.8), 2e-6f64, 1.5e-3f64, 3e-5f64);
         let stiffness = 4.0 / 3.0 * pair.young * radius.sqrt();
-        // α = 0.158426 for e = 0.8 (requirements COR-12)
+        // α = 0.158426 for e = 0.8 (docs/theory.md, COR-12)
         let damping = 0.158_426 * (mass * stiffness).sqrt() * overlap.powf(0.25);
         let s = SpringSliderDashpot.springs(&pair, 0.0, overlap, radius, mass);
         assert!((s.elastic / (stiffness * overlap.powf(1.5)) - 1.0).abs() < 1e-14);

@@ -13,7 +13,7 @@ use crate::local::LocalGas;
 /// K_A/ε = V_p μ/(ε d²) · ¾ C_d Re(ε Re) ε^−2.65                           else,
 /// C_d Re(x) = 24 (1 + 0.15 x^0.687) for x ≤ 1000, 0.44 x above.
 ///
-/// Conversion: the papers' coefficient balances −∇p on the gas; it is K_A/ε (requirements DRG-1),
+/// Conversion: the papers' coefficient balances −∇p on the gas; it is K_A/ε (docs/theory.md, DRG-1),
 /// so this law returns ε times it, for use with −ε∇p.
 ///
 /// Validity: packed and fluidised beds of spheres. The two branches do not meet at ε = 0.8;

@@ -8,7 +8,7 @@
 //!   F = f − V_p dp/dx = f/ε;
 //! - the coefficient β a volume of the two-fluid model: β = n K_A in form A, n K_A/ε in form B.
 //!
-//! Every law here returns K_A (requirements DRG-1), and says which force its paper means, and
+//! Every law here returns K_A (docs/theory.md, DRG-1), and says which force its paper means, and
 //! which Reynolds number.
 
 mod beetstra;
@@ -54,7 +54,7 @@ pub trait Drag: Debug + Send + Sync {
     /// Name as case files use it.
     fn name(&self) -> &'static str;
 
-    /// Drag coefficient K_A in kg/s, pressure force excluded (requirements DRG-1),
+    /// Drag coefficient K_A in kg/s, pressure force excluded (docs/theory.md, DRG-1),
     /// such that the drag on the particle is F = K_A (u − v); diameter in m.
     fn coefficient(&self, gas: &LocalGas, diameter: f64) -> f64;
 }

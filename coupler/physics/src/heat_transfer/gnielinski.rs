@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn agrees_with_the_independent_value_of_requirement_cor_4() {
+    fn agrees_with_the_independent_value_of_cor_4() {
         // d = 8e-4, ε = 0.4, U = 1, ρ = 1e3, μ = 1e-3: Re = 2000; doctest of CalebBell/ht.
         let nu = Gnielinski.nusselt(&LocalGas::of_numbers(0.4, 2000.0, 0.7), 1.0);
         assert!((nu / 61.37823202546954 - 1.0).abs() < 1e-12, "{nu}");

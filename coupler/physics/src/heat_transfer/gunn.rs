@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn agrees_with_the_independent_values_of_requirement_cor_3() {
+    fn agrees_with_the_independent_values_of_cor_3() {
         let oracle = [
             (0.4, 10.0, 10.044174),
             (0.4, 100.0, 22.267000),

@@ -39,7 +39,7 @@ mod tests {
     use crate::numbers::VoidFraction;
 
     #[test]
-    fn agrees_with_the_independent_value_of_requirement_cor_1() {
+    fn agrees_with_the_independent_value_of_cor_1() {
         let mut gas = LocalGas {
             void_fraction: VoidFraction::new(1.0).unwrap(),
             density: 1.0,

@@ -39,7 +39,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn agrees_with_the_independent_values_of_requirement_cor_2() {
+    fn agrees_with_the_independent_values_of_cor_2() {
         // (2000, 0.7) as in the doctest of CalebBell/ht, (100, 0.7) in Python.
         for (re, expected) in [(2000.0, 95.40641328041248), (100.0, 17.479_563)] {
             let nu = Wakao.nusselt(&LocalGas::of_numbers(0.4, re / 0.4, 0.7), 1.0);

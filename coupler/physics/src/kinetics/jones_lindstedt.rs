@@ -54,10 +54,10 @@ const HYDROGEN_ORIGINAL: Row = (
     &[("H2", 0.25), ("O2", 1.5)],
 );
 
-/// The steps of the refined set, or of the original one (requirements CHM-1).
+/// The steps of the refined set, or of the original one (docs/theory.md, CHM-1).
 ///
-/// Source: Jones and Lindstedt, Combust. Flame 73 (1988) 233, doi 10.1016/0010-2180(88)90021-1; the refined third step as
-/// requirement CHM-1 has it. Validity: methane with air, lean to moderately rich; there are no radicals, so that flames burn
+/// Source: Jones and Lindstedt, Combust. Flame 73 (1988) 233, doi 10.1016/0010-2180(88)90021-1; the refined third step as in
+/// docs/theory.md, CHM-1. Validity: methane with air, lean to moderately rich; there are no radicals, so that flames burn
 /// a little too hot.
 pub fn steps(refined: bool) -> Result<Vec<ReactionStatement>, KineticsError> {
     let hydrogen = if refined {

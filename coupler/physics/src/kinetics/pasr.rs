@@ -5,7 +5,7 @@
 /// t_k = C_mix √(μ_eff/(ρ ε_t)),
 ///
 /// from the constant C_mix (1 in OpenFOAM), the effective viscosity in Pa s, the density in kg/m³ and the dissipation
-/// ε_t in m²/s³ (requirements COR-16). Gas without dissipation is not mixed: the time is infinite; gas without viscosity
+/// ε_t in m²/s³ (docs/theory.md, COR-16). Gas without dissipation is not mixed: the time is infinite; gas without viscosity
 /// counts as mixed.
 ///
 /// Source: Nordin, Complex chemistry modeling of diesel spray combustion, thesis, Chalmers (2001); Kärrholm, thesis, Chalmers (2008).

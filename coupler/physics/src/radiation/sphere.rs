@@ -32,7 +32,7 @@ pub fn element_to_sphere(distance: f64, radius: f64, angle: f64) -> f64 {
     0.5 - first / PI + (cosine * second - third) / (PI * h * h)
 }
 
-/// View factor from a sphere to another, with nothing between them (requirements COR-11).
+/// View factor from a sphere to another, with nothing between them (docs/theory.md, COR-11).
 ///
 /// F = ½ ∫ F_el(β) sin β dβ over the angle β from the line of centres, with the analytic factor of an element
 /// of the first sphere's surface; radii and distance of the centres in m. A₁F₁₂ = A₂F₂₁.

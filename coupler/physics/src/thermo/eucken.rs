@@ -3,7 +3,7 @@
 /// Thermal conductivity in W/m/K of a gas from its viscosity μ in Pa s, its isobaric heat capacity
 /// c_p and its specific gas constant R_s, both in J/kg/K.
 ///
-/// κ = μ c_v (1.32 + 1.77 R_s/c_v) = μ (1.32 (c_p − R_s) + 1.77 R_s) (requirements COR-7).
+/// κ = μ c_v (1.32 + 1.77 R_s/c_v) = μ (1.32 (c_p − R_s) + 1.77 R_s) (docs/theory.md, COR-7).
 ///
 /// Validity: non-polar gases within 8 %, mostly on the high side; exact for monatomic ones:
 /// 1.32 + 1.77/1.5 = 2.5. Water vapour, whose internal energy travels slowly, comes out a third too

@@ -4,7 +4,7 @@ use super::{ThermoError, inverse};
 use crate::gas::GAS_CONSTANT;
 
 /// Molar heat capacity, enthalpy and entropy of an ideal gas at 1 bar by a polynomial for each of two
-/// temperature ranges (requirements COR-8).
+/// temperature ranges (docs/theory.md, COR-8).
 ///
 /// c_p/R = a₁ + a₂ T + a₃ T² + a₄ T³ + a₅ T⁴
 /// h/R = a₁ T + a₂ T²/2 + a₃ T³/3 + a₄ T⁴/4 + a₅ T⁵/5 + a₆

@@ -195,8 +195,8 @@ mod tests {
     }
 
     #[test]
-    fn heat_capacities_are_those_of_requirement_cor_8() {
-        // J/kg/K, of another set of polynomials; the requirement's molar masses have fewer digits.
+    fn heat_capacities_are_those_of_cor_8() {
+        // J/kg/K, of another set of polynomials; the reference's molar masses have fewer digits.
         for (name, at_300, at_800) in [
             ("N2", 1039.69, 1121.91),
             ("CO2", 845.67, 1168.61),

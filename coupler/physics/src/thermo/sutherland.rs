@@ -2,7 +2,7 @@
 
 /// Viscosity of a gas of molecules that attract each other weakly.
 ///
-/// μ = A √T/(1 + S/T), A in kg/m/s/K^½, S in K (requirements COR-7).
+/// μ = A √T/(1 + S/T), A in kg/m/s/K^½, S in K (docs/theory.md, COR-7).
 ///
 /// Conversion: with a reference viscosity μ₀ at T₀, A = μ₀ (1 + S/T₀)/√T₀.
 ///
@@ -34,7 +34,7 @@ impl Sutherland {
 mod tests {
     use super::*;
 
-    /// Air, requirements COR-7.
+    /// Air, docs/theory.md, COR-7.
     const AIR: Sutherland = Sutherland {
         coefficient: 1.4792e-6,
         temperature: 116.0,

@@ -1,6 +1,6 @@
 //! The standard k-epsilon model.
 
-/// Two quantities stand for the eddies: their energy k in m²/s² and its dissipation ε in m²/s³ (requirements
+/// Two quantities stand for the eddies: their energy k in m²/s² and its dissipation ε in m²/s³ (docs/theory.md,
 /// COR-15), with
 ///
 /// ν_t = C_μ k²/ε,

@@ -8,7 +8,7 @@
 //! clock, and eddies of a few milliseconds have no place on a clock of hours. They advance once for each committed
 //! window, so that attempts may be repeated; in an attempt the eddy viscosity is that of its start.
 //!
-//! The bed (requirements FLO-2) is every cell with a solid fraction above 0.1, whatever its neighbours are. There
+//! The bed (docs/theory.md, FLO-2) is every cell with a solid fraction above 0.1, whatever its neighbours are. There
 //! eddies carry nothing (μ_t = 0) and none are made (P = 0); those that flow in decay by the model's own law. At
 //! a face between bed and free gas the coefficients are the mean of both sides, as at any other face.
 
