@@ -13,10 +13,19 @@ use std::process::{Command, Output};
 
 /// Commands, by a part of them, that are parsed only, with the reason.
 const ONLY_PARSED: &[(&str, &str)] = &[
-    ("cargo xtask", "installs packages and builds; `cargo xtask test` itself runs this"),
+    (
+        "cargo xtask",
+        "installs packages and builds; `cargo xtask test` itself runs this",
+    ),
     (".ci/run", "runs this test"),
-    ("--gas openfoam", "takes OpenFOAM; run by the tests of pairings"),
-    ("--particles liggghts", "takes LIGGGHTS; run by the tests of pairings"),
+    (
+        "--gas openfoam",
+        "takes OpenFOAM; run by the tests of pairings",
+    ),
+    (
+        "--particles liggghts",
+        "takes LIGGGHTS; run by the tests of pairings",
+    ),
     ("--pairings", "takes OpenFOAM; run by the tests of pairings"),
     ("mpirun", "takes several machines"),
     ("#!/bin/bash", "a queue's script; run by the tests of ranks"),
@@ -34,7 +43,11 @@ const CASES: &[(&str, &str)] = &[
 ];
 
 /// Settings that shorten runs outside the tutorial: the column's first windows.
-const SHORT: &[&str] = &["time.end=2 s", "output.every=1 s", "time.checkpoint.every=1 s"];
+const SHORT: &[&str] = &[
+    "time.end=2 s",
+    "output.every=1 s",
+    "time.checkpoint.every=1 s",
+];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -178,7 +191,12 @@ fn subcommands_and_options_of_every_command_are_those_of_the_program() {
         // Options are read before the help is shown: a wrong one ends with an error.
         words.push("--help".into());
         let output = calcine(root(), &words);
-        assert!(output.status.success(), "{}: {words:?}\n{}", page.display(), said(&output));
+        assert!(
+            output.status.success(),
+            "{}: {words:?}\n{}",
+            page.display(),
+            said(&output)
+        );
     }
     let wrong = ["run", "bed.toml", "--ranks-gaz", "2", "--help"].map(str::to_owned);
     assert!(!calcine(root(), &wrong).status.success());
@@ -201,7 +219,10 @@ fn files_of_the_repository_that_commands_name_exist() {
 fn every_reason_for_not_executing_a_command_is_of_one_that_is_there() {
     let lines: Vec<String> = all().iter().map(|(_, words)| words.join(" ")).collect();
     for (part, _) in ONLY_PARSED {
-        assert!(lines.iter().any(|line| line.contains(part)), "no command with `{part}`");
+        assert!(
+            lines.iter().any(|line| line.contains(part)),
+            "no command with `{part}`"
+        );
     }
 }
 
@@ -223,7 +244,13 @@ fn execute(page: &Path) {
     let whole = page.ends_with("tutorial.md");
     if !whole {
         for name in ["heated-bed", "bed"] {
-            let words = ["run", "bed.toml", "--quiet", "--out", &format!("results/{name}")];
+            let words = [
+                "run",
+                "bed.toml",
+                "--quiet",
+                "--out",
+                &format!("results/{name}"),
+            ];
             let output = calcine(&here, &shortened(&words.map(str::to_owned)));
             assert!(output.status.success(), "{}", said(&output));
         }
@@ -241,11 +268,18 @@ fn execute(page: &Path) {
                 }
                 let output = calcine(&here, &words);
                 let told = said(&output);
-                assert!(output.status.success(), "{}: {line}\n{told}", page.display());
+                assert!(
+                    output.status.success(),
+                    "{}: {line}\n{told}",
+                    page.display()
+                );
             }
             "cd" => here.push(&words[1]),
             "cat" => assert!(here.join(&words[1]).is_file(), "{}: {line}", page.display()),
-            _ => panic!("{}: `{line}` is neither executed nor in the list", page.display()),
+            _ => panic!(
+                "{}: `{line}` is neither executed nor in the list",
+                page.display()
+            ),
         }
     }
 }
@@ -261,7 +295,11 @@ fn shortened(words: &[String]) -> Vec<String> {
     }
     words.push("--quiet".into());
     if words[0] == "run" {
-        words.extend(SHORT.iter().flat_map(|set| ["--set".into(), (*set).to_owned()]));
+        words.extend(
+            SHORT
+                .iter()
+                .flat_map(|set| ["--set".into(), (*set).to_owned()]),
+        );
     }
     words
 }
@@ -295,7 +333,12 @@ fn case_files_of_the_docs_are_toml_and_complete_ones_are_accepted() {
             let file = folder.path().join(format!("docs-{complete}.toml"));
             fs::write(&file, &block).unwrap();
             let output = calcine(folder.path(), &["check".into(), file.display().to_string()]);
-            assert!(output.status.success(), "{}:\n{}", page.display(), said(&output));
+            assert!(
+                output.status.success(),
+                "{}:\n{}",
+                page.display(),
+                said(&output)
+            );
         }
     }
     assert!(complete > 0, "the tutorial has a complete case");
@@ -342,7 +385,11 @@ fn links_between_pages_lead_to_files_and_headings_that_exist() {
             assert!(path.exists(), "{}: {target}", page.display());
             if !anchor.is_empty() {
                 let known = anchors(&fs::read_to_string(&path).unwrap());
-                assert!(known.contains(anchor), "{}: {target} of {known:?}", page.display());
+                assert!(
+                    known.contains(anchor),
+                    "{}: {target} of {known:?}",
+                    page.display()
+                );
             }
         }
     }
@@ -361,7 +408,10 @@ fn sources() -> Vec<PathBuf> {
     listed
         .split('\0')
         .map(PathBuf::from)
-        .filter(|path| path.extension().is_some_and(|it| written.iter().any(|&end| it == end)))
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|it| written.iter().any(|&end| it == end))
+        })
         .filter(|path| root().join(path).is_file())
         .collect()
 }
@@ -377,7 +427,8 @@ fn cited(text: &str) -> BTreeSet<String> {
     };
     let mut found = BTreeSet::new();
     for part in text.split("theory.md,").skip(1) {
-        let words = part.split(|letter: char| letter.is_whitespace() || ",;:.()/!`'\"".contains(letter));
+        let words =
+            part.split(|letter: char| letter.is_whitespace() || "#,;:.()/!`'\"".contains(letter));
         let mut words = words.filter(|word| !word.is_empty());
         let first: Vec<_> = words.by_ref().map_while(is_one).collect();
         found.extend(first);

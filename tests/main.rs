@@ -8,6 +8,7 @@ mod case_files;
 mod check_and_run;
 mod contacts_agree;
 mod continuation;
+mod docs;
 mod drag_ripple;
 mod external_gas;
 mod frank_kamenetskii;

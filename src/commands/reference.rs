@@ -39,10 +39,15 @@ fn row(argument: &Arg) -> String {
     let values: Vec<&str> = names.iter().map(|name| name.as_str()).collect();
     let head = match argument.get_long() {
         None => values.join(" "),
-        Some(long) if argument.get_action().takes_values() => format!("--{long} {}", values.join(" ")),
+        Some(long) if argument.get_action().takes_values() => {
+            format!("--{long} {}", values.join(" "))
+        }
         Some(long) => format!("--{long}"),
     };
-    let mut help = argument.get_help().map(ToString::to_string).unwrap_or_default();
+    let mut help = argument
+        .get_help()
+        .map(ToString::to_string)
+        .unwrap_or_default();
     if !help.ends_with('.') {
         help.push('.');
     }
@@ -75,9 +80,12 @@ fn section(command: &Command) -> String {
     let mut page = format!("\n## `calcine {name}`\n\n{}\n", about.trim_end());
     let shown = |argument: &&Arg| !["help", "version"].contains(&argument.get_id().as_str());
     let positional = command.get_positionals().filter(shown);
-    let options = command.get_opts().chain(command.get_arguments().filter(|argument| {
-        argument.get_long().is_some() && !argument.get_action().takes_values()
-    }));
+    let options =
+        command
+            .get_opts()
+            .chain(command.get_arguments().filter(|argument| {
+                argument.get_long().is_some() && !argument.get_action().takes_values()
+            }));
     let rows: String = positional.chain(options.filter(shown)).map(row).collect();
     if !rows.is_empty() {
         let _ = write!(page, "\n| argument | meaning |\n|---|---|\n{rows}");

@@ -213,7 +213,8 @@ fn table(
             Some(Some(partner)) => {
                 let base = Series::read(&partner.folder).map_err(|error| failed(&error))?;
                 let Deviation { percent, .. } = deviation(&base, &series, span);
-                let largest = percent.iter().copied().fold(0.0, f64::max);
+                // Of more than 1000 particles no temperatures are recorded one by one.
+                let largest = percent.iter().copied().reduce(f64::max).unwrap_or(f64::NAN);
                 if header.len() < row.len() + percent.len() + 1 {
                     header.truncate(row.len());
                     header.extend((1..=percent.len()).map(|p| format!("p{p} %")));

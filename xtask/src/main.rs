@@ -290,7 +290,9 @@ mod tests {
                 }
             }
         }
-        let texts = pages.iter().map(|page| std::fs::read_to_string(page).unwrap());
+        let texts = pages
+            .iter()
+            .map(|page| std::fs::read_to_string(page).unwrap());
         let text: String = texts.collect();
         let lines = text.lines().map(str::trim_start);
         let tasks = lines.filter_map(|line| line.strip_prefix("cargo xtask "));
