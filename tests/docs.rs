@@ -140,17 +140,19 @@ fn split(line: &str) -> Vec<String> {
 /// The arguments of `calcine` in a command, also where `cargo xtask` runs it; none of another program.
 fn of_calcine(words: &[String]) -> Option<Vec<String>> {
     let texts: Vec<&str> = words.iter().map(String::as_str).collect();
-    let rest = match texts.as_slice() {
-        ["calcine", rest @ ..] | ["cargo", "xtask", "calcine", rest @ ..] => rest,
-        ["cargo", "xtask", rest @ ["run", ..]] => rest,
+    let skipped = match texts.as_slice() {
+        ["calcine", ..] => 1,
+        ["cargo", "xtask", "calcine", ..] => 3,
+        ["cargo", "xtask", "run", ..] => 2,
         _ => return None,
     };
-    Some(rest.iter().map(|&word| word.to_owned()).collect())
+    Some(words[skipped..].to_vec())
 }
 
 fn calcine(folder: &Path, words: &[String]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
-    command.args(words).current_dir(folder).output().unwrap()
+    command.args(words).current_dir(folder);
+    command.output().unwrap()
 }
 
 fn said(output: &Output) -> String {
