@@ -171,7 +171,7 @@ fn all() -> Vec<(PathBuf, Vec<String>)> {
             }
         }
     }
-    assert!(found.len() > 60, "{} commands", found.len());
+    assert!(found.len() > 40, "{} commands", found.len());
     found
 }
 
@@ -245,17 +245,9 @@ fn execute(page: &Path) {
     let mut here = folder.path().to_owned();
     let whole = page.ends_with("tutorial.md");
     if !whole {
-        for name in ["heated-bed", "bed"] {
-            let words = [
-                "run",
-                "bed.toml",
-                "--quiet",
-                "--out",
-                &format!("results/{name}"),
-            ];
-            let output = calcine(&here, &shortened(&words.map(str::to_owned)));
-            assert!(output.status.success(), "{}", said(&output));
-        }
+        let words = ["run", "bed.toml", "--out", "results/heated-bed"].map(str::to_owned);
+        let output = calcine(&here, &shortened(&words));
+        assert!(output.status.success(), "{}", said(&output));
     }
     for (_, words) in all().into_iter().filter(|(of, _)| of == page) {
         if only_parsed(&words).is_some() {
@@ -276,7 +268,10 @@ fn execute(page: &Path) {
                     page.display()
                 );
             }
-            "cd" => here.push(&words[1]),
+            "cd" => {
+                here.push(&words[1]);
+                save_cases(page, &here);
+            }
             "cat" => assert!(here.join(&words[1]).is_file(), "{}: {line}", page.display()),
             _ => panic!(
                 "{}: `{line}` is neither executed nor in the list",
@@ -286,7 +281,20 @@ fn execute(page: &Path) {
     }
 }
 
-/// A run of a page's case is that of the short column, into another folder than the one that is there.
+/// Saves the complete cases of a page under the names that it gives them: "Save this as `NAME`".
+fn save_cases(page: &Path, folder: &Path) {
+    let text = text(page);
+    let names = text.split("Save this as `").skip(1);
+    let names = names.map(|part| part.split('`').next().unwrap());
+    let complete = blocks(&text, "toml")
+        .into_iter()
+        .filter(|block| block.starts_with("format"));
+    for (name, block) in names.zip(complete) {
+        fs::write(folder.join(name), block).unwrap();
+    }
+}
+
+/// A run of a page's case is that of the short column, shorter still.
 fn shortened(words: &[String]) -> Vec<String> {
     let mut words = words.to_vec();
     if !matches!(words[0].as_str(), "run" | "sweep") {
@@ -295,14 +303,15 @@ fn shortened(words: &[String]) -> Vec<String> {
     if words[1].starts_with("cases/") {
         words[1] = "bed.toml".into();
     }
-    words.push("--quiet".into());
-    if words[0] == "run" {
-        words.extend(
-            SHORT
-                .iter()
-                .flat_map(|set| ["--set".into(), (*set).to_owned()]),
-        );
-    }
+    let set: &[&str] = if words[0] == "run" {
+        SHORT
+    } else {
+        &SHORT[..1]
+    };
+    words.extend(
+        set.iter()
+            .flat_map(|set| ["--set".into(), (*set).to_owned()]),
+    );
     words
 }
 

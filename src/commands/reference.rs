@@ -77,7 +77,9 @@ fn section(command: &Command) -> String {
     let name = command.get_name();
     let text = |about: Option<&clap::builder::StyledStr>| about.map(ToString::to_string);
     let about = text(command.get_long_about().or(command.get_about())).unwrap_or_default();
-    let mut page = format!("\n## `calcine {name}`\n\n{}\n", about.trim_end());
+    let about = about.trim_end();
+    let stop = if about.ends_with('.') { "" } else { "." };
+    let mut page = format!("\n## `calcine {name}`\n\n{about}{stop}\n");
     let shown = |argument: &&Arg| !["help", "version"].contains(&argument.get_id().as_str());
     let positional = command.get_positionals().filter(shown);
     let options =
