@@ -17,6 +17,8 @@ const ONLY_PARSED: &[(&str, &str)] = &[
         "cargo xtask",
         "installs packages and builds; `cargo xtask test` itself runs this",
     ),
+    ("cargo build", "compiles; run by the tests of the C gas"),
+    ("cc -std", "compiles; run by the tests of the C gas"),
     (".ci/run", "runs this test"),
     (
         "--gas openfoam",
