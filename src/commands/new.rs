@@ -76,7 +76,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
 /// The text of a case with the laws that it may choose above its section `[laws]`.
 fn with_laws(text: &str) -> String {
     let catalogue = LawCatalogue::default();
-    let mut comment = String::from("# To choose from (docs/reference/case-file.md says what each is):\n");
+    let mut comment =
+        String::from("# To choose from (docs/reference/case-file.md says what each is):\n");
     for (family, laws) in catalogue.families() {
         if let Some(key) = family.strip_prefix("laws.") {
             let names: Vec<&str> = laws.iter().map(|law| law.name).collect();
