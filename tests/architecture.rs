@@ -25,7 +25,10 @@ const ARROWS: [(&str, &[&str]); 11] = [
         ],
     ),
     ("calcine-adapters", &["calcine-coupler", "calcine-wire"]),
-    ("calcine-coupler", &["calcine-interior", "calcine-physics"]),
+    (
+        "calcine-coupler",
+        &["calcine-interior", "calcine-numerics", "calcine-physics"],
+    ),
     ("calcine-interior", &["calcine-numerics", "calcine-physics"]),
     ("calcine-liggghts", &["calcine-wire"]),
     // The same command line, where MPI spawns the solvers.

@@ -2,8 +2,9 @@
 //!
 //! The rate of a channel j of particle p is a line in the mass fraction of its key gas,
 //! r = b Y − a, and each cell that p spans has its share W_cp of it by the cell's own Y. A first attempt of
-//! a window gives the gas these lines: the key gas implicitly, which is what keeps large process steps stable, all
-//! others explicitly. What comes of it gives the rates of the cells; limited to what particles hold, they are given to
+//! a window gives the gas these lines: the key gas implicitly, which is what keeps large process steps stable, a gas into which the
+//! channel turns it mole for mole likewise (the rate follows both, and by the key gas alone the two would be out of step
+//! until the attempts agree), all others explicitly. What comes of it gives the rates of the cells; limited to what particles hold, they are given to
 //! the gas once more as fixed sources, all species of a channel in their proportions, so that elements close whatever the
 //! attempts before did.
 //!
@@ -34,6 +35,10 @@ pub struct SpeciesCoupling {
     pub carried: Vec<f64>,
     /// The same into each cell, of the last attempt.
     pub cell_heat: Vec<f64>,
+    /// Rates before those.
+    before: Vec<f64>,
+    /// Of each channel the gas that counter-diffuses mole for mole.
+    counter: Vec<Option<usize>>,
     shares: Vec<f64>,
     /// Of each channel: slopes and offsets of particles, and of cells.
     particle: [Vec<f64>; 2],
@@ -47,7 +52,8 @@ pub struct SpeciesCoupling {
 }
 
 impl SpeciesCoupling {
-    /// Tells the gas the lines, about its present fields.
+    /// Tells the gas the lines, about its present fields. The result is how far their rates there are from those before, as a
+    /// share of all.
     pub fn linearise(
         &mut self,
         operator: &Operator,
@@ -55,19 +61,22 @@ impl SpeciesCoupling {
         gas: &GasFields<'_>,
         properties: &GasModel,
         out: &mut SpeciesExchange,
-    ) {
+    ) -> f64 {
         let species = properties.species().len();
         let count = given.channels.len() * operator.particles();
         self.shares.clear();
         self.shares.resize(count, 1.0);
         self.spread(operator, given, properties);
-        self.fractions.clear();
-        self.fractions.extend_from_slice(gas.composition);
-        self.sample_rates(operator, given, species);
+        let moved = self.follow(operator, given, gas, species);
+        let counter = |channel| counter(channel, properties);
+        self.counter.clear();
+        self.counter.extend(given.channels.iter().map(counter));
         self.fill(given, species, true, out);
+        moved
     }
 
-    /// Rates of the lines at the gas as it is now; how far they are from those before, as a share of all.
+    /// Takes up the rates of the lines at the gas as it is; the result is how far they are from those before, as a share of
+    /// all.
     pub fn follow(
         &mut self,
         operator: &Operator,
@@ -75,12 +84,12 @@ impl SpeciesCoupling {
         gas: &GasFields<'_>,
         species: usize,
     ) -> f64 {
-        let before = std::mem::take(&mut self.rates);
+        std::mem::swap(&mut self.rates, &mut self.before);
         self.fractions.clear();
         self.fractions.extend_from_slice(gas.composition);
         self.sample_rates(operator, given, species);
         let (mut moved, mut all) = (0.0, 0.0);
-        for (now, before) in self.rates.iter().zip(&before) {
+        for (now, before) in self.rates.iter().zip(&self.before) {
             moved += (now - before).abs();
             all += now.abs();
         }
@@ -260,6 +269,15 @@ impl SpeciesCoupling {
                     if implicit && channel.key == Some(k) && steepness > 0.0 {
                         out.coefficient[at] += steepness;
                         out.source[at] -= mass * offset;
+                    } else if implicit && slope > 0.0 && self.counter[c] == Some(k) {
+                        // What the key gas loses, this one gains, mole for mole, in a gas whose mass changes with it.
+                        let key = channel.key.map_or(0.0, |key| -channel.mass[key]);
+                        let gain = mass - key;
+                        let ratio = (1.0 + fraction * gain / key)
+                            / (1.0 - self.fractions[at] * gain / mass);
+                        let coefficient = key * slope * ratio;
+                        out.coefficient[at] += coefficient;
+                        out.source[at] += mass * rate + coefficient * self.fractions[at];
                     } else {
                         out.source[at] += mass * rate;
                     }
@@ -271,6 +289,20 @@ impl SpeciesCoupling {
             }
         }
     }
+}
+
+/// The gas into which a channel turns its key gas mole for mole, where it does nothing else.
+fn counter(channel: &Channel, properties: &GasModel) -> Option<usize> {
+    let GasModel::Mixture(mixture) = properties else {
+        return None;
+    };
+    let moles = |k: usize| channel.mass[k] / mixture.species()[k].molar_mass();
+    let mut products = (0..channel.mass.len()).filter(|&k| channel.mass[k] > 0.0);
+    let used = (0..channel.mass.len()).filter(|&k| channel.mass[k] < 0.0);
+    let (key, product) = (channel.key?, products.next()?);
+    let alone = products.next().is_none() && used.count() == 1 && channel.mass[key] < 0.0;
+    let balance = moles(key) + moles(product);
+    (alone && balance.abs() < 1e-6 * moles(product)).then_some(product)
 }
 
 /// Sensible enthalpy in J of the gases that a unit of a channel makes, at a temperature in K.

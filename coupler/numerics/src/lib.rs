@@ -3,13 +3,16 @@
 //! - [`number`]: numbers that carry exact derivatives;
 //! - [`linear`]: LU factors of dense and of block-tridiagonal matrices;
 //! - [`rosenbrock`]: one integrator for stiff systems, with the tangent of what it integrates;
-//! - [`batch`]: many systems on threads, in fixed chunks.
+//! - [`batch`]: many systems on threads, in fixed chunks;
+//! - [`anderson`]: fixed points, accelerated.
 
+pub mod anderson;
 pub mod batch;
 pub mod linear;
 pub mod number;
 pub mod rosenbrock;
 
+pub use anderson::Anderson;
 pub use linear::{BlockTridiagonal, DenseMatrix, LinearAlgebra};
 pub use number::{Dual, Number};
 pub use rosenbrock::{

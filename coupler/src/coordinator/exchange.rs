@@ -7,11 +7,13 @@ use super::interior::InteriorStage;
 use super::laws::LawStage;
 use super::meter::{Meter, Stage};
 use crate::exchange::{Exchange, ExchangeConvergence, ExchangeInputs};
-use crate::part::{CellReceived, Convergence, Gas, ParticleFields};
+use crate::part::{CellReceived, Convergence, Gas, GasFields, ParticleFields};
+use crate::smoother::Operator;
 use crate::species_coupling::{ChannelLines, SpeciesCoupling};
 use crate::supervisor::Supervisor;
 use crate::time::Window;
 use calcine_interior::Surroundings;
+use calcine_numerics::Anderson;
 
 /// What the gas and the particles exchanged in the last attempt.
 #[derive(Default)]
@@ -24,6 +26,8 @@ pub(super) struct ExchangeStage {
     pub convergence: Convergence,
     /// How well both agree.
     pub agreement: ExchangeConvergence,
+    /// The gas about which particles were last linearised.
+    iterate: GasIterate,
 }
 
 /// When the attempts of a window end.
@@ -74,16 +78,33 @@ impl ExchangeStage {
         window: &mut Window,
     ) -> Result<(), RunError> {
         let first = window.attempt;
-        let fixes = u32::from(with.interior.has_channels());
+        let channels = with.interior.has_channels();
+        let fixes = u32::from(channels);
         self.begin(with, window);
+        self.respond(with, window)?;
+        self.tell_rates(with);
         let (settled, mut misplaced, off) = loop {
-            self.respond(with, window)?;
-            self.tell_rates(with);
             let misplaced = self.attempt(with, window)?;
-            let off = misplaced.max(self.follow_rates(with));
+            let mut off = misplaced;
+            if channels {
+                // What the particles say of the gas that came of their lines, beside what the lines said of it.
+                self.follow_rates(with);
+                self.advance_iterate(with);
+                self.respond(with, window)?;
+                off = off.max(self.tell_rates(with));
+            }
             let settled = off <= limits.tolerance;
+            tracing::debug!(
+                window = window.index,
+                attempt = window.attempt,
+                misplaced,
+                off
+            );
             if settled || window.attempt - first + fixes >= limits.attempts {
                 break (settled, misplaced, off);
+            }
+            if !channels {
+                self.respond(with, window)?;
             }
         };
         if fixes > 0 {
@@ -113,6 +134,18 @@ impl ExchangeStage {
         let running = Meter::start(Stage::Exchange);
         let inputs = with.inputs(window);
         self.exchange.begin(&inputs, &with.gas.fields());
+        if with.interior.has_channels() {
+            self.iterate
+                .begin(&with.mapped.operator, &with.gas.fields());
+        }
+        with.meter.stop(running);
+    }
+
+    /// Takes the gas of the last attempt as the next about which particles are linearised, accelerated.
+    fn advance_iterate(&mut self, with: &mut Participants<'_>) {
+        let running = Meter::start(Stage::Exchange);
+        self.iterate
+            .advance(&with.mapped.operator, &with.gas.fields());
         with.meter.stop(running);
     }
 
@@ -129,10 +162,15 @@ impl ExchangeStage {
         } = with;
         let channels = interior.has_channels();
         if channels {
-            meter.time(Stage::Exchange, || laws.sample_again(mapped, &gas.fields()));
+            let seen = self.iterate.fields(gas.fields());
+            meter.time(Stage::Exchange, || laws.sample_again(mapped, &seen));
         }
         let around = Surroundings {
-            temperature: self.exchange.sampled_temperature(),
+            temperature: if channels {
+                &self.iterate.sampled_temperature
+            } else {
+                self.exchange.sampled_temperature()
+            },
             pressure: &laws.pressure,
             composition: &laws.sampled_gas.composition,
             conductance: &laws.coefficients.conductance,
@@ -150,17 +188,21 @@ impl ExchangeStage {
         Ok(())
     }
 
-    /// Tells the gas of the channels as lines.
-    fn tell_rates(&mut self, with: &mut Participants<'_>) {
+    /// Tells the gas of the channels as lines. The result is how far their rates, at the gas as it is, are from those of
+    /// the lines before, as a share of all.
+    fn tell_rates(&mut self, with: &mut Participants<'_>) -> f64 {
+        let mut moved = 0.0;
         if with.interior.has_channels() {
             let running = Meter::start(Stage::Exchange);
             let told = &mut self.exchange.cells.species;
             let (operator, properties) = (&with.mapped.operator, &with.laws.closures.gas);
             let gas = with.gas.fields();
-            self.species
+            moved = self
+                .species
                 .linearise(operator, with.lines(), &gas, properties, told);
             with.meter.stop(running);
         }
+        moved
     }
 
     /// One attempt of the gas; the share of the exchange that it left misplaced.
@@ -202,15 +244,12 @@ impl ExchangeStage {
         Ok(misplaced)
     }
 
-    /// How far what passes through channels, by the gas of the attempt, is from what it was before.
-    fn follow_rates(&mut self, with: &Participants<'_>) -> f64 {
-        if !with.interior.has_channels() {
-            return 0.0;
-        }
+    /// What passes through channels, by their lines at the gas of the attempt.
+    fn follow_rates(&mut self, with: &Participants<'_>) {
         let species = with.laws.closures.gas.species().len();
         let operator = &with.mapped.operator;
         self.species
-            .follow(operator, with.lines(), &with.gas.fields(), species)
+            .follow(operator, with.lines(), &with.gas.fields(), species);
     }
 
     /// Fixes what particles give and take, limited to what they hold.
@@ -254,5 +293,75 @@ impl ExchangeStage {
             interior, meter, ..
         } = with;
         meter.time(Stage::Interior, || interior.settle(took, window))
+    }
+}
+
+/// The gas about which particles are linearised: that of the last attempt, accelerated by the history of the window.
+#[derive(Default)]
+struct GasIterate {
+    temperature: Vec<f64>,
+    composition: Vec<f64>,
+    sampled_temperature: Vec<f64>,
+    acceleration: Anderson,
+    /// Iterate and what came of it as one list, scaled.
+    before: Vec<f64>,
+    made: Vec<f64>,
+}
+
+/// Change of temperature in K that weighs as much as one of a mass fraction from none to one.
+const KELVIN: f64 = 1000.0;
+
+impl GasIterate {
+    /// Begins the attempts of a window.
+    fn begin(&mut self, operator: &Operator, gas: &GasFields<'_>) {
+        self.acceleration.clear();
+        self.temperature.clear();
+        self.temperature.extend_from_slice(gas.temperature);
+        self.composition.clear();
+        self.composition.extend_from_slice(gas.composition);
+        self.sample(operator);
+    }
+
+    /// Takes up what the gas made of the lines about the iterate.
+    fn advance(&mut self, operator: &Operator, gas: &GasFields<'_>) {
+        let scaled = |temperature: &[f64], composition: &[f64], out: &mut Vec<f64>| {
+            out.clear();
+            out.extend(temperature.iter().map(|kelvin| kelvin / KELVIN));
+            out.extend_from_slice(composition);
+        };
+        scaled(&self.temperature, &self.composition, &mut self.before);
+        scaled(gas.temperature, gas.composition, &mut self.made);
+        self.acceleration.accelerate(&self.before, &mut self.made);
+        let cells = gas.temperature.len();
+        let species = gas.composition.len() / cells.max(1);
+        self.temperature.clear();
+        self.temperature.extend_from_slice(gas.temperature);
+        self.composition.clear();
+        self.composition.extend_from_slice(gas.composition);
+        let (temperature, composition) = self.made.split_at(cells);
+        for (cell, t) in temperature.iter().enumerate() {
+            let own = cell * species..(cell + 1) * species;
+            let fractions = &composition[own.clone()];
+            // Where it is extrapolated beyond what a gas can be, the gas of the attempt stays.
+            if *t > 0.0 && fractions.iter().all(|y| (0.0..=1.0).contains(y)) {
+                self.temperature[cell] = t * KELVIN;
+                self.composition[own].copy_from_slice(fractions);
+            }
+        }
+        self.sample(operator);
+    }
+
+    fn sample(&mut self, operator: &Operator) {
+        self.sampled_temperature.resize(operator.particles(), 0.0);
+        operator.sample(&self.temperature, &mut self.sampled_temperature);
+    }
+
+    /// The fields of the gas with temperature and composition of the iterate.
+    fn fields<'a>(&'a self, gas: GasFields<'a>) -> GasFields<'a> {
+        GasFields {
+            temperature: &self.temperature,
+            composition: &self.composition,
+            ..gas
+        }
     }
 }

@@ -143,6 +143,12 @@ impl SolidChemistry {
         self.direction[reaction]
     }
 
+    /// The gas that diffuses back for a reaction's key gas, mole for mole.
+    pub(super) fn counter(&self, reaction: usize) -> Option<usize> {
+        let direction = self.direction[reaction]?;
+        self.directions[direction].1
+    }
+
     /// The gas by whose amount a reaction's rate is taken as linear.
     pub fn key(&self, reaction: usize) -> Option<usize> {
         self.key[reaction]

@@ -159,7 +159,12 @@ impl Reacting {
                 continue;
             };
             let mean = workspace.extents[*reaction] / span;
-            let by_mass = molar / gas.species()[key].molar_mass();
+            let own = gas.species()[key].molar_mass();
+            // As the gas reacts it gains mass: its own fraction falls by more than what of it is used.
+            let gain = self.chemistry.counter(*reaction).map_or(0.0, |product| {
+                composition[key] * (gas.species()[product].molar_mass() - own) / own
+            });
+            let by_mass = molar / own / (1.0 + gain);
             let slope = workspace.slopes[*reaction] / span * by_mass;
             // More of a gas that is used up lets a reaction go faster, more of one that is made slower; where others
             // compete with it so hard that it is the other way round, the rate is told as fixed.
