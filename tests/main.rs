@@ -1,6 +1,8 @@
 //! All tests of the whole, in one program, but for those with a command line of their own (`fuzz`, `validate`, `torture`,
 //! `faults_random`) and those that ask how soon processes end (`faults`).
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 mod agreement;
 mod architecture;
 mod beds;

@@ -26,7 +26,7 @@ fn column(out: &Path) -> SimulationBuilder {
 
 /// Raises the inlet's temperature by how cold the hottest particle is, each tenth window.
 fn control(simulation: &mut Simulation) {
-    if simulation.windows() % 10 == 0 {
+    if simulation.windows().is_multiple_of(10) {
         let hottest = simulation
             .particle_temperature()
             .iter()

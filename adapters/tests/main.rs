@@ -1,6 +1,8 @@
 //! All tests of the adapters from outside, in one program, but for those that look at what their whole process has
 //! left behind (`liggghts.rs`).
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 mod liggghts_moving;
 mod liggghts_ranks;
 mod liggghts_support;

@@ -1,5 +1,7 @@
 //! All tests of the native solvers from outside, in one program.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 mod boxes;
 mod burner;
 mod column;

@@ -248,11 +248,11 @@ impl ParticleModel for Granules {
         network: &[f64],
         out: &mut GasLines,
     ) -> Result<(), ModelError> {
-        for p in 0..self.committed.len() {
+        for (p, given) in network.iter().enumerate() {
             let ha = around.conductance[p];
             let (own, drive) = self.skin(p, [0.0, 0.0], span);
             out.conductance[p] = ha * own / (own + ha);
-            out.temperature[p] = (drive + network[p]) / own;
+            out.temperature[p] = (drive + given) / own;
             out.released[p] = self.committed[p].skin();
             let state = &self.committed[p];
             let wet = f64::from(state.water[0] > 0.0);

@@ -1,7 +1,7 @@
 //! Processes of a coupled run: started, found, killed, and looked for afterwards.
 
 // Each test file uses its own part of this.
-#![allow(dead_code)]
+#![allow(dead_code, clippy::unwrap_used)]
 
 use std::fs;
 use std::io::Read;

@@ -145,8 +145,8 @@ impl<const N: usize> Add for Dual<N> {
     #[inline]
     fn add(self, other: Self) -> Self {
         let mut slope = self.slope;
-        for k in 0..N {
-            slope[k] += other.slope[k];
+        for (own, other) in slope.iter_mut().zip(other.slope) {
+            *own += other;
         }
         Self {
             value: self.value + other.value,
@@ -160,8 +160,8 @@ impl<const N: usize> Sub for Dual<N> {
     #[inline]
     fn sub(self, other: Self) -> Self {
         let mut slope = self.slope;
-        for k in 0..N {
-            slope[k] -= other.slope[k];
+        for (own, other) in slope.iter_mut().zip(other.slope) {
+            *own -= other;
         }
         Self {
             value: self.value - other.value,

@@ -13,6 +13,9 @@ use crate::case::units::Dimension;
 /// What stands for a table that a case leaves out.
 static EMPTY: LazyLock<toml_edit::Table> = LazyLock::new(toml_edit::Table::new);
 
+/// Numbers by names of the user's, in the order of the file.
+type NamedNumbers = Vec<(String, f64)>;
+
 impl<'a> TableReader<'a> {
     /// A list or single value as it stands, for forms of its own.
     pub fn raw(&self, key: &str) -> Option<&'a Item> {
@@ -159,7 +162,7 @@ impl<'a> TableReader<'a> {
     }
 
     /// All numbers of a table whose keys are names of the user's, with the table; quantities where it is declared so.
-    pub fn by_name(&self, key: &str) -> Option<(TableReader<'a>, Option<Vec<(String, f64)>>)> {
+    pub fn by_name(&self, key: &str) -> Option<(TableReader<'a>, Option<NamedNumbers>)> {
         let (_, dimension) = self.declared_as(key, |value| match value {
             KeyValue::ByName(dimension) => Some(dimension),
             _ => None,
@@ -169,7 +172,7 @@ impl<'a> TableReader<'a> {
         Some((table, numbers))
     }
 
-    fn all(&self, dimension: Dimension) -> Option<Vec<(String, f64)>> {
+    fn all(&self, dimension: Dimension) -> Option<NamedNumbers> {
         let mut found = Vec::new();
         for (name, item) in self.table.iter() {
             self.asked.borrow_mut().push(name.into());

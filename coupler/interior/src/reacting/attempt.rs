@@ -393,8 +393,8 @@ impl StiffSystem for ParticleSystem<'_> {
             if used <= 0.0 {
                 return;
             }
-            for j in 0..count {
-                let (moles, own) = uses(j, extents[j]);
+            for (j, extent) in extents.iter_mut().enumerate().take(count) {
+                let (moles, own) = uses(j, *extent);
                 if own == 0.0 {
                     continue;
                 }
@@ -410,7 +410,7 @@ impl StiffSystem for ParticleSystem<'_> {
                     give_back(column[solid], column, moving + 1 + j);
                 }
                 let lack = y[solid];
-                extents[j] -= share * lack;
+                *extent -= share * lack;
                 for &(k, n) in chemistry.effects(j).iter().filter(|one| one.0 != solid) {
                     y[k] -= n * share * lack;
                 }
