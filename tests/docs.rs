@@ -18,6 +18,7 @@ const ONLY_PARSED: &[(&str, &str)] = &[
         "installs packages and builds; `cargo xtask test` itself runs this",
     ),
     ("cargo build", "compiles; run by the tests of the C gas"),
+    ("cargo bench", "measures for minutes"),
     ("cc -std", "compiles; run by the tests of the C gas"),
     (".ci/run", "runs this test"),
     (

@@ -109,10 +109,8 @@ pub(super) fn programs(root: &TableReader<'_>, folder: &Path) -> Option<External
     let section = root.table("external")?;
     let gas = section.table("gas").and_then(|table| {
         let program = existing(&table, "program", folder);
-        if let Some(path) = &program
-            && !is_executable(path)
-        {
-            let rule = format!("names {}, which is no executable file", path.display());
+        if program.as_deref().is_some_and(|path| !is_executable(path)) {
+            let rule = "names no executable file".to_owned();
             table.fail(
                 "program",
                 rule,

@@ -96,9 +96,13 @@ impl Reacting {
             temperature: begin,
             around: ParticleSurroundings {
                 temperature: hot,
-                pressure: around.pressure[p],
+                // Reactions without gas need no pressure and no film, which are empty where nothing has channels.
+                pressure: around.pressure.get(p).copied().unwrap_or_default(),
                 fractions: &scratch.fractions,
-                film: &around.film[p * species..(p + 1) * species],
+                film: around
+                    .film
+                    .get(p * species..(p + 1) * species)
+                    .unwrap_or_default(),
                 radius: around.radius[p],
                 size: self.size(),
             },
