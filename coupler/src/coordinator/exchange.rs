@@ -177,7 +177,8 @@ impl ExchangeStage {
             film: &laws.coefficients.film,
             radius: particles.radius,
         };
-        let first = window.attempt == 0 && channels && interior.has_network();
+        // Heat that reactions set free inside reaches the network of a first attempt by a second look.
+        let first = window.attempt == 0 && interior.has_reactions() && interior.has_network();
         let conductivity = &laws.coefficients.gas_conductivity;
         meter.time(Stage::Interior, || {
             interior.respond(&around, conductivity, window, 1 + u32::from(first))

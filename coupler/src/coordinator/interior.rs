@@ -60,6 +60,11 @@ impl InteriorStage {
         !self.models.channels().is_empty()
     }
 
+    /// True where elements of some particles count, so that reactions may set heat free inside.
+    pub fn has_reactions(&self) -> bool {
+        !self.models.elements().is_empty()
+    }
+
     /// True where particles exchange heat with each other or with walls.
     pub fn has_network(&self) -> bool {
         self.network.is_some()
