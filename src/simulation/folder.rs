@@ -8,6 +8,8 @@ use std::sync::Arc;
 use calcine_coupler::coordinator::Origin;
 use rustix::fs::{FlockOperation, flock};
 use tracing::dispatcher::Dispatch;
+use tracing_subscriber::filter::{LevelFilter, Targets};
+use tracing_subscriber::layer::SubscriberExt;
 
 use super::error::SimulationError;
 use crate::assembly::Pairing;
@@ -43,7 +45,8 @@ pub(super) fn lock(out: &Path) -> Result<File, SimulationError> {
     Ok(file)
 }
 
-/// Structured log of this run: DIR/log/calcine.log (CALCINE_LOG sets the level, default info).
+/// Structured log of this run: DIR/log/calcine.log. CALCINE_LOG sets the level (default info), of all or of modules:
+/// `warn,calcine_coupler=debug`.
 pub(super) fn log(out: &Path) -> Result<Dispatch, SimulationError> {
     let path = out.join("log").join("calcine.log");
     let file = File::options()
@@ -51,13 +54,13 @@ pub(super) fn log(out: &Path) -> Result<Dispatch, SimulationError> {
         .append(true)
         .open(&path)
         .map_err(|cause| io_error(&path, cause))?;
-    let filter = tracing_subscriber::EnvFilter::try_from_env("CALCINE_LOG")
-        .unwrap_or_else(|_| tracing_subscriber::EnvFilter::new("info"));
-    let subscriber = tracing_subscriber::fmt()
-        .with_env_filter(filter)
+    let told = std::env::var("CALCINE_LOG").ok();
+    let levels = told.and_then(|text| text.parse::<Targets>().ok());
+    let levels = levels.unwrap_or_else(|| Targets::new().with_default(LevelFilter::INFO));
+    let lines = tracing_subscriber::fmt::layer()
         .with_ansi(false)
-        .with_writer(Arc::new(file))
-        .finish();
+        .with_writer(Arc::new(file));
+    let subscriber = tracing_subscriber::registry().with(levels).with(lines);
     Ok(Dispatch::new(subscriber))
 }
 
