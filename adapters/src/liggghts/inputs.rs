@@ -10,13 +10,11 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 
 use super::moving::WallForm;
-use super::template::{ScriptTemplate, ScriptVariables};
+use super::template::{DATA, ScriptTemplate, ScriptVariables};
 use super::{facets, moving};
 
 /// Name of the script.
 pub const SCRIPT: &str = "in.liggghts";
-/// Name of the data file.
-pub const DATA: &str = "particles.data";
 /// The script of a bed that is held; it reads [`DATA`].
 const FROZEN_BED: &str = include_str!("../../../liggghts-inputs/frozen-bed.in");
 /// The script of a bed that moves.

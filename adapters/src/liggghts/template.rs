@@ -9,9 +9,10 @@ use calcine_coupler::motion::Contacts;
 use calcine_coupler::physics::Vec3;
 use thiserror::Error;
 
-use super::inputs::DATA;
 use super::moving;
 
+/// Name of the data file.
+pub const DATA: &str = "particles.data";
 /// Name of the script's variables of Calcine begin with this.
 const PREFIX: &str = "calcine_";
 /// Numbers of a script and of its case may differ by this share, as texts of few digits do.

@@ -10,9 +10,10 @@ use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::{GasPatch, GasSetup};
 use calcine_wire::Catalogue;
 
+use super::names::NAME;
 use super::start_fields::StartFields;
 use super::stock::{self, StockSolver};
-use super::{NAME, chemistry, decompose, dictionaries, species, turbulence};
+use super::{chemistry, decompose, dictionaries, species, turbulence};
 use crate::launch::without_blanks;
 
 /// What an OpenFOAM case is made from.

@@ -12,7 +12,7 @@ use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::GasSetup;
 use thiserror::Error;
 
-use super::dictionaries::{field, header, zero_gradient};
+use super::foam_file::{field, header, zero_gradient};
 
 /// Absolute tolerance of OpenFOAM's integration in kmol/m³, beside the relative one of the case: a mole fraction of
 /// about 1e-10 in a flame.

@@ -13,7 +13,7 @@ use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::supervisor::{Supervisor, log_end};
 
-use super::NAME;
+use super::names::NAME;
 
 /// The dictionary of decomposePar.
 pub const DICTIONARY: &str = "system/decomposeParDict";

@@ -2,38 +2,19 @@
 
 use std::fmt::Write;
 
-use super::decompose;
 use calcine_coupler::mesh::Mesh;
-use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::{
     Convection, GasPatch, GasSetup, InletFlow, Schedule, WallHeat, WallVelocity,
 };
 use calcine_wire::Catalogue;
 
+use super::decompose;
+use super::foam_file::{field, fixed, header, table, vector, zero_gradient};
 use super::species;
 use super::stock::StockSolver;
 
-/// The header of an OpenFOAM file.
-pub(super) fn header(class: &str, object: &str) -> String {
-    format!(
-        "// Written by Calcine.\nFoamFile\n{{\n    version     2.0;\n    format      ascii;\n    \
-         class       {class};\n    object      {object};\n}}\n\n"
-    )
-}
-
-// Numbers are written with `e`, which prints the shortest digits that read back to the same bits.
 // Writing into a String cannot fail, so the results of write! below carry nothing.
-
-pub(super) fn vector(v: Vec3) -> String {
-    format!("({:e} {:e} {:e})", v.x, v.y, v.z)
-}
-
-pub(super) fn table(schedule: &Schedule) -> String {
-    let entries = schedule.0.iter();
-    let entries: Vec<_> = entries.map(|(t, v)| format!("({t:e} {v:e})")).collect();
-    format!("({})", entries.join(" "))
-}
 
 /// `system/controlDict`, after what it includes. The coordinator drives time, so that none of its times
 /// matters.
@@ -250,32 +231,6 @@ pub fn cells(mesh: &Mesh) -> String {
         let _ = writeln!(text, "{}", vector(centre));
     }
     text + ")\n"
-}
-
-/// A field of `0/` with a boundary condition for each patch.
-pub(super) fn field(
-    (class, name, dimensions, start): (&str, &str, &str, &str),
-    setup: &GasSetup,
-    condition: impl Fn(&GasPatch) -> String,
-) -> String {
-    let mut text = header(class, name);
-    let _ = write!(
-        text,
-        "dimensions      {dimensions};\n\ninternalField   uniform {start};\n\nboundaryField\n{{\n"
-    );
-    for (patch, kind) in &setup.patches {
-        let condition = condition(kind);
-        let _ = writeln!(text, "    {patch}\n    {{\n        {condition}\n    }}");
-    }
-    text + "}\n"
-}
-
-pub(super) fn fixed(value: &str) -> String {
-    format!("type            fixedValue;\n        value           uniform {value};")
-}
-
-pub(super) fn zero_gradient() -> String {
-    "type            zeroGradient;".into()
 }
 
 /// `0/U`: superficial where the run starts; the solver sets inlets from the tables.

@@ -4,7 +4,9 @@ pub mod case;
 pub mod chemistry;
 mod decompose;
 mod dictionaries;
+mod foam_file;
 mod identity;
+mod names;
 mod species;
 mod start_fields;
 pub mod stock;
@@ -26,12 +28,10 @@ use crate::gas::LinkedGas;
 use crate::launch::{Launcher, Program, find_program};
 use crate::solver::{ExternalSolver, Launch};
 use case::OpenfoamCase;
+use names::NAME;
+pub use names::SOLVER;
 use stock::StockSolver;
 
-/// Name in messages.
-const NAME: &str = "OpenFOAM (gas)";
-/// Name of the solver's program.
-pub const SOLVER: &str = "calcineGasFoam";
 /// The library with Calcine's fvOption, beside it.
 pub const LIBRARY: &str = "libcalcineFoam.so";
 /// The variable that names another solver program.

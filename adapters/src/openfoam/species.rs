@@ -5,7 +5,7 @@ use std::fmt::Write;
 use calcine_coupler::physics::thermo::{Mixture, Species};
 use calcine_coupler::setup::{CompositionSchedule, GasPatch, GasSetup, Schedule};
 
-use super::dictionaries::{field, fixed, header, table, zero_gradient};
+use super::foam_file::{field, fixed, header, table, zero_gradient};
 
 // Writing into a String cannot fail, so the results of write! below carry nothing.
 

@@ -7,7 +7,7 @@ use std::path::Path;
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::polymesh;
 
-use super::NAME;
+use super::names::NAME;
 
 /// The fields that a time directory holds; the others start as the case says.
 #[derive(Clone, Debug, Default)]

@@ -4,7 +4,7 @@ use calcine_coupler::physics::gas::{GAS_CONSTANT, GasProperties};
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::{GasPatch, GasSetup, InletFlow, Schedule, WallHeat, WallVelocity};
 
-use super::dictionaries::{field, fixed, header, vector, zero_gradient};
+use super::foam_file::{field, fixed, header, vector, zero_gradient};
 
 /// Which program computes the gas.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,7 +24,7 @@ impl StockSolver {
     /// The name of the program.
     pub fn name(self) -> &'static str {
         match self {
-            Self::CalcineGasFoam => super::SOLVER,
+            Self::CalcineGasFoam => super::names::SOLVER,
             Self::BuoyantPimpleFoam => "buoyantPimpleFoam",
             Self::RhoPimpleFoam => "rhoPimpleFoam",
             Self::ReactingFoam => "reactingFoam",

@@ -4,7 +4,7 @@ use calcine_coupler::physics::turbulence::{KEpsilon, LogLaw};
 use calcine_coupler::setup::{GasPatch, GasSetup, InletTurbulence, Turbulence, WallVelocity};
 use calcine_coupler::turbulence::BED;
 
-use super::dictionaries::{field, header, zero_gradient};
+use super::foam_file::{field, header, zero_gradient};
 
 /// Files of a turbulent gas, by their paths in the case; none for a laminar one. `options` is what
 /// `constant/fvOptions` includes.

@@ -1,0 +1,52 @@
+//! What all dictionaries and fields of OpenFOAM are written with.
+//!
+//! Numbers are written with `e`, which prints the shortest digits that read back to the same bits.
+
+use std::fmt::Write;
+
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::{GasPatch, GasSetup, Schedule};
+
+/// The header of an OpenFOAM file.
+pub(super) fn header(class: &str, object: &str) -> String {
+    format!(
+        "// Written by Calcine.\nFoamFile\n{{\n    version     2.0;\n    format      ascii;\n    \
+         class       {class};\n    object      {object};\n}}\n\n"
+    )
+}
+
+pub(super) fn vector(v: Vec3) -> String {
+    format!("({:e} {:e} {:e})", v.x, v.y, v.z)
+}
+
+pub(super) fn table(schedule: &Schedule) -> String {
+    let entries = schedule.0.iter();
+    let entries: Vec<_> = entries.map(|(t, v)| format!("({t:e} {v:e})")).collect();
+    format!("({})", entries.join(" "))
+}
+
+/// A field of `0/` with a boundary condition for each patch.
+pub(super) fn field(
+    (class, name, dimensions, start): (&str, &str, &str, &str),
+    setup: &GasSetup,
+    condition: impl Fn(&GasPatch) -> String,
+) -> String {
+    let mut text = header(class, name);
+    let _ = write!(
+        text,
+        "dimensions      {dimensions};\n\ninternalField   uniform {start};\n\nboundaryField\n{{\n"
+    );
+    for (patch, kind) in &setup.patches {
+        let condition = condition(kind);
+        let _ = writeln!(text, "    {patch}\n    {{\n        {condition}\n    }}");
+    }
+    text + "}\n"
+}
+
+pub(super) fn fixed(value: &str) -> String {
+    format!("type            fixedValue;\n        value           uniform {value};")
+}
+
+pub(super) fn zero_gradient() -> String {
+    "type            zeroGradient;".into()
+}
