@@ -4,16 +4,19 @@
 //! back row by row, in the order of the run's rows, which are in ascending id.
 
 mod columns;
+mod error;
+mod merged_column;
 
 use calcine_interior::{
-    At, Channel, GasLines, Inventory, ModelError, Newcomer, ParticleModel, SurfaceLine,
-    Surroundings, TEMPERATURE, Transfer, without,
+    At, Channel, GasLines, Inventory, Newcomer, ParticleModel, SurfaceLine, Surroundings,
+    TEMPERATURE, Transfer, without,
 };
 use calcine_physics::thermo::Element;
-use thiserror::Error;
 
-use columns::MergedColumn;
-pub use columns::{ParticleColumn, RestoreError};
+pub use columns::ParticleColumn;
+use error::named;
+pub use error::{ParticleModelError, RestoreError};
+use merged_column::{MergedColumn, merge};
 
 use crate::part::ParticleFields;
 
@@ -53,36 +56,6 @@ struct Work {
     lines: GasLines,
 }
 
-/// A model that cannot go on, with the id of the particle.
-#[derive(Debug, Error)]
-pub enum ParticleModelError {
-    /// The state of one particle.
-    #[error("particle {id}: {cause}")]
-    Particle {
-        /// Its id.
-        id: u64,
-        /// What is wrong.
-        cause: ModelError,
-    },
-    /// Values of a column.
-    #[error(transparent)]
-    Column(ModelError),
-    /// A column of two models that do not agree on it.
-    #[error("two models of this run have a column `{name}`, but one of {} and one of {}", .units[0], .units[1])]
-    ColumnClash {
-        /// Its name.
-        name: String,
-        /// What the two say of unit, type and shape.
-        units: [String; 2],
-    },
-    /// A population without a model.
-    #[error("population {population} has no model for what is inside its particles")]
-    Population {
-        /// Its index.
-        population: usize,
-    },
-}
-
 /// A particle that comes in, for its population's model.
 #[derive(Clone, Copy, Debug)]
 pub struct PopulationNewcomer<'a> {
@@ -102,7 +75,7 @@ impl ParticleModels {
         if let Some(population) = model_of.iter().position(|&k| k >= models.len()) {
             return Err(ParticleModelError::Population { population });
         }
-        let columns = columns::merge(&models)?;
+        let columns = merge(&models)?;
         let mut channels: Vec<Channel> = Vec::new();
         let mut members = Vec::new();
         for model in models {
@@ -437,17 +410,6 @@ impl std::fmt::Debug for ParticleModels {
             .field("models", &self.members.len())
             .field("particles", &self.places.len())
             .finish_non_exhaustive()
-    }
-}
-
-/// Names the particle of an error by its id.
-fn named(cause: ModelError, rows: &[usize], id: &[u64]) -> ParticleModelError {
-    match &cause {
-        ModelError::Particle { row, .. } => match rows.get(*row).and_then(|row| id.get(*row)) {
-            Some(&id) => ParticleModelError::Particle { id, cause },
-            None => ParticleModelError::Column(cause),
-        },
-        ModelError::Column { .. } => ParticleModelError::Column(cause),
     }
 }
 

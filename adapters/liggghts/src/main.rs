@@ -3,6 +3,7 @@
 //!
 //! `calcine-liggghts SCRIPT CASE-HASH [RESTART-FILE]`, started by Calcine in the script's folder.
 
+mod error;
 mod host;
 #[allow(unsafe_code)]
 mod library;
@@ -13,7 +14,8 @@ mod rank_particles;
 
 use std::path::PathBuf;
 
-use host::{Host, HostError, HostStart};
+use error::HostError;
+use host::{Host, HostStart};
 
 fn main() {
     let outcome = run();

@@ -5,7 +5,7 @@
 
 use std::f64::consts::PI;
 
-use crate::host::HostError;
+use crate::error::HostError;
 use crate::library::Liggghts;
 use crate::rank_particles::RankParticles;
 

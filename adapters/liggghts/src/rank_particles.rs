@@ -3,7 +3,7 @@
 use calcine_wire::hello::{hash_text, particles_hash};
 use calcine_wire::{Header, Link, WireError};
 
-use crate::host::HostError;
+use crate::error::HostError;
 use crate::library::{self, Liggghts};
 
 /// One value or vector per particle, in ascending id.

@@ -13,13 +13,14 @@ use std::time::Duration;
 
 use crate::carried::{CarriedTransport, Carrier, Message};
 use crate::catalogue::Catalogue;
+use crate::error::WireError;
 use crate::failure::SolverFailure;
 use crate::hello::{Hello, NEW, NOT_COMPARED};
 use crate::link::Link;
 use crate::record::{Header, MessageKind};
 use crate::run::{LinkAddress, TransportKind};
 use crate::shared_memory::{LinkEnd, SharedMemory};
-use crate::transport::{Transport, WireError};
+use crate::transport::Transport;
 
 /// How a call ended; `calcine_status` in C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

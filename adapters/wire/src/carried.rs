@@ -3,9 +3,10 @@
 
 use std::time::{Duration, Instant};
 
+use crate::error::WireError;
 use crate::record::{HEADER_WORDS, Header};
 use crate::run::LinkAddress;
-use crate::transport::{Transport, WireError};
+use crate::transport::Transport;
 use crate::watch::Watch;
 use crate::words::{self, CacheLine, LINE};
 

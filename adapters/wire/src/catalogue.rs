@@ -4,53 +4,12 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::column_set::ColumnSet;
 use crate::columns::{self, ColumnPresence, ProtocolColumn};
-use crate::record::MessageKind;
-use crate::transport::WireError;
+use crate::error::WireError;
 
 /// Words (of 8 bytes) in the alignment of a column: 64 bytes.
 const COLUMN_WORDS: usize = 8;
-
-/// Which message carries a field.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ColumnSet {
-    /// `Start`, from the coordinator.
-    Start,
-    /// `State`, `Finished`, `Checkpointed`, from the solver.
-    State,
-    /// `Owned`, from a gas.
-    Owned,
-}
-
-impl ColumnSet {
-    /// The record that a kind of message carries, if it carries columns.
-    pub fn of(kind: MessageKind) -> Option<ColumnSet> {
-        match kind {
-            MessageKind::Start => Some(ColumnSet::Start),
-            MessageKind::State
-            | MessageKind::Finished
-            | MessageKind::Checkpointed
-            | MessageKind::Changed => Some(ColumnSet::State),
-            MessageKind::Owned => Some(ColumnSet::Owned),
-            MessageKind::Hello
-            | MessageKind::Commit
-            | MessageKind::Checkpoint
-            | MessageKind::Change
-            | MessageKind::Boundary
-            | MessageKind::Failed
-            | MessageKind::Bye => None,
-        }
-    }
-
-    /// Its name in a line of the catalogue.
-    pub fn name(self) -> &'static str {
-        match self {
-            ColumnSet::Start => "start",
-            ColumnSet::State => "state",
-            ColumnSet::Owned => "owned",
-        }
-    }
-}
 
 /// One column.
 #[derive(Clone, Debug, PartialEq, Eq)]

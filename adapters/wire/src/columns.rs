@@ -1,7 +1,7 @@
 //! The columns that the protocol knows, with what each holds: catalogues and the reference in the C header come
 //! from these two tables.
 
-use crate::catalogue::ColumnSet;
+use crate::column_set::ColumnSet;
 
 /// How many numbers an item has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
-use crate::transport::WireError;
+use crate::error::WireError;
 
 /// Waits for the end of a pipe that only the coordinator holds. Then it removes a folder, and what begins with a name, and looks
 /// again as often as it is told.

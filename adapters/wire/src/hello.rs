@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use crate::catalogue::Catalogue;
+use crate::error::WireError;
 use crate::record::VERSION;
-use crate::transport::WireError;
 
 /// Said in place of a hash by a solver whose inputs Calcine does not write: its cells are compared one by one.
 pub const NOT_COMPARED: &str = "-";

@@ -6,7 +6,9 @@
 
 pub mod carried;
 pub mod catalogue;
+mod column_set;
 pub mod columns;
+pub mod error;
 pub mod failure;
 pub mod hello;
 pub mod link;
@@ -25,7 +27,9 @@ mod watch;
 mod words;
 
 pub use carried::{CarriedTransport, Carrier, Message};
-pub use catalogue::{Catalogue, ColumnSet, Field};
+pub use catalogue::{Catalogue, Field};
+pub use column_set::ColumnSet;
+pub use error::WireError;
 pub use failure::SolverFailure;
 pub use hello::Hello;
 pub use link::Link;
@@ -33,4 +37,4 @@ pub use process::Process;
 pub use record::{Header, MessageKind};
 pub use run::{LinkAddress, RunDirectory, TransportKind};
 pub use shared_memory::SharedMemory;
-pub use transport::{SolverNetwork, Transport, WireError};
+pub use transport::{SolverNetwork, Transport};

@@ -2,12 +2,14 @@
 
 use std::time::{Duration, Instant};
 
-use crate::catalogue::{Catalogue, ColumnSet};
+use crate::catalogue::Catalogue;
+use crate::column_set::ColumnSet;
+use crate::error::WireError;
 use crate::failure::SolverFailure;
 use crate::hello::Hello;
 use crate::process::Process;
 use crate::record::{Header, MAGIC, MessageKind, VERSION};
-use crate::transport::{Transport, WireError};
+use crate::transport::Transport;
 use crate::words;
 
 /// How long a process that fails may take to say so.

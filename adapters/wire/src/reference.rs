@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use crate::catalogue::ColumnSet;
+use crate::column_set::ColumnSet;
 use crate::columns::{
     ColumnComponents, ColumnPresence, GAS, NUMBERS_OF_BALANCE, PARTICLES, ProtocolColumn,
 };

@@ -10,9 +10,9 @@ use std::time::Duration;
 
 use rustix::fs::{FlockOperation, flock};
 
+use crate::error::WireError;
 use crate::guard::Guard;
 use crate::process::{machine, started};
-use crate::transport::WireError;
 
 /// The variable that tells a solver which link to open.
 pub const VARIABLE: &str = "CALCINE_LINK";

@@ -12,9 +12,10 @@ use iceoryx2::port::subscriber::Subscriber;
 use iceoryx2::prelude::*;
 use iceoryx2::sample::Sample;
 
+use crate::error::WireError;
 use crate::record::Header;
 use crate::run::LinkAddress;
-use crate::transport::{Transport, WireError};
+use crate::transport::Transport;
 use crate::watch::Watch;
 use crate::words::{self, LINE, ReservedMessage};
 

@@ -6,9 +6,9 @@ use std::time::Duration;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::process::{Pid, PidfdFlags, Signal, getpid, kill_process, pidfd_open};
 
+use crate::error::WireError;
 use crate::process::started;
 use crate::run::LinkAddress;
-use crate::transport::WireError;
 
 /// How long after the coordinator's death a solver may take to end by itself.
 const GRACE: Duration = Duration::from_millis(400);

@@ -1,6 +1,6 @@
 //! Columns of state: what the coordinator, its checkpoints and its outputs know of a model of particles.
 
-use crate::model::ModelError;
+use crate::error::ModelError;
 use crate::without;
 
 /// Of what a column's values are.

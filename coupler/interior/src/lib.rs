@@ -1,15 +1,17 @@
 //! What happens inside and between particles.
 
 mod column;
+mod error;
 mod model;
 mod network;
 pub mod reacting;
 mod thin;
 
 pub use column::{ColumnKind, ColumnRole, ColumnShape, ColumnValues, Ragged, StateColumn};
+pub use error::ModelError;
 pub use model::{
-    At, Bodies, Channel, GasLines, Inventory, ModelError, Newcomer, ParticleModel, SurfaceLine,
-    Surroundings, Tally, Transfer,
+    At, Bodies, Channel, GasLines, Inventory, Newcomer, ParticleModel, SurfaceLine, Surroundings,
+    Tally, Transfer,
 };
 pub use network::{
     ExchangeAreas, HeatLaws, HeatNetwork, NeighbourPair, NeighbourWall, Neighbours,

@@ -14,12 +14,10 @@
 //!    that once more as fixed sources.
 //! 5. [`ParticleModel::settle`]: what was exchanged is booked, whatever the lines were: mass, elements and energy close.
 
-use std::error::Error;
-
 use calcine_physics::thermo::Element;
-use thiserror::Error as DeriveError;
 
 use crate::column::{Ragged, StateColumn};
+use crate::error::ModelError;
 
 /// The gas about particles, and what they exchange with it; one value a row where nothing else is said.
 #[derive(Clone, Copy, Debug)]
@@ -224,29 +222,6 @@ impl Newcomer<'_> {
             }),
         }
     }
-}
-
-/// A model that cannot go on. The coordinator names the particle's id.
-#[derive(Debug, DeriveError)]
-pub enum ModelError {
-    /// The state of one particle.
-    #[error("{cause}")]
-    Particle {
-        /// Its row in the model.
-        row: usize,
-        /// What is wrong.
-        cause: Box<dyn Error + Send + Sync>,
-    },
-    /// Values of a column that do not fit.
-    #[error("column `{column}` of the particles' state: found {found}, needs {expected}")]
-    Column {
-        /// Its name.
-        column: String,
-        /// What there is.
-        found: String,
-        /// What there must be.
-        expected: String,
-    },
 }
 
 /// Inside of the particles of one material. Values are per real particle; an attempt always starts from the last commit.

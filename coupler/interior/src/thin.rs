@@ -3,9 +3,10 @@
 use calcine_physics::solid::HeatCapacity;
 
 use crate::column::{ColumnRole, Ragged, StateColumn};
+use crate::error::ModelError;
 use crate::model::{
-    At, Bodies, GasLines, Inventory, ModelError, Newcomer, ParticleModel, SurfaceLine,
-    Surroundings, Tally, Transfer,
+    At, Bodies, GasLines, Inventory, Newcomer, ParticleModel, SurfaceLine, Surroundings, Tally,
+    Transfer,
 };
 use crate::without;
 

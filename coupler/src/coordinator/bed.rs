@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use calcine_physics::Vec3;
 
-use super::RunError;
+use super::error::RunError;
 use super::meter::{Meter, Stage};
 use crate::mapping::{Mapper, Method};
 use crate::mesh::Mesh;

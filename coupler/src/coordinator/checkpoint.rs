@@ -1,106 +1,15 @@
 //! Checkpoints: one folder, replaced atomically, from which every participant re-initialises.
 
 use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use rustix::fs::{CWD, RenameFlags, renameat_with};
-use thiserror::Error;
-
+use super::CoupledRun;
+use super::error::{CheckpointError, RunError};
 use super::meter::{Meter, Stage};
-use super::{CoupledRun, RunError};
 use crate::checkpoint::StateFile;
 use crate::ledger::{CarriedInventory, Ledger};
 use crate::observer::Observer;
 use crate::time::{Clocks, Ticks};
-
-/// Where checkpoints are: `checkpoint/` inside the results folder, complete at any moment.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct CheckpointPaths {
-    results: PathBuf,
-}
-
-/// A checkpoint that could not be written or taken up.
-#[derive(Debug, Error)]
-pub enum CheckpointError {
-    /// A folder could not be made, renamed or removed.
-    #[error("checkpoint {path}: {doing}: {cause}")]
-    Io {
-        /// The folder.
-        path: PathBuf,
-        /// What was tried.
-        doing: &'static str,
-        /// Why it failed.
-        cause: io::Error,
-    },
-    /// The checkpoint is of another case.
-    #[error(
-        "the checkpoint in {path} is of another case (its hash is {found}, this case's {expected}); \
-         `--from` continues from a changed case's results"
-    )]
-    OtherCase {
-        /// The folder.
-        path: PathBuf,
-        /// Hash in the checkpoint.
-        found: String,
-        /// Hash of the case.
-        expected: String,
-    },
-    /// Numbers of particles that differ.
-    #[error("the checkpoint in {path} holds {found} particles, the run has {expected}")]
-    Particles {
-        /// The folder.
-        path: PathBuf,
-        /// Particles in the checkpoint.
-        found: usize,
-        /// Particles of the run.
-        expected: usize,
-    },
-}
-
-impl CheckpointPaths {
-    /// The paths inside a results folder.
-    pub fn new(results: &Path) -> Self {
-        Self {
-            results: results.to_owned(),
-        }
-    }
-
-    /// The last complete checkpoint, where there is one.
-    pub fn committed(&self) -> PathBuf {
-        self.results.join("checkpoint")
-    }
-
-    /// The one being written.
-    fn fresh(&self) -> PathBuf {
-        self.results.join("checkpoint.part")
-    }
-
-    /// Makes the fresh checkpoint the committed one; at no moment is there none.
-    fn publish(&self) -> Result<(), CheckpointError> {
-        let (fresh, committed) = (self.fresh(), self.committed());
-        let failed = |doing, cause: io::Error| CheckpointError::Io {
-            path: committed.clone(),
-            doing,
-            cause,
-        };
-        sync(&fresh).map_err(|cause| failed("flushing it", cause))?;
-        if committed.exists() {
-            renameat_with(CWD, &fresh, CWD, &committed, RenameFlags::EXCHANGE)
-                .map_err(|cause| failed("exchanging it with the last one", cause.into()))?;
-            fs::remove_dir_all(&fresh).map_err(|cause| failed("removing the last one", cause))?;
-        } else {
-            fs::rename(&fresh, &committed).map_err(|cause| failed("renaming it", cause))?;
-        }
-        sync(&self.results).map_err(|cause| failed("flushing its folder", cause))
-    }
-}
-
-/// Flushes the entries of a folder to disk.
-fn sync(directory: &Path) -> io::Result<()> {
-    fs::File::open(directory)?.sync_all()
-}
 
 impl CoupledRun {
     /// Writes a checkpoint of all participants; each goes on from what it wrote.

@@ -1,11 +1,11 @@
 //! Why a run could not go on.
 
+use std::io;
+use std::path::PathBuf;
+
+use calcine_physics::Vec3;
 use thiserror::Error;
 
-use super::checkpoint::CheckpointError;
-use super::controls::ControlError;
-use super::origin::OriginError;
-use super::resize::TooLight;
 use crate::checkpoint::StateFileError;
 use crate::closures::ClosureError;
 use crate::error::PartError;
@@ -74,4 +74,153 @@ pub enum RunError {
     /// A state file could not be written or read.
     #[error(transparent)]
     StateFile(#[from] StateFileError),
+}
+
+/// A checkpoint that could not be written or taken up.
+#[derive(Debug, Error)]
+pub enum CheckpointError {
+    /// A folder could not be made, renamed or removed.
+    #[error("checkpoint {path}: {doing}: {cause}")]
+    Io {
+        /// The folder.
+        path: PathBuf,
+        /// What was tried.
+        doing: &'static str,
+        /// Why it failed.
+        cause: io::Error,
+    },
+    /// The checkpoint is of another case.
+    #[error(
+        "the checkpoint in {path} is of another case (its hash is {found}, this case's {expected}); \
+         `--from` continues from a changed case's results"
+    )]
+    OtherCase {
+        /// The folder.
+        path: PathBuf,
+        /// Hash in the checkpoint.
+        found: String,
+        /// Hash of the case.
+        expected: String,
+    },
+    /// Numbers of particles that differ.
+    #[error("the checkpoint in {path} holds {found} particles, the run has {expected}")]
+    Particles {
+        /// The folder.
+        path: PathBuf,
+        /// Particles in the checkpoint.
+        found: usize,
+        /// Particles of the run.
+        expected: usize,
+    },
+}
+
+/// Results that this case cannot continue from.
+#[derive(Debug, Error)]
+pub enum OriginError {
+    /// Another gas mesh.
+    #[error(
+        "the checkpoint {path} has another gas mesh ({found} cells, this case {expected}): a run \
+         continues on the same mesh only; leave `mesh` as it was"
+    )]
+    Mesh {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Cells there.
+        found: u64,
+        /// Cells of this case.
+        expected: u64,
+    },
+    /// Another number of particles.
+    #[error(
+        "the checkpoint {path} holds {found} particles, this case has {expected}: a run continues \
+         with the same particles only; leave `particles` and their places as they were"
+    )]
+    Count {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Particles there.
+        found: usize,
+        /// Particles of this case.
+        expected: usize,
+    },
+    /// A particle of another id, size or place.
+    #[error(
+        "in the checkpoint {path} particle {number} in the order of ids has the id {}, the radius \
+         {} m and its centre at ({}, {}, {}) m; in this case {}, {} m and ({}, {}, {}) m: a run \
+         continues with the same particles only",
+        .found.0, .found.2, .found.1.x, .found.1.y, .found.1.z,
+        .expected.0, .expected.2, .expected.1.x, .expected.1.y, .expected.1.z
+    )]
+    Particle {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Which one, from 1.
+        number: usize,
+        /// Id, centre and radius there.
+        found: (u64, Vec3, f64),
+        /// Id, centre and radius in this case.
+        expected: (u64, Vec3, f64),
+    },
+    /// Another gas mixture.
+    #[error(
+        "the gas of the checkpoint {path} has the species [{found}], this case has [{expected}]: a \
+         run continues with the same `gas.species` only"
+    )]
+    Species {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Species there.
+        found: String,
+        /// Species of this case.
+        expected: String,
+    },
+}
+
+/// A feed or an outlet that cannot be set.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ControlError {
+    /// There is none of this name.
+    #[error("the run has no {what} `{name}`; it has {present}")]
+    NotThere {
+        /// `feed` or `outlet`.
+        what: &'static str,
+        /// The name that was given.
+        name: String,
+        /// Those that are there.
+        present: String,
+    },
+    /// A value that means nothing.
+    #[error("{what} `{name}`: {value} {unit}; it must be {rule}")]
+    Value {
+        /// `feed` or `outlet`.
+        what: &'static str,
+        /// Its name.
+        name: String,
+        /// The value.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// What is allowed.
+        rule: &'static str,
+    },
+}
+
+/// A particle of which reactions have left too little.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[error(
+    "particle {id} has come to a radius of {radius} m and {mass} kg by what reacted in it: a surface wave \
+     crosses it in {time} s, and the time step of contacts is {step} s; write a shorter `motion.motion_step`, \
+     or a larger `least_diameter` in the size of its material"
+)]
+pub struct TooLight {
+    /// Its id.
+    pub id: u64,
+    /// Its radius in m.
+    pub radius: f64,
+    /// Its mass in kg.
+    pub mass: f64,
+    /// The step in s.
+    pub step: f64,
+    /// Rayleigh's time in s.
+    pub time: f64,
 }

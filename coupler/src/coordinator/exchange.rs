@@ -1,8 +1,8 @@
 //! Stage: the exchange of heat and mass between gas and particles within a window, a fixed point over cells and
 //! particles.
 
-use super::RunError;
 use super::bed::MappedBed;
+use super::error::RunError;
 use super::interior::InteriorStage;
 use super::laws::LawStage;
 use super::meter::{Meter, Stage};

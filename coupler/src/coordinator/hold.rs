@@ -1,7 +1,8 @@
 //! Windows in which the bed is held (see [`crate::hold`]): the solver of the particles is told once that they come to
 //! rest.
 
-use super::{CoupledRun, RunError};
+use super::CoupledRun;
+use super::error::RunError;
 use crate::motion::ParticleChanges;
 use crate::supervisor::Supervisor;
 use crate::time::Window;

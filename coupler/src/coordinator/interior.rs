@@ -5,7 +5,7 @@ use calcine_interior::{
     GasLines, HeatNetwork, Inventory, NetworkSurroundings, Surroundings, Transfer,
 };
 
-use super::RunError;
+use super::error::RunError;
 use crate::models::{ParticleModelError, ParticleModels, PopulationNewcomer};
 use crate::part::ParticleFields;
 use crate::paths::Paths;

@@ -1,7 +1,7 @@
 //! Stage: from the gas about the particles to the coefficients of the exchange.
 
-use super::RunError;
 use super::bed::MappedBed;
+use super::error::RunError;
 use crate::closures::{Closures, CouplingCoefficients, DragInertia, SampledGas};
 use crate::part::{GasFields, ParticleFields};
 use crate::time::Window;

@@ -4,6 +4,8 @@
 mod balances;
 mod bed;
 mod checkpoint;
+mod checkpoint_paths;
+mod control;
 mod controls;
 mod error;
 mod exchange;
@@ -17,6 +19,7 @@ mod plan;
 mod population;
 mod resize;
 mod span;
+mod step_limit;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -24,12 +27,12 @@ use std::time::{Duration, Instant};
 
 use calcine_interior::HeatNetwork;
 
-pub use checkpoint::{CheckpointError, CheckpointPaths};
-pub use controls::{Control, ControlError};
-pub use error::RunError;
-pub use origin::{Origin, OriginError};
+pub use checkpoint_paths::CheckpointPaths;
+pub use control::Control;
+pub use error::{CheckpointError, ControlError, OriginError, RunError, TooLight};
+pub use origin::Origin;
 pub use plan::Plan;
-pub use resize::{ContactStepLimit, LONGEST_STEP, TooLight};
+pub use step_limit::{ContactStepLimit, LONGEST_STEP};
 
 use balances::WindowBalances;
 use bed::BedStage;

@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use calcine_physics::Vec3;
-use thiserror::Error;
 
-use super::{CheckpointPaths, CoupledRun, RunError};
+use super::CoupledRun;
+use super::checkpoint_paths::CheckpointPaths;
+use super::error::{OriginError, RunError};
 use crate::checkpoint::{StateFile, StateFileError};
 use crate::mesh::Mesh;
 use crate::setup::ParticleSetup;
@@ -28,68 +29,6 @@ pub struct Origin {
     /// Where its clocks stood.
     pub clocks: Clocks,
     state: StateFile,
-}
-
-/// Results that this case cannot continue from.
-#[derive(Debug, Error)]
-pub enum OriginError {
-    /// Another gas mesh.
-    #[error(
-        "the checkpoint {path} has another gas mesh ({found} cells, this case {expected}): a run \
-         continues on the same mesh only; leave `mesh` as it was"
-    )]
-    Mesh {
-        /// The checkpoint.
-        path: PathBuf,
-        /// Cells there.
-        found: u64,
-        /// Cells of this case.
-        expected: u64,
-    },
-    /// Another number of particles.
-    #[error(
-        "the checkpoint {path} holds {found} particles, this case has {expected}: a run continues \
-         with the same particles only; leave `particles` and their places as they were"
-    )]
-    Count {
-        /// The checkpoint.
-        path: PathBuf,
-        /// Particles there.
-        found: usize,
-        /// Particles of this case.
-        expected: usize,
-    },
-    /// A particle of another id, size or place.
-    #[error(
-        "in the checkpoint {path} particle {number} in the order of ids has the id {}, the radius \
-         {} m and its centre at ({}, {}, {}) m; in this case {}, {} m and ({}, {}, {}) m: a run \
-         continues with the same particles only",
-        .found.0, .found.2, .found.1.x, .found.1.y, .found.1.z,
-        .expected.0, .expected.2, .expected.1.x, .expected.1.y, .expected.1.z
-    )]
-    Particle {
-        /// The checkpoint.
-        path: PathBuf,
-        /// Which one, from 1.
-        number: usize,
-        /// Id, centre and radius there.
-        found: (u64, Vec3, f64),
-        /// Id, centre and radius in this case.
-        expected: (u64, Vec3, f64),
-    },
-    /// Another gas mixture.
-    #[error(
-        "the gas of the checkpoint {path} has the species [{found}], this case has [{expected}]: a \
-         run continues with the same `gas.species` only"
-    )]
-    Species {
-        /// The checkpoint.
-        path: PathBuf,
-        /// Species there.
-        found: String,
-        /// Species of this case.
-        expected: String,
-    },
 }
 
 impl Origin {

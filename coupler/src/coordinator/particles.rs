@@ -5,8 +5,8 @@
 use calcine_interior::without;
 use calcine_physics::Vec3;
 
-use super::RunError;
 use super::bed::MappedBed;
+use super::error::RunError;
 use super::meter::{Meter, Stage};
 use crate::closures::DragInertia;
 use crate::exchange::Exchange;

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use calcine_physics::Vec3;
 
-use super::checkpoint::CheckpointPaths;
-use super::resize::ContactStepLimit;
+use super::checkpoint_paths::CheckpointPaths;
+use super::step_limit::ContactStepLimit;
 use crate::feeds::FeedsAndOutlets;
 use crate::hold::Holds;
 use crate::mapping::Method;

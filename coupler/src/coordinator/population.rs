@@ -4,9 +4,10 @@
 use calcine_interior::{Inventory, Newcomer, TEMPERATURE, without};
 use calcine_physics::Vec3;
 
+use super::CoupledRun;
 use super::balances::place;
+use super::error::RunError;
 use super::particles::momentum;
-use super::{CoupledRun, RunError};
 use crate::feeds::WindowSpan;
 use crate::ledger::{CarriedInventory, Ledger};
 use crate::models::{ParticleModels, PopulationNewcomer};

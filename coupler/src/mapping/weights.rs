@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::MappingError;
+use super::error::MappingError;
 
 /// Up to so many rows the caller's thread does the work alone: waking another costs more.
 const ALONE: usize = 16_384;

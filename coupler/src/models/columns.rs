@@ -1,18 +1,11 @@
 //! Columns of all models by their names, for checkpoints and results.
 
-use calcine_interior::{
-    ColumnKind, ColumnShape, ColumnValues, ModelError, ParticleModel, Ragged, StateColumn,
-};
+use calcine_interior::{ColumnKind, ColumnShape, ColumnValues, ModelError, Ragged, StateColumn};
 
-use super::{ParticleModelError, ParticleModels, named};
-use crate::checkpoint::{StateFile, StateFileError};
-
-/// A column, and where each model has it.
-pub(super) struct MergedColumn {
-    column: StateColumn,
-    /// Place in the columns of each model; `None` in one that lacks it.
-    place: Vec<Option<usize>>,
-}
+use super::ParticleModels;
+use super::error::{ParticleModelError, RestoreError, named};
+use super::merged_column::MergedColumn;
+use crate::checkpoint::StateFile;
 
 /// A column of all particles; rows of particles whose model lacks it are empty.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,37 +33,6 @@ impl ParticleColumn {
             .map(|value| value.unwrap_or(f64::NAN))
             .collect()
     }
-}
-
-/// Columns of all models by name, in the order in which they first stand.
-pub(super) fn merge(
-    models: &[Box<dyn ParticleModel>],
-) -> Result<Vec<MergedColumn>, ParticleModelError> {
-    let mut merged: Vec<MergedColumn> = Vec::new();
-    for (k, model) in models.iter().enumerate() {
-        for (place, column) in model.columns().iter().enumerate() {
-            let found = merged.iter_mut().find(|one| one.column.name == column.name);
-            let one = match found {
-                Some(one) => one,
-                None => {
-                    merged.push(MergedColumn {
-                        column: column.clone(),
-                        place: vec![None; models.len()],
-                    });
-                    let last = merged.len() - 1;
-                    &mut merged[last]
-                }
-            };
-            let says = |of: &StateColumn| format!("{:?} {:?} in {}", of.shape, of.kind, of.unit);
-            let units = [says(&one.column), says(column)];
-            if units[0] != units[1] || one.place[k].is_some() {
-                let name = column.name.clone();
-                return Err(ParticleModelError::ColumnClash { name, units });
-            }
-            one.place[k] = Some(place);
-        }
-    }
-    Ok(merged)
 }
 
 /// Names of the arrays of a column in a state file: the values, and how many each particle has.
@@ -178,17 +140,6 @@ impl ParticleModels {
         self.note_temperatures();
         Ok(())
     }
-}
-
-/// State of particles that cannot be taken up.
-#[derive(Debug, thiserror::Error)]
-pub enum RestoreError {
-    /// An array that is missing or of another type.
-    #[error(transparent)]
-    StateFile(#[from] StateFileError),
-    /// Values that a model does not take.
-    #[error(transparent)]
-    Model(#[from] ParticleModelError),
 }
 
 /// The rows of a column.

@@ -1,39 +1,11 @@
 //! The reactions of particles, and the thermodynamics of their solids.
 
-use calcine_physics::reaction::{Arrhenius, Equilibrium, PowerLaw};
+use calcine_physics::reaction::PowerLaw;
 use calcine_physics::solids::SolidSpecies;
 use calcine_physics::thermo::{Element, Mixture};
 
-use super::layers::{LayerDiffusivity, Layers, LayersError, gases, layers};
-
-/// A reaction of solids, and of gases where it is heterogeneous.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Reaction {
-    /// Its name.
-    pub name: String,
-    /// Each solid with the moles that one mole of the reaction makes (+) or uses up (−).
-    pub solids: Vec<(usize, f64)>,
-    /// The same of gases; empty for an inner reaction.
-    pub gases: Vec<(usize, f64)>,
-    /// By what law it goes.
-    pub rate: Rate,
-    /// How far it goes.
-    pub equilibrium: Equilibrium,
-}
-
-/// Laws of rates.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Rate {
-    /// In the whole volume of a particle.
-    Power(PowerLaw),
-    /// At the surface of a core that shrinks.
-    Core {
-        /// k in m/s, of the forward reaction, per area of the interface.
-        rate_constant: Arrhenius,
-        /// Of the gas in the layer that the reaction leaves.
-        diffusivity: LayerDiffusivity,
-    },
-}
+use super::layers::{Layers, LayersError, gases, layers};
+use super::reaction::{Rate, Reaction};
 
 /// Reactions with the solids and the gas that they are of.
 #[derive(Clone, Debug)]

@@ -1,33 +1,9 @@
 //! Layers of a shrinking core: which solid lies within which, and which gas makes one of the other.
 
-use calcine_numerics::Number;
 use calcine_physics::reaction::shrinking_core::MOST_INTERFACES;
 use thiserror::Error;
 
-use super::chemistry::{Rate, Reaction};
-
-/// Diffusivity D (T/T₀)^n of a gas in the pores of a layer.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LayerDiffusivity {
-    /// D in m²/s.
-    pub value: f64,
-    /// T₀ in K.
-    pub at: f64,
-    /// n.
-    pub exponent: f64,
-}
-
-impl LayerDiffusivity {
-    /// D at a temperature in K in m²/s.
-    pub fn at<N: Number>(&self, temperature: N) -> N {
-        if self.exponent == 0.0 {
-            return N::constant(self.value);
-        }
-        let t = temperature.value();
-        let value = self.value * (t / self.at).powf(self.exponent);
-        temperature.through(value, self.exponent * value / t)
-    }
-}
+use super::reaction::{LayerDiffusivity, Rate, Reaction};
 
 /// Solids that lie within each other, innermost first, and the gases that turn each into the next.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,15 +13,19 @@
 pub mod attempt;
 mod book;
 pub mod chemistry;
+mod columns;
 pub mod layers;
+mod measure;
 mod model;
 pub mod rates;
+pub mod reaction;
 pub mod size;
 mod step;
 
 pub use attempt::ParticleAccuracy;
-pub use chemistry::{Rate, Reaction, SolidChemistry};
-pub use layers::{LayerDiffusivity, LayersError};
+pub use chemistry::SolidChemistry;
+pub use layers::LayersError;
+pub use reaction::{LayerDiffusivity, Rate, Reaction};
 pub use size::SizeChange;
 pub use step::ReactError;
 
@@ -87,7 +91,7 @@ impl Reacting {
             .collect();
         let (channels, reaction_of) = channels(&chemistry);
         Self {
-            columns: model::columns(&chemistry),
+            columns: columns::columns(&chemistry),
             chemistry,
             channels,
             reaction_of,

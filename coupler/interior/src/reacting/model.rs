@@ -2,34 +2,15 @@
 
 use calcine_physics::thermo::Element;
 
-use super::{Amounts, Reacting, SolidChemistry};
-use crate::column::{ColumnKind, ColumnRole, Ragged, StateColumn};
+use super::{Amounts, Reacting};
+use crate::column::{ColumnKind, Ragged, StateColumn};
+use crate::error::ModelError;
 use crate::model::{
-    At, Bodies, Channel, GasLines, Inventory, ModelError, Newcomer, ParticleModel, SurfaceLine,
-    Surroundings, Tally, Transfer,
+    At, Bodies, Channel, GasLines, Inventory, Newcomer, ParticleModel, SurfaceLine, Surroundings,
+    Tally, Transfer,
 };
 use crate::thin::{SECANT, TEMPERATURE};
 use crate::without;
-
-/// Name of the group of columns that hold the mass fraction of each solid.
-const SOLIDS: &str = "solids";
-
-/// Temperature, the amount of each solid in mol, and its mass fraction, which follows.
-pub(super) fn columns(chemistry: &SolidChemistry) -> Vec<StateColumn> {
-    let names = || chemistry.solids.iter().map(|solid| solid.name());
-    let amount = |name: &str| {
-        StateColumn::shown(&format!("amount.{name}"), "mol", "amount of this solid")
-            .with_role(ColumnRole::Private)
-    };
-    let fraction = |name: &str| {
-        StateColumn::shown(name, "1", "mass fraction of this solid")
-            .with_role(ColumnRole::Derived)
-            .in_group(SOLIDS)
-    };
-    let temperature = StateColumn::shown(TEMPERATURE, "K", "temperature of the particle");
-    let others = names().map(amount).chain(names().map(fraction));
-    std::iter::once(temperature).chain(others).collect()
-}
 
 impl ParticleModel for Reacting {
     fn columns(&self) -> &[StateColumn] {

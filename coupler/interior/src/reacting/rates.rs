@@ -8,8 +8,9 @@ use calcine_physics::reaction::equilibrium::STANDARD_PRESSURE;
 use calcine_physics::reaction::shrinking_core::{self, Interface, MOST_INTERFACES};
 use calcine_physics::reaction::{Equilibrium, PowerLaw, power_law};
 
-use super::chemistry::{Rate, Reaction, SolidChemistry};
+use super::chemistry::SolidChemistry;
 use super::layers::{GasPath, Layers};
+use super::reaction::{Rate, Reaction};
 use super::size::SizeChange;
 
 /// A trace: the share of a particle's solids at the start of a window below which the rate of what uses a solid goes to

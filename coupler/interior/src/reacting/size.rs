@@ -5,8 +5,6 @@ use std::f64::consts::PI;
 use calcine_numerics::Number;
 use calcine_physics::solids::SolidSpecies;
 
-use super::Reacting;
-
 /// The law by which a particle of a material takes up room.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum SizeChange {
@@ -87,37 +85,6 @@ impl SizeChange {
 pub fn specific_volume(densities: &[f64], fractions: &[f64]) -> f64 {
     let held = fractions.iter().zip(densities).filter(|(y, _)| **y > 0.0);
     held.map(|(y, density)| y / density).sum()
-}
-
-impl Reacting {
-    /// The same particles with a law of size; without it diameters stay.
-    pub fn with_size(mut self, size: SizeChange) -> Self {
-        self.size = size;
-        self
-    }
-
-    pub(super) fn size(&self) -> &SizeChange {
-        &self.size
-    }
-
-    /// Finds masses and radii: 0 of the last attempt, 1 of the last commit.
-    pub(super) fn measure(&mut self, which: usize) {
-        let state = [&self.now, &self.committed][which];
-        let measures = &mut self.bodies[which];
-        let particles = state.amount.chunks_exact(self.chemistry.solids.len());
-        measures.mass.clear();
-        measures.mass.extend(
-            particles
-                .clone()
-                .map(|amounts| self.chemistry.mass(amounts)),
-        );
-        measures.radius.clear();
-        if self.size != SizeChange::Constant {
-            measures
-                .radius
-                .extend(particles.filter_map(|amounts| self.size.radius(amounts)));
-        }
-    }
 }
 
 #[cfg(test)]
