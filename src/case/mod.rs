@@ -9,6 +9,7 @@ mod meshing;
 pub mod model;
 mod overlap;
 mod place;
+mod place_error;
 mod problem;
 pub mod schema;
 mod sections;
@@ -26,7 +27,8 @@ use toml_edit::{Document, DocumentMut, Item, Value};
 
 pub use check::check_report;
 pub use meshing::{MeshingError, mesh};
-pub use place::{InitialParticles, PlaceError, particles};
+pub use place::{InitialParticles, particles};
+pub use place_error::PlaceError;
 pub use problem::{CaseErrors, Problem};
 pub use step::settle;
 

@@ -1,4 +1,4 @@
-//! Files that appear whole or not at all.
+//! The files of a results folder: their names, and how they appear whole or not at all.
 
 use std::fs::{self, File};
 use std::io::Write;
@@ -7,6 +7,17 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::ResultsError;
+
+/// Name of the summary in a result directory.
+pub const SUMMARY: &str = "summary.json";
+/// Name of the file to watch while a run goes on.
+pub const STATUS: &str = "status.json";
+/// Name of the time series.
+pub const SERIES: &str = "series.csv";
+/// Name of the HDF5 file.
+pub const STORE: &str = "results.h5";
+/// Name of the effective case, `--set` applied.
+pub const CASE: &str = "case.toml";
 
 /// Replaces a file at once: a reader sees the old content or the new, never a part.
 pub(crate) fn replace(path: &Path, content: &[u8]) -> Result<(), ResultsError> {

@@ -30,6 +30,7 @@ use calcine_coupler::mesh::Mesh;
 
 use crate::case::model::Case;
 pub use error::ResultsError;
+pub use files::{CASE, SERIES, STATUS, STORE, SUMMARY};
 pub use recorder::{Recorder, RunInfo};
 pub use resume::clear_start;
 pub use summary::{Summary, Verdict};
@@ -41,14 +42,3 @@ pub fn fits(case: &Case, mesh: &Mesh) -> Result<(), ResultsError> {
         .iter()
         .try_for_each(|quantity| quantities::check(quantity, mesh))
 }
-
-/// Name of the summary in a result directory.
-pub const SUMMARY: &str = "summary.json";
-/// Name of the file to watch while a run goes on.
-pub const STATUS: &str = "status.json";
-/// Name of the time series.
-pub const SERIES: &str = "series.csv";
-/// Name of the HDF5 file.
-pub const STORE: &str = "results.h5";
-/// Name of the effective case, `--set` applied.
-pub const CASE: &str = "case.toml";

@@ -52,6 +52,13 @@ impl std::fmt::Debug for GivenModel {
     }
 }
 
+impl Simulation {
+    /// Begins with a case file; nothing is read before [`SimulationBuilder::start`].
+    pub fn open(case: impl Into<PathBuf>) -> SimulationBuilder {
+        SimulationBuilder::new(case.into())
+    }
+}
+
 impl SimulationBuilder {
     pub(super) fn new(case: PathBuf) -> Self {
         Self {

@@ -72,11 +72,6 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// Begins with a case file; nothing is read before [`SimulationBuilder::start`].
-    pub fn open(case: impl Into<PathBuf>) -> SimulationBuilder {
-        SimulationBuilder::new(case.into())
-    }
-
     /// One window, with the output and the checkpoint that are due after it. `None`: the run goes on. An interrupt
     /// ends it after the window with a checkpoint.
     pub fn step(&mut self) -> Result<Option<Ending>, SimulationError> {

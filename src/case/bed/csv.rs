@@ -2,7 +2,7 @@
 
 use ::csv::{ReaderBuilder, StringRecord, Trim};
 
-use super::{Fault, Row, Sheet, number};
+use super::sheet::{Fault, Row, Sheet, number};
 
 pub(super) fn sheet(text: &str) -> Result<Sheet, Fault> {
     let mut reader = ReaderBuilder::new()

@@ -1,7 +1,7 @@
 //! Text dumps of LIGGGHTS and LAMMPS: one snapshot after the other, each with `ITEM: ATOMS` and the
 //! names of its columns.
 
-use super::{Fault, Row, Sheet, number};
+use super::sheet::{Fault, Row, Sheet, number};
 
 /// Lines with their numbers.
 type Lines<'t> = std::iter::Zip<std::ops::RangeFrom<usize>, std::str::Lines<'t>>;

@@ -1,6 +1,6 @@
 //! VTK's old format (`.vtk`), ASCII: polydata or an unstructured grid, its points the particles.
 
-use super::{Fault, Row, Sheet, add, number};
+use super::sheet::{Fault, Row, Sheet, add, number};
 
 /// Words of a text, one line after the other.
 struct Words<'t> {

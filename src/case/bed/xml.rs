@@ -1,6 +1,6 @@
 //! VTK's XML format (`.vtp`, `.vtu`).
 
-use super::{Fault, Sheet, add};
+use super::sheet::{Fault, Sheet, add};
 use crate::vtk_xml;
 
 fn fault(what: impl Into<String>) -> Fault {

@@ -12,7 +12,7 @@ use calcine_coupler::physics::reaction::Equation;
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::GasPatch;
 
-use super::existing;
+use super::common::existing;
 use super::reactions::{arrhenius, heat_agrees, lacking};
 use crate::case::table::TableReader;
 use crate::case::units::Dimension;

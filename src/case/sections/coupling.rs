@@ -8,7 +8,7 @@ use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::setup::GasSetup;
 use calcine_coupler::time::GasStorage;
 
-use super::existing;
+use super::common::existing;
 use super::zone::zones;
 use crate::case::model::{
     Coupling, ExternalProgram, ExternalSpec, Laws, MotionSpec, Population, TimeSpec,

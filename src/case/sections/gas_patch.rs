@@ -5,8 +5,8 @@ use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{CompositionSchedule, GasPatch, InletFlow, WallHeat, WallVelocity};
 
+use super::common::patches;
 use super::composition::fractions;
-use super::patches;
 use super::turbulence::of_inlet;
 use crate::case::model::MeshSpec;
 use crate::case::table::TableReader;

@@ -6,7 +6,7 @@ use calcine_coupler::mesh::grading::Stretch;
 use calcine_coupler::physics::Vec3;
 use toml_edit::Value;
 
-use super::existing;
+use super::common::existing;
 use super::zone::{openings, refinements};
 use crate::case::model::MeshSpec;
 use crate::case::table::TableReader;

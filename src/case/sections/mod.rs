@@ -1,6 +1,7 @@
 //! The sections of a case file, one file each.
 
 mod chemistry;
+mod common;
 mod composition;
 mod conversion;
 mod coupling;
@@ -27,10 +28,10 @@ mod turbulence;
 mod walls;
 mod zone;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use self::gas::GasRead;
-use super::model::{Case, MeshSpec};
+use super::model::Case;
 use super::table::TableReader;
 
 /// Version of the format that this reader knows.
@@ -162,33 +163,4 @@ pub(super) fn case(
         probes,
         quantities,
     })
-}
-
-/// The patch names of a mesh, where the case itself knows them.
-fn patches(mesh: Option<&MeshSpec>) -> Option<Vec<&str>> {
-    let (mut names, openings): (Vec<&str>, _) = match mesh? {
-        MeshSpec::Box {
-            patches, openings, ..
-        } => (patches.iter().map(String::as_str).collect(), openings),
-        MeshSpec::Cylinder { openings, .. } => (vec!["bottom", "side", "top"], openings),
-        MeshSpec::PolyMesh(_) => return None,
-    };
-    names.extend(openings.iter().map(|one| one.name.as_str()));
-    names.sort_unstable();
-    names.dedup();
-    Some(names)
-}
-
-/// A path of the case file, absolute; an error where there is nothing.
-fn existing(reader: &TableReader<'_>, key: &str, folder: &Path) -> Option<PathBuf> {
-    let text = reader.text(key)?;
-    let path = folder.join(text);
-    match path.canonicalize() {
-        Ok(path) => Some(path),
-        Err(cause) => {
-            let rule = format!("names \"{text}\", which cannot be opened: {cause}");
-            reader.fail(key, rule, "paths are relative to the case file");
-            None
-        }
-    }
 }

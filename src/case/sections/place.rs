@@ -5,7 +5,7 @@ use std::path::Path;
 use calcine_coupler::packing::Sizes;
 use calcine_coupler::physics::Vec3;
 
-use super::existing;
+use super::common::existing;
 use crate::case::model::{MeshSpec, PlacementSpec};
 use crate::case::overlap::PRESSED;
 use crate::case::table::TableReader;

@@ -4,7 +4,7 @@ use calcine_coupler::motion::Wall;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::Schedule;
 
-use super::patches;
+use super::common::patches;
 use super::walls::direction;
 use crate::case::model::{
     Expect, GasPlace, Measure, MeshSpec, ParticlePlace, PlacementSpec, Population, Probe, Quantity,

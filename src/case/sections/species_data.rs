@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use calcine_coupler::physics::thermo::{LennardJones, Mixture, Species, fuller};
 
-use super::existing;
+use super::common::existing;
 use crate::case::table::TableReader;
 use crate::mechanism::{self, Thermo};
 

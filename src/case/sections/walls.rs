@@ -6,7 +6,8 @@ use calcine_coupler::motion::{Wall, WallMotion, WallShape};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::Schedule;
 
-use super::{existing, heat};
+use super::common::existing;
+use super::heat;
 use crate::case::model::{MaterialSpec, MeshSpec};
 use crate::case::place::inner_diameter;
 use crate::case::stl;

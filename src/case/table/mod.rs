@@ -12,11 +12,12 @@ use super::problem::Problem;
 use crate::laws::LawCatalogue;
 
 mod law;
+mod nearest;
 mod nested;
 mod quantity;
 mod words;
 
-use words::nearest;
+use nearest::nearest;
 
 /// What is said of a key that is not declared.
 pub(super) const UNKNOWN: &str = " is not a key of a case";

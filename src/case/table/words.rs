@@ -1,5 +1,6 @@
-//! Texts, choices between words, whole numbers; what a misspelt word may have meant.
+//! Texts, choices between words, whole numbers.
 
+use super::nearest::nearest;
 use super::{KeyPresence, KeyValue, TableReader};
 use crate::case::words::CaseWord;
 
@@ -190,14 +191,4 @@ pub(super) fn quoted(names: &[&str]) -> String {
         .map(|name| format!("\"{name}\""))
         .collect::<Vec<_>>()
         .join(", ")
-}
-
-/// The nearest of several names, if it is near enough to be meant.
-pub(super) fn nearest<'n>(word: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
-    let limit = 1 + word.chars().count() / 4;
-    names
-        .map(|name| (strsim::levenshtein(word, name), name))
-        .filter(|(distance, _)| *distance <= limit)
-        .min()
-        .map(|(_, name)| name)
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::reduced;
+use super::model::reduced;
 use crate::contact::{ContactModel, HertzMindlin, Linear, PairConstants};
 
 /// Elastic constants of a material.

@@ -1,6 +1,6 @@
 //! Batchelor and O'Brien 1977.
 
-use super::{Conduction, SphereContact};
+use super::model::{Conduction, SphereContact};
 use crate::law::LawEntry;
 
 /// Conduction through the circular contact of two spheres in a poorly conducting gas.

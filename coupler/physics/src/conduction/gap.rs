@@ -29,7 +29,7 @@ impl SphereGap {
     /// Integral over r in m from `from` to `to` of 2 π r f(r). The integrand is nearly 1/(w₀ + r²/(2R*)) with
     /// a width w₀ in m, positive or `from` is; in ln(r² + 2 R* w₀) that is a constant.
     pub(super) fn ring(&self, from: f64, to: f64, width: f64, f: impl Fn(f64) -> f64) -> f64 {
-        let shift = 2.0 * super::reduced(self.radius) * width;
+        let shift = 2.0 * super::model::reduced(self.radius) * width;
         if to <= from {
             return 0.0;
         }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{Conduction, SphereContact};
+use super::model::{Conduction, SphereContact};
 use crate::law::LawEntry;
 
 /// Conduction through the circle in which two spheres cut each other.

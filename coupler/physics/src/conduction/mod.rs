@@ -10,10 +10,9 @@ mod cheng;
 mod conductivity;
 mod gap;
 mod lens;
+mod model;
 mod none;
 mod rong_horio;
-
-use std::fmt::Debug;
 
 pub use area::{ContactArea, ElasticLaw, Stiffness};
 pub use batchelor_obrien::BatchelorObrien;
@@ -21,6 +20,7 @@ pub use cheng::Cheng;
 pub use conductivity::Conductivity;
 pub use gap::{GasGap, NoGap, SphereGap};
 pub use lens::Lens;
+pub use model::{Conduction, SphereContact};
 pub use none::NoConduction;
 pub use rong_horio::RongHorio;
 
@@ -32,47 +32,3 @@ pub static CONDUCTION_LAWS: &[&LawEntry<dyn Conduction>] =
 
 /// The laws of the gas between surfaces that a case may choose.
 pub static GAP_LAWS: &[&LawEntry<dyn GasGap>] = &[&rong_horio::LAW, &cheng::LAW, &gap::NO_GAP];
-
-/// Two spheres that overlap; a flat wall is one of endless radius.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SphereContact {
-    /// Radii in m.
-    pub radius: [f64; 2],
-    /// Overlap δ in m: the sum of the radii less the distance of the centres, positive.
-    pub overlap: f64,
-    /// Conductivities in W/m/K.
-    pub conductivity: [f64; 2],
-}
-
-impl SphereContact {
-    /// Harmonic mean of the conductivities in W/m/K.
-    pub fn conductivity(&self) -> f64 {
-        let [own, other] = self.conductivity;
-        2.0 * own * other / (own + other)
-    }
-
-    /// Reduced radius R* in m, 1/R* = 1/R₁ + 1/R₂.
-    pub fn reduced_radius(&self) -> f64 {
-        reduced(self.radius)
-    }
-}
-
-/// R* in m of two radii, of which one may be endless.
-fn reduced([own, other]: [f64; 2]) -> f64 {
-    if other.is_infinite() {
-        own
-    } else if own.is_infinite() {
-        other
-    } else {
-        own * other / (own + other)
-    }
-}
-
-/// Conduction through the contact of two particles.
-pub trait Conduction: Debug + Send + Sync {
-    /// Name as case files use it.
-    fn name(&self) -> &'static str;
-
-    /// Conductance G in W/K: the heat from the second to the first particle is G (T₂ − T₁).
-    fn conductance(&self, contact: &SphereContact) -> f64;
-}

@@ -1,6 +1,6 @@
 //! No conduction between particles.
 
-use super::{Conduction, SphereContact};
+use super::model::{Conduction, SphereContact};
 use crate::law::LawEntry;
 
 /// Particles exchange no heat where they touch.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::Drag;
+use super::model::Drag;
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 

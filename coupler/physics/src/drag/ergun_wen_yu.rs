@@ -1,6 +1,7 @@
 //! Ergun below, Wen and Yu above a void fraction of 0.8.
 
-use super::{Drag, Ergun, WenYu};
+use super::model::Drag;
+use super::{Ergun, WenYu};
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 

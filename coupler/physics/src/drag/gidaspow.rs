@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::{Drag, Ergun, WenYu};
+use super::model::Drag;
+use super::{Ergun, WenYu};
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 

@@ -17,11 +17,10 @@ mod ergun;
 mod ergun_wen_yu;
 mod gidaspow;
 mod koch_hill;
+mod model;
 mod none;
 mod tenneti;
 mod wen_yu;
-
-use std::fmt::Debug;
 
 pub use beetstra::Beetstra;
 pub use di_felice::DiFelice;
@@ -29,12 +28,12 @@ pub use ergun::Ergun;
 pub use ergun_wen_yu::ErgunWenYu;
 pub use gidaspow::Gidaspow;
 pub use koch_hill::KochHill;
+pub use model::Drag;
 pub use none::NoDrag;
 pub use tenneti::Tenneti;
 pub use wen_yu::WenYu;
 
 use crate::law::LawEntry;
-use crate::local::LocalGas;
 
 /// The drag laws that a case may choose. A new one is a file beside these, declared above and listed here.
 pub static DRAG_LAWS: &[&LawEntry<dyn Drag>] = &[
@@ -49,20 +48,11 @@ pub static DRAG_LAWS: &[&LawEntry<dyn Drag>] = &[
     &none::LAW,
 ];
 
-/// Drag of the gas on one particle.
-pub trait Drag: Debug + Send + Sync {
-    /// Name as case files use it.
-    fn name(&self) -> &'static str;
-
-    /// Drag coefficient K_A in kg/s, pressure force excluded (docs/theory.md, DRG-1),
-    /// such that the drag on the particle is F = K_A (u − v); diameter in m.
-    fn coefficient(&self, gas: &LocalGas, diameter: f64) -> f64;
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::law::NONE;
+    use crate::local::LocalGas;
 
     fn laws() -> Vec<Box<dyn Drag>> {
         DRAG_LAWS.iter().map(|law| (law.make)(&[])).collect()

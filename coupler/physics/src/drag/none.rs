@@ -1,6 +1,6 @@
 //! No drag.
 
-use super::Drag;
+use super::model::Drag;
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 

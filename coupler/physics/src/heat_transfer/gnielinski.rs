@@ -1,6 +1,6 @@
 //! Gnielinski 1980.
 
-use super::HeatTransfer;
+use super::model::HeatTransfer;
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 

@@ -1,6 +1,6 @@
 //! Gunn 1978.
 
-use super::HeatTransfer;
+use super::model::HeatTransfer;
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 

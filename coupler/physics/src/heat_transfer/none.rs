@@ -1,6 +1,6 @@
 //! No heat transfer.
 
-use super::HeatTransfer;
+use super::model::HeatTransfer;
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 

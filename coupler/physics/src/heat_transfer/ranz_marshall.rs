@@ -1,6 +1,6 @@
 //! Ranz and Marshall 1952.
 
-use super::HeatTransfer;
+use super::model::HeatTransfer;
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 

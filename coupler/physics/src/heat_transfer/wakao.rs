@@ -1,6 +1,6 @@
 //! Wakao and Kaguei 1982.
 
-use super::HeatTransfer;
+use super::model::HeatTransfer;
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 

@@ -1,0 +1,165 @@
+//! A file of particles as named columns.
+
+use std::fmt;
+
+use calcine_coupler::physics::Vec3;
+
+/// Which particles of a file are meant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::case) struct Choice {
+    /// The snapshot of a dump; `None`: its last one.
+    pub timestep: Option<u64>,
+    /// Those of one type; `None`: all.
+    pub kind: Option<u64>,
+}
+
+/// A particle of a file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::case) struct Entry {
+    /// Where in the file it stands.
+    pub row: Row,
+    /// Its centre in m.
+    pub centre: Vec3,
+    /// Its diameter in m, where the file states one.
+    pub diameter: Option<f64>,
+    /// Its temperature in K, where the file states one.
+    pub temperature: Option<f64>,
+}
+
+/// Where a particle stands in its file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::case) enum Row {
+    /// A line, from 1.
+    Line(usize),
+    /// The number of a particle, from 1, in files that have no line of its own for it.
+    Particle(usize),
+}
+
+impl fmt::Display for Row {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Row::Line(line) => write!(f, "line {line}"),
+            Row::Particle(number) => write!(f, "particle {number}"),
+        }
+    }
+}
+
+/// What is wrong with a file, and where.
+pub(super) type Fault = (Option<Row>, String);
+
+/// A file as named columns of equal length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Sheet {
+    /// Names in lower case, and values.
+    pub(super) columns: Vec<(String, Vec<f64>)>,
+    /// Line of each particle; empty where particles have none.
+    pub(super) lines: Vec<usize>,
+}
+
+/// Names under which programs write the same thing, the first one that is there counts.
+const AXES: [[&str; 2]; 3] = [["x", "points:0"], ["y", "points:1"], ["z", "points:2"]];
+
+const DIAMETER: [&str; 1] = ["diameter"];
+
+const RADIUS: [&str; 1] = ["radius"];
+
+const TEMPERATURE: [&str; 3] = ["temperature", "f_temp", "f_temp[0]"];
+
+const TYPE: [&str; 1] = ["type"];
+
+const ID: [&str; 1] = ["id"];
+
+impl Sheet {
+    fn column(&self, names: &[&str]) -> Option<&[f64]> {
+        names.iter().find_map(|name| {
+            let mut all = self.columns.iter();
+            all.find(|(other, _)| other == name)
+                .map(|(_, values)| values.as_slice())
+        })
+    }
+
+    fn row(&self, index: usize) -> Row {
+        match self.lines.get(index) {
+            Some(&line) => Row::Line(line),
+            None => Row::Particle(index + 1),
+        }
+    }
+
+    pub(super) fn entries(&self, choice: Choice) -> Result<Vec<Entry>, Fault> {
+        let [x, y, z] = AXES.map(|names| self.column(&names));
+        let (Some(x), Some(y), Some(z)) = (x, y, z) else {
+            let names: Vec<&str> = self.columns.iter().map(|(name, _)| name.as_str()).collect();
+            let what = format!(
+                "it has the columns {}, and needs x, y and z (in m)",
+                names.join(", ")
+            );
+            return Err((None, what));
+        };
+        let kinds = self.column(&TYPE);
+        if choice.kind.is_some() && kinds.is_none() {
+            return Err((None, "it has no column `type` to choose by".into()));
+        }
+        let wanted = |index: &usize| match (choice.kind, kinds) {
+            (Some(kind), Some(kinds)) => kinds[*index] == kind as f64,
+            _ => true,
+        };
+        let mut order: Vec<usize> = (0..x.len()).filter(wanted).collect();
+        if let Some(id) = self.column(&ID) {
+            // Programs in parallel write in any order; the sort keeps equal ids as they stand.
+            order.sort_by(|&a, &b| id[a].total_cmp(&id[b]));
+        }
+        if let (Some(kind), true) = (choice.kind, order.is_empty()) {
+            return Err((None, format!("it has no particle of type {kind}")));
+        }
+        let own = self.column(&DIAMETER).map(|list| (list, 1.0));
+        let own = own.or_else(|| self.column(&RADIUS).map(|list| (list, 2.0)));
+        let temperature = self.column(&TEMPERATURE);
+        let positive = |what: &str, index: usize, value: f64| {
+            if value.is_finite() && value > 0.0 {
+                return Ok(value);
+            }
+            let what = format!("the {what} is {value}, not above zero");
+            Err((Some(self.row(index)), what))
+        };
+        let entry = |index: usize| {
+            let centre = Vec3::new(x[index], y[index], z[index]);
+            if centre.iter().any(|x| !x.is_finite()) {
+                let what = "a coordinate of the centre is not a finite number".into();
+                return Err((Some(self.row(index)), what));
+            }
+            let diameter = own.map(|(list, factor)| {
+                let what = if factor == 1.0 { "diameter" } else { "radius" };
+                positive(what, index, list[index]).map(|value| factor * value)
+            });
+            let temperature = temperature.map(|list| positive("temperature", index, list[index]));
+            Ok(Entry {
+                row: self.row(index),
+                centre,
+                diameter: diameter.transpose()?,
+                temperature: temperature.transpose()?,
+            })
+        };
+        order.into_iter().map(entry).collect()
+    }
+}
+
+/// A number of a text file.
+pub(super) fn number(word: &str, line: usize) -> Result<f64, Fault> {
+    word.parse()
+        .map_err(|_| (Some(Row::Line(line)), format!("\"{word}\" is not a number")))
+}
+
+/// Adds an array to a sheet: a single column, or one for each component.
+pub(super) fn add(sheet: &mut Sheet, name: &str, components: usize, values: &[f64]) {
+    let name = name.to_lowercase();
+    if components == 1 {
+        sheet.columns.push((name, values.to_vec()));
+        return;
+    }
+    for component in 0..components {
+        let one = values.iter().skip(component).step_by(components);
+        sheet
+            .columns
+            .push((format!("{name}:{component}"), one.copied().collect()));
+    }
+}

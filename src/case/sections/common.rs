@@ -1,0 +1,35 @@
+//! What several sections of a case read.
+
+use std::path::{Path, PathBuf};
+
+use crate::case::model::MeshSpec;
+use crate::case::table::TableReader;
+
+/// The patch names of a mesh, where the case itself knows them.
+pub(super) fn patches(mesh: Option<&MeshSpec>) -> Option<Vec<&str>> {
+    let (mut names, openings): (Vec<&str>, _) = match mesh? {
+        MeshSpec::Box {
+            patches, openings, ..
+        } => (patches.iter().map(String::as_str).collect(), openings),
+        MeshSpec::Cylinder { openings, .. } => (vec!["bottom", "side", "top"], openings),
+        MeshSpec::PolyMesh(_) => return None,
+    };
+    names.extend(openings.iter().map(|one| one.name.as_str()));
+    names.sort_unstable();
+    names.dedup();
+    Some(names)
+}
+
+/// A path of the case file, absolute; an error where there is nothing.
+pub(super) fn existing(reader: &TableReader<'_>, key: &str, folder: &Path) -> Option<PathBuf> {
+    let text = reader.text(key)?;
+    let path = folder.join(text);
+    match path.canonicalize() {
+        Ok(path) => Some(path),
+        Err(cause) => {
+            let rule = format!("names \"{text}\", which cannot be opened: {cause}");
+            reader.fail(key, rule, "paths are relative to the case file");
+            None
+        }
+    }
+}
