@@ -1,7 +1,10 @@
-//! The architecture is a test: the arrows between crates, the length of files, and nothing in
-//! them that belongs to one machine only.
+//! The architecture is a test: the arrows between crates and between files, names of types, the length of files,
+//! and nothing in them that belongs to one machine only.
 
 #![allow(clippy::unwrap_used)]
+
+mod imports;
+mod source;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -9,6 +12,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use serde_json::Value;
+
+use imports::{Modules, circles};
 
 /// All arrows there may be: a crate and the crates of this workspace that it may use. Another
 /// arrow is a change of the design (CONTRIBUTING.md), not of this table alone.
@@ -50,6 +55,9 @@ const KEPT_TO: [(&str, &[&str]); 6] = [
     ("iceoryx2", &["calcine-wire"]),
     ("mpi", &["calcine-mpi"]),
 ];
+
+/// The circles of imports that stay, by their files, each with the reason.
+const CIRCLES: &[(&[&str], &str)] = &[];
 
 /// Longest source file, in lines.
 const LONGEST: usize = 800;
@@ -293,4 +301,112 @@ fn the_coordinator_names_no_model_of_particles() {
         wrong.is_empty(),
         "models named outside the assembly: {wrong:#?}"
     );
+}
+
+/// Source files of the crates of the workspace, without tests, benches and examples.
+fn crate_sources() -> Vec<PathBuf> {
+    let of_crates = files().into_iter().filter(|path| {
+        let below = shown(path);
+        let folders: Vec<&str> = below.split('/').collect();
+        below.ends_with(".rs")
+            && folders.contains(&"src")
+            && !["tests", "benches", "examples"]
+                .iter()
+                .any(|other| folders.contains(other))
+    });
+    of_crates.collect()
+}
+
+/// Counted are `pub struct`, `enum`, `union`, `trait` and `type` of all crates, whether or not their module is
+/// public, but not those of a module or crate alone (`pub(super)`, `pub(crate)`) and of tests.
+#[test]
+fn no_two_public_types_share_a_name() {
+    let mut places: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for path in crate_sources() {
+        let words = source::words(&fs::read_to_string(&path).unwrap());
+        for name in source::public_types(&words) {
+            places
+                .entry(name.to_owned())
+                .or_default()
+                .push(shown(&path));
+        }
+    }
+    assert!(places.len() > 300, "only {} types found", places.len());
+    places.retain(|_, places| places.len() > 1);
+    assert!(places.is_empty(), "names of several types: {places:#?}");
+}
+
+/// What ties a file to another: see [`imports`]. A circle is named by all its files; one that is gone must go from
+/// the list.
+#[test]
+fn files_of_a_crate_import_one_way() {
+    let roots = crate_sources().into_iter().filter(|path| {
+        let below = shown(path);
+        below.ends_with("src/lib.rs") || below.ends_with("src/main.rs")
+    });
+    let (mut count, mut staying, mut wrong) = (0, Vec::new(), String::new());
+    for root in roots {
+        let modules = Modules::read(&root);
+        count += modules.len();
+        let ties = modules.ties();
+        for circle in circles(&ties) {
+            let names: Vec<String> = circle.iter().map(|file| shown(file)).collect();
+            if CIRCLES.iter().any(|(files, _)| *files == names) {
+                staying.push(names);
+                continue;
+            }
+            wrong += &format!("a circle of {} files:\n", circle.len());
+            for from in &circle {
+                for (to, names) in ties[from].iter().filter(|(to, _)| circle.contains(to)) {
+                    wrong += &format!("  {} takes {names:?} from {}\n", shown(from), shown(to));
+                }
+            }
+        }
+    }
+    assert!(count > 300, "only {count} files found");
+    assert!(wrong.is_empty(), "files that import each other:\n{wrong}");
+    for (files, reason) in CIRCLES {
+        let stays = staying.iter().any(|names| names == files);
+        assert!(stays, "no circle any more ({reason}): {files:?}");
+    }
+}
+
+#[test]
+fn a_circle_is_found_and_a_parent_that_hands_on_makes_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    let found = || {
+        let ties = Modules::read(&folder.path().join("lib.rs")).ties();
+        let circles = circles(&ties).into_iter();
+        let name = |path: &PathBuf| path.file_name().unwrap().to_string_lossy().into_owned();
+        circles
+            .map(|circle| circle.iter().map(name).collect::<Vec<_>>())
+            .collect::<Vec<_>>()
+    };
+    write(
+        "lib.rs",
+        "mod a;\nmod b;\npub use a::A;\n/// `b::B`\npub struct Own;\n",
+    );
+    write(
+        "a.rs",
+        "pub struct A;\n#[cfg(test)]\nmod tests {\n    use crate::b::B;\n}\n",
+    );
+    write(
+        "b.rs",
+        "use super::{A, Own};\npub struct B(A, Own, &'static str);\nconst TEXT: &str = \"a::A\";\n",
+    );
+    assert!(found().is_empty(), "{:?}", found());
+    // Through what the parent hands on.
+    write(
+        "a.rs",
+        "pub struct A;\nfn f() -> usize { std::mem::size_of::<crate::b::B>() }\n",
+    );
+    assert_eq!(found(), [["a.rs", "b.rs"]]);
+    // With an item of the parent, that uses the child itself.
+    write("a.rs", "pub struct A;\n");
+    write(
+        "lib.rs",
+        "mod a;\nmod b;\npub use a::A;\npub struct Own;\nfn f() -> b::B { todo!() }\n",
+    );
+    assert_eq!(found(), [["b.rs", "lib.rs"]]);
 }
