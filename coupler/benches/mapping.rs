@@ -3,13 +3,12 @@
 //! particles of 0.8, 1.7 and 3.6 cells.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use std::f64::consts::PI;
 use std::time::Duration;
 
 use calcine_coupler::mapping::{Mapper, Method};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
-use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::{Vec3, sphere};
 use calcine_coupler::smoother::{Operator, Smoother, SmootherSettings};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 
@@ -82,7 +81,7 @@ fn base(criterion: &mut Criterion) {
 /// diffusion F over one particle diameter.
 fn operator(mesh: &Mesh, most: f64, diffusion: bool) -> Operator {
     let (centres, radii) = spheres();
-    let volume: Vec<f64> = radii.iter().map(|r| 4.0 / 3.0 * PI * r.powi(3)).collect();
+    let volume: Vec<f64> = radii.iter().map(|&r| sphere::volume(r)).collect();
     let weights = Mapper::new(mesh).fill(Method::Overlap, &centres, &radii);
     let settings = SmootherSettings {
         max_solid_fraction: most,

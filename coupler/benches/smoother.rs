@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 use calcine_coupler::mapping::{Mapper, Method, Weights};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
-use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::{Vec3, sphere};
 use calcine_coupler::smoother::{Operator, Smoother, SmootherSettings};
 use criterion::measurement::WallTime;
 use criterion::{
@@ -73,12 +73,12 @@ impl Bed {
     }
 
     fn solid_volumes(&self) -> Vec<f64> {
-        vec![4.0 / 3.0 * PI * self.radius.powi(3); self.centres.len()]
+        vec![sphere::volume(self.radius); self.centres.len()]
     }
 
     /// Solid volume of each cell by W₀.
     fn solid(&self) -> Vec<f64> {
-        let volume = 4.0 / 3.0 * PI * self.radius.powi(3);
+        let volume = sphere::volume(self.radius);
         let weights = self.weights();
         let of = |cell| weights.of_cell(cell).map(|(_, share)| share * volume).sum();
         (0..self.mesh.cells()).map(of).collect()

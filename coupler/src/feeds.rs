@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use calcine_physics::Vec3;
+use calcine_physics::{Vec3, sphere};
 
 use crate::checkpoint::{StateFile, StateFileError};
 use crate::mesh::zone::Zone;
@@ -172,7 +172,7 @@ impl FeedsAndOutlets {
                 let number = self.drawn[index];
                 let diameters = feed.sizes.sample(1, mixed(feed.seed, number, 0))?;
                 let radius = 0.5 * diameters.first().copied().unwrap_or(0.0);
-                let mass = 4.0 / 3.0 * PI * radius.powi(3) * feed.density;
+                let mass = sphere::mass(radius, feed.density);
                 if !(mass > 0.0 && self.due[0][index] >= 0.5 * mass) {
                     break;
                 }

@@ -6,6 +6,7 @@ use calcine_coupler::interior::{HeatNetwork, ParticleModel, Reacting, Thin};
 use calcine_coupler::models::ParticleModels;
 use calcine_coupler::part::ParticleFields;
 use calcine_coupler::physics::gas_model::GasModel;
+use calcine_coupler::physics::sphere;
 
 use super::error::AssemblyError;
 use super::prepared::PreparedCase;
@@ -47,9 +48,8 @@ pub(super) fn models(
     let density = |p: usize| {
         case.materials[case.particles[particles.population[p] as usize].material].density
     };
-    let volume = |p: usize| 4.0 / 3.0 * std::f64::consts::PI * particles.radius[p].powi(3);
     let masses: Vec<f64> = (0..particles.len())
-        .map(|p| density(p) * volume(p))
+        .map(|p| sphere::mass(particles.radius[p], density(p)))
         .collect();
     let start = prepared.temperature.iter().copied();
     let temperature: Vec<f64> = start

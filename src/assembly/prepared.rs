@@ -6,7 +6,7 @@ use calcine_coupler::coordinator::RunError;
 use calcine_coupler::mapping::{Mapper, Method};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::zone::Zone;
-use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::{Vec3, sphere};
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::smoother::{Smoother, SmootherSettings as Smoothing};
 
@@ -46,8 +46,8 @@ impl PreparedCase {
     /// Mean void fraction that the particles see, mapped and smoothed as in a run.
     pub fn void_fraction(&self, case: &Case) -> Result<f64, AssemblyError> {
         let particles = &self.particles;
-        let volume = |r: &f64| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3);
-        let volumes: Vec<f64> = particles.radius.iter().map(volume).collect();
+        let radii = particles.radius.iter();
+        let volumes: Vec<f64> = radii.map(|&radius| sphere::volume(radius)).collect();
         let mapper = Mapper::new(&*self.mesh);
         let weights = mapper
             .fill(method(case), &particles.position, &particles.radius)

@@ -10,6 +10,7 @@ use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::law::NONE;
 use calcine_coupler::physics::local::LocalGas;
 use calcine_coupler::physics::numbers::VoidFraction;
+use calcine_coupler::physics::sphere;
 use calcine_coupler::setup::{GasPatch, InletFlow};
 
 use super::model::{Case, Population};
@@ -226,7 +227,7 @@ fn splitting(text: &mut String, case: &Case, population: &Population, eps: f64) 
         return;
     };
     let nusselt = case.laws.heat_transfer.make().nusselt(&local, d);
-    let volume = PI / 6.0 * d.powi(3);
+    let volume = sphere::volume_of_diameter(d);
     let rate = nusselt * local.conductivity * PI * d / (material.density * volume * solid_capacity);
     // Requirements TSM-8: the error of process storage in shares of the span.
     let error = 0.11 * rate * factor * case.time.motion_window.seconds();

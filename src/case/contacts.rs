@@ -1,15 +1,13 @@
 //! From the sections of a case to what a discrete element solver is told, and its time step.
 
-use std::f64::consts::PI;
-
 use calcine_adapters::liggghts::moving;
 use calcine_coupler::coordinator::LONGEST_STEP;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::motion::{
     ContactForce, Contacts, Elastic, Motion as Told, Pair, Wall, WallMotion,
 };
-use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::time_step;
+use calcine_coupler::physics::{Vec3, sphere};
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::time::Ticks;
 use thiserror::Error;
@@ -271,7 +269,7 @@ pub fn limits(case: &Case, motion: &FreeMotion, mesh: &Mesh, setup: &ParticleSet
         };
         let rayleigh = time_step::rayleigh(radius, material.density, young, poisson);
         // Two equal spheres: m* = m/2, R* = R/2, E* = E/(2(1 − ν²)).
-        let mass = 2.0 / 3.0 * PI * radius.powi(3) * material.density;
+        let mass = 0.5 * sphere::mass(radius, material.density);
         let stiff = young / (2.0 * (1.0 - poisson * poisson));
         let hertz = time_step::hertz_collision(0.5 * radius, mass, stiff, limits.speed);
         limits.rayleigh = limits.rayleigh.min(rayleigh);

@@ -8,6 +8,7 @@ use calcine_coupler::view_factors::ViewFactors;
 use thiserror::Error;
 
 use super::model::{Case, MeshSpec, PlacementSpec};
+use calcine_coupler::physics::sphere;
 
 /// Bytes that coordinator and native gas hold per cell, and per frozen particle, about; measured as the growth of
 /// resident memory, rounded up: the heated bed on 14 700, 66 760 and 134 792 cells.
@@ -133,7 +134,7 @@ fn particles(case: &Case) -> f64 {
                 solid_fraction,
                 ..
             } => {
-                let sphere = PI / 6.0 * diameter.powi(3);
+                let sphere = sphere::volume_of_diameter(diameter);
                 section * (layer[1] - layer[0]) * solid_fraction / sphere
             }
             PlacementSpec::Regular { .. } | PlacementSpec::File { .. } => 0.0,

@@ -1,12 +1,10 @@
 //! How far a bed that moves accelerated is from quasi-static (docs/theory.md, TSM-7): its inertial number.
 
-use std::f64::consts::PI;
-
 use calcine_coupler::contacts;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::observer::CommittedState;
-use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::inertial_number::inertial_number;
+use calcine_coupler::physics::{Vec3, sphere};
 use serde::{Deserialize, Serialize};
 
 /// Above this the motion of a bed depends on its pace (docs/theory.md, TSM-7).
@@ -48,7 +46,7 @@ pub(super) fn of_bed(moment: &CommittedState<'_>, gravity: Vec3) -> f64 {
         let relative = bed.velocity[b] - bed.velocity[a];
         let along = relative.dot(&apart) / (distance * distance) * apart;
         let shear_rate = (relative - along).norm() / distance;
-        let volume = 4.0 / 3.0 * PI * (bed.radius[a].powi(3) + bed.radius[b].powi(3));
+        let volume = sphere::volume(bed.radius[a]) + sphere::volume(bed.radius[b]);
         let density = (bed.mass[a] + bed.mass[b]) / volume;
         let lower = if height(a) < height(b) { a } else { b };
         let diameter = bed.radius[a] + bed.radius[b];

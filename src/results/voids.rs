@@ -6,8 +6,8 @@ use std::path::Path;
 
 use calcine_coupler::motion::WallShape;
 use calcine_coupler::part::ParticleFields;
-use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::quadrature::gauss;
+use calcine_coupler::physics::{Vec3, sphere};
 
 use super::{ResultsError, files, sheet};
 use crate::case::model::{Case, MeshSpec};
@@ -78,7 +78,7 @@ impl Container {
 
     fn area(self) -> f64 {
         match self {
-            Self::Cylinder(_, radius) => PI * radius * radius,
+            Self::Cylinder(_, radius) => sphere::cross_section(radius),
             Self::Box(area) => area,
         }
     }

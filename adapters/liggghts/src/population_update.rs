@@ -131,7 +131,6 @@ impl PopulationUpdate {
         let place = |new: &Resized| Some(state.place[state.id.binary_search(&new.id).ok()?]);
         let own = self.resize.iter();
         let own: Vec<(usize, &Resized)> = own.filter_map(|new| Some((place(new)?, new))).collect();
-        let volume = |radius: f64| 4.0 / 3.0 * PI * radius.powi(3);
         let value = |name, new: &Resized| match name {
             "radius" => new.radius,
             "rmass" => new.mass,
@@ -148,6 +147,11 @@ impl PopulationUpdate {
     }
 }
 
+/// Volume of a sphere in m³.
+fn volume(radius: f64) -> f64 {
+    4.0 / 3.0 * PI * radius.powi(3)
+}
+
 /// Creates a particle and gives it its id and its state, on the rank that has its place.
 fn put_in(liggghts: &mut Liggghts, new: &New) -> Result<(), HostError> {
     let [x, y, z, vx, vy, vz, radius, density] = new.values;
@@ -161,7 +165,7 @@ fn put_in(liggghts: &mut Liggghts, new: &New) -> Result<(), HostError> {
         return Ok(()); // another rank's, or beyond the box: then it is noticed as lost
     }
     let missing = |name| HostError::Missing { name };
-    let mass = 4.0 / 3.0 * PI * radius.powi(3) * density;
+    let mass = volume(radius) * density;
     for (name, value) in [("radius", radius), ("density", density), ("rmass", mass)] {
         let column = liggghts.scalars_mut(name);
         column.ok_or_else(|| missing(name))?[place] = value;

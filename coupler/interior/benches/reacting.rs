@@ -5,7 +5,6 @@
 //! conversion.
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
-use std::f64::consts::PI;
 use std::time::{Duration, Instant};
 
 use calcine_interior::reacting::attempt::{ParticleAccuracy, ParticleStart, ParticleWorkspace};
@@ -15,6 +14,7 @@ use calcine_numerics::batch::each_row;
 use calcine_physics::reaction::equilibrium::GibbsLine;
 use calcine_physics::reaction::{Arrhenius, Equilibrium, PowerLaw};
 use calcine_physics::solids::SolidSpecies;
+use calcine_physics::sphere;
 use calcine_physics::thermo::{Mixture, Species};
 use rustix::time::{ClockId, clock_gettime};
 
@@ -181,7 +181,7 @@ fn processor() -> Duration {
 
 /// Amounts in mol and temperature in K of a particle, one list.
 fn begin(kind: &Kind, radius: f64) -> Vec<f64> {
-    let mass = kind.density * 4.0 / 3.0 * PI * radius.powi(3);
+    let mass = sphere::mass(radius, kind.density);
     let parts = kind.chemistry.solids.iter().zip(&kind.solids);
     let mut state: Vec<f64> = parts.map(|(one, y)| mass * y / one.molar_mass()).collect();
     state.push(kind.temperature);
@@ -197,7 +197,7 @@ fn advance(
 ) -> [usize; 3] {
     let (amounts, temperature) = state.split_at(kind.chemistry.solids.len());
     let film = vec![0.08; kind.gas.len()];
-    let area = 4.0 * PI * radius * radius;
+    let area = sphere::surface(radius);
     let start = ParticleStart {
         amounts,
         temperature: temperature[0],

@@ -22,6 +22,7 @@ pub mod radiation;
 pub mod reaction;
 pub mod solid;
 pub mod solids;
+pub mod sphere;
 pub mod thermo;
 pub mod turbulence;
 

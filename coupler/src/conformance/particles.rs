@@ -1,10 +1,9 @@
 //! The laws of particles: spheres in a box with a floor, some held, free ones apart from each other and in contact.
 
-use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use calcine_physics::Vec3;
+use calcine_physics::{Vec3, sphere};
 
 use super::{BrokenLaw, LawError, holds, is_refused, same, window};
 use crate::error::{FailureKind, PartError};
@@ -160,7 +159,7 @@ fn contacts() -> Contacts {
 
 /// Mass of a sphere in kg.
 fn mass(radius: f64) -> f64 {
-    4.0 / 3.0 * PI * radius.powi(3) * DENSITY
+    sphere::mass(radius, DENSITY)
 }
 
 /// The fixture of a law.

@@ -1,9 +1,8 @@
 //! Stage: from places and radii of the particles to the operator W and the bed that the gas sees.
 
-use std::f64::consts::PI;
 use std::sync::Arc;
 
-use calcine_physics::Vec3;
+use calcine_physics::{Vec3, sphere};
 
 use super::error::RunError;
 use super::meter::{Meter, Stage};
@@ -71,8 +70,7 @@ fn map(
     meter: &mut Meter,
 ) -> Result<MappedBed, RunError> {
     let (position, radius) = (particles.position, particles.radius);
-    let volume = |r: &f64| 4.0 / 3.0 * PI * r.powi(3);
-    let solid_volume: Vec<f64> = radius.iter().map(volume).collect();
+    let solid_volume: Vec<f64> = radius.iter().map(|&r| sphere::volume(r)).collect();
     let weights = meter.time(Stage::Mapping, || mapper.fill(method, position, radius))?;
     let operator = meter.time(Stage::Smoother, || {
         smoother.operator(weights, &solid_volume)

@@ -1,8 +1,7 @@
 //! How light a particle may become before the time step of contacts is too long for it.
 
-use std::f64::consts::PI;
-
 use calcine_physics::contact::time_step::rayleigh;
+use calcine_physics::sphere;
 
 use super::error::TooLight;
 use crate::motion::{Contacts, Elastic, Resized};
@@ -34,7 +33,7 @@ impl ContactStepLimit {
         let Some(elastic) = self.elastic.get(population as usize) else {
             return Ok(());
         };
-        let density = new.mass / (4.0 / 3.0 * PI * new.radius.powi(3));
+        let density = sphere::density(new.mass, new.radius);
         let time = rayleigh(new.radius, density, elastic.young, elastic.poisson);
         // A time that is NaN bounds nothing and is refused too.
         if self.step <= LONGEST_STEP * time {
@@ -53,6 +52,7 @@ impl ContactStepLimit {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     #[test]
     fn a_particle_may_become_as_light_as_half_of_rayleighs_time_allows() {

@@ -9,11 +9,9 @@ mod satellites;
 mod weights;
 mod wide;
 
-use std::f64::consts::PI;
-
 use std::ops::Deref;
 
-use calcine_physics::Vec3;
+use calcine_physics::{Vec3, sphere};
 use rayon::prelude::*;
 
 pub use error::MappingError;
@@ -151,7 +149,7 @@ impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
                 .map_or(memory.parts.len(), |next| next.1 as usize);
             let volumes = &memory.parts.volumes[first..end];
             let cells = &memory.parts.cells[first..end];
-            let whole = 4.0 / 3.0 * PI * radii[particle as usize].powi(3);
+            let whole = sphere::volume(radii[particle as usize]);
             memory.row.clear();
             if let &[cell] = cells {
                 memory.row.push((cell, 1.0));
@@ -190,7 +188,7 @@ impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
             .ok_or(MappingError::Outside { particle, position })?;
         memory.home = home;
         let first = memory.parts.len();
-        let whole = 4.0 / 3.0 * PI * radius.powi(3);
+        let whole = sphere::volume(radius);
         // All of it lies in one cell; a sphere too small for its volume to be a number is a point.
         if depth >= radius || whole == 0.0 || method == Method::Centroid {
             memory.parts.push(home as u32, whole);

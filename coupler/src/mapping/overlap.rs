@@ -1,9 +1,8 @@
 //! Exact overlap of a sphere and a polyhedron.
 
-use std::f64::consts::PI;
 use std::ops::{Deref, Range};
 
-use calcine_physics::Vec3;
+use calcine_physics::{Vec3, sphere};
 
 use super::disc::{Plane, Point};
 use crate::mesh::Mesh;
@@ -163,7 +162,7 @@ impl Overlap {
                 }
                 Way::Cut { inside } => {
                     if inside {
-                        volumes[place] += 4.0 / 3.0 * PI * radius.powi(3);
+                        volumes[place] += sphere::volume(radius);
                     }
                     for index in faces {
                         let face = &self.faces[index];
@@ -293,6 +292,7 @@ mod tests {
     use super::*;
     use crate::mesh::Topology;
     use crate::mesh::block::{BoxSpec, box_mesh};
+    use std::f64::consts::PI;
 
     /// 3 x 3 x 3 unit cells, their points moved by `shift`.
     fn moved(shift: impl Fn(Vec3) -> Vec3) -> Mesh {

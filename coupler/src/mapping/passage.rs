@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::f64::consts::PI;
 use std::ops::Deref;
 
-use calcine_physics::Vec3;
+use calcine_physics::{Vec3, sphere};
 
 use super::disc::Point;
 use super::lanes::{Batch, CutFace, NONE};
@@ -281,7 +281,7 @@ impl Passage {
             }
         }
         if is_home {
-            parts.volumes[place] += 4.0 / 3.0 * PI * radius.powi(3);
+            parts.volumes[place] += sphere::volume(radius);
         }
         true
     }

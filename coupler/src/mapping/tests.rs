@@ -1,4 +1,5 @@
 use std::collections::HashMap;
+use std::f64::consts::PI;
 
 use super::*;
 use crate::mesh::block::{BoxSpec, box_mesh};

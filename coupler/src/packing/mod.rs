@@ -7,9 +7,7 @@ pub mod regular;
 mod relax;
 mod sizes;
 
-use std::f64::consts::PI;
-
-use calcine_physics::Vec3;
+use calcine_physics::{Vec3, sphere};
 
 pub use error::PackingError;
 pub use sizes::{Shape, Share, Sizes};
@@ -35,7 +33,11 @@ pub struct Packing {
 impl Packing {
     /// Volume of all spheres in m³.
     pub fn volume(&self) -> f64 {
-        self.diameters.iter().copied().map(sphere).sum()
+        self.diameters
+            .iter()
+            .copied()
+            .map(sphere::volume_of_diameter)
+            .sum()
     }
 }
 
@@ -97,7 +99,11 @@ fn fill(origin: Vec3, section: Section, spec: &RandomSpec) -> Result<Packing, Pa
         height,
     };
     let diameters = draw(spec, container.area() * height)?;
-    let volume: f64 = diameters.iter().copied().map(sphere).sum();
+    let volume: f64 = diameters
+        .iter()
+        .copied()
+        .map(sphere::volume_of_diameter)
+        .sum();
     if let Fill::Number(_) = spec.fill {
         container.height = volume / (spec.solid_fraction * container.area());
     }
@@ -153,7 +159,7 @@ fn draw(spec: &RandomSpec, space: f64) -> Result<Vec<f64>, PackingError> {
         let diameter = sampler.draw();
         let done = match spec.fill {
             Fill::Number(count) => diameters.len() == count,
-            Fill::Height(_) => volume + 0.5 * sphere(diameter) > wanted,
+            Fill::Height(_) => volume + 0.5 * sphere::volume_of_diameter(diameter) > wanted,
         };
         if done {
             break;
@@ -161,7 +167,7 @@ fn draw(spec: &RandomSpec, space: f64) -> Result<Vec<f64>, PackingError> {
         if diameters.len() == MOST {
             return Err(too_many(MOST as f64 + 1.0));
         }
-        volume += sphere(diameter);
+        volume += sphere::volume_of_diameter(diameter);
         diameters.push(diameter);
     }
     Ok(diameters)
@@ -173,9 +179,4 @@ fn too_many(value: f64) -> PackingError {
         value,
         need: "at most 1e7",
     }
-}
-
-/// Volume of a sphere in m³.
-fn sphere(diameter: f64) -> f64 {
-    PI / 6.0 * diameter.powi(3)
 }

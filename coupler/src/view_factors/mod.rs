@@ -27,8 +27,8 @@ mod wall;
 use std::f64::consts::PI;
 
 use calcine_interior::ExchangeAreas;
-use calcine_physics::Vec3;
 use calcine_physics::radiation::{SphereTable, sphere_to_sphere, visibility, wall_visibility};
+use calcine_physics::{Vec3, sphere};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
@@ -104,7 +104,7 @@ const REFLECTIONS: usize = 1000;
 /// View factors of all particles.
 pub fn views(scene: &RadiationScene<'_>, view_factors: ViewFactors) -> ExchangeAreas {
     let count = scene.centres.len();
-    let whole = scene.radii.iter().map(|r| 4.0 * PI * r * r);
+    let whole = scene.radii.iter().map(|&r| sphere::surface(r));
     let surface: Vec<f64> = match view_factors {
         ViewFactors::Rays { .. } => whole.zip(scene.emissivity).map(|(a, e)| a * e).collect(),
         ViewFactors::Distance { .. } => whole.collect(),
@@ -161,7 +161,7 @@ impl Open {
             Some(table) => table.at(distance / first),
             None => sphere_to_sphere(first, second, distance),
         };
-        4.0 * PI * first * first * factor
+        sphere::surface(first) * factor
     }
 }
 

@@ -4,7 +4,6 @@ mod check;
 pub mod dem;
 mod state;
 
-use std::f64::consts::PI;
 use std::path::Path;
 
 use calcine_coupler::error::{FailureKind, PartError};
@@ -12,7 +11,7 @@ use calcine_coupler::motion::{Contacts, Motion, ParticleChanges};
 use calcine_coupler::part::{
     Part, ParticleEvent, ParticleFields, ParticlePush, ParticleReceived, Particles, SolverInfo,
 };
-use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::{Vec3, sphere};
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::{Ticks, Window};
@@ -68,7 +67,7 @@ impl NativeParticles {
             angular_velocity: vec![Vec3::zeros(); count],
             radius: setup.radius.clone(),
             mass: spheres
-                .map(|(&radius, &density)| mass(radius, density))
+                .map(|(&radius, &density)| sphere::mass(radius, density))
                 .collect(),
             started: None,
             impulse: vec![Vec3::zeros(); count],
@@ -305,7 +304,7 @@ impl NativeParticles {
             row.is_some()
         });
         for new in &change.insert {
-            let mass = mass(new.radius, new.density);
+            let mass = sphere::mass(new.radius, new.density);
             self.id.push(new.id);
             self.population.push(new.population);
             self.position.push(new.position);
@@ -324,10 +323,6 @@ impl NativeParticles {
         self.hand_over((pairs, walls))
             .map_err(|stray| self.outside(stray))
     }
-}
-
-fn mass(radius: f64, density: f64) -> f64 {
-    4.0 / 3.0 * PI * radius.powi(3) * density
 }
 
 fn retain<T>(values: &mut Vec<T>, keep: &[bool]) {

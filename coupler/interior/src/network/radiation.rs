@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use calcine_physics::radiation::linear;
+use calcine_physics::sphere;
 
 use super::ExchangeAreas;
 use crate::without;
@@ -78,7 +79,7 @@ impl Radiation {
         without(&mut self.emissivity, gone);
         for &(radius, emissivity) in come {
             let absorbs = if views.radiosity { 1.0 } else { emissivity };
-            let surface = 4.0 * PI * radius * radius * absorbs;
+            let surface = sphere::surface(radius) * absorbs;
             views.own.push(surface);
             views.surface.push(surface);
             self.emissivity.push(emissivity);

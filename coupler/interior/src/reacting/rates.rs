@@ -1,12 +1,11 @@
 //! Rates of a particle's reactions, with or without derivatives.
 
-use std::f64::consts::PI;
-
 use calcine_numerics::Number;
 use calcine_physics::gas::GAS_CONSTANT;
 use calcine_physics::reaction::equilibrium::STANDARD_PRESSURE;
 use calcine_physics::reaction::shrinking_core::{self, Interface, MOST_INTERFACES};
 use calcine_physics::reaction::{Equilibrium, PowerLaw, power_law};
+use calcine_physics::sphere;
 
 use super::chemistry::SolidChemistry;
 use super::layers::{GasPath, Layers};
@@ -247,7 +246,7 @@ fn power<N: Number>(
         let used = reaction.solids.iter().any(|one| one.0 == s && one.1 < 0.0);
         used && order_in(s) < 1.0
     };
-    let area = (radius * radius).times(4.0 * PI);
+    let area = sphere::surface_of(radius);
     let volume = (area * radius).times(1.0 / 3.0);
     let solid = |s: usize| {
         if ends(s) {

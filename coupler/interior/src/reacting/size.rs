@@ -1,9 +1,8 @@
 //! How the volume of a particle follows its conversion (docs/theory.md, RXN-1, 2).
 
-use std::f64::consts::PI;
-
 use calcine_numerics::Number;
 use calcine_physics::solids::SolidSpecies;
+use calcine_physics::sphere;
 
 /// The law by which a particle of a material takes up room.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -72,7 +71,7 @@ impl SizeChange {
         let volume = parts.fold(N::constant(0.0), |sum, (volume, n)| {
             sum + n.positive().times(*volume)
         });
-        let radius = volume.times(0.75 / PI).cbrt();
+        let radius = sphere::radius_of(volume);
         if radius.value() > *least_radius {
             radius
         } else {
@@ -90,6 +89,7 @@ pub fn specific_volume(densities: &[f64], fractions: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     fn solids() -> Vec<SolidSpecies> {
         ["CaCO3", "CaO"]

@@ -1,9 +1,8 @@
 //! Whose overlap a contact conducts by: that of the computed, soft spheres, or of the real ones.
 
-use std::f64::consts::PI;
-
 use super::model::reduced;
 use crate::contact::{ContactModel, HertzMindlin, Linear, PairConstants};
+use crate::sphere;
 
 /// Elastic constants of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,7 +84,7 @@ impl ContactArea {
             Self::Overlap => overlap.max(0.0),
             Self::Force(_) if overlap <= 0.0 => 0.0,
             Self::Force(law) => {
-                let mass = [0, 1].map(|i| 4.0 / 3.0 * PI * radius[i].powi(3) * density[i]);
+                let mass = [0, 1].map(|i| sphere::mass(radius[i], density[i]));
                 let (pair, mass) = (pair(soft), reduced(mass));
                 hertz(match law {
                     ElasticLaw::Hertz => {
@@ -112,6 +111,7 @@ fn pair(of: [Stiffness; 2]) -> PairConstants {
 mod tests {
     use super::*;
     use crate::conduction::{BatchelorObrien, Conduction, SphereContact};
+    use std::f64::consts::PI;
 
     const SOFT: Stiffness = Stiffness {
         young: 1e7,

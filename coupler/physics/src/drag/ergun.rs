@@ -1,11 +1,10 @@
 //! Ergun 1952.
 
-use std::f64::consts::PI;
-
 use super::model::Drag;
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 use crate::pressure_drop::{ERGUN_INERTIAL, ERGUN_VISCOUS};
+use crate::sphere;
 
 /// Drag in packed beds after Ergun.
 ///
@@ -39,7 +38,7 @@ impl Drag for Ergun {
     fn coefficient(&self, gas: &LocalGas, d: f64) -> f64 {
         let eps = gas.void_fraction.value();
         let re = gas.interstitial_reynolds(d);
-        let v_p = PI / 6.0 * d.powi(3);
+        let v_p = sphere::volume_of_diameter(d);
         let scale = v_p * gas.viscosity / (d * d);
         scale * (ERGUN_VISCOUS * (1.0 - eps) / eps + ERGUN_INERTIAL * re)
     }
@@ -49,6 +48,7 @@ impl Drag for Ergun {
 mod tests {
     use super::*;
     use crate::pressure_drop;
+    use std::f64::consts::PI;
 
     #[test]
     fn a_bed_of_such_particles_has_the_pressure_drop_of_the_paper() {

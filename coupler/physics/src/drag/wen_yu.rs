@@ -1,10 +1,9 @@
 //! Wen and Yu 1966.
 
-use std::f64::consts::PI;
-
 use super::model::Drag;
 use crate::law::LawEntry;
 use crate::local::LocalGas;
+use crate::sphere;
 
 /// Drag in suspensions after Wen and Yu.
 ///
@@ -41,7 +40,7 @@ impl Drag for WenYu {
     fn coefficient(&self, gas: &LocalGas, d: f64) -> f64 {
         let eps = gas.void_fraction.value();
         let re = gas.interstitial_reynolds(d);
-        let v_p = PI / 6.0 * d.powi(3);
+        let v_p = sphere::volume_of_diameter(d);
         let scale = v_p * gas.viscosity / (d * d);
         scale * 0.75 * drag_times_reynolds(eps * re) * eps.powf(-2.65)
     }
@@ -59,6 +58,7 @@ fn drag_times_reynolds(re: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     #[test]
     fn reduces_to_stokes_drag_for_a_lone_particle_in_creeping_flow() {

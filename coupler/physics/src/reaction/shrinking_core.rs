@@ -1,7 +1,6 @@
 //! Shrinking cores with any number of interfaces.
 
-use std::f64::consts::PI;
-
+use crate::sphere;
 use calcine_numerics::Number;
 
 /// One interface of a particle whose layers react from the outside inwards, innermost first.
@@ -57,7 +56,7 @@ pub fn flows<N: Number>(
     interfaces: &[Interface<N>],
     flows: &mut [N],
 ) {
-    let area = (radius * radius).times(4.0 * PI);
+    let area = sphere::surface_of(radius);
     let count = interfaces.len();
     flows[..count].fill(N::constant(0.0));
     let layer = |i: usize| {
@@ -137,6 +136,7 @@ pub const MOST_INTERFACES: usize = 8;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     fn one(radius: f64) -> Interface {
         Interface {
