@@ -11,8 +11,9 @@ use std::path::Path;
 use std::time::Duration;
 
 use calcine_adapters::launch::Launcher;
+use calcine_adapters::liggghts::LiggghtsLaunch;
 use calcine_adapters::liggghts::inputs::Inputs;
-use calcine_adapters::liggghts::{LiggghtsLaunch, LiggghtsParticles};
+use calcine_adapters::particles::LinkedParticles;
 use calcine_coupler::motion::{
     Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, Pair, Rolling, Wall, WallMotion,
     WallShape,
@@ -136,11 +137,7 @@ fn triangles() -> WallShape {
     }
 }
 
-fn liggghts(
-    setup: &ParticleSetup,
-    supervisor: &mut Supervisor,
-    folder: &Path,
-) -> LiggghtsParticles {
+fn liggghts(setup: &ParticleSetup, supervisor: &mut Supervisor, folder: &Path) -> LinkedParticles {
     let launch = LiggghtsLaunch {
         inputs: Inputs {
             setup,
@@ -157,7 +154,7 @@ fn liggghts(
         resume: None,
         deadline: Duration::from_secs(30),
     };
-    LiggghtsParticles::launch(launch, supervisor).unwrap()
+    launch.launch(supervisor).unwrap()
 }
 
 /// Runs both, a window a step.

@@ -9,4 +9,5 @@ mod gas_columns;
 pub mod launch;
 pub mod liggghts;
 pub mod openfoam;
+pub mod particles;
 pub mod solver;

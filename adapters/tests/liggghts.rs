@@ -9,7 +9,8 @@ use std::time::{Duration, Instant};
 
 use calcine_adapters::launch::Launcher;
 use calcine_adapters::liggghts::inputs::Inputs;
-use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch, LiggghtsParticles};
+use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch};
+use calcine_adapters::particles::LinkedParticles;
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::part::{Part, ParticlePush, ParticleReceived, Particles};
 use calcine_coupler::physics::Vec3;
@@ -70,11 +71,7 @@ impl Bench {
         self.folder.path().join("log/liggghts.log")
     }
 
-    fn launch(
-        &mut self,
-        ranks: u32,
-        resume: Option<&Path>,
-    ) -> Result<LiggghtsParticles, PartError> {
+    fn launch(&mut self, ranks: u32, resume: Option<&Path>) -> Result<LinkedParticles, PartError> {
         let launch = LiggghtsLaunch {
             inputs: Inputs {
                 setup: &self.setup,
@@ -91,7 +88,7 @@ impl Bench {
             resume: resume.map(Path::to_owned),
             deadline: Duration::from_secs(30),
         };
-        LiggghtsParticles::launch(launch, &mut self.supervisor)
+        launch.launch(&mut self.supervisor)
     }
 }
 
@@ -117,7 +114,7 @@ fn push() -> ParticlePush {
     }
 }
 
-fn step(particles: &mut LiggghtsParticles, supervisor: &Supervisor, index: u64) -> Vec<Vec3> {
+fn step(particles: &mut LinkedParticles, supervisor: &Supervisor, index: u64) -> Vec<Vec3> {
     let mut received = ParticleReceived::default();
     particles.start(&window(index), &push()).unwrap();
     particles.finish(supervisor, &mut received).unwrap();
@@ -125,7 +122,7 @@ fn step(particles: &mut LiggghtsParticles, supervisor: &Supervisor, index: u64) 
     received.impulse
 }
 
-fn assert_column(particles: &LiggghtsParticles, setup: &ParticleSetup) {
+fn assert_column(particles: &LinkedParticles, setup: &ParticleSetup) {
     let fields = particles.fields();
     assert_eq!(fields.id, setup.id);
     assert_eq!(fields.population, setup.population);

@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use calcine_adapters::liggghts::LiggghtsParticles;
+use calcine_adapters::particles::LinkedParticles;
 use calcine_coupler::motion::{
     ContactForce, Contacts, NewParticle, ParticleChanges, Resized, Wall, WallMotion, WallShape,
 };
@@ -183,7 +183,7 @@ fn after_a_checkpoint_the_resumed_run_takes_the_same_path_as_the_one_that_went_o
     std::fs::create_dir_all(&checkpoint).unwrap();
     particles.checkpoint(&checkpoint).unwrap();
     let (index, start) = (bench.index, bench.start);
-    let path = |bench: &mut Bench, particles: &mut LiggghtsParticles| {
+    let path = |bench: &mut Bench, particles: &mut LinkedParticles| {
         (bench.index, bench.start) = (index, start);
         for window in 0..5 {
             let push = vec![Vec3::new(1e-4, 0.0, -1e-4 * f64::from(window)); 39];
@@ -228,7 +228,7 @@ fn a_run_goes_on_from_its_checkpoint_when_all_of_the_first_population_or_all_par
         std::fs::create_dir_all(&checkpoint).unwrap();
         particles.checkpoint(&checkpoint).unwrap();
         let (index, start) = (bench.index, bench.start);
-        let path = |bench: &mut Bench, particles: &mut LiggghtsParticles| {
+        let path = |bench: &mut Bench, particles: &mut LinkedParticles| {
             (bench.index, bench.start) = (index, start);
             bench
                 .window(particles, 1e-3, &vec![Vec3::zeros(); left])
@@ -290,7 +290,7 @@ fn what_comes_to_rest_keeps_the_springs_of_its_contacts() {
     sloped.pairs[0].restitution = 1.0;
     let start = (Vec3::new(0.05, 0.05, 0.0025), Vec3::zeros());
     let mut particles = bench.launch(&setup(sloped, &[start]), "a", None);
-    let speed = |bench: &mut Bench, particles: &mut LiggghtsParticles, span: f64| {
+    let speed = |bench: &mut Bench, particles: &mut LinkedParticles, span: f64| {
         bench.window(particles, span, &[Vec3::zeros()]).unwrap();
         particles.fields().velocity[0]
     };

@@ -8,7 +8,7 @@
     clippy::panic
 )]
 
-use calcine_adapters::liggghts::LiggghtsParticles;
+use calcine_adapters::particles::LinkedParticles;
 use calcine_coupler::motion::{NewParticle, ParticleChanges};
 use calcine_coupler::part::Particles;
 use calcine_coupler::physics::Vec3;
@@ -39,7 +39,7 @@ fn heap_and_one() -> ParticleSetup {
 }
 
 /// Pushed aside and pressed down, so that contacts slide and stick.
-fn press(particles: &LiggghtsParticles) -> Vec<Vec3> {
+fn press(particles: &LinkedParticles) -> Vec<Vec3> {
     let each = particles.fields().id.iter();
     each.map(|&id| Vec3::new(2e-4 * (id % 5) as f64, 1e-4, -1e-3))
         .collect()

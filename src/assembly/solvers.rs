@@ -6,7 +6,7 @@ use std::sync::Arc;
 use calcine_adapters::external::ExternalGasLaunch;
 use calcine_adapters::liggghts::inputs::Inputs;
 use calcine_adapters::liggghts::template::ScriptTemplate;
-use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch, LiggghtsParticles};
+use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch};
 use calcine_adapters::openfoam::case::OpenfoamCase;
 use calcine_adapters::openfoam::{LIBRARY, OpenfoamLaunch};
 use calcine_coupler::error::{FailureKind, PartError};
@@ -227,7 +227,7 @@ impl Assembly<'_> {
                     resume: from,
                     deadline: self.case.coupling.deadline,
                 };
-                Ok(Box::new(LiggghtsParticles::launch(launch, supervisor)?))
+                Ok(Box::new(launch.launch(supervisor)?))
             }
         }
     }

@@ -7,8 +7,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use calcine_adapters::launch::Launcher;
+use calcine_adapters::liggghts::LiggghtsLaunch;
 use calcine_adapters::liggghts::inputs::Inputs;
-use calcine_adapters::liggghts::{LiggghtsLaunch, LiggghtsParticles};
+use calcine_adapters::particles::LinkedParticles;
 use calcine_coupler::error::PartError;
 use calcine_coupler::motion::{
     Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, Pair, Rolling, Wall, WallMotion,
@@ -109,7 +110,7 @@ impl Bench {
         setup: &ParticleSetup,
         name: &str,
         resume: Option<PathBuf>,
-    ) -> LiggghtsParticles {
+    ) -> LinkedParticles {
         self.try_launch(setup, name, resume).unwrap()
     }
 
@@ -118,7 +119,7 @@ impl Bench {
         setup: &ParticleSetup,
         name: &str,
         resume: Option<PathBuf>,
-    ) -> Result<LiggghtsParticles, PartError> {
+    ) -> Result<LinkedParticles, PartError> {
         let launch = LiggghtsLaunch {
             inputs: Inputs {
                 setup,
@@ -135,7 +136,7 @@ impl Bench {
             resume,
             deadline: Duration::from_secs(30),
         };
-        LiggghtsParticles::launch(launch, &mut self.supervisor)
+        launch.launch(&mut self.supervisor)
     }
 
     pub fn path(&self, name: &str) -> PathBuf {
@@ -144,7 +145,7 @@ impl Bench {
 
     pub fn window(
         &mut self,
-        particles: &mut LiggghtsParticles,
+        particles: &mut LinkedParticles,
         span: f64,
         force: &[Vec3],
     ) -> Result<Vec<Vec3>, PartError> {
@@ -208,7 +209,7 @@ pub fn heap_from(x: f64) -> ParticleSetup {
 }
 
 /// Momentum in N s of all particles together.
-pub fn momentum(particles: &LiggghtsParticles) -> Vec3 {
+pub fn momentum(particles: &LinkedParticles) -> Vec3 {
     let fields = particles.fields();
     let pairs = fields.mass.iter().zip(fields.velocity);
     pairs.map(|(mass, velocity)| *mass * velocity).sum()
