@@ -116,10 +116,6 @@ impl Part for LinkedGas {
 }
 
 impl Gas for LinkedGas {
-    fn mesh(&self) -> &Mesh {
-        &self.mesh
-    }
-
     fn set_boundary(&mut self, value: &BoundaryValue) -> Result<(), PartError> {
         let name = &self.about.name;
         let refused = |message: String| PartError::new(name, FailureKind::Refused, message);

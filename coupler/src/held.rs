@@ -1,7 +1,6 @@
 //! A gas that stays as it is, whatever the particles give it: to see what a given flow does to them.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
@@ -22,7 +21,6 @@ use crate::time::Window;
 #[derive(Debug)]
 pub struct HeldGas {
     about: SolverInfo,
-    mesh: Arc<Mesh>,
     superficial: Vec3,
     properties: GasModel,
     temperature: Vec<f64>,
@@ -38,7 +36,7 @@ pub struct HeldGas {
 
 impl HeldGas {
     /// The gas of a setup on a mesh; its pressure is that of the setup at the mesh's first cell.
-    pub fn new(mesh: Arc<Mesh>, setup: &GasSetup) -> Self {
+    pub fn new(mesh: &Mesh, setup: &GasSetup) -> Self {
         let cells = mesh.cells();
         let gas = &setup.properties;
         let density = gas.density(setup.pressure, setup.temperature, &setup.composition);
@@ -64,7 +62,6 @@ impl HeldGas {
             exchange: CellExchange::default(),
             window: Window::default(),
             storage: setup.storage,
-            mesh,
         }
     }
 }
@@ -88,10 +85,6 @@ impl Part for HeldGas {
 }
 
 impl Gas for HeldGas {
-    fn mesh(&self) -> &Mesh {
-        &self.mesh
-    }
-
     fn fields(&self) -> GasFields<'_> {
         GasFields {
             temperature: &self.temperature,
@@ -131,7 +124,7 @@ impl Gas for HeldGas {
                 .zip(&self.temperature)
                 .map(|((source, coefficient), kelvin)| source - coefficient * kelvin),
         );
-        let species = self.composition.len() / self.mesh.cells().max(1);
+        let species = self.composition.len() / self.temperature.len().max(1);
         let mut moved = vec![0.0; species];
         if !told.species.is_none() {
             for (cell, heat) in received.heat.iter_mut().enumerate() {

@@ -10,7 +10,6 @@ use calcine_physics::Vec3;
 
 use crate::boundary_value::BoundaryValue;
 use crate::error::{FailureKind, PartError};
-use crate::mesh::Mesh;
 use crate::motion::ParticleChanges;
 use crate::supervisor::Supervisor;
 use crate::time::Window;
@@ -212,9 +211,6 @@ pub struct Convergence {
 
 /// Flow, enthalpy and species on a finite-volume mesh.
 pub trait Gas: Part {
-    /// The mesh of the undecomposed domain.
-    fn mesh(&self) -> &Mesh;
-
     /// Fields after the last finished attempt (initially: the start of the run).
     fn fields(&self) -> GasFields<'_>;
 

@@ -140,8 +140,7 @@ impl Assembly<'_> {
     pub(super) fn gas(&self, supervisor: &mut Supervisor) -> Result<Box<dyn Gas>, AssemblyError> {
         let from = self.from.map(|folder| folder.join("gas"));
         if self.case.gas_held {
-            let mesh = Arc::clone(&self.prepared.mesh);
-            return Ok(Box::new(HeldGas::new(mesh, &self.case.gas)));
+            return Ok(Box::new(HeldGas::new(&self.prepared.mesh, &self.case.gas)));
         }
         match self.settings.pairing.gas {
             GasBackend::Native => {

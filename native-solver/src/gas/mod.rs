@@ -277,10 +277,6 @@ impl Part for NativeGas {
 }
 
 impl Gas for NativeGas {
-    fn mesh(&self) -> &Mesh {
-        &self.mesh
-    }
-
     fn fields(&self) -> GasFields<'_> {
         GasFields {
             temperature: &self.now.temperature,
