@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod conformance;
 mod liggghts_moving;
 mod liggghts_ranks;
 mod liggghts_support;

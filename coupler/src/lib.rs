@@ -3,7 +3,6 @@
 pub mod boundary_value;
 pub mod checkpoint;
 pub mod closures;
-#[cfg(feature = "conformance")]
 pub mod conformance;
 pub mod contacts;
 pub mod coordinator;

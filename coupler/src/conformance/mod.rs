@@ -1,5 +1,5 @@
 //! Laws that every [`Gas`](crate::part::Gas) and every [`Particles`](crate::part::Particles) must obey, written once
-//! and run against each solver by its own tests (feature `conformance`).
+//! and run against each solver by its own tests.
 //!
 //! A solver joins with a function that makes it from a setup; `gas::run` and `particles::run` give the laws that it
 //! breaks. Each law starts with a fresh solver.
