@@ -254,6 +254,7 @@ impl ParticleModels {
             for (from, to) in [
                 (&lines.slope, &mut out.slope),
                 (&lines.offset, &mut out.offset),
+                (&lines.local_slope, &mut out.local_slope),
             ] {
                 for (own, row) in rows.iter().enumerate() {
                     for (c, channel) in channels.iter().enumerate() {

@@ -1,8 +1,10 @@
 //! What particles exchange with the gas through channels, heterogeneous reactions for example (docs/theory.md, RXN-1, 2).
 //!
-//! The rate of a channel j of particle p is a line in the mass fraction of its key gas,
-//! r = b Y − a, and each cell that p spans has its share W_cp of it by the cell's own Y. A first attempt of
-//! a window gives the gas these lines: the key gas implicitly, which is what keeps large process steps stable, a gas into which the
+//! The rate of a channel j of particle p is a line in the mass fraction of its key gas that p sees, Ȳ = Σ_c W_cp Y_c:
+//! r = b Ȳ − a. Its share in a cell follows the gas of the cell, W_cp [r + β (Y_c − Ȳ)], with β how the rate at a part of
+//! the surface follows the gas there. b is the response of the particle as a whole, with its temperature and what
+//! it is made of; β alone says where mass is exchanged, and no choice of b moves the result. An attempt of
+//! a window gives the gas the lines β Y_c − (a + (β − b) Ȳ), Ȳ of the attempt before: the key gas implicitly, which is what keeps large process steps stable, a gas into which the
 //! channel turns it mole for mole likewise (the rate follows both, and by the key gas alone the two would be out of step
 //! until the attempts agree), all others explicitly. What comes of it gives the rates of the cells; limited to what particles hold, they are given to
 //! the gas once more as fixed sources, all species of a channel in their proportions, so that elements close whatever the
@@ -40,8 +42,10 @@ pub struct SpeciesCoupling {
     /// Of each channel the gas that counter-diffuses mole for mole.
     counter: Vec<Option<usize>>,
     shares: Vec<f64>,
-    /// Of each channel: slopes and offsets of particles, and of cells.
-    particle: [Vec<f64>; 2],
+    /// β and a + (β − b) Ȳ of each channel of each particle.
+    told: [Vec<f64>; 2],
+    key_fraction: Vec<f64>,
+    /// Of each channel the sums over particles of both, in cells.
     cell: [Vec<Vec<f64>>; 2],
     /// The same, times the sensible enthalpy in J a unit of what the channel makes.
     warm: [Vec<Vec<f64>>; 2],
@@ -66,8 +70,8 @@ impl SpeciesCoupling {
         let count = given.channels.len() * operator.particles();
         self.shares.clear();
         self.shares.resize(count, 1.0);
-        self.spread(operator, given, properties);
         let moved = self.follow(operator, given, gas, species);
+        self.spread(operator, given, properties);
         let counter = |channel| counter(channel, properties);
         self.counter.clear();
         self.counter.extend(given.channels.iter().map(counter));
@@ -169,7 +173,7 @@ impl SpeciesCoupling {
             operator.sample(&enthalpy, &mut self.sampled);
             for (p, sampled) in self.sampled.iter().enumerate() {
                 let at = p * channels.len() + c;
-                self.carried[p] -= self.shares[at] * given.lines.offset[at] * sampled;
+                self.carried[p] -= self.shares[at] * self.told[1][at] * sampled;
             }
             for (cell, value) in enthalpy.iter_mut().enumerate() {
                 *value *= self.fraction(cell, species, channel);
@@ -177,7 +181,7 @@ impl SpeciesCoupling {
             operator.sample(&enthalpy, &mut self.sampled);
             for (p, sampled) in self.sampled.iter().enumerate() {
                 let at = p * channels.len() + c;
-                self.carried[p] += self.shares[at] * given.lines.slope[at] * sampled
+                self.carried[p] += self.shares[at] * self.told[0][at] * sampled
                     - self.rates[at] * made(channel, properties, given.lines.released[p]);
             }
         }
@@ -194,9 +198,8 @@ impl SpeciesCoupling {
     fn spread(&mut self, operator: &Operator, given: ChannelLines<'_>, properties: &GasModel) {
         let (cells, particles) = (operator.cells(), operator.particles());
         let channels = given.channels;
-        let lines = [&given.lines.slope, &given.lines.offset];
         self.scratch.resize(particles, 0.0);
-        for (which, lines) in lines.into_iter().enumerate() {
+        for (which, lines) in self.told.iter().enumerate() {
             self.cell[which].resize(channels.len(), Vec::new());
             self.warm[which].resize(channels.len(), Vec::new());
             for (c, channel) in channels.iter().enumerate() {
@@ -223,26 +226,28 @@ impl SpeciesCoupling {
         let (slopes, offsets) = (&given.lines.slope, &given.lines.offset);
         self.rates.clear();
         self.rates.resize(slopes.len(), 0.0);
-        self.scratch.resize(operator.cells(), 0.0);
+        self.told[0].clone_from(&given.lines.local_slope);
+        self.told[1].clear();
+        self.told[1].resize(slopes.len(), 0.0);
         self.sampled.resize(operator.particles(), 0.0);
         let (mut sampled, fractions) = (None, &self.fractions);
         for (c, channel) in channels.iter().enumerate() {
             if sampled != Some(channel.key) {
-                self.particle[0].resize(operator.cells(), 0.0);
-                for (cell, value) in self.particle[0].iter_mut().enumerate() {
+                self.key_fraction.resize(operator.cells(), 0.0);
+                for (cell, value) in self.key_fraction.iter_mut().enumerate() {
                     *value = channel
                         .key
                         .map_or(0.0, |key| fractions[cell * species + key]);
                 }
-                operator.sample(&self.particle[0], &mut self.sampled);
+                operator.sample(&self.key_fraction, &mut self.sampled);
                 sampled = Some(channel.key);
             }
             for (p, sampled) in self.sampled.iter().enumerate() {
                 let at = p * channels.len() + c;
                 self.rates[at] = slopes[at] * sampled - offsets[at];
+                self.told[1][at] = self.told[0][at] * sampled - self.rates[at];
             }
         }
-        self.scratch.resize(operator.particles(), 0.0);
     }
 
     /// What the gas is told, by the cells' lines at the mass fractions at hand.

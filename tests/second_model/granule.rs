@@ -260,6 +260,7 @@ impl ParticleModel for Granules {
             for (c, slope) in [wet * FAST, (1.0 - wet) * SLOW].into_iter().enumerate() {
                 out.slope[2 * p + c] = -slope;
                 out.offset[2 * p + c] = -slope * SATURATED;
+                out.local_slope[2 * p + c] = -slope;
             }
         }
         Ok(())

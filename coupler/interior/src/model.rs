@@ -69,6 +69,10 @@ pub struct GasLines {
     pub slope: Vec<f64>,
     /// a in units/s, likewise.
     pub offset: Vec<f64>,
+    /// β in units/s, likewise: how the rate at a part of the surface follows the gas there, with the particle as a whole
+    /// as it went, of the sign of b. A particle that spans several cells exchanges b Ȳ − a + β (Y_c − Ȳ) in the cell c,
+    /// Ȳ what it sees of all of them. Without depletion and heating inside over the span it is b.
+    pub local_slope: Vec<f64>,
     /// Temperature in K with which gas leaves each particle.
     pub released: Vec<f64>,
 }
@@ -84,7 +88,7 @@ impl GasLines {
             list.clear();
             list.resize(rows, 0.0);
         }
-        for list in [&mut self.slope, &mut self.offset] {
+        for list in [&mut self.slope, &mut self.offset, &mut self.local_slope] {
             list.clear();
             list.resize(rows * channels, 0.0);
         }

@@ -34,6 +34,11 @@ pub trait StiffSystem {
         0
     }
 
+    /// True where the direct effect of the parameters on the integrals is wanted ([`Rosenbrock::direct`]).
+    fn direct(&self) -> bool {
+        false
+    }
+
     /// f, then g, at the unknowns y.
     fn rates(&mut self, y: &[f64], out: &mut [f64]);
 
@@ -92,7 +97,8 @@ pub struct IntegrationStatistics {
     pub steps: usize,
     /// Steps that were repeated with a smaller one.
     pub rejected: usize,
-    /// Evaluations of the rates alone; those with derivatives are as many as accepted steps.
+    /// Evaluations of the rates alone; those with derivatives are as many as accepted steps,
+    /// one more where direct effects are wanted.
     pub evaluations: usize,
 }
 
@@ -163,6 +169,8 @@ pub struct Rosenbrock<L> {
     integrals: Vec<f64>,
     /// ∂y/∂p and ∂z/∂p, parameter by parameter.
     tangent: Vec<f64>,
+    /// ∫ ∂g/∂p dτ, parameter by parameter.
+    direct: Vec<f64>,
 }
 
 impl<L: LinearAlgebra> Rosenbrock<L> {
@@ -182,6 +190,7 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
             next: Vec::new(),
             integrals: Vec::new(),
             tangent: Vec::new(),
+            direct: Vec::new(),
         }
     }
 
@@ -198,6 +207,14 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
     /// SystemDerivatives by a parameter of the unknowns, then the integrals, at the end of the last integration.
     pub fn tangent(&self, parameter: usize) -> &[f64] {
         &self.tangent[parameter * self.width..(parameter + 1) * self.width]
+    }
+
+    /// What a parameter does to the integrals with the unknowns as they went, ∫ ∂g/∂p dτ over the last integration by
+    /// the trapezoidal rule: the tangent without the response of the unknowns. For systems that ask for it
+    /// ([`StiffSystem::direct`]).
+    pub fn direct(&self, parameter: usize) -> &[f64] {
+        let integrals = self.width - self.unknowns;
+        &self.direct[parameter * integrals..(parameter + 1) * integrals]
     }
 
     /// Advances the unknowns over a span in s. In error they are where the integration came to.
@@ -244,8 +261,20 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
                     *z += gain;
                 }
                 system.correct(y, &mut self.integrals, &mut self.tangent);
+                let direct = system.direct();
+                if direct {
+                    self.add_direct(step);
+                }
                 time += step;
                 done.steps += 1;
+                if ends && !direct {
+                    return Ok(done);
+                }
+                self.differentiate(system, y)
+                    .map_err(|worst| fail(time, StallCause::NotFinite, worst))?;
+                if direct {
+                    self.add_direct(step);
+                }
                 if ends {
                     return Ok(done);
                 }
@@ -255,8 +284,6 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
                     factor = factor.min(SAFETY * predicted);
                 }
                 before = Some((step, error.max(1e-2)));
-                self.differentiate(system, y)
-                    .map_err(|worst| fail(time, StallCause::NotFinite, worst))?;
                 let most = if last_rejected { 1.0 } else { GROW };
                 step *= factor.clamp(SHRINK, most);
                 last_rejected = false;
@@ -301,6 +328,8 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
         self.integrals.resize(m, 0.0);
         self.tangent.clear();
         self.tangent.resize(p * self.width, 0.0);
+        self.direct.clear();
+        self.direct.resize(p * m, 0.0);
     }
 
     /// Rates and derivatives at y; the index of a value that is not finite as an error.
@@ -390,6 +419,18 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
             }
         }
         (most, place)
+    }
+
+    /// Adds one end of a step to the direct effects of the parameters.
+    fn add_direct(&mut self, step: f64) {
+        let integrals = self.width - self.unknowns;
+        if integrals == 0 {
+            return;
+        }
+        let columns = self.derivatives.parameters.chunks_exact(self.width);
+        for (sums, column) in self.direct.chunks_exact_mut(integrals).zip(columns) {
+            add(sums, 0.5 * step, &column[self.unknowns..]);
+        }
     }
 
     /// Moves the tangents over the step that was just accepted.

@@ -65,6 +65,8 @@ pub struct ParticleWorkspace {
     pub extents: Vec<f64>,
     /// How that changes with the mole fraction of each reaction's key gas, in mol.
     pub slopes: Vec<f64>,
+    /// The same with the particle's state as it went: what the gas at a part of its surface does.
+    pub local_slopes: Vec<f64>,
     buffers: Buffers,
 }
 
@@ -76,6 +78,7 @@ impl Default for ParticleWorkspace {
             tolerance: Vec::new(),
             extents: Vec::new(),
             slopes: Vec::new(),
+            local_slopes: Vec::new(),
             buffers: Buffers::default(),
         }
     }
@@ -122,6 +125,7 @@ impl SolidChemistry {
             tolerance,
             extents,
             slopes,
+            local_slopes,
             buffers,
         } = workspace;
         let (moving, count) = (self.moving().len(), self.reactions.len());
@@ -153,11 +157,12 @@ impl SolidChemistry {
         extents.clear();
         extents.extend_from_slice(&method.integrals()[..count]);
         slopes.clear();
-        let own = |j: usize| match self.direction(j) {
-            Some(direction) => method.tangent(direction)[moving + 1 + j],
-            None => 0.0,
-        };
-        slopes.extend((0..count).map(own));
+        local_slopes.clear();
+        for j in 0..count {
+            let direction = self.direction(j);
+            slopes.push(direction.map_or(0.0, |one| method.tangent(one)[moving + 1 + j]));
+            local_slopes.push(direction.map_or(0.0, |one| method.direct(one)[j]));
+        }
         let gas_temperature = self.directions().len();
         Ok(ParticleOutcome {
             mean: method.integrals()[count] / span,
@@ -295,6 +300,10 @@ impl StiffSystem for ParticleSystem<'_> {
 
     fn parameters(&self) -> usize {
         self.chemistry.directions().len() + 1
+    }
+
+    fn direct(&self) -> bool {
+        true
     }
 
     fn rates(&mut self, y: &[f64], out: &mut [f64]) {

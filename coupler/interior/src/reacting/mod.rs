@@ -54,8 +54,8 @@ pub struct Reacting {
     conductance: Vec<f64>,
     /// Temperature in K at the end of the last integration.
     end: Vec<f64>,
-    /// Rates of each channel of each particle: slope by mass fraction in mol/s, and what goes off it.
-    lines: [Vec<f64>; 2],
+    /// Slope, offset and local slope of each channel of each particle, as in [`crate::model::GasLines`].
+    lines: [Vec<f64>; 3],
     /// What each reaction of each particle turns over in the window, in mol.
     extents: Vec<f64>,
     /// Sensible heat in W that exchanged gases bring in.

@@ -125,6 +125,7 @@ impl ParticleModel for Reacting {
         out.released.copy_from_slice(&self.end);
         out.slope.copy_from_slice(&self.lines[0]);
         out.offset.copy_from_slice(&self.lines[1]);
+        out.local_slope.copy_from_slice(&self.lines[2]);
         Ok(())
     }
 

@@ -28,7 +28,7 @@ pub struct ReactError {
     pub cause: IntegrationStalled,
 }
 
-/// Places of a particle's results in a row of them; extents, slopes and offsets follow.
+/// Places of a particle's results in a row of them; extents and lines follow.
 const CONDUCTANCE: usize = 0;
 const START: usize = 1;
 const END: usize = 2;
@@ -44,7 +44,7 @@ impl Reacting {
         network: &[f64],
     ) -> Result<(), ReactError> {
         let (count, channels) = (self.chemistry.reactions.len(), self.channels.len());
-        let width = EXTENTS + count + 2 * channels;
+        let width = EXTENTS + count + 3 * channels;
         let mut results = std::mem::take(&mut self.results);
         results.clear();
         results.resize(self.count() * width, 0.0);
@@ -57,13 +57,13 @@ impl Reacting {
         for (p, row) in results.chunks_exact(width).enumerate() {
             let (head, rest) = row.split_at(EXTENTS);
             let (extents, lines) = rest.split_at(count);
-            let (slopes, offsets) = lines.split_at(channels);
             self.conductance[p] = head[CONDUCTANCE];
             self.start[p] = head[START];
             self.end[p] = head[END];
             self.extents[p * count..(p + 1) * count].copy_from_slice(extents);
-            self.lines[0][p * channels..(p + 1) * channels].copy_from_slice(slopes);
-            self.lines[1][p * channels..(p + 1) * channels].copy_from_slice(offsets);
+            for (all, own) in self.lines.iter_mut().zip(lines.chunks_exact(channels.max(1))) {
+                all[p * channels..(p + 1) * channels].copy_from_slice(own);
+            }
         }
         self.results = results;
         done
@@ -136,19 +136,18 @@ impl Reacting {
         };
         let count = self.chemistry.reactions.len();
         row[EXTENTS..EXTENTS + count].copy_from_slice(&workspace.extents);
-        let (slopes, offsets) = row[EXTENTS + count..].split_at_mut(self.channels.len());
-        self.draw_lines(p, around, span, workspace, [slopes, offsets]);
+        self.draw_lines(p, around, span, workspace, &mut row[EXTENTS + count..]);
         Ok(())
     }
 
-    /// The lines of a particle's channels: tangents of their mean rates.
+    /// The lines of a particle's channels: tangents of their mean rates, offsets, and slopes in single cells.
     fn draw_lines(
         &self,
         p: usize,
         around: &Surroundings<'_>,
         span: f64,
         workspace: &ParticleWorkspace,
-        [slopes, offsets]: [&mut [f64]; 2],
+        lines: &mut [f64],
     ) {
         let Some(gas) = &self.chemistry.gas else {
             return;
@@ -156,9 +155,9 @@ impl Reacting {
         let species = gas.names().len();
         let composition = &around.composition[p * species..(p + 1) * species];
         let molar = gas.molar_mass(composition);
-        let lines = slopes.iter_mut().zip(offsets);
+        let count = self.channels.len();
         let channels = self.channels.iter().zip(&self.reaction_of);
-        for ((channel, reaction), (line_slope, offset)) in channels.zip(lines) {
+        for (c, (channel, reaction)) in channels.enumerate() {
             let Some(key) = channel.key else {
                 continue;
             };
@@ -169,16 +168,20 @@ impl Reacting {
                 composition[key] * (gas.species()[product].molar_mass() - own) / own
             });
             let by_mass = molar / own / (1.0 + gain);
-            let slope = workspace.slopes[*reaction] / span * by_mass;
             // More of a gas that is used up lets a reaction go faster, more of one that is made slower; where others
             // compete with it so hard that it is the other way round, the rate is told as fixed.
-            let slope = if slope * channel.mass[key] < 0.0 {
-                slope
-            } else {
-                0.0
+            let told = |slope: f64| {
+                let slope = slope / span * by_mass;
+                if slope * channel.mass[key] < 0.0 {
+                    slope
+                } else {
+                    0.0
+                }
             };
-            *line_slope = slope;
-            *offset = slope * composition[key] - mean;
+            let slope = told(workspace.slopes[*reaction]);
+            lines[c] = slope;
+            lines[count + c] = slope * composition[key] - mean;
+            lines[2 * count + c] = told(workspace.local_slopes[*reaction]);
         }
     }
 
