@@ -4,7 +4,7 @@
 //! r = b Ȳ − a. Its share in a cell follows the gas of the cell, W_cp [r + β (Y_c − Ȳ)], with β how the rate at a part of
 //! the surface follows the gas there. b is the response of the particle as a whole, with its temperature and what
 //! it is made of; β alone says where mass is exchanged, and no choice of b moves the result. An attempt of
-//! a window gives the gas the lines β Y_c − (a + (β − b) Ȳ), Ȳ of the attempt before: the key gas implicitly, which is what keeps large process steps stable, a gas into which the
+//! a window gives the gas β Y_c − (a + (β − b) Ȳ) about the gas of the attempt before, with the larger of b and β/2 implicitly: the key gas implicitly, which is what keeps large process steps stable, a gas into which the
 //! channel turns it mole for mole likewise (the rate follows both, and by the key gas alone the two would be out of step
 //! until the attempts agree), all others explicitly. What comes of it gives the rates of the cells; limited to what particles hold, they are given to
 //! the gas once more as fixed sources, all species of a channel in their proportions, so that elements close whatever the
@@ -42,11 +42,11 @@ pub struct SpeciesCoupling {
     /// Of each channel the gas that counter-diffuses mole for mole.
     counter: Vec<Option<usize>>,
     shares: Vec<f64>,
-    /// β and a + (β − b) Ȳ of each channel of each particle.
-    told: [Vec<f64>; 2],
+    /// β, a + (β − b) Ȳ and the slope that the gas takes implicitly, of each channel of each particle.
+    told: [Vec<f64>; 3],
     key_fraction: Vec<f64>,
-    /// Of each channel the sums over particles of both, in cells.
-    cell: [Vec<Vec<f64>>; 2],
+    /// Of each channel the sums over particles of all three, in cells.
+    cell: [Vec<Vec<f64>>; 3],
     /// The same, times the sensible enthalpy in J a unit of what the channel makes.
     warm: [Vec<Vec<f64>>; 2],
     /// Mass fractions by which the fixed rates went.
@@ -201,7 +201,9 @@ impl SpeciesCoupling {
         self.scratch.resize(particles, 0.0);
         for (which, lines) in self.told.iter().enumerate() {
             self.cell[which].resize(channels.len(), Vec::new());
-            self.warm[which].resize(channels.len(), Vec::new());
+            if which < 2 {
+                self.warm[which].resize(channels.len(), Vec::new());
+            }
             for (c, channel) in channels.iter().enumerate() {
                 let at = |p: usize| p * channels.len() + c;
                 for (p, value) in self.scratch.iter_mut().enumerate() {
@@ -209,6 +211,9 @@ impl SpeciesCoupling {
                 }
                 self.cell[which][c].resize(cells, 0.0);
                 operator.spread(&self.scratch, &mut self.cell[which][c]);
+                if which == 2 {
+                    continue;
+                }
                 for (p, value) in self.scratch.iter_mut().enumerate() {
                     if *value != 0.0 {
                         *value *= made(channel, properties, given.lines.released[p]);
@@ -227,6 +232,9 @@ impl SpeciesCoupling {
         self.rates.clear();
         self.rates.resize(slopes.len(), 0.0);
         self.told[0].clone_from(&given.lines.local_slope);
+        self.told[2].clear();
+        let pairs = slopes.iter().zip(&given.lines.local_slope);
+        self.told[2].extend(pairs.map(|(whole, local)| implicit_slope(*whole, *local)));
         self.told[1].clear();
         self.told[1].resize(slopes.len(), 0.0);
         self.sampled.resize(operator.particles(), 0.0);
@@ -270,17 +278,18 @@ impl SpeciesCoupling {
                 let rate = slope * fraction - offset;
                 for (k, mass) in channel.mass.iter().enumerate().filter(|(_, m)| **m != 0.0) {
                     let at = cell * species + k;
-                    let steepness = -mass * slope;
+                    let taken = self.cell[2][c][cell];
+                    let steepness = -mass * taken;
                     if implicit && channel.key == Some(k) && steepness > 0.0 {
                         out.coefficient[at] += steepness;
-                        out.source[at] -= mass * offset;
-                    } else if implicit && slope > 0.0 && self.counter[c] == Some(k) {
+                        out.source[at] += mass * rate + steepness * fraction;
+                    } else if implicit && taken > 0.0 && self.counter[c] == Some(k) {
                         // What the key gas loses, this one gains, mole for mole, in a gas whose mass changes with it.
                         let key = channel.key.map_or(0.0, |key| -channel.mass[key]);
                         let gain = mass - key;
                         let ratio = (1.0 + fraction * gain / key)
                             / (1.0 - self.fractions[at] * gain / mass);
-                        let coefficient = key * slope * ratio;
+                        let coefficient = key * taken * ratio;
                         out.coefficient[at] += coefficient;
                         out.source[at] += mass * rate + coefficient * self.fractions[at];
                     } else {
@@ -293,6 +302,16 @@ impl SpeciesCoupling {
                 out.heat[cell] += self.warm[0][c][cell] * fraction - self.warm[1][c][cell];
             }
         }
+    }
+}
+
+/// The slope that the gas takes implicitly: that of the whole particle, which its total follows, and no less than half of
+/// the local one, by which attempts contract at least twofold in how the cells of a particle differ.
+fn implicit_slope(whole: f64, local: f64) -> f64 {
+    if whole.abs() < 0.5 * local.abs() {
+        0.5 * local
+    } else {
+        whole
     }
 }
 

@@ -11,3 +11,4 @@ mod refine;
 mod smoother;
 mod smoother_refusals;
 mod smoother_tall;
+mod species_coupling;

@@ -61,7 +61,11 @@ impl Reacting {
             self.start[p] = head[START];
             self.end[p] = head[END];
             self.extents[p * count..(p + 1) * count].copy_from_slice(extents);
-            for (all, own) in self.lines.iter_mut().zip(lines.chunks_exact(channels.max(1))) {
+            for (all, own) in self
+                .lines
+                .iter_mut()
+                .zip(lines.chunks_exact(channels.max(1)))
+            {
                 all[p * channels..(p + 1) * channels].copy_from_slice(own);
             }
         }

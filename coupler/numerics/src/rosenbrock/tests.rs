@@ -40,6 +40,9 @@ where
     fn parameters(&self) -> usize {
         1
     }
+    fn direct(&self) -> bool {
+        true
+    }
     fn rates(&mut self, y: &[f64], out: &mut [f64]) {
         (self.plain)(y, self.parameter, out);
     }
@@ -423,4 +426,22 @@ fn too_few_steps_and_a_solution_that_ends_are_errors_that_say_where() {
     let error = method.integrate(&mut text!(1, 0, 0.0, explosion), &mut [1.0], 2.0, accuracy);
     let error = error.unwrap_err();
     assert!((error.reached - 1.0).abs() < 1e-3, "{error:?}");
+}
+
+#[test]
+fn the_direct_effect_of_a_parameter_is_that_of_unknowns_that_do_not_respond() {
+    // y' = −p (y − 1/4), z' = p y: ∫ y dτ = (1 − 1/4) (1 − exp(−p t))/p + t/4; the trapezoidal rule over the steps of
+    // a tight integration.
+    let (rate, span): (f64, f64) = (3.0, 0.7);
+    let mut method = method(&RosenbrockTableau::RODAS4, 1);
+    let mut system = text!(1, 1, rate, decay);
+    let mut y = [1.0];
+    let accuracy = IntegrationAccuracy::absolute(&[1e-9, 1e-9]);
+    method
+        .integrate(&mut system, &mut y, span, accuracy)
+        .unwrap();
+    let exact = 0.75 * (1.0 - (-rate * span).exp()) / rate + 0.25 * span;
+    assert!((method.direct(0)[0] / exact - 1.0).abs() < 1e-3);
+    // What is used up in the end has a direct effect, and next to no tangent.
+    assert!((method.tangent(0)[1] - exact).abs() > 0.1 * exact);
 }
