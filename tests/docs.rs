@@ -34,6 +34,7 @@ const ONLY_PARSED: &[(&str, &str)] = &[
     ("#!/bin/bash", "a queue's script; run by the tests of ranks"),
     ("blockMesh", "takes OpenFOAM"),
     ("paraview", "takes a screen"),
+    ("perf record", "takes a kernel that counts events"),
     ("python3 read.py", "takes h5py; run by the tests of readers"),
     ("export PATH", "changes the shell"),
 ];
