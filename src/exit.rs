@@ -3,6 +3,8 @@
 use calcine_coupler::coordinator::RunError;
 use calcine_coupler::error::FailureKind;
 
+use crate::results::{Summary, Verdict};
+
 /// All went well.
 pub const OK: u8 = 0;
 /// Anything without a code of its own.
@@ -15,8 +17,22 @@ pub const DIVERGED: u8 = 3;
 pub const PEER: u8 = 4;
 /// A quantity lies outside its band.
 pub const OUTSIDE_BANDS: u8 = 5;
+/// Complete and inside its bands, but outside the ranges of laws, or not converged; with `--strict` only.
+pub const WARNINGS: u8 = 6;
 /// Interrupted, with a checkpoint to go on from.
 pub const CHECKPOINTED: u8 = 75;
+
+/// The exit code of a complete run.
+pub fn complete(summary: &Summary, strict: bool) -> u8 {
+    let mut quantities = summary.quantities.values();
+    if quantities.any(|quantity| quantity.verdict == Verdict::Fail) {
+        OUTSIDE_BANDS
+    } else if strict && !summary.warnings.is_empty() {
+        WARNINGS
+    } else {
+        OK
+    }
+}
 
 /// The exit code of a run's error.
 pub fn of(error: &RunError) -> u8 {

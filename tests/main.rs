@@ -13,6 +13,7 @@ mod continuation;
 mod docs;
 mod drag_ripple;
 mod external_gas;
+mod findings;
 mod frank_kamenetskii;
 mod heat_paths;
 mod heated_column;

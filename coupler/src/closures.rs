@@ -12,6 +12,7 @@ use calcine_physics::numbers::VoidFraction;
 use rayon::prelude::*;
 use thiserror::Error;
 
+use crate::excursion::{FlowExcursion, LawExcursions};
 use crate::momentum_model::MomentumModel;
 use crate::part::{Bed, GasFields, ParticleFields};
 use crate::smoother::Operator;
@@ -131,6 +132,8 @@ pub struct CouplingCoefficients {
     /// Share of the other forces in N that drag holds back within the window (docs/theory.md,
     /// DRG-2, see [`CouplingCoefficients::relax`]); zero, or empty, where particles are held.
     pub held_back: Vec<Vec3>,
+    /// Where the laws were evaluated outside the ranges that their sources state.
+    pub outside: LawExcursions,
 }
 
 /// What particles are to their drag besides their velocity, one value each.
@@ -195,24 +198,24 @@ impl Closures {
         pressure: &[f64],
         acceleration: f64,
         coefficients: &mut CouplingCoefficients,
-    ) {
+    ) -> Result<(), ClosureError> {
         let GasModel::Mixture(mixture) = &self.gas else {
             coefficients.film.clear();
-            return;
+            return Ok(());
         };
+        let range = self.mass_transfer.range();
         let species = mixture.names().len();
         coefficients.film.resize(species * particles.len(), 0.0);
         let chunks = coefficients.film.par_chunks_mut((species * CHUNK).max(1));
-        chunks.enumerate().for_each(|(chunk, films)| {
+        let each = chunks.enumerate().map(|(chunk, films)| {
             let mut diffusivities = vec![0.0; species];
+            let mut outside = FlowExcursion::default();
             for (row, film) in films.chunks_exact_mut(species).enumerate() {
                 let p = chunk * CHUNK + row;
                 let own = p * species..(p + 1) * species;
                 let composition = &sampled_gas.composition[own];
                 let temperature = sampled_gas.temperature[p];
-                let Ok(void_fraction) = VoidFraction::new(sampled_gas.void_fraction[p]) else {
-                    continue;
-                };
+                let void_fraction = void_fraction(sampled_gas, particles, p)?;
                 let local = LocalGas {
                     void_fraction,
                     density: sampled_gas.density[p],
@@ -223,12 +226,21 @@ impl Closures {
                 };
                 mixture.diffusivities(pressure[p], temperature, composition, &mut diffusivities);
                 let diameter = 2.0 * particles.radius[p];
+                outside.look(&range, p, &local, diameter);
                 for (film, diffusivity) in film.iter_mut().zip(&diffusivities) {
                     let law = &*self.mass_transfer;
                     *film = mass_transfer::coefficient(law, &local, *diffusivity, diameter);
                 }
             }
+            Ok(outside)
         });
+        let outcomes: Vec<Result<FlowExcursion, ClosureError>> = each.collect();
+        let mut outside = FlowExcursion::default();
+        for outcome in outcomes {
+            outside.add(&outcome?);
+        }
+        coefficients.outside.mass_transfer = outside;
+        Ok(())
     }
 
     /// Evaluates all laws. Slip is u − v/AF (docs/theory.md, TSM-7).
@@ -248,52 +260,71 @@ impl Closures {
             .zip(coefficients.conductance.par_chunks_mut(CHUNK))
             .zip(coefficients.slip.par_chunks_mut(CHUNK))
             .zip(coefficients.gas_conductivity.par_chunks_mut(CHUNK));
-        let outcomes: Vec<Result<(), ClosureError>> = chunks
+        let ranges = [self.drag.range(), self.heat_transfer.range()];
+        let outcomes: Vec<Result<[FlowExcursion; 2], ClosureError>> = chunks
             .enumerate()
             .map(|(chunk, (((drag, conductance), slip), gas_conductivity))| {
+                let mut outside = [FlowExcursion::default(); 2];
                 for row in 0..drag.len() {
                     let p = chunk * CHUNK + row;
-                    [
-                        drag[row],
-                        conductance[row],
-                        slip[row],
-                        gas_conductivity[row],
-                    ] = self.of_particle(p, sampled_gas, particles, acceleration)?;
+                    let local = self.local(p, sampled_gas, particles, acceleration)?;
+                    let diameter = 2.0 * particles.radius[p];
+                    for (found, range) in outside.iter_mut().zip(&ranges) {
+                        found.look(range, p, &local, diameter);
+                    }
+                    [drag[row], conductance[row]] =
+                        self.of_particle(p, sampled_gas, particles, &local)?;
+                    (slip[row], gas_conductivity[row]) = (local.slip, local.conductivity);
                 }
-                Ok(())
+                Ok(outside)
             })
             .collect();
-        // The error of the first particle that has one.
-        outcomes.into_iter().collect()
+        coefficients.outside = LawExcursions::default();
+        let all = &mut coefficients.outside;
+        for outcome in outcomes {
+            // The error of the first particle that has one.
+            let [drag, heat_transfer] = outcome?;
+            all.drag.add(&drag);
+            all.heat_transfer.add(&heat_transfer);
+        }
+        Ok(())
     }
 
-    /// Coefficients of drag and heat, slip and the gas' conductivity of one particle.
-    fn of_particle(
+    /// The gas that a particle sees.
+    fn local(
         &self,
         p: usize,
         sampled_gas: &SampledGas,
         particles: &ParticleFields<'_>,
         acceleration: f64,
-    ) -> Result<[f64; 4], ClosureError> {
-        let (id, species) = (particles.id[p], self.gas.species().len());
+    ) -> Result<LocalGas, ClosureError> {
+        let species = self.gas.species().len();
         let temperature = sampled_gas.temperature[p];
-        let value = sampled_gas.void_fraction[p];
-        let void_fraction =
-            VoidFraction::new(value).map_err(|_| ClosureError::VoidFraction { id, value })?;
         let composition = &sampled_gas.composition[p * species..(p + 1) * species];
-        let local = LocalGas {
-            void_fraction,
+        Ok(LocalGas {
+            void_fraction: void_fraction(sampled_gas, particles, p)?,
             density: sampled_gas.density[p],
             viscosity: self.gas.viscosity(temperature, composition),
             conductivity: self.gas.conductivity(temperature, composition),
             heat_capacity: self.gas.heat_capacity(temperature, composition),
             slip: (sampled_gas.velocity[p] - particles.velocity[p] / acceleration).norm(),
-        };
+        })
+    }
+
+    /// Coefficients of drag and heat of one particle.
+    fn of_particle(
+        &self,
+        p: usize,
+        sampled_gas: &SampledGas,
+        particles: &ParticleFields<'_>,
+        local: &LocalGas,
+    ) -> Result<[f64; 2], ClosureError> {
+        let (id, temperature) = (particles.id[p], sampled_gas.temperature[p]);
         let diameter = 2.0 * particles.radius[p];
-        let drag = self.drag.coefficient(&local, diameter);
+        let drag = self.drag.coefficient(local, diameter);
         // h A = (Nu κ/d) π d²
         let conductance =
-            self.heat_transfer.nusselt(&local, diameter) * local.conductivity * PI * diameter;
+            self.heat_transfer.nusselt(local, diameter) * local.conductivity * PI * diameter;
         let laws = [
             (self.drag.name(), drag, "kg/s"),
             (self.heat_transfer.name(), conductance, "W/K"),
@@ -311,9 +342,20 @@ impl Closures {
                 });
             }
         }
-        let drag = self.momentum.coefficient(drag, value);
-        Ok([drag, conductance, local.slip, local.conductivity])
+        let drag = self.momentum.coefficient(drag, local.void_fraction.value());
+        Ok([drag, conductance])
     }
+}
+
+/// The void fraction that a particle sees.
+fn void_fraction(
+    sampled_gas: &SampledGas,
+    particles: &ParticleFields<'_>,
+    p: usize,
+) -> Result<VoidFraction, ClosureError> {
+    let value = sampled_gas.void_fraction[p];
+    let id = particles.id[p];
+    VoidFraction::new(value).map_err(|_| ClosureError::VoidFraction { id, value })
 }
 
 #[cfg(test)]
@@ -392,5 +434,52 @@ mod tests {
             let (id, value) = (CHUNK as u64 + 3, 1.5);
             assert_eq!(error, ClosureError::VoidFraction { id, value });
         }
+    }
+
+    #[test]
+    fn flow_outside_a_law_s_range_is_counted_and_the_worst_particle_found() {
+        let found = evaluated(2, |gas| gas.void_fraction[CHUNK + 3] = 0.2).unwrap();
+        let voids = found.outside.heat_transfer.void_fraction;
+        assert_eq!((voids.count, voids.place), (1, CHUNK + 3));
+        assert_eq!((voids.value, voids.limit), (0.2, 0.35));
+        assert_eq!(found.outside.drag, FlowExcursion::default());
+        assert_eq!(
+            evaluated(1, |gas| gas.void_fraction[CHUNK + 3] = 0.2)
+                .unwrap()
+                .outside,
+            found.outside
+        );
+    }
+
+    #[test]
+    fn a_film_at_a_void_fraction_of_1_2_is_refused_with_the_particle_s_id() {
+        let (air, composition) = calcine_physics::thermo::Mixture::air().unwrap();
+        let closures = Closures {
+            gas: GasModel::Mixture(air),
+            drag: Box::new(ErgunWenYu),
+            momentum: MomentumModel::A,
+            heat_transfer: Box::new(Gunn),
+            mass_transfer: Box::new(Gunn),
+        };
+        let gas = SampledGas {
+            temperature: vec![300.0; 2],
+            density: vec![1.2; 2],
+            composition: composition.repeat(2),
+            velocity: vec![Vec3::zeros(); 2],
+            void_fraction: vec![0.4, 1.2],
+        };
+        let particles = ParticleFields {
+            id: &[7, 9],
+            population: &[0; 2],
+            position: &[Vec3::zeros(); 2],
+            velocity: &[Vec3::zeros(); 2],
+            angular_velocity: &[Vec3::zeros(); 2],
+            radius: &[1e-3; 2],
+            mass: &[1e-5; 2],
+        };
+        let mut coefficients = CouplingCoefficients::default();
+        let refused = closures.evaluate_films(&gas, &particles, &[1e5; 2], 1.0, &mut coefficients);
+        let (id, value) = (9, 1.2);
+        assert_eq!(refused, Err(ClosureError::VoidFraction { id, value }));
     }
 }

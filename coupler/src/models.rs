@@ -18,6 +18,7 @@ use error::named;
 pub use error::{ParticleModelError, RestoreError};
 use merged_column::{MergedColumn, merge};
 
+use crate::excursion::Excursion;
 use crate::part::ParticleFields;
 
 /// Models of all particles.
@@ -135,6 +136,19 @@ impl ParticleModels {
     /// Surface temperature of each particle at the last commit in K.
     pub fn temperature(&self) -> &[f64] {
         &self.temperature
+    }
+
+    /// Particles at temperatures for which the properties of their material are not given, by their rows.
+    pub fn temperature_excursion(&self) -> Excursion {
+        let mut found = Excursion::default();
+        for member in &self.members {
+            let range = member.model.temperature_range();
+            if range != (0.0, f64::INFINITY) {
+                let rows = member.rows.iter();
+                rows.for_each(|&row| found.look(row, self.temperature[row], range));
+            }
+        }
+        found
     }
 
     /// Takes the masses of particles that their models change, in kg.

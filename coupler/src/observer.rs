@@ -7,6 +7,7 @@ use calcine_physics::Vec3;
 use thiserror::Error;
 
 use crate::exchange::ExchangeConvergence;
+use crate::findings::Finding;
 use crate::ledger::Ledger;
 use crate::mesh::Mesh;
 use crate::models::ParticleModels;
@@ -88,6 +89,8 @@ pub struct CommittedState<'a> {
     pub convergence: &'a Convergence,
     /// Attempts of the window, and what they left misplaced.
     pub exchange_convergence: &'a ExchangeConvergence,
+    /// What the window left outside the range of a law, or unconverged, in the order of the kinds.
+    pub findings: &'a [Finding],
     /// Wall times by stage.
     pub timing: &'a Timing,
     /// The two solvers.

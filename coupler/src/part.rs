@@ -214,6 +214,11 @@ pub trait Gas: Part {
     /// Fields after the last finished attempt (initially: the start of the run).
     fn fields(&self) -> GasFields<'_>;
 
+    /// Relative residual of the equations of turbulence where the last commit left them above their tolerance.
+    fn turbulence_residual(&self) -> Option<f64> {
+        None
+    }
+
     /// Sets a condition of a patch from the start of the next window on; between two windows, after a commit. What
     /// was set is no part of the gas' checkpoint: the coordinator sets it again after a resume.
     fn set_boundary(&mut self, value: &BoundaryValue) -> Result<(), PartError> {

@@ -75,6 +75,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
             from: None,
             progress: !arguments.quiet,
             stop_after: None,
+            strict: false,
         };
         let done = execute::execute(&case, &prepared, &settings)?;
         say(&done.text);

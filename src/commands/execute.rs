@@ -16,8 +16,8 @@ use crate::case::buoyancy;
 use crate::case::model::Case;
 use crate::exit;
 use crate::progress::Progress;
+use crate::results::Summary;
 use crate::results::inertial_number::InertialNumberStatistics;
-use crate::results::{Summary, Verdict};
 use crate::simulation::{self, Ending, Simulation, SimulationError};
 
 /// How a case is run.
@@ -38,6 +38,8 @@ pub(super) struct Settings<'a> {
     pub(super) progress: bool,
     /// Checkpoint and stop after this wall time.
     pub(super) stop_after: Option<Duration>,
+    /// Ends with an exit code of its own where a complete run has warnings.
+    pub(super) strict: bool,
 }
 
 /// How a run ended.
@@ -58,7 +60,7 @@ pub(super) fn execute(
     if settings.resume
         && let Some(summary) = simulation::finished(out)
     {
-        return over(case, out, &summary);
+        return over(case, out, &summary, settings.strict);
     }
     let interrupts = Interrupts::default();
     let _signals = SignalThread::start(&interrupts, settings.stop_after)?;
@@ -81,18 +83,10 @@ pub(super) fn execute(
     drop(simulation);
     match ending {
         Ok(Ending::Finished) => {
+            let code = summary
+                .as_ref()
+                .map_or(exit::OK, |summary| exit::complete(summary, settings.strict));
             let summary = summary.as_ref();
-            let outside = summary.is_some_and(|summary| {
-                summary
-                    .quantities
-                    .values()
-                    .any(|quantity| quantity.verdict == Verdict::Fail)
-            });
-            let code = if outside {
-                exit::OUTSIDE_BANDS
-            } else {
-                exit::OK
-            };
             Ok(Done {
                 code,
                 text: summary.map(closing).unwrap_or_default(),
@@ -129,7 +123,7 @@ fn tell_buoyancy(case: &Case, prepared: &PreparedCase, shown: bool) {
 }
 
 /// `--resume` of a run that is complete: there is nothing to do.
-fn over(case: &Case, out: &Path, summary: &Summary) -> Result<Done, Failure> {
+fn over(case: &Case, out: &Path, summary: &Summary, strict: bool) -> Result<Done, Failure> {
     if summary.case.hash != case.hash {
         let message = format!(
             "the run in {} is complete, and its case differs from this one (hash {} there, {} \
@@ -140,10 +134,7 @@ fn over(case: &Case, out: &Path, summary: &Summary) -> Result<Done, Failure> {
         );
         return Err(Failure::new(exit::CASE, message));
     }
-    let code = match summary.verdict {
-        Verdict::Fail => exit::OUTSIDE_BANDS,
-        _ => exit::OK,
-    };
+    let code = exit::complete(summary, strict);
     let text = format!("the run in {} is already complete", out.display());
     Ok(Done { code, text })
 }
@@ -182,24 +173,13 @@ fn closing(summary: &Summary) -> String {
             line.relative_error
         );
     }
-    if summary.convergence.unsettled_windows > 0 {
+    for (name, warning) in &summary.warnings {
         let _ = writeln!(
             text,
-            "  warning: in {} of {} windows the exchange was not settled after all attempts \
-             (coupling.exchange.attempts); at most a share of {:.1e} was in the wrong cells",
-            summary.convergence.unsettled_windows,
+            "  warning: {name} in {} of {} windows; {}",
+            warning.windows,
             summary.windows,
-            summary.convergence.largest_misplaced
-        );
-    }
-    if summary.convergence.unconverged_windows > 0 {
-        let _ = writeln!(
-            text,
-            "  warning: in {} of {} windows the gas' outer loop ended at its limit \
-             (gas.controls.outer_iterations); largest residual {:.1e}",
-            summary.convergence.unconverged_windows,
-            summary.windows,
-            summary.convergence.largest_residual
+            warning.sentence()
         );
     }
     if let Some(words) = summary

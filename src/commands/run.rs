@@ -51,6 +51,9 @@ pub(super) struct Arguments {
     /// Writes a checkpoint and stops after this wall time, for example `23h30m`.
     #[arg(long, value_name = "TIME", value_parser = wall_time)]
     stop_after: Option<Duration>,
+    /// Ends with exit code 6 where a complete run left the range of a law or did not converge somewhere.
+    #[arg(long)]
+    strict: bool,
 }
 
 impl Arguments {
@@ -85,10 +88,11 @@ pub(super) fn run(
         from: arguments.from.as_deref(),
         progress: !arguments.quiet,
         stop_after: arguments.stop_after,
+        strict: arguments.strict,
     };
     let done = execute::execute(&case, &prepared, &settings)?;
     say(&done.text);
-    if done.code == exit::OK || done.code == exit::OUTSIDE_BANDS {
+    if [exit::OK, exit::OUTSIDE_BANDS, exit::WARNINGS].contains(&done.code) {
         match crate::report::write(&out) {
             Ok(page) => say(format_args!("report: {}", page.display())),
             Err(error) => return Err(Failure::new(exit::OTHER, chain(&error))),

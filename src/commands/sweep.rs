@@ -112,6 +112,7 @@ fn one(arguments: &Arguments, settings: &[String], folder: &Path) -> Result<(), 
         from: None,
         progress: !arguments.quiet,
         stop_after: None,
+        strict: false,
     };
     let done = execute::execute(&case, &prepared, &settings)?;
     if done.code == exit::CHECKPOINTED {

@@ -9,6 +9,7 @@ pub(crate) mod plot;
 mod probes;
 mod section;
 mod voids;
+mod warnings;
 
 use std::path::{Path, PathBuf};
 
@@ -37,6 +38,12 @@ pub fn write(directory: &Path) -> Result<PathBuf, ResultsError> {
     );
     let mut page = Page::new(&kicker, &summary.case.title, &badge(summary.verdict));
     page.raw(&headline(&summary));
+    let told = warnings::render(&summary);
+    if !told.is_empty() {
+        let text =
+            "What was outside the range of a law, or did not converge, in committed windows.";
+        page.section("Warnings", text, &told);
+    }
     page.section("Quantities of interest", "", &quantities(&summary));
     page.section(
         "Bed and gas",

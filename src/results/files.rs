@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::Write;
 use std::path::Path;
 
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::ResultsError;
 
@@ -18,6 +18,11 @@ pub const SERIES: &str = "series.csv";
 pub const STORE: &str = "results.h5";
 /// Name of the effective case, `--set` applied.
 pub const CASE: &str = "case.toml";
+
+/// A number, or NaN for the `null` that JSON has in its place.
+pub(super) fn number<'de, D: Deserializer<'de>>(source: D) -> Result<f64, D::Error> {
+    Ok(Option::<f64>::deserialize(source)?.unwrap_or(f64::NAN))
+}
 
 /// Replaces a file at once: a reader sees the old content or the new, never a part.
 pub(crate) fn replace(path: &Path, content: &[u8]) -> Result<(), ResultsError> {

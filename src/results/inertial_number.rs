@@ -71,10 +71,10 @@ pub struct InertialNumberStatistics {
     /// Rows with a window behind them.
     pub rows: u64,
     /// Mean.
-    #[serde(deserialize_with = "super::summary::number")]
+    #[serde(deserialize_with = "super::files::number")]
     pub inertial_number_mean: f64,
     /// Largest.
-    #[serde(deserialize_with = "super::summary::number")]
+    #[serde(deserialize_with = "super::files::number")]
     pub inertial_number_largest: f64,
 }
 

@@ -25,6 +25,7 @@ mod store;
 pub mod summary;
 pub mod voids;
 mod vtk;
+pub mod warnings;
 
 use calcine_coupler::mesh::Mesh;
 

@@ -15,11 +15,13 @@ use super::series::{self, Row, TRACKED_PARTICLES, Table};
 use super::status::{Status, Watch};
 use super::store::Store;
 use super::summary::{
-    Backends, CaseName, LedgerLineSummary, LedgerSummary, ProcessorTimes, Provenance,
+    Backends, CaseName, LedgerLineSummary, LedgerSummary, ProcessorTimes, Provenance, RunFailure,
     SolverSummaries, SolverSummary, Summary, Verdict, WallTimes,
 };
 use super::vtk::{self, Cells};
-use super::{CASE, ResultsError, STORE, SUMMARY, files, inertial_number, snapshot, voids};
+use super::{
+    CASE, ResultsError, STORE, SUMMARY, files, inertial_number, snapshot, voids, warnings,
+};
 use crate::case::model::Case;
 
 /// So many rows are gathered before they go to the HDF5 file.
@@ -110,11 +112,13 @@ impl Recorder {
         self.summary.as_ref()
     }
 
-    /// Says in summary and status that the run stopped early (an interrupt, an error).
-    pub fn stopped(&mut self) -> Result<(), ResultsError> {
+    /// Says in summary and status that the run stopped early: on an interrupt, or with an error.
+    pub fn stopped(&mut self, failure: Option<RunFailure>) -> Result<(), ResultsError> {
         let Some(summary) = &mut self.summary else {
             return Ok(());
         };
+        summary.warnings.clone_from(&self.counters.warnings);
+        summary.failure = failure;
         summary.verdict = Verdict::Stopped;
         let status = status_of(summary);
         summary.replace(&self.directory)?;
@@ -221,6 +225,10 @@ impl Recorder {
 
     /// Adds the window's convergence.
     fn count(&mut self, moment: &CommittedState<'_>) {
+        let time = moment.clocks.process.seconds();
+        for first in warnings::add(&mut self.counters.warnings, moment.findings, time) {
+            tracing::warn!("{first}; counted in {SUMMARY}, not told of again");
+        }
         let (sums, window) = (&mut self.counters.convergence, moment.convergence);
         sums.unconverged_windows += u64::from(!window.converged);
         sums.unsettled_windows += u64::from(!moment.exchange_convergence.settled);
@@ -412,6 +420,8 @@ impl Recorder {
             processor_time_s: self.processor(moment.timing),
             quantities: captured.results(case, over),
             convergence: self.counters.convergence,
+            warnings: self.counters.warnings.clone(),
+            failure: None,
             pace: (self.counters.pace.rows > 0).then_some(self.counters.pace),
         };
         summary.replace(&self.directory)?;

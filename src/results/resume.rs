@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::inertial_number::InertialNumberStatistics;
 use super::quantities::Captured;
 use super::summary::{ConvergenceSummary, ProcessorTimes, Provenance, Summary, Verdict, WallTimes};
+use super::warnings::Warnings;
 use super::{ResultsError, SERIES, STORE, SUMMARY, files};
 
 /// Name of the counters in a checkpoint directory.
@@ -39,6 +40,9 @@ pub(super) struct Counters {
     pub captured: Captured,
     /// Convergence so far.
     pub convergence: ConvergenceSummary,
+    /// What was outside the ranges of laws, or did not converge, so far.
+    #[serde(default)]
+    pub warnings: Warnings,
     /// Inertial number so far.
     #[serde(default)]
     pub pace: InertialNumberStatistics,

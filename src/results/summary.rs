@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 
+use super::files::{self, number};
 use super::inertial_number::InertialNumberStatistics;
-use super::{ResultsError, SUMMARY, files};
+use super::warnings::Warnings;
+use super::{ResultsError, SUMMARY};
 
 /// How a quantity, or the run, stands against what the case expects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -84,9 +86,24 @@ pub struct Summary {
     pub quantities: BTreeMap<String, QuantityResult>,
     /// Convergence of the gas, over the run.
     pub convergence: ConvergenceSummary,
+    /// What was outside the ranges of laws, or did not converge, by kinds.
+    #[serde(default)]
+    pub warnings: Warnings,
+    /// Why the run ended with an error.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failure: Option<RunFailure>,
     /// How far a bed that moves accelerated is from quasi-static.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pace: Option<InertialNumberStatistics>,
+}
+
+/// The error with which a run ended.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RunFailure {
+    /// The exit code.
+    pub code: u8,
+    /// The error and what caused it.
+    pub message: String,
 }
 
 /// The case of a run.
@@ -261,11 +278,6 @@ pub struct ConvergenceSummary {
     /// Largest volume residual of a window (docs/theory.md, CON-2).
     #[serde(deserialize_with = "number")]
     pub largest_volume_residual: f64,
-}
-
-/// A number, or NaN for the `null` that JSON has in its place.
-pub(super) fn number<'de, D: Deserializer<'de>>(source: D) -> Result<f64, D::Error> {
-    Ok(Option::<f64>::deserialize(source)?.unwrap_or(f64::NAN))
 }
 
 impl Summary {

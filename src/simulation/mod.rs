@@ -53,6 +53,7 @@ pub use folder::finished;
 pub(crate) use folder::has_checkpoint;
 
 use crate::case::model::Case;
+use crate::results::summary::RunFailure;
 use crate::results::{Recorder, Summary};
 
 /// A run in the hands of a program; see the [module](self).
@@ -78,7 +79,7 @@ impl Simulation {
         let ending = self.act(|run, supervisor, observers| run.step(supervisor, observers))?;
         self.ending.clone_from(&ending);
         if let Some(Ending::Checkpointed(_)) = ending {
-            self.record_stop();
+            self.record_stop(None);
         }
         Ok(ending)
     }
@@ -113,7 +114,7 @@ impl Simulation {
     pub fn stop(&mut self) -> Result<Ending, SimulationError> {
         let ending = self.act(|run, supervisor, observers| run.stop(supervisor, observers))?;
         self.ending = Some(ending.clone());
-        self.record_stop();
+        self.record_stop(None);
         Ok(ending)
     }
 
@@ -268,19 +269,22 @@ impl Simulation {
         let done = with_default(&self.log, || action(run, supervisor, &mut observers));
         done.map_err(|failure| {
             self.failed = true;
-            with_default(&self.log, || {
-                error!("{}", crate::error_chain::chain(&failure))
-            });
-            self.record_stop();
-            failure.into()
+            let message = crate::error_chain::chain(&failure);
+            with_default(&self.log, || error!("{message}"));
+            let failure = SimulationError::from(failure);
+            self.record_stop(Some(RunFailure {
+                code: failure.exit_code(),
+                message,
+            }));
+            failure
         })
     }
 
     /// Says in the results that the run ended early; a failure of that is only logged.
-    fn record_stop(&mut self) {
+    fn record_stop(&mut self, failure: Option<RunFailure>) {
         let recorder = &mut self.recorder;
         with_default(&self.log, || {
-            if let Err(failure) = recorder.stopped() {
+            if let Err(failure) = recorder.stopped(failure) {
                 error!("{}", crate::error_chain::chain(&failure));
             }
         });

@@ -372,6 +372,7 @@ impl World {
             particle_mass: &self.mass,
             models: &self.models,
             particle_gas: Default::default(),
+            findings: &[],
             exchange_convergence: &SETTLED,
             reservoirs: &[],
             reservoir_heat: &[],

@@ -14,8 +14,8 @@ pub use model::{
     Tally, Transfer,
 };
 pub use network::{
-    ExchangeAreas, HeatLaws, HeatNetwork, NeighbourPair, NeighbourWall, Neighbours,
-    NetworkSurroundings, ThermalProperties,
+    ExchangeAreas, HeatLaws, HeatNetwork, NeighbourPair, NeighbourWall, Neighbours, NetworkOutcome,
+    NetworkSurroundings, RowImbalance, ThermalProperties,
 };
 pub use reacting::Reacting;
 pub use thin::{TEMPERATURE, Thin};

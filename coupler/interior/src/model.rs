@@ -256,6 +256,12 @@ pub trait ParticleModel: Send + Sync {
         Vec::new()
     }
 
+    /// Lowest and highest temperature in K for which the properties of its material are given. It is computed beyond
+    /// them all the same; a run counts and reports where it is.
+    fn temperature_range(&self) -> (f64, f64) {
+        (0.0, f64::INFINITY)
+    }
+
     /// Fills the line of each particle over a span in s about the surface temperatures `at` in K. It may be called
     /// several times before `respond`, and changes nothing that shows.
     fn surface(

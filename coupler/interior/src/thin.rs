@@ -114,6 +114,10 @@ impl ParticleModel for Thin {
         }
     }
 
+    fn temperature_range(&self) -> (f64, f64) {
+        self.law.range()
+    }
+
     fn surface(
         &mut self,
         around: &Surroundings<'_>,
@@ -210,6 +214,7 @@ pub(crate) const SECANT: f64 = 1e-6;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::network::NetworkOutcome;
     use crate::network::{
         HeatLaws, HeatNetwork, NeighbourPair, Neighbours, NetworkSurroundings, plain,
     };
@@ -353,7 +358,7 @@ mod tests {
             let solved = network.solve(&start, &beside, |at, lines| {
                 thin.surface(&still, 0.1, at, lines)
             });
-            assert!(solved.unwrap());
+            assert_eq!(solved.unwrap(), NetworkOutcome::Settled);
             settle(&mut thin, &[0.0; 2], &network.heat, 0.1);
             assert!(thin.changed().energy.sum.abs() < 1e-12);
             thin.commit();

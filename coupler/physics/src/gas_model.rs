@@ -48,6 +48,14 @@ impl GasModel {
         !matches!(self, Self::Constant(_))
     }
 
+    /// Lowest and highest temperature in K for which its properties are given: where all polynomials of a mixture hold.
+    pub fn temperature_range(&self) -> (f64, f64) {
+        match self {
+            Self::Perfect(_) | Self::Constant(_) => (0.0, f64::INFINITY),
+            Self::Mixture(mixture) => mixture.range(),
+        }
+    }
+
     /// Density in kg/m³ at a pressure in Pa and a temperature in K.
     pub fn density(&self, pressure: f64, temperature: f64, composition: &[f64]) -> f64 {
         match self {

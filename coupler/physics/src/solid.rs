@@ -42,6 +42,14 @@ impl HeatCapacity {
         self.points.len() == 1
     }
 
+    /// Lowest and highest temperature in K for which it is given; a constant is taken to hold at all.
+    pub fn range(&self) -> (f64, f64) {
+        match (self.points.first(), self.points.last()) {
+            (Some(first), Some(last)) if !self.is_constant() => (first.0, last.0),
+            _ => (0.0, f64::INFINITY),
+        }
+    }
+
     /// c_p in J/kg/K at a temperature in K.
     pub fn at(&self, temperature: f64) -> f64 {
         linear(&self.points, temperature)

@@ -112,7 +112,7 @@ impl ExchangeStage {
             misplaced = self.attempt(with, window)?;
         }
         if !settled {
-            tracing::warn!(
+            tracing::debug!(
                 window = window.index,
                 attempts = window.attempt - first,
                 misplaced = off,

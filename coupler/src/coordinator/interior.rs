@@ -2,7 +2,8 @@
 //! with its heat the models say what they exchange with the gas.
 
 use calcine_interior::{
-    GasLines, HeatNetwork, Inventory, NetworkSurroundings, Surroundings, Transfer,
+    GasLines, HeatNetwork, Inventory, NetworkOutcome, NetworkSurroundings, RowImbalance,
+    Surroundings, Transfer,
 };
 
 use super::error::RunError;
@@ -26,6 +27,10 @@ pub(super) struct InteriorStage {
     pub mass: Vec<f64>,
     /// Heat in W of the last window from walls and surroundings into the particles.
     pub reservoir_heat: Vec<f64>,
+    /// How the network of the last attempt ended.
+    pub network_outcome: NetworkOutcome,
+    /// What view factors found since the last commit leave open.
+    imbalance: RowImbalance,
     /// Particles came, went or changed their size since the exchange areas of radiation were found.
     changed: bool,
 }
@@ -48,6 +53,8 @@ impl InteriorStage {
             lines: GasLines::default(),
             mass: Vec::new(),
             reservoir_heat: Vec::new(),
+            network_outcome: NetworkOutcome::Settled,
+            imbalance: RowImbalance::default(),
             changed: false,
         };
         stage.tell_network(&[], particles, 0);
@@ -78,10 +85,19 @@ impl InteriorStage {
     /// Finds what particles touch and see, at a process time in s.
     pub fn find_neighbours(&mut self, particles: &ParticleFields<'_>, time: f64) {
         if let Some(network) = &mut self.network {
+            let imbalance = &mut self.imbalance;
             self.paths.find_neighbours(particles, time, |neighbours| {
                 network.set_neighbours(neighbours);
+                if let Some(views) = neighbours.views {
+                    *imbalance = views.imbalance;
+                }
             });
         }
+    }
+
+    /// What view factors found since this was last asked leave open.
+    pub fn take_imbalance(&mut self) -> RowImbalance {
+        std::mem::take(&mut self.imbalance)
     }
 
     /// Finds them as a run does that resumes here: exchange areas of radiation anew, unless they are the same.
@@ -129,6 +145,7 @@ impl InteriorStage {
         gas_conductivity: &[f64],
         window: &Window,
     ) -> Result<(), ParticleModelError> {
+        self.network_outcome = NetworkOutcome::Settled;
         let Some(network) = self.network.as_mut().filter(|network| !network.is_empty()) else {
             return Ok(());
         };
@@ -139,16 +156,9 @@ impl InteriorStage {
         };
         let models = &mut self.models;
         let start = models.temperature().to_vec();
-        let settled = network.solve(&start, &surroundings, |at, lines| {
+        self.network_outcome = network.solve(&start, &surroundings, |at, lines| {
             models.surface(around, span, at, lines)
         })?;
-        if !settled {
-            tracing::warn!(
-                window = window.index,
-                "the heat between particles did not converge: its iteration over radiation and heat capacity, or its \
-                 linear solver, ended at the limit"
-            );
-        }
         self.heat.copy_from_slice(&network.heat);
         Ok(())
     }

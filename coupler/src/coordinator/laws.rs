@@ -54,20 +54,22 @@ impl LawStage {
         let evaluated = self
             .closures
             .evaluate(sampled, particles, acceleration, coefficients);
-        evaluated.map_err(|cause| RunError::Closure {
+        let refused = |cause| RunError::Closure {
             window: window.index,
             cause,
-        })?;
+        };
+        evaluated.map_err(refused)?;
         coefficients.relax(&inputs.inertia);
         if inputs.channels {
             self.sample_pressure(mapped, &inputs.gas);
-            self.closures.evaluate_films(
+            let evaluated = self.closures.evaluate_films(
                 &self.sampled_gas,
                 particles,
                 &self.pressure,
                 acceleration,
                 &mut self.coefficients,
             );
+            evaluated.map_err(refused)?;
         }
         Ok(())
     }

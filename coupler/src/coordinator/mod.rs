@@ -9,6 +9,7 @@ mod control;
 mod controls;
 mod error;
 mod exchange;
+mod findings;
 mod hold;
 mod interior;
 mod laws;
@@ -46,6 +47,7 @@ use span::next_span;
 use crate::closures::Closures;
 use crate::error::PartError;
 use crate::exchange::ExchangeConvergence;
+use crate::findings::Finding;
 use crate::ledger::{BalanceLine, Ledger};
 use crate::mesh::Mesh;
 use crate::models::ParticleModels;
@@ -99,6 +101,8 @@ pub struct CoupledRun {
     windows: u64,
     /// What was set while the run goes on, each condition once.
     controls: Vec<Control>,
+    /// What the last window left outside a law's range, or unconverged.
+    findings: Vec<Finding>,
     /// The window committed last, and when the last checkpoint was written.
     last: Option<Window>,
     last_checkpoint: Instant,
@@ -159,6 +163,7 @@ impl CoupledRun {
             clocks: Clocks::default(),
             windows: 0,
             controls: Vec::new(),
+            findings: Vec::new(),
             last: None,
             last_checkpoint: Instant::now(),
         };
@@ -393,6 +398,7 @@ impl CoupledRun {
                 .note_forces(&particles, drag, window, &mut self.ledger);
         }
         let used_up = self.interior.commit(&particles);
+        self.gather_findings();
         self.clocks = window.end()?;
         self.windows += 1;
         Ok(used_up)
@@ -446,6 +452,7 @@ impl CoupledRun {
             ledger: &self.ledger,
             convergence: &self.exchange.convergence,
             exchange_convergence: &self.exchange.agreement,
+            findings: &self.findings,
             timing: &self.meter.timing,
             about: [self.parts.gas.about(), self.parts.particles.about()],
         }

@@ -1,9 +1,11 @@
 //! What each particle sees adds up to its surface.
 
-use calcine_interior::ExchangeAreas;
+use calcine_interior::{ExchangeAreas, RowImbalance};
 
 /// Relative error of a row at which the scaling ends.
 const CLOSED: f64 = 1e-13;
+/// Relative error above which a row counts as not balanced.
+const TOLERATED: f64 = 1e-9;
 /// Rounds of scaling at most.
 const ROUNDS: usize = 200;
 
@@ -31,6 +33,7 @@ pub fn balance(views: &mut ExchangeAreas) {
             break;
         }
     }
+    views.imbalance = imbalance(&views.surface, &row);
     for ([a, b], area) in &mut views.pairs {
         *area *= factor[*a] * factor[*b];
     }
@@ -61,6 +64,21 @@ pub fn balance(views: &mut ExchangeAreas) {
     for (area, cut) in views.own.iter_mut().zip(&cut) {
         *area *= cut;
     }
+}
+
+/// Rows that do not sum to their surface; one that sees nothing has nothing to scale.
+fn imbalance(surface: &[f64], row: &[f64]) -> RowImbalance {
+    let mut found = RowImbalance::default();
+    for (p, (surface, sum)) in surface.iter().zip(row).enumerate() {
+        let error = (surface / sum - 1.0).abs();
+        if *sum > 0.0 && error > TOLERATED {
+            found.rows += 1;
+            if error > found.worst {
+                (found.worst, found.row) = (error, p);
+            }
+        }
+    }
+    found
 }
 
 /// Row sums in m² with factors.
@@ -96,6 +114,7 @@ mod tests {
             radiosity: false,
             own: vec![0.1, 0.0, 0.0, 0.0],
             surface: vec![1.0, 1.5, 1.2, 1.0],
+            imbalance: RowImbalance::default(),
         };
         balance(&mut views);
         let mut row = [0.0; 4];
@@ -104,6 +123,7 @@ mod tests {
             assert!((sum / surface - 1.0).abs() < 1e-12, "{row:?}");
         }
         assert!(views.pairs.iter().all(|pair| pair.1 > 0.0));
+        assert_eq!(views.imbalance.rows, 0);
     }
 
     #[test]
@@ -114,11 +134,13 @@ mod tests {
             radiosity: false,
             own: vec![0.0; 3],
             surface: vec![1.0; 3],
+            imbalance: RowImbalance::default(),
         };
         balance(&mut views);
         let mut row = [0.0; 3];
         sums(&views, &[1.0; 3], &mut row);
         assert!(row.iter().all(|sum| *sum <= 1.0 + 1e-12), "{row:?}");
+        assert!(views.imbalance.rows > 0, "{:?}", views.imbalance);
         assert!((views.pairs[0].1 / views.pairs[1].1 - 1.0).abs() < 1e-9);
     }
 }

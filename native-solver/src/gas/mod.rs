@@ -289,6 +289,10 @@ impl Gas for NativeGas {
         }
     }
 
+    fn turbulence_residual(&self) -> Option<f64> {
+        self.eddies.as_ref().and_then(KEpsilonEquations::unsolved)
+    }
+
     fn set_boundary(&mut self, value: &BoundaryValue) -> Result<(), PartError> {
         let set = value.apply(&mut self.setup.patches);
         set.map_err(|error| {
@@ -370,16 +374,6 @@ impl Gas for NativeGas {
             material,
             ..
         } = &self.equations;
-        if !convergence.converged {
-            tracing::warn!(
-                "window {}: the gas ends after {} outer iterations with a residual of {:.1e}, \
-                 above the tolerance of {:.1e}",
-                window.index,
-                convergence.outer_iterations,
-                convergence.residual,
-                self.setup.controls.outer_tolerance
-            );
-        }
         let taken = &enthalpy.taken;
         balance::receive(
             &frame, material, momentum, taken, species, &self.now, received,

@@ -21,7 +21,7 @@ use calcine_physics::conduction::{
 use calcine_physics::radiation::conducted_share;
 
 pub use neighbours::{
-    ExchangeAreas, NeighbourPair, NeighbourWall, Neighbours, NetworkSurroundings,
+    ExchangeAreas, NeighbourPair, NeighbourWall, Neighbours, NetworkSurroundings, RowImbalance,
 };
 use radiation::Radiation;
 use solver::{NetworkSolver, NetworkSystem};
@@ -119,6 +119,26 @@ struct Work {
     last_lines: Vec<SurfaceLine>,
 }
 
+/// How the iteration of a network ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum NetworkOutcome {
+    /// Lines, radiation and temperatures agree.
+    #[default]
+    Settled,
+    /// The iteration over lines and radiation ended at its limit.
+    Unsettled {
+        /// Largest relative change of a temperature in the last iteration.
+        change: f64,
+        /// The particle that has it.
+        row: usize,
+    },
+    /// The linear solver ended at its limit, or with NaN.
+    Unsolved {
+        /// Residual over that at the temperatures of the start.
+        residual: f64,
+    },
+}
+
 /// Changes of temperature below this share end the iteration over radiation and heat capacity.
 const SETTLED: f64 = 1e-10;
 /// Iterations at most; each shortens the change at least to a half in all but made-up cases.
@@ -182,14 +202,13 @@ impl HeatNetwork {
 
     /// Sets `heat` to that of an implicit step: surface temperatures T with
     /// k_i (T_i − T_i,free) = Σ_j G_ij (T_j − T_i), where `lines` fills k and T_free of all particles about given
-    /// surface temperatures in K; `start` holds those of the last commit in K, by which conductivities go. False where
-    /// the iteration over lines and radiation ended at its limit, or the linear solver did.
+    /// surface temperatures in K; `start` holds those of the last commit in K, by which conductivities go.
     pub fn solve<E>(
         &mut self,
         start: &[f64],
         surroundings: &NetworkSurroundings<'_>,
         mut lines: impl FnMut(&[f64], &mut [SurfaceLine]) -> Result<(), E>,
-    ) -> Result<bool, E> {
+    ) -> Result<NetworkOutcome, E> {
         let count = start.len();
         self.conduct(start, surroundings);
         if self.laws.inside {
@@ -208,13 +227,13 @@ impl HeatNetwork {
         work.temperature.extend_from_slice(&start[..nodes - count]);
         work.lines.clear();
         work.lines.resize(count, SurfaceLine::default());
-        let mut settled = false;
+        let mut outcome = NetworkOutcome::Settled;
         for iteration in 0..ITERATIONS {
             work.last_lines.clone_from(&work.lines);
             lines(&work.temperature[..count], &mut work.lines)?;
             // Without radiation only the lines can bend.
             if iteration > 0 && self.radiation.is_empty() && work.lines == work.last_lines {
-                settled = true;
+                outcome = NetworkOutcome::Settled;
                 break;
             }
             work.capacity.clear();
@@ -249,18 +268,18 @@ impl HeatNetwork {
                 sink_conductance: &work.sink_conductance,
                 drive: &work.drive,
             };
-            if !work.solver.solve(&system, &mut work.temperature) {
-                settled = false;
+            if let Err(unsolved) = work.solver.solve(&system, &mut work.temperature) {
+                let residual = unsolved.residual;
+                outcome = NetworkOutcome::Unsolved { residual };
                 break;
             }
-            let mut pairs = work.temperature.iter().zip(&work.last);
-            settled = pairs.all(|(now, last)| (now - last).abs() <= SETTLED * last.abs());
-            if settled {
+            outcome = compare(&work.temperature, &work.last, count);
+            if outcome == NetworkOutcome::Settled {
                 break;
             }
         }
         self.book(count, solid, surroundings.reservoirs);
-        Ok(settled)
+        Ok(outcome)
     }
 
     /// Heat over every bond and link to a reservoir, the same on both of its sides.
@@ -327,6 +346,23 @@ impl HeatNetwork {
             }
         }
     }
+}
+
+/// Whether temperatures in K of all nodes, two of each particle at most, are those of the iteration before.
+fn compare(now: &[f64], last: &[f64], count: usize) -> NetworkOutcome {
+    let mut outcome = NetworkOutcome::Settled;
+    let mut largest = 0.0;
+    for (node, (now, last)) in now.iter().zip(last).enumerate() {
+        let moved = (now - last).abs();
+        let settled = moved <= SETTLED * last.abs();
+        let change = moved / last.abs();
+        if !settled && (change > largest || change.is_nan()) {
+            largest = change;
+            let row = if node < count { node } else { node - count };
+            outcome = NetworkOutcome::Unsettled { change, row };
+        }
+    }
+    outcome
 }
 
 /// Conductance in W/K of contact and gap of two spheres.

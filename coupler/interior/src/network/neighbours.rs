@@ -38,6 +38,19 @@ pub struct ExchangeAreas {
     pub radiosity: bool,
     /// What the areas of each particle sum to in m²: its surface, or that times its emissivity.
     pub surface: Vec<f64>,
+    /// Particles whose areas could not be brought to that sum.
+    pub imbalance: RowImbalance,
+}
+
+/// Particles whose exchange areas do not sum to their surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RowImbalance {
+    /// How many.
+    pub rows: usize,
+    /// The largest relative difference.
+    pub worst: f64,
+    /// The row that has it.
+    pub row: usize,
 }
 
 /// What particles meet at their present places.

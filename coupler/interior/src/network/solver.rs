@@ -20,6 +20,13 @@ pub struct NetworkSystem<'a> {
     pub drive: &'a [f64],
 }
 
+/// Conjugate gradients that ended at their limit, or with NaN.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnsolvedNetwork {
+    /// Residual over that at the old temperatures.
+    pub residual: f64,
+}
+
 /// Scratch of the conjugate gradients.
 #[derive(Debug, Default)]
 pub struct NetworkSolver {
@@ -30,9 +37,13 @@ pub struct NetworkSolver {
 }
 
 impl NetworkSolver {
-    /// Solves for the temperatures in K, from those given on; preconditioned by the diagonal. False where the
+    /// Solves for the temperatures in K, from those given on; preconditioned by the diagonal. An error where the
     /// residual stayed above the tolerance, or is NaN.
-    pub fn solve(&mut self, system: &NetworkSystem<'_>, temperature: &mut [f64]) -> bool {
+    pub fn solve(
+        &mut self,
+        system: &NetworkSystem<'_>,
+        temperature: &mut [f64],
+    ) -> Result<(), UnsolvedNetwork> {
         let count = temperature.len();
         let NetworkSystem {
             bonds,
@@ -78,7 +89,8 @@ impl NetworkSolver {
                 .map(|(r, d)| r * r / d)
                 .sum::<f64>()
         };
-        let goal = TOLERANCE * TOLERANCE * norm(p);
+        let scale = norm(p);
+        let goal = TOLERANCE * TOLERANCE * scale;
         p.clear();
         p.resize(count, 0.0);
         q.resize(count, 0.0);
@@ -86,10 +98,10 @@ impl NetworkSolver {
         for step in 0..count.max(10) * 10 {
             let product = norm(r);
             if product <= goal || product == 0.0 {
-                return true;
+                return Ok(());
             }
             if !product.is_finite() {
-                return false;
+                break;
             }
             let share = if step == 0 { 0.0 } else { product / before };
             before = product;
@@ -108,6 +120,7 @@ impl NetworkSolver {
                 r[i] -= length * q[i];
             }
         }
-        false
+        let residual = (norm(r) / scale).sqrt();
+        Err(UnsolvedNetwork { residual })
     }
 }

@@ -85,6 +85,13 @@ impl ParticleModel for Reacting {
     }
 
     /// The heat of the last attempt's reactions counts as if it had come before.
+    fn temperature_range(&self) -> (f64, f64) {
+        let ranges = self.chemistry.solids.iter().map(|solid| solid.range());
+        ranges.fold((0.0, f64::INFINITY), |(low, high), (from, to)| {
+            (from.max(low), to.min(high))
+        })
+    }
+
     fn surface(
         &mut self,
         around: &Surroundings<'_>,

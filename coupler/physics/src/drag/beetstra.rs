@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::model::Drag;
+use crate::flow_range::{FlowRange, ReynoldsBasis};
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 
@@ -50,6 +51,14 @@ impl Drag for Beetstra {
         let re = gas.superficial_reynolds(d);
         let f = creeping(eps, phi) + inertial(eps, phi, re);
         3.0 * PI * gas.viscosity * d * eps * f
+    }
+
+    fn range(&self) -> FlowRange {
+        FlowRange {
+            void_fraction: (0.4, 0.9),
+            reynolds: (0.0, 1000.0),
+            basis: ReynoldsBasis::Superficial,
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::model::Drag;
+use crate::flow_range::{FlowRange, ReynoldsBasis};
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 
@@ -48,6 +49,14 @@ impl Drag for DiFelice {
         let re = gas.superficial_reynolds(d);
         let cd_re = (0.63 * re.sqrt() + 4.8).powi(2);
         PI / 8.0 * gas.viscosity * d * cd_re * eps.powf(1.0 - exponent(re))
+    }
+
+    fn range(&self) -> FlowRange {
+        FlowRange {
+            void_fraction: (0.0, 1.0),
+            reynolds: (0.01, 1e4),
+            basis: ReynoldsBasis::Superficial,
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Ergun 1952.
 
 use super::model::Drag;
+use crate::flow_range::{FlowRange, ReynoldsBasis};
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 use crate::pressure_drop::{ERGUN_INERTIAL, ERGUN_VISCOUS};
@@ -41,6 +42,14 @@ impl Drag for Ergun {
         let v_p = sphere::volume_of_diameter(d);
         let scale = v_p * gas.viscosity / (d * d);
         scale * (ERGUN_VISCOUS * (1.0 - eps) / eps + ERGUN_INERTIAL * re)
+    }
+
+    fn range(&self) -> FlowRange {
+        FlowRange {
+            void_fraction: (0.35, 0.55),
+            reynolds: (0.0, f64::INFINITY),
+            basis: ReynoldsBasis::Interstitial,
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::model::Drag;
+use crate::flow_range::{FlowRange, ReynoldsBasis};
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 
@@ -64,6 +65,15 @@ impl Drag for KochHill {
         let re = gas.superficial_reynolds(d / 2.0);
         let f = creeping(phi) + inertial(phi) * re;
         3.0 * PI * gas.viscosity * d * eps * eps * f
+    }
+
+    fn range(&self) -> FlowRange {
+        // The source counts on the radius.
+        FlowRange {
+            void_fraction: (0.36, 1.0),
+            reynolds: (0.0, 200.0),
+            basis: ReynoldsBasis::Superficial,
+        }
     }
 }
 

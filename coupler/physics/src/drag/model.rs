@@ -2,6 +2,7 @@
 
 use std::fmt::Debug;
 
+use crate::flow_range::FlowRange;
 use crate::local::LocalGas;
 
 /// Drag of the gas on one particle.
@@ -12,4 +13,9 @@ pub trait Drag: Debug + Send + Sync {
     /// Drag coefficient K_A in kg/s, pressure force excluded (docs/theory.md, DRG-1),
     /// such that the drag on the particle is F = K_A (u − v); diameter in m.
     fn coefficient(&self, gas: &LocalGas, diameter: f64) -> f64;
+
+    /// The flow that its source states it for.
+    fn range(&self) -> FlowRange {
+        FlowRange::UNSTATED
+    }
 }

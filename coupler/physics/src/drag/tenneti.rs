@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::model::Drag;
+use crate::flow_range::{FlowRange, ReynoldsBasis};
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 
@@ -51,6 +52,14 @@ impl Drag for Tenneti {
         let inertial = phi.powi(3) * re * (0.95 + 0.61 * phi.powi(3) / (eps * eps));
         let f = isolated + array + inertial;
         3.0 * PI * gas.viscosity * d * eps * eps * f
+    }
+
+    fn range(&self) -> FlowRange {
+        FlowRange {
+            void_fraction: (0.5, 0.9),
+            reynolds: (0.01, 300.0),
+            basis: ReynoldsBasis::Superficial,
+        }
     }
 }
 

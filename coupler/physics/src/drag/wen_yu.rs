@@ -1,6 +1,7 @@
 //! Wen and Yu 1966.
 
 use super::model::Drag;
+use crate::flow_range::{FlowRange, ReynoldsBasis};
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 use crate::sphere;
@@ -43,6 +44,14 @@ impl Drag for WenYu {
         let v_p = sphere::volume_of_diameter(d);
         let scale = v_p * gas.viscosity / (d * d);
         scale * 0.75 * drag_times_reynolds(eps * re) * eps.powf(-2.65)
+    }
+
+    fn range(&self) -> FlowRange {
+        FlowRange {
+            void_fraction: (0.8, 1.0),
+            reynolds: (0.0, 2e5),
+            basis: ReynoldsBasis::Superficial,
+        }
     }
 }
 

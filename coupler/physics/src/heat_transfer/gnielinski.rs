@@ -1,6 +1,7 @@
 //! Gnielinski 1980.
 
 use super::model::HeatTransfer;
+use crate::flow_range::{FlowRange, ReynoldsBasis};
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 
@@ -49,6 +50,14 @@ impl HeatTransfer for Gnielinski {
         };
         let packing = 1.0 + 1.5 * (1.0 - gas.void_fraction.value());
         packing * (2.0 + laminar.hypot(turbulent))
+    }
+
+    fn range(&self) -> FlowRange {
+        FlowRange {
+            void_fraction: (0.0, 1.0),
+            reynolds: (0.1, 2e4),
+            basis: ReynoldsBasis::Interstitial,
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Gunn 1978.
 
 use super::model::HeatTransfer;
+use crate::flow_range::{FlowRange, ReynoldsBasis};
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 
@@ -37,6 +38,14 @@ impl HeatTransfer for Gunn {
         let pr_third = gas.prandtl().cbrt();
         (7.0 - 10.0 * eps + 5.0 * eps * eps) * (1.0 + 0.7 * re.powf(0.2) * pr_third)
             + (1.33 - 2.4 * eps + 1.2 * eps * eps) * re.powf(0.7) * pr_third
+    }
+
+    fn range(&self) -> FlowRange {
+        FlowRange {
+            void_fraction: (0.35, 1.0),
+            reynolds: (0.0, 1e5),
+            basis: ReynoldsBasis::Superficial,
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Ranz and Marshall 1952.
 
 use super::model::HeatTransfer;
+use crate::flow_range::{FlowRange, ReynoldsBasis};
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 
@@ -30,6 +31,14 @@ impl HeatTransfer for RanzMarshall {
 
     fn nusselt(&self, gas: &LocalGas, d: f64) -> f64 {
         2.0 + 0.6 * gas.interstitial_reynolds(d).sqrt() * gas.prandtl().cbrt()
+    }
+
+    fn range(&self) -> FlowRange {
+        FlowRange {
+            void_fraction: (0.0, 1.0),
+            reynolds: (0.0, 2e5),
+            basis: ReynoldsBasis::Interstitial,
+        }
     }
 }
 

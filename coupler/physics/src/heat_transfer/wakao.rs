@@ -1,6 +1,7 @@
 //! Wakao and Kaguei 1982.
 
 use super::model::HeatTransfer;
+use crate::flow_range::{FlowRange, ReynoldsBasis};
 use crate::law::LawEntry;
 use crate::local::LocalGas;
 
@@ -31,6 +32,14 @@ impl HeatTransfer for Wakao {
 
     fn nusselt(&self, gas: &LocalGas, d: f64) -> f64 {
         2.0 + 1.1 * gas.superficial_reynolds(d).powf(0.6) * gas.prandtl().cbrt()
+    }
+
+    fn range(&self) -> FlowRange {
+        FlowRange {
+            void_fraction: (0.0, 1.0),
+            reynolds: (3.0, 3000.0),
+            basis: ReynoldsBasis::Superficial,
+        }
     }
 }
 

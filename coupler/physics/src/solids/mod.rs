@@ -144,6 +144,11 @@ impl SolidSpecies {
         self.formation_enthalpy
     }
 
+    /// Lowest and highest temperature in K for which its heat capacity is given.
+    pub fn range(&self) -> (f64, f64) {
+        self.heat_capacity.range()
+    }
+
     /// Specific heat capacity in J/kg/K.
     pub fn heat_capacity(&self, temperature: f64) -> f64 {
         self.heat_capacity.at(temperature)

@@ -56,6 +56,8 @@ pub struct KEpsilonEquations {
     walls: Vec<WallFace>,
     matrix: Matrix,
     preconditioner: Incomplete,
+    /// Largest relative residual of a solve of the last step that ended above its tolerance.
+    unsolved: Option<f64>,
     source: Vec<f64>,
     /// M/Δt of each cell in kg/s.
     inertia: Vec<f64>,
@@ -101,6 +103,7 @@ impl KEpsilonEquations {
             walls: wall_faces(&grid, boundary),
             matrix,
             preconditioner: Incomplete::default(),
+            unsolved: None,
             source: zeros(),
             inertia: zeros(),
             strain: zeros(),
@@ -114,6 +117,11 @@ impl KEpsilonEquations {
         }
     }
 
+    /// Largest relative residual of the last step's solves that ended above their tolerance.
+    pub fn unsolved(&self) -> Option<f64> {
+        self.unsolved
+    }
+
     /// Advances k, ε_t and the eddy viscosities of a state by the step; what diverged otherwise.
     pub fn advance(
         &mut self,
@@ -121,6 +129,7 @@ impl KEpsilonEquations {
         krylov: &mut Krylov,
         now: &mut GasState,
     ) -> Result<(), GasFailure> {
+        self.unsolved = None;
         self.measure(step, now);
         let mut eddies = std::mem::take(&mut now.turbulence);
         let dissipation = self.dissipation(step, krylov, now, &eddies);
@@ -322,9 +331,14 @@ impl KEpsilonEquations {
             matrix,
             preconditioner,
             source,
+            unsolved,
             ..
         } = self;
-        krylov.general(matrix, preconditioner, source, &mut new, target);
+        let solved = krylov.general(matrix, preconditioner, source, &mut new, target);
+        if !solved.converged {
+            let residual = solved.residual / matrix.terms(&new, source);
+            *unsolved = Some(unsolved.map_or(residual, |other| other.max(residual)));
+        }
         // Exactly solved none is lower: see above.
         let diagonal = matrix.diagonal();
         update(&mut new, |cell, value| {

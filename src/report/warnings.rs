@@ -1,0 +1,32 @@
+//! What was outside the ranges of laws, or did not converge, and the error with which a run ended.
+
+use super::page::{escape, table};
+use crate::results::Summary;
+
+/// Empty where there is nothing to tell.
+pub(super) fn render(summary: &Summary) -> String {
+    let mut html = summary
+        .failure
+        .as_ref()
+        .map_or_else(String::new, |failure| {
+            format!(
+                "<p>The run ended with exit code {}: {}</p>",
+                failure.code,
+                escape(&failure.message)
+            )
+        });
+    let rows: Vec<Vec<String>> = summary
+        .warnings
+        .iter()
+        .map(|(name, warning)| {
+            vec![
+                escape(name),
+                format!("{} of {}", warning.windows, summary.windows),
+                warning.count.to_string(),
+                escape(&warning.sentence()),
+            ]
+        })
+        .collect();
+    html.push_str(&table(&["kind", "#windows", "#count", "worst"], &rows));
+    html
+}

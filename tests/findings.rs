@@ -1,0 +1,381 @@
+//! Planted faults that end no run: gas, particles and flow outside the ranges of their laws, iterations that end at their
+//! limits. They show once in the log and in the closing lines, and with figures in the summary and the report.
+
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+use calcine::laws::LawCatalogue;
+use calcine::results::Summary;
+use calcine::results::warnings::{WarningPlace, WarningSummary};
+use calcine::simulation::{Simulation, SimulationError};
+use calcine::{exit, report};
+use calcine_coupler::interior::{
+    At, Bodies, GasLines, Inventory, ModelError, Newcomer, ParticleModel, Ragged, StateColumn,
+    SurfaceLine, Surroundings, Thin, Transfer,
+};
+use calcine_coupler::physics::flow_range::FlowRange;
+use calcine_coupler::physics::heat_transfer::{Gunn, HeatTransfer};
+use calcine_coupler::physics::law::LawEntry;
+use calcine_coupler::physics::local::LocalGas;
+use calcine_coupler::physics::solid::HeatCapacity;
+use tempfile::TempDir;
+
+use crate::support::program;
+
+/// Air of oxygen and nitrogen at 7000 K flows past a bead.
+const HOT: &str = r#"
+format = 1
+title = "Gas above the polynomials' range"
+
+[time]
+end = "2 ms"
+motion_window = "0.1 ms"
+
+[mesh]
+box = { size = "10 10 40 mm", cells = [1, 1, 8] }
+
+[materials.glass]
+density = "2500 kg/m^3"
+heat_capacity = "840 J/kg/K"
+
+[gas]
+mixture = "oxygen and nitrogen"
+species = ["O2", "N2"]
+schmidt = 0.7
+initial = { temperature = "7000 K", pressure = "1 atm", velocity = "0 0 5 m/s", composition = { mole = { O2 = 0.2, N2 = 0.8 } } }
+controls = { outer_iterations = 60, convection = "upwind" }
+
+[gas.patch.bottom]
+inlet = { superficial_velocity = "5 m/s", temperature = "7000 K", composition = { mole = { O2 = 0.2, N2 = 0.8 } } }
+
+[gas.patch.top]
+outlet = { pressure = "1 atm" }
+
+[gas.patch.side]
+symmetry = {}
+
+[[particles]]
+name = "bead"
+material = "glass"
+diameter = "1 mm"
+motion = "frozen"
+place = { grid = { first = "5 5 35 mm", spacing = "2 2 2 mm", counts = [1, 1, 1] } }
+temperature = "1000 K"
+
+[laws]
+drag = { law = "none" }
+heat_transfer = { law = "none" }
+conduction = { law = "none" }
+radiation = { law = "none" }
+
+[coupling]
+mapping = "overlap"
+smoother = { max_solid_fraction = 0.64 }
+
+[output]
+every = "2 ms"
+gas = ["temperature"]
+"#;
+
+fn good(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/inputs/good/{name}.toml"))
+}
+
+/// Runs the hot gas; what the program said, and the results folder.
+fn hot(directory: &Path, words: &[&str]) -> (Output, PathBuf) {
+    let (case, out) = (directory.join("hot.toml"), directory.join("out"));
+    fs::write(&case, HOT).unwrap();
+    let output = program::command(&case, &out, words, &[""; 0]).output();
+    (output.unwrap(), out)
+}
+
+/// A warning in summary, report, log and closing lines of a run.
+fn shown(output: &Output, out: &Path, kind: &str) -> WarningSummary {
+    let told = String::from_utf8_lossy(&output.stdout);
+    let line = format!("warning: {kind} in ");
+    assert!(told.contains(&line), "{told}");
+    let log = fs::read_to_string(out.join("log/calcine.log")).unwrap();
+    let warning = Summary::read(out).unwrap().warnings[kind].clone();
+    assert_eq!(log.matches(&warning.message).count(), 1, "{log}");
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains(kind) && page.contains("Warnings"));
+    warning
+}
+
+/// Gas of 7000 K, by one of the solvers.
+fn gas_of_7000_kelvin(solver: &[&str]) {
+    let directory = TempDir::new().unwrap();
+    let (output, out) = hot(directory.path(), solver);
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    let warning = shown(&output, &out, "gas_temperature");
+    // Eight cells in each of twenty windows; the bead takes no heat.
+    assert_eq!((warning.windows, warning.count), (20, 160));
+    assert_eq!(warning.limit, Some(6000.0));
+    assert!((warning.worst - 7000.0).abs() < 10.0, "{}", warning.worst);
+    assert!(matches!(warning.place, WarningPlace::Cell(_)));
+
+    let directory = TempDir::new().unwrap();
+    let (output, _) = hot(directory.path(), &[solver, &["--strict"]].concat());
+    assert_eq!(output.status.code(), Some(i32::from(exit::WARNINGS)));
+}
+
+#[test]
+fn native_gas_of_7000_kelvin_is_computed_and_told_of() {
+    gas_of_7000_kelvin(&[]);
+}
+
+#[test]
+fn openfoam_s_gas_of_7000_kelvin_is_computed_and_told_of() {
+    gas_of_7000_kelvin(&["--gas", "openfoam"]);
+}
+
+#[test]
+fn particles_above_the_polynomials_of_their_material_are_told_of_by_their_id() {
+    let directory = TempDir::new().unwrap();
+    let mut simulation = Simulation::open(good("two-in-contact"))
+        .set("materials.iron.heat_capacity.ranges=\"200 250 350 K\"")
+        .out(directory.path().join("out"))
+        .start()
+        .unwrap();
+    simulation.step().unwrap();
+    simulation.stop().unwrap();
+    let summary = simulation.summary().unwrap();
+    let warning = &summary.warnings["particle_temperature"];
+    assert_eq!((warning.windows, warning.count), (1, 1));
+    assert_eq!(warning.limit, Some(350.0));
+    assert_eq!(warning.place, WarningPlace::Particle(2));
+}
+
+#[test]
+fn iterations_that_end_at_their_limits_are_counted_over_a_resume_and_told_of_once() {
+    let directory = TempDir::new().unwrap();
+    let out = directory.path().join("out");
+    let start = |resume| {
+        let keys = [
+            "gas.controls={ outer_iterations = 1 }",
+            "coupling.exchange={ attempts = 1, tolerance = 1e-12 }",
+        ];
+        let builder = Simulation::open(good("reactions")).out(&out);
+        let builder = keys
+            .into_iter()
+            .fold(builder, |builder, key| builder.set(key));
+        builder.resume(resume).start().unwrap()
+    };
+    let mut simulation = start(false);
+    for _ in 0..3 {
+        simulation.step().unwrap();
+    }
+    simulation.stop().unwrap();
+    drop(simulation);
+    let mut simulation = start(true);
+    simulation.step().unwrap();
+    simulation.stop().unwrap();
+    let summary = simulation.summary().unwrap();
+    let log = fs::read_to_string(out.join("log/calcine.log")).unwrap();
+    for kind in ["gas_iterations", "exchange_attempts"] {
+        let warning = &summary.warnings[kind];
+        assert_eq!((warning.windows, warning.count), (4, 4), "{kind}");
+        assert_eq!(warning.place, WarningPlace::Run);
+        assert_eq!(log.matches(&warning.message).count(), 1, "{kind}: {log}");
+    }
+    assert_eq!(summary.warnings["exchange_attempts"].limit, Some(1e-12));
+    assert_eq!(exit::complete(summary, false), exit::OK);
+    assert_eq!(exit::complete(summary, true), exit::WARNINGS);
+}
+
+/// Thin particles whose surface takes twice as much from the network at each other question: the network's iteration
+/// over surfaces finds no end.
+struct Undecided {
+    thin: Thin,
+    asked: u64,
+}
+
+impl ParticleModel for Undecided {
+    fn columns(&self) -> &[StateColumn] {
+        self.thin.columns()
+    }
+
+    fn read(&self, column: usize, out: &mut Ragged) {
+        self.thin.read(column, out);
+    }
+
+    fn load(&mut self, from: &[Ragged]) -> Result<(), ModelError> {
+        self.thin.load(from)
+    }
+
+    fn bodies(&self, at: At) -> Bodies<'_> {
+        self.thin.bodies(at)
+    }
+
+    fn surface(
+        &mut self,
+        around: &Surroundings<'_>,
+        span: f64,
+        at: &[f64],
+        out: &mut [SurfaceLine],
+    ) -> Result<(), ModelError> {
+        self.thin.surface(around, span, at, out)?;
+        self.asked += 1;
+        if self.asked.is_multiple_of(2) {
+            out.iter_mut().for_each(|line| line.conductance *= 2.0);
+        }
+        Ok(())
+    }
+
+    fn respond(
+        &mut self,
+        around: &Surroundings<'_>,
+        span: f64,
+        network: &[f64],
+        out: &mut GasLines,
+    ) -> Result<(), ModelError> {
+        self.thin.respond(around, span, network, out)
+    }
+
+    fn settle(&mut self, took: &Transfer<'_>, span: f64) -> Result<(), ModelError> {
+        self.thin.settle(took, span)
+    }
+
+    fn changed(&self) -> Inventory {
+        self.thin.changed()
+    }
+
+    fn held(&self, rows: &[usize]) -> Inventory {
+        self.thin.held(rows)
+    }
+
+    fn commit(&mut self) -> Vec<usize> {
+        self.thin.commit()
+    }
+
+    fn change(&mut self, gone: &[usize], new: &[Newcomer<'_>]) -> Result<(), ModelError> {
+        self.thin.change(gone, new)
+    }
+}
+
+#[test]
+fn heat_between_particles_that_does_not_converge_is_told_of_and_closes_its_balance() {
+    let directory = TempDir::new().unwrap();
+    let out = directory.path().join("out");
+    let mut simulation = Simulation::open(good("two-in-contact"))
+        .set("time.end=2 s")
+        .model("iron", |_| {
+            let thin = Thin::new(HeatCapacity::constant(450.0));
+            Box::new(Undecided { thin, asked: 0 })
+        })
+        .out(&out)
+        .start()
+        .unwrap();
+    simulation.finish().unwrap();
+    let summary = simulation.summary().unwrap();
+    let warning = &summary.warnings["network_iterations"];
+    assert_eq!(warning.windows, summary.windows);
+    assert!(warning.worst > 1e-6, "{}", warning.worst);
+    assert!(matches!(warning.place, WarningPlace::Particle(1 | 2)));
+    assert!(summary.ledger.lines["energy"].relative_error < 1e-11);
+    assert_eq!(exit::complete(summary, false), exit::OK);
+    assert_eq!(exit::complete(summary, true), exit::WARNINGS);
+    report::write(&out).unwrap();
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("network_iterations"));
+}
+
+/// A film whose source states void fractions that no bed of spheres has.
+#[derive(Debug)]
+struct Sparse {
+    /// True where it has no value outside its range.
+    breaks: bool,
+}
+
+impl HeatTransfer for Sparse {
+    fn name(&self) -> &'static str {
+        if self.breaks {
+            BREAKS.name
+        } else {
+            SPARSE.name
+        }
+    }
+
+    fn nusselt(&self, gas: &LocalGas, diameter: f64) -> f64 {
+        if self.breaks {
+            f64::NAN
+        } else {
+            Gunn.nusselt(gas, diameter)
+        }
+    }
+
+    fn range(&self) -> FlowRange {
+        FlowRange {
+            void_fraction: (0.0, 0.25),
+            ..FlowRange::UNSTATED
+        }
+    }
+}
+
+static SPARSE: LawEntry<dyn HeatTransfer> = LawEntry {
+    name: "sparse",
+    summary: "Gunn's law, for void fractions up to 0.25 only.",
+    source: "none",
+    parameters: &[],
+    make: |_| Box::new(Sparse { breaks: false }),
+};
+
+static BREAKS: LawEntry<dyn HeatTransfer> = LawEntry {
+    name: "breaks",
+    summary: "No value outside its range.",
+    source: "none",
+    parameters: &[],
+    make: |_| Box::new(Sparse { breaks: true }),
+};
+
+fn with_film(out: &Path, key: &str, law: &str) -> Simulation {
+    let mut laws = LawCatalogue::default();
+    laws.heat_transfer.extend([&SPARSE, &BREAKS]);
+    Simulation::open(good("reactions"))
+        .laws(laws)
+        .set(format!("laws.{key}={{ law = \"{law}\" }}"))
+        .out(out)
+        .start()
+        .unwrap()
+}
+
+#[test]
+fn a_film_outside_its_range_of_void_fractions_is_told_of_with_the_particle() {
+    let directory = TempDir::new().unwrap();
+    let out = directory.path().join("out");
+    let mut simulation = with_film(&out, "mass_transfer", "sparse");
+    simulation.step().unwrap();
+    simulation.stop().unwrap();
+    let summary = simulation.summary().unwrap();
+    let warning = &summary.warnings["mass_transfer.void_fraction"];
+    assert_eq!((warning.windows, warning.limit), (1, Some(0.25)));
+    assert_eq!(warning.count as usize, simulation.particles().len());
+    assert!(warning.worst > 0.25 && warning.worst <= 1.0);
+    assert!(matches!(warning.place, WarningPlace::Particle(_)));
+    assert!(!summary.warnings.contains_key("heat_transfer.void_fraction"));
+    report::write(&out).unwrap();
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("mass_transfer.void_fraction"));
+}
+
+#[test]
+fn a_film_without_a_value_ends_the_run_and_its_failure_is_in_the_summary() {
+    let directory = TempDir::new().unwrap();
+    let out = directory.path().join("out");
+    let mut simulation = with_film(&out, "heat_transfer", "breaks");
+    let failure: SimulationError = simulation.step().unwrap_err();
+    assert_eq!(failure.exit_code(), exit::DIVERGED);
+    let told = Summary::read(&out).unwrap().failure.unwrap();
+    assert_eq!(told.code, exit::DIVERGED);
+    assert!(
+        told.message
+            .contains("breaks coefficient of particle 1 is NaN W/K")
+    );
+    report::write(&out).unwrap();
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("The run ended with exit code 3"));
+}
