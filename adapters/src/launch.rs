@@ -64,12 +64,17 @@ impl PartialEq for Spawner {
 
 impl Eq for Spawner {}
 
+/// A line without words, which starts nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("a launcher needs at least one word, for example `srun -n 16`")]
+pub struct EmptyLauncher;
+
 impl Launcher {
     /// The launcher of a command line, words separated by blanks.
-    pub fn parse(line: &str) -> Result<Self, String> {
+    pub fn parse(line: &str) -> Result<Self, EmptyLauncher> {
         let words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
         if words.is_empty() {
-            return Err("a launcher needs at least one word, for example `srun -n 16`".into());
+            return Err(EmptyLauncher);
         }
         Ok(Self::Own(words))
     }
@@ -453,7 +458,7 @@ mod tests {
             words(&program().command(&own, 16)),
             ["srun", "-n", "16", "/opt/it's here/solver", "-parallel"]
         );
-        assert!(Launcher::parse("  ").is_err());
+        assert_eq!(Launcher::parse("  "), Err(EmptyLauncher));
     }
 
     #[test]

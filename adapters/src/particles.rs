@@ -15,6 +15,7 @@ use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::Window;
 use calcine_wire::{Link, MessageKind, WireError};
+use thiserror::Error;
 
 use crate::solver::{ExternalSolver, header};
 
@@ -146,19 +147,10 @@ impl LinkedParticles {
             let message = format!("particle {} follows particle {}", pair[1], pair[0]);
             return Err(self.solver.refuse(window, message));
         }
-        let vectors = state
-            .position
-            .iter()
-            .chain(&state.velocity)
-            .chain(&state.angular_velocity);
-        if vectors
-            .flat_map(|vector| vector.iter())
-            .any(|x| !x.is_finite())
-        {
-            let message = "a particle's position or velocity is not a finite number";
-            let mut error = self.solver.refuse(window, message.into());
-            error.kind = FailureKind::Diverged;
-            return Err(error);
+        if let Some(found) = state.not_finite() {
+            let mut error = self.solver.refuse(window, found.to_string());
+            error.kind = FailureKind::NotFinite;
+            return Err(error.caused_by(found));
         }
         Ok(state)
     }
@@ -169,7 +161,37 @@ fn vectors(numbers: &[f64]) -> impl Iterator<Item = Vec3> {
     numbers.chunks_exact(3).map(|x| Vec3::new(x[0], x[1], x[2]))
 }
 
+/// A number that no particle can have.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[error("the {what} of particle {id} is {value} {unit}")]
+struct NonFiniteParticle {
+    what: &'static str,
+    id: u64,
+    value: f64,
+    unit: &'static str,
+}
+
 impl ReceivedParticles {
+    /// The first particle with a position or velocity that is not finite.
+    fn not_finite(&self) -> Option<NonFiniteParticle> {
+        self.id.iter().enumerate().find_map(|(row, &id)| {
+            let vectors = [
+                ("position", self.position[row], "m"),
+                ("velocity", self.velocity[row], "m/s"),
+                ("angular velocity", self.angular_velocity[row], "rad/s"),
+            ];
+            vectors.into_iter().find_map(|(what, vector, unit)| {
+                let value = *vector.iter().find(|x| !x.is_finite())?;
+                Some(NonFiniteParticle {
+                    what,
+                    id,
+                    value,
+                    unit,
+                })
+            })
+        })
+    }
+
     /// Joins the columns of all ranks by id.
     fn read(links: &[Link]) -> Result<Self, WireError> {
         let mut order = Vec::new();
@@ -356,5 +378,29 @@ impl Particles for LinkedParticles {
             false => Some(self.attempt.support).filter(|sum| sum.iter().all(|x| x.is_finite())),
         };
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_state_that_is_not_finite_names_the_particle_by_its_id() {
+        let mut state = ReceivedParticles {
+            id: vec![3, 17, 40],
+            position: vec![Vec3::zeros(); 3],
+            velocity: vec![Vec3::zeros(); 3],
+            angular_velocity: vec![Vec3::zeros(); 3],
+            ..ReceivedParticles::default()
+        };
+        assert_eq!(state.not_finite(), None);
+        state.angular_velocity[2].x = f64::NAN;
+        state.velocity[1].z = f64::INFINITY;
+        let told = state.not_finite().map(|found| found.to_string());
+        assert_eq!(
+            told.as_deref(),
+            Some("the velocity of particle 17 is inf m/s")
+        );
     }
 }

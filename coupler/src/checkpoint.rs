@@ -39,7 +39,7 @@ pub enum StateFileError {
         /// The file.
         path: PathBuf,
         /// What is wrong with it.
-        what: String,
+        what: StateDamage,
     },
     /// An array that is not there.
     #[error("the state file holds no array of {kind} named `{name}`")]
@@ -59,6 +59,37 @@ pub enum StateFileError {
         /// Values that the run needs.
         expected: usize,
     },
+}
+
+/// Why bytes are no state file of this version.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum StateDamage {
+    /// They begin otherwise.
+    #[error("not a state file of Calcine")]
+    Foreign,
+    /// They end before the content does.
+    #[error("cut short")]
+    CutShort,
+    /// The checksum is that of another content.
+    #[error("damaged: its checksum does not fit its content")]
+    Checksum,
+    /// Another version of the layout.
+    #[error("of version {0}, not {VERSION}")]
+    Version(u32),
+    /// A name that is not UTF-8.
+    #[error("damaged: an array's name is not text")]
+    Name,
+    /// An array of a type that there is not.
+    #[error("damaged: array `{name}` is of type {kind}")]
+    Kind {
+        /// Its name.
+        name: String,
+        /// Number of its type.
+        kind: u32,
+    },
+    /// An array longer than this machine can address.
+    #[error("too large")]
+    TooLarge,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -190,35 +221,35 @@ impl StateFile {
         bytes
     }
 
-    fn decode(bytes: &[u8]) -> Result<Self, String> {
+    fn decode(bytes: &[u8]) -> Result<Self, StateDamage> {
         if !bytes.starts_with(MAGIC) {
-            return Err("not a state file of Calcine".into());
+            return Err(StateDamage::Foreign);
         }
         let Some((content, checksum)) = bytes.split_last_chunk::<CHECKSUM>() else {
-            return Err("cut short".into());
+            return Err(StateDamage::CutShort);
         };
         if Sha256::digest(content)[..] != checksum[..] {
-            return Err("damaged: its checksum does not fit its content".into());
+            return Err(StateDamage::Checksum);
         }
         let mut rest = Reader(&content[MAGIC.len()..]);
         let version = rest.count32()?;
         if version != VERSION {
-            return Err(format!("of version {version}, not {VERSION}"));
+            return Err(StateDamage::Version(version));
         }
         let mut state = Self::new();
         for _ in 0..rest.count32()? {
             let length = rest.count32()? as usize;
             let name = std::str::from_utf8(rest.take(length)?)
-                .map_err(|_| "damaged: an array's name is not text")?
+                .map_err(|_| StateDamage::Name)?
                 .to_owned();
             let kind = rest.count32()?;
-            let values = usize::try_from(rest.count64()?).map_err(|_| "too large")?;
-            let words = rest.take(values.checked_mul(8).ok_or("too large")?)?;
+            let values = usize::try_from(rest.count64()?).map_err(|_| StateDamage::TooLarge)?;
+            let words = rest.take(values.checked_mul(8).ok_or(StateDamage::TooLarge)?)?;
             let words = words.as_chunks::<8>().0.iter().copied();
             let array = match kind {
                 REALS => Array::Reals(words.map(f64::from_le_bytes).collect()),
                 COUNTS => Array::Counts(words.map(u64::from_le_bytes).collect()),
-                other => return Err(format!("damaged: array `{name}` is of type {other}")),
+                kind => return Err(StateDamage::Kind { name, kind }),
             };
             state.arrays.insert(name, array);
         }
@@ -237,20 +268,23 @@ fn missing(name: &str, kind: &'static str) -> StateFileError {
 struct Reader<'a>(&'a [u8]);
 
 impl<'a> Reader<'a> {
-    fn take(&mut self, count: usize) -> Result<&'a [u8], String> {
-        let (head, tail) = self.0.split_at_checked(count).ok_or("cut short")?;
+    fn take(&mut self, count: usize) -> Result<&'a [u8], StateDamage> {
+        let (head, tail) = self
+            .0
+            .split_at_checked(count)
+            .ok_or(StateDamage::CutShort)?;
         self.0 = tail;
         Ok(head)
     }
 
-    fn count32(&mut self) -> Result<u32, String> {
-        let (head, tail) = self.0.split_first_chunk().ok_or("cut short")?;
+    fn count32(&mut self) -> Result<u32, StateDamage> {
+        let (head, tail) = self.0.split_first_chunk().ok_or(StateDamage::CutShort)?;
         self.0 = tail;
         Ok(u32::from_le_bytes(*head))
     }
 
-    fn count64(&mut self) -> Result<u64, String> {
-        let (head, tail) = self.0.split_first_chunk().ok_or("cut short")?;
+    fn count64(&mut self) -> Result<u64, StateDamage> {
+        let (head, tail) = self.0.split_first_chunk().ok_or(StateDamage::CutShort)?;
         self.0 = tail;
         Ok(u64::from_le_bytes(*head))
     }
@@ -291,10 +325,18 @@ mod tests {
         let bytes = example().encode();
         let mut changed = bytes.clone();
         changed[60] ^= 1;
-        for wrong in [&changed[..], &bytes[..bytes.len() - 1], &bytes[..20], b"x"] {
+        for (wrong, why) in [
+            (&changed[..], StateDamage::Checksum),
+            (&bytes[..bytes.len() - 1], StateDamage::Checksum),
+            (&bytes[..20], StateDamage::CutShort),
+            (b"x", StateDamage::Foreign),
+        ] {
             fs::write(&path, wrong).unwrap();
             let error = StateFile::read(&path).unwrap_err();
-            assert!(matches!(error, StateFileError::Damaged { .. }), "{error}");
+            let StateFileError::Damaged { what, .. } = error else {
+                panic!("{error}");
+            };
+            assert_eq!(what, why);
         }
     }
 

@@ -229,7 +229,8 @@ fn reaction(node: &YamlNode, units: &MechanismUnits) -> Result<ParsedReaction, F
             ),
         );
     }
-    let (equation, body) = equation::parse(text).map_err(|what| (Some(stated.line), what))?;
+    let (equation, body) =
+        equation::parse(text).map_err(|what| (Some(stated.line), what.to_string()))?;
     let falloff = matches!(body, ThirdBody::Falloff(_));
     if (kind == "falloff") != falloff {
         return fault(

@@ -124,7 +124,7 @@ fn draft(bare: &str, line: usize) -> Result<Draft, Fault> {
         );
     };
     let name = words[..split].join(" ");
-    let (equation, body) = equation::parse(&name).map_err(|what| (Some(line), what))?;
+    let (equation, body) = equation::parse(&name).map_err(|what| (Some(line), what.to_string()))?;
     Ok(Draft {
         name,
         line,

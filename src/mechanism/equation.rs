@@ -1,7 +1,8 @@
 //! Equations as mechanisms write them, with or without spaces; their third bodies and orders.
 
 use calcine_coupler::physics::kinetics::Collider;
-use calcine_coupler::physics::reaction::Equation;
+use calcine_coupler::physics::reaction::{Equation, EquationError};
+use thiserror::Error;
 
 /// The third body of an equation.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,6 +13,34 @@ pub enum ThirdBody {
     Three,
     /// `(+M)`: between two limits of pressure; with a name, that species alone.
     Falloff(Option<String>),
+}
+
+/// An equation of a mechanism, or the efficiencies of its third body, that cannot be.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum MechanismEquationError {
+    /// No arrow.
+    #[error("\"{0}\" is no equation: it has no arrow")]
+    NoArrow(String),
+    /// Several arrows.
+    #[error("\"{0}\" is no equation: it has not one arrow")]
+    Arrows(String),
+    /// M on one side only, or another M.
+    #[error("\"{0}\" has not the same third body on both sides")]
+    ThirdBodies(String),
+    /// A side that is none.
+    #[error("\"{text}\" is no equation: {cause}")]
+    Sides {
+        /// The equation.
+        text: String,
+        /// What is wrong with it.
+        cause: EquationError,
+    },
+    /// Efficiencies without a third body; the reaction's name stands before.
+    #[error("has efficiencies but no M")]
+    NoThirdBody,
+    /// Efficiencies beside a third body that is one species.
+    #[error("has efficiencies beside (+{0})")]
+    OneSpecies(String),
 }
 
 impl ThirdBody {
@@ -29,13 +58,13 @@ impl ThirdBody {
         self,
         efficiencies: Vec<(String, f64)>,
         others: Option<f64>,
-    ) -> Result<Option<Collider>, String> {
+    ) -> Result<Option<Collider>, MechanismEquationError> {
         let stated = others.is_some() || !efficiencies.is_empty();
         match self {
-            Self::None if stated => Err("has efficiencies but no M".into()),
+            Self::None if stated => Err(MechanismEquationError::NoThirdBody),
             Self::None => Ok(None),
             Self::Falloff(Some(species)) if stated => {
-                Err(format!("has efficiencies beside (+{species})"))
+                Err(MechanismEquationError::OneSpecies(species))
             }
             Self::Falloff(Some(species)) => Ok(Some(Collider {
                 efficiencies: vec![(species, 1.0)],
@@ -63,26 +92,28 @@ pub fn with_orders(equation: &Equation, stated: &[(String, f64)]) -> Vec<(String
 }
 
 /// Reads `CH4+0.5O2=>CO+2H2`, `2 O + M <=> O2 + M`, `H+CH3(+M)=CH4(+M)`; `=` goes both ways.
-pub fn parse(text: &str) -> Result<(Equation, ThirdBody), String> {
+pub fn parse(text: &str) -> Result<(Equation, ThirdBody), MechanismEquationError> {
     let bare: String = text.chars().filter(|c| !c.is_whitespace()).collect();
     let arrow = ["<=>", "=>", "="]
         .into_iter()
         .find(|arrow| bare.contains(arrow));
-    let arrow = arrow.ok_or_else(|| format!("\"{text}\" is no equation: it has no arrow"))?;
+    let arrow = arrow.ok_or_else(|| MechanismEquationError::NoArrow(text.into()))?;
     let sides: Vec<&str> = bare.split(arrow).collect();
     let [left, right] = sides[..] else {
-        return Err(format!("\"{text}\" is no equation: it has not one arrow"));
+        return Err(MechanismEquationError::Arrows(text.into()));
     };
     let (left, left_body) = side(left);
     let (right, right_body) = side(right);
     if left_body != right_body {
-        return Err(format!(
-            "\"{text}\" has not the same third body on both sides"
-        ));
+        return Err(MechanismEquationError::ThirdBodies(text.into()));
     }
     let arrow = if arrow == "=>" { "=>" } else { "<=>" };
-    let equation = Equation::parse_adding(&format!("{left} {arrow} {right}"))
-        .map_err(|error| format!("\"{text}\" is no equation: {error}"))?;
+    let equation = Equation::parse_adding(&format!("{left} {arrow} {right}")).map_err(|cause| {
+        MechanismEquationError::Sides {
+            text: text.into(),
+            cause,
+        }
+    })?;
     Ok((equation, left_body))
 }
 
@@ -143,7 +174,7 @@ mod tests {
             ("O + O + M <=> O2", "not the same third body"),
             ("O2 + + H2 => H2O", "is no term"),
         ] {
-            let message = parse(text).unwrap_err();
+            let message = parse(text).unwrap_err().to_string();
             assert!(message.contains(why), "{message}");
         }
     }

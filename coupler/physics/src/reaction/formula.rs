@@ -13,12 +13,38 @@ pub struct FormulaError {
     /// The text.
     pub text: String,
     /// What is wrong with it.
-    pub why: String,
+    pub why: FormulaFault,
+}
+
+/// What is wrong with a text that should be a formula.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum FormulaFault {
+    /// `)` without `(`.
+    #[error("a parenthesis closes that was not opened")]
+    NotOpened,
+    /// `(` without `)`.
+    #[error("a parenthesis is not closed")]
+    NotClosed,
+    /// No atom at all.
+    #[error("it has no atom")]
+    Empty,
+    /// A symbol that is none of a known element.
+    #[error("\"{rest}\" begins with none of {}", Element::ALL.map(Element::symbol).join(", "))]
+    Element {
+        /// The text from there on.
+        rest: String,
+    },
+    /// A number that is none, or not positive.
+    #[error("\"{text}\" is not a number of atoms")]
+    Number {
+        /// The number.
+        text: String,
+    },
 }
 
 /// Atoms of a formula such as CaCO3, Ca(OH)2 or Fe0.947O, in the order of [`Element::ALL`].
 pub fn atoms(text: &str) -> Result<[f64; Element::COUNT], FormulaError> {
-    let fail = |why: String| FormulaError {
+    let fail = |why: FormulaFault| FormulaError {
         text: text.to_owned(),
         why,
     };
@@ -36,7 +62,7 @@ pub fn atoms(text: &str) -> Result<[f64; Element::COUNT], FormulaError> {
                 let times = number(&letters, &mut at).map_err(fail)?;
                 let inner = levels.pop().unwrap_or_default();
                 let Some(outer) = levels.last_mut() else {
-                    return Err(fail("a parenthesis closes that was not opened".into()));
+                    return Err(fail(FormulaFault::NotOpened));
                 };
                 for (sum, n) in outer.iter_mut().zip(inner) {
                     *sum += times * n;
@@ -53,12 +79,12 @@ pub fn atoms(text: &str) -> Result<[f64; Element::COUNT], FormulaError> {
     }
     match levels[..] {
         [atoms] if atoms.iter().any(|n| *n > 0.0) => Ok(atoms),
-        [_] => Err(fail("it has no atom".into())),
-        _ => Err(fail("a parenthesis is not closed".into())),
+        [_] => Err(fail(FormulaFault::Empty)),
+        _ => Err(fail(FormulaFault::NotClosed)),
     }
 }
 
-fn symbol(letters: &[char], at: &mut usize) -> Result<Element, String> {
+fn symbol(letters: &[char], at: &mut usize) -> Result<Element, FormulaFault> {
     let of = |length: usize| -> Option<Element> {
         let text: String = letters.get(*at..*at + length)?.iter().collect();
         Element::ALL.into_iter().find(|one| one.symbol() == text)
@@ -67,16 +93,15 @@ fn symbol(letters: &[char], at: &mut usize) -> Result<Element, String> {
         (Some(element), _) => (element, 2),
         (None, Some(element)) => (element, 1),
         (None, None) => {
-            let known = Element::ALL.map(Element::symbol).join(", ");
             let rest: String = letters[*at..].iter().collect();
-            return Err(format!("\"{rest}\" begins with none of {known}"));
+            return Err(FormulaFault::Element { rest });
         }
     };
     *at += length;
     Ok(found)
 }
 
-fn number(letters: &[char], at: &mut usize) -> Result<f64, String> {
+fn number(letters: &[char], at: &mut usize) -> Result<f64, FormulaFault> {
     let digits = letters[*at..].iter();
     let text: String = digits
         .take_while(|c| c.is_ascii_digit() || **c == '.')
@@ -86,7 +111,7 @@ fn number(letters: &[char], at: &mut usize) -> Result<f64, String> {
         return Ok(1.0);
     }
     let value = text.parse::<f64>().ok().filter(|value| *value > 0.0);
-    value.ok_or_else(|| format!("\"{text}\" is not a number of atoms"))
+    value.ok_or(FormulaFault::Number { text })
 }
 
 #[cfg(test)]
