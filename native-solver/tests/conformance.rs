@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use calcine_coupler::conformance::{gas, particles};
+use calcine_coupler::conformance::{broken, gas, particles};
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_native::gas::{NativeError, NativeGas};
 use calcine_native::particles::NativeParticles;
@@ -14,7 +14,7 @@ fn unmade(error: NativeError) -> PartError {
 #[test]
 fn the_native_gas_obeys_the_laws_of_a_gas() {
     let folder = tempfile::tempdir().unwrap();
-    let broken = gas::run(&mut gas::GasUnderTest {
+    let outcomes = gas::run(&mut gas::GasUnderTest {
         make: &mut |setup, mesh, from, _| {
             let mut gas = NativeGas::new(Arc::clone(mesh), setup).map_err(unmade)?;
             if let Some(folder) = from {
@@ -27,14 +27,14 @@ fn the_native_gas_obeys_the_laws_of_a_gas() {
         closure: 1e-10,
         told: 1e-9,
     });
-    let broken: Vec<String> = broken.unwrap().iter().map(ToString::to_string).collect();
+    let broken = broken(&outcomes.unwrap());
     assert!(broken.is_empty(), "{broken:#?}");
 }
 
 #[test]
 fn the_native_particles_obey_the_laws_of_particles() {
     let folder = tempfile::tempdir().unwrap();
-    let broken = particles::run(&mut particles::ParticlesUnderTest {
+    let outcomes = particles::run(&mut particles::ParticlesUnderTest {
         make: &mut |setup, from, _| {
             let mut particles = NativeParticles::new(setup).map_err(unmade)?;
             if let Some(folder) = from {
@@ -44,6 +44,6 @@ fn the_native_particles_obey_the_laws_of_particles() {
         },
         scratch: folder.path(),
     });
-    let broken: Vec<String> = broken.iter().map(ToString::to_string).collect();
+    let broken = broken(&outcomes);
     assert!(broken.is_empty(), "{broken:#?}");
 }

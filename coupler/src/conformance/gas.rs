@@ -2,18 +2,17 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
 
 use calcine_physics::Vec3;
 use calcine_physics::gas::GasProperties;
 
-use super::{BrokenLaw, LawError, holds, is_refused, same, window};
+use super::{LawError, LawOutcome, holds, is_refused, same, supervisor, window};
 use crate::error::{FailureKind, PartError};
 use crate::mesh::block::{BoxSpec, box_mesh};
 use crate::mesh::{Mesh, MeshError};
 use crate::part::{Balance, Bed, CellExchange, CellReceived, Convergence, Gas};
 use crate::setup::{Convection, GasControls, GasPatch, GasSetup, Schedule, WallHeat, WallVelocity};
-use crate::supervisor::{Interrupts, Supervisor};
+use crate::supervisor::Supervisor;
 use crate::time::GasStorage;
 
 /// Cells of the column, one on the other.
@@ -91,24 +90,23 @@ const LAWS: &[(&str, Law)] = &[
     ),
 ];
 
-/// Runs all laws; those that are broken.
-pub fn run(under_test: &mut GasUnderTest<'_>) -> Result<Vec<BrokenLaw>, MeshError> {
+/// Runs all laws.
+pub fn run(under_test: &mut GasUnderTest<'_>) -> Result<Vec<LawOutcome>, MeshError> {
     let mesh = Arc::new(mesh()?);
-    let mut broken = Vec::new();
+    let mut outcomes = Vec::new();
     for (number, &(name, law)) in LAWS.iter().enumerate() {
         let mut column = Column {
             mesh: Arc::clone(&mesh),
             setup: setup(&mesh),
             folder: under_test.scratch.join(format!("law-{number}")),
-            supervisor: Supervisor::new(Duration::from_secs(60), Interrupts::default()),
+            supervisor: supervisor(),
             received: CellReceived::default(),
             under_test: &mut *under_test,
         };
-        if let Err(cause) = law(&mut column) {
-            broken.push(BrokenLaw { law: name, cause });
-        }
+        let result = law(&mut column);
+        outcomes.push(LawOutcome { law: name, result });
     }
-    Ok(broken)
+    Ok(outcomes)
 }
 
 /// The column: patches `bottom`, `top` and `side`.
@@ -415,6 +413,7 @@ fn goes_on_alike(column: &mut Column<'_, '_>) -> Result<(), LawError> {
     column.advance(&mut *gas, 3..5)?;
     let at_end = bits(&*gas);
     drop(gas);
+    column.supervisor = supervisor();
     let mut resumed = column.make(Some(&folder))?;
     same(
         "the state that was taken up",

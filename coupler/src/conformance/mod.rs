@@ -1,17 +1,19 @@
 //! Laws that every [`Gas`](crate::part::Gas) and every [`Particles`](crate::part::Particles) must obey, written once
 //! and run against each solver by its own tests.
 //!
-//! A solver joins with a function that makes it from a setup; `gas::run` and `particles::run` give the laws that it
-//! breaks. Each law starts with a fresh solver.
+//! A solver joins with a function that makes it from a setup; `gas::run` and `particles::run` say of each law whether
+//! it holds. Each law starts with a fresh solver. `calcine conform` runs them for any program.
 
 pub mod gas;
 pub mod particles;
 
 use std::fmt;
+use std::time::Duration;
 
 use thiserror::Error;
 
 use crate::error::{FailureKind, PartError};
+use crate::supervisor::{Interrupts, Supervisor};
 use crate::time::{Clocks, Ticks, TimeError, Window};
 
 /// Why a law does not hold.
@@ -31,19 +33,42 @@ pub enum LawError {
     Folder(#[from] std::io::Error),
 }
 
-/// A law that a solver breaks.
+/// How a solver does on one law.
 #[derive(Debug)]
-pub struct BrokenLaw {
+pub struct LawOutcome {
     /// The law, a sentence.
     pub law: &'static str,
-    /// How it is broken.
-    pub cause: LawError,
+    /// How it is broken, if it is.
+    pub result: Result<(), LawError>,
 }
 
-impl fmt::Display for BrokenLaw {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.law.replace('_', " "), self.cause)
+impl LawOutcome {
+    /// True where the law holds.
+    pub fn holds(&self) -> bool {
+        self.result.is_ok()
     }
+}
+
+impl fmt::Display for LawOutcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let law = self.law.replace('_', " ");
+        match &self.result {
+            Ok(()) => write!(f, "holds   {law}"),
+            Err(cause) => write!(f, "BROKEN  {law}: {cause}"),
+        }
+    }
+}
+
+/// The laws that do not hold, in words.
+pub fn broken(outcomes: &[LawOutcome]) -> Vec<String> {
+    let broken = outcomes.iter().filter(|outcome| !outcome.holds());
+    broken.map(ToString::to_string).collect()
+}
+
+/// Watches one solver: a supervisor takes the end of any process that it watches for a death, also of one that was
+/// dropped.
+fn supervisor() -> Supervisor {
+    Supervisor::new(Duration::from_secs(60), Interrupts::default())
 }
 
 /// Holds, or says what does not.

@@ -1,11 +1,10 @@
 //! The laws of particles: spheres in a box with a floor, some held, free ones apart from each other and in contact.
 
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use calcine_physics::{Vec3, sphere};
 
-use super::{BrokenLaw, LawError, holds, is_refused, same, window};
+use super::{LawError, LawOutcome, holds, is_refused, same, supervisor, window};
 use crate::error::{FailureKind, PartError};
 use crate::motion::{
     Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, NewParticle, Pair,
@@ -13,7 +12,7 @@ use crate::motion::{
 };
 use crate::part::{ParticlePush, ParticleReceived, Particles};
 use crate::setup::ParticleSetup;
-use crate::supervisor::{Interrupts, Supervisor};
+use crate::supervisor::Supervisor;
 
 /// Time step in s.
 pub const STEP: f64 = 1e-6;
@@ -80,22 +79,21 @@ const LAWS: &[(&str, Law)] = &[
     ),
 ];
 
-/// Runs all laws; those that are broken.
-pub fn run(under_test: &mut ParticlesUnderTest<'_>) -> Vec<BrokenLaw> {
-    let mut broken = Vec::new();
+/// Runs all laws.
+pub fn run(under_test: &mut ParticlesUnderTest<'_>) -> Vec<LawOutcome> {
+    let mut outcomes = Vec::new();
     for (number, &(name, law)) in LAWS.iter().enumerate() {
         let mut spheres = Spheres {
             setup: setup(),
             folder: under_test.scratch.join(format!("law-{number}")),
-            supervisor: Supervisor::new(Duration::from_secs(60), Interrupts::default()),
+            supervisor: supervisor(),
             received: ParticleReceived::default(),
             under_test: &mut *under_test,
         };
-        if let Err(cause) = law(&mut spheres) {
-            broken.push(BrokenLaw { law: name, cause });
-        }
+        let result = law(&mut spheres);
+        outcomes.push(LawOutcome { law: name, result });
     }
-    broken
+    outcomes
 }
 
 /// Six spheres: two that touch, three apart, one held. Their ids have gaps.
@@ -335,6 +333,7 @@ fn goes_on_alike(spheres: &mut Spheres<'_, '_>) -> Result<(), LawError> {
     spheres.advance(&mut *particles, 3..6)?;
     let at_end = all_bits(&*particles);
     drop(particles);
+    spheres.supervisor = supervisor();
     let mut resumed = spheres.make(Some(&folder))?;
     same(
         "the state that was taken up",
