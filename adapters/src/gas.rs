@@ -13,8 +13,9 @@ use calcine_coupler::part::{
 use calcine_coupler::setup::{GasPatch, GasSetup};
 use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::{GasStorage, Window};
-use calcine_wire::MessageKind;
+use calcine_wire::{Link, MessageKind, WireError};
 
+use crate::answer::{self, WrongAnswer};
 use crate::gas_columns::{self as columns, GasRanks, ReceivedGas};
 use crate::solver::{ExternalSolver, header};
 
@@ -77,10 +78,34 @@ impl LinkedGas {
 
     /// Takes the state out of the messages that the links hold.
     fn read_state(&mut self, window: Option<&Window>) -> Result<(), PartError> {
+        for (link, cells) in self.solver.links().iter().zip(self.solver.owned().iter()) {
+            let wrong = wrong_answer(link, cells, window);
+            let wrong = wrong.map_err(|error| self.solver.failure(window, error))?;
+            if let Some(wrong) = wrong {
+                return Err(self.solver.wrong(window, wrong));
+            }
+        }
         let ranks = ranks(&self.solver, &self.mesh);
         let read = self.state.read(ranks, self.species, self.turbulent);
         read.map_err(|error| self.solver.failure(window, error))
     }
+}
+
+/// What is wrong with the state that a rank has sent.
+fn wrong_answer(
+    link: &Link,
+    cells: &[usize],
+    window: Option<&Window>,
+) -> Result<Option<WrongAnswer>, WireError> {
+    if let Some(window) = window
+        && let Some(wrong) = answer::of_another_attempt(link, window)?
+    {
+        return Ok(Some(wrong));
+    }
+    if let Some(wrong) = answer::of_another_length(link, cells.len())? {
+        return Ok(Some(wrong));
+    }
+    answer::not_finite(link, |row| format!("cell {}", cells[row]))
 }
 
 fn ranks<'a>(solver: &'a ExternalSolver, mesh: &Mesh) -> GasRanks<'a> {
@@ -178,9 +203,9 @@ impl Gas for LinkedGas {
         };
         self.solver
             .wait(supervisor, &window, MessageKind::Finished)?;
+        self.read_state(Some(&window))?;
         let convergence = columns::read(ranks(&self.solver, &self.mesh), received);
         let convergence = convergence.map_err(|error| self.solver.failure(Some(&window), error))?;
-        self.read_state(Some(&window))?;
         Ok(convergence)
     }
 }

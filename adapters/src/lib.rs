@@ -3,6 +3,7 @@
 //! [`launch`] starts and ends processes, [`solver`] speaks with them; an adapter only says what its
 //! columns mean.
 
+pub mod answer;
 pub mod external;
 pub mod gas;
 mod gas_columns;

@@ -17,6 +17,7 @@ use calcine_coupler::time::Window;
 use calcine_wire::{Link, MessageKind, WireError};
 use thiserror::Error;
 
+use crate::answer::{self, WrongAnswer};
 use crate::solver::{ExternalSolver, header};
 
 /// Name of the file with ids and radii in a checkpoint's folder.
@@ -152,8 +153,26 @@ impl LinkedParticles {
             error.kind = FailureKind::NotFinite;
             return Err(error.caused_by(found));
         }
+        for link in self.solver.links() {
+            let wrong = wrong_answer(link, window);
+            let wrong = wrong.map_err(|error| self.solver.failure(window, error))?;
+            if let Some(wrong) = wrong {
+                return Err(self.solver.wrong(window, wrong));
+            }
+        }
         Ok(state)
     }
+}
+
+/// What is wrong with the state that a rank has sent.
+fn wrong_answer(link: &Link, window: Option<&Window>) -> Result<Option<WrongAnswer>, WireError> {
+    if let Some(window) = window
+        && let Some(wrong) = answer::of_another_attempt(link, window)?
+    {
+        return Ok(Some(wrong));
+    }
+    let ids = link.column_words("id")?;
+    answer::not_finite(link, |row| format!("particle {}", ids[row]))
 }
 
 /// Interleaved numbers as vectors.

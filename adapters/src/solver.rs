@@ -16,6 +16,7 @@ use calcine_wire::{
     SolverNetwork, WireError,
 };
 
+use crate::answer::WrongAnswer;
 use crate::launch::{Launcher, Processes, Program, Spawner, spawn};
 
 /// What is to be launched.
@@ -218,7 +219,7 @@ impl Peer {
                     if header.kind() != Some(kind) {
                         let error = WireError::Unexpected {
                             found: header.kind,
-                            expected: "another answer",
+                            expected: kind.name(),
                         };
                         return Err(self.failure(Some(rank), window, error));
                     }
@@ -467,6 +468,13 @@ impl ExternalSolver {
     /// A wire's error as the part's, with name, pid and the end of the log.
     pub fn failure(&self, window: Option<&Window>, error: WireError) -> PartError {
         self.peer.failure(None, window, error)
+    }
+
+    /// An answer that is not as it must be.
+    pub fn wrong(&self, window: Option<&Window>, wrong: WrongAnswer) -> PartError {
+        let mut error = self.refuse(window, wrong.message);
+        error.kind = wrong.kind;
+        error
     }
 
     /// An error of this part in words, with name, pid and the end of the log.

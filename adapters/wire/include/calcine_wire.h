@@ -221,10 +221,14 @@ typedef struct calcine_carrier {
 /* Whether the link that the variable CALCINE_LINK describes needs a carrier: 1 or 0. */
 calcine_status calcine_link_needs_carrier(uint32_t *needs);
 
-/* Opens the link of a rank, as the variable CALCINE_LINK describes it; `carrier` may be NULL where
- * none is needed. */
-calcine_status calcine_link_open(uint32_t rank, const calcine_carrier *carrier,
-                                 calcine_link **link);
+/* Opens the link of a rank, as the variable CALCINE_LINK describes it; `carrier` may be NULL where none is needed.
+ * A header of another version than the library's is refused. */
+calcine_status calcine_link_open_version(uint32_t header_version, uint32_t rank, const calcine_carrier *carrier,
+                                         calcine_link **link);
+
+static inline calcine_status calcine_link_open(uint32_t rank, const calcine_carrier *carrier, calcine_link **link) {
+    return calcine_link_open_version(CALCINE_WIRE_VERSION, rank, carrier, link);
+}
 
 /* Says hello and compares with what the coordinator answers; an error names both values. */
 calcine_status calcine_link_handshake(calcine_link *link, const calcine_hello *hello,

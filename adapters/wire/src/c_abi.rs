@@ -17,7 +17,7 @@ use crate::error::WireError;
 use crate::failure::SolverFailure;
 use crate::hello::{Hello, NEW, NOT_COMPARED};
 use crate::link::Link;
-use crate::record::{Header, MessageKind};
+use crate::record::{Header, MessageKind, VERSION};
 use crate::run::{LinkAddress, TransportKind};
 use crate::shared_memory::{LinkEnd, SharedMemory};
 use crate::transport::Transport;
@@ -213,13 +213,20 @@ extern "C" fn calcine_link_needs_carrier(needs: *mut u32) -> Status {
 }
 
 #[unsafe(no_mangle)]
-extern "C" fn calcine_link_open(
+extern "C" fn calcine_link_open_version(
+    version: u32,
     rank: u32,
     carrier: *const CCarrier,
     link: *mut *mut CLink,
 ) -> Status {
     guarded(|| {
         put(link, ptr::null_mut())?;
+        if version != VERSION {
+            return Err(WireError::Header {
+                header: version,
+                library: VERSION,
+            });
+        }
         let address = LinkAddress::from_environment()?;
         // SAFETY: C passes NULL or a filled-in struct that lives during the call.
         let calls = unsafe { carrier.as_ref() }.copied();

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use crate::failure::SolverFailure;
+use crate::record::MessageKind;
 
 /// What can go wrong on a wire.
 #[derive(Debug, Error)]
@@ -14,6 +15,17 @@ pub enum WireError {
     PeerDead {
         /// Its process id.
         pid: u32,
+    },
+    /// A solver in C was compiled against the header of another version than the library's.
+    #[error(
+        "calcine_wire.h is of protocol version {header}, the library of version {library}: compile against the header \
+         that came with the library"
+    )]
+    Header {
+        /// The header's version.
+        header: u32,
+        /// The library's.
+        library: u32,
     },
     /// The handshake found two different values.
     #[error("the handshake failed: the {what} is {ours} here, but {theirs} at the other end")]
@@ -44,7 +56,7 @@ pub enum WireError {
         expected: u64,
     },
     /// A kind of message that does not belong here.
-    #[error("a message of kind {found} arrived where {expected} was expected")]
+    #[error("{} arrived where {expected} was expected", named(*found))]
     Unexpected {
         /// The number of the kind.
         found: u32,
@@ -180,4 +192,12 @@ pub enum WireError {
         /// Why.
         source: std::io::Error,
     },
+}
+
+/// A kind of message by its number and its name in the C header.
+fn named(number: u32) -> String {
+    match MessageKind::from_number(number) {
+        Some(kind) => format!("a message {} ({number})", kind.name()),
+        None => format!("a message of kind {number}"),
+    }
 }

@@ -48,6 +48,11 @@ impl Link {
         self.rank
     }
 
+    /// The columns that both ends agreed on.
+    pub fn catalogue(&self) -> &Catalogue {
+        &self.catalogue
+    }
+
     /// The process at the other end, as it introduced itself.
     pub fn peer(&self) -> Option<&Process> {
         self.peer.as_ref()

@@ -59,6 +59,25 @@ impl MessageKind {
         MessageKind::Boundary,
     ];
 
+    /// Its name, as the C header has it behind `CALCINE_`.
+    pub fn name(self) -> &'static str {
+        match self {
+            MessageKind::Hello => "HELLO",
+            MessageKind::State => "STATE",
+            MessageKind::Start => "START",
+            MessageKind::Finished => "FINISHED",
+            MessageKind::Commit => "COMMIT",
+            MessageKind::Checkpoint => "CHECKPOINT",
+            MessageKind::Checkpointed => "CHECKPOINTED",
+            MessageKind::Failed => "FAILED",
+            MessageKind::Bye => "BYE",
+            MessageKind::Owned => "OWNED",
+            MessageKind::Change => "CHANGE",
+            MessageKind::Boundary => "BOUNDARY",
+            MessageKind::Changed => "CHANGED",
+        }
+    }
+
     /// The kind of a number on the wire.
     pub fn from_number(number: u32) -> Option<MessageKind> {
         Self::ALL.into_iter().find(|&kind| kind as u32 == number)

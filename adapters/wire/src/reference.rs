@@ -18,83 +18,67 @@ pub const END: &str = "/* End of the generated part. */\n";
 /// Longest line of the header.
 const WIDTH: usize = 118;
 
-/// Name in C, who sends it, what it carries, when, and what is answered.
-type About = (&'static str, &'static str, &'static str, &'static str);
+/// Who sends it, what it carries, when, and what is answered.
+type About = (&'static str, &'static str, &'static str);
 
 fn about(kind: MessageKind) -> About {
     match kind {
         MessageKind::Hello => (
-            "HELLO",
             "solver, then coordinator",
             "text; calcine_link_handshake sends and reads it",
             "first",
         ),
         MessageKind::State => (
-            "STATE",
             "solver",
             "columns \"state\"",
             "once: a gas after OWNED, particles after the handshake. Heat, drag, impulse, balances and convergence \
              are 0",
         ),
         MessageKind::Start => (
-            "START",
             "coordinator",
             "columns \"start\"; the header has window, attempt and clocks",
             "asks for one attempt at a window, always from the last commit. A gas gets several in a window, \
              particles one. Answer: FINISHED",
         ),
         MessageKind::Finished => (
-            "FINISHED",
             "solver",
             "columns \"state\": the state at the end of the window, and what the attempt took",
             "answers START",
         ),
         MessageKind::Commit => (
-            "COMMIT",
             "coordinator",
             "nothing",
             "makes the last attempt the start of the next. No answer; the next request may follow at once",
         ),
         MessageKind::Checkpoint => (
-            "CHECKPOINT",
             "coordinator",
             "text: an existing folder, absolute",
             "after a commit: write what is committed into the folder, to last, and go on from what was written. \
              Answer: CHECKPOINTED",
         ),
         MessageKind::Checkpointed => (
-            "CHECKPOINTED",
             "solver",
             "columns \"state\", as with STATE",
             "answers CHECKPOINT",
         ),
         MessageKind::Failed => (
-            "FAILED",
             "either",
             "text; the header's count is a calcine_failure. calcine_link_failed sends it",
             "in place of any answer; the sender then ends",
         ),
         MessageKind::Bye => (
-            "BYE",
             "coordinator, then solver",
             "nothing",
             "the run ends. Answer: BYE; then close the link and exit with 0",
         ),
-        MessageKind::Owned => (
-            "OWNED",
-            "a gas",
-            "columns \"owned\"",
-            "once, after the handshake",
-        ),
+        MessageKind::Owned => ("a gas", "columns \"owned\"", "once, after the handshake"),
         MessageKind::Change => (
-            "CHANGE",
             "coordinator, to particles",
             "text, one line each: \"rest\" (all come to rest where they are), \"remove ID\", \
              \"insert ID TYPE X Y Z VX VY VZ RADIUS DENSITY\" (TYPE: population from 1), \"resize ID RADIUS MASS\"",
             "between a commit and the next START. Answer: CHANGED",
         ),
         MessageKind::Boundary => (
-            "BOUNDARY",
             "coordinator, to a gas, then the gas",
             "text, one line each: \"PATCH CONDITION VALUE...\", the conditions as in the case file \
              (superficial_velocity, mass_flow, temperature, composition, pressure, heat_flux, \
@@ -103,7 +87,6 @@ fn about(kind: MessageKind) -> About {
              Answer: BOUNDARY, or FAILED with CALCINE_FAILURE_UNSUPPORTED",
         ),
         MessageKind::Changed => (
-            "CHANGED",
             "particles",
             "columns \"state\", as with STATE",
             "answers CHANGE",
@@ -123,7 +106,7 @@ pub fn header_part() -> String {
         &mut text,
         MessageKind::ALL.map(|kind| {
             (
-                format!("CALCINE_{}", about(kind).0),
+                format!("CALCINE_{}", kind.name()),
                 kind as u32,
                 String::new(),
             )
@@ -145,7 +128,8 @@ pub fn header_part() -> String {
     );
     text.push_str("} calcine_failure;\n\n/* Messages: who sends them, with what, when.\n *\n");
     for kind in MessageKind::ALL {
-        let (name, sender, payload, when) = about(kind);
+        let (sender, payload, when) = about(kind);
+        let name = kind.name();
         wrapped(
             &mut text,
             &format!("{name:<13}"),
