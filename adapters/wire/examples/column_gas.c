@@ -40,9 +40,10 @@ static struct {
     double width, depth, height, cells, velocity, inlet_temperature, temperature, pressure, gravity;
 } given = {0, 0, 0, 0, 0, 300, 300, 101325, 0};
 
-/* Values of each cell at one time, and the mass flows through the N + 1 faces across z, upwards, in kg/s. */
+/* Values of each cell at one time, and the mass flows through the N + 1 faces across z, upwards, in kg/s. The
+ * gradient is that of pressure along z in Pa/m. */
 typedef struct state {
-    double *mass, *enthalpy, *velocity, *flow;
+    double *mass, *enthalpy, *velocity, *gradient, *flow;
 } state;
 
 static calcine_link *wire;
@@ -51,7 +52,6 @@ static double area, volume, height;          /* of a cell, SI */
 static state committed, now;
 static int has_started;                      /* a window has been committed */
 static double *void_fraction;
-static double *gradient;                     /* of pressure along z, Pa/m */
 static double *heat, *drag;                  /* taken from the particles in the last attempt, W and N */
 static double balances[5][7];                /* mass, energy, momentum x, y, z: see calcine_wire.h */
 static double storage_clock;                 /* N s */
@@ -83,7 +83,7 @@ static double *list(uint64_t count) {
 }
 
 static state make_state(void) {
-    state made = {list(cells), list(cells), list(cells), list(cells + 1)};
+    state made = {list(cells), list(cells), list(cells), list(cells), list(cells + 1)};
     return made;
 }
 
@@ -91,6 +91,7 @@ static void copy(state *to, const state *from) {
     memcpy(to->mass, from->mass, cells * sizeof(double));
     memcpy(to->enthalpy, from->enthalpy, cells * sizeof(double));
     memcpy(to->velocity, from->velocity, cells * sizeof(double));
+    memcpy(to->gradient, from->gradient, cells * sizeof(double));
     memcpy(to->flow, from->flow, (cells + 1) * sizeof(double));
 }
 
@@ -197,7 +198,7 @@ static void take_stock(const exchange *told, double motion, double span) {
         drag[3 * c + 1] = told->drag_source[3 * c + 1];
         drag[3 * c + 2] = told->drag_source[3 * c + 2] - told->drag_coefficient[c] * u;
         double push = committed.mass[c] * (u - committed.velocity[c]) / motion + below + above - drag[3 * c + 2];
-        gradient[c] = rho * given.gravity - push / pores;
+        now.gradient[c] = rho * given.gravity - push / pores;
         heat[c] = told->heat_source[c] - told->heat_coefficient[c] * temperature_of(now.enthalpy[c]);
 
         add(balances[0], STORED, gained);
@@ -285,11 +286,11 @@ static void answer(calcine_kind kind) {
     for (uint64_t c = cells; c-- > 0;) {
         temperature[c] = temperature_of(now.enthalpy[c]);
         rho[c] = density(now.enthalpy[c]);
-        pressure[c] = (c + 1 < cells ? pressure[c + 1] - 0.5 * height * gradient[c + 1] : given.pressure)
-            - 0.5 * height * gradient[c];
+        pressure[c] = (c + 1 < cells ? pressure[c + 1] - 0.5 * height * now.gradient[c + 1] : given.pressure)
+            - 0.5 * height * now.gradient[c];
         for (int axis = 0; axis < 3; ++axis) {
             velocity[3 * c + axis] = axis == 2 ? now.velocity[c] : 0;
-            slope[3 * c + axis] = axis == 2 ? gradient[c] : 0;
+            slope[3 * c + axis] = axis == 2 ? now.gradient[c] : 0;
         }
     }
     struct { const char *name; const double *values; size_t count; } taken[] = {
@@ -328,7 +329,7 @@ static void checkpoint(const char *folder, int writes) {
     double head[2] = {(double)cells, has_started};
     struct { double *values; size_t count; } parts[] = {
         {head, 2}, {committed.mass, cells}, {committed.enthalpy, cells}, {committed.velocity, cells},
-        {committed.flow, cells + 1}, {gradient, cells}};
+        {committed.gradient, cells}, {committed.flow, cells + 1}};
     for (size_t k = 0; k < sizeof parts / sizeof *parts; ++k) {
         size_t done = writes ? fwrite(parts[k].values, sizeof(double), parts[k].count, file)
                              : fread(parts[k].values, sizeof(double), parts[k].count, file);
@@ -387,7 +388,6 @@ int main(int count, char **words) {
     committed = make_state();
     now = make_state();
     void_fraction = list(cells);
-    gradient = list(cells);
     heat = list(cells);
     drag = list(3 * cells);
     for (uint64_t c = 0; c < cells; ++c) {
