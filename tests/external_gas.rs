@@ -8,63 +8,18 @@ use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::sync::OnceLock;
 
 use calcine::results::Summary;
 
+use crate::support::c_solver::{self, examples};
 use crate::support::killed;
 use crate::support::program;
 
 const GAS: [&str; 2] = ["--gas", "external"];
 
-fn examples() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("adapters/wire/examples")
-}
-
-/// The folder of this build's libraries.
-fn target() -> PathBuf {
-    let own = std::env::current_exe().unwrap();
-    own.parent().unwrap().parent().unwrap().to_owned()
-}
-
-/// The gas, compiled as its users would.
-fn gas() -> &'static Path {
-    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
-    PROGRAM.get_or_init(|| {
-        let mut build = Command::new(env!("CARGO"));
-        build.args(["build", "--quiet", "--lib", "-p", "calcine-wire"]);
-        if target().ends_with("release") {
-            build.arg("--release");
-        }
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        assert!(build.current_dir(root).status().unwrap().success());
-        let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("column-gas");
-        let compiled = Command::new("cc")
-            .args([
-                "-std=c11",
-                "-O2",
-                "-Wall",
-                "-Wextra",
-                "-Wpedantic",
-                "-Werror",
-            ])
-            .arg("-I")
-            .arg(root.join("adapters/wire/include"))
-            .arg(examples().join("column_gas.c"))
-            .arg(target().join("libcalcine_wire.a"))
-            .args(["-lgcc_s", "-lutil", "-lrt", "-lpthread", "-lm", "-ldl"])
-            .arg("-o")
-            .arg(&program)
-            .status()
-            .unwrap();
-        assert!(compiled.success());
-        program
-    })
-}
-
 /// The example's case with the gas beside it.
 fn column(folder: &Path) -> PathBuf {
-    fs::copy(gas(), folder.join("column-gas")).unwrap();
+    fs::copy(c_solver::gas(), folder.join("column-gas")).unwrap();
     let case = folder.join("column.toml");
     fs::copy(examples().join("column.toml"), &case).unwrap();
     case
@@ -113,7 +68,7 @@ fn a_gas_in_plain_c_couples_with_liggghts_and_its_ledger_closes() {
 
 /// Beads fall through gas whose bottom is closed: they displace it upwards and drag it along downwards.
 fn falling(folder: &Path) -> PathBuf {
-    fs::copy(gas(), folder.join("column-gas")).unwrap();
+    fs::copy(c_solver::gas(), folder.join("column-gas")).unwrap();
     let text = fs::read_to_string(program::shipped("settled-bed")).unwrap();
     let text = text
         .replace("#:schema schema.json\n", "")

@@ -1,27 +1,33 @@
-//! A gas solver that is not ours: any program that speaks the wire's C ABI (docs/attach-a-solver.md).
+//! Solvers that are not ours: any program that speaks the wire's C ABI (docs/attach-a-solver.md).
 //!
-//! Calcine writes no inputs for it beyond what it may use: in the folder in which it runs lie the case as TOML and the
-//! mesh as a polyMesh. Its cells are compared with the mesh's one by one, as there is no hash to compare.
+//! Calcine writes no inputs for one beyond what it may use. In the folder in which a gas runs lie the case as TOML and the
+//! mesh as a polyMesh; its cells are compared with the mesh's one by one, as there is no hash to compare. In that of
+//! particles lie the case and the particles as a table; what they are at the start is compared one by one.
 
 use std::ffi::OsString;
+use std::fmt::Write;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::{Mesh, polymesh};
-use calcine_coupler::setup::GasSetup;
+use calcine_coupler::motion::Motion;
+use calcine_coupler::part::Particles;
+use calcine_coupler::setup::{GasSetup, ParticleSetup};
 use calcine_coupler::supervisor::Supervisor;
 use calcine_wire::hello::{NEW, NOT_COMPARED};
 use calcine_wire::{Catalogue, Hello};
 
 use crate::gas::LinkedGas;
 use crate::launch::{Launcher, Program};
+use crate::particles::{self, LinkedParticles};
 use crate::solver::{ExternalSolver, Launch};
 
-/// Name in messages.
+/// Names in messages.
 const NAME: &str = "external gas";
+const PARTICLES: &str = "external particles";
 /// The variable with the folder of the checkpoint that the same run goes on from.
 pub const RESUME_VARIABLE: &str = "CALCINE_RESUME";
 /// The variable with the folder of another run's checkpoint to continue from.
@@ -64,10 +70,7 @@ impl ExternalGasLaunch<'_> {
         let mut origin = NEW.to_owned();
         for (name, folder) in [(RESUME_VARIABLE, &self.resume), (FROM_VARIABLE, &self.from)] {
             let Some(folder) = folder else { continue };
-            let absolute = std::path::absolute(folder).map_err(|error| {
-                let message = format!("the checkpoint {} cannot be used", folder.display());
-                PartError::new(NAME, FailureKind::Io, message).caused_by(error)
-            })?;
+            let absolute = absolute(NAME, folder)?;
             origin = absolute.to_string_lossy().into_owned();
             environment.push((name.into(), absolute.into()));
         }
@@ -107,14 +110,144 @@ impl ExternalGasLaunch<'_> {
 
     /// The folder in which the solver runs, with what it may use of the case.
     fn write_folder(&self) -> Result<(), PartError> {
-        let failed = |error: Box<dyn std::error::Error + Send + Sync>| {
-            let message = format!("the folder {} cannot be written", self.folder.display());
-            let mut failure = PartError::new(NAME, FailureKind::Io, message);
-            failure.cause = Some(error);
-            failure
-        };
         polymesh::write(&self.mesh, &self.folder.join("constant/polyMesh"))
-            .map_err(|error| failed(error.into()))?;
-        fs::write(self.folder.join("case.toml"), self.case).map_err(|error| failed(error.into()))
+            .map_err(|error| unwritten(NAME, &self.folder, error))?;
+        fs::write(self.folder.join("case.toml"), self.case)
+            .map_err(|error| unwritten(NAME, &self.folder, error))
+    }
+}
+
+/// The absolute path of a checkpoint's folder.
+fn absolute(name: &str, folder: &Path) -> Result<PathBuf, PartError> {
+    std::path::absolute(folder).map_err(|error| {
+        let message = format!("the checkpoint {} cannot be used", folder.display());
+        PartError::new(name, FailureKind::Io, message).caused_by(error)
+    })
+}
+
+fn unwritten(
+    name: &str,
+    folder: &Path,
+    error: impl std::error::Error + Send + Sync + 'static,
+) -> PartError {
+    let message = format!("the folder {} cannot be written", folder.display());
+    PartError::new(name, FailureKind::Io, message).caused_by(error)
+}
+
+/// What external particles are started with.
+#[derive(Clone, Debug)]
+pub struct ExternalParticlesLaunch<'a> {
+    /// The particles as the case has them.
+    pub setup: &'a ParticleSetup,
+    /// The solver's program.
+    pub program: PathBuf,
+    /// Its arguments.
+    pub arguments: Vec<String>,
+    /// The case's effective TOML; `None` where there is no case.
+    pub case: Option<&'a str>,
+    /// Where the solver runs.
+    pub folder: PathBuf,
+    /// Where its output goes.
+    pub log: PathBuf,
+    /// Number of ranks.
+    pub ranks: u32,
+    /// Who starts them.
+    pub launcher: Launcher,
+    /// The particles' folder of the checkpoint to start from.
+    pub resume: Option<PathBuf>,
+    /// Longest silence while starting, writing a checkpoint or ending.
+    pub deadline: Duration,
+}
+
+impl ExternalParticlesLaunch<'_> {
+    /// Writes the folder, starts the solver and takes over the particles it starts from, which must be those of the
+    /// case where no checkpoint is taken up.
+    pub fn launch(self, supervisor: &mut Supervisor) -> Result<LinkedParticles, PartError> {
+        self.write_folder()?;
+        let mut environment: Vec<(OsString, OsString)> = Vec::new();
+        let mut origin = NEW.to_owned();
+        if let Some(folder) = &self.resume {
+            let absolute = absolute(PARTICLES, folder)?;
+            origin = absolute.to_string_lossy().into_owned();
+            environment.push((RESUME_VARIABLE.into(), absolute.into()));
+        }
+        let (ids, radii) = particles::identity(PARTICLES, self.setup, self.resume.as_deref())?;
+        let hello = Hello {
+            role: "particles".into(),
+            name: "Calcine".into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            case_hash: NOT_COMPARED.into(),
+            mesh_hash: NOT_COMPARED.into(),
+            origin,
+            count: ids.len() as u64,
+            ranks: self.ranks,
+            catalogue: Catalogue::particles(&[]),
+        };
+        let solver = ExternalSolver::launch(
+            Launch {
+                name: PARTICLES.into(),
+                program: Program {
+                    path: self.program,
+                    arguments: self.arguments.into_iter().map(OsString::from).collect(),
+                    directory: self.folder,
+                    environment,
+                },
+                launcher: self.launcher,
+                log: self.log,
+                hello,
+                cells: None,
+                handshake: self.deadline,
+                deadline: self.deadline,
+            },
+            supervisor,
+        )?;
+        let particles = LinkedParticles::new(PARTICLES, solver, self.setup, u64::MAX)?;
+        let fields = particles.fields();
+        let pairs = ids.iter().zip(&radii);
+        let other = pairs
+            .zip(fields.id.iter().zip(fields.radius))
+            .find(|((id, radius), (other, own))| id != other || radius.to_bits() != own.to_bits());
+        match other {
+            None => Ok(particles),
+            Some(((id, radius), (other, own))) => {
+                let message = format!(
+                    "it starts with particle {other} of radius {own} m where the run has particle {id} of radius \
+                     {radius} m; take ids and radii as `particles.csv` or the checkpoint has them"
+                );
+                let kind = FailureKind::NotStarted;
+                Err(PartError::new(PARTICLES, kind, message))
+            }
+        }
+    }
+
+    /// The folder in which the solver runs, with what it may use of the case: particles in ascending id, in SI, with
+    /// every digit.
+    fn write_folder(&self) -> Result<(), PartError> {
+        let setup = self.setup;
+        let mut table = String::from("id,population,held,x,y,z,vx,vy,vz,radius,density\n");
+        for row in 0..setup.id.len() {
+            let population = setup.population[row];
+            let held = match &setup.motion {
+                Motion::Frozen => true,
+                Motion::Free(contacts) => contacts.held.get(population as usize) == Some(&true),
+            };
+            let _ = write!(table, "{},{population},{}", setup.id[row], u8::from(held));
+            let velocity = setup.velocity.get(row).copied().unwrap_or_default();
+            let vectors = [setup.position[row], velocity];
+            let values = vectors.iter().flat_map(|vector| vector.iter());
+            for value in values.chain([&setup.radius[row], &setup.density[row]]) {
+                let _ = write!(table, ",{value:e}");
+            }
+            table.push('\n');
+        }
+        let write = || {
+            fs::create_dir_all(&self.folder)?;
+            fs::write(self.folder.join("particles.csv"), table)?;
+            match self.case {
+                Some(case) => fs::write(self.folder.join("case.toml"), case),
+                None => Ok(()),
+            }
+        };
+        write().map_err(|error| unwritten(PARTICLES, &self.folder, error))
     }
 }

@@ -39,6 +39,11 @@ pub enum AssemblyError {
     /// A gas of the user's own that the case does not name.
     #[error("the case names no gas solver of your own; add [external.gas] with program = \"…\"")]
     NoExternalGas,
+    /// Particles of the user's own that the case does not name.
+    #[error(
+        "the case names no particle solver of your own; add [external.particles] with program = \"…\""
+    )]
+    NoExternalParticles,
     /// A part could not start.
     #[error(transparent)]
     Part(#[from] PartError),

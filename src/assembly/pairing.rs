@@ -22,6 +22,8 @@ pub enum ParticleBackend {
     Native,
     /// Debian's LIGGGHTS as a library.
     Liggghts,
+    /// The program of `external.particles`, which couples through Calcine's C ABI.
+    External,
 }
 
 /// A gas and a particle backend.
@@ -92,6 +94,7 @@ impl ParticleBackend {
         match self {
             ParticleBackend::Native => "native",
             ParticleBackend::Liggghts => "liggghts",
+            ParticleBackend::External => "external",
         }
     }
 }

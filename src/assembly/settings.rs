@@ -5,7 +5,7 @@ use std::path::Path;
 use calcine_adapters::launch::Launcher;
 use calcine_coupler::coordinator::Origin;
 
-use super::pairing::{GasBackend, Pairing};
+use super::pairing::{GasBackend, Pairing, ParticleBackend};
 use crate::case::model::Case;
 
 /// How a run is put together, beside its case.
@@ -51,18 +51,21 @@ pub struct SolverStarts {
 }
 
 impl SolverStarts {
-    /// As many ranks as the case says for a gas, started by Calcine.
-    pub fn of(case: &Case, gas: GasBackend) -> Self {
+    /// As many ranks as the case says for the solvers of a pairing, started by Calcine.
+    pub fn of(case: &Case, pairing: Pairing) -> Self {
         let start = |ranks: u32| SolverStart {
             ranks: ranks.max(1),
             ..SolverStart::default()
         };
         Self {
-            gas: start(match (gas, &case.external_gas) {
+            gas: start(match (pairing.gas, &case.external_gas) {
                 (GasBackend::External, Some(external)) => external.ranks,
                 _ => case.openfoam.ranks,
             }),
-            particles: start(case.liggghts.ranks),
+            particles: start(match (pairing.particles, &case.external_particles) {
+                (ParticleBackend::External, Some(external)) => external.ranks,
+                _ => case.liggghts.ranks,
+            }),
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use calcine_adapters::external::ExternalGasLaunch;
+use calcine_adapters::external::{ExternalGasLaunch, ExternalParticlesLaunch};
 use calcine_adapters::liggghts::inputs::Inputs;
 use calcine_adapters::liggghts::template::ScriptTemplate;
 use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch};
@@ -32,7 +32,7 @@ pub fn write_inputs(
     pairing: Pairing,
     folder: &Path,
 ) -> Result<Vec<std::path::PathBuf>, AssemblyError> {
-    let starts = SolverStarts::of(case, pairing.gas);
+    let starts = SolverStarts::of(case, pairing);
     let mut written = Vec::new();
     if pairing.gas == GasBackend::Openfoam {
         let target = folder.join("openfoam");
@@ -70,6 +70,9 @@ pub fn native_parts(
     }
     if pairing.gas == GasBackend::External && case.external_gas.is_none() {
         return Err(AssemblyError::NoExternalGas);
+    }
+    if pairing.particles == ParticleBackend::External && case.external_particles.is_none() {
+        return Err(AssemblyError::NoExternalParticles);
     }
     if pairing.particles == ParticleBackend::Native {
         NativeParticles::new(&prepared.particles)?;
@@ -223,6 +226,24 @@ impl Assembly<'_> {
                     case_hash: self.case.hash.clone(),
                     folder: self.absolute("solvers/liggghts")?,
                     log: self.absolute("log/liggghts.log")?,
+                    resume: from,
+                    deadline: self.case.coupling.deadline,
+                };
+                Ok(Box::new(launch.launch(supervisor)?))
+            }
+            ParticleBackend::External => {
+                let external = self.case.external_particles.as_ref();
+                let external = external.ok_or(AssemblyError::NoExternalParticles)?;
+                let start = &self.settings.starts.particles;
+                let launch = ExternalParticlesLaunch {
+                    setup,
+                    program: external.program.clone(),
+                    arguments: external.arguments.clone(),
+                    case: Some(&self.case.effective),
+                    folder: self.absolute("solvers/external-particles")?,
+                    log: self.absolute("log/external-particles.log")?,
+                    ranks: start.ranks,
+                    launcher: start.launcher.clone(),
                     resume: from,
                     deadline: self.case.coupling.deadline,
                 };

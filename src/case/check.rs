@@ -118,7 +118,9 @@ fn honoured(text: &mut String, case: &Case) {
     let _ = writeln!(text, "  backends:");
     let external = case.external_gas.as_ref().map(|_| "external gas");
     let names = ["native gas", "OpenFOAM", "native particles", "LIGGGHTS"];
-    for name in names.into_iter().chain(external) {
+    let particles = case.external_particles.as_ref();
+    let particles = particles.map(|_| "external particles");
+    for name in names.into_iter().chain(external).chain(particles) {
         let foam = openfoam(case);
         let note = match name {
             "OpenFOAM" => foam.as_str(),
@@ -137,6 +139,9 @@ fn honoured(text: &mut String, case: &Case) {
             }
             "external gas" => {
                 "its own settings: of the case's gas it is told what the particles exchange, and must have the same mesh"
+            }
+            "external particles" => {
+                "their own settings: of the case they are given the particles at the start, and what the gas pushes"
             }
             _ => "every key",
         };

@@ -79,6 +79,8 @@ pub struct Case {
     pub liggghts: ExternalSpec,
     /// The gas solver of the user's own, where the case names one.
     pub external_gas: Option<ExternalProgram>,
+    /// Particles of the user's own, for `--particles external`.
+    pub external_particles: Option<ExternalProgram>,
     /// What is written.
     pub output: Output,
     /// Points at which fields are sampled.
@@ -221,7 +223,7 @@ pub struct ExternalSpec {
     pub ranks: u32,
 }
 
-/// `[external.gas]`: a solver of the user's own, which couples through Calcine's C ABI.
+/// `[external.gas]` or `[external.particles]`: a solver of the user's own, which couples through Calcine's C ABI.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExternalProgram {
     /// The program (absolute path).

@@ -68,7 +68,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         say(format_args!("{}:", pairing.name()));
         let settings = Settings {
             pairing,
-            starts: &SolverStarts::of(&case, pairing.gas),
+            starts: &SolverStarts::of(&case, pairing),
             transport: Transport::default(),
             out: &folder,
             resume: false,

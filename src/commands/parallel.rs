@@ -36,7 +36,7 @@ pub(super) struct Parallel {
     /// MPI ranks of an external gas solver [default: that of the case, or 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     ranks_gas: Option<u16>,
-    /// MPI ranks of LIGGGHTS [default: that of the case, or 1].
+    /// MPI ranks of an external particle solver [default: that of the case, or 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     ranks_particles: Option<u16>,
     /// What carries messages between Calcine and external solvers.
@@ -46,7 +46,7 @@ pub(super) struct Parallel {
     /// the same number with `--ranks-gas`.
     #[arg(long, value_name = "WORDS", value_parser = Launcher::parse)]
     launch_gas: Option<Launcher>,
-    /// Launcher of LIGGGHTS' ranks in place of `mpirun`; give the same number with
+    /// Launcher of an external particle solver's ranks in place of `mpirun`; give the same number with
     /// `--ranks-particles`.
     #[arg(long, value_name = "WORDS", value_parser = Launcher::parse)]
     launch_particles: Option<Launcher>,
@@ -70,7 +70,7 @@ impl Parallel {
         network: Option<&Arc<dyn SolverNetwork>>,
     ) -> Result<SolverStarts, Failure> {
         let gas = pairing.gas != GasBackend::Native;
-        let particles = pairing.particles == ParticleBackend::Liggghts;
+        let particles = pairing.particles != ParticleBackend::Native;
         for (option, given, taken, remedy) in [
             (
                 "--ranks-gas",

@@ -77,11 +77,9 @@ pub(super) fn run(
     };
     let settings = Settings {
         pairing,
-        starts: &arguments.parallel.starts(
-            pairing,
-            &SolverStarts::of(&case, pairing.gas),
-            network,
-        )?,
+        starts: &arguments
+            .parallel
+            .starts(pairing, &SolverStarts::of(&case, pairing), network)?,
         transport: arguments.parallel.transport(),
         out: &out,
         resume: arguments.resume,

@@ -100,13 +100,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
 
 fn one(arguments: &Arguments, settings: &[String], folder: &Path) -> Result<(), Failure> {
     let (case, prepared) = read_and_prepare(&arguments.case, settings)?;
+    let pairing = Pairing {
+        gas: arguments.gas,
+        particles: arguments.particles,
+    };
     let settings = Settings {
-        starts: &SolverStarts::of(&case, arguments.gas),
+        starts: &SolverStarts::of(&case, pairing),
         transport: Transport::default(),
-        pairing: Pairing {
-            gas: arguments.gas,
-            particles: arguments.particles,
-        },
+        pairing,
         out: folder,
         resume: false,
         from: None,

@@ -201,7 +201,7 @@ impl SimulationBuilder {
         let log = folder::log(&out)?;
         let starts = self
             .starts
-            .unwrap_or_else(|| SolverStarts::of(case, self.pairing.gas));
+            .unwrap_or_else(|| SolverStarts::of(case, self.pairing));
         let settings = assembly::RunSettings {
             pairing: self.pairing,
             starts: &starts,

@@ -108,6 +108,7 @@ pub fn case() -> Case {
         openfoam: ExternalSpec::default(),
         liggghts: ExternalSpec::default(),
         external_gas: None,
+        external_particles: None,
         output: Output {
             every: seconds(5.0),
             series_every: Some(seconds(0.7)),

@@ -1,5 +1,6 @@
 //! What several files of tests share. Test programs of their own take single files of it by their path.
 
+pub mod c_solver;
 pub mod column;
 pub mod fake;
 #[cfg(feature = "hdf5")]

@@ -25,6 +25,14 @@ const GAS: &[Key] = &[
 ];
 
 #[rustfmt::skip]
+const PARTICLES: &[Key] = &[
+    key("program", Path, Required, "The program. It runs in `solvers/external-particles` of the results, where the case lies as `case.toml` and the particles as `particles.csv`.", "\"ballistic-particles\""),
+    key("arguments", Texts(0), Without("none"), "Its arguments.", "[\"gravity=-9.81\"]"),
+    key("ranks", Whole(1, 100_000), Default("1"), "MPI ranks; `--ranks-particles` overrides it.", "4"),
+];
+
+#[rustfmt::skip]
 pub(super) const EXTERNAL: &[Key] = &[
     key("gas", Table(GAS), Without("none"), "The gas of `--gas external`; other runs ignore it.", "{ program = \"column-gas\" }"),
+    key("particles", Table(PARTICLES), Without("none"), "The particles of `--particles external`; other runs ignore it.", "{ program = \"ballistic-particles\" }"),
 ];

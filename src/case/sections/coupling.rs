@@ -104,30 +104,40 @@ pub(super) fn check_script(
     }
 }
 
-/// `[external]`: solvers of the user's own.
-pub(super) fn programs(root: &TableReader<'_>, folder: &Path) -> Option<ExternalProgram> {
-    let section = root.table("external")?;
-    let gas = section.table("gas").and_then(|table| {
-        let program = existing(&table, "program", folder);
-        if program.as_deref().is_some_and(|path| !is_executable(path)) {
-            let rule = "names no executable file".to_owned();
-            table.fail(
-                "program",
-                rule,
-                "name the program itself; compile it, or chmod +x it",
-            );
-        }
-        let arguments = table.texts("arguments").unwrap_or_default();
-        let ranks = table.small_whole("ranks");
-        table.finish();
-        Some(ExternalProgram {
-            program: program?,
-            arguments,
-            ranks: ranks?,
-        })
-    });
+/// `[external]`: solvers of the user's own, that of the gas and that of the particles.
+pub(super) fn programs(
+    root: &TableReader<'_>,
+    folder: &Path,
+) -> (Option<ExternalProgram>, Option<ExternalProgram>) {
+    let Some(section) = root.table("external") else {
+        return (None, None);
+    };
+    let gas = section.table("gas");
+    let particles = section.table("particles");
     section.finish();
-    gas
+    let read = |table: TableReader<'_>| program(&table, folder);
+    (gas.and_then(read), particles.and_then(read))
+}
+
+/// A program of the user's own.
+fn program(table: &TableReader<'_>, folder: &Path) -> Option<ExternalProgram> {
+    let program = existing(table, "program", folder);
+    if program.as_deref().is_some_and(|path| !is_executable(path)) {
+        let rule = "names no executable file".to_owned();
+        table.fail(
+            "program",
+            rule,
+            "name the program itself; compile it, or chmod +x it",
+        );
+    }
+    let arguments = table.texts("arguments").unwrap_or_default();
+    let ranks = table.small_whole("ranks");
+    table.finish();
+    Some(ExternalProgram {
+        program: program?,
+        arguments,
+        ranks: ranks?,
+    })
 }
 
 fn is_executable(path: &Path) -> bool {

@@ -73,7 +73,7 @@ pub(super) fn case(
     let coupling = coupling::read(root);
     let openfoam = coupling::external(root, "openfoam", folder);
     let liggghts = coupling::external(root, "liggghts", folder);
-    let external_gas = coupling::programs(root, folder);
+    let (external_gas, external_particles) = coupling::programs(root, folder);
     if let (Some(laws), Some(particles)) = (&laws, &particles) {
         heat::need_properties(root, laws, &materials, particles, &walls);
     }
@@ -159,6 +159,7 @@ pub(super) fn case(
         openfoam,
         liggghts,
         external_gas,
+        external_particles,
         output: output?,
         probes,
         quantities,
