@@ -15,7 +15,7 @@ pub const CASE: u8 = 2;
 pub const DIVERGED: u8 = 3;
 /// A peer died, was silent, or could not be started.
 pub const PEER: u8 = 4;
-/// A quantity lies outside its band.
+/// A quantity lies outside its band, or a solver breaks a law of the conformance suite.
 pub const OUTSIDE_BANDS: u8 = 5;
 /// Complete and inside its bands, but outside the ranges of laws, or not converged; with `--strict` only.
 pub const WARNINGS: u8 = 6;

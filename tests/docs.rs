@@ -17,9 +17,12 @@ const ONLY_PARSED: &[(&str, &str)] = &[
         "cargo xtask",
         "installs packages and builds; `cargo xtask test` itself runs this",
     ),
-    ("cargo build", "compiles; run by the tests of the C gas"),
+    (
+        "cargo build",
+        "compiles; run by the tests of the solvers in C",
+    ),
     ("cargo bench", "measures for minutes"),
-    ("cc -std", "compiles; run by the tests of the C gas"),
+    ("cc -std", "compiles; run by the tests of the solvers in C"),
     (".ci/run", "runs this test"),
     (
         "--gas openfoam",
@@ -195,7 +198,8 @@ fn subcommands_and_options_of_every_command_are_those_of_the_program() {
             continue;
         };
         // Options are read before the help is shown: a wrong one ends with an error.
-        words.push("--help".into());
+        let end = words.iter().position(|word| word == "--");
+        words.insert(end.unwrap_or(words.len()), "--help".into());
         let output = calcine(root(), &words);
         assert!(
             output.status.success(),

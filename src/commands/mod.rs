@@ -2,6 +2,7 @@
 
 mod check;
 mod compare;
+mod conform;
 mod console;
 pub mod doctor;
 mod execute;
@@ -44,6 +45,7 @@ enum Command {
     Check(check::Arguments),
     Compare(compare::Arguments),
     Sweep(sweep::Arguments),
+    Conform(conform::Arguments),
     Report(report::Arguments),
     Prepare(prepare::Arguments),
     New(new::Arguments),
@@ -67,6 +69,7 @@ pub fn run_line(network: Option<&Arc<dyn SolverNetwork>>) -> u8 {
         Command::Check(arguments) => check::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Sweep(arguments) => sweep::run(arguments),
+        Command::Conform(arguments) => conform::run(arguments),
         Command::Report(arguments) => report::run(arguments),
         Command::Prepare(arguments) => prepare::run(arguments),
         Command::New(arguments) => new::run(arguments),

@@ -24,7 +24,7 @@ const EXIT_CODES: &str = "
 | 2 | the case or the command line is wrong |
 | 3 | a solver diverged |
 | 4 | a solver died, was silent, or could not be started |
-| 5 | a quantity lies outside its band |
+| 5 | a quantity lies outside its band, or a solver breaks a law of `calcine conform` |
 | 75 | stopped with a checkpoint; `--resume` continues |
 ";
 
