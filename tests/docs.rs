@@ -40,6 +40,7 @@ const ONLY_PARSED: &[(&str, &str)] = &[
     ("perf record", "takes a kernel that counts events"),
     ("python3 read.py", "takes h5py; run by the tests of readers"),
     ("export PATH", "changes the shell"),
+    ("export PKG_CONFIG_PATH", "changes the shell"),
 ];
 
 /// What a page may assume to be there: files of a scratch folder, by the names that pages give them.

@@ -22,6 +22,7 @@ mod heat_paths;
 mod heated_column;
 mod held_and_free;
 mod held_bed;
+mod installed_interface;
 mod laws;
 mod liggghts_script;
 mod measures;

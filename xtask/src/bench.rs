@@ -57,7 +57,7 @@ pub fn run(workspace: &Workspace, choice: &Choice) -> TaskResult<()> {
     packages::install(needs, &workspace.logs)?;
     let everything = choice.words.is_empty();
     if everything {
-        tasks::build_parts(workspace, needs, tasks::BuildScope::OfRuns)?;
+        tasks::build_parts(workspace, needs, tasks::BuildScope::Runs)?;
     }
     let folders = if choice.runs_only { &[][..] } else { &FOLDERS };
     for &folder in folders {

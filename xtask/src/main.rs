@@ -31,7 +31,8 @@ usage: cargo xtask TASK
                           to `cargo test`
   setup [--native|--all]  install packages, prepare headers, build (default: --all)
         [--no-build]      without building
-  install --prefix DIR    build, then copy to DIR/bin and DIR/libexec/calcine
+  install --prefix DIR    build, then copy to DIR/bin and DIR/libexec/calcine, and what solvers in C
+                          are compiled against to DIR/include, DIR/lib, DIR/share/calcine
         [--native]        without the adapters for OpenFOAM and LIGGGHTS
   bench …                 run the benchmarks and print one table; further arguments go to
                           `cargo bench`

@@ -9,7 +9,7 @@ use std::process::Command;
 use crate::adapters::OpenfoamAdapter;
 use crate::headers;
 use crate::packages::{self, Needs};
-use crate::steps::{Stop, TaskResult, loud_step, say, step, visibly};
+use crate::steps::{Stop, TaskResult, loud_step, new_log, quietly, say, step, visibly};
 use crate::workspace::{CargoProfile, Workspace};
 
 /// Installs the packages, prepares the headers and, with `build`, builds for runs.
@@ -17,7 +17,7 @@ pub fn set_up(workspace: &Workspace, needs: Needs, build: bool) -> TaskResult<()
     let _lock = workspace.lock()?;
     packages::install(needs, &workspace.logs)?;
     if build {
-        build_parts(workspace, needs, BuildScope::OfRuns)?;
+        build_parts(workspace, needs, BuildScope::Runs)?;
     } else if needs.openfoam {
         headers::prepare(&workspace.openfoam, &workspace.logs)?;
     }
@@ -49,7 +49,7 @@ pub fn test(workspace: &Workspace, native: bool, words: &[OsString]) -> TaskResu
     {
         let _lock = workspace.lock()?;
         packages::install(needs, &workspace.logs)?;
-        build_parts(workspace, needs, BuildScope::OfTests(&["--tests"]))?;
+        build_parts(workspace, needs, BuildScope::Tests(&["--tests"]))?;
     }
     let mut command = workspace.cargo("test");
     command.arg("--no-fail-fast");
@@ -70,7 +70,7 @@ pub fn program(
     packages::install(needs, &workspace.logs)?;
     if all {
         let _lock = workspace.lock()?;
-        build_parts(workspace, needs, BuildScope::OfTests(&["--test", name]))?;
+        build_parts(workspace, needs, BuildScope::Tests(&["--test", name]))?;
     }
     let mut command = workspace.cargo("test");
     command.args(if all {
@@ -82,9 +82,14 @@ pub fn program(
     loud_step(name, || visibly(command.args(words)))
 }
 
-/// Copies the command to PREFIX/bin and its adapters to PREFIX/libexec/calcine.
+/// Copies the command to PREFIX/bin, its adapters to PREFIX/libexec/calcine, and what a solver of the user's own is
+/// compiled against to PREFIX/include, PREFIX/lib and PREFIX/share/calcine.
 pub fn install(workspace: &Workspace, prefix: &Path, needs: Needs) -> TaskResult<()> {
-    set_up(workspace, needs, true)?;
+    {
+        let _lock = workspace.lock()?;
+        packages::install(needs, &workspace.logs)?;
+        build_parts(workspace, needs, BuildScope::Installation)?;
+    }
     let built = workspace.target.join(CargoProfile::Release.folder());
     let (bin, libexec) = (prefix.join("bin"), prefix.join("libexec/calcine"));
     let mut copies = vec![(built.join("calcine"), bin.join("calcine"))];
@@ -107,6 +112,16 @@ pub fn install(workspace: &Workspace, prefix: &Path, needs: Needs) -> TaskResult
         &format!("copy {} files below {}", copies.len(), prefix.display()),
         || copies.iter().try_for_each(|(from, to)| copy(from, to)),
     )?;
+    step(
+        "install the header, library and examples of the C ABI",
+        || {
+            let script = workspace.root.join("adapters/wire/install.sh");
+            let mut command = Command::new(script);
+            command.arg(prefix).arg(built.join("libcalcine_wire.a"));
+            let log = new_log(&workspace.logs, "install-interface")?;
+            quietly(&mut command, &log)
+        },
+    )?;
     say(&format!("the command is {}", bin.join("calcine").display()));
     Ok(())
 }
@@ -115,9 +130,11 @@ pub fn install(workspace: &Workspace, prefix: &Path, needs: Needs) -> TaskResult
 #[derive(Clone, Copy)]
 pub enum BuildScope<'a> {
     /// The programs of a run, in the profile for runs.
-    OfRuns,
+    Runs,
+    /// The same, and the library of the C ABI.
+    Installation,
     /// Everything, in the profile for tests, with these test programs.
-    OfTests(&'a [&'a str]),
+    Tests(&'a [&'a str]),
 }
 
 /// One call of Cargo for all packages, so that shared dependencies are built once, then the C++.
@@ -127,8 +144,8 @@ pub fn build_parts(workspace: &Workspace, needs: Needs, parts: BuildScope<'_>) -
         .then(|| OpenfoamAdapter::new(workspace))
         .transpose()?;
     let (profile, megabytes) = match parts {
-        BuildScope::OfRuns => (CargoProfile::Release, 1000),
-        BuildScope::OfTests(_) => (CargoProfile::Dev, 3000),
+        BuildScope::Runs | BuildScope::Installation => (CargoProfile::Release, 1000),
+        BuildScope::Tests(_) => (CargoProfile::Dev, 3000),
     };
     if let Some(free) = workspace.free_megabytes().filter(|free| *free < megabytes) {
         let target = workspace.target.display();
@@ -139,18 +156,16 @@ pub fn build_parts(workspace: &Workspace, needs: Needs, parts: BuildScope<'_>) -
     let mut command = workspace.cargo("build");
     command.args(["--profile", profile.name()]);
     match parts {
-        BuildScope::OfTests(tests) => {
+        BuildScope::Tests(tests) => {
             // The C ABI's test links the static library, which only `cargo build` leaves in place. Test programs, because
             // with what they need libraries have other features: each would be built twice.
             command.args((needs.liggghts && needs.mpi).then_some("--workspace"));
             command.args(["--lib", "--bins"]).args(tests);
         }
-        BuildScope::OfRuns => {
+        BuildScope::Runs | BuildScope::Installation => {
             command.args(["-p", "calcine"]);
-            if adapter
-                .as_ref()
-                .is_some_and(|adapter| !adapter.is_current())
-            {
+            let is_stale = |adapter: &OpenfoamAdapter| !adapter.is_current();
+            if matches!(parts, BuildScope::Installation) || adapter.as_ref().is_some_and(is_stale) {
                 command.args(["-p", "calcine-wire"]);
             }
             if needs.liggghts {
