@@ -1,5 +1,6 @@
 //! The laws that cases may choose.
 
+use calcine_coupler::interior::reacting::size::{SIZE_LAWS, SizeRule};
 use calcine_coupler::interior::{HeatLaws, ThermalProperties};
 use calcine_coupler::motion::{
     COHESION_LAWS, CONTACT_LAWS, Cohesion, ContactForce, ROLLING_LAWS, Rolling,
@@ -10,6 +11,8 @@ use calcine_coupler::physics::conduction::{
 use calcine_coupler::physics::drag::{DRAG_LAWS, Drag};
 use calcine_coupler::physics::heat_transfer::{HEAT_TRANSFER_LAWS, HeatTransfer};
 use calcine_coupler::physics::law::{LawEntry, LawSummary};
+use calcine_coupler::physics::reaction::{RATE_LAWS, RateLaw};
+use calcine_coupler::view_factors::{RADIATION_LAWS, RadiationLaw};
 
 use crate::case::model::{Case, ConductionArea};
 
@@ -24,6 +27,12 @@ pub struct LawCatalogue {
     pub conduction: Vec<&'static LawEntry<dyn Conduction>>,
     /// Conduction through the gas between surfaces.
     pub gap: Vec<&'static LawEntry<dyn GasGap>>,
+    /// Radiation between particles.
+    pub radiation: Vec<&'static LawEntry<RadiationLaw>>,
+    /// Rate of a reaction of particles.
+    pub rate: Vec<&'static LawEntry<RateLaw>>,
+    /// Size of particles that react.
+    pub size: Vec<&'static LawEntry<SizeRule>>,
     /// Force of a contact.
     pub contact: Vec<&'static LawEntry<ContactForce>>,
     /// Resistance to rolling.
@@ -39,6 +48,9 @@ impl Default for LawCatalogue {
             heat_transfer: HEAT_TRANSFER_LAWS.to_vec(),
             conduction: CONDUCTION_LAWS.to_vec(),
             gap: GAP_LAWS.to_vec(),
+            radiation: RADIATION_LAWS.to_vec(),
+            rate: RATE_LAWS.to_vec(),
+            size: SIZE_LAWS.to_vec(),
             contact: CONTACT_LAWS.to_vec(),
             rolling: ROLLING_LAWS.to_vec(),
             cohesion: COHESION_LAWS.to_vec(),
@@ -66,6 +78,9 @@ impl LawCatalogue {
             ("laws.mass_transfer", summaries(&self.heat_transfer)),
             ("laws.conduction", summaries(&self.conduction)),
             ("laws.conduction.gap", summaries(&self.gap)),
+            ("laws.radiation", summaries(&self.radiation)),
+            ("reactions", summaries(&self.rate)),
+            ("materials.NAME.size", summaries(&self.size)),
             ("motion.contact", summaries(&self.contact)),
             ("motion.rolling", summaries(&self.rolling)),
             ("motion.cohesion", summaries(&self.cohesion)),
@@ -87,6 +102,9 @@ families!(
     heat_transfer,
     conduction,
     gap,
+    radiation,
+    rate,
+    size,
     contact,
     rolling,
     cohesion
@@ -139,4 +157,29 @@ pub fn thermal(case: &Case) -> Vec<ThermalProperties> {
         }
     };
     case.materials.iter().map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use calcine_coupler::physics::law::NONE;
+
+    #[test]
+    fn laws_of_every_family_have_names_of_their_own_and_sources() {
+        for (family, laws) in LawCatalogue::default().families() {
+            let mut names: Vec<&str> = laws.iter().map(|law| law.name).collect();
+            for law in &laws {
+                assert!(law.summary.ends_with('.'), "{family}: {}", law.name);
+                assert_eq!(
+                    law.source.is_empty(),
+                    law.name == NONE,
+                    "{family}: {}",
+                    law.name
+                );
+            }
+            names.sort_unstable();
+            names.dedup();
+            assert_eq!(names.len(), laws.len(), "{family}");
+        }
+    }
 }

@@ -101,13 +101,28 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
 /// The laws that the case chose, with their sources.
 fn laws(text: &mut String, case: &Case) {
     let laws = &case.laws;
-    let chosen = [
+    let mut chosen = vec![
         ("drag", laws.drag.entry().about()),
         ("heat transfer", laws.heat_transfer.entry().about()),
         ("mass transfer", laws.mass_transfer.entry().about()),
         ("conduction", laws.conduction.law.entry().about()),
         ("through gaps", laws.conduction.gap.entry().about()),
     ];
+    let radiation = laws.radiation.iter();
+    chosen.extend(radiation.map(|one| ("radiation", one.view_factors.law().about())));
+    // Of several reactions and materials each law once.
+    let rates = case.chemistry.reactions.iter();
+    let rates = rates.map(|one| ("reactions", one.rate.law().about()));
+    let reacts = case
+        .materials
+        .iter()
+        .filter(|one| one.composition.is_some());
+    let sizes = reacts.map(|one| ("size", one.size.law().about()));
+    for one in rates.chain(sizes) {
+        if !chosen.contains(&one) {
+            chosen.push(one);
+        }
+    }
     for (what, law) in chosen.iter().filter(|(_, law)| law.name != NONE) {
         let _ = writeln!(text, "  {what:<14} {} ({})", law.name, law.source);
     }

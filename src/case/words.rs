@@ -24,26 +24,6 @@ macro_rules! case_words {
     };
 }
 
-/// `materials.NAME.size.law`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum SizeLawName {
-    /// The diameter stays.
-    ConstantDiameter,
-    /// The density stays.
-    ConstantDensity,
-    /// Each solid has its own density.
-    Densities,
-}
-
-/// `reactions.law`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum RateLawName {
-    /// At the surface of a core.
-    ShrinkingCore,
-    /// In the whole particle.
-    PowerLaw,
-}
-
 /// `gas.chemistry.model`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum CombustionModel {
@@ -71,17 +51,6 @@ pub(super) enum AreaName {
     Force,
     /// That of the real materials under one force.
     Load,
-}
-
-/// `laws.radiation.law`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum RadiationName {
-    /// By rays.
-    ViewFactors,
-    /// By the distance alone.
-    Distance,
-    /// No radiation.
-    None,
 }
 
 /// `laws.radiation.inside`.
@@ -119,15 +88,6 @@ pub(super) struct ParticleField(pub &'static str);
 
 case_words! {
     GasStorage { "process" => GasStorage::Process, "accelerated" => GasStorage::Accelerated }
-    SizeLawName {
-        "constant-diameter" => SizeLawName::ConstantDiameter,
-        "constant-density" => SizeLawName::ConstantDensity,
-        "densities" => SizeLawName::Densities,
-    }
-    RateLawName {
-        "shrinking-core" => RateLawName::ShrinkingCore,
-        "power-law" => RateLawName::PowerLaw,
-    }
     MotionKind { "real-time" => MotionKind::RealTime, "accelerated" => MotionKind::Accelerated }
     CombustionModel { "laminar" => CombustionModel::Laminar, "pasr" => CombustionModel::Pasr }
     TurbulenceModel {
@@ -151,11 +111,6 @@ case_words! {
         "overlap" => AreaName::Overlap,
         "force" => AreaName::Force,
         "load" => AreaName::Load,
-    }
-    RadiationName {
-        "view-factors" => RadiationName::ViewFactors,
-        "distance" => RadiationName::Distance,
-        "none" => RadiationName::None,
     }
     InsideName {
         "isothermal" => InsideName::Isothermal,

@@ -19,6 +19,7 @@
 //! symmetrically, until what each particle emits arrives somewhere ([`balance`]).
 
 mod balance;
+mod law;
 mod ray;
 mod trace;
 mod tree;
@@ -27,6 +28,7 @@ mod wall;
 use std::f64::consts::PI;
 
 use calcine_interior::ExchangeAreas;
+use calcine_physics::law::LawEntry;
 use calcine_physics::radiation::{SphereTable, sphere_to_sphere, visibility, wall_visibility};
 use calcine_physics::{Vec3, sphere};
 use nalgebra::Matrix3;
@@ -34,6 +36,7 @@ use rayon::prelude::*;
 
 use crate::contacts::pairs_around;
 use crate::packing::random::SplitMix64;
+pub use law::{RADIATION_LAWS, RadiationLaw};
 pub use ray::RayHit;
 use trace::{SphereGrid, meets};
 pub use wall::WallSurface;
@@ -53,6 +56,16 @@ pub enum ViewFactors {
         /// Particles see each other up to this distance of centres, in largest diameters.
         range: f64,
     },
+}
+
+impl ViewFactors {
+    /// What the law declares.
+    pub fn law(&self) -> &'static LawEntry<RadiationLaw> {
+        match self {
+            Self::Rays { .. } => &law::RAYS,
+            Self::Distance { .. } => &law::DISTANCE,
+        }
+    }
 }
 
 /// A wall, as radiation meets it.

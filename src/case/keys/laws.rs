@@ -18,7 +18,6 @@ const CONDUCTION: &[Key] = &[
 
 #[rustfmt::skip]
 const RADIATION: &[Key] = &[
-    key("law", Choice(words::<RadiationName>), Required, "View factors by rays, with what stands between; by the distance alone, fitted to rays in random beds; or no radiation.", "\"view-factors\""),
     key("surroundings", Either(&Schedule(D::TEMPERATURE, Positive), &Choice(words::<Closed>)), Without("required with a law"), "Temperature of what rays reach that meet no wall; `closed`: nothing leaves.", "\"300 K\""),
     key("inside", Choice(words::<InsideName>), Default("isothermal"), "Spheres of one temperature, or less radiation through the bed where they conduct so badly that their warm side cannot pass on what it receives; the materials then need a conductivity.", "\"singh-kaviany\""),
     key("rays", Whole(16, 1_000_000), Default("1024"), "Rays a particle; of `view-factors`.", "1024"),
@@ -32,5 +31,5 @@ pub(super) const LAWS: &[Key] = &[
     key("heat_transfer", Law(laws::heat_transfer, &[]), Required, "Heat transfer between gas and particle.", "{ law = \"gunn\" }"),
     key("mass_transfer", Law(laws::heat_transfer, &[]), Without("none"), "Mass transfer between gas and particles that react, by a law of heat transfer with the Schmidt number in place of the Prandtl number; required where reactions exchange gas.", "{ law = \"gunn\" }"),
     key("conduction", Law(laws::conduction, CONDUCTION), Required, "Heat conduction between particles and to walls of a temperature.", "{ law = \"none\" }"),
-    key("radiation", Table(RADIATION), Required, "Radiation between particles, to walls and surroundings; the gas is transparent.", "{ law = \"none\" }"),
+    key("radiation", Law(laws::radiation, RADIATION), Required, "Radiation between particles, to walls and surroundings; the gas is transparent.", "{ law = \"none\" }"),
 ];

@@ -1,6 +1,7 @@
 //! Keys of `materials` and `solids`.
 
 use super::prelude::*;
+use crate::laws;
 
 #[rustfmt::skip]
 const COMPOSITION: &[Key] = &[
@@ -18,7 +19,6 @@ const HEAT_CAPACITY: &[Key] = &[
 
 #[rustfmt::skip]
 const SIZE: &[Key] = &[
-    key("law", Choice(words::<SizeLawName>), Required, "The diameter stays and the density follows the mass; the density stays and particles shrink or grow; or each solid has its own density in the particle.", "\"constant-density\""),
     key("densities", ByName(D::DENSITY), Without("required with `densities`"), "Density of each solid that the particles hold or come to hold, with the pores that it has in them; together they give the material's density at the start.", "{ CaCO3 = \"2700 kg/m^3\", CaO = \"1600 kg/m^3\" }"),
     key("least_diameter", Number(D::LENGTH, Positive), Without("required but for `constant-diameter`"), "Below it no particle shrinks: from there on its density falls.", "\"1 mm\""),
 ];
@@ -28,7 +28,7 @@ pub(super) const MATERIALS: &[Key] = &[
     key("density", Number(D::DENSITY, Positive), Required, "Density.", "\"2500 kg/m^3\""),
     key("composition", Table(COMPOSITION), OneOf, "What the material is made of, where it reacts: mass or mole fractions of solids, which sum to 1. Either this or `heat_capacity`.", "{ mass = { Fe2O3 = 0.95, Al2O3 = 0.05 } }"),
     key("heat_capacity", Either(&Curve(D::HEAT_CAPACITY, Positive), &Table(HEAT_CAPACITY)), OneOf, "Specific heat capacity; linear between points, constant outside them; or NASA's polynomials as a table.", "[[\"300 K\", \"780 J/kg/K\"], [\"800 K\", \"1150 J/kg/K\"]]"),
-    key("size", Table(SIZE), Without("diameters stay"), "How particles of the material take up room while they react; goes with `composition`.", "{ law = \"constant-density\", least_diameter = \"1 mm\" }"),
+    key("size", Law(laws::size, SIZE), Without("diameters stay"), "How particles of the material take up room while they react; goes with `composition`.", "{ law = \"constant-density\", least_diameter = \"1 mm\" }"),
     key("conductivity", Curve(D::CONDUCTIVITY, Positive), Without("not known"), "Thermal conductivity; linear between points, constant outside them.", "[[\"300 K\", \"80 W/m/K\"], [\"1000 K\", \"33 W/m/K\"]]"),
     key("emissivity", Number(D::NONE, UpTo(0.0, 1.0)), Without("not known"), "Emissivity of the surface, above 0 and up to 1.", "0.9"),
     key("young", Number(D::PRESSURE, Positive), Without("not known"), "Young's modulus by which contacts are computed.", "\"50 MPa\""),

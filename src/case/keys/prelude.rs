@@ -7,9 +7,9 @@ pub(super) use calcine_coupler::physics::law::Bound::{
 
 pub(super) use super::key::KeyPresence::{Default, OneOf, Required, With, Without};
 pub(super) use super::key::KeyValue::{
-    Band, ByName, Choice, Choices, Curve, Dated, Either, Grading, Law, Measured, Named, Number,
-    Numbers, Path, Schedule, Shares, Spans, Table, Tables, Text, Texts, Truth, Vector, Vectors,
-    Whole, Wholes,
+    Band, ByName, Choice, Choices, Curve, Dated, Either, Grading, Law, LawName, Measured, Named,
+    Number, Numbers, Path, Schedule, Shares, Spans, Table, Tables, Text, Texts, Truth, Vector,
+    Vectors, Whole, Wholes,
 };
 pub(super) use super::key::{Key, MOST, key, words};
 pub(super) use crate::case::words::*;

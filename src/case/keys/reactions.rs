@@ -1,6 +1,7 @@
 //! Keys of `reactions`.
 
 use super::prelude::*;
+use crate::laws;
 
 #[rustfmt::skip]
 const RATE_IN_SERIES: &[Key] = &[
@@ -35,7 +36,7 @@ const EQUILIBRIUM: &[Key] = &[
 pub(super) const REACTIONS: &[Key] = &[
     key("name", Text, Required, "Its name.", "\"calcination\""),
     key("equation", Text, Required, "Moles of gases of `gas.species` and of solids, with => (one way) or <=> (both ways); balanced. The last species of the gas reacts in none.", "\"CaCO3 <=> CaO + CO2\""),
-    key("law", Choice(words::<RateLawName>), Required, "At the surface of a core, with gas film, layers and kinetics in series; or in the whole particle, by powers of concentrations.", "\"shrinking-core\""),
+    key("law", LawName(laws::rate), Required, "At the surface of a core, with gas film, layers and kinetics in series; or in the whole particle, by powers of concentrations.", "\"shrinking-core\""),
     key("rate", Table(RATE), Required, "Rate constant k = factor T^exponent exp(-activation_energy/RT) of the forward reaction.", "{ factor = \"0.3 m/s\", activation_energy = \"70 kJ/mol\" }"),
     key("layer_diffusivity", Table(LAYER_DIFFUSIVITY), Without("none"), "Shrinking core: diffusivity of the gas in the pores of the layer that the reaction leaves, value (T/at)^exponent; required there.", "{ value = \"1e-5 m^2/s\", at = \"1100 K\", exponent = 1.75 }"),
     key("equilibrium", Table(EQUILIBRIUM), Without("from the Gibbs energies of gases and solids"), "Of a reaction with <=>: ln K = constant + over_temperature/T, with partial pressures over 1 bar.", "{ constant = -2.946, over_temperature = \"2744 K\" }"),

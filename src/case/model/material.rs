@@ -1,6 +1,10 @@
 //! Materials.
 
+use calcine_coupler::interior::reacting::size::{
+    CONSTANT_DENSITY, CONSTANT_DIAMETER, DENSITIES, SizeRule,
+};
 use calcine_coupler::physics::conduction::Conductivity;
+use calcine_coupler::physics::law::LawEntry;
 use calcine_coupler::physics::solid::HeatCapacity;
 
 /// A solid material.
@@ -46,4 +50,15 @@ pub enum SizeLaw {
         /// Radius in m below which none shrinks.
         least_radius: f64,
     },
+}
+
+impl SizeLaw {
+    /// What the law declares.
+    pub fn law(&self) -> &'static LawEntry<SizeRule> {
+        match self {
+            Self::Constant => &CONSTANT_DIAMETER,
+            Self::ConstantDensity { .. } => &CONSTANT_DENSITY,
+            Self::Densities { .. } => &DENSITIES,
+        }
+    }
 }

@@ -1,37 +1,35 @@
 //! `materials.NAME.size`: how particles take up room while they react.
 
 use calcine_coupler::interior::reacting::SizeChange;
-use calcine_coupler::interior::reacting::size::specific_volume;
+use calcine_coupler::interior::reacting::size::{SizeRule, specific_volume};
 use calcine_coupler::physics::reaction::Equilibrium;
 use calcine_coupler::physics::solids::SolidSpecies;
 
 use crate::case::model::{MaterialSpec, Population, ReactionSpec, SizeLaw};
 use crate::case::table::TableReader;
-use crate::case::words::SizeLawName;
 
 /// By how much the density that stated densities of solids come to may differ from the material's.
 const DENSITY: f64 = 0.01;
 
 /// The law of a material.
 pub(super) fn read(material: &TableReader<'_>, solids: &[SolidSpecies]) -> SizeLaw {
-    let Some(table) = material.table("size") else {
+    let Some((law, table)) = material.law("size", &material.laws().size) else {
         return SizeLaw::default();
     };
     if !material.has("composition") {
         let help = "add a composition, or remove it: only what reacts changes its size";
         material.fail("size", "stands beside no `composition`", help);
     }
-    let law = table.choice("law");
     let least = |table: &TableReader<'_>| {
         table.need("least_diameter");
         0.5 * table.number("least_diameter").unwrap_or(f64::NAN)
     };
-    let made = match law {
-        None | Some(SizeLawName::ConstantDiameter) => SizeLaw::Constant,
-        Some(SizeLawName::ConstantDensity) => SizeLaw::ConstantDensity {
+    let made = match law.map(|law| *law.make()) {
+        None | Some(SizeRule::ConstantDiameter) => SizeLaw::Constant,
+        Some(SizeRule::ConstantDensity) => SizeLaw::ConstantDensity {
             least_radius: least(&table),
         },
-        Some(SizeLawName::Densities) => SizeLaw::Densities {
+        Some(SizeRule::Densities) => SizeLaw::Densities {
             densities: densities(&table, solids).unwrap_or_default(),
             least_radius: least(&table),
         },

@@ -2,13 +2,13 @@
 
 use calcine_coupler::motion::{Wall, WallMotion, WallShape};
 use calcine_coupler::setup::Schedule;
-use calcine_coupler::view_factors::ViewFactors;
+use calcine_coupler::view_factors::{RadiationLaw, ViewFactors};
 
 use crate::case::model::{
     ConductionArea, ConductionSpec, Laws, MaterialSpec, Population, RadiationSpec,
 };
 use crate::case::table::TableReader;
-use crate::case::words::{AreaName, InsideName, RadiationName};
+use crate::case::words::{AreaName, InsideName};
 
 /// `laws.conduction`.
 pub(super) fn conduction(section: &TableReader<'_>) -> Option<ConductionSpec> {
@@ -50,8 +50,8 @@ fn area(table: &TableReader<'_>) -> Option<ConductionArea> {
 
 /// `laws.radiation`; `Some(None)` where surfaces do not radiate.
 pub(super) fn radiation(section: &TableReader<'_>) -> Option<Option<RadiationSpec>> {
-    let table = section.table("radiation")?;
-    let law = table.choice("law");
+    let (law, table) = section.law("radiation", &section.laws().radiation)?;
+    let law = law.map(|law| *law.make());
     let rays = table.whole("rays");
     let range = table.number("range");
     let refresh = match table.has("refresh") {
@@ -61,8 +61,8 @@ pub(super) fn radiation(section: &TableReader<'_>) -> Option<Option<RadiationSpe
     let inside: Option<InsideName> = table.choice("inside");
     let surroundings = surroundings(&table, law);
     let own: &[&str] = match law {
-        Some(RadiationName::ViewFactors) => &["rays", "range", "refresh", "surroundings", "inside"],
-        Some(RadiationName::Distance) => &["range", "refresh", "surroundings", "inside"],
+        Some(RadiationLaw::Rays) => &["rays", "range", "refresh", "surroundings", "inside"],
+        Some(RadiationLaw::Distance) => &["range", "refresh", "surroundings", "inside"],
         _ => &[],
     };
     for key in ["rays", "range", "refresh", "surroundings", "inside"] {
@@ -74,9 +74,9 @@ pub(super) fn radiation(section: &TableReader<'_>) -> Option<Option<RadiationSpe
     let rays = usize::try_from(rays?).ok()?;
     let range = range?;
     let view_factors = match law? {
-        RadiationName::ViewFactors => ViewFactors::Rays { rays, range },
-        RadiationName::Distance => ViewFactors::Distance { range },
-        RadiationName::None => return Some(None),
+        RadiationLaw::Rays => ViewFactors::Rays { rays, range },
+        RadiationLaw::Distance => ViewFactors::Distance { range },
+        RadiationLaw::None => return Some(None),
     };
     Some(Some(RadiationSpec {
         view_factors,
@@ -87,9 +87,9 @@ pub(super) fn radiation(section: &TableReader<'_>) -> Option<Option<RadiationSpe
 }
 
 /// `surroundings`: a temperature, or "closed".
-fn surroundings(table: &TableReader<'_>, law: Option<RadiationName>) -> Option<Option<Schedule>> {
+fn surroundings(table: &TableReader<'_>, law: Option<RadiationLaw>) -> Option<Option<Schedule>> {
     if !table.has("surroundings") {
-        if law.is_some_and(|law| law != RadiationName::None) {
+        if law.is_some_and(|law| law != RadiationLaw::None) {
             table.missing("surroundings");
         }
         return Some(None);
@@ -99,7 +99,7 @@ fn surroundings(table: &TableReader<'_>, law: Option<RadiationName>) -> Option<O
         return Some(None);
     }
     let schedule = table.schedule("surroundings")?;
-    if law == Some(RadiationName::Distance) {
+    if law == Some(RadiationLaw::Distance) {
         table.fail(
             "surroundings",
             "does not go with law = \"distance\", which does not see where the bed ends",

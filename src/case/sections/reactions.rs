@@ -4,7 +4,9 @@ use calcine_adapters::openfoam::stock::StockSolver;
 use calcine_coupler::interior::reacting::{LayerDiffusivity, Rate, Reaction, SolidChemistry};
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::reaction::equilibrium::GibbsLine;
-use calcine_coupler::physics::reaction::{Arrhenius, Equation, Equilibrium, PowerLaw, imbalance};
+use calcine_coupler::physics::reaction::{
+    Arrhenius, Equation, Equilibrium, PowerLaw, RateLaw, imbalance,
+};
 use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::physics::thermo::Mixture;
@@ -13,7 +15,6 @@ use calcine_coupler::setup::{GasPatch, GasSetup};
 use crate::case::model::{Laws, ReactionSpec};
 use crate::case::table::TableReader;
 use crate::case::units::Dimension;
-use crate::case::words::RateLawName;
 
 /// How far fractions may be from summing to 1, as of gases.
 const SLACK: f64 = 1e-3;
@@ -115,11 +116,11 @@ pub(super) fn reactions(
 fn reaction(table: &TableReader<'_>, known: &Known<'_>) -> Option<Reaction> {
     let name = table.text("name");
     let text = table.text("equation");
-    let law = table.choice("law");
+    let law = table.named_law("law", &table.laws().rate);
     let equation = text.and_then(|text| equation(table, text, known));
-    let rate = match law {
-        Some(RateLawName::ShrinkingCore) => core_rate(table),
-        Some(RateLawName::PowerLaw) => power_rate(table, known, equation.as_ref()),
+    let rate = match law.map(|law| *law.make()) {
+        Some(RateLaw::ShrinkingCore) => core_rate(table),
+        Some(RateLaw::PowerLaw) => power_rate(table, known, equation.as_ref()),
         None => None,
     };
     // Known, even where the equation could not be read.

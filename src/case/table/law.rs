@@ -50,6 +50,16 @@ impl<'a> TableReader<'a> {
         Some((choice, table))
     }
 
+    /// A law without keys of its own that a key of this table names.
+    pub fn named_law<L: ?Sized>(
+        &self,
+        key: &str,
+        laws: &[&'static LawEntry<L>],
+    ) -> Option<LawChoice<L>> {
+        let names: Vec<&str> = laws.iter().map(|law| law.name).collect();
+        LawChoice::named(laws, self.word(key, &names)?, Vec::new())
+    }
+
     /// A law whose table has no keys of its own.
     pub fn plain_law<L: ?Sized>(
         &self,

@@ -1,7 +1,10 @@
 //! A reaction of what particles hold, and the law by which it goes.
 
 use calcine_numerics::Number;
-use calcine_physics::reaction::{Arrhenius, Equilibrium, PowerLaw};
+use calcine_physics::law::LawEntry;
+use calcine_physics::reaction::{
+    Arrhenius, Equilibrium, PowerLaw, RateLaw, power_law, shrinking_core,
+};
 
 /// A reaction of solids, and of gases where it is heterogeneous.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +33,16 @@ pub enum Rate {
         /// Of the gas in the layer that the reaction leaves.
         diffusivity: LayerDiffusivity,
     },
+}
+
+impl Rate {
+    /// What the law declares.
+    pub fn law(&self) -> &'static LawEntry<RateLaw> {
+        match self {
+            Self::Power(_) => &power_law::LAW,
+            Self::Core { .. } => &shrinking_core::LAW,
+        }
+    }
 }
 
 /// Diffusivity D (T/T₀)^n of a gas in the pores of a layer.

@@ -1,8 +1,50 @@
 //! How the volume of a particle follows its conversion (docs/theory.md, RXN-1, 2).
 
 use calcine_numerics::Number;
+use calcine_physics::law::LawEntry;
 use calcine_physics::solids::SolidSpecies;
 use calcine_physics::sphere;
+
+/// Which law the size of particles follows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SizeRule {
+    /// The diameter stays.
+    ConstantDiameter,
+    /// The density stays.
+    ConstantDensity,
+    /// Each solid has its own density.
+    Densities,
+}
+
+/// The diameter stays and the density follows the mass.
+pub static CONSTANT_DIAMETER: LawEntry<SizeRule> = LawEntry {
+    name: "constant-diameter",
+    summary: "The diameter stays and the density follows the mass.",
+    source: "docs/theory.md, RXN-1",
+    parameters: &[],
+    make: |_| Box::new(SizeRule::ConstantDiameter),
+};
+
+/// The density stays and particles shrink or grow.
+pub static CONSTANT_DENSITY: LawEntry<SizeRule> = LawEntry {
+    name: "constant-density",
+    summary: "The density stays and particles shrink or grow.",
+    source: "docs/theory.md, RXN-1",
+    parameters: &[],
+    make: |_| Box::new(SizeRule::ConstantDensity),
+};
+
+/// Each solid has its own density in the particle.
+pub static DENSITIES: LawEntry<SizeRule> = LawEntry {
+    name: "densities",
+    summary: "Each solid has its own density in the particle.",
+    source: "docs/theory.md, RXN-1",
+    parameters: &[],
+    make: |_| Box::new(SizeRule::Densities),
+};
+
+/// The laws by which a case may let particles change their size.
+pub static SIZE_LAWS: &[&LawEntry<SizeRule>] = &[&CONSTANT_DIAMETER, &CONSTANT_DENSITY, &DENSITIES];
 
 /// The law by which a particle of a material takes up room.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -5,10 +5,17 @@ pub mod equation;
 pub mod equilibrium;
 pub mod formula;
 pub mod power_law;
+pub mod rate_law;
 pub mod shrinking_core;
 
 pub use arrhenius::Arrhenius;
 pub use equation::{Equation, EquationError, imbalance};
 pub use equilibrium::Equilibrium;
 pub use power_law::PowerLaw;
+pub use rate_law::RateLaw;
 pub use shrinking_core::Interface;
+
+use crate::law::LawEntry;
+
+/// The laws by which a case may let particles react.
+pub static RATE_LAWS: &[&LawEntry<RateLaw>] = &[&shrinking_core::LAW, &power_law::LAW];

@@ -3,6 +3,17 @@
 use calcine_numerics::Number;
 
 use super::arrhenius::{self, Arrhenius};
+use super::rate_law::RateLaw;
+use crate::law::LawEntry;
+
+/// Its entry in a case file.
+pub static LAW: LawEntry<RateLaw> = LawEntry {
+    name: "power-law",
+    summary: "In the whole particle, by powers of concentrations.",
+    source: "docs/theory.md, RXN-1",
+    parameters: &[],
+    make: |_| Box::new(RateLaw::PowerLaw),
+};
 
 /// Rate of a reaction in the volume of a particle in mol/m³/s,
 ///

@@ -1,7 +1,19 @@
 //! Shrinking cores with any number of interfaces.
 
+use super::rate_law::RateLaw;
+use crate::law::LawEntry;
 use crate::sphere;
 use calcine_numerics::Number;
+
+/// Its entry in a case file.
+pub static LAW: LawEntry<RateLaw> = LawEntry {
+    name: "shrinking-core",
+    summary: "At the surface of a core that shrinks, with gas film, layers and kinetics in series.",
+    source: "Yagi and Kunii, 5th Symposium on Combustion (1955) 231, doi 10.1016/S0082-0784(55)80033-1; Spitzer, \
+             Manning and Philbrook, Trans. Metall. Soc. AIME 236 (1966) 1715",
+    parameters: &[],
+    make: |_| Box::new(RateLaw::ShrinkingCore),
+};
 
 /// One interface of a particle whose layers react from the outside inwards, innermost first.
 #[derive(Clone, Copy, Debug, PartialEq)]
