@@ -18,7 +18,7 @@ use calcine_coupler::motion::{
     Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, Pair, Rolling, Wall, WallMotion,
     WallShape,
 };
-use calcine_coupler::part::{ParticlePush, ParticleReceived, Particles};
+use calcine_coupler::part::{Bed as VoidFractions, ParticlePush, ParticleReceived, Particles};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::supervisor::{Interrupts, Supervisor};
@@ -187,7 +187,8 @@ fn compare(setup: &ParticleSetup, steps: u64) -> Differences {
             },
         };
         for part in [&mut own as &mut dyn Particles, &mut other] {
-            part.start(&window, &push).unwrap();
+            part.start(&window, &VoidFractions::default(), &push)
+                .unwrap();
             part.finish(&supervisor, &mut received).unwrap();
             part.commit().unwrap();
         }

@@ -8,7 +8,7 @@ use calcine_coupler::checkpoint::{StateFile, StateFileError};
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::motion::{Motion, ParticleChanges};
 use calcine_coupler::part::{
-    Part, ParticleEvent, ParticleFields, ParticlePush, ParticleReceived, Particles, SolverInfo,
+    Bed, Part, ParticleFields, ParticlePush, ParticleReceived, Particles, SolverInfo,
 };
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
@@ -311,10 +311,6 @@ impl Particles for LinkedParticles {
         }
     }
 
-    fn events(&self) -> &[ParticleEvent] {
-        &[]
-    }
-
     fn change(
         &mut self,
         supervisor: &Supervisor,
@@ -346,7 +342,8 @@ impl Particles for LinkedParticles {
         Ok(())
     }
 
-    fn start(&mut self, window: &Window, push: &ParticlePush) -> Result<(), PartError> {
+    /// The bed is not sent: no particle solver of the wire asks for it.
+    fn start(&mut self, window: &Window, _bed: &Bed, push: &ParticlePush) -> Result<(), PartError> {
         let count = self.committed.id.len();
         if push.force.len() != count {
             let message = format!("{} forces for {count} particles", push.force.len());

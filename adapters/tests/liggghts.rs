@@ -12,7 +12,9 @@ use calcine_adapters::liggghts::inputs::Inputs;
 use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch};
 use calcine_adapters::particles::LinkedParticles;
 use calcine_coupler::error::{FailureKind, PartError};
-use calcine_coupler::part::{Part, ParticlePush, ParticleReceived, Particles};
+use calcine_coupler::part::{
+    Bed as VoidFractions, Part, ParticlePush, ParticleReceived, Particles,
+};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::supervisor::{Interrupts, Supervisor};
@@ -116,7 +118,9 @@ fn push() -> ParticlePush {
 
 fn step(particles: &mut LinkedParticles, supervisor: &Supervisor, index: u64) -> Vec<Vec3> {
     let mut received = ParticleReceived::default();
-    particles.start(&window(index), &push()).unwrap();
+    particles
+        .start(&window(index), &VoidFractions::default(), &push())
+        .unwrap();
     particles.finish(supervisor, &mut received).unwrap();
     particles.commit().unwrap();
     received.impulse
@@ -211,7 +215,9 @@ fn a_host_killed_in_a_window_is_named_within_a_second_and_leaves_nothing() {
     let pid = particles.pid();
     // Stopped, it cannot answer: the kill falls into the window.
     signal(pid, Signal::STOP);
-    particles.start(&window(1), &push()).unwrap();
+    particles
+        .start(&window(1), &VoidFractions::default(), &push())
+        .unwrap();
     signal(pid, Signal::KILL);
     let begun = Instant::now();
     let mut received = ParticleReceived::default();

@@ -283,19 +283,6 @@ impl ParticleFields<'_> {
     }
 }
 
-/// A particle that came in or went out during a window.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ParticleEvent {
-    /// Its id.
-    pub id: u64,
-    /// Came in (true) or went out (false).
-    pub inserted: bool,
-    /// Its mass in kg.
-    pub mass: f64,
-    /// Its momentum in kg m/s.
-    pub momentum: Vec3,
-}
-
 /// What the particles are told, in the order of `ParticleFields`; constant over the window.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParticlePush {
@@ -321,9 +308,6 @@ pub trait Particles: Part {
     /// State after the last commit (initially: the start of the run).
     fn fields(&self) -> ParticleFields<'_>;
 
-    /// Particles in and out during the last window.
-    fn events(&self) -> &[ParticleEvent];
-
     /// Takes particles out, puts new ones in and gives others another size, between two windows and after a
     /// commit. A held bed only has to take sizes.
     fn change(
@@ -332,8 +316,8 @@ pub trait Particles: Part {
         change: &ParticleChanges,
     ) -> Result<(), PartError>;
 
-    /// Starts the window; does not wait.
-    fn start(&mut self, window: &Window, push: &ParticlePush) -> Result<(), PartError>;
+    /// Starts the window in the bed as the gas had it, one value a cell of the gas' mesh; does not wait.
+    fn start(&mut self, window: &Window, bed: &Bed, push: &ParticlePush) -> Result<(), PartError>;
 
     /// Waits for the window started last. Particles have one attempt only.
     fn finish(

@@ -325,17 +325,10 @@ fn particles_come_and_go_and_the_others_do_not_notice() {
     let fields = bed.particles.fields();
     assert_eq!(fields.id, [1, 6, 9]);
     assert_eq!(fields.position[1], Vec3::new(0.03, 0.0, 9.9e-4));
-    let events = bed.particles.events();
-    let told: Vec<_> = events
-        .iter()
-        .map(|event| (event.id, event.inserted))
-        .collect();
-    assert_eq!(told, [(2, false), (5, false), (6, true), (9, true)]);
-    assert!((events[2].momentum.x / (0.1 * fields.mass[1]) - 1.0).abs() < 1e-15);
+    assert!((fields.velocity[1].x / 0.1 - 1.0).abs() < 1e-15);
     alone.run(300);
     bed.run(300);
     assert!((bed.place(0) - alone.place(0)).norm() < 1e-9);
-    assert!(bed.particles.events().is_empty());
     for wrong in [
         ParticleChanges {
             remove: vec![7],

@@ -5,7 +5,9 @@ use std::f64::consts::PI;
 use std::time::Duration;
 
 use calcine_coupler::error::FailureKind;
-use calcine_coupler::part::{CellReceived, Gas, Part, ParticlePush, ParticleReceived, Particles};
+use calcine_coupler::part::{
+    Bed as VoidFractions, CellReceived, Gas, Part, ParticlePush, ParticleReceived, Particles,
+};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::supervisor::{Interrupts, Supervisor};
@@ -180,7 +182,9 @@ fn frozen_particles_weigh_what_they_should_and_hand_the_impulse_to_their_support
     };
     let supervisor = Supervisor::new(Duration::from_secs(1), Interrupts::default());
     let mut received = ParticleReceived::default();
-    particles.start(&window, &push).unwrap();
+    particles
+        .start(&window, &VoidFractions::default(), &push)
+        .unwrap();
     particles.finish(&supervisor, &mut received).unwrap();
     particles.commit().unwrap();
     assert_eq!(

@@ -6,7 +6,7 @@ use calcine_coupler::motion::{
     Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, Pair, Rolling, Wall, WallMotion,
     WallShape,
 };
-use calcine_coupler::part::{ParticlePush, ParticleReceived, Particles};
+use calcine_coupler::part::{Bed as VoidFractions, ParticlePush, ParticleReceived, Particles};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::supervisor::{Interrupts, Supervisor};
@@ -177,7 +177,9 @@ impl Bed {
             span: clocks(span),
             ..Window::default()
         };
-        self.particles.start(&window, &self.push).unwrap();
+        self.particles
+            .start(&window, &VoidFractions::default(), &self.push)
+            .unwrap();
         let mut received = ParticleReceived::default();
         self.particles
             .finish(&self.supervisor, &mut received)

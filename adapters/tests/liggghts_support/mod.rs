@@ -15,7 +15,9 @@ use calcine_coupler::motion::{
     Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, Pair, Rolling, Wall, WallMotion,
     WallShape,
 };
-use calcine_coupler::part::{Part, ParticlePush, ParticleReceived, Particles};
+use calcine_coupler::part::{
+    Bed as VoidFractions, Part, ParticlePush, ParticleReceived, Particles,
+};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::supervisor::{Interrupts, Supervisor};
@@ -165,7 +167,7 @@ impl Bench {
         let push = ParticlePush {
             force: force.to_vec(),
         };
-        particles.start(&window, &push)?;
+        particles.start(&window, &VoidFractions::default(), &push)?;
         let mut received = ParticleReceived::default();
         particles.finish(&self.supervisor, &mut received)?;
         particles.commit()?;

@@ -10,7 +10,7 @@ use crate::motion::{
     Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, NewParticle, Pair,
     ParticleChanges, Resized, Rolling, Wall, WallMotion, WallShape,
 };
-use crate::part::{ParticlePush, ParticleReceived, Particles};
+use crate::part::{Bed, ParticlePush, ParticleReceived, Particles};
 use crate::setup::ParticleSetup;
 use crate::supervisor::Supervisor;
 
@@ -181,7 +181,7 @@ impl Spheres<'_, '_> {
         index: u64,
         push: &ParticlePush,
     ) -> Result<(), LawError> {
-        particles.start(&window(index, SPAN, SPAN)?, push)?;
+        particles.start(&window(index, SPAN, SPAN)?, &Bed::default(), push)?;
         Ok(particles.finish(&self.supervisor, &mut self.received)?)
     }
 
@@ -427,7 +427,7 @@ fn comes_to_rest(spheres: &mut Spheres<'_, '_>) -> Result<(), LawError> {
 
 fn refuses_other_lengths(spheres: &mut Spheres<'_, '_>) -> Result<(), LawError> {
     let mut particles = spheres.make(None)?;
-    match particles.start(&window(0, SPAN, SPAN)?, &push(5)) {
+    match particles.start(&window(0, SPAN, SPAN)?, &Bed::default(), &push(5)) {
         Ok(()) => Err(LawError::Broken("it took them".into())),
         Err(error) => is_refused(
             &error,
@@ -453,7 +453,7 @@ fn names_the_lost(spheres: &mut Spheres<'_, '_>) -> Result<(), LawError> {
         force: vec![Vec3::zeros(); 6],
     };
     for index in 0..3 {
-        particles.start(&window(index, SPAN, SPAN)?, &push)?;
+        particles.start(&window(index, SPAN, SPAN)?, &Bed::default(), &push)?;
         match particles.finish(&spheres.supervisor, &mut spheres.received) {
             Ok(()) => particles.commit()?,
             Err(error) => {
@@ -472,7 +472,7 @@ fn names_the_lost(spheres: &mut Spheres<'_, '_>) -> Result<(), LawError> {
 fn ends_when_dropped(spheres: &mut Spheres<'_, '_>) -> Result<(), LawError> {
     let mut particles = spheres.make(None)?;
     let push = push(particles.fields().len());
-    particles.start(&window(0, SPAN, SPAN)?, &push)?;
+    particles.start(&window(0, SPAN, SPAN)?, &Bed::default(), &push)?;
     drop(particles);
     Ok(())
 }

@@ -104,7 +104,7 @@ impl MotionStage {
         }
         let own = self.own_window(inputs.window);
         meter.time(Stage::Particles, || {
-            particles.start(&own, &self.push)?;
+            particles.start(&own, &inputs.mapped.bed, &self.push)?;
             particles.finish(supervisor, &mut self.received)
         })?;
         Ok(())

@@ -9,7 +9,7 @@ use std::path::Path;
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::motion::{Contacts, Motion, ParticleChanges};
 use calcine_coupler::part::{
-    Part, ParticleEvent, ParticleFields, ParticlePush, ParticleReceived, Particles, SolverInfo,
+    Bed, Part, ParticleFields, ParticlePush, ParticleReceived, Particles, SolverInfo,
 };
 use calcine_coupler::physics::{Vec3, sphere};
 use calcine_coupler::setup::ParticleSetup;
@@ -41,7 +41,6 @@ pub struct NativeParticles {
     impulse: Vec<Vec3>,
     /// Motion time in s that the steps of the window cover.
     acted: f64,
-    events: Vec<ParticleEvent>,
     /// The solver of moving particles.
     engine: Option<Box<Engine>>,
     /// Steps of the run so far.
@@ -72,7 +71,6 @@ impl NativeParticles {
             started: None,
             impulse: vec![Vec3::zeros(); count],
             acted: 0.0,
-            events: Vec::new(),
             engine: None,
             steps: 0,
         };
@@ -264,17 +262,10 @@ impl NativeParticles {
             .material_of
             .len()
             .min(engine.contacts().held.len());
-        let events = check::change(change, &self.id, populations)?;
-        self.events.clear();
+        let gone = check::change(change, &self.id, populations)?;
         let mut keep = vec![true; self.id.len()];
-        for &row in &events {
+        for &row in &gone {
             keep[row] = false;
-            self.events.push(ParticleEvent {
-                id: self.id[row],
-                inserted: false,
-                mass: self.mass[row],
-                momentum: self.mass[row] * self.velocity[row],
-            });
         }
         let mut kept = 0;
         let renumber: Vec<Option<u32>> = keep
@@ -304,20 +295,13 @@ impl NativeParticles {
             row.is_some()
         });
         for new in &change.insert {
-            let mass = sphere::mass(new.radius, new.density);
             self.id.push(new.id);
             self.population.push(new.population);
             self.position.push(new.position);
             self.velocity.push(new.velocity);
             self.angular_velocity.push(Vec3::zeros());
             self.radius.push(new.radius);
-            self.mass.push(mass);
-            self.events.push(ParticleEvent {
-                id: new.id,
-                inserted: true,
-                mass,
-                momentum: mass * new.velocity,
-            });
+            self.mass.push(sphere::mass(new.radius, new.density));
         }
         self.impulse = vec![Vec3::zeros(); self.id.len()];
         self.hand_over((pairs, walls))
@@ -366,11 +350,6 @@ impl Particles for NativeParticles {
         }
     }
 
-    /// Particles that came and went in the last change, until the next window starts.
-    fn events(&self) -> &[ParticleEvent] {
-        &self.events
-    }
-
     fn change(
         &mut self,
         _supervisor: &Supervisor,
@@ -388,7 +367,7 @@ impl Particles for NativeParticles {
         self.exchange(change).map_err(|error| self.refused(error))
     }
 
-    fn start(&mut self, window: &Window, push: &ParticlePush) -> Result<(), PartError> {
+    fn start(&mut self, window: &Window, _bed: &Bed, push: &ParticlePush) -> Result<(), PartError> {
         if push.force.len() != self.id.len() {
             let (found, count) = (push.force.len(), self.id.len());
             let message = format!("{found} forces for {count} particles");
@@ -397,7 +376,6 @@ impl Particles for NativeParticles {
                 .in_window(window));
         }
         self.push(window, &push.force)?;
-        self.events.clear();
         self.started = Some(*window);
         Ok(())
     }

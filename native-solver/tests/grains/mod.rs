@@ -9,7 +9,9 @@ use calcine_coupler::motion::{
     Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, NewParticle, Pair,
     ParticleChanges, Rolling, Wall, WallMotion, WallShape,
 };
-use calcine_coupler::part::{Part, ParticlePush, ParticleReceived, Particles};
+use calcine_coupler::part::{
+    Bed as VoidFractions, Part, ParticlePush, ParticleReceived, Particles,
+};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::supervisor::{Interrupts, Supervisor};
@@ -143,7 +145,8 @@ impl Bed {
             },
             ..Window::default()
         };
-        self.particles.start(&window, &self.push)?;
+        self.particles
+            .start(&window, &VoidFractions::default(), &self.push)?;
         self.particles
             .finish(&self.supervisor, &mut self.received)?;
         self.clocks = window.end().unwrap();
