@@ -92,6 +92,7 @@ fn setup(contacts: Contacts, spheres: &[(Vec3, Vec3)]) -> ParticleSetup {
         density: vec![2500.0, 1800.0][..count].to_vec(),
         velocity: spheres.iter().map(|sphere| sphere.1).collect(),
         motion: Motion::Free(Box::new(contacts)),
+        ..ParticleSetup::default()
     }
 }
 

@@ -240,8 +240,8 @@ impl ParticleModel for Undecided {
         self.thin.settle(took, span)
     }
 
-    fn changed(&self) -> Inventory {
-        self.thin.changed()
+    fn changed(&self, rows: &[usize]) -> Inventory {
+        self.thin.changed(rows)
     }
 
     fn held(&self, rows: &[usize]) -> Inventory {

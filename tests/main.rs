@@ -50,3 +50,4 @@ mod support;
 mod test_programs;
 mod time_splitting;
 mod verification_beds;
+mod weights;

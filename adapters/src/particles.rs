@@ -14,7 +14,7 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::Window;
-use calcine_wire::{Link, MessageKind, WireError};
+use calcine_wire::{Catalogue, ColumnSet, Link, MessageKind, WireError};
 use thiserror::Error;
 
 use crate::answer::{self, WrongAnswer};
@@ -47,7 +47,7 @@ fn unusable(name: &str, folder: &Path, error: StateFileError) -> PartError {
 }
 
 /// A change in the lines of CHANGE, with every digit.
-fn change_text(change: &ParticleChanges) -> String {
+fn change_text(change: &ParticleChanges, weights: bool) -> String {
     let mut text = String::from(if change.rest { "rest\n" } else { "" });
     for id in &change.remove {
         let _ = writeln!(text, "remove {id}");
@@ -58,12 +58,20 @@ fn change_text(change: &ParticleChanges) -> String {
         for value in values.chain([&new.radius, &new.density]) {
             let _ = write!(text, " {value:e}");
         }
+        if weights {
+            let _ = write!(text, " {:e}", new.weight);
+        }
         text.push('\n');
     }
     for new in &change.resize {
         let _ = writeln!(text, "resize {} {:e} {:e}", new.id, new.radius, new.mass);
     }
     text
+}
+
+/// True where rows of a link may stand for several particles.
+fn has_weights(catalogue: &Catalogue) -> bool {
+    catalogue.has(ColumnSet::State, "weight")
 }
 
 /// Particles as columns, in ascending id.
@@ -76,6 +84,8 @@ struct ReceivedParticles {
     angular_velocity: Vec<Vec3>,
     radius: Vec<f64>,
     mass: Vec<f64>,
+    /// Statistical weights; empty where the link has none.
+    weight: Vec<f64>,
     impulse: Vec<Vec3>,
     /// Time in s that the window's steps cover.
     acted: f64,
@@ -109,6 +119,15 @@ impl LinkedParticles {
         largest_id: u64,
     ) -> Result<Self, PartError> {
         let hello = solver.hello();
+        let other = (0..setup.id.len()).find(|&row| setup.weight_of(row) != 1.0);
+        if let Some(row) = other.filter(|_| !has_weights(&hello.catalogue)) {
+            let message = format!(
+                "its particles stand for themselves alone, but particle {} stands for {}; write weight = 1",
+                setup.id[row],
+                setup.weight_of(row)
+            );
+            return Err(solver.refuse(None, message));
+        }
         let mut particles = Self {
             about: SolverInfo {
                 name: hello.name.clone(),
@@ -141,7 +160,7 @@ impl LinkedParticles {
 
     /// The particles in the messages that the links hold.
     fn read(&self, window: Option<&Window>) -> Result<ReceivedParticles, PartError> {
-        let state = ReceivedParticles::read(self.solver.links());
+        let state = ReceivedParticles::read(self.solver.links(), &self.solver.hello().catalogue);
         let state = state.map_err(|error| self.solver.failure(window, error))?;
         let unordered = state.id.windows(2).find(|pair| pair[0] >= pair[1]);
         if let Some(pair) = unordered {
@@ -212,7 +231,7 @@ impl ReceivedParticles {
     }
 
     /// Joins the columns of all ranks by id.
-    fn read(links: &[Link]) -> Result<Self, WireError> {
+    fn read(links: &[Link], catalogue: &Catalogue) -> Result<Self, WireError> {
         let mut order = Vec::new();
         for (rank, link) in links.iter().enumerate() {
             let ids = link.column_words("id")?.iter().enumerate();
@@ -257,6 +276,10 @@ impl ReceivedParticles {
             angular_velocity: vectors("angular_velocity")?,
             radius: scalars("radius")?,
             mass: scalars("mass")?,
+            weight: match has_weights(catalogue) {
+                true => scalars("weight")?,
+                false => Vec::new(),
+            },
             impulse: vectors("impulse")?,
             acted,
             support,
@@ -308,6 +331,7 @@ impl Particles for LinkedParticles {
             angular_velocity: &state.angular_velocity,
             radius: &state.radius,
             mass: &state.mass,
+            weight: &state.weight,
         }
     }
 
@@ -327,8 +351,21 @@ impl Particles for LinkedParticles {
             );
             return Err(self.solver.refuse(None, message));
         }
+        let weights = has_weights(&self.solver.hello().catalogue);
+        if let Some(new) = change
+            .insert
+            .iter()
+            .find(|new| new.weight != 1.0 && !weights)
+        {
+            let message = format!(
+                "its particles stand for themselves alone, but particle {} comes in for {}; write weight = 1",
+                new.id, new.weight
+            );
+            return Err(self.solver.refuse(None, message));
+        }
         let before = self.committed.id.len();
-        self.solver.change(supervisor, &change_text(change))?;
+        self.solver
+            .change(supervisor, &change_text(change, weights))?;
         self.attempt = self.read(None)?;
         self.committed.clone_from(&self.attempt);
         let (now, due) = (

@@ -119,6 +119,7 @@ fn particles_come_and_go_with_the_ids_they_are_given_and_the_others_do_not_notic
         velocity: Vec3::new(0.1, 0.0, -1.0 / 3.0),
         radius: 0.002,
         density: 2000.0,
+        weight: 1.0,
     };
     // The highest ids go; those that come go on behind them, with a gap.
     let change = ParticleChanges {

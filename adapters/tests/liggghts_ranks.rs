@@ -27,6 +27,7 @@ fn elsewhere(id: u64, x: f64) -> NewParticle {
         velocity: Vec3::zeros(),
         radius: 0.0025,
         density: 2500.0,
+        weight: 1.0,
     }
 }
 

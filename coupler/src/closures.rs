@@ -405,6 +405,7 @@ mod tests {
             angular_velocity: &zero,
             radius: &radius,
             mass: &radius,
+            weight: &[],
         };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         let mut coefficients = CouplingCoefficients::default();
@@ -476,6 +477,7 @@ mod tests {
             angular_velocity: &[Vec3::zeros(); 2],
             radius: &[1e-3; 2],
             mass: &[1e-5; 2],
+            weight: &[],
         };
         let mut coefficients = CouplingCoefficients::default();
         let refused = closures.evaluate_films(&gas, &particles, &[1e5; 2], 1.0, &mut coefficients);

@@ -32,6 +32,8 @@ pub struct Feed {
     pub sizes: Sizes,
     /// Their density in kg/m³.
     pub density: f64,
+    /// Number of real particles that each stands for.
+    pub weight: f64,
     /// Their velocity in m/s of process time; AF times as much on the motion clock.
     pub velocity: Vec3,
     /// Their temperature in K.
@@ -142,11 +144,12 @@ impl FeedsAndOutlets {
             for row in rows {
                 // The next particle goes as soon as half of it is due: what has gone is nearest to
                 // what was asked for.
-                if *due < 0.5 * particles.mass[row] {
+                let mass = particles.row_mass(row);
+                if *due < 0.5 * mass {
                     enough = true;
                     break;
                 }
-                *due -= particles.mass[row];
+                *due -= mass;
                 gone[row] = true;
             }
             // What was not there to be taken is not asked for later.
@@ -172,7 +175,7 @@ impl FeedsAndOutlets {
                 let number = self.drawn[index];
                 let diameters = feed.sizes.sample(1, mixed(feed.seed, number, 0))?;
                 let radius = 0.5 * diameters.first().copied().unwrap_or(0.0);
-                let mass = sphere::mass(radius, feed.density);
+                let mass = feed.weight * sphere::mass(radius, feed.density);
                 if !(mass > 0.0 && self.due[0][index] >= 0.5 * mass) {
                     break;
                 }
@@ -198,6 +201,7 @@ impl FeedsAndOutlets {
                     velocity: moment.acceleration * feed.velocity,
                     radius,
                     density: feed.density,
+                    weight: feed.weight,
                 });
                 due.temperature.push(feed.temperature);
                 self.next_id += 1;
@@ -316,6 +320,7 @@ mod tests {
                 angular_velocity: &self.zero,
                 radius: &self.radius,
                 mass: &self.mass,
+                weight: &[],
             }
         }
     }
@@ -332,6 +337,7 @@ mod tests {
             batch,
             sizes: Sizes::Equal(0.01),
             density: 2000.0,
+            weight: 1.0,
             velocity: Vec3::new(0.0, 0.0, -0.1),
             temperature: 500.0,
             seed: 7,

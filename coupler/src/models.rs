@@ -31,6 +31,8 @@ pub struct ParticleModels {
     places: Vec<(usize, usize)>,
     /// Id of each row of the run.
     id: Vec<u64>,
+    /// Number of real particles that each row of the run stands for.
+    weight: Vec<f64>,
     /// Channels of all models; those that are the same in several stand once.
     channels: Vec<Channel>,
     columns: Vec<MergedColumn>,
@@ -43,6 +45,8 @@ struct Member {
     model: Box<dyn ParticleModel>,
     /// Its rows in the run.
     rows: Vec<usize>,
+    /// Its own rows by their statistical weights.
+    alike: Vec<(f64, Vec<usize>)>,
     /// Where its channels stand among all.
     channels: Vec<usize>,
     work: Work,
@@ -62,6 +66,8 @@ struct Work {
 pub struct PopulationNewcomer<'a> {
     /// Index of its population.
     pub population: usize,
+    /// Number of real particles that it stands for.
+    pub weight: f64,
     /// What the model is told.
     pub particle: Newcomer<'a>,
 }
@@ -94,6 +100,7 @@ impl ParticleModels {
             members.push(Member {
                 model,
                 rows: Vec::new(),
+                alike: Vec::new(),
                 channels: places,
                 work: Work::default(),
             });
@@ -194,6 +201,7 @@ impl ParticleModels {
             .enumerate()
             .map(|(row, state)| PopulationNewcomer {
                 population: particles.population[row] as usize,
+                weight: particles.weight_of(row),
                 particle: Newcomer {
                     id: particles.id[row],
                     mass: mass[row],
@@ -253,6 +261,7 @@ impl ParticleModels {
             rows,
             channels,
             work,
+            ..
         } in &mut self.members
         {
             let [first, rest @ ..] = &mut work.inputs;
@@ -319,25 +328,29 @@ impl ParticleModels {
         Ok(())
     }
 
-    /// What the last attempt changed in all particles.
+    /// What the last attempt changed in all particles, those of a row as many times as it stands for.
     pub fn changed(&self) -> Inventory {
         let mut all = Inventory::default();
         for member in &self.members {
-            all += &member.model.changed();
+            for (weight, rows) in &member.alike {
+                all.add_times(*weight, &member.model.changed(rows));
+            }
         }
         all
     }
 
-    /// What the particles of these rows hold.
+    /// What the particles of these rows hold, those of a row as many times as it stands for.
     pub fn held(&self, rows: impl IntoIterator<Item = usize>) -> Inventory {
         let mut own = vec![Vec::new(); self.members.len()];
         for row in rows {
             let (model, place) = self.places[row];
-            own[model].push(place);
+            own[model].push((self.weight[row], place));
         }
         let mut all = Inventory::default();
-        for (member, rows) in self.members.iter().zip(&own) {
-            all += &member.model.held(rows);
+        for (member, rows) in self.members.iter().zip(own) {
+            for (weight, rows) in &alike(rows) {
+                all.add_times(*weight, &member.model.held(rows));
+            }
         }
         all
     }
@@ -368,6 +381,7 @@ impl ParticleModels {
         let mut come: Vec<Vec<Newcomer<'_>>> = vec![Vec::new(); self.members.len()];
         without(&mut self.places, gone);
         without(&mut self.id, gone);
+        without(&mut self.weight, gone);
         for one in new {
             let population = one.population;
             let model = self.model_of.get(population);
@@ -375,6 +389,7 @@ impl ParticleModels {
             come[model].push(one.particle);
             self.places.push((model, 0));
             self.id.push(one.particle.id);
+            self.weight.push(one.weight);
         }
         self.number_rows();
         for ((member, gone), new) in self.members.iter_mut().zip(&out).zip(&come) {
@@ -396,6 +411,11 @@ impl ParticleModels {
             let rows = &mut self.members[*model].rows;
             *place = rows.len();
             rows.push(row);
+        }
+        for member in &mut self.members {
+            let own = member.rows.iter().enumerate();
+            let own = own.map(|(place, &row)| (self.weight[row], place));
+            member.alike = alike(own.collect());
         }
     }
 
@@ -473,4 +493,12 @@ fn scatter(rows: &[usize], from: &[f64], to: &mut [f64]) {
     for (row, value) in rows.iter().zip(from) {
         to[*row] = *value;
     }
+}
+
+/// Rows by their weights: those of one weight together, in their order.
+fn alike(mut rows: Vec<(f64, usize)>) -> Vec<(f64, Vec<usize>)> {
+    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    rows.chunk_by(|a, b| a.0 == b.0)
+        .map(|group| (group[0].0, group.iter().map(|one| one.1).collect()))
+        .collect()
 }

@@ -325,4 +325,6 @@ pub struct NewParticle {
     pub radius: f64,
     /// Density in kg/m³.
     pub density: f64,
+    /// Number of real particles that it stands for.
+    pub weight: f64,
 }

@@ -6,7 +6,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use calcine_physics::Vec3;
+use calcine_physics::{Vec3, sphere};
 
 use crate::boundary_value::BoundaryValue;
 use crate::error::{FailureKind, PartError};
@@ -267,11 +267,33 @@ pub struct ParticleFields<'a> {
     pub angular_velocity: &'a [Vec3],
     /// Radii in m.
     pub radius: &'a [f64],
-    /// Masses in kg.
+    /// Masses in kg, of one real particle each.
     pub mass: &'a [f64],
+    /// Statistical weights: how many real particles each row stands for; empty where each stands for itself alone.
+    pub weight: &'a [f64],
 }
 
 impl ParticleFields<'_> {
+    /// Number of real particles that a row stands for.
+    pub fn weight_of(&self, row: usize) -> f64 {
+        self.weight.get(row).copied().unwrap_or(1.0)
+    }
+
+    /// True where some row stands for another number of particles than one.
+    pub fn has_weights(&self) -> bool {
+        self.weight.iter().any(|weight| *weight != 1.0)
+    }
+
+    /// Mass in kg of all real particles that a row stands for.
+    pub fn row_mass(&self, row: usize) -> f64 {
+        self.weight_of(row) * self.mass[row]
+    }
+
+    /// Solid volume in m³ of all real particles that a row stands for.
+    pub fn row_volume(&self, row: usize) -> f64 {
+        self.weight_of(row) * sphere::volume(self.radius[row])
+    }
+
     /// Number of particles.
     pub fn len(&self) -> usize {
         self.id.len()
@@ -283,14 +305,14 @@ impl ParticleFields<'_> {
     }
 }
 
-/// What the particles are told, in the order of `ParticleFields`; constant over the window.
+/// What the particles are told, in the order of `ParticleFields`, of one real particle each; constant over the window.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParticlePush {
     /// Force of the gas on each particle in N.
     pub force: Vec<Vec3>,
 }
 
-/// What the particles report of a window, in the order of the push.
+/// What the particles report of a window, in the order of the push, of one real particle each.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParticleReceived {
     /// Impulse of the pushed force as applied over the motion span in N s; a frozen particle is

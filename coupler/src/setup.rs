@@ -196,6 +196,15 @@ pub struct ParticleSetup {
     pub density: Vec<f64>,
     /// Velocities in m/s of motion time; empty where all are at rest.
     pub velocity: Vec<Vec3>,
+    /// Statistical weights: how many real particles each stands for; empty where each stands for itself alone.
+    pub weight: Vec<f64>,
     /// How they move.
     pub motion: Motion,
+}
+
+impl ParticleSetup {
+    /// Number of real particles that a row stands for.
+    pub fn weight_of(&self, row: usize) -> f64 {
+        self.weight.get(row).copied().unwrap_or(1.0)
+    }
 }

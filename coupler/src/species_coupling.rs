@@ -93,9 +93,11 @@ impl SpeciesCoupling {
         self.fractions.extend_from_slice(gas.composition);
         self.sample_rates(operator, given, species);
         let (mut moved, mut all) = (0.0, 0.0);
-        for (now, before) in self.rates.iter().zip(&self.before) {
-            moved += (now - before).abs();
-            all += now.abs();
+        let width = given.channels.len().max(1);
+        for (at, (now, before)) in self.rates.iter().zip(&self.before).enumerate() {
+            let count = operator.count(at / width);
+            moved += count * (now - before).abs();
+            all += count * now.abs();
         }
         if moved == 0.0 { 0.0 } else { moved / all }
     }

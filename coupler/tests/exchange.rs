@@ -144,6 +144,7 @@ impl Bench {
             angular_velocity: &self.velocity,
             radius: &self.radius,
             mass: &self.radius,
+            weight: &[],
         }
     }
 }

@@ -57,6 +57,7 @@ fn feeds_and_outlets(case: &Case, prepared: &PreparedCase) -> FeedsAndOutlets {
             batch: feed.batch,
             sizes: population.sizes.clone(),
             density: case.materials[population.material].density,
+            weight: population.weight,
             velocity: feed.velocity,
             temperature: feed.temperature,
             seed: feed.seed,

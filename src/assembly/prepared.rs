@@ -46,8 +46,10 @@ impl PreparedCase {
     /// Mean void fraction that the particles see, mapped and smoothed as in a run.
     pub fn void_fraction(&self, case: &Case) -> Result<f64, AssemblyError> {
         let particles = &self.particles;
-        let radii = particles.radius.iter();
-        let volumes: Vec<f64> = radii.map(|&radius| sphere::volume(radius)).collect();
+        let radii = particles.radius.iter().enumerate();
+        let volumes: Vec<f64> = radii
+            .map(|(row, &radius)| particles.weight_of(row) * sphere::volume(radius))
+            .collect();
         let mapper = Mapper::new(&*self.mesh);
         let weights = mapper
             .fill(method(case), &particles.position, &particles.radius)

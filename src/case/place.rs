@@ -39,6 +39,7 @@ pub fn particles(case: &Case) -> Result<InitialParticles, PlaceError> {
             setup.radius.push(0.5 * sphere.diameter);
             setup.density.push(density);
             setup.velocity.push(velocity);
+            setup.weight.push(population.weight);
             placed.temperature.push(sphere.temperature);
         }
     }
@@ -51,6 +52,9 @@ pub fn particles(case: &Case) -> Result<InitialParticles, PlaceError> {
         .all(|velocity| *velocity == Vec3::zeros())
     {
         setup.velocity.clear();
+    }
+    if setup.weight.iter().all(|weight| *weight == 1.0) {
+        setup.weight.clear();
     }
     match overlap::between_populations(setup) {
         None => Ok(placed),

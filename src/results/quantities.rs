@@ -99,21 +99,24 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &CommittedState<'_>, sites: 
         } => {
             let values = of_particles(moment, (field, quantity.column));
             let (bed, all) = (moment.particles, &values[..]);
-            let values: Vec<f64> = match over {
-                ParticlePlace::Everywhere => return statistic(*which, all),
+            let pair = |(row, &value): (usize, &f64)| (value, bed.weight_of(row));
+            let values: Vec<(f64, f64)> = match over {
+                ParticlePlace::Everywhere => all.iter().enumerate().map(pair).collect(),
                 ParticlePlace::Population(index) => {
-                    let pairs = bed.population.iter().zip(all);
-                    let own = pairs.filter(|(population, _)| *population == index);
-                    own.map(|(_, &value)| value).collect()
+                    let rows = all.iter().enumerate();
+                    let own = rows.filter(|(row, _)| bed.population.get(*row) == Some(index));
+                    own.map(pair).collect()
                 }
                 ParticlePlace::Probe(probe) => {
                     let places = site(sites, probe)
                         .map_or(Vec::new(), |site| site.particles(bed.position, bed.radius));
                     let found = places.into_iter().flatten();
-                    found.filter_map(|place| all.get(place).copied()).collect()
+                    found
+                        .filter_map(|place| Some(pair((place, all.get(place)?))))
+                        .collect()
                 }
             };
-            statistic(*which, &values)
+            weighted(*which, &values)
         }
         Measure::WallHeat { wall } => {
             let warm = moment.reservoirs.iter().zip(moment.reservoir_heat);
@@ -128,13 +131,11 @@ pub(super) fn evaluate(quantity: &Quantity, moment: &CommittedState<'_>, sites: 
                     .copied()
             })
             .unwrap_or(f64::NAN),
-        Measure::SurfaceAngle { point, axis, down } => surface_angle(
-            moment.particles.position,
-            moment.particles.mass,
-            point,
-            axis,
-            down,
-        ),
+        Measure::SurfaceAngle { point, axis, down } => {
+            let bed = moment.particles;
+            let masses: Vec<f64> = (0..bed.len()).map(|row| bed.row_mass(row)).collect();
+            surface_angle(bed.position, &masses, point, axis, down)
+        }
     }
 }
 

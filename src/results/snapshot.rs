@@ -230,6 +230,14 @@ pub(super) fn particles<'a>(
     ];
     let count = bed.len();
     let mut fields = always.to_vec();
+    if bed.has_weights() {
+        fields.push(field(
+            "weight",
+            "1",
+            "statistical weight: number of real particles that each stands for",
+            Scalar(bed.weight),
+        ));
+    }
     fields.extend(chosen(&all, &output.particles, count, "particle")?);
     for one in inside {
         let column = &one.column;

@@ -308,9 +308,12 @@ impl ParticleModel for Granules {
         Ok(())
     }
 
-    fn changed(&self) -> Inventory {
+    fn changed(&self, rows: &[usize]) -> Inventory {
         let (mut all, formation) = (Inventory::default(), self.formation());
-        for (now, before) in self.now.iter().zip(&self.committed) {
+        for (now, before) in rows
+            .iter()
+            .map(|&row| (&self.now[row], &self.committed[row]))
+        {
             let water: f64 = (0..2).map(|k| now.water[k] - before.water[k]).sum();
             all.mass.add(water);
             add_water(&mut all, &self.gas.species()[0], water);

@@ -367,6 +367,7 @@ impl World {
                 angular_velocity: &self.still,
                 radius: &self.radius,
                 mass: &self.mass,
+                weight: &[],
             },
             particle_temperature: &self.temperature,
             particle_heat: &self.heat,

@@ -150,6 +150,7 @@ impl Bed {
             density: vec![2500.0; count],
             velocity: spheres.iter().map(|sphere| sphere.1).collect(),
             motion: Motion::Free(Box::new(contacts)),
+            ..ParticleSetup::default()
         };
         let mut particles = NativeParticles::new(&setup).unwrap();
         particles.count_energy(true);

@@ -1,6 +1,7 @@
 //! The host's loop: hello, state, then windows, commits and checkpoints until the coordinator says
 //! goodbye.
 
+use std::collections::HashMap;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -17,7 +18,7 @@ use crate::error::HostError;
 use crate::library::{self, Liggghts};
 use crate::parent::ParentCarrier;
 use crate::population_update::PopulationUpdate;
-use crate::rank_particles::RankParticles;
+use crate::rank_particles::{RankParticles, WEIGHT};
 
 /// Ticks of the wire's clocks in one second.
 const TICKS: f64 = 1e12;
@@ -36,6 +37,8 @@ const COUNTED: (&str, &str) = (" store_force yes", "force_");
 const WALL: &str = " wall/gran ";
 /// What is sent where walls' impulses are not counted.
 const UNCOUNTED: [f64; 3] = [f64::NAN; 3];
+/// The file of ids and statistical weights, in the script's folder.
+const WEIGHTS: &str = "particles.weight";
 /// LIGGGHTS' own log, in the script's folder; it ends where the windows begin.
 const LOG: &str = "log.liggghts";
 
@@ -60,6 +63,8 @@ pub struct Host {
     told: Instant,
     /// Fixes that hold the force of each wall on particles; empty where they are not counted.
     walls: Vec<String>,
+    /// True where rows have statistical weights.
+    weights: bool,
 }
 
 impl Host {
@@ -85,6 +90,7 @@ impl Host {
             rank,
             told: Instant::now(),
             walls: Vec::new(),
+            weights: false,
         };
         let restart = host.start.restart.clone();
         host.set_up(restart.as_deref())?;
@@ -103,7 +109,10 @@ impl Host {
             ),
             count: host.particles,
             ranks,
-            catalogue: Catalogue::particles(&[]),
+            catalogue: Catalogue::particles(&match host.weights {
+                true => Catalogue::weights(),
+                false => Vec::new(),
+            }),
         };
         host.tell(&format!("{} with {} particles", hello.version, hello.count));
         on_link(|link| link.greet(&hello, GREETING).map(|_| ()))?;
@@ -341,9 +350,47 @@ impl Host {
             self.walls.clear(); // of a script of the user's: a part of the walls is no balance
         }
         self.liggghts.command("run 0");
+        self.weights = self.has_fix(WEIGHT)?;
+        if self.weights && restart.is_none() {
+            self.weigh()?;
+        }
         // Each window would add its lines to the log.
         self.liggghts.command("log none");
         self.look()
+    }
+
+    /// True where the script makes a fix of this name.
+    fn has_fix(&self, name: &str) -> Result<bool, HostError> {
+        let begins = ["fix", name];
+        let script = self.script()?;
+        Ok(script
+            .lines()
+            .any(|line| line.split_ascii_whitespace().take(2).eq(begins)))
+    }
+
+    /// Gives this rank's particles the weights of the file beside the script, by their ids.
+    fn weigh(&mut self) -> Result<(), HostError> {
+        let text = fs::read_to_string(WEIGHTS).map_err(|cause| HostError::File {
+            path: WEIGHTS.into(),
+            cause,
+        })?;
+        let mut by_id = HashMap::new();
+        for line in text.lines() {
+            let refuse = || HostError::Change { line: line.into() };
+            let (id, weight) = line.split_once(' ').ok_or_else(refuse)?;
+            let id: i32 = id.parse().map_err(|_| refuse())?;
+            let weight: f64 = weight.parse().map_err(|_| refuse())?;
+            by_id.insert(id, weight);
+        }
+        let missing = |name| HostError::Missing { name };
+        let tags = self.liggghts.integers("id").ok_or_else(|| missing("id"))?;
+        let own: Vec<f64> = tags
+            .iter()
+            .map(|id| by_id.get(id).copied().unwrap_or(1.0))
+            .collect();
+        let kept = self.liggghts.fix_scalars_mut(WEIGHT);
+        kept.ok_or_else(|| missing(WEIGHT))?.copy_from_slice(&own);
+        Ok(())
     }
 
     fn script(&self) -> Result<String, HostError> {
@@ -364,13 +411,13 @@ impl Host {
                 which: self.first_lost()?,
             });
         }
-        self.state = RankParticles::read(&self.liggghts)?;
+        self.state = RankParticles::read(&self.liggghts, self.weights)?;
         Ok(())
     }
 
     /// The first particle of this rank's that is gone, in words.
     fn first_lost(&self) -> Result<String, HostError> {
-        let now = RankParticles::read(&self.liggghts)?;
+        let now = RankParticles::read(&self.liggghts, self.weights)?;
         let gone = |(_, id): &(usize, &u64)| now.id.binary_search(id).is_err();
         let lost = self.state.id.iter().enumerate().find(gone);
         Ok(lost.map_or_else(String::new, |(row, id)| {

@@ -291,6 +291,33 @@ impl Liggghts {
         }
     }
 
+    /// Scalars of a `fix property/atom`, one for each of this rank's particles; `None` where there is no such fix.
+    pub fn fix_scalars(&self, fix: &str) -> Option<&[f64]> {
+        let (values, count) = (self.fix_scalar(fix), self.local());
+        if count == 0 {
+            return Some(&[]);
+        }
+        // SAFETY: a scalar per atom is an array of at least `nlocal` numbers; it lives until the next command, which
+        // needs `&mut self`.
+        (!values.is_null()).then(|| unsafe { std::slice::from_raw_parts(values, count) })
+    }
+
+    /// The same, to be written.
+    pub fn fix_scalars_mut(&mut self, fix: &str) -> Option<&mut [f64]> {
+        let (values, count) = (self.fix_scalar(fix), self.local());
+        if count == 0 {
+            return Some(&mut []);
+        }
+        // SAFETY: as for `fix_scalars`; borrowed mutably, alone.
+        (!values.is_null()).then(|| unsafe { std::slice::from_raw_parts_mut(values, count) })
+    }
+
+    fn fix_scalar(&self, fix: &str) -> *mut f64 {
+        let name = c_text(fix);
+        // SAFETY: the handle is open; style 1 and kind 1 ask for a scalar per atom; an unknown fix gives NULL.
+        unsafe { lammps_extract_fix(self.handle, name.as_ptr(), 1, 1, 0, 0).cast() }
+    }
+
     /// A scalar of this rank's particle at a place, to be written.
     pub fn scalars_mut(&mut self, name: &str) -> Option<&mut [f64]> {
         let count = self.scalars(name)?.len();

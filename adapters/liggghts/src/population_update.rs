@@ -1,6 +1,6 @@
 //! Particles that go and come between two windows, get another size, or come to rest.
 //!
-//! The coordinator tells them as lines: `rest`, `remove ID`, `insert ID TYPE x y z vx vy vz RADIUS DENSITY`, and
+//! The coordinator tells them as lines: `rest`, `remove ID`, `insert ID TYPE x y z vx vy vz RADIUS DENSITY [WEIGHT]`, and
 //! `resize ID RADIUS MASS`, in SI with every digit.
 
 use std::f64::consts::PI;
@@ -54,7 +54,11 @@ impl PopulationUpdate {
                 ["insert", id, kind, ref rest @ ..] => {
                     let values: Result<Vec<f64>, _> =
                         rest.iter().map(|word| word.parse()).collect();
-                    let values = values.map_err(|_| refuse())?;
+                    let mut values = values.map_err(|_| refuse())?;
+                    // A weight may stand last; what moves and touches others stands for itself alone.
+                    if values.len() == 9 && values.pop() != Some(1.0) {
+                        return Err(refuse());
+                    }
                     insert.push(New {
                         id: id.parse().map_err(|_| refuse())?,
                         kind: kind.parse().map_err(|_| refuse())?,

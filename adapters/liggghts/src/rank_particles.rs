@@ -20,11 +20,23 @@ pub struct RankParticles {
     angular_velocity: Vec<f64>,
     radius: Vec<f64>,
     mass: Vec<f64>,
+    /// Statistical weights; `None` where the bed has none.
+    weight: Option<Vec<f64>>,
 }
 
+/// The fix that keeps statistical weights; the script of a bed that has some makes it.
+pub const WEIGHT: &str = "calcine_weight";
+
 impl RankParticles {
-    /// Reads what LIGGGHTS holds now.
-    pub fn read(liggghts: &Liggghts) -> Result<Self, HostError> {
+    /// Reads what LIGGGHTS holds now, with statistical weights where the bed has some.
+    pub fn read(liggghts: &Liggghts, weights: bool) -> Result<Self, HostError> {
+        let own = match weights {
+            true => {
+                let kept = liggghts.fix_scalars(WEIGHT);
+                Some(kept.ok_or(HostError::Missing { name: WEIGHT })?.to_vec())
+            }
+            false => None,
+        };
         let missing = |name: &'static str| move || HostError::Missing { name };
         let tags = liggghts.integers("id").ok_or_else(missing("id"))?;
         let mut order: Vec<usize> = (0..tags.len()).collect();
@@ -58,6 +70,7 @@ impl RankParticles {
             angular_velocity: vectors("omega")?,
             radius: scalars("radius")?,
             mass: scalars("rmass")?,
+            weight: own.map(|own| order.iter().map(|&index| own[index]).collect()),
             place: order,
         })
     }
@@ -94,6 +107,9 @@ impl RankParticles {
         ];
         for (name, values) in columns {
             link.column_mut(name)?.copy_from_slice(values);
+        }
+        if let Some(weight) = &self.weight {
+            link.column_mut("weight")?.copy_from_slice(weight);
         }
         link.send()
     }

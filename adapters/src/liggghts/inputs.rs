@@ -21,6 +21,13 @@ const FROZEN_BED: &str = include_str!("../../../liggghts-inputs/frozen-bed.in");
 const MOVING_BED: &str = include_str!("../../../liggghts-inputs/moving-bed.in");
 const WHO: &str = "LIGGGHTS (particles)";
 
+/// Name of the file of statistical weights, and the command that has LIGGGHTS keep them with its particles; the host
+/// fills them in.
+const WEIGHTS: (&str, &str) = (
+    "particles.weight",
+    "fix calcine_weight all property/atom calcine_weight scalar yes no no 1.\n",
+);
+
 /// What the inputs are made from.
 #[derive(Clone, Copy, Debug)]
 pub struct Inputs<'a> {
@@ -51,9 +58,13 @@ impl Inputs<'_> {
             Motion::Frozen => Vec::new(),
         };
         fs::create_dir_all(folder).map_err(|error| unwritable(folder, error))?;
-        let meshes = meshes.into_iter();
-        let meshes = meshes.map(|(name, text)| (folder.join(name), text));
-        for (path, text) in files.iter().cloned().chain(meshes) {
+        let mut more = meshes;
+        if !self.setup.weight.is_empty() {
+            more.push((WEIGHTS.0.to_owned(), self.weights()));
+        }
+        let more = more.into_iter();
+        let more = more.map(|(name, text)| (folder.join(name), text));
+        for (path, text) in files.iter().cloned().chain(more) {
             fs::write(&path, text).map_err(|error| unwritable(&path, error))?;
         }
         Ok(files.map(|(path, _)| path))
@@ -77,14 +88,47 @@ impl Inputs<'_> {
                 i32::MAX
             ));
         }
+        for (row, id) in setup.id.iter().enumerate() {
+            let held = match &setup.motion {
+                Motion::Frozen => true,
+                Motion::Free(contacts) => {
+                    contacts.held.get(setup.population[row] as usize) == Some(&true)
+                }
+            };
+            let weight = setup.weight_of(row);
+            if !held && weight != 1.0 {
+                return refuse(format!(
+                    "particle {id} moves and touches others, but stands for {weight} particles; write weight = 1 for \
+                     its population, or motion = \"frozen\""
+                ));
+            }
+        }
         if !(self.step.is_finite() && self.step > 0.0) {
             return refuse(format!("a time step of {} s is not positive", self.step));
         }
         Ok(())
     }
 
+    /// Ids and statistical weights.
+    fn weights(&self) -> String {
+        let pairs = self.setup.id.iter().zip(&self.setup.weight);
+        pairs
+            .map(|(id, weight)| format!("{id} {weight:e}\n"))
+            .collect()
+    }
+
     /// The script; an error where a script of the user's own does not go with the case.
     pub fn script(&self) -> Result<String, PartError> {
+        let mut script = self.bare_script()?;
+        if !self.setup.weight.is_empty() {
+            script.push('\n');
+            script.push_str(WEIGHTS.1);
+        }
+        Ok(script)
+    }
+
+    /// The script without statistical weights.
+    fn bare_script(&self) -> Result<String, PartError> {
         let (lower, upper) = self.corners();
         let along_x = upper.x - lower.x >= upper.y - lower.y;
         let grid = if along_x {

@@ -78,7 +78,10 @@ impl LiggghtsLaunch<'_> {
             origin,
             count: ids.len() as u64,
             ranks: launch.inputs.ranks,
-            catalogue: Catalogue::particles(&[]),
+            catalogue: Catalogue::particles(&match setup.weight.is_empty() {
+                true => Vec::new(),
+                false => Catalogue::weights(),
+            }),
         };
         let solver = ExternalSolver::launch(
             Launch {

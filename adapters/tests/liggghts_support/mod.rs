@@ -78,6 +78,7 @@ pub fn setup(contacts: Contacts, spheres: &[(Vec3, Vec3)]) -> ParticleSetup {
         density: vec![2500.0; count],
         velocity: spheres.iter().map(|sphere| sphere.1).collect(),
         motion: Motion::Free(Box::new(contacts)),
+        ..ParticleSetup::default()
     }
 }
 

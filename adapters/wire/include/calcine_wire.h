@@ -93,8 +93,8 @@ typedef enum calcine_failure {
  * BYE          coordinator, then solver: nothing; the run ends. Answer: BYE; then close the link and exit with 0.
  * OWNED        a gas: columns "owned"; once, after the handshake.
  * CHANGE       coordinator, to particles: text, one line each: "rest" (all come to rest where they are), "remove ID",
- *     "insert ID TYPE X Y Z VX VY VZ RADIUS DENSITY" (TYPE: population from 1), "resize ID RADIUS MASS"; between a
- *     commit and the next START. Answer: CHANGED.
+ *     "insert ID TYPE X Y Z VX VY VZ RADIUS DENSITY" (TYPE: population from 1; behind it WEIGHT where the link has
+ *     weights), "resize ID RADIUS MASS"; between a commit and the next START. Answer: CHANGED.
  * CHANGED      particles: columns "state", as with STATE; answers CHANGE.
  * BOUNDARY     coordinator, to a gas, then the gas: text, one line each: "PATCH CONDITION VALUE...", the conditions
  *     as in the case file (superficial_velocity, mass_flow, temperature, composition, pressure, heat_flux,
@@ -162,6 +162,8 @@ typedef enum calcine_failure {
  *   angular_velocity 3 [rad/s]: angular velocity, in motion time.
  *   radius 1 [m]: radius.
  *   mass 1 [kg]: mass.
+ *   weight 1 [1]: statistical weight: how many real particles the row stands for; force, impulse and mass are of one
+ *     of them. Where rows may stand for several particles.
  *   impulse 3 [Ns]: impulse that what was pushed gave the particle; of one that is held, what its support took up.
  *   support 4 [s,Ns], once a rank: motion time that the steps of the window cover; impulse x, y, z that walls and
  *     held particles gave this rank's free ones, NaN where it is not counted.

@@ -119,7 +119,9 @@ impl Catalogue {
             ColumnPresence::Always => true,
             ColumnPresence::Species => species > 0,
             ColumnPresence::Turbulent => turbulent,
-            ColumnPresence::ForeignInputs | ColumnPresence::MovingDrag => false,
+            ColumnPresence::ForeignInputs
+            | ColumnPresence::MovingDrag
+            | ColumnPresence::Weights => false,
         })
     }
 
@@ -142,6 +144,12 @@ impl Catalogue {
     /// The columns of drag that particles evaluate as they move: a coefficient and the gas' velocity.
     pub fn moving_drag() -> Vec<Field> {
         let own = |presence| presence == ColumnPresence::MovingDrag;
+        Self::of_table(columns::PARTICLES, 0, own).fields
+    }
+
+    /// The column of rows that stand for several real particles.
+    pub fn weights() -> Vec<Field> {
+        let own = |presence| presence == ColumnPresence::Weights;
         Self::of_table(columns::PARTICLES, 0, own).fields
     }
 

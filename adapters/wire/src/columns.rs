@@ -27,6 +27,8 @@ pub enum ColumnPresence {
     Turbulent,
     /// Those of particles that feel drag as they move.
     MovingDrag,
+    /// Those of rows that stand for several real particles.
+    Weights,
 }
 
 /// A column of the protocol.
@@ -174,6 +176,9 @@ pub const PARTICLES: &[ProtocolColumn] = &[
     column(State, "angular_velocity", 3, "rad/s", "angular velocity, in motion time"),
     column(State, "radius", 1, "m", "radius"),
     column(State, "mass", 1, "kg", "mass"),
+    column(State, "weight", 1, "1",
+        "statistical weight: how many real particles the row stands for; force, impulse and mass are of one of them")
+        .only(ColumnPresence::Weights),
     column(State, "impulse", 3, "Ns",
         "impulse that what was pushed gave the particle; of one that is held, what its support took up"),
     column(State, "support", 4, "s,Ns",

@@ -75,7 +75,8 @@ fn about(kind: MessageKind) -> About {
         MessageKind::Change => (
             "coordinator, to particles",
             "text, one line each: \"rest\" (all come to rest where they are), \"remove ID\", \
-             \"insert ID TYPE X Y Z VX VY VZ RADIUS DENSITY\" (TYPE: population from 1), \"resize ID RADIUS MASS\"",
+             \"insert ID TYPE X Y Z VX VY VZ RADIUS DENSITY\" (TYPE: population from 1; behind it \
+             WEIGHT where the link has weights), \"resize ID RADIUS MASS\"",
             "between a commit and the next START. Answer: CHANGED",
         ),
         MessageKind::Boundary => (
@@ -196,6 +197,7 @@ fn one(text: &mut String, column: &ProtocolColumn) {
         ColumnPresence::Species => " Of a gas of N species.",
         ColumnPresence::Turbulent => " Of a turbulent gas.",
         ColumnPresence::MovingDrag => " Where drag is pushed as a coefficient.",
+        ColumnPresence::Weights => " Where rows may stand for several particles.",
     };
     let head = format!("  {} {numbers} [{}]{extent}: ", column.name, column.unit);
     wrapped(text, &head, &format!("{}.{presence}", column.about));

@@ -145,6 +145,18 @@ impl Tally {
     }
 }
 
+impl std::ops::Mul<f64> for Tally {
+    type Output = Self;
+
+    /// That of so many; a number above zero.
+    fn mul(self, count: f64) -> Self {
+        Self {
+            sum: count * self.sum,
+            magnitude: count * self.magnitude,
+        }
+    }
+}
+
 impl std::ops::AddAssign for Tally {
     fn add_assign(&mut self, other: Self) {
         self.sum += other.sum;
@@ -176,10 +188,17 @@ impl Default for Inventory {
 
 impl std::ops::AddAssign<&Inventory> for Inventory {
     fn add_assign(&mut self, other: &Self) {
-        self.mass += other.mass;
-        self.energy += other.energy;
+        self.add_times(1.0, other);
+    }
+}
+
+impl Inventory {
+    /// Adds as many times what another holds.
+    pub fn add_times(&mut self, count: f64, other: &Self) {
+        self.mass += other.mass * count;
+        self.energy += other.energy * count;
         for (sum, other) in self.elements.iter_mut().zip(&other.elements) {
-            *sum += *other;
+            *sum += *other * count;
         }
     }
 }
@@ -291,8 +310,8 @@ pub trait ParticleModel: Send + Sync {
     /// Ends the attempt with what passed over a span in s.
     fn settle(&mut self, took: &Transfer<'_>, span: f64) -> Result<(), ModelError>;
 
-    /// What the last attempt changed since the last commit, as differences row by row.
-    fn changed(&self) -> Inventory;
+    /// What the last attempt changed since the last commit in these rows, as differences row by row.
+    fn changed(&self, rows: &[usize]) -> Inventory;
 
     /// What these rows hold at the last commit.
     fn held(&self, rows: &[usize]) -> Inventory;

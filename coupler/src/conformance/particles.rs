@@ -117,6 +117,7 @@ fn setup() -> ParticleSetup {
         velocity,
         position,
         motion: Motion::Free(Box::new(contacts())),
+        ..ParticleSetup::default()
     }
 }
 
@@ -358,6 +359,7 @@ fn changes(spheres: &mut Spheres<'_, '_>) -> Result<(), LawError> {
         velocity: Vec3::new(0.0, 0.1, -0.5),
         radius: 0.8 * RADIUS,
         density: DENSITY,
+        weight: 1.0,
     };
     let resized = Resized {
         id: 8,

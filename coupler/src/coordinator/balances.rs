@@ -8,11 +8,13 @@ use calcine_physics::thermo::Element;
 use super::exchange::ExchangeStage;
 use super::particles::MotionStage;
 use crate::ledger::Ledger;
-use crate::part::{Balance, CellReceived};
+use crate::part::{Balance, CellReceived, ParticleFields};
 use crate::time::{GasStorage, Window};
 
 /// What a window comes to.
 pub(super) struct WindowBalances<'a> {
+    /// The particles, for their statistical weights.
+    pub particles: ParticleFields<'a>,
     pub exchange: &'a ExchangeStage,
     pub motion: &'a MotionStage,
     /// What changed inside particles, and the heat in W from walls and surroundings into them.
@@ -82,11 +84,16 @@ impl WindowBalances<'_> {
         let walls: f64 = reservoirs.iter().sum::<f64>() * process;
         let walls_magnitude: f64 = reservoirs.iter().map(|q| q.abs()).sum::<f64>() * process;
         let to_gas: f64 = received.heat.iter().sum::<f64>() * process;
-        let to_particles =
-            (exchange.heat.iter().sum::<f64>() + species.carried.iter().sum::<f64>()) * process;
+        let weighted = |(row, value): (usize, f64)| self.particles.weight_of(row) * value;
+        let total = |values: &[f64]| {
+            let rows = values.iter().copied().enumerate();
+            rows.map(weighted).sum::<f64>()
+        };
+        let magnitude = exchange.heat.iter().map(|q| q.abs()).enumerate();
+        let to_particles = (total(&exchange.heat) + total(&species.carried)) * process;
         let exchanged = process
             * (received.heat.iter().map(|q| q.abs()).sum::<f64>()
-                + exchange.heat.iter().map(|q| q.abs()).sum::<f64>());
+                + magnitude.map(weighted).sum::<f64>());
         let formed = if self.channels {
             formation(self.gas, received)
         } else {
@@ -112,6 +119,8 @@ impl WindowBalances<'_> {
             .iter()
             .zip(&moved.pressure_force)
             .map(|(impulse, pressure)| impulse - pressure * motion)
+            .enumerate()
+            .map(|(row, drag)| self.particles.weight_of(row) * drag)
             .sum();
         let moved: f64 = received
             .drag

@@ -15,6 +15,7 @@ use crate::smoother::{Operator, Smoother};
 pub(super) struct MappedBed {
     pub operator: Operator,
     pub bed: Bed,
+    /// Of one real particle of each row, in m³.
     pub solid_volume: Vec<f64>,
     position: Vec<Vec3>,
     radius: Vec<f64>,
@@ -71,10 +72,15 @@ fn map(
 ) -> Result<MappedBed, RunError> {
     let (position, radius) = (particles.position, particles.radius);
     let solid_volume: Vec<f64> = radius.iter().map(|&r| sphere::volume(r)).collect();
+    let rows: Vec<f64> = (0..particles.len())
+        .map(|row| particles.row_volume(row))
+        .collect();
     let weights = meter.time(Stage::Mapping, || mapper.fill(method, position, radius))?;
-    let operator = meter.time(Stage::Smoother, || {
-        smoother.operator(weights, &solid_volume)
-    })?;
+    let operator = meter.time(Stage::Smoother, || smoother.operator(weights, &rows))?;
+    let operator = match particles.has_weights() {
+        true => operator.of_rows(particles.weight),
+        false => operator,
+    };
     let solid = operator.solid_fraction().iter();
     let void_fraction = solid.map(|alpha| 1.0 - alpha).collect();
     Ok(MappedBed {

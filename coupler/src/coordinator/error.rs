@@ -50,6 +50,25 @@ pub enum RunError {
     /// State of particles that cannot be taken up.
     #[error(transparent)]
     Restore(#[from] RestoreError),
+    /// A row that stands for several particles where heat passes between particles.
+    #[error(
+        "particle {id} stands for {weight} particles, but heat passes between particles by contacts or radiation, which \
+         only rows of weight 1 have; write `none` for `laws.conduction` and `laws.radiation`, or weight = 1"
+    )]
+    WeightInNetwork {
+        /// The particle's id.
+        id: u64,
+        /// Its statistical weight.
+        weight: f64,
+    },
+    /// A statistical weight that means nothing.
+    #[error("particle {id} stands for {weight} particles; a weight must be finite and above 0")]
+    Weight {
+        /// The particle's id.
+        id: u64,
+        /// Its statistical weight.
+        weight: f64,
+    },
     /// A particle too light for the solver's time step.
     #[error(transparent)]
     TooLight(#[from] TooLight),
@@ -160,6 +179,21 @@ pub enum OriginError {
         found: (u64, Vec3, f64),
         /// Id, centre and radius in this case.
         expected: (u64, Vec3, f64),
+    },
+    /// A particle of another statistical weight.
+    #[error(
+        "in the checkpoint {path} particle {id} stands for {found} particles, in this case for {expected}: a run \
+         continues with the same particles only"
+    )]
+    Weight {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Which particle.
+        id: u64,
+        /// Its weight there.
+        found: f64,
+        /// Its weight in this case.
+        expected: f64,
     },
     /// Another gas mixture.
     #[error(

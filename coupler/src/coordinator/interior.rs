@@ -211,6 +211,19 @@ impl InteriorStage {
         self.models.masses(&mut self.mass);
     }
 
+    /// Refuses weights that mean nothing, and others than 1 where heat passes between particles.
+    pub fn check_weights(&self, particles: &ParticleFields<'_>) -> Result<(), RunError> {
+        for (&id, &weight) in particles.id.iter().zip(particles.weight) {
+            if !(weight.is_finite() && weight > 0.0) {
+                return Err(RunError::Weight { id, weight });
+            }
+            if weight != 1.0 && self.has_network() {
+                return Err(RunError::WeightInNetwork { id, weight });
+            }
+        }
+        Ok(())
+    }
+
     /// Takes rows out and puts new particles, the last of `particles`, behind the others.
     pub fn change(
         &mut self,

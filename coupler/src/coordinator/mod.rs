@@ -143,6 +143,7 @@ impl CoupledRun {
         let paths = Paths::new(plan.paths.clone());
         let substance = plan.substance.clone();
         let interior = InteriorStage::new(models, network, paths, substance, &fields);
+        interior.check_weights(&fields)?;
         let mut exchange = ExchangeStage::default();
         exchange.exchange.heat.resize(fields.len(), 0.0);
         exchange.agreement = ExchangeConvergence {
@@ -377,6 +378,7 @@ impl CoupledRun {
 
     fn close_ledger(&mut self, window: &Window) {
         let balances = WindowBalances {
+            particles: self.parts.particles.fields(),
             exchange: &self.exchange,
             motion: &self.motion,
             interior: self.interior.changed(),

@@ -122,6 +122,27 @@ impl Origin {
                 .into());
             }
         }
+        self.check_weights(here)
+    }
+
+    fn check_weights(&self, here: &ParticleSetup) -> Result<(), RunError> {
+        let weight = match self.state.f64s("particle_weight")? {
+            [] => &[],
+            _ => self.state.f64s_of("particle_weight", here.id.len())?,
+        };
+        for (row, &id) in here.id.iter().enumerate() {
+            let found = weight.get(row).copied().unwrap_or(1.0);
+            let expected = here.weight_of(row);
+            if found != expected {
+                return Err(OriginError::Weight {
+                    path: self.path.clone(),
+                    id,
+                    found,
+                    expected,
+                }
+                .into());
+            }
+        }
         Ok(())
     }
 }
@@ -139,6 +160,7 @@ impl CoupledRun {
         state.set_u64s("particle_id", particles.id);
         state.set_f64s("particle_position", &centres);
         state.set_f64s("particle_radius", particles.radius);
+        state.set_f64s("particle_weight", particles.weight);
     }
 
     /// Takes over the inside of the particles of another run of the same mesh and particles. The

@@ -155,11 +155,12 @@ impl MotionStage {
         };
         let (mut left, mut moved) = (-support, support.norm());
         for p in (0..particles.len()).filter(|&p| self.free[p]) {
-            let mass = particles.mass[p];
+            let (mass, count) = (particles.row_mass(p), particles.weight_of(p));
             let change = mass * (particles.velocity[p] - self.velocity[p]);
             let weight = mass * received.acted * self.gravity;
-            left += change - received.impulse[p] - weight;
-            moved += change.norm() + received.impulse[p].norm() + weight.norm();
+            let impulse = count * received.impulse[p];
+            left += change - impulse - weight;
+            moved += change.norm() + impulse.norm() + weight.norm();
         }
         ledger.particle_momentum.book(left.norm(), moved);
     }
@@ -182,6 +183,7 @@ impl MotionStage {
 
 /// Momentum of all particles in N s.
 pub(super) fn momentum(particles: &ParticleFields<'_>) -> Vec3 {
-    let pairs = particles.mass.iter().zip(particles.velocity);
-    pairs.map(|(mass, velocity)| *mass * velocity).sum()
+    let rows = particles.velocity.iter().enumerate();
+    rows.map(|(row, velocity)| particles.row_mass(row) * velocity)
+        .sum()
 }

@@ -12,6 +12,7 @@ use crate::feeds::WindowSpan;
 use crate::ledger::{CarriedInventory, Ledger};
 use crate::models::{ParticleModels, PopulationNewcomer};
 use crate::motion::ParticleChanges;
+use crate::part::ParticleFields;
 use crate::supervisor::Supervisor;
 use crate::time::Window;
 
@@ -74,8 +75,10 @@ impl CoupledRun {
         if rows.is_empty() {
             return Ok(());
         }
-        let ids = self.parts.particles.fields().id;
-        let left: f64 = rows.iter().map(|&row| self.interior.mass[row]).sum();
+        let fields = self.parts.particles.fields();
+        let ids = fields.id;
+        let held = |&row: &usize| fields.weight_of(row) * self.interior.mass[row];
+        let left: f64 = rows.iter().map(held).sum();
         let change = ParticleChanges {
             remove: rows.iter().map(|&row| ids[row]).collect(),
             ..ParticleChanges::default()
@@ -99,14 +102,16 @@ impl CoupledRun {
     ) -> Result<Moved, RunError> {
         let models = &self.interior.models;
         let fields = self.parts.particles.fields();
-        let total = |masses: &[f64]| masses.iter().sum::<f64>();
-        let (before, momentum_before) = (total(fields.mass), momentum(&fields));
+        let total = |fields: &ParticleFields<'_>| -> f64 {
+            (0..fields.len()).map(|row| fields.row_mass(row)).sum()
+        };
+        let (before, momentum_before) = (total(&fields), momentum(&fields));
         let held_before = all_held(models);
         let held_gone = models.held(step.rows.iter().copied());
         let mut gone = CarriedInventory::default();
         for &row in &step.rows {
             let enthalpy = models.held([row]).energy.sum;
-            gone.add(fields.mass[row], enthalpy, fields.velocity[row]);
+            gone.add(fields.row_mass(row), enthalpy, fields.velocity[row]);
         }
         self.parts.particles.change(supervisor, &step.change)?;
 
@@ -122,6 +127,7 @@ impl CoupledRun {
             .zip(&states)
             .map(|(row, state)| PopulationNewcomer {
                 population: fields.population[row] as usize,
+                weight: fields.weight_of(row),
                 particle: Newcomer {
                     id: fields.id[row],
                     mass: fields.mass[row],
@@ -130,13 +136,14 @@ impl CoupledRun {
                 },
             })
             .collect();
+        self.interior.check_weights(&fields)?;
         self.interior.change(&step.rows, &newcomers, &fields)?;
         let models = &self.interior.models;
         let held_come = models.held(first..fields.len());
         let mut come = CarriedInventory::default();
         for row in first..fields.len() {
             let enthalpy = models.held([row]).energy.sum;
-            come.add(fields.mass[row], enthalpy, fields.velocity[row]);
+            come.add(fields.row_mass(row), enthalpy, fields.velocity[row]);
         }
         let moved = Moved {
             gone,
@@ -145,7 +152,7 @@ impl CoupledRun {
         };
         moved.book(
             &mut self.ledger,
-            total(fields.mass) - before,
+            total(&fields) - before,
             momentum(&fields) - momentum_before,
             [held_before, all_held(models)],
         );

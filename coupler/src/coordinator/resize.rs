@@ -50,9 +50,10 @@ impl CoupledRun {
             {
                 step_limit.bears(fields.population[row], &new)?;
             }
-            asked += mass - fields.mass[row];
-            turned += (mass - fields.mass[row]).abs();
-            carried += (mass - fields.mass[row]) * fields.velocity[row];
+            let gained = fields.weight_of(row) * (mass - fields.mass[row]);
+            asked += gained;
+            turned += gained.abs();
+            carried += gained * fields.velocity[row];
             change.resize.push(new);
         }
         if change.is_empty() {
@@ -62,8 +63,11 @@ impl CoupledRun {
         let momentum_before = momentum(&fields);
         self.parts.particles.change(supervisor, &change)?;
         let fields = self.parts.particles.fields();
-        let pairs = fields.mass.iter().zip(&before);
-        let done: f64 = pairs.map(|(now, before)| now - before).sum();
+        let done: f64 = before
+            .iter()
+            .enumerate()
+            .map(|(row, before)| fields.weight_of(row) * (fields.mass[row] - before))
+            .sum();
         let left = momentum(&fields) - momentum_before - carried;
         self.ledger.particle_mass.book(done - asked, turned);
         self.ledger

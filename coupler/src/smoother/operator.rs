@@ -17,6 +17,8 @@ pub struct Operator {
     solid_fraction: Vec<f64>,
     scratch: Scratch,
     recent: Recent,
+    /// Real particles that each row stands for; empty: one each.
+    count: Vec<f64>,
 }
 
 impl Operator {
@@ -34,6 +36,7 @@ impl Operator {
             diffusion,
             scratch: Scratch::default(),
             recent: Recent::default(),
+            count: Vec::new(),
         };
         let mut fraction = vec![0.0; operator.cells()];
         operator.spread(solid_volume, &mut fraction);
@@ -43,6 +46,18 @@ impl Operator {
         }
         operator.solid_fraction = fraction;
         operator
+    }
+
+    /// The same operator for rows that stand for several real particles: what is spread is given for one of them and
+    /// arrives as many times as there are. What is sampled is what each of them sees.
+    pub fn of_rows(mut self, count: &[f64]) -> Self {
+        self.count = count.to_vec();
+        self
+    }
+
+    /// Number of real particles that a row stands for.
+    pub fn count(&self, row: usize) -> f64 {
+        self.count.get(row).copied().unwrap_or(1.0)
     }
 
     /// Number of cells.
@@ -81,8 +96,8 @@ impl Operator {
         self.kernel.as_ref().map_or(0, Kernel::active)
     }
 
-    /// W x: amounts of particles (J, kg, N s) spread over cells. Slices must have the lengths
-    /// `particles()` and `cells()`.
+    /// W x: amounts of particles (J, kg, N s) spread over cells, those of a row as many times as it stands for real
+    /// particles. Slices must have the lengths `particles()` and `cells()`.
     pub fn spread(&self, per_particle: &[f64], per_cell: &mut [f64]) {
         self.spread_any(per_particle, per_cell);
     }
@@ -113,7 +128,13 @@ impl Operator {
             per_cell.fill(T::ZERO);
             return;
         }
-        self.weights.spread(per_particle, per_cell);
+        if self.count.is_empty() {
+            self.weights.spread(per_particle, per_cell);
+        } else {
+            let pairs = per_particle.iter().zip(&self.count);
+            let rows: Vec<T> = pairs.map(|(value, count)| *value * *count).collect();
+            self.weights.spread(&rows, per_cell);
+        }
         if let Some(kernel) = &self.kernel {
             kernel.apply(per_cell);
         }

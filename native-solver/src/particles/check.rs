@@ -28,15 +28,35 @@ pub fn check(setup: &ParticleSetup) -> Result<(), NativeError> {
             count,
         ));
     }
+    if !setup.weight.is_empty() && setup.weight.len() != count {
+        return Err(length("the list of weights", setup.weight.len(), count));
+    }
     for i in 0..count {
         let place = || format!("particle {}", setup.id[i]);
+        positive("the weight", setup.weight_of(i), "", place)?;
         positive("the radius", setup.radius[i], "m", place)?;
         positive("the density", setup.density[i], "kg/m^3", place)?;
     }
     match &setup.motion {
         Motion::Frozen => Ok(()),
-        Motion::Free(contacts) => contact(contacts, &setup.population),
+        Motion::Free(contacts) => {
+            contact(contacts, &setup.population)?;
+            (0..count).try_for_each(|i| {
+                let held = contacts.held.get(setup.population[i] as usize);
+                let place = || format!("particle {}", setup.id[i]);
+                match held {
+                    Some(true) => Ok(()),
+                    _ => alone(setup.weight_of(i), place),
+                }
+            })
+        }
     }
+}
+
+/// A particle that moves touches others one by one, so that it stands for itself alone.
+fn alone(weight: f64, place: impl Fn() -> String) -> Result<(), NativeError> {
+    let rule = "1 for a particle that moves and touches others";
+    within("the weight", weight, "", place, rule, |value| value == 1.0)
 }
 
 /// A list of a wrong length.
@@ -258,6 +278,7 @@ pub fn change(
         last = new.id;
         positive("the radius", new.radius, "m", place)?;
         positive("the density", new.density, "kg/m^3", place)?;
+        alone(new.weight, place)?;
         let rule = |value: f64| value < populations as f64;
         let known = "that of a population with a material";
         within(

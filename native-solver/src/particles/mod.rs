@@ -37,6 +37,8 @@ pub struct NativeParticles {
     angular_velocity: Vec<Vec3>,
     radius: Vec<f64>,
     mass: Vec<f64>,
+    /// Empty where each particle stands for itself alone.
+    weight: Vec<f64>,
     started: Option<Window>,
     impulse: Vec<Vec3>,
     /// Motion time in s that the steps of the window cover.
@@ -68,6 +70,7 @@ impl NativeParticles {
             mass: spheres
                 .map(|(&radius, &density)| sphere::mass(radius, density))
                 .collect(),
+            weight: setup.weight.clone(),
             started: None,
             impulse: vec![Vec3::zeros(); count],
             acted: 0.0,
@@ -283,6 +286,7 @@ impl NativeParticles {
         retain(&mut self.angular_velocity, &keep);
         retain(&mut self.radius, &keep);
         retain(&mut self.mass, &keep);
+        retain(&mut self.weight, &keep);
         // Ids that come are above all others: rows of those that stay only close up.
         pairs.retain_mut(|one| {
             let rows = one.rows.map(|row| renumber[row as usize]);
@@ -302,6 +306,9 @@ impl NativeParticles {
             self.angular_velocity.push(Vec3::zeros());
             self.radius.push(new.radius);
             self.mass.push(sphere::mass(new.radius, new.density));
+            if !self.weight.is_empty() {
+                self.weight.push(new.weight);
+            }
         }
         self.impulse = vec![Vec3::zeros(); self.id.len()];
         self.hand_over((pairs, walls))
@@ -347,6 +354,7 @@ impl Particles for NativeParticles {
             angular_velocity: &self.angular_velocity,
             radius: &self.radius,
             mass: &self.mass,
+            weight: &self.weight,
         }
     }
 

@@ -25,6 +25,7 @@ impl NativeParticles {
         file.set_f64s("angular_velocity", &flat(&self.angular_velocity));
         file.set_f64s("radius", &self.radius);
         file.set_f64s("mass", &self.mass);
+        file.set_f64s("weight", &self.weight);
         if let Some(engine) = &mut self.engine {
             let (pairs, walls) = engine.memories();
             let rows: Vec<u64> = pairs
@@ -76,6 +77,10 @@ impl NativeParticles {
         self.angular_velocity = vectors(file.f64s_of("angular_velocity", 3 * count)?);
         self.radius = file.f64s_of("radius", count)?.to_vec();
         self.mass = file.f64s_of("mass", count)?.to_vec();
+        self.weight = match file.f64s("weight")? {
+            [] => Vec::new(),
+            _ => file.f64s_of("weight", count)?.to_vec(),
+        };
         self.impulse = vec![Vec3::zeros(); count];
         let Some(engine) = &self.engine else {
             return Ok(());

@@ -78,6 +78,7 @@ pub fn sphere(id: u64, position: Vec3, velocity: Vec3, radius: f64) -> NewPartic
         velocity,
         radius,
         density: 2500.0,
+        weight: 1.0,
     }
 }
 
@@ -198,6 +199,7 @@ pub fn setup(contacts: Contacts, spheres: &[NewParticle]) -> ParticleSetup {
         density: spheres.iter().map(|sphere| sphere.density).collect(),
         velocity: spheres.iter().map(|sphere| sphere.velocity).collect(),
         motion: Motion::Free(Box::new(contacts)),
+        ..ParticleSetup::default()
     }
 }
 

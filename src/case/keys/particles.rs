@@ -69,6 +69,7 @@ pub(super) const PARTICLES: &[Key] = &[
     key("motion", Choice(words::<MotionSpec>), Required, "How the particles move: not at all, or by gravity, contacts and the force of the gas (then with a section `[motion]`).", "\"frozen\""),
     key("velocity", Vector(D::VELOCITY), Without("at rest"), "Velocity at the start; of free particles.", "\"0 0 -0.1 m/s\""),
     key("temperature", Number(D::TEMPERATURE, Positive), Required, "Temperature at the start.", "\"300 K\""),
+    key("weight", Number(D::NONE, Positive), Default("1"), "Statistical weight: how many real particles of this diameter each particle stands for, in all that it exchanges with the gas. Other than 1 for motion = \"frozen\" only, and without heat between particles.", "2.5"),
     key("place", Table(PLACE), Required, "Where the particles are: exactly one of `grid`, `file` and `packing`. Spheres may overlap by 5 % of their diameter, as where they are pressed together.", "{ file = \"bed.csv\" }"),
 ];
 

@@ -26,6 +26,8 @@ pub struct Population {
     pub place: PlacementSpec,
     /// Start temperature in K; a file of particles may state its own.
     pub temperature: f64,
+    /// Statistical weight: number of real particles that each stands for.
+    pub weight: f64,
 }
 
 /// Particles that come in.

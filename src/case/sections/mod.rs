@@ -76,6 +76,7 @@ pub(super) fn case(
     let (external_gas, external_particles) = coupling::programs(root, folder);
     if let (Some(laws), Some(particles)) = (&laws, &particles) {
         heat::need_properties(root, laws, &materials, particles, &walls);
+        particles::weights_fit(root, particles, laws);
     }
     let reactions = reactions::reactions(root, &solids, gas.as_ref().map(|gas| &gas.setup));
     let populations = particles.as_deref().unwrap_or_default();

@@ -12,7 +12,7 @@ use super::conversion;
 use super::place::place;
 use super::reactions::{composition, mixed};
 use super::sizes::sizes;
-use crate::case::model::{ContactSpec, MaterialSpec, MeshSpec, MotionSpec, Population};
+use crate::case::model::{ContactSpec, Laws, MaterialSpec, MeshSpec, MotionSpec, Population};
 use crate::case::table::TableReader;
 
 pub(super) fn materials(root: &TableReader<'_>, solids: &[SolidSpecies]) -> Vec<MaterialSpec> {
@@ -229,6 +229,7 @@ fn population(
         table.fail("velocity", "does not go with motion = \"frozen\"", help);
     }
     let temperature = table.number("temperature");
+    let weight = weight(table, motion);
     let placed = table.table("place").and_then(|reader| {
         let sizes = sizes.as_ref().map(|(sizes, _)| sizes);
         let made = place(&reader, sizes, mesh, folder);
@@ -246,5 +247,34 @@ fn population(
         velocity: velocity.map_or(Vec3::zeros(), Vec3::from),
         place: placed?,
         temperature: temperature?,
+        weight: weight?,
     })
+}
+
+/// The statistical weight; particles that move touch each other one by one.
+fn weight(table: &TableReader<'_>, motion: Option<MotionSpec>) -> Option<f64> {
+    let weight = table.number("weight")?;
+    if weight != 1.0 && motion == Some(MotionSpec::Free) {
+        let rule = format!("is {weight}, but the particles are free");
+        let help = "leave it out: particles that touch each other stand for themselves alone";
+        table.fail("weight", rule, help);
+    }
+    Some(weight)
+}
+
+/// Heat between particles goes from one to the next: rows that stand for several have no neighbours of their own.
+pub(super) fn weights_fit(root: &TableReader<'_>, particles: &[Population], laws: &Laws) {
+    if !(laws.conducts() || laws.radiation.is_some()) {
+        return;
+    }
+    for (table, population) in root.tables("particles").iter().zip(particles) {
+        if population.weight != 1.0 {
+            let rule = format!(
+                "is {}, but `laws.conduction` or `laws.radiation` exchanges heat between particles",
+                population.weight
+            );
+            let help = "write `none` for both laws, or leave the weight out";
+            table.fail("weight", rule, help);
+        }
+    }
 }

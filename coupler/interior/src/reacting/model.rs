@@ -171,11 +171,11 @@ impl ParticleModel for Reacting {
 
     /// Energies count from the elements: of what is exchanged with the gas, the gas' own formation enthalpies stand
     /// in its balance.
-    fn changed(&self) -> Inventory {
+    fn changed(&self, rows: &[usize]) -> Inventory {
         let chemistry = &self.chemistry;
         let (solids, count) = (chemistry.solids.len(), chemistry.reactions.len());
         let mut all = Inventory::default();
-        for p in 0..self.committed.temperature.len() {
+        for &p in rows {
             let own = p * solids..(p + 1) * solids;
             let (now, before) = (&self.now.amount[own.clone()], &self.committed.amount[own]);
             let mut formed = 0.0;
