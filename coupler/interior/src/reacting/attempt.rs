@@ -86,6 +86,8 @@ impl Default for ParticleWorkspace {
 
 /// By how much temperatures are varied for the slopes of heats, in K.
 const VARIED: f64 = 10.0;
+/// Rounds of taking back at most.
+const MOST_ROUNDS: usize = 100;
 /// Directions of derivatives that one evaluation gives.
 const WIDTH: usize = 8;
 type Slopes = Dual<WIDTH>;
@@ -156,6 +158,16 @@ impl SolidChemistry {
         let statistics = method.integrate(&mut system, unknowns, span, accuracy)?;
         extents.clear();
         extents.extend_from_slice(&method.integrals()[..count]);
+        // Rates far above what passes lose digits: what the extents leave of a solid, not the unknown, is what counts.
+        for (&s, n) in self.moving().iter().zip(unknowns.iter_mut()) {
+            *n = start.amounts[s];
+        }
+        for (j, extent) in extents.iter().enumerate() {
+            for &(k, n) in self.effects(j) {
+                unknowns[k] += n * extent;
+            }
+        }
+        system.correct(unknowns, extents, &mut []);
         slopes.clear();
         local_slopes.clear();
         for j in 0..count {
@@ -389,19 +401,25 @@ impl StiffSystem for ParticleSystem<'_> {
         let chemistry = self.chemistry;
         let (moving, count) = (chemistry.moving().len(), chemistry.reactions.len());
         let width = y.len() + extents.len();
-        for _ in 0..=moving {
-            let Some(solid) = (0..moving).find(|&k| y[k] < 0.0) else {
-                return;
-            };
-            let uses = |j: usize, extent: f64| {
+        // What one solid gets back another may lack: the rounds end where only round-off is missing.
+        let round_off = -f64::EPSILON * self.trace / TRACE;
+        for _ in 0..MOST_ROUNDS {
+            let uses_of = |solid: usize, j: usize, extent: f64| {
                 let effects = chemistry.effects(j).iter();
                 let moles: f64 = effects.filter(|one| one.0 == solid).map(|one| one.1).sum();
                 (moles, (-moles * extent).max(0.0))
             };
-            let used: f64 = (0..count).map(|j| uses(j, extents[j]).1).sum();
-            if used <= 0.0 {
-                return;
+            let mut lacking: Option<(usize, f64)> = None;
+            for solid in (0..moving).filter(|&k| y[k] < round_off) {
+                let used: f64 = (0..count).map(|j| uses_of(solid, j, extents[j]).1).sum();
+                if used > 0.0 && lacking.is_none_or(|(worst, _)| y[solid] < y[worst]) {
+                    lacking = Some((solid, used));
+                }
             }
+            let Some((solid, used)) = lacking else {
+                break;
+            };
+            let uses = |j: usize, extent: f64| uses_of(solid, j, extent);
             for (j, extent) in extents.iter_mut().enumerate().take(count) {
                 let (moles, own) = uses(j, *extent);
                 if own == 0.0 {
@@ -428,6 +446,12 @@ impl StiffSystem for ParticleSystem<'_> {
             for column in tangent.chunks_exact_mut(width) {
                 column[solid] = 0.0;
             }
+        }
+        for value in y[..moving]
+            .iter_mut()
+            .filter(|n| **n < 0.0 && **n >= round_off)
+        {
+            *value = 0.0;
         }
     }
 }

@@ -64,14 +64,14 @@ impl<N: Number> RateState<'_, N> {
         let x = amount.value() / self.trace;
         if x >= 1.0 {
             N::constant(1.0)
-        } else if x >= 0.0 {
-            let (steep, bend) = (2.0 - order, order - 1.0);
+        } else {
+            // An amount that round-off left below zero has the slope at zero: without it no implicit step would see that
+            // what is made of the solid is used again.
+            let (x, steep, bend) = (x.max(0.0), 2.0 - order, order - 1.0);
             amount.through(
                 x * (steep + bend * x),
                 (steep + 2.0 * bend * x) / self.trace,
             )
-        } else {
-            N::constant(0.0)
         }
     }
 
@@ -205,7 +205,10 @@ fn interface_of<N: Number>(
     };
     let forward = forward / (N::constant(1.0) + turnover / fastest);
     // Forwards it goes as far as its solid is there, backwards as far as its layer is.
-    let (own, layer) = (state.presence(inner, 0.0), state.presence(outer, 0.0));
+    let (own, layer) = (
+        barely_there(state.presence(inner, 0.0)),
+        barely_there(state.presence(outer, 0.0)),
+    );
     if let Some(product) = path.product {
         // k (s c − s' c'/K) with c + c' the same everywhere
         let both = bulk + all_gas * state.fractions[product];
@@ -227,6 +230,16 @@ fn interface_of<N: Number>(
     };
     let forwards = (bulk.value() - at_rest.value()) * moles <= 0.0;
     (forward * if forwards { own } else { layer }, at_rest)
+}
+
+/// Least factor of an interface's rates ([`TRACE`]).
+const LEAST: f64 = 1e-20;
+
+/// A factor that does not vanish, with its slope: an interface between two solids of which nothing is there would
+/// have no slopes, and what another makes of one of them would not be seen to react on. Rates of this
+/// size are below round-off, however fast the interface.
+fn barely_there<N: Number>(presence: N) -> N {
+    presence + N::constant((LEAST - presence.value()).max(0.0))
 }
 
 /// Rate of a reaction in the whole volume of a particle in mol/s.

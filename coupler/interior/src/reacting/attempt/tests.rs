@@ -136,8 +136,8 @@ fn scattered(place: u64) -> f64 {
 }
 
 #[test]
-fn all_but_a_few_particles_of_any_rate_constants_end_with_their_elements_and_about_equally_fast() {
-    let (mut counts, mut stalled) = (Vec::new(), 0);
+fn particles_of_any_rate_constants_end_with_their_elements_and_most_about_equally_fast() {
+    let mut counts = Vec::new();
     for case in 0..60u64 {
         let number = |k: u64| scattered(100 * case + k);
         let interfaces = 1 + case as usize % 3;
@@ -165,18 +165,7 @@ fn all_but_a_few_particles_of_any_rate_constants_end_with_their_elements_and_abo
         };
         let span = 10f64.powf(4.0 * number(5));
         let done = particle.follow(&chemistry, span, ParticleAccuracy::default());
-        let (outcome, extents, _) = match done {
-            Ok(done) => done,
-            Err(error) => {
-                // Reversible chains of interfaces whose constants differ by many powers of ten.
-                assert!(
-                    interfaces > 1 && error.to_string().contains("steps"),
-                    "{case}"
-                );
-                stalled += 1;
-                continue;
-            }
-        };
+        let (outcome, extents, _) = done.unwrap();
         let after = particle.after(&chemistry, &extents);
         // What goes forth by one gas and back by the other may be far more than there is.
         let turned = 0.02 + 3.0 * extents.iter().map(|extent| extent.abs()).sum::<f64>();
@@ -193,12 +182,9 @@ fn all_but_a_few_particles_of_any_rate_constants_end_with_their_elements_and_abo
         counts.push(took.steps + took.rejected);
     }
     counts.sort_unstable();
-    // Known limits: two of sixty stall, and the slowest twentieth takes more than ten times the median.
-    assert!(stalled <= 2, "{stalled}");
-    assert!(
-        counts[counts.len() * 9 / 10] <= 10 * counts[30],
-        "{counts:?}"
-    );
+    // Known limit: reversible chains of interfaces whose constants differ by many powers of ten, one in eight of these,
+    // take more than ten times the median.
+    assert!(counts[52] <= 10 * counts[30], "{counts:?}");
 }
 
 #[test]
@@ -372,4 +358,24 @@ fn near_equilibrium_the_ore_follows_an_independent_integration() {
     let after = particle.after(&chemistry, &done.unwrap().1);
     assert!((after[0] - 0.016_818_551_8).abs() < 2e-8, "{after:?}");
     assert!((after[1] - 0.001_120_959_4).abs() < 2e-8, "{after:?}");
+}
+
+#[test]
+fn gas_in_which_an_oxide_is_made_and_used_at_once_takes_few_steps() {
+    // Magnetite forms and wüstite does not: traces of it, and of iron, come and go.
+    let (chemistry, accuracy) = (ore(), ParticleAccuracy::default());
+    for place in 0..1000u64 {
+        let number = |k: u64| scattered(7 * place + k);
+        let (co, h2) = (0.02 * number(0) * number(0), 0.02 * number(1) * number(1));
+        let case = Case {
+            amounts: vec![0.01884, 0.0, 0.0, 0.0],
+            fractions: vec![co, 0.033, h2, 0.041, 0.926 - co - h2],
+            gas_temperature: 1150.0 + 40.0 * number(2),
+            film: 0.1 + 0.2 * number(3),
+            ..Case::ore()
+        };
+        let (outcome, ..) = case.follow(&chemistry, 20.0, accuracy).unwrap();
+        let took = outcome.statistics;
+        assert!(took.steps + took.rejected < 50, "{place}: {took:?}");
+    }
 }
