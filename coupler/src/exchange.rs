@@ -260,9 +260,9 @@ fn ratio(beyond: f64, coefficient: f64) -> f64 {
 }
 
 fn share(part: f64, whole: f64) -> f64 {
-    if part == 0.0 {
+    if part == 0.0 || whole < f64::MIN_POSITIVE {
         0.0
     } else {
-        part / whole.max(f64::MIN_POSITIVE)
+        part / whole
     }
 }

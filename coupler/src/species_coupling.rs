@@ -37,6 +37,8 @@ pub struct SpeciesCoupling {
     pub carried: Vec<f64>,
     /// The same into each cell, of the last attempt.
     pub cell_heat: Vec<f64>,
+    /// Sum of rates in units/s below which nothing is exchanged.
+    pub least: f64,
     /// Rates before those.
     before: Vec<f64>,
     /// Of each channel the gas that counter-diffuses mole for mole.
@@ -99,7 +101,12 @@ impl SpeciesCoupling {
             moved += count * (now - before).abs();
             all += count * now.abs();
         }
-        if moved == 0.0 { 0.0 } else { moved / all }
+        let all: f64 = all;
+        if moved == 0.0 {
+            0.0
+        } else {
+            moved / all.max(self.least).max(f64::MIN_POSITIVE)
+        }
     }
 
     /// Tells the gas the rates of the last attempt as they are, after `limit` has lowered them to what the particles

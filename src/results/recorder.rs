@@ -467,12 +467,14 @@ fn occupied(out: &Path) -> ResultsError {
 }
 
 fn status_of(summary: &Summary) -> Status {
+    let begun = |step: &&(f64, f64)| step.0 <= summary.process_time_s;
+    let factor = summary.acceleration.iter().rfind(begun);
     Status {
         state: summary.verdict.word().into(),
         process_time_s: summary.process_time_s,
         process_end_s: summary.process_end_s,
         motion_time_s: summary.motion_time_s,
-        acceleration: 1.0,
+        acceleration: factor.map_or(1.0, |step| step.1),
         windows: summary.windows,
         fraction_done: summary.process_time_s / summary.process_end_s,
         wall_time_left_s: None,

@@ -135,6 +135,13 @@ impl ExchangeStage {
         let inputs = with.inputs(window);
         self.exchange.begin(&inputs, &with.gas.fields());
         if with.interior.has_channels() {
+            let channels = with.interior.models.channels();
+            let units = channels.iter().flat_map(|channel| &channel.mass);
+            let largest = units.fold(0.0, |most: f64, mass| most.max(mass.abs()));
+            let rows = 0..with.particles.len();
+            let mass: f64 = rows.map(|row| with.particles.row_mass(row)).sum();
+            let span = window.span.process.seconds();
+            self.species.least = NOTHING * mass / (span * largest.max(f64::MIN_POSITIVE));
             self.iterate
                 .begin(&with.mapped.operator, &with.gas.fields());
         }
@@ -309,6 +316,8 @@ struct GasIterate {
     made: Vec<f64>,
 }
 
+/// Share of the particles' mass whose exchange in a window is none at all for the convergence of attempts.
+const NOTHING: f64 = 1e-9;
 /// Change of temperature in K that weighs as much as one of a mass fraction from none to one.
 const KELVIN: f64 = 1000.0;
 

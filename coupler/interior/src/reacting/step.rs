@@ -185,7 +185,16 @@ impl Reacting {
             let slope = told(workspace.slopes[*reaction]);
             lines[c] = slope;
             lines[count + c] = slope * composition[key] - mean;
-            lines[2 * count + c] = told(workspace.local_slopes[*reaction]);
+            let local = told(workspace.local_slopes[*reaction]);
+            // A cell gives no more than its share of the gas that is used: orders below one follow a gas less than in proportion,
+            // and would take from cells that have none.
+            let used = mean * channel.mass[key] < 0.0 && composition[key] > 0.0;
+            let proportional = if used { mean / composition[key] } else { 0.0 };
+            lines[2 * count + c] = if proportional.abs() > local.abs() {
+                proportional
+            } else {
+                local
+            };
         }
     }
 

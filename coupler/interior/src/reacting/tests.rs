@@ -479,3 +479,40 @@ fn three_oxides_are_reduced_in_their_order() {
         "all iron in the end"
     );
 }
+
+#[test]
+fn a_reaction_of_order_zero_takes_from_a_cell_in_proportion_to_what_it_holds() {
+    // The rate does not follow the gas; the share of a cell does, or an empty one would give what it has not.
+    let reaction = Reaction {
+        name: "order zero".into(),
+        solids: vec![(0, -1.0), (1, 1.0)],
+        gases: vec![(0, -1.0), (1, 1.0)],
+        rate: Rate::Power(PowerLaw {
+            rate_constant: constant(1e-3),
+            in_series: None,
+            solids: Vec::new(),
+            gases: vec![(0, 0.0)],
+        }),
+        equilibrium: Equilibrium::OneWay,
+    };
+    let gas = Mixture::new(["CO", "CO2"]).unwrap();
+    let solids = vec![solid("FeO"), solid("Fe")];
+    let chemistry = SolidChemistry::new(solids, Some(gas), vec![reaction]).unwrap();
+    let mut reacting = particle(chemistry);
+    let composition = [0.4, 0.6];
+    let around = Surroundings {
+        temperature: &[HOT],
+        pressure: &[PRESSURE],
+        composition: &composition,
+        conductance: &[0.0],
+        film: &[1e3, 1e3],
+        radius: &[RADIUS],
+    };
+    let mut lines = GasLines::default();
+    lines.reset(1, 1);
+    reacting.respond(&around, 1.0, &[0.0], &mut lines).unwrap();
+    let rate = lines.slope[0] * composition[0] - lines.offset[0];
+    assert!(rate > 0.0);
+    assert!((lines.local_slope[0] * composition[0] / rate - 1.0).abs() < 1e-6);
+    assert!(lines.slope[0].abs() < 1e-3 * lines.local_slope[0]);
+}
