@@ -415,18 +415,33 @@ impl Host {
         Ok(())
     }
 
-    /// The first particle of this rank's that is gone, in words.
+    /// The particle of the lowest id that no rank has any longer, in words; all ranks must call it.
     fn first_lost(&self) -> Result<String, HostError> {
         let now = RankParticles::read(&self.liggghts, self.weights)?;
-        let gone = |(_, id): &(usize, &u64)| now.id.binary_search(id).is_err();
-        let lost = self.state.id.iter().enumerate().find(gone);
-        Ok(lost.map_or_else(String::new, |(row, id)| {
-            let at = &self.state.position[3 * row..3 * row + 3];
-            format!(
-                "; particle {id} was last seen at ({:.6}, {:.6}, {:.6}) m",
-                at[0], at[1], at[2]
-            )
-        }))
+        let own = self.state.id.iter().chain(&now.id).copied().max();
+        let largest = library::largest_over_ranks(own.unwrap_or_default());
+        let mut held = vec![0u64; largest as usize + 1];
+        for id in &self.state.id {
+            held[*id as usize] += 1;
+        }
+        for id in &now.id {
+            held[*id as usize] = held[*id as usize].wrapping_sub(1);
+        }
+        library::add_over_ranks(&mut held);
+        let Some(id) = held.iter().position(|count| *count == 1) else {
+            return Ok(String::new());
+        };
+        // The rank that had it knows where; the others add nothing to the bits.
+        let row = self.state.id.binary_search(&(id as u64)).ok();
+        let state = &self.state.position;
+        let place = |axis: usize| row.map_or(0, |row| f64::to_bits(state[3 * row + axis]));
+        let mut at = [0, 1, 2].map(place);
+        library::add_over_ranks(&mut at);
+        let at = at.map(f64::from_bits);
+        Ok(format!(
+            "; particle {id} was last seen at ({:.6}, {:.6}, {:.6}) m",
+            at[0], at[1], at[2]
+        ))
     }
 
     /// Sends the state between windows, with impulses of zero.

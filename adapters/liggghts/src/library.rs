@@ -15,10 +15,11 @@ use calcine_wire::{Header, Link, MessageKind, SolverFailure};
 type MPI_Comm = *mut c_void;
 
 unsafe extern "C" {
-    // Open MPI's MPI_COMM_WORLD, MPI_UINT64_T and MPI_SUM are the addresses of these objects.
+    // Open MPI's MPI_COMM_WORLD, MPI_UINT64_T, MPI_SUM and MPI_MAX are the addresses of these objects.
     static mut ompi_mpi_comm_world: c_void_object;
     static mut ompi_mpi_uint64_t: c_void_object;
     static mut ompi_mpi_op_sum: c_void_object;
+    static mut ompi_mpi_op_max: c_void_object;
 
     fn MPI_Init(argc: *mut c_int, argv: *mut *mut *mut c_char) -> c_int;
     fn MPI_Finalize() -> c_int;
@@ -164,19 +165,39 @@ fn world() -> MPI_Comm {
 
 /// The sum of every rank's value, wrapping; all ranks must call it.
 pub fn sum_over_ranks(value: u64) -> u64 {
-    let mut sum = 0u64;
-    // SAFETY: one value of the stated type at either place, in the world that all ranks are in.
-    unsafe {
-        MPI_Allreduce(
-            (&raw const value).cast(),
-            (&raw mut sum).cast(),
-            1,
-            (&raw mut ompi_mpi_uint64_t).cast(),
-            (&raw mut ompi_mpi_op_sum).cast(),
-            world(),
-        );
+    let mut sum = [value];
+    add_over_ranks(&mut sum);
+    sum[0]
+}
+
+/// The sums of every rank's values, wrapping, in their place; all ranks must call it with as many.
+pub fn add_over_ranks(values: &mut [u64]) {
+    reduce(values, (&raw mut ompi_mpi_op_sum).cast());
+}
+
+/// The largest of every rank's value; all ranks must call it.
+pub fn largest_over_ranks(value: u64) -> u64 {
+    let mut largest = [value];
+    reduce(&mut largest, (&raw mut ompi_mpi_op_max).cast());
+    largest[0]
+}
+
+/// Replaces values by what an operation of MPI makes of those of all ranks.
+fn reduce(values: &mut [u64], operation: *mut c_void) {
+    let own = values.to_vec();
+    for (from, to) in own.chunks(1 << 20).zip(values.chunks_mut(1 << 20)) {
+        // SAFETY: as many values of the stated type at either place, in the world that all ranks are in.
+        unsafe {
+            MPI_Allreduce(
+                from.as_ptr().cast(),
+                to.as_mut_ptr().cast(),
+                from.len() as c_int,
+                (&raw mut ompi_mpi_uint64_t).cast(),
+                operation,
+                world(),
+            );
+        }
     }
-    sum
 }
 
 /// One LIGGGHTS; there must be no second in a process.
