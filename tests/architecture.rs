@@ -406,7 +406,7 @@ fn a_circle_is_found_and_a_parent_that_hands_on_makes_none() {
     write("a.rs", "pub struct A;\n");
     write(
         "lib.rs",
-        "mod a;\nmod b;\npub use a::A;\npub struct Own;\nfn f() -> b::B { todo!() }\n",
+        "mod a;\nmod b;\npub use a::A;\npub struct Own;\nfn f(b: b::B) -> b::B { b }\n",
     );
     assert_eq!(found(), [["b.rs", "lib.rs"]]);
 }

@@ -52,7 +52,10 @@ fn closes_with(particles: &str) {
     closes(&out);
     // What the solver may use of the case lies where it runs.
     for name in ["case.toml", "constant/polyMesh/points"] {
-        assert!(out.join("solvers/external").join(name).is_file(), "{name}");
+        assert!(
+            out.join("solvers/external-gas").join(name).is_file(),
+            "{name}"
+        );
     }
 }
 

@@ -33,20 +33,14 @@ pub const RESUME_VARIABLE: &str = "CALCINE_RESUME";
 /// The variable with the folder of another run's checkpoint to continue from.
 pub const FROM_VARIABLE: &str = "CALCINE_FROM";
 
-/// What an external gas is started with.
+/// A program to attach.
 #[derive(Clone, Debug)]
-pub struct ExternalGasLaunch<'a> {
-    /// The gas as the case has it.
-    pub setup: &'a GasSetup,
-    /// The mesh.
-    pub mesh: Arc<Mesh>,
-    /// The solver's program.
+pub struct AttachedProgram {
+    /// Its path.
     pub program: PathBuf,
     /// Its arguments.
     pub arguments: Vec<String>,
-    /// The case's effective TOML.
-    pub case: &'a str,
-    /// Where the solver runs.
+    /// Where it runs.
     pub folder: PathBuf,
     /// Where its output goes.
     pub log: PathBuf,
@@ -54,42 +48,49 @@ pub struct ExternalGasLaunch<'a> {
     pub ranks: u32,
     /// Who starts them.
     pub launcher: Launcher,
-    /// The gas' folder of the checkpoint to start from.
+    /// Its folder of the checkpoint to start from.
     pub resume: Option<PathBuf>,
-    /// The gas' folder of another run's checkpoint to continue from.
+    /// Its folder of another run's checkpoint to continue from.
     pub from: Option<PathBuf>,
     /// Longest silence while starting, writing a checkpoint or ending.
     pub deadline: Duration,
 }
 
-impl ExternalGasLaunch<'_> {
-    /// Writes the folder, starts the solver and takes over the state it starts from.
-    pub fn launch(self, supervisor: &mut Supervisor) -> Result<LinkedGas, PartError> {
-        self.write_folder()?;
+/// What a program must agree to.
+struct Terms {
+    name: &'static str,
+    role: &'static str,
+    /// Number of its cells or particles.
+    count: u64,
+    catalogue: Catalogue,
+    cells: Option<Arc<Mesh>>,
+}
+
+impl AttachedProgram {
+    /// Starts it in its folder, which is written.
+    fn start(self, terms: Terms, supervisor: &mut Supervisor) -> Result<ExternalSolver, PartError> {
         let mut environment: Vec<(OsString, OsString)> = Vec::new();
         let mut origin = NEW.to_owned();
         for (name, folder) in [(RESUME_VARIABLE, &self.resume), (FROM_VARIABLE, &self.from)] {
             let Some(folder) = folder else { continue };
-            let absolute = absolute(NAME, folder)?;
+            let absolute = absolute(terms.name, folder)?;
             origin = absolute.to_string_lossy().into_owned();
             environment.push((name.into(), absolute.into()));
         }
-        let species = self.setup.properties.species().len();
-        let turbulent = !self.setup.turbulence.is_laminar();
         let hello = Hello {
-            role: "gas".into(),
+            role: terms.role.into(),
             name: "Calcine".into(),
             version: env!("CARGO_PKG_VERSION").into(),
             case_hash: NOT_COMPARED.into(),
             mesh_hash: NOT_COMPARED.into(),
             origin,
-            count: self.mesh.cells() as u64,
+            count: terms.count,
             ranks: self.ranks,
-            catalogue: Catalogue::gas(species, turbulent).with_geometry(),
+            catalogue: terms.catalogue,
         };
-        let solver = ExternalSolver::launch(
+        ExternalSolver::launch(
             Launch {
-                name: NAME.into(),
+                name: terms.name.into(),
                 program: Program {
                     path: self.program,
                     arguments: self.arguments.into_iter().map(OsString::from).collect(),
@@ -99,21 +100,52 @@ impl ExternalGasLaunch<'_> {
                 launcher: self.launcher,
                 log: self.log,
                 hello,
-                cells: Some(Arc::clone(&self.mesh)),
+                cells: terms.cells,
                 handshake: self.deadline,
                 deadline: self.deadline,
             },
             supervisor,
-        )?;
+        )
+    }
+}
+
+/// What an external gas is started with.
+#[derive(Clone, Debug)]
+pub struct ExternalGasLaunch<'a> {
+    /// The gas as the case has it.
+    pub setup: &'a GasSetup,
+    /// The mesh.
+    pub mesh: Arc<Mesh>,
+    /// The case's effective TOML.
+    pub case: &'a str,
+    /// The solver.
+    pub solver: AttachedProgram,
+}
+
+impl ExternalGasLaunch<'_> {
+    /// Writes the folder, starts the solver and takes over the state it starts from.
+    pub fn launch(self, supervisor: &mut Supervisor) -> Result<LinkedGas, PartError> {
+        self.write_folder()?;
+        let species = self.setup.properties.species().len();
+        let turbulent = !self.setup.turbulence.is_laminar();
+        let terms = Terms {
+            name: NAME,
+            role: "gas",
+            count: self.mesh.cells() as u64,
+            catalogue: Catalogue::gas(species, turbulent).with_geometry(),
+            cells: Some(Arc::clone(&self.mesh)),
+        };
+        let solver = self.solver.start(terms, supervisor)?;
         LinkedGas::new(solver, self.setup, self.mesh, true)
     }
 
     /// The folder in which the solver runs, with what it may use of the case.
     fn write_folder(&self) -> Result<(), PartError> {
-        polymesh::write(&self.mesh, &self.folder.join("constant/polyMesh"))
-            .map_err(|error| unwritten(NAME, &self.folder, error))?;
-        fs::write(self.folder.join("case.toml"), self.case)
-            .map_err(|error| unwritten(NAME, &self.folder, error))
+        let folder = &self.solver.folder;
+        polymesh::write(&self.mesh, &folder.join("constant/polyMesh"))
+            .map_err(|error| unwritten(NAME, folder, error))?;
+        fs::write(folder.join("case.toml"), self.case)
+            .map_err(|error| unwritten(NAME, folder, error))
     }
 }
 
@@ -139,24 +171,10 @@ fn unwritten(
 pub struct ExternalParticlesLaunch<'a> {
     /// The particles as the case has them.
     pub setup: &'a ParticleSetup,
-    /// The solver's program.
-    pub program: PathBuf,
-    /// Its arguments.
-    pub arguments: Vec<String>,
     /// The case's effective TOML; `None` where there is no case.
     pub case: Option<&'a str>,
-    /// Where the solver runs.
-    pub folder: PathBuf,
-    /// Where its output goes.
-    pub log: PathBuf,
-    /// Number of ranks.
-    pub ranks: u32,
-    /// Who starts them.
-    pub launcher: Launcher,
-    /// The particles' folder of the checkpoint to start from.
-    pub resume: Option<PathBuf>,
-    /// Longest silence while starting, writing a checkpoint or ending.
-    pub deadline: Duration,
+    /// The solver.
+    pub solver: AttachedProgram,
 }
 
 impl ExternalParticlesLaunch<'_> {
@@ -164,43 +182,16 @@ impl ExternalParticlesLaunch<'_> {
     /// case where no checkpoint is taken up.
     pub fn launch(self, supervisor: &mut Supervisor) -> Result<LinkedParticles, PartError> {
         self.write_folder()?;
-        let mut environment: Vec<(OsString, OsString)> = Vec::new();
-        let mut origin = NEW.to_owned();
-        if let Some(folder) = &self.resume {
-            let absolute = absolute(PARTICLES, folder)?;
-            origin = absolute.to_string_lossy().into_owned();
-            environment.push((RESUME_VARIABLE.into(), absolute.into()));
-        }
-        let (ids, radii) = particles::identity(PARTICLES, self.setup, self.resume.as_deref())?;
-        let hello = Hello {
-            role: "particles".into(),
-            name: "Calcine".into(),
-            version: env!("CARGO_PKG_VERSION").into(),
-            case_hash: NOT_COMPARED.into(),
-            mesh_hash: NOT_COMPARED.into(),
-            origin,
+        let resume = self.solver.resume.as_deref();
+        let (ids, radii) = particles::identity(PARTICLES, self.setup, resume)?;
+        let terms = Terms {
+            name: PARTICLES,
+            role: "particles",
             count: ids.len() as u64,
-            ranks: self.ranks,
             catalogue: Catalogue::particles(&[]),
+            cells: None,
         };
-        let solver = ExternalSolver::launch(
-            Launch {
-                name: PARTICLES.into(),
-                program: Program {
-                    path: self.program,
-                    arguments: self.arguments.into_iter().map(OsString::from).collect(),
-                    directory: self.folder,
-                    environment,
-                },
-                launcher: self.launcher,
-                log: self.log,
-                hello,
-                cells: None,
-                handshake: self.deadline,
-                deadline: self.deadline,
-            },
-            supervisor,
-        )?;
+        let solver = self.solver.start(terms, supervisor)?;
         let particles = LinkedParticles::new(PARTICLES, solver, self.setup, u64::MAX)?;
         let fields = particles.fields();
         let pairs = ids.iter().zip(&radii);
@@ -223,7 +214,7 @@ impl ExternalParticlesLaunch<'_> {
     /// The folder in which the solver runs, with what it may use of the case: particles in ascending id, in SI, with
     /// every digit.
     fn write_folder(&self) -> Result<(), PartError> {
-        let setup = self.setup;
+        let (setup, folder) = (self.setup, &self.solver.folder);
         let mut table = String::from("id,population,held,x,y,z,vx,vy,vz,radius,density\n");
         for row in 0..setup.id.len() {
             let population = setup.population[row];
@@ -241,13 +232,13 @@ impl ExternalParticlesLaunch<'_> {
             table.push('\n');
         }
         let write = || {
-            fs::create_dir_all(&self.folder)?;
-            fs::write(self.folder.join("particles.csv"), table)?;
+            fs::create_dir_all(folder)?;
+            fs::write(folder.join("particles.csv"), table)?;
             match self.case {
-                Some(case) => fs::write(self.folder.join("case.toml"), case),
+                Some(case) => fs::write(folder.join("case.toml"), case),
                 None => Ok(()),
             }
         };
-        write().map_err(|error| unwritten(PARTICLES, &self.folder, error))
+        write().map_err(|error| unwritten(PARTICLES, folder, error))
     }
 }

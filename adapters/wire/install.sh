@@ -15,7 +15,7 @@ examples=$1/share/calcine/examples
 mkdir -p "$1/include" "$1/lib/pkgconfig" "$examples"
 cp "$own/include/calcine_wire.h" "$1/include/"
 cp "$2" "$1/lib/libcalcine_wire.a"
-for file in Makefile column_gas.c ballistic_particles.c column.toml; do
+for file in Makefile solver.h column_gas.c ballistic_particles.c column.toml; do
     cp "$own/examples/$file" "$examples/"
 done
 cat >"$1/lib/pkgconfig/calcine-wire.pc" <<EOF

@@ -4,11 +4,12 @@
 //! r = b Ȳ − a. Its share in a cell follows the gas of the cell, W_cp [r + β (Y_c − Ȳ)], with β how the rate at a part of
 //! the surface follows the gas there. b is the response of the particle as a whole, with its temperature and what
 //! it is made of; β alone says where mass is exchanged, and no choice of b moves the result. An attempt of
-//! a window gives the gas β Y_c − (a + (β − b) Ȳ) about the gas of the attempt before, with the larger of b and β/2 implicitly: the key gas implicitly, which is what keeps large process steps stable, a gas into which the
+//! a window gives the gas β Y_c − (a + (β − b) Ȳ) about the gas of the attempt before, with the larger of b and β/2
+//! implicitly: the key gas implicitly, which is what keeps large process steps stable, a gas into which the
 //! channel turns it mole for mole likewise (the rate follows both, and by the key gas alone the two would be out of step
-//! until the attempts agree), all others explicitly. What comes of it gives the rates of the cells; limited to what particles hold, they are given to
-//! the gas once more as fixed sources, all species of a channel in their proportions, so that elements close whatever the
-//! attempts before did.
+//! until the attempts agree), all others explicitly. What comes of it gives the rates of the cells; limited to what
+//! particles hold, they are given to the gas once more as fixed sources, all species of a channel in their proportions,
+//! so that elements close whatever the attempts before did.
 //!
 //! Gas that is used up leaves its cell with the cell's temperature, gas that is made comes with the
 //! particle's.
@@ -44,17 +45,30 @@ pub struct SpeciesCoupling {
     /// Of each channel the gas that counter-diffuses mole for mole.
     counter: Vec<Option<usize>>,
     shares: Vec<f64>,
-    /// β, a + (β − b) Ȳ and the slope that the gas takes implicitly, of each channel of each particle.
-    told: [Vec<f64>; 3],
+    /// β of each channel of each particle.
+    slope: Vec<f64>,
+    /// a + (β − b) Ȳ of each.
+    offset: Vec<f64>,
+    /// The slope of each that the gas takes implicitly.
+    implicit: Vec<f64>,
     key_fraction: Vec<f64>,
-    /// Of each channel the sums over particles of all three, in cells.
-    cell: [Vec<Vec<f64>>; 3],
-    /// The same, times the sensible enthalpy in J a unit of what the channel makes.
-    warm: [Vec<Vec<f64>>; 2],
+    /// Of each channel the sums of the lines over particles, in cells.
+    cells: Vec<CellLine>,
     /// Mass fractions by which the fixed rates went.
     fractions: Vec<f64>,
     scratch: Vec<f64>,
     sampled: Vec<f64>,
+}
+
+/// The lines of one channel, summed over particles, in each cell.
+#[derive(Debug, Default)]
+struct CellLine {
+    slope: Vec<f64>,
+    offset: Vec<f64>,
+    implicit: Vec<f64>,
+    /// Slope and offset, each times the sensible enthalpy in J a unit of what the channel makes.
+    warm_slope: Vec<f64>,
+    warm_offset: Vec<f64>,
 }
 
 impl SpeciesCoupling {
@@ -182,7 +196,7 @@ impl SpeciesCoupling {
             operator.sample(&enthalpy, &mut self.sampled);
             for (p, sampled) in self.sampled.iter().enumerate() {
                 let at = p * channels.len() + c;
-                self.carried[p] -= self.shares[at] * self.told[1][at] * sampled;
+                self.carried[p] -= self.shares[at] * self.offset[at] * sampled;
             }
             for (cell, value) in enthalpy.iter_mut().enumerate() {
                 *value *= self.fraction(cell, species, channel);
@@ -190,7 +204,7 @@ impl SpeciesCoupling {
             operator.sample(&enthalpy, &mut self.sampled);
             for (p, sampled) in self.sampled.iter().enumerate() {
                 let at = p * channels.len() + c;
-                self.carried[p] += self.shares[at] * self.told[0][at] * sampled
+                self.carried[p] += self.shares[at] * self.slope[at] * sampled
                     - self.rates[at] * made(channel, properties, given.lines.released[p]);
             }
         }
@@ -205,32 +219,36 @@ impl SpeciesCoupling {
 
     /// Brings the particles' lines to the cells.
     fn spread(&mut self, operator: &Operator, given: ChannelLines<'_>, properties: &GasModel) {
-        let (cells, particles) = (operator.cells(), operator.particles());
         let channels = given.channels;
-        self.scratch.resize(particles, 0.0);
-        for (which, lines) in self.told.iter().enumerate() {
-            self.cell[which].resize(channels.len(), Vec::new());
-            if which < 2 {
-                self.warm[which].resize(channels.len(), Vec::new());
-            }
-            for (c, channel) in channels.iter().enumerate() {
-                let at = |p: usize| p * channels.len() + c;
-                for (p, value) in self.scratch.iter_mut().enumerate() {
-                    *value = self.shares[at(p)] * lines[at(p)];
+        let (shares, scratch) = (&self.shares, &mut self.scratch);
+        scratch.resize(operator.particles(), 0.0);
+        self.cells.resize_with(channels.len(), CellLine::default);
+        for (c, (channel, cells)) in channels.iter().zip(&mut self.cells).enumerate() {
+            let at = |p: usize| p * channels.len() + c;
+            let mut gather = |lines: &[f64], sums: &mut Vec<f64>, warm: Option<&mut Vec<f64>>| {
+                for (p, value) in scratch.iter_mut().enumerate() {
+                    *value = shares[at(p)] * lines[at(p)];
                 }
-                self.cell[which][c].resize(cells, 0.0);
-                operator.spread(&self.scratch, &mut self.cell[which][c]);
-                if which == 2 {
-                    continue;
-                }
-                for (p, value) in self.scratch.iter_mut().enumerate() {
+                sums.resize(operator.cells(), 0.0);
+                operator.spread(scratch, sums);
+                let Some(warm) = warm else {
+                    return;
+                };
+                for (value, released) in scratch.iter_mut().zip(&given.lines.released) {
                     if *value != 0.0 {
-                        *value *= made(channel, properties, given.lines.released[p]);
+                        *value *= made(channel, properties, *released);
                     }
                 }
-                self.warm[which][c].resize(cells, 0.0);
-                operator.spread(&self.scratch, &mut self.warm[which][c]);
-            }
+                warm.resize(operator.cells(), 0.0);
+                operator.spread(scratch, warm);
+            };
+            gather(&self.slope, &mut cells.slope, Some(&mut cells.warm_slope));
+            gather(
+                &self.offset,
+                &mut cells.offset,
+                Some(&mut cells.warm_offset),
+            );
+            gather(&self.implicit, &mut cells.implicit, None);
         }
     }
 
@@ -240,12 +258,13 @@ impl SpeciesCoupling {
         let (slopes, offsets) = (&given.lines.slope, &given.lines.offset);
         self.rates.clear();
         self.rates.resize(slopes.len(), 0.0);
-        self.told[0].clone_from(&given.lines.local_slope);
-        self.told[2].clear();
-        let pairs = slopes.iter().zip(&given.lines.local_slope);
-        self.told[2].extend(pairs.map(|(whole, local)| implicit_slope(*whole, *local)));
-        self.told[1].clear();
-        self.told[1].resize(slopes.len(), 0.0);
+        self.slope.clone_from(&given.lines.local_slope);
+        let pairs = slopes.iter().zip(&self.slope);
+        self.implicit.clear();
+        self.implicit
+            .extend(pairs.map(|(whole, local)| implicit_slope(*whole, *local)));
+        self.offset.clear();
+        self.offset.resize(slopes.len(), 0.0);
         self.sampled.resize(operator.particles(), 0.0);
         let (mut sampled, fractions) = (None, &self.fractions);
         for (c, channel) in channels.iter().enumerate() {
@@ -262,7 +281,7 @@ impl SpeciesCoupling {
             for (p, sampled) in self.sampled.iter().enumerate() {
                 let at = p * channels.len() + c;
                 self.rates[at] = slopes[at] * sampled - offsets[at];
-                self.told[1][at] = self.told[0][at] * sampled - self.rates[at];
+                self.offset[at] = self.slope[at] * sampled - self.rates[at];
             }
         }
     }
@@ -277,9 +296,9 @@ impl SpeciesCoupling {
     ) {
         let cells = self.fractions.len() / species.max(1);
         out.reset(cells, species);
-        for (c, channel) in given.channels.iter().enumerate() {
+        for (c, (channel, lines)) in given.channels.iter().zip(&self.cells).enumerate() {
             for cell in 0..cells {
-                let (slope, offset) = (self.cell[0][c][cell], self.cell[1][c][cell]);
+                let (slope, offset) = (lines.slope[cell], lines.offset[cell]);
                 if slope == 0.0 && offset == 0.0 {
                     continue;
                 }
@@ -287,7 +306,7 @@ impl SpeciesCoupling {
                 let rate = slope * fraction - offset;
                 for (k, mass) in channel.mass.iter().enumerate().filter(|(_, m)| **m != 0.0) {
                     let at = cell * species + k;
-                    let taken = self.cell[2][c][cell];
+                    let taken = lines.implicit[cell];
                     let steepness = -mass * taken;
                     if implicit && channel.key == Some(k) && steepness > 0.0 {
                         out.coefficient[at] += steepness;
@@ -308,7 +327,7 @@ impl SpeciesCoupling {
                         out.taken[at] -= mass * rate;
                     }
                 }
-                out.heat[cell] += self.warm[0][c][cell] * fraction - self.warm[1][c][cell];
+                out.heat[cell] += lines.warm_slope[cell] * fraction - lines.warm_offset[cell];
             }
         }
     }

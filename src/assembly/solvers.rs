@@ -1,9 +1,9 @@
 //! The solvers of a run: native ones made, external ones started, their inputs.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use calcine_adapters::external::{ExternalGasLaunch, ExternalParticlesLaunch};
+use calcine_adapters::external::{AttachedProgram, ExternalGasLaunch, ExternalParticlesLaunch};
 use calcine_adapters::liggghts::inputs::Inputs;
 use calcine_adapters::liggghts::template::ScriptTemplate;
 use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch};
@@ -21,8 +21,8 @@ use calcine_native::particles::NativeParticles;
 use super::error::AssemblyError;
 use super::pairing::{GasBackend, Pairing, ParticleBackend};
 use super::prepared::PreparedCase;
-use super::settings::{RunSettings, SolverStarts};
-use crate::case::model::Case;
+use super::settings::{RunSettings, SolverStart, SolverStarts};
+use crate::case::model::{Case, ExternalProgram};
 
 /// Writes the inputs of the external solvers of a pairing, as a run would, into `openfoam/` and
 /// `liggghts/` below a folder; returns what was written.
@@ -31,7 +31,7 @@ pub fn write_inputs(
     prepared: &PreparedCase,
     pairing: Pairing,
     folder: &Path,
-) -> Result<Vec<std::path::PathBuf>, AssemblyError> {
+) -> Result<Vec<PathBuf>, AssemblyError> {
     let starts = SolverStarts::of(case, pairing);
     let mut written = Vec::new();
     if pairing.gas == GasBackend::Openfoam {
@@ -165,10 +165,7 @@ impl Assembly<'_> {
                     case_hash: self.case.hash.clone(),
                     folder: self.absolute("solvers/openfoam")?,
                     log: self.absolute("log/openfoam.log")?,
-                    from: match (&from, self.settings.from) {
-                        (None, Some(origin)) => Some(origin.path.join("gas")),
-                        _ => None,
-                    },
+                    from: self.gas_of_origin(),
                     ranks: self.settings.starts.gas.ranks,
                     launcher: self.settings.starts.gas.launcher.clone(),
                     resume: from,
@@ -182,19 +179,16 @@ impl Assembly<'_> {
                 let launch = ExternalGasLaunch {
                     setup: &self.case.gas,
                     mesh: Arc::clone(&self.prepared.mesh),
-                    program: external.program.clone(),
-                    arguments: external.arguments.clone(),
                     case: &self.case.effective,
-                    folder: self.absolute("solvers/external")?,
-                    log: self.absolute("log/external-gas.log")?,
-                    ranks: self.settings.starts.gas.ranks,
-                    launcher: self.settings.starts.gas.launcher.clone(),
-                    from: match (&from, self.settings.from) {
-                        (None, Some(origin)) => Some(origin.path.join("gas")),
-                        _ => None,
+                    solver: AttachedProgram {
+                        from: self.gas_of_origin(),
+                        ..self.attached(
+                            external,
+                            &self.settings.starts.gas,
+                            "external-gas",
+                            from,
+                        )?
                     },
-                    resume: from,
-                    deadline: self.case.coupling.deadline,
                 };
                 Ok(Box::new(launch.launch(supervisor)?))
             }
@@ -237,23 +231,45 @@ impl Assembly<'_> {
                 let start = &self.settings.starts.particles;
                 let launch = ExternalParticlesLaunch {
                     setup,
-                    program: external.program.clone(),
-                    arguments: external.arguments.clone(),
                     case: Some(&self.case.effective),
-                    folder: self.absolute("solvers/external-particles")?,
-                    log: self.absolute("log/external-particles.log")?,
-                    ranks: start.ranks,
-                    launcher: start.launcher.clone(),
-                    resume: from,
-                    deadline: self.case.coupling.deadline,
+                    solver: self.attached(external, start, "external-particles", from)?,
                 };
                 Ok(Box::new(launch.launch(supervisor)?))
             }
         }
     }
 
+    /// The gas of the run that this one continues from, unless it goes on from a checkpoint of its own.
+    fn gas_of_origin(&self) -> Option<PathBuf> {
+        match (self.from, self.settings.from) {
+            (None, Some(origin)) => Some(origin.path.join("gas")),
+            _ => None,
+        }
+    }
+
+    /// A program of the case in a folder of that name, from a folder of a checkpoint.
+    fn attached(
+        &self,
+        external: &ExternalProgram,
+        start: &SolverStart,
+        name: &str,
+        resume: Option<PathBuf>,
+    ) -> Result<AttachedProgram, AssemblyError> {
+        Ok(AttachedProgram {
+            program: external.program.clone(),
+            arguments: external.arguments.clone(),
+            folder: self.absolute(&format!("solvers/{name}"))?,
+            log: self.absolute(&format!("log/{name}.log"))?,
+            ranks: start.ranks,
+            launcher: start.launcher.clone(),
+            resume,
+            from: None,
+            deadline: self.case.coupling.deadline,
+        })
+    }
+
     /// A path in the results folder that holds whatever the working directory of a solver is.
-    fn absolute(&self, below: &str) -> Result<std::path::PathBuf, AssemblyError> {
+    fn absolute(&self, below: &str) -> Result<PathBuf, AssemblyError> {
         let path = self.settings.results.join(below);
         std::path::absolute(&path).map_err(|cause| {
             let message = format!("{} has no absolute path", path.display());

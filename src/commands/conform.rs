@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use calcine_adapters::external::{ExternalGasLaunch, ExternalParticlesLaunch};
+use calcine_adapters::external::{AttachedProgram, ExternalGasLaunch, ExternalParticlesLaunch};
 use calcine_adapters::launch::Launcher;
 use calcine_adapters::liggghts::LiggghtsLaunch;
 use calcine_adapters::liggghts::inputs::Inputs;
@@ -177,16 +177,8 @@ fn gases(arguments: &Arguments, program: &Path, out: &Path) -> Result<Vec<LawOut
                 let launch = ExternalGasLaunch {
                     setup,
                     mesh: Arc::clone(mesh),
-                    program: absolute(program),
-                    arguments: arguments.arguments.clone(),
                     case: COLUMN,
-                    folder,
-                    log,
-                    ranks,
-                    launcher,
-                    resume,
-                    from: None,
-                    deadline: DEADLINE,
+                    solver: external(arguments, program, (folder, log), resume),
                 };
                 Box::new(launch.launch(supervisor)?)
             };
@@ -235,15 +227,8 @@ fn spheres(arguments: &Arguments, program: &Path, out: &Path) -> Vec<LawOutcome>
             } else {
                 let launch = ExternalParticlesLaunch {
                     setup,
-                    program: absolute(program),
-                    arguments: arguments.arguments.clone(),
                     case: None,
-                    folder,
-                    log,
-                    ranks,
-                    launcher,
-                    resume,
-                    deadline: DEADLINE,
+                    solver: external(arguments, program, (folder, log), resume),
                 };
                 Box::new(launch.launch(supervisor)?)
             };
@@ -253,9 +238,24 @@ fn spheres(arguments: &Arguments, program: &Path, out: &Path) -> Vec<LawOutcome>
     })
 }
 
-/// The program by a path that holds in any folder.
-fn absolute(program: &Path) -> PathBuf {
-    std::path::absolute(program).unwrap_or_else(|_| program.to_owned())
+/// A program to attach, by a path that holds in any folder, with its folder and log.
+fn external(
+    arguments: &Arguments,
+    program: &Path,
+    (folder, log): (PathBuf, PathBuf),
+    resume: Option<PathBuf>,
+) -> AttachedProgram {
+    AttachedProgram {
+        program: std::path::absolute(program).unwrap_or_else(|_| program.to_owned()),
+        arguments: arguments.arguments.clone(),
+        folder,
+        log,
+        ranks: u32::from(arguments.ranks),
+        launcher: Launcher::Mpirun,
+        resume,
+        from: None,
+        deadline: DEADLINE,
+    }
 }
 
 #[cfg(test)]

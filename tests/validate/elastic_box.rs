@@ -2,10 +2,8 @@
 
 use std::time::Duration;
 
-use calcine_coupler::motion::{
-    Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, Pair, Rolling, Wall, WallMotion,
-    WallShape,
-};
+use calcine_coupler::conformance::particles::soft_spheres;
+use calcine_coupler::motion::{Contacts, Motion, Pair, Wall, WallMotion, WallShape};
 use calcine_coupler::part::{Bed as VoidFractions, ParticlePush, ParticleReceived, Particles};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
@@ -108,26 +106,13 @@ fn walls() -> Vec<Wall> {
 
 fn contacts(walls: Vec<Wall>) -> Contacts {
     Contacts {
-        step: STEP,
-        gravity: Vec3::zeros(),
         bounds: (Vec3::repeat(-1.0), Vec3::repeat(2.0)),
-        materials: vec![Elastic {
-            young: 1e7,
-            poisson: 0.25,
-        }],
-        material_of: vec![0],
-        held: vec![false],
-        law: ContactLaw {
-            force: ContactForce::HertzMindlin,
-            attractive_damping: true,
-            rolling: Rolling::None,
-            cohesion: Cohesion::None,
-        },
         pairs: vec![Pair {
             restitution: 1.0,
             ..Pair::default()
         }],
         walls,
+        ..soft_spheres(STEP, 1e7)
     }
 }
 

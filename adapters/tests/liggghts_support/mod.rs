@@ -11,10 +11,7 @@ use calcine_adapters::liggghts::LiggghtsLaunch;
 use calcine_adapters::liggghts::inputs::Inputs;
 use calcine_adapters::particles::LinkedParticles;
 use calcine_coupler::error::PartError;
-use calcine_coupler::motion::{
-    Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, Pair, Rolling, Wall, WallMotion,
-    WallShape,
-};
+use calcine_coupler::motion::{Cohesion, ContactForce, ContactLaw, Contacts, Motion, Rolling};
 use calcine_coupler::part::{
     Bed as VoidFractions, Part, ParticlePush, ParticleReceived, Particles,
 };
@@ -40,30 +37,8 @@ pub fn law() -> ContactLaw {
 /// A floor, no gravity unless asked for.
 pub fn contacts(gravity: Vec3) -> Contacts {
     Contacts {
-        step: STEP,
         gravity,
-        bounds: (Vec3::zeros(), Vec3::repeat(BOX)),
-        materials: vec![Elastic {
-            young: 5e7,
-            poisson: 0.25,
-        }],
-        material_of: vec![0, 0],
-        held: vec![false, true],
-        law: law(),
-        pairs: vec![Pair {
-            restitution: 0.5,
-            friction: 0.3,
-            ..Pair::default()
-        }],
-        walls: vec![Wall {
-            name: "floor".into(),
-            material: 0,
-            shape: WallShape::Plane {
-                point: Vec3::zeros(),
-                normal: Vec3::z(),
-            },
-            motion: WallMotion::Still,
-        }],
+        ..calcine_coupler::conformance::particles::contacts()
     }
 }
 

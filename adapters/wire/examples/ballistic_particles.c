@@ -16,18 +16,14 @@
  * Its arguments, all in SI: width= depth= height= gravity= (along z). The particles lie in particles.csv where it
  * runs. */
 #define _POSIX_C_SOURCE 200809L /* fsync, fileno */
-#include "calcine_wire.h"
+#define SOLVER "ballistic-particles"
+#include "solver.h"
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
-#define TICK 1e-12 /* s, unit of the clocks */
 #define PI 3.14159265358979323846
 
 /* What the arguments say. */
@@ -42,29 +38,9 @@ typedef struct particle {
     double radius, mass;
 } particle;
 
-static calcine_link *wire;
 static particle *all; /* in ascending id */
 static uint64_t count;
 static double acted; /* motion time of the last window, s */
-
-/* Ends this process, after telling the coordinator why. */
-_Noreturn static void fail(calcine_failure kind, const char *format, ...) {
-    char text[512];
-    va_list values;
-    va_start(values, format);
-    vsnprintf(text, sizeof text, format, values);
-    va_end(values);
-    fprintf(stderr, "ballistic-particles: %s\n", text);
-    if (wire) calcine_link_failed(wire, kind, text);
-    exit(1);
-}
-
-/* Every call of the wire but the wait for a request must succeed. */
-static void need(calcine_status status) {
-    if (status == CALCINE_OK) return;
-    fprintf(stderr, "ballistic-particles: %s\n", calcine_last_error());
-    exit(status == CALCINE_PEER_DEAD ? 2 : 1);
-}
 
 static void resize(uint64_t to) {
     particle *made = realloc(all, (to ? to : 1) * sizeof *all);
@@ -130,20 +106,10 @@ static void checkpoint(const char *folder, int writes) {
     fclose(file);
 }
 
-static const double *column(const char *name, uint64_t components) {
-    const double *values;
-    uint64_t length;
-    need(calcine_link_column(wire, name, &values, &length));
-    if (length != components * count)
-        fail(CALCINE_FAILURE_INPUT, "the column %s has %" PRIu64 " numbers for %" PRIu64 " particles", name, length,
-             count);
-    return values;
-}
-
 /* The window. Particles have one attempt: what is finished is the start of the next. */
 static void advance(const calcine_header *header) {
-    const uint64_t *ids = (const uint64_t *)(const void *)column("id", 1);
-    const double *force = column("force", 3);
+    const uint64_t *ids = (const uint64_t *)(const void *)column("id", count);
+    const double *force = column("force", 3 * count);
     acted = TICK * (double)header->span_motion;
     for (uint64_t p = 0; p < count; ++p) {
         particle *one = &all[p];
@@ -225,24 +191,17 @@ static void change(const char *text) {
     }
 }
 
-static void read_arguments(int words, char **word) {
-    struct { const char *name; double *value; } known[] = {{"width=", &given.width}, {"depth=", &given.depth},
-                                                           {"height=", &given.height}, {"gravity=", &given.gravity}};
-    for (int k = 1; k < words; ++k) {
-        size_t found = 0, of = sizeof known / sizeof *known;
-        while (found < of && strncmp(word[k], known[found].name, strlen(known[found].name)) != 0) ++found;
-        if (found == of) fail(CALCINE_FAILURE_INPUT, "`%s` is no argument", word[k]);
-        char *end, *start = word[k] + strlen(known[found].name);
-        *known[found].value = strtod(start, &end);
-        if (*end || end == start) fail(CALCINE_FAILURE_INPUT, "`%s` has no number", word[k]);
-    }
+static void set_up(int words, char **word) {
+    argument known[] = {{"width=", &given.width}, {"depth=", &given.depth}, {"height=", &given.height},
+                        {"gravity=", &given.gravity}};
+    read_arguments(words, word, known, sizeof known / sizeof *known);
     if (!(given.width > 0 && given.depth > 0 && given.height > 0))
         fail(CALCINE_FAILURE_INPUT, "width, depth and height must be positive");
 }
 
 int main(int words, char **word) {
     need(calcine_link_open(0, NULL, &wire));
-    read_arguments(words, word);
+    set_up(words, word);
     const char *resumed = getenv("CALCINE_RESUME");
     if (resumed) checkpoint(resumed, 0);
     else read_table();

@@ -19,16 +19,12 @@
  * Its arguments, all in SI: width= depth= height= cells= velocity= inlet_temperature= temperature= pressure=
  * gravity= (along z). */
 #define _POSIX_C_SOURCE 200809L /* fsync, fileno */
-#include "calcine_wire.h"
+#define SOLVER "column-gas"
+#include "solver.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
-#define TICK 1e-12                      /* s, unit of the clocks */
 #define GAS_CONSTANT (8.314462618 / 28.96e-3) /* of air, J/kg/K */
 #define HEAT_CAPACITY 1007.0            /* of air, J/kg/K */
 #define REFERENCE 298.15                /* K, where enthalpies are zero */
@@ -46,7 +42,6 @@ typedef struct state {
     double *mass, *enthalpy, *velocity, *gradient, *flow;
 } state;
 
-static calcine_link *wire;
 static uint64_t cells;
 static double area, volume, height;          /* of a cell, SI */
 static state committed, now;
@@ -56,25 +51,6 @@ static double *heat, *drag;                  /* taken from the particles in the 
 static double balances[5][7];                /* mass, energy, momentum x, y, z: see calcine_wire.h */
 static double storage_clock;                 /* N s */
 static double convergence[5];
-
-/* Ends this process, after telling the coordinator why. */
-_Noreturn static void fail(calcine_failure kind, const char *format, ...) {
-    char text[512];
-    va_list values;
-    va_start(values, format);
-    vsnprintf(text, sizeof text, format, values);
-    va_end(values);
-    fprintf(stderr, "column-gas: %s\n", text);
-    if (wire) calcine_link_failed(wire, kind, text);
-    exit(1);
-}
-
-/* Every call of the wire but the wait for a request must succeed. */
-static void need(calcine_status status) {
-    if (status == CALCINE_OK) return;
-    fprintf(stderr, "column-gas: %s\n", calcine_last_error());
-    exit(status == CALCINE_PEER_DEAD ? 2 : 1);
-}
 
 static double *list(uint64_t count) {
     double *made = calloc(count, sizeof *made);
@@ -222,21 +198,12 @@ static void take_stock(const exchange *told, double motion, double span) {
     }
 }
 
-static const double *column(const char *name, uint64_t components) {
-    const double *values;
-    uint64_t length;
-    need(calcine_link_column(wire, name, &values, &length));
-    if (length != components * cells) fail(CALCINE_FAILURE_INPUT, "the column %s has %llu numbers", name,
-                                           (unsigned long long)length);
-    return values;
-}
-
 /* One attempt, always from what is committed. */
 static void attempt(const calcine_header *header) {
     double motion = TICK * (double)header->span_motion, span = TICK * (double)header->storage_span;
-    const double *pores = column("void_fraction", 1);
-    exchange told = {column("drag_coefficient", 1), column("drag_source", 3),
-                     column("heat_coefficient", 1), column("heat_source", 1)};
+    const double *pores = column("void_fraction", cells);
+    exchange told = {column("drag_coefficient", cells), column("drag_source", 3 * cells),
+                     column("heat_coefficient", cells), column("heat_source", cells)};
     for (uint64_t c = 0; c < cells; ++c) {
         if (!(pores[c] > 0 && pores[c] <= 1))
             fail(CALCINE_FAILURE_INPUT, "a void fraction of %g in cell %llu", pores[c], (unsigned long long)c);
@@ -359,20 +326,12 @@ static void set_conditions(const char *text) {
     }
 }
 
-static void read_arguments(int count, char **words) {
-    struct { const char *name; double *value; } known[] = {
-        {"width", &given.width}, {"depth", &given.depth}, {"height", &given.height}, {"cells", &given.cells},
-        {"velocity", &given.velocity}, {"inlet_temperature", &given.inlet_temperature},
-        {"temperature", &given.temperature}, {"pressure", &given.pressure}, {"gravity", &given.gravity}};
-    for (int k = 1; k < count; ++k) {
-        char *equals = strchr(words[k], '='), *end = NULL;
-        size_t found = 0, all = sizeof known / sizeof *known;
-        while (equals && found < all && strncmp(words[k], known[found].name, (size_t)(equals - words[k])) != 0)
-            ++found;
-        if (!equals || found == all) fail(CALCINE_FAILURE_INPUT, "`%s` is no argument", words[k]);
-        *known[found].value = strtod(equals + 1, &end);
-        if (*end || end == equals + 1) fail(CALCINE_FAILURE_INPUT, "`%s` has no number", words[k]);
-    }
+static void set_up(int count, char **words) {
+    argument known[] = {
+        {"width=", &given.width}, {"depth=", &given.depth}, {"height=", &given.height}, {"cells=", &given.cells},
+        {"velocity=", &given.velocity}, {"inlet_temperature=", &given.inlet_temperature},
+        {"temperature=", &given.temperature}, {"pressure=", &given.pressure}, {"gravity=", &given.gravity}};
+    read_arguments(count, words, known, sizeof known / sizeof *known);
     if (!(given.width > 0 && given.depth > 0 && given.height > 0 && given.cells >= 1 && given.velocity >= 0
           && given.temperature > 0 && given.inlet_temperature > 0 && given.pressure > 0))
         fail(CALCINE_FAILURE_INPUT, "width, depth, height, cells, temperatures and pressure must be positive");
@@ -384,7 +343,7 @@ static void read_arguments(int count, char **words) {
 
 int main(int count, char **words) {
     need(calcine_link_open(0, NULL, &wire));
-    read_arguments(count, words);
+    set_up(count, words);
     committed = make_state();
     now = make_state();
     void_fraction = list(cells);

@@ -46,6 +46,18 @@ pub struct SurfaceLine {
     pub temperature: f64,
 }
 
+impl SurfaceLine {
+    /// That of a particle of one temperature, with an implicit step: it stores `stored` = C/Δτ in W/K from the temperature
+    /// `from` in K, and exchanges `conductance` in W/K with gas of the temperature `gas` in K.
+    pub fn of_one_temperature(stored: f64, from: f64, conductance: f64, gas: f64) -> Self {
+        let all = stored + conductance;
+        Self {
+            conductance: all,
+            temperature: from + conductance * (gas - from) / all,
+        }
+    }
+}
+
 /// A way by which mass passes between particle and gas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {

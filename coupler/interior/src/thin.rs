@@ -128,11 +128,7 @@ impl ParticleModel for Thin {
         for (p, line) in out.iter_mut().enumerate() {
             let stored = self.secant(p, at[p]) / span;
             let (gas, beside) = (around.conductance[p], around.temperature[p]);
-            *line = SurfaceLine {
-                conductance: stored + gas,
-                temperature: self.committed[p]
-                    + gas * (beside - self.committed[p]) / (stored + gas),
-            };
+            *line = SurfaceLine::of_one_temperature(stored, self.committed[p], gas, beside);
         }
         Ok(())
     }

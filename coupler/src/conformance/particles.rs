@@ -121,14 +121,15 @@ fn setup() -> ParticleSetup {
     }
 }
 
-/// No gravity, and a floor.
-fn contacts() -> Contacts {
+/// Soft spheres to test with: two materials alike, of which the second is held, of Young's modulus in Pa, with a Poisson's
+/// ratio of 0.25, a restitution of 0.5 and a friction of 0.3; steps in s. No gravity, no walls.
+pub fn soft_spheres(step: f64, young: f64) -> Contacts {
     Contacts {
-        step: STEP,
+        step,
         gravity: Vec3::zeros(),
         bounds: (Vec3::zeros(), Vec3::repeat(BOX)),
         materials: vec![Elastic {
-            young: 5e7,
+            young,
             poisson: 0.25,
         }],
         material_of: vec![0, 0],
@@ -144,6 +145,13 @@ fn contacts() -> Contacts {
             friction: 0.3,
             ..Pair::default()
         }],
+        walls: Vec::new(),
+    }
+}
+
+/// The spheres of the laws: of 50 MPa, above a floor.
+pub fn contacts() -> Contacts {
+    Contacts {
         walls: vec![Wall {
             name: "floor".into(),
             material: 0,
@@ -153,6 +161,7 @@ fn contacts() -> Contacts {
             },
             motion: WallMotion::Still,
         }],
+        ..soft_spheres(STEP, 5e7)
     }
 }
 

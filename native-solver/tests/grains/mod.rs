@@ -4,10 +4,10 @@
 use std::time::Duration;
 
 use calcine_coupler::checkpoint::StateFile;
+use calcine_coupler::conformance::particles::soft_spheres;
 use calcine_coupler::error::PartError;
 use calcine_coupler::motion::{
-    Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, NewParticle, Pair,
-    ParticleChanges, Rolling, Wall, WallMotion, WallShape,
+    Contacts, Motion, NewParticle, ParticleChanges, Wall, WallMotion, WallShape,
 };
 use calcine_coupler::part::{
     Bed as VoidFractions, Part, ParticlePush, ParticleReceived, Particles,
@@ -21,27 +21,8 @@ use calcine_native::particles::NativeParticles;
 /// One material of 10 MPa with a Poisson's ratio of 0.25, a restitution of 0.5, friction 0.3.
 pub fn contacts(step: f64) -> Contacts {
     Contacts {
-        step,
-        gravity: Vec3::zeros(),
         bounds: (Vec3::repeat(-1.0), Vec3::repeat(1.0)),
-        materials: vec![Elastic {
-            young: 1e7,
-            poisson: 0.25,
-        }],
-        material_of: vec![0, 0],
-        held: vec![false, true],
-        law: ContactLaw {
-            force: ContactForce::HertzMindlin,
-            attractive_damping: true,
-            rolling: Rolling::None,
-            cohesion: Cohesion::None,
-        },
-        pairs: vec![Pair {
-            restitution: 0.5,
-            friction: 0.3,
-            ..Pair::default()
-        }],
-        walls: Vec::new(),
+        ..soft_spheres(step, 1e7)
     }
 }
 

@@ -19,7 +19,7 @@ pub(super) const LIGGGHTS: &[Key] = &[
 
 #[rustfmt::skip]
 const GAS: &[Key] = &[
-    key("program", Path, Required, "The program. It runs in `solvers/external` of the results, where the case lies as `case.toml` and the mesh as `constant/polyMesh`.", "\"column-gas\""),
+    key("program", Path, Required, "The program. It runs in `solvers/external-gas` of the results, where the case lies as `case.toml` and the mesh as `constant/polyMesh`.", "\"column-gas\""),
     key("arguments", Texts(0), Without("none"), "Its arguments.", "[\"velocity=0.5\"]"),
     key("ranks", Whole(1, 100_000), Default("1"), "MPI ranks; `--ranks-gas` overrides it.", "4"),
 ];

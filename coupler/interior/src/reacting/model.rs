@@ -106,11 +106,8 @@ impl ParticleModel for Reacting {
             let heat: f64 = heats.map(|(extent, heat)| -extent * heat).sum();
             let capacity = self.secant(p, at[p]);
             let warmed = self.committed.temperature[p] + (heat + self.carried[p] * span) / capacity;
-            let (gas, stored) = (around.conductance[p], capacity / span);
-            *line = SurfaceLine {
-                conductance: stored + gas,
-                temperature: warmed + gas * (around.temperature[p] - warmed) / (stored + gas),
-            };
+            let (gas, beside) = (around.conductance[p], around.temperature[p]);
+            *line = SurfaceLine::of_one_temperature(capacity / span, warmed, gas, beside);
         }
         Ok(())
     }
