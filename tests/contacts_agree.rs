@@ -168,6 +168,7 @@ fn compare(setup: &ParticleSetup, steps: u64) -> Differences {
     let mut start = Ticks::ZERO;
     let push = ParticlePush {
         force: vec![Vec3::zeros(); setup.id.len()],
+        ..ParticlePush::default()
     };
     // A sphere at rest is dragged by a wall that passes at some 0.1 m/s.
     let speed = setup.velocity[0].norm().max(0.1);

@@ -18,7 +18,7 @@ use calcine_coupler::part::Particles;
 use calcine_coupler::setup::{GasSetup, ParticleSetup};
 use calcine_coupler::supervisor::Supervisor;
 use calcine_wire::hello::{NEW, NOT_COMPARED};
-use calcine_wire::{Catalogue, Hello};
+use calcine_wire::{Catalogue, Field, Hello};
 
 use crate::gas::LinkedGas;
 use crate::launch::{Launcher, Program};
@@ -63,6 +63,8 @@ struct Terms {
     /// Number of its cells or particles.
     count: u64,
     catalogue: Catalogue,
+    /// Columns that it may have beside those.
+    optional: Vec<Field>,
     cells: Option<Arc<Mesh>>,
 }
 
@@ -100,6 +102,7 @@ impl AttachedProgram {
                 launcher: self.launcher,
                 log: self.log,
                 hello,
+                optional: terms.optional,
                 cells: terms.cells,
                 handshake: self.deadline,
                 deadline: self.deadline,
@@ -133,6 +136,7 @@ impl ExternalGasLaunch<'_> {
             role: "gas",
             count: self.mesh.cells() as u64,
             catalogue: Catalogue::gas(species, turbulent).with_geometry(),
+            optional: Vec::new(),
             cells: Some(Arc::clone(&self.mesh)),
         };
         let solver = self.solver.start(terms, supervisor)?;
@@ -189,6 +193,7 @@ impl ExternalParticlesLaunch<'_> {
             role: "particles",
             count: ids.len() as u64,
             catalogue: Catalogue::particles(&[]),
+            optional: [Catalogue::moving_drag(), Catalogue::weights()].concat(),
             cells: None,
         };
         let solver = self.solver.start(terms, supervisor)?;
@@ -215,7 +220,7 @@ impl ExternalParticlesLaunch<'_> {
     /// every digit.
     fn write_folder(&self) -> Result<(), PartError> {
         let (setup, folder) = (self.setup, &self.solver.folder);
-        let mut table = String::from("id,population,held,x,y,z,vx,vy,vz,radius,density\n");
+        let mut table = String::from("id,population,held,x,y,z,vx,vy,vz,radius,density,weight\n");
         for row in 0..setup.id.len() {
             let population = setup.population[row];
             let held = match &setup.motion {
@@ -226,7 +231,8 @@ impl ExternalParticlesLaunch<'_> {
             let velocity = setup.velocity.get(row).copied().unwrap_or_default();
             let vectors = [setup.position[row], velocity];
             let values = vectors.iter().flat_map(|vector| vector.iter());
-            for value in values.chain([&setup.radius[row], &setup.density[row]]) {
+            let weight = setup.weight_of(row);
+            for value in values.chain([&setup.radius[row], &setup.density[row], &weight]) {
                 let _ = write!(table, ",{value:e}");
             }
             table.push('\n');

@@ -7,6 +7,7 @@ use std::time::Duration;
 use calcine_coupler::checkpoint::{StateFile, StateFileError};
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::motion::{Motion, ParticleChanges};
+use calcine_coupler::named_columns::NamedColumns;
 use calcine_coupler::part::{
     Bed, Part, ParticleFields, ParticlePush, ParticleReceived, Particles, SolverInfo,
 };
@@ -14,7 +15,7 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::Window;
-use calcine_wire::{Catalogue, ColumnSet, Link, MessageKind, WireError};
+use calcine_wire::{Catalogue, ColumnSet, Field, Link, MessageKind, WireError};
 use thiserror::Error;
 
 use crate::answer::{self, WrongAnswer};
@@ -87,6 +88,8 @@ struct ReceivedParticles {
     /// Statistical weights; empty where the link has none.
     weight: Vec<f64>,
     impulse: Vec<Vec3>,
+    /// What the solver reports beyond all this.
+    further: NamedColumns,
     /// Time in s that the window's steps cover.
     acted: f64,
     /// Impulse of walls on all particles in N s; NaN where it is not counted.
@@ -194,6 +197,24 @@ fn wrong_answer(link: &Link, window: Option<&Window>) -> Result<Option<WrongAnsw
     answer::not_finite(link, |row| format!("particle {}", ids[row]))
 }
 
+/// What does not fit the link of pushed columns, for so many particles.
+fn misfit(columns: &NamedColumns, taken: &[Field], count: usize) -> Option<String> {
+    columns.iter().find_map(|column| {
+        let name = column.name;
+        let Some(field) = taken.iter().find(|field| field.name == name) else {
+            return Some(format!("it takes no column `{name}`"));
+        };
+        let (found, due) = (column.values.len(), field.components * count);
+        (column.components != field.components || found != due).then(|| {
+            format!(
+                "the column `{name}` has {} values for each of {count} particles, {found} in all; it takes {}, {due} in \
+                 all",
+                column.components, field.components
+            )
+        })
+    })
+}
+
 /// Interleaved numbers as vectors.
 fn vectors(numbers: &[f64]) -> impl Iterator<Item = Vec3> {
     numbers.chunks_exact(3).map(|x| Vec3::new(x[0], x[1], x[2]))
@@ -267,6 +288,16 @@ impl ReceivedParticles {
                 support += Vec3::new(x, y, z);
             }
         }
+        let mut further = NamedColumns::default();
+        for field in catalogue.further(ColumnSet::State) {
+            let (name, items) = (field.name.as_str(), field.components);
+            let columns = links.iter().map(|link| link.column(name));
+            let columns = columns.collect::<Result<Vec<_>, _>>()?;
+            let joined = order
+                .iter()
+                .flat_map(|&(_, rank, row)| &columns[rank][items * row..items * (row + 1)]);
+            further.set(name, items, joined.copied().collect());
+        }
         let small = |value: u64| u32::try_from(value).unwrap_or(u32::MAX);
         Ok(Self {
             id: words("id")?,
@@ -281,6 +312,7 @@ impl ReceivedParticles {
                 false => Vec::new(),
             },
             impulse: vectors("impulse")?,
+            further,
             acted,
             support,
             places,
@@ -379,11 +411,23 @@ impl Particles for LinkedParticles {
         Ok(())
     }
 
+    fn takes(&self, column: &str) -> bool {
+        let catalogue = &self.solver.hello().catalogue;
+        catalogue
+            .further(ColumnSet::Start)
+            .any(|field| field.name == column)
+    }
+
     /// The bed is not sent: no particle solver of the wire asks for it.
     fn start(&mut self, window: &Window, _bed: &Bed, push: &ParticlePush) -> Result<(), PartError> {
         let count = self.committed.id.len();
         if push.force.len() != count {
             let message = format!("{} forces for {count} particles", push.force.len());
+            return Err(self.solver.refuse(Some(window), message));
+        }
+        let catalogue = &self.solver.hello().catalogue;
+        let further: Vec<Field> = catalogue.further(ColumnSet::Start).cloned().collect();
+        if let Some(message) = misfit(&push.columns, &further, count) {
             return Err(self.solver.refuse(Some(window), message));
         }
         self.window = Some(*window);
@@ -401,6 +445,18 @@ impl Particles for LinkedParticles {
                 let own = link.column_mut("force")?.chunks_exact_mut(3);
                 for (force, &place) in own.zip(&places[rank]) {
                     force.copy_from_slice(push.force[place].as_slice());
+                }
+                for field in &further {
+                    let items = field.components;
+                    let own = link.column_mut(&field.name)?;
+                    // A column that is not pushed is zero.
+                    let Some(all) = push.columns.get(&field.name, items, count) else {
+                        own.fill(0.0);
+                        continue;
+                    };
+                    for (values, &place) in own.chunks_exact_mut(items).zip(&places[rank]) {
+                        values.copy_from_slice(&all[items * place..items * (place + 1)]);
+                    }
                 }
                 Ok(())
             },
@@ -424,6 +480,7 @@ impl Particles for LinkedParticles {
             return Err(self.solver.refuse(Some(&window), message));
         }
         received.impulse.clone_from(&self.attempt.impulse);
+        received.columns.clone_from(&self.attempt.further);
         received.acted = self.attempt.acted;
         // Without walls and held particles nothing else acts on a free one.
         received.support = match self.alone {
@@ -437,6 +494,21 @@ impl Particles for LinkedParticles {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pushed_columns_are_those_that_the_link_takes_in_name_and_shape() {
+        let taken = Catalogue::moving_drag();
+        let mut columns = NamedColumns::default();
+        columns.set("drag_coefficient", 1, vec![0.0; 2]);
+        assert_eq!(misfit(&columns, &taken, 2), None);
+        columns.set("gas_velocity", 2, vec![0.0; 4]);
+        let told = misfit(&columns, &taken, 2).unwrap();
+        assert!(told.contains("`gas_velocity` has 2 values") && told.contains("takes 3"));
+        columns.set("gas_velocity", 3, vec![0.0; 6]);
+        columns.set("film", 1, vec![0.0; 2]);
+        let told = misfit(&columns, &taken, 2);
+        assert_eq!(told.as_deref(), Some("it takes no column `film`"));
+    }
 
     #[test]
     fn a_state_that_is_not_finite_names_the_particle_by_its_id() {

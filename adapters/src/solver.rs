@@ -12,7 +12,7 @@ use calcine_coupler::supervisor::{SolverWait, Supervisor, log_end};
 use calcine_coupler::time::Window;
 use calcine_wire::shared_memory::LinkEnd;
 use calcine_wire::{
-    ColumnSet, Header, Hello, Link, MessageKind, RunDirectory, SharedMemory, SolverFailure,
+    ColumnSet, Field, Header, Hello, Link, MessageKind, RunDirectory, SharedMemory, SolverFailure,
     SolverNetwork, WireError,
 };
 
@@ -32,6 +32,8 @@ pub struct Launch {
     pub log: PathBuf,
     /// What the solver must agree with; `ranks` says how many are started.
     pub hello: Hello,
+    /// Columns that the solver may have beside those of `hello`.
+    pub optional: Vec<Field>,
     /// The mesh with whose cells those of a gas are compared, where no hash is.
     pub cells: Option<Arc<Mesh>>,
     /// Longest silence during the handshake.
@@ -327,7 +329,7 @@ impl ExternalSolver {
             asked: Duration::ZERO,
             used_at_start: Duration::ZERO,
         };
-        solver.shake_hands(supervisor, launch.cells.as_deref())?;
+        solver.shake_hands(supervisor, &launch.optional, launch.cells.as_deref())?;
         solver.used_at_start = solver.used();
         Ok(solver)
     }
@@ -335,13 +337,16 @@ impl ExternalSolver {
     fn shake_hands(
         &mut self,
         supervisor: &mut Supervisor,
+        optional: &[Field],
         mesh: Option<&Mesh>,
     ) -> Result<(), PartError> {
-        let ours = self.hello.clone();
+        let mut ours = self.hello.clone();
         self.wait_alone(MessageKind::Hello)?;
         let mut local = Vec::new();
         for (rank, link) in self.links.iter_mut().enumerate() {
-            let answer = link.answer_greeting(&ours);
+            // What the first rank has, all have.
+            let answer = link.answer_offer(&ours, if rank == 0 { optional } else { &[] });
+            ours.catalogue.clone_from(link.catalogue());
             self.hello = answer.map_err(|error| self.peer.failure(None, None, error))?;
             let Some(process) = link.peer() else { continue };
             self.peer.ranks.push(process.pid);

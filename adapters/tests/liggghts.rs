@@ -113,6 +113,7 @@ fn window(index: u64) -> Window {
 fn push() -> ParticlePush {
     ParticlePush {
         force: (0..10).map(|i| Vec3::new(0.0, 0.5, f64::from(i))).collect(),
+        ..ParticlePush::default()
     }
 }
 

@@ -20,6 +20,7 @@ pub mod mesh;
 pub mod models;
 pub mod momentum_model;
 pub mod motion;
+pub mod named_columns;
 pub mod observer;
 pub mod packing;
 pub mod part;

@@ -11,6 +11,7 @@ use calcine_physics::{Vec3, sphere};
 use crate::boundary_value::BoundaryValue;
 use crate::error::{FailureKind, PartError};
 use crate::motion::ParticleChanges;
+use crate::named_columns::NamedColumns;
 use crate::supervisor::Supervisor;
 use crate::time::Window;
 
@@ -310,12 +311,23 @@ impl ParticleFields<'_> {
 pub struct ParticlePush {
     /// Force of the gas on each particle in N.
     pub force: Vec<Vec3>,
+    /// Further columns; the solver must take each of them ([`Particles::takes`]).
+    pub columns: NamedColumns,
 }
+
+/// Column of a push: K in kg/s. With [`GAS_VELOCITY`] a drag K (u − v) acts beside the force, with the velocity v of the
+/// particle as it moves (docs/theory.md, DRG-3).
+pub const DRAG_COEFFICIENT: &str = "drag_coefficient";
+/// Column of a push: the velocity u of the gas at the particle in m/s of motion time, three values.
+pub const GAS_VELOCITY: &str = "gas_velocity";
+/// Column that is received: the impulse of that drag in N s, three values; a part of the whole impulse. Of a particle that
+/// is held its support takes it up.
+pub const DRAG_IMPULSE: &str = "drag_impulse";
 
 /// What the particles report of a window, in the order of the push, of one real particle each.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParticleReceived {
-    /// Impulse of the pushed force as applied over the motion span in N s; a frozen particle is
+    /// Impulse of all that was pushed as applied over the motion span in N s; a frozen particle is
     /// held, and its support takes it up.
     pub impulse: Vec<Vec3>,
     /// Motion time in s that the solver's steps cover, over which gravity acted.
@@ -323,6 +335,8 @@ pub struct ParticleReceived {
     /// Impulse in N s that walls and held particles gave all free ones together; `None` where it is not
     /// counted.
     pub support: Option<Vec3>,
+    /// Further columns, as the solver has some.
+    pub columns: NamedColumns,
 }
 
 /// Positions, velocities, contacts.
@@ -337,6 +351,11 @@ pub trait Particles: Part {
         supervisor: &Supervisor,
         change: &ParticleChanges,
     ) -> Result<(), PartError>;
+
+    /// True where the solver takes a column of this name with a push, beside the forces.
+    fn takes(&self, _column: &str) -> bool {
+        false
+    }
 
     /// Starts the window in the bed as the gas had it, one value a cell of the gas' mesh; does not wait.
     fn start(&mut self, window: &Window, bed: &Bed, push: &ParticlePush) -> Result<(), PartError>;

@@ -179,6 +179,7 @@ fn frozen_particles_weigh_what_they_should_and_hand_the_impulse_to_their_support
     };
     let push = ParticlePush {
         force: vec![Vec3::new(0.0, 0.0, 3.0), Vec3::new(1.0, 0.0, 0.0)],
+        ..ParticlePush::default()
     };
     let supervisor = Supervisor::new(Duration::from_secs(1), Interrupts::default());
     let mut received = ParticleReceived::default();

@@ -144,6 +144,7 @@ impl Bed {
             supervisor: Supervisor::new(Duration::from_secs(60), Interrupts::default()),
             push: ParticlePush {
                 force: vec![Vec3::zeros(); count],
+                ..ParticlePush::default()
             },
             start: Ticks::ZERO,
         };

@@ -95,6 +95,7 @@ impl LiggghtsLaunch<'_> {
                 launcher: launch.launcher,
                 log: launch.log,
                 hello,
+                optional: Vec::new(),
                 cells: None,
                 handshake: launch.deadline,
                 deadline: launch.deadline,

@@ -160,6 +160,7 @@ impl OpenfoamLaunch<'_> {
                 launcher: launch.launcher,
                 log: launch.log,
                 hello,
+                optional: Vec::new(),
                 cells: None,
                 handshake: launch.deadline,
                 deadline: launch.deadline,

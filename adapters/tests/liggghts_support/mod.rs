@@ -142,6 +142,7 @@ impl Bench {
         };
         let push = ParticlePush {
             force: force.to_vec(),
+            ..ParticlePush::default()
         };
         particles.start(&window, &VoidFractions::default(), &push)?;
         let mut received = ParticleReceived::default();

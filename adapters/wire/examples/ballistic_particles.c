@@ -6,8 +6,14 @@
  *
  *   v = v0 + (F/m + g) dt,   x = x0 + v0 dt + (F/m + g) dt^2 / 2,
  *
- * which is exact, as the force is constant over a window. A particle that leaves the box from (0, 0, 0) to (width,
- * depth, height) ends the run. Build and run:
+ * which is exact, as the force is constant over a window. Where a drag K (u - v) comes beside it (the columns of the
+ * group moving_drag), the exact solution is, with k = K/m, a = k dt, and the velocity w = u + (F/m + g)/k that is
+ * approached,
+ *
+ *   v = w + (v0 - w) exp(-a),   x = x0 + w dt + (v0 - w) (1 - exp(-a))/k,
+ *
+ * and the impulse of the drag is the change of momentum without that of F and gravity. A particle that leaves the box
+ * from (0, 0, 0) to (width, depth, height) ends the run. Build and run:
  *
  *   cc -std=c11 -O2 -I adapters/wire/include ballistic_particles.c libcalcine_wire.a \
  *      -lgcc_s -lutil -lrt -lpthread -lm -ldl -o ballistic-particles
@@ -34,8 +40,9 @@ static struct {
 /* One particle; a checkpoint holds these as they are. */
 typedef struct particle {
     uint64_t id, population, held;
-    double position[3], velocity[3], spin[3], impulse[3]; /* the impulse of the last window, N s */
-    double radius, mass;
+    double position[3], velocity[3], spin[3];
+    double impulse[3], drag_impulse[3]; /* of the last window, N s; that of drag is a part of the whole */
+    double radius, mass, weight;
 } particle;
 
 static particle *all; /* in ascending id */
@@ -76,9 +83,9 @@ static void read_table(void) {
     FILE *file = fopen("particles.csv", "r");
     if (!file || fscanf(file, "%*[^\n]") == EOF) fail(CALCINE_FAILURE_FILE, "particles.csv cannot be read");
     uint64_t id, population, held;
-    double x[3], v[3], radius, density;
-    while (fscanf(file, "%" SCNu64 ",%" SCNu64 ",%" SCNu64 ",%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf", &id, &population, &held,
-                  &x[0], &x[1], &x[2], &v[0], &v[1], &v[2], &radius, &density) == 11) {
+    double x[3], v[3], radius, density, weight;
+    while (fscanf(file, "%" SCNu64 ",%" SCNu64 ",%" SCNu64 ",%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf", &id, &population,
+                  &held, &x[0], &x[1], &x[2], &v[0], &v[1], &v[2], &radius, &density, &weight) == 12) {
         particle *new = append(id);
         new->population = population;
         new->held = held;
@@ -86,6 +93,7 @@ static void read_table(void) {
         memcpy(new->velocity, v, sizeof v);
         new->radius = radius;
         new->mass = mass_of(radius, density);
+        new->weight = weight;
     }
     if (!feof(file)) fail(CALCINE_FAILURE_FILE, "particles.csv has no particle below particle %" PRIu64, count);
     fclose(file);
@@ -106,10 +114,25 @@ static void checkpoint(const char *folder, int writes) {
     fclose(file);
 }
 
+/* Moves a free particle along one axis: `rate` is its acceleration without drag, k = K/m of drag towards u. */
+static void move(particle *one, int axis, double rate, double k, double u) {
+    double *x = &one->position[axis], *v = &one->velocity[axis], before = *v;
+    if (k * acted > 0) {
+        double slip = u + rate / k - before, relaxed = -expm1(-k * acted); /* 1 - exp(-a) */
+        *x += (before + slip) * acted - slip * relaxed / k;
+        *v += slip * relaxed;
+        one->drag_impulse[axis] = one->mass * (slip * relaxed - rate * acted);
+    } else {
+        *x += before * acted + 0.5 * rate * acted * acted;
+        *v += rate * acted;
+    }
+}
+
 /* The window. Particles have one attempt: what is finished is the start of the next. */
 static void advance(const calcine_header *header) {
     const uint64_t *ids = (const uint64_t *)(const void *)column("id", count);
-    const double *force = column("force", 3 * count);
+    const double *force = column("force", 3 * count), *drag = column("drag_coefficient", count);
+    const double *gas = column("gas_velocity", 3 * count);
     acted = TICK * (double)header->span_motion;
     for (uint64_t p = 0; p < count; ++p) {
         particle *one = &all[p];
@@ -117,11 +140,13 @@ static void advance(const calcine_header *header) {
             fail(CALCINE_FAILURE_INPUT, "a force for particle %" PRIu64 " in place of particle %" PRIu64, ids[p],
                  one->id);
         for (int axis = 0; axis < 3; ++axis) {
-            one->impulse[axis] = force[3 * p + axis] * acted; /* of one that is held, its support takes it up */
-            if (one->held) continue;
             double rate = force[3 * p + axis] / one->mass + (axis == 2 ? given.gravity : 0);
-            one->position[axis] += one->velocity[axis] * acted + 0.5 * rate * acted * acted;
-            one->velocity[axis] += rate * acted;
+            one->drag_impulse[axis] = drag[p] * gas[3 * p + axis] * acted; /* of one that is held: its support takes it */
+            if (!one->held) {
+                one->drag_impulse[axis] = 0;
+                move(one, axis, rate, drag[p] / one->mass, gas[3 * p + axis]);
+            }
+            one->impulse[axis] = force[3 * p + axis] * acted + one->drag_impulse[axis];
         }
         const double *x = one->position;
         if (!(isfinite(x[0] + x[1] + x[2])))
@@ -139,7 +164,8 @@ static void answer(calcine_kind kind) {
         {"id", offsetof(particle, id), 1}, {"population", offsetof(particle, population), 1},
         {"position", offsetof(particle, position), 3}, {"velocity", offsetof(particle, velocity), 3},
         {"angular_velocity", offsetof(particle, spin), 3}, {"radius", offsetof(particle, radius), 1},
-        {"mass", offsetof(particle, mass), 1}, {"impulse", offsetof(particle, impulse), 3}};
+        {"mass", offsetof(particle, mass), 1}, {"weight", offsetof(particle, weight), 1},
+        {"impulse", offsetof(particle, impulse), 3}, {"drag_impulse", offsetof(particle, drag_impulse), 3}};
     need(calcine_link_loan(wire, kind, count));
     double *values;
     uint64_t length;
@@ -148,7 +174,7 @@ static void answer(calcine_kind kind) {
         need(calcine_link_loaned_column(wire, columns[k].name, &values, &length));
         for (uint64_t p = 0; p < count; ++p)
             memcpy((char *)values + p * bytes, (const char *)&all[p] + columns[k].offset, bytes);
-        if (!finished && strcmp(columns[k].name, "impulse") == 0) memset(values, 0, length * sizeof *values);
+        if (!finished && strstr(columns[k].name, "impulse")) memset(values, 0, length * sizeof *values);
     }
     /* Neither walls nor held particles touch a free one. */
     need(calcine_link_loaned_column(wire, "support", &values, &length));
@@ -161,7 +187,7 @@ static void answer(calcine_kind kind) {
 static void change(const char *text) {
     for (int length = 0; *text; text += length) {
         uint64_t id, type;
-        double x[3], v[3], radius, last;
+        double x[3], v[3], radius, last, weight;
         length = 0;
         if (strncmp(text, "rest\n", 5) == 0) {
             for (uint64_t p = 0; p < count; ++p) {
@@ -177,14 +203,15 @@ static void change(const char *text) {
             particle *one = find(id);
             one->radius = radius;
             one->mass = last;
-        } else if (sscanf(text, "insert %" SCNu64 " %" SCNu64 " %lf %lf %lf %lf %lf %lf %lf %lf%n", &id, &type, &x[0],
-                          &x[1], &x[2], &v[0], &v[1], &v[2], &radius, &last, &length) == 10) {
+        } else if (sscanf(text, "insert %" SCNu64 " %" SCNu64 " %lf %lf %lf %lf %lf %lf %lf %lf %lf%n", &id, &type,
+                          &x[0], &x[1], &x[2], &v[0], &v[1], &v[2], &radius, &last, &weight, &length) == 11) {
             particle *new = append(id); /* free: a held population gets no newcomers */
             new->population = type - 1;
             memcpy(new->position, x, sizeof x);
             memcpy(new->velocity, v, sizeof v);
             new->radius = radius;
             new->mass = mass_of(radius, last);
+            new->weight = weight;
         }
         if (length == 0) fail(CALCINE_FAILURE_UNSUPPORTED, "`%.60s` is no change of particles", text);
         if (text[length] == '\n') ++length;
@@ -206,7 +233,7 @@ int main(int words, char **word) {
     if (resumed) checkpoint(resumed, 0);
     else read_table();
     calcine_hello hello = {.role = "particles", .name = "ballistic particles", .version = "1", .origin = resumed,
-                           .count = count, .ranks = 1};
+                           .catalogue = "standard\nweights\nmoving_drag", .count = count, .ranks = 1};
     need(calcine_link_handshake(wire, &hello, 10000));
     answer(CALCINE_STATE);
     for (;;) {

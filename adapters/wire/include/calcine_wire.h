@@ -150,8 +150,9 @@ typedef enum calcine_failure {
  * "start", with START:
  *   id 1 [u64]: ids of the particles that the rank sent last, in its order.
  *   force 3 [N]: force of the gas; its impulse over the window is force times span_motion, whatever the steps.
- *   drag_coefficient 1 [kg/s]: K: the drag is K (gas_velocity - v), with v as the particle moves. Where drag is
- *     pushed as a coefficient.
+ *   drag_coefficient 1 [kg/s]: K: beside the force a drag K (gas_velocity - v) acts, with the velocity v of the
+ *     particle as it moves; its impulse over the window is that of K over span_motion, whatever the steps; 0 where
+ *     drag is in the force. Where drag is pushed as a coefficient.
  *   gas_velocity 3 [m/s]: velocity of the gas at the particle, in motion time. Where drag is pushed as a coefficient.
  *
  * "state", with STATE, FINISHED, CHECKPOINTED, CHANGED:
@@ -167,6 +168,8 @@ typedef enum calcine_failure {
  *   impulse 3 [Ns]: impulse that what was pushed gave the particle; of one that is held, what its support took up.
  *   support 4 [s,Ns], once a rank: motion time that the steps of the window cover; impulse x, y, z that walls and
  *     held particles gave this rank's free ones, NaN where it is not counted.
+ *   drag_impulse 3 [Ns]: impulse of that drag, a part of the column impulse; of a particle that is held K
+ *     gas_velocity span_motion. Where drag is pushed as a coefficient.
  */
 
 /* End of the generated part. */
@@ -201,7 +204,9 @@ typedef struct calcine_hello {
     const char *origin;    /* the checkpoint that the state is from, as the variable CALCINE_RESUME or
                             * CALCINE_FROM has it; NULL: the solver starts anew */
     const char *catalogue; /* NULL: the columns of the role that all links have, and those of a NULL mesh_hash;
-                            * else all columns, one a line: "start|state|owned NAME NUMBERS UNIT item|rank" */
+                            * else all columns, one a line: "start|state|owned NAME NUMBERS UNIT item|rank", or
+                            * "standard" for those that all links of the role have, and for particles "moving_drag",
+                            * "weights" for those that a link may have: "standard\nmoving_drag" */
     uint64_t count;        /* cells or particles of all ranks */
     uint32_t ranks;        /* ranks of the solver */
 } calcine_hello;

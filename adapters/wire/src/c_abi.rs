@@ -268,7 +268,7 @@ extern "C" fn calcine_link_handshake(
             (true, false) => Catalogue::standard(&role)?,
             (true, true) if role == "gas" => Catalogue::standard(&role)?.with_geometry(),
             (true, true) => Catalogue::standard(&role)?,
-            (false, _) => text_of(hello.catalogue)?.parse()?,
+            (false, _) => Catalogue::of_lines(&role, &text_of(hello.catalogue)?)?,
         };
         let ours = Hello {
             role,

@@ -141,7 +141,7 @@ impl Catalogue {
         particles
     }
 
-    /// The columns of drag that particles evaluate as they move: a coefficient and the gas' velocity.
+    /// The columns of drag that particles evaluate as they move: a coefficient, the gas' velocity, and its impulse.
     pub fn moving_drag() -> Vec<Field> {
         let own = |presence| presence == ColumnPresence::MovingDrag;
         Self::of_table(columns::PARTICLES, 0, own).fields
@@ -151,6 +151,40 @@ impl Catalogue {
     pub fn weights() -> Vec<Field> {
         let own = |presence| presence == ColumnPresence::Weights;
         Self::of_table(columns::PARTICLES, 0, own).fields
+    }
+
+    /// A catalogue by its lines: columns as they are written, or names of groups of columns: `standard` (those that all
+    /// links of the role have), `moving_drag` and `weights` (of particles).
+    pub fn of_lines(role: &str, text: &str) -> Result<Self, WireError> {
+        let mut fields = Vec::new();
+        for line in text.lines() {
+            match line.trim() {
+                "standard" => fields.extend(Self::standard(role)?.fields),
+                "moving_drag" => fields.extend(Self::moving_drag()),
+                "weights" => fields.extend(Self::weights()),
+                line => fields.push(line.parse()?),
+            }
+        }
+        Ok(Self { fields })
+    }
+
+    /// With those of another catalogue's columns that are among these and not here yet.
+    pub fn with_further(mut self, theirs: &Catalogue, among: &[Field]) -> Self {
+        let further = theirs.fields.iter().filter(|field| among.contains(field));
+        let new: Vec<Field> = further
+            .filter(|field| !self.fields.contains(field))
+            .cloned()
+            .collect();
+        self.fields.extend(new);
+        self
+    }
+
+    /// Columns of numbers for each particle that messages of a kind carry beyond those that the coordinator knows itself.
+    pub fn further(&self, record: ColumnSet) -> impl Iterator<Item = &Field> {
+        let own = Self::particles(&Self::weights());
+        self.of(record).filter(move |field| {
+            field.per_item && field.unit != "u64" && !own.fields.contains(field)
+        })
     }
 
     /// The fields, in the order of the columns.
@@ -300,6 +334,33 @@ mod tests {
         assert_eq!(
             particles.to_string().parse::<Catalogue>().unwrap(),
             particles
+        );
+    }
+
+    #[test]
+    fn groups_of_columns_are_told_by_their_names() {
+        let told = Catalogue::of_lines("particles", "standard\nmoving_drag\nstate film 1 m item\n");
+        let mut further = Catalogue::moving_drag();
+        further.push("state film 1 m item".parse().unwrap());
+        assert_eq!(told.unwrap(), Catalogue::particles(&further));
+        assert!(Catalogue::of_lines("particles", "usual").is_err());
+    }
+
+    #[test]
+    fn what_the_other_end_offers_is_taken_up_where_it_is_known() {
+        let mut offered = Catalogue::moving_drag();
+        offered.push("state film 1 m item".parse().unwrap());
+        let theirs = Catalogue::particles(&offered);
+        let ours = Catalogue::particles(&[]).with_further(&theirs, &Catalogue::moving_drag());
+        assert_eq!(ours, Catalogue::particles(&Catalogue::moving_drag()));
+        let names = |record| ours.further(record).map(|field| field.name.clone());
+        assert_eq!(
+            names(ColumnSet::Start).collect::<Vec<_>>(),
+            ["drag_coefficient", "gas_velocity"]
+        );
+        assert_eq!(
+            names(ColumnSet::State).collect::<Vec<_>>(),
+            ["drag_impulse"]
         );
     }
 

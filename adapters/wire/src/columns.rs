@@ -185,7 +185,12 @@ pub const PARTICLES: &[ProtocolColumn] = &[
         "motion time that the steps of the window cover; impulse x, y, z that walls and held particles gave this \
          rank's free ones, NaN where it is not counted").per_rank(),
     column(Start, "drag_coefficient", 1, "kg/s",
-        "K: the drag is K (gas_velocity - v), with v as the particle moves").only(ColumnPresence::MovingDrag),
+        "K: beside the force a drag K (gas_velocity - v) acts, with the velocity v of the particle as it moves; its \
+         impulse over the window is that of K over span_motion, whatever the steps; 0 where drag is in the force")
+        .only(ColumnPresence::MovingDrag),
     column(Start, "gas_velocity", 3, "m/s",
         "velocity of the gas at the particle, in motion time").only(ColumnPresence::MovingDrag),
+    column(State, "drag_impulse", 3, "Ns",
+        "impulse of that drag, a part of the column impulse; of a particle that is held K gas_velocity span_motion")
+        .only(ColumnPresence::MovingDrag),
 ];

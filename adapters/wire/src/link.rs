@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::catalogue::Catalogue;
+use crate::catalogue::{Catalogue, Field};
 use crate::column_set::ColumnSet;
 use crate::error::WireError;
 use crate::failure::SolverFailure;
@@ -95,10 +95,17 @@ impl Link {
     /// Coordinator's side of the handshake, once a message arrived: compares, answers, and gives the
     /// solver's introduction. A mismatch is told to the solver too.
     pub fn answer_greeting(&mut self, ours: &Hello) -> Result<Hello, WireError> {
+        self.answer_offer(ours, &[])
+    }
+
+    /// The same where the solver may have further columns beside ours: those of `optional` that it names belong to the
+    /// link.
+    pub fn answer_offer(&mut self, ours: &Hello, optional: &[Field]) -> Result<Hello, WireError> {
         self.peer = self.text().ok().and_then(Process::in_text);
-        let greeting = self.read_greeting(ours);
+        let mut ours = ours.clone();
+        let greeting = self.read_greeting(&mut ours, optional);
         match &greeting {
-            Ok(_) => self.send_text(Header::of(MessageKind::Hello), &introduction(ours))?,
+            Ok(_) => self.send_text(Header::of(MessageKind::Hello), &introduction(&ours))?,
             Err(error) => {
                 let header = Header::of(MessageKind::Failed);
                 self.send_words(
@@ -108,14 +115,16 @@ impl Link {
                 )?;
             }
         }
-        self.catalogue = ours.catalogue.clone();
+        self.catalogue = ours.catalogue;
         greeting
     }
 
-    fn read_greeting(&self, ours: &Hello) -> Result<Hello, WireError> {
+    fn read_greeting(&self, ours: &mut Hello, optional: &[Field]) -> Result<Hello, WireError> {
         let header = self.header()?;
         self.expect(&header, MessageKind::Hello, "the solver's introduction")?;
         let theirs = Hello::from_text(self.text()?)?;
+        let own = std::mem::take(&mut ours.catalogue);
+        ours.catalogue = own.with_further(&theirs.catalogue, optional);
         ours.agree(&theirs)?;
         Ok(theirs)
     }

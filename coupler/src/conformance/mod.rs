@@ -4,8 +4,10 @@
 //! A solver joins with a function that makes it from a setup; `gas::run` and `particles::run` say of each law whether
 //! it holds. Each law starts with a fresh solver. `calcine conform` runs them for any program.
 
+mod drag;
 pub mod gas;
 pub mod particles;
+mod six_spheres;
 
 use std::fmt;
 use std::time::Duration;

@@ -2,29 +2,21 @@
 
 use std::path::{Path, PathBuf};
 
-use calcine_physics::{Vec3, sphere};
+use calcine_physics::Vec3;
 
+pub use super::six_spheres::{BOX, STEP, contacts, soft_spheres};
+
+use super::drag::{self, DragUnderTest};
+use super::six_spheres::{DENSITY, RADIUS, mass, setup};
 use super::{LawError, LawOutcome, holds, is_refused, same, supervisor, window};
 use crate::error::{FailureKind, PartError};
-use crate::motion::{
-    Cohesion, ContactForce, ContactLaw, Contacts, Elastic, Motion, NewParticle, Pair,
-    ParticleChanges, Resized, Rolling, Wall, WallMotion, WallShape,
-};
+use crate::motion::{NewParticle, ParticleChanges, Resized};
 use crate::part::{Bed, ParticlePush, ParticleReceived, Particles};
 use crate::setup::ParticleSetup;
 use crate::supervisor::Supervisor;
 
-/// Time step in s.
-pub const STEP: f64 = 1e-6;
-/// Side of the box in m.
-pub const BOX: f64 = 0.1;
-/// Radius in m, and density in kg/m³.
-const RADIUS: f64 = 0.0025;
-const DENSITY: f64 = 2500.0;
 /// Length of a window in s: 49.6 steps, so that windows have 49 or 50.
 const SPAN: f64 = 4.96e-5;
-/// The population that is held.
-const HELD: u32 = 1;
 
 /// Makes the particles of a setup, anew or from the folder of a checkpoint.
 pub type MakeParticles<'a> = dyn FnMut(&ParticleSetup, Option<&Path>, &mut Supervisor) -> Result<Box<dyn Particles>, PartError>
@@ -69,6 +61,14 @@ const LAWS: &[(&str, Law)] = &[
         refuses_other_lengths,
     ),
     (
+        "a_column_that_is_not_taken_is_refused_by_its_name",
+        refuses_unknown_column,
+    ),
+    (
+        "drag_by_coefficient_and_gas_velocity_follows_the_particle_where_it_is_taken",
+        drag_follows,
+    ),
+    (
         "finishing_what_was_not_started_is_refused",
         refuses_unstarted,
     ),
@@ -94,80 +94,6 @@ pub fn run(under_test: &mut ParticlesUnderTest<'_>) -> Vec<LawOutcome> {
         outcomes.push(LawOutcome { law: name, result });
     }
     outcomes
-}
-
-/// Six spheres: two that touch, three apart, one held. Their ids have gaps.
-fn setup() -> ParticleSetup {
-    let place = |x: f64, z: f64| Vec3::new(x, 0.05, z);
-    let position = vec![
-        place(0.02, 0.05),
-        place(0.02, 0.05 + 1.99 * RADIUS),
-        place(0.04, 0.03),
-        place(0.06, 0.07),
-        place(0.08, 0.02),
-        place(0.08, 0.05),
-    ];
-    let mut velocity = vec![Vec3::zeros(); position.len()];
-    velocity[3] = Vec3::new(0.1, -0.2, 0.3);
-    ParticleSetup {
-        id: vec![1, 2, 4, 7, 8, 11],
-        population: vec![0, 0, 0, 0, 0, HELD],
-        radius: vec![RADIUS; position.len()],
-        density: vec![DENSITY; position.len()],
-        velocity,
-        position,
-        motion: Motion::Free(Box::new(contacts())),
-        ..ParticleSetup::default()
-    }
-}
-
-/// Soft spheres to test with: two materials alike, of which the second is held, of Young's modulus in Pa, with a Poisson's
-/// ratio of 0.25, a restitution of 0.5 and a friction of 0.3; steps in s. No gravity, no walls.
-pub fn soft_spheres(step: f64, young: f64) -> Contacts {
-    Contacts {
-        step,
-        gravity: Vec3::zeros(),
-        bounds: (Vec3::zeros(), Vec3::repeat(BOX)),
-        materials: vec![Elastic {
-            young,
-            poisson: 0.25,
-        }],
-        material_of: vec![0, 0],
-        held: vec![false, true],
-        law: ContactLaw {
-            force: ContactForce::HertzMindlin,
-            attractive_damping: true,
-            rolling: Rolling::None,
-            cohesion: Cohesion::None,
-        },
-        pairs: vec![Pair {
-            restitution: 0.5,
-            friction: 0.3,
-            ..Pair::default()
-        }],
-        walls: Vec::new(),
-    }
-}
-
-/// The spheres of the laws: of 50 MPa, above a floor.
-pub fn contacts() -> Contacts {
-    Contacts {
-        walls: vec![Wall {
-            name: "floor".into(),
-            material: 0,
-            shape: WallShape::Plane {
-                point: Vec3::zeros(),
-                normal: Vec3::z(),
-            },
-            motion: WallMotion::Still,
-        }],
-        ..soft_spheres(STEP, 5e7)
-    }
-}
-
-/// Mass of a sphere in kg.
-fn mass(radius: f64) -> f64 {
-    sphere::mass(radius, DENSITY)
 }
 
 /// The fixture of a law.
@@ -215,6 +141,7 @@ fn push(count: usize) -> ParticlePush {
     let force = |p: usize| Vec3::new(0.1 + 0.01 * p as f64, -0.05, 0.02 * p as f64);
     ParticlePush {
         force: (0..count).map(force).collect(),
+        ..ParticlePush::default()
     }
 }
 
@@ -448,6 +375,26 @@ fn refuses_other_lengths(spheres: &mut Spheres<'_, '_>) -> Result<(), LawError> 
     }
 }
 
+/// What the laws of pushed columns need of fresh particles.
+fn pushed(particles: &mut dyn Particles) -> DragUnderTest<'_> {
+    DragUnderTest {
+        force: push(particles.fields().len()).force,
+        particles,
+        apart: 2..5,
+        held: 5,
+        span: SPAN,
+        step: STEP,
+    }
+}
+
+fn refuses_unknown_column(spheres: &mut Spheres<'_, '_>) -> Result<(), LawError> {
+    drag::refuses_unknown(pushed(&mut *spheres.make(None)?))
+}
+
+fn drag_follows(spheres: &mut Spheres<'_, '_>) -> Result<(), LawError> {
+    drag::follows(pushed(&mut *spheres.make(None)?), &spheres.supervisor)
+}
+
 fn refuses_unstarted(spheres: &mut Spheres<'_, '_>) -> Result<(), LawError> {
     let mut particles = spheres.make(None)?;
     match particles.finish(&spheres.supervisor, &mut spheres.received) {
@@ -462,6 +409,7 @@ fn names_the_lost(spheres: &mut Spheres<'_, '_>) -> Result<(), LawError> {
     let mut particles = spheres.make(None)?;
     let push = ParticlePush {
         force: vec![Vec3::zeros(); 6],
+        ..ParticlePush::default()
     };
     for index in 0..3 {
         particles.start(&window(index, SPAN, SPAN)?, &Bed::default(), &push)?;

@@ -383,6 +383,12 @@ impl Particles for NativeParticles {
                 .failure(FailureKind::Protocol, message)
                 .in_window(window));
         }
+        if let Some(column) = push.columns.iter().next() {
+            let message = format!("it takes no column `{}`", column.name);
+            return Err(self
+                .failure(FailureKind::Protocol, message)
+                .in_window(window));
+        }
         self.push(window, &push.force)?;
         self.started = Some(*window);
         Ok(())

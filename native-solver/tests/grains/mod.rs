@@ -89,6 +89,7 @@ impl Bed {
             clocks: Clocks::default(),
             push: ParticlePush {
                 force: vec![Vec3::zeros(); spheres.len()],
+                ..ParticlePush::default()
             },
             received: ParticleReceived::default(),
             step,
