@@ -8,6 +8,7 @@ mod architecture;
 mod beds;
 mod case_files;
 mod check_and_run;
+mod command_line;
 mod conform;
 mod contacts_agree;
 mod continuation;

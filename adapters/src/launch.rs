@@ -175,7 +175,14 @@ impl Program {
 /// up, for tests; in `openfoam/bin` of the target folder; in `libexec/calcine` of an installation).
 pub fn find_program(variable: &str, name: &str, remedy: &str) -> Result<PathBuf, PartError> {
     if let Some(path) = std::env::var_os(variable).map(PathBuf::from) {
-        return Ok(path);
+        if path.is_file() {
+            return Ok(path);
+        }
+        let message = format!(
+            "{}, which the variable {variable} names, is no file: name the program, or unset the variable",
+            path.display()
+        );
+        return Err(PartError::new(name, FailureKind::NotStarted, message));
     }
     let own = std::env::current_exe()
         .and_then(|path| path.canonicalize())

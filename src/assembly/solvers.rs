@@ -6,9 +6,9 @@ use std::sync::Arc;
 use calcine_adapters::external::{AttachedProgram, ExternalGasLaunch, ExternalParticlesLaunch};
 use calcine_adapters::liggghts::inputs::Inputs;
 use calcine_adapters::liggghts::template::ScriptTemplate;
-use calcine_adapters::liggghts::{FROZEN_STEP, LiggghtsLaunch};
+use calcine_adapters::liggghts::{self, FROZEN_STEP, LiggghtsLaunch};
 use calcine_adapters::openfoam::case::OpenfoamCase;
-use calcine_adapters::openfoam::{LIBRARY, OpenfoamLaunch};
+use calcine_adapters::openfoam::{self, LIBRARY, OpenfoamLaunch};
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::held::HeldGas;
 use calcine_coupler::motion::Motion;
@@ -78,6 +78,19 @@ pub fn native_parts(
         NativeParticles::new(&prepared.particles)?;
     }
     Ok(())
+}
+
+/// The programs of the external solvers of a pairing; an error where one is not installed.
+pub fn programs(case: &Case, pairing: Pairing) -> Result<Vec<PathBuf>, PartError> {
+    let mut found = Vec::new();
+    if pairing.gas == GasBackend::Openfoam && !case.gas_held {
+        let (solver, own) = openfoam::find(case.openfoam.solver)?;
+        found.extend([solver, own.with_file_name(LIBRARY)]);
+    }
+    if pairing.particles == ParticleBackend::Liggghts {
+        found.push(liggghts::find()?);
+    }
+    Ok(found)
 }
 
 /// The user's own script of the particles, where the case names one.

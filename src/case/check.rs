@@ -14,7 +14,7 @@ use calcine_coupler::physics::sphere;
 use calcine_coupler::setup::{GasPatch, InletFlow};
 
 use super::model::{Case, Population};
-use super::{buoyancy, sizes};
+use super::{buoyancy, expectations, sizes};
 
 /// Above this, a number of the time splitting gets a warning (docs/theory.md, TSM-6, TSM-8).
 const WARNING: f64 = 0.1;
@@ -89,6 +89,9 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
         false => writeln!(text, "  buoyancy       none"),
     };
     if let Some(warning) = buoyancy::warning(number) {
+        let _ = writeln!(text, "  warning: {warning}");
+    }
+    for warning in expectations::beyond_the_end(case) {
         let _ = writeln!(text, "  warning: {warning}");
     }
     for population in &case.particles {

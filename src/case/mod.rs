@@ -4,6 +4,7 @@ mod bed;
 pub mod buoyancy;
 mod check;
 pub mod contacts;
+pub mod expectations;
 pub mod keys;
 mod meshing;
 pub mod model;

@@ -173,6 +173,14 @@ pub fn shown(number: f64) -> String {
         .to_string()
 }
 
+/// A computed number as messages show it, to six digits.
+pub fn short(number: f64) -> String {
+    format!("{number:.5e}")
+        .parse::<f64>()
+        .unwrap_or(number)
+        .to_string()
+}
+
 /// A difference, for bands: "0.5 K", "5 %"; degrees Celsius count as kelvins.
 pub fn difference(text: &str) -> Result<(f64, Dimension), UnitError> {
     let text = text.replace("degC", "K").replace("°C", "K");

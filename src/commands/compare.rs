@@ -4,20 +4,23 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::able::able;
 use super::console::say;
 use super::execute::{self, Settings};
-use super::failure::{Failure, chain};
-use super::inputs::{read_and_prepare, results_folder};
+use super::failure::Failure;
+use super::inputs::results_folder;
 use super::parallel::Transport;
 use crate::assembly::{Pairing, SolverStarts};
 use crate::exit;
+use crate::results::unoccupied;
+use crate::valid::ValidCase;
 
 /// Runs several pairings of one case and reports how far they differ against the case's bands.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The case file.
     case: PathBuf,
-    /// Pairings of gas and particles such as `native+native,openfoam+liggghts`, or `all`.
+    /// Pairings of gas and particles such as `native+native,openfoam+liggghts`, or `all`: those that can run here.
     #[arg(long, default_value = "all", value_parser = pairings)]
     pairings: Chosen,
     /// Folder of the comparison [default: results/NAME-compare].
@@ -33,11 +36,18 @@ pub(super) struct Arguments {
 
 /// The pairings asked for.
 #[derive(Clone, Debug)]
-struct Chosen(Vec<Pairing>);
+struct Chosen {
+    pairings: Vec<Pairing>,
+    /// True where they are named; without names, those that cannot run are left out.
+    named: bool,
+}
 
 fn pairings(text: &str) -> Result<Chosen, String> {
     if text == "all" {
-        return Ok(Chosen(Pairing::ALL.to_vec()));
+        return Ok(Chosen {
+            pairings: Pairing::ALL.to_vec(),
+            named: false,
+        });
     }
     let known = Pairing::ALL.map(Pairing::name).join(", ");
     let chosen: Vec<Pairing> = text
@@ -52,18 +62,57 @@ fn pairings(text: &str) -> Result<Chosen, String> {
             "a comparison needs at least two pairings of {known}"
         ));
     }
-    Ok(Chosen(chosen))
+    Ok(Chosen {
+        pairings: chosen,
+        named: true,
+    })
+}
+
+/// Those of the chosen pairings that can run the case here. One that is named must; of `all`, the others are left out
+/// with the reason.
+fn able_ones(valid: &ValidCase, chosen: &Chosen) -> Result<Vec<Pairing>, Failure> {
+    let (mut kept, mut code, mut reasons) = (Vec::new(), exit::CASE, String::new());
+    for &pairing in &chosen.pairings {
+        match able(valid, pairing) {
+            Ok(()) => kept.push(pairing),
+            Err(failure) => {
+                code = failure.code;
+                let why = failure.message.trim_end();
+                reasons += &format!("\n{} cannot run: {why}", pairing.name());
+            }
+        }
+    }
+    if !reasons.is_empty() && (chosen.named || kept.len() < 2) {
+        let message = format!(
+            "nothing was run: a comparison needs {}{reasons}",
+            match chosen.named {
+                true => "all the pairings that are named",
+                false => "two pairings at least",
+            }
+        );
+        return Err(Failure::new(code, message));
+    }
+    if !reasons.is_empty() {
+        eprintln!("{}", reasons.trim_start());
+    }
+    Ok(kept)
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
-    let (case, prepared) = read_and_prepare(&arguments.case, &arguments.set)?;
+    let valid = ValidCase::open(&arguments.case, &arguments.set)?;
+    let pairings = able_ones(&valid, &arguments.pairings)?;
+    let ValidCase { case, prepared, .. } = valid;
     let out = arguments.out.clone().unwrap_or_else(|| {
         let mut folder = results_folder(&case, None).into_os_string();
         folder.push("-compare");
         folder.into()
     });
+    for pairing in &pairings {
+        let free = unoccupied(&out.join(pairing.name()));
+        free.map_err(|error| Failure::told(exit::CASE, &error))?;
+    }
     let mut runs = Vec::new();
-    for &pairing in &arguments.pairings.0 {
+    for pairing in pairings {
         let folder = out.join(pairing.name());
         say(format_args!("{}:", pairing.name()));
         let settings = Settings {
@@ -85,10 +134,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         runs.push((pairing.name(), folder));
     }
     let comparison = crate::compare::compare(&case, &runs)
-        .map_err(|error| Failure::new(exit::OTHER, chain(&error)))?;
+        .map_err(|error| Failure::told(exit::OTHER, &error))?;
     let page = comparison
         .write(&out)
-        .map_err(|error| Failure::new(exit::OTHER, chain(&error)))?;
+        .map_err(|error| Failure::told(exit::OTHER, &error))?;
     say(comparison.table());
     say(format_args!("page: {}", page.display()));
     Ok(if comparison.agrees {

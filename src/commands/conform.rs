@@ -26,6 +26,10 @@ use crate::exit;
 
 /// The column of the laws of a gas as a case, for solvers that read `case.toml`.
 const COLUMN: &str = include_str!("conform/column.toml");
+/// Folder of the checkpoints in that of the command.
+const CHECKPOINTS: &str = "checkpoints";
+/// What the names of the folders of the solvers begin with.
+const START: &str = "start-";
 /// Longest silence of a solver while it starts, writes a checkpoint or ends.
 const DEADLINE: Duration = Duration::from_secs(60);
 
@@ -70,7 +74,7 @@ impl Folders<'_> {
     /// Folder and log of the solver that is started next.
     fn next(&mut self) -> (PathBuf, PathBuf) {
         self.started += 1;
-        let name = format!("start-{}", self.started);
+        let name = format!("{START}{}", self.started);
         (
             self.out.join(&name),
             self.out.join("log").join(name + ".log"),
@@ -78,19 +82,32 @@ impl Folders<'_> {
     }
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
-    let unusable = |cause: std::io::Error| {
-        let out = arguments.out.display();
-        Failure::new(
-            exit::OTHER,
-            format_args!("the folder {out} cannot be used: {cause}"),
-        )
+/// A name in the folder that is none of those that this command writes.
+fn foreign(out: &Path) -> std::io::Result<Option<String>> {
+    let entries = match fs::read_dir(out) {
+        Err(cause) if cause.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        entries => entries?,
     };
+    for entry in entries {
+        let name = entry?.file_name().to_string_lossy().into_owned();
+        let own = ["log", CHECKPOINTS].contains(&name.as_str()) || name.starts_with(START);
+        if !own {
+            return Ok(Some(name));
+        }
+    }
+    Ok(None)
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
+    let unusable = |cause: std::io::Error| Failure::unwritable(&arguments.out, "--out", &cause);
     let out = std::path::absolute(&arguments.out).map_err(unusable)?;
-    // What an earlier run has left is not to be mistaken for this one's.
-    match fs::remove_dir_all(&out) {
-        Err(cause) if cause.kind() != std::io::ErrorKind::NotFound => return Err(unusable(cause)),
-        _ => fs::create_dir_all(&out).map_err(unusable)?,
+    let foreign = foreign(&out).map_err(unusable)?;
+    if let Some(name) = foreign {
+        let message = format!(
+            "{} holds {name}, which is not of this command: name another folder with `--out`",
+            arguments.out.display()
+        );
+        return Err(Failure::new(exit::CASE, message));
     }
     let named = |path: &PathBuf, names: &[&str]| {
         let is_named = names.iter().any(|name| path.as_os_str() == *name);
@@ -106,11 +123,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
             )),
         }
     };
-    let outcomes = match (&arguments.gas, &arguments.particles) {
+    match (&arguments.gas, &arguments.particles) {
         (Some(program), _) => {
             let names = [GasBackend::Native.name(), GasBackend::Openfoam.name()];
             named(program, &names)?;
-            gases(arguments, program, &out)?
         }
         (None, Some(program)) => {
             let names = [
@@ -118,9 +134,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
                 ParticleBackend::Liggghts.name(),
             ];
             named(program, &names)?;
-            spheres(arguments, program, &out)
         }
-        (None, None) => Vec::new(), // refused by the command line's reader
+        (None, None) => {} // refused by the command line's reader
+    }
+    // What an earlier run has left is not to be mistaken for this one's.
+    match fs::remove_dir_all(&out) {
+        Err(cause) if cause.kind() != std::io::ErrorKind::NotFound => return Err(unusable(cause)),
+        _ => fs::create_dir_all(&out).map_err(unusable)?,
+    }
+    let outcomes = match (&arguments.gas, &arguments.particles) {
+        (Some(program), _) => gases(arguments, program, &out)?,
+        (None, Some(program)) => spheres(arguments, program, &out),
+        (None, None) => Vec::new(),
     };
     for outcome in &outcomes {
         say(outcome);
@@ -184,7 +209,7 @@ fn gases(arguments: &Arguments, program: &Path, out: &Path) -> Result<Vec<LawOut
             };
             Ok(gas)
         },
-        scratch: &out.join("checkpoints"),
+        scratch: &out.join(CHECKPOINTS),
         closure: arguments.closure,
         told: arguments.told,
     });
@@ -234,7 +259,7 @@ fn spheres(arguments: &Arguments, program: &Path, out: &Path) -> Vec<LawOutcome>
             };
             Ok(made)
         },
-        scratch: &out.join("checkpoints"),
+        scratch: &out.join(CHECKPOINTS),
     })
 }
 

@@ -59,13 +59,7 @@ impl Adapter {
             return Self::Missing;
         };
         let path = path.canonicalize().unwrap_or(path);
-        let libraries = output(Command::new("ldd").arg(&path)).unwrap_or_default();
-        let absent: Vec<String> = libraries
-            .lines()
-            .filter(|line| line.ends_with("not found"))
-            .filter_map(|line| line.split_whitespace().next())
-            .map(str::to_owned)
-            .collect();
+        let absent = absent_libraries(&path);
         if absent.is_empty() {
             Self::Found(path)
         } else {
@@ -112,6 +106,17 @@ pub fn run() -> DoctorReport {
     }
 }
 
+/// Shared libraries of a program that are not on this machine.
+pub(super) fn absent_libraries(program: &Path) -> Vec<String> {
+    let libraries = output(Command::new("ldd").arg(program)).unwrap_or_default();
+    libraries
+        .lines()
+        .filter(|line| line.ends_with("not found"))
+        .filter_map(|line| line.split_whitespace().next())
+        .map(str::to_owned)
+        .collect()
+}
+
 /// Folders in which adapters lie: beside the command, installed (PREFIX/libexec/calcine), and in
 /// Cargo's target folder, where the command itself lies in TARGET/PROFILE.
 fn adapter_folders() -> Vec<PathBuf> {
@@ -147,7 +152,7 @@ fn hdf5_version() -> Option<String> {
     None
 }
 
-fn mpi() -> Option<String> {
+pub(super) fn mpi() -> Option<String> {
     let text = output(Command::new("mpirun").arg("--version"))?;
     text.lines()
         .next()

@@ -12,8 +12,8 @@ use signal_hook::iterator::Signals;
 use super::failure::{Failure, chain};
 use super::parallel::{self, Transport};
 use crate::assembly::{Pairing, PreparedCase, SolverStarts};
-use crate::case::buoyancy;
 use crate::case::model::Case;
+use crate::case::{buoyancy, expectations};
 use crate::exit;
 use crate::progress::Progress;
 use crate::results::Summary;
@@ -65,6 +65,9 @@ pub(super) fn execute(
     let interrupts = Interrupts::default();
     let _signals = SignalThread::start(&interrupts, settings.stop_after)?;
     tell_buoyancy(case, prepared, settings.progress);
+    for warning in expectations::beyond_the_end(case) {
+        eprintln!("warning: {warning}");
+    }
     let mut builder = Simulation::open(&case.path)
         .gas(settings.pairing.gas)
         .particles(settings.pairing.particles)
@@ -149,11 +152,13 @@ fn closing(summary: &Summary) -> String {
         let value = quantity
             .value
             .map_or("unknown".into(), |value| format!("{value:.6}"));
+        let reason = quantity.reason(summary.process_time_s);
         let _ = writeln!(
             text,
-            "  {name:24} {value:>16} {:8} {}",
+            "  {name:24} {value:>16} {:8} {}{}",
             quantity.unit,
-            quantity.verdict.word()
+            quantity.verdict.word(),
+            reason.map(|words| format!(": {words}")).unwrap_or_default()
         );
     }
     let elements = summary.ledger.elements.iter();

@@ -1,6 +1,9 @@
 //! Why a command fails, in words for the user.
 
-use std::fmt;
+use std::path::Path;
+use std::{fmt, io};
+
+use miette::Diagnostic;
 
 use crate::assembly::AssemblyError;
 pub(super) use crate::error_chain::chain;
@@ -23,6 +26,21 @@ impl Failure {
             code,
             message: message.to_string(),
         }
+    }
+}
+
+impl Failure {
+    /// An error with its causes and what to do about it.
+    pub(super) fn told(code: u8, error: &impl Diagnostic) -> Self {
+        let help = error.help().map(|help| format!("\n  help: {help}"));
+        Self::new(code, chain(error) + &help.unwrap_or_default())
+    }
+
+    /// A file or folder of the user's choice that cannot be written.
+    pub(super) fn unwritable(path: &Path, option: &str, cause: &io::Error) -> Self {
+        let path = path.display();
+        let message = format!("{path} cannot be written ({cause}): name another with `{option}`");
+        Self::new(exit::CASE, message)
     }
 }
 

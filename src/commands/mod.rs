@@ -1,5 +1,6 @@
 //! The command line, one file per subcommand.
 
+mod able;
 mod check;
 mod compare;
 mod conform;

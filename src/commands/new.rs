@@ -58,9 +58,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         return Err(Failure::new(exit::CASE, message));
     }
     let file = folder.join(stem).with_extension("toml");
-    let failed = |cause: std::io::Error| {
-        Failure::new(exit::OTHER, format_args!("{}: {cause}", file.display()))
-    };
+    let failed = |cause: std::io::Error| Failure::unwritable(&file, "NAME", &cause);
     std::fs::create_dir_all(folder).map_err(failed)?;
     let text = with_laws(arguments.like.text());
     let text = format!("#:schema {SCHEMA}\n{text}");

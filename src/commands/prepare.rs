@@ -47,6 +47,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         gas: arguments.gas,
         particles: arguments.particles,
     };
+    if !pairing.is_native() {
+        std::fs::create_dir_all(&out)
+            .map_err(|cause| Failure::unwritable(&out, "--out", &cause))?;
+    }
     let written = assembly::write_inputs(&case, &prepared, pairing, &out)?;
     if written.is_empty() {
         say("native parts have no input files; name --gas openfoam or --particles liggghts");

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::console::say;
-use super::failure::{Failure, chain};
+use super::failure::Failure;
 use crate::exit;
 
 /// Writes a self-contained HTML report of a results folder.
@@ -16,8 +16,8 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
-    let page = crate::report::write(&arguments.dir)
-        .map_err(|error| Failure::new(exit::OTHER, chain(&error)))?;
+    let page =
+        crate::report::write(&arguments.dir).map_err(|error| Failure::told(exit::OTHER, &error))?;
     say(page.display());
     Ok(exit::OK)
 }

@@ -9,7 +9,7 @@ use clap::Args;
 
 use super::console::say;
 use super::execute::{self, Settings};
-use super::failure::{Failure, chain};
+use super::failure::Failure;
 use super::inputs::{read_and_prepare, results_folder};
 use super::parallel::{Parallel, Transport};
 use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStarts};
@@ -93,7 +93,7 @@ pub(super) fn run(
     if [exit::OK, exit::OUTSIDE_BANDS, exit::WARNINGS].contains(&done.code) {
         match crate::report::write(&out) {
             Ok(page) => say(format_args!("report: {}", page.display())),
-            Err(error) => return Err(Failure::new(exit::OTHER, chain(&error))),
+            Err(error) => return Err(Failure::told(exit::OTHER, &error)),
         }
     }
     Ok(done.code)

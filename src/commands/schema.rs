@@ -24,8 +24,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         say(text.trim_end());
         return Ok(exit::OK);
     };
-    std::fs::write(file, text)
-        .map_err(|cause| Failure::new(exit::OTHER, format_args!("{}: {cause}", file.display())))?;
+    std::fs::write(file, text).map_err(|cause| Failure::unwritable(file, "--out", &cause))?;
     say(format_args!(
         "{}: name it in the first line of a case file, as\n  #:schema {0}",
         file.display()

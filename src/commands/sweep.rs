@@ -7,14 +7,14 @@ use clap::Args;
 
 use super::console::say;
 use super::execute::{self, Settings};
-use super::failure::{Failure, chain};
+use super::failure::Failure;
 use super::inputs::{read_and_prepare, read_case, results_folder};
 use super::parallel::Transport;
 use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStarts};
 use crate::compare::deviation::{Deviation, deviation};
 use crate::exit;
-use crate::results::Summary;
 use crate::results::read::Series;
+use crate::results::{ResultsError, Summary, unoccupied};
 
 /// Runs a case once for each combination of values and prints one table.
 ///
@@ -77,9 +77,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         folder.into()
     });
     let combinations = combine(&axes);
-    // Every case is checked before the first one runs.
+    // Every case and folder is checked before the first one runs, and that the table can be written after the last one.
+    if let Some(path) = &arguments.table {
+        writable(path).map_err(|cause| Failure::unwritable(path, "--table", &cause))?;
+    }
     for settings in &combinations {
         read_case(&arguments.case, settings)?;
+    }
+    for settings in &combinations {
+        let free = unoccupied(&out.join(folder_name(settings)));
+        free.map_err(|error| Failure::told(exit::CASE, &error))?;
     }
     let mut points = Vec::new();
     for settings in combinations {
@@ -91,11 +98,23 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let table = table(&points, &axes, reference, arguments.span)?;
     say(&table);
     if let Some(path) = &arguments.table {
-        std::fs::write(path, &table).map_err(|cause| {
-            Failure::new(exit::OTHER, format_args!("{}: {cause}", path.display()))
-        })?;
+        std::fs::write(path, &table)
+            .map_err(|cause| Failure::unwritable(path, "--table", &cause))?;
     }
     Ok(exit::OK)
+}
+
+/// Whether a file can be written; it stays as it is, or absent.
+fn writable(path: &Path) -> std::io::Result<()> {
+    let absent = !path.exists();
+    std::fs::File::options()
+        .append(true)
+        .create(true)
+        .open(path)?;
+    match absent {
+        true => std::fs::remove_file(path),
+        false => Ok(()),
+    }
 }
 
 fn one(arguments: &Arguments, settings: &[String], folder: &Path) -> Result<(), Failure> {
@@ -193,7 +212,7 @@ fn table(
     reference: Option<&str>,
     span: Option<f64>,
 ) -> Result<String, Failure> {
-    let failed = |error: &dyn std::error::Error| Failure::new(exit::OTHER, chain(error));
+    let failed = |error: &ResultsError| Failure::told(exit::OTHER, error);
     let mut rows: Vec<Vec<String>> = Vec::new();
     let mut header: Vec<String> = axes
         .iter()

@@ -17,7 +17,7 @@ use calcine_coupler::ledger::STORAGE_CLOCK;
 
 use self::number::{figure, span, with_unit};
 use self::page::{Page, badge, bars, escape, table, tiles};
-use self::plot::{Curve, Plot, Stroke, TIME};
+use self::plot::{Curve, ExpectedBand, Plot, Stroke, TIME};
 use crate::results::read::Series;
 use crate::results::summary::{QuantityResult, SolverSummary};
 use crate::results::{CASE, ResultsError, Summary, files};
@@ -207,7 +207,12 @@ fn plots(summary: &Summary, series: &Series) -> String {
             stroke: Stroke::Solid,
         };
         let title = format!("{} in {}", name.replace('_', " "), result.unit);
-        html.push_str(&plot(title, result.band, vec![curve]).render());
+        let band = result.band.map(|range| ExpectedBand {
+            range,
+            at: result.expected_at_s,
+            label: format!("expected: {}", result.expectation().unwrap_or_default()),
+        });
+        html.push_str(&plot(title, band, vec![curve]).render());
     }
     format!("<div class=\"plots\">{html}</div>")
 }

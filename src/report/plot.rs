@@ -63,11 +63,25 @@ pub(crate) struct Plot<'a> {
     pub logarithmic: bool,
     /// A second scale above: label, and its values at the x of `over`.
     pub above: Option<(&'a str, &'a [f64], &'a [f64])>,
-    /// A band of y to shade.
-    pub band: Option<(f64, f64)>,
+    /// What is expected.
+    pub band: Option<ExpectedBand>,
     /// The lines.
     pub curves: Vec<Curve<'a>>,
 }
+
+/// Values of y that are expected at one x.
+#[derive(Clone, Debug)]
+pub(crate) struct ExpectedBand {
+    /// Smallest and largest value.
+    pub range: (f64, f64),
+    /// The x at which they are expected; `None`: at the end of the curves.
+    pub at: Option<f64>,
+    /// What is expected, for the legend.
+    pub label: String,
+}
+
+/// Half the width of the mark of what is expected.
+const MARK: f64 = 6.0;
 
 /// Where values lie on the picture.
 struct Frame {
@@ -107,22 +121,18 @@ impl Plot<'_> {
             escape(&self.title),
             HEIGHT - cut
         );
-        if let Some((low, high)) = self.band {
-            let (low, high) = (
-                frame.value(low).max(frame.y.low),
-                frame.value(high).min(frame.y.high),
-            );
-            if low < high {
-                let _ = write!(
-                    svg,
-                    "<rect class=\"band\" x=\"{LEFT}\" width=\"{}\" y=\"{:.1}\" height=\"{:.1}\"/>",
-                    WIDTH - LEFT - RIGHT,
-                    frame.up(high),
-                    frame.up(low) - frame.up(high)
-                );
-            }
-        }
         self.axes(&frame, &mut svg);
+        if let Some(band) = self.shown_band(frame.x) {
+            let (low, high) = band.range;
+            let at = frame.across(band.at.unwrap_or(frame.x.high));
+            let (low, high) = (frame.up(frame.value(low)), frame.up(frame.value(high)));
+            let (left, right) = (at - MARK, at + MARK);
+            let _ = write!(
+                svg,
+                "<path class=\"band\" d=\"M{left:.1} {low:.1}H{right:.1}M{at:.1} {low:.1}V{high:.1}M{left:.1} \
+                 {high:.1}H{right:.1}\"/>"
+            );
+        }
         for curve in &self.curves {
             let _ = write!(
                 svg,
@@ -138,9 +148,18 @@ impl Plot<'_> {
         svg
     }
 
+    /// What is expected, where the curves reach to where it is.
+    fn shown_band(&self, x: Range) -> Option<&ExpectedBand> {
+        let within = |at: f64| (x.low..=x.high).contains(&at);
+        let band = self.band.as_ref();
+        band.filter(|band| band.at.is_none_or(within))
+    }
+
     fn frame(&self) -> Option<Frame> {
         let x = Range::of(self.curves.iter().flat_map(|curve| curve.x.iter().copied()))?;
+        let expected = self.shown_band(x).map(|band| [band.range.0, band.range.1]);
         let values = self.curves.iter().flat_map(|curve| curve.y.iter().copied());
+        let values = values.chain(expected.into_iter().flatten());
         let y = if self.logarithmic {
             let range = Range::of(values.filter(|&y| y > 0.0).map(f64::log10))?;
             Range {
@@ -224,7 +243,7 @@ impl Plot<'_> {
 
     fn legend(&self) -> String {
         let named = self.curves.iter().filter(|curve| !curve.label.is_empty());
-        let chips: String = named
+        let mut chips: String = named
             .map(|curve| {
                 format!(
                     "<span><i style=\"background:{}\"></i>{}</span>",
@@ -233,6 +252,14 @@ impl Plot<'_> {
                 )
             })
             .collect();
+        let frame = self.frame();
+        if let Some(band) = frame.as_ref().and_then(|frame| self.shown_band(frame.x)) {
+            let _ = write!(
+                chips,
+                "<span><i class=\"expected\"></i>{}</span>",
+                escape(&band.label)
+            );
+        }
         if chips.is_empty() {
             chips
         } else {
@@ -363,6 +390,37 @@ mod tests {
         assert_eq!(between(&[0.0, 2.0], &[10.0, 20.0], 2.0), 20.0);
         assert_eq!(between(&[0.0, 2.0], &[10.0, 20.0], 9.0), 20.0);
         assert!(between(&[], &[], 1.0).is_nan());
+    }
+
+    #[test]
+    fn what_is_expected_is_marked_where_it_holds_and_nowhere_else() {
+        let render = |at: Option<f64>| {
+            let plot = Plot {
+                title: "outlet".into(),
+                x_label: TIME,
+                logarithmic: false,
+                above: None,
+                band: Some(ExpectedBand {
+                    range: (10.0, 12.0),
+                    at,
+                    label: "expected: 10 to 12 K".into(),
+                }),
+                curves: vec![Curve {
+                    label: String::new(),
+                    colour: "red".into(),
+                    x: &[0.0, 100.0],
+                    y: &[0.0, 5.0],
+                    stroke: Stroke::Solid,
+                }],
+            };
+            plot.render()
+        };
+        let middle = LEFT + 0.5 * (WIDTH - LEFT - RIGHT);
+        assert!(render(Some(50.0)).contains(&format!("M{middle:.1} ")));
+        // The end of the curve, where the case states no time.
+        assert!(render(None).contains(&format!("M{:.1} ", WIDTH - RIGHT)));
+        // A run that ended before.
+        assert!(!render(Some(200.0)).contains("expected"));
     }
 
     #[test]

@@ -42,6 +42,15 @@ pub enum ResultsError {
         /// The hash of this case.
         hash: String,
     },
+    /// A directory in which no run was begun.
+    #[error("{} is not the results folder of a run: {fact}", path.display())]
+    #[diagnostic(help("name the folder that a run wrote: that of its `--out`, or results/NAME"))]
+    NoResults {
+        /// The directory.
+        path: PathBuf,
+        /// What is missing.
+        fact: &'static str,
+    },
     /// A file that could not be read or written.
     #[error("cannot {action} {}: {source}", path.display())]
     #[diagnostic(help("check the space on the disk and the permissions of the directory"))]

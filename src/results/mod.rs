@@ -32,8 +32,8 @@ use calcine_coupler::mesh::Mesh;
 use crate::case::model::Case;
 pub use error::ResultsError;
 pub use files::{CASE, SERIES, STATUS, STORE, SUMMARY};
-pub use recorder::{Recorder, RunInfo};
-pub use resume::clear_start;
+pub use recorder::{Recorder, RunInfo, unoccupied};
+pub use resume::{clear_start, may_start_again};
 pub use summary::{Summary, Verdict};
 
 /// Refuses probes outside a mesh, and quantities of patches that it lacks.

@@ -320,6 +320,7 @@ fn result(quantity: &Quantity, slot: Option<(Option<f64>, f64)>, over: bool) -> 
         unit: quantity.unit.into(),
         at_s: slot.map(|(_, at)| at),
         band,
+        expected_at_s: expected_at(quantity),
         verdict,
     }
 }

@@ -76,8 +76,8 @@ impl Recorder {
         out: &Path,
         resume: Option<&Path>,
     ) -> Result<Self, ResultsError> {
-        if resume.is_none() && out.join(SUMMARY).exists() {
-            return Err(occupied(out));
+        if resume.is_none() {
+            unoccupied(out)?;
         }
         let probes = (!case.probes.is_empty()).then_some("probes");
         for folder in ["gas", "particles"].into_iter().chain(probes) {
@@ -454,16 +454,18 @@ fn following(now: Ticks, every: Ticks) -> i64 {
     (now.count() / every + 1).saturating_mul(every)
 }
 
-fn occupied(out: &Path) -> ResultsError {
-    match Summary::read(out) {
-        Ok(summary) => ResultsError::Occupied {
-            path: out.to_owned(),
-            case: summary.case.name,
-            verdict: summary.verdict.word().into(),
-            time: summary.process_time_s,
-        },
-        Err(error) => error,
+/// Refuses a directory that holds the results of a run.
+pub fn unoccupied(out: &Path) -> Result<(), ResultsError> {
+    if !out.join(SUMMARY).exists() {
+        return Ok(());
     }
+    let summary = Summary::read(out)?;
+    Err(ResultsError::Occupied {
+        path: out.to_owned(),
+        case: summary.case.name,
+        verdict: summary.verdict.word().into(),
+        time: summary.process_time_s,
+    })
 }
 
 fn status_of(summary: &Summary) -> Status {

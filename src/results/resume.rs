@@ -1,6 +1,7 @@
 //! What the recorder leaves in a checkpoint, and how it goes on from one.
 
 use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -122,10 +123,9 @@ pub(super) fn restore(
     Ok(counters)
 }
 
-/// Makes room for a run that begins again because it ended before its first checkpoint. True if
-/// that is so; false, and nothing changed, if the run in this directory came to its end. The start
-/// of another case is an error.
-pub fn clear_start(results: &Path, case_hash: &str) -> Result<bool, ResultsError> {
+/// True where the run in this directory ended before its end, so that it may begin again; false where it came to its
+/// end. The start of another case is an error.
+pub fn may_start_again(results: &Path, case_hash: &str) -> Result<bool, ResultsError> {
     let path = results.join(SUMMARY);
     if !path.exists() {
         return Ok(true);
@@ -138,11 +138,21 @@ pub fn clear_start(results: &Path, case_hash: &str) -> Result<bool, ResultsError
             hash: case_hash.into(),
         });
     }
-    let ended_early = matches!(summary.verdict, Verdict::Running | Verdict::Stopped);
-    if ended_early {
-        fs::remove_file(&path).map_err(ResultsError::file("remove", &path))?;
+    Ok(matches!(
+        summary.verdict,
+        Verdict::Running | Verdict::Stopped
+    ))
+}
+
+/// Makes room for a run that begins again.
+pub fn clear_start(results: &Path) -> Result<(), ResultsError> {
+    let path = results.join(SUMMARY);
+    match fs::remove_file(&path) {
+        Err(cause) if cause.kind() != ErrorKind::NotFound => {
+            Err(ResultsError::file("remove", &path)(cause))
+        }
+        _ => Ok(()),
     }
-    Ok(ended_early)
 }
 
 /// Removes the snapshots of a folder from a number on, and drafts.

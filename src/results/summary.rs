@@ -9,6 +9,7 @@ use super::files::{self, number};
 use super::inertial_number::InertialNumberStatistics;
 use super::warnings::Warnings;
 use super::{ResultsError, SUMMARY};
+use crate::case::units::{short, shown};
 
 /// How a quantity, or the run, stands against what the case expects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -250,8 +251,44 @@ pub struct QuantityResult {
     pub at_s: Option<f64>,
     /// Smallest and largest value that pass, in `unit`; `null` where nothing is expected.
     pub band: Option<(f64, f64)>,
+    /// Process time in s for which the band is stated; without it that is the end of the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expected_at_s: Option<f64>,
     /// `pass`, `fail`, `none`, or `running` before the value is known.
     pub verdict: Verdict,
+}
+
+impl QuantityResult {
+    /// The band in words, with the time for which it is stated.
+    pub fn expectation(&self) -> Option<String> {
+        let (low, high) = self.band?;
+        let time = self.expected_at_s;
+        let time = time.map_or("the end".into(), |time| format!("{} s", shown(time)));
+        let unit = &self.unit;
+        Some(format!(
+            "{} to {} {unit} at {time}",
+            short(low),
+            short(high)
+        ))
+    }
+
+    /// Why the quantity fails, in words; `ended`: process time in s at which the run ended. `None` where it does not
+    /// fail.
+    pub fn reason(&self, ended: f64) -> Option<String> {
+        let expected = match self.verdict {
+            Verdict::Fail => self.expectation()?,
+            _ => return None,
+        };
+        let late = self.expected_at_s.is_some_and(|time| time > ended);
+        Some(match self.value {
+            Some(_) => format!("expected {expected}"),
+            None if late => format!(
+                "expected {expected}, but the run ended at {} s: raise `time.end`, or lower `expect.at`",
+                shown(ended)
+            ),
+            None => format!("expected {expected}, where it has no value"),
+        })
+    }
 }
 
 /// How the gas converged, over the run.
@@ -284,6 +321,15 @@ impl Summary {
     /// Reads the summary of a result directory.
     pub fn read(directory: &Path) -> Result<Self, ResultsError> {
         let path = directory.join(SUMMARY);
+        if !path.exists() {
+            return Err(ResultsError::NoResults {
+                path: directory.to_owned(),
+                fact: match directory.is_dir() {
+                    true => "it holds no summary.json",
+                    false => "there is no such folder",
+                },
+            });
+        }
         serde_json::from_str(&files::read(&path)?)
             .map_err(|error| ResultsError::content(&path, error.to_string()))
     }

@@ -175,18 +175,20 @@ impl SimulationBuilder {
         if self.resume && folder::finished(&out).is_some() {
             return Err(SimulationError::Over(Ending::Finished));
         }
-        let started_before = folder::create(&out)?;
-        let lock = folder::lock(&out)?;
         let checkpoint = out.join("checkpoint");
         let resume = self.resume && folder::has_checkpoint(&out);
         let again = self.resume && !resume;
-        let begun_from = folder::begun_from(self.from.as_deref(), again, &out);
-        if again && !(started_before && results::clear_start(&out, &case.hash)?) {
+        if again && !(folder::begun_before(&out) && results::may_start_again(&out, &case.hash)?) {
             return Err(SimulationError::NoCheckpoint { folder: out });
         }
+        let begun_from = folder::begun_from(self.from.as_deref(), again, &out);
         let begun_from = begun_from.filter(|_| !resume);
         let continued = begun_from.map(|from| folder::origin(&from, self.pairing));
         let (origin, provenance) = continued.transpose()?.unzip();
+        let claimed = folder::claim(&out)?;
+        if again {
+            results::clear_start(&out)?;
+        }
         let info = RunInfo {
             gas: self.pairing.gas.name().into(),
             particles: self.pairing.particles.name().into(),
@@ -210,7 +212,7 @@ impl SimulationBuilder {
             from: origin.as_ref(),
         };
         let mut supervisor = Supervisor::new(case.coupling.deadline, self.interrupts);
-        let run = with_default(&log, || {
+        let begun = with_default(&log, || {
             info!(case = %case.name, pairing = %self.pairing.name(), resume, "start");
             let own = |material: &str| {
                 let given = self.models.iter().rev();
@@ -225,7 +227,16 @@ impl SimulationBuilder {
             }
             run.begin(&mut super::all(&mut recorder, &mut observers))?;
             Ok::<_, SimulationError>(run)
-        })?;
+        });
+        let run = match begun {
+            Ok(run) => run,
+            Err(failure) => {
+                if claimed.has_solver_log() {
+                    claimed.keep();
+                }
+                return Err(failure);
+            }
+        };
         Ok(Simulation {
             run,
             supervisor,
@@ -236,7 +247,7 @@ impl SimulationBuilder {
             log,
             ending: None,
             failed: false,
-            _lock: lock,
+            _lock: claimed.keep(),
         })
     }
 }

@@ -35,6 +35,15 @@ pub enum SimulationError {
         /// The results folder.
         folder: PathBuf,
     },
+    /// The results folder cannot be made, or not be written.
+    #[error("no results can be written to {folder} ({cause}): name another folder with `--out`")]
+    UnusableFolder {
+        /// The results folder.
+        folder: PathBuf,
+        /// Why.
+        #[source]
+        cause: io::Error,
+    },
     /// There is nothing to resume.
     #[error(
         "there is no checkpoint in {folder}: run without `--resume`, or name the folder with `--out`"

@@ -1,5 +1,7 @@
 //! The results folder of a run: its lock, its log, and what another run left in one.
 
+use std::collections::BTreeSet;
+use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -19,6 +21,9 @@ use crate::results::{SUMMARY, Summary};
 /// A file that every run makes and holds locked while it lives.
 const LOCK: &str = "lock";
 
+/// Name of the run's own log in `log/`.
+const OWN_LOG: &str = "calcine.log";
+
 fn io_error(path: &Path, cause: io::Error) -> SimulationError {
     SimulationError::Io {
         path: path.to_owned(),
@@ -26,29 +31,112 @@ fn io_error(path: &Path, cause: io::Error) -> SimulationError {
     }
 }
 
-/// Makes the folder with its `log/`; true where a run was begun in it before.
-pub(super) fn create(out: &Path) -> Result<bool, SimulationError> {
-    let started = out.join(LOCK).is_file();
-    fs::create_dir_all(out.join("log")).map_err(|cause| io_error(out, cause))?;
-    Ok(started)
+/// The results folder of a run that is about to begin, kept from other runs. Unless it is kept, all that was put into
+/// it is removed again: a run that is refused leaves the folder, or its absence, as it was.
+pub(super) struct ClaimedFolder {
+    out: PathBuf,
+    /// Names in the folder before; `None` where the folder is this run's own.
+    before: Option<BTreeSet<OsString>>,
+    /// Folders above that were made for it, the lowest first.
+    above: Vec<PathBuf>,
+    lock: Option<File>,
 }
 
-/// Keeps a second run out of the results folder while the file is held.
-pub(super) fn lock(out: &Path) -> Result<File, SimulationError> {
-    let path = out.join(LOCK);
-    let file = File::create(&path).map_err(|cause| io_error(&path, cause))?;
+/// Claims the results folder, makes it where it is absent, with its `log/`.
+pub(super) fn claim(out: &Path) -> Result<ClaimedFolder, SimulationError> {
+    let unusable = |cause| SimulationError::UnusableFolder {
+        folder: out.to_owned(),
+        cause,
+    };
+    let absent = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
+    let mut made = out.ancestors().take_while(absent).map(Path::to_owned);
+    let own = made.next().is_some();
+    let above: Vec<PathBuf> = made.collect();
+    fs::create_dir_all(out).map_err(|cause| {
+        remove_empty(&above);
+        unusable(cause)
+    })?;
+    let mut claimed = ClaimedFolder {
+        out: out.to_owned(),
+        before: (!own).then(|| names(out)).transpose().map_err(unusable)?,
+        above,
+        lock: None,
+    };
+    let file = File::create(out.join(LOCK)).map_err(unusable)?;
     flock(&file, FlockOperation::NonBlockingLockExclusive).map_err(|_| {
         SimulationError::Occupied {
             folder: out.to_owned(),
         }
     })?;
-    Ok(file)
+    claimed.lock = Some(file);
+    let log = out.join("log");
+    fs::create_dir_all(&log).map_err(|cause| io_error(&log, cause))?;
+    Ok(claimed)
+}
+
+impl ClaimedFolder {
+    /// True where a solver has written a log of its own, which may say why a run ended before it began.
+    pub(super) fn has_solver_log(&self) -> bool {
+        let Ok(logs) = fs::read_dir(self.out.join("log")) else {
+            return false;
+        };
+        let told = |entry: &fs::DirEntry| entry.metadata().is_ok_and(|data| data.len() > 0);
+        let mut others = logs.flatten().filter(|entry| entry.file_name() != OWN_LOG);
+        others.any(|entry| told(&entry))
+    }
+
+    /// Leaves what is in the folder, and gives the lock, which holds while it lives.
+    pub(super) fn keep(mut self) -> Option<File> {
+        self.lock.take()
+    }
+}
+
+impl Drop for ClaimedFolder {
+    /// Without the lock another run may be at work in the folder: nothing is removed then. What cannot be removed
+    /// stays; the error that the run is refused with is the one to tell.
+    fn drop(&mut self) {
+        let Some(before) = &self.before else {
+            let _ = match self.lock {
+                Some(_) => fs::remove_dir_all(&self.out),
+                None => fs::remove_dir(&self.out),
+            };
+            return remove_empty(&self.above);
+        };
+        if self.lock.is_none() {
+            return;
+        }
+        for name in names(&self.out).unwrap_or_default().difference(before) {
+            let path = self.out.join(name);
+            let _ = match path.is_dir() {
+                true => fs::remove_dir_all(&path),
+                false => fs::remove_file(&path),
+            };
+        }
+    }
+}
+
+/// Names of what is in a folder.
+fn names(folder: &Path) -> io::Result<BTreeSet<OsString>> {
+    let entries = fs::read_dir(folder)?;
+    entries.map(|entry| Ok(entry?.file_name())).collect()
+}
+
+/// Removes folders, the lowest first, that hold nothing.
+fn remove_empty(folders: &[PathBuf]) {
+    for folder in folders {
+        let _ = fs::remove_dir(folder);
+    }
+}
+
+/// True where a run was begun in a folder before.
+pub(super) fn begun_before(out: &Path) -> bool {
+    out.join(LOCK).is_file()
 }
 
 /// Structured log of this run: DIR/log/calcine.log. CALCINE_LOG sets the level (default info), of all or of modules:
 /// `warn,calcine_coupler=debug`.
 pub(super) fn log(out: &Path) -> Result<Dispatch, SimulationError> {
-    let path = out.join("log").join("calcine.log");
+    let path = out.join("log").join(OWN_LOG);
     let file = File::options()
         .create(true)
         .append(true)

@@ -69,7 +69,7 @@ pub struct Simulation {
     ending: Option<Ending>,
     /// True after a failure: the parts may stand in the middle of a window.
     failed: bool,
-    _lock: File,
+    _lock: Option<File>,
 }
 
 impl Simulation {

@@ -50,12 +50,17 @@ pub struct LiggghtsLaunch<'a> {
     pub deadline: Duration,
 }
 
+/// The host's program.
+pub fn find() -> Result<PathBuf, PartError> {
+    let remedy = "`cargo xtask setup` installs LIGGGHTS and builds it";
+    find_program(HOST_VARIABLE, HOST, remedy)
+}
+
 impl LiggghtsLaunch<'_> {
     /// Writes the inputs, starts the host and takes over its particles.
     pub fn launch(self, supervisor: &mut Supervisor) -> Result<LinkedParticles, PartError> {
         let launch = self;
-        let remedy = "`cargo xtask setup` installs LIGGGHTS and builds it";
-        let host = find_program(HOST_VARIABLE, HOST, remedy)?;
+        let host = find()?;
         launch.inputs.write(&launch.folder)?;
         let mut arguments = vec![SCRIPT.into(), launch.case_hash.clone().into()];
         let mut origin = NEW.to_owned();

@@ -77,14 +77,8 @@ impl OpenfoamLaunch<'_> {
     /// Writes the case, starts the solver and takes over the state it starts from.
     pub fn launch(self, supervisor: &mut Supervisor) -> Result<LinkedGas, PartError> {
         let launch = self;
-        let remedy = "`cargo xtask setup` installs OpenFOAM and builds it";
-        let own = find_program(SOLVER_VARIABLE, SOLVER, remedy)?;
+        let (path, own) = find(launch.solver)?;
         let library = own.with_file_name(LIBRARY);
-        let path = if launch.solver.is_stock() {
-            stock_program(launch.solver.name())?
-        } else {
-            own
-        };
         if launch.solver.is_stock() && launch.ranks > 1 {
             let message = "a stock solver is coupled on one rank only: leave `openfoam.ranks` out";
             return Err(PartError::new(NAME, FailureKind::NotStarted, message));
@@ -169,6 +163,17 @@ impl OpenfoamLaunch<'_> {
         )?;
         LinkedGas::new(solver, launch.setup, launch.mesh, !launch.solver.is_stock())
     }
+}
+
+/// The program of a solver, and calcineGasFoam, beside which the coupling's library lies.
+pub fn find(solver: StockSolver) -> Result<(PathBuf, PathBuf), PartError> {
+    let remedy = "`cargo xtask setup` installs OpenFOAM and builds it";
+    let own = find_program(SOLVER_VARIABLE, SOLVER, remedy)?;
+    let path = match solver.is_stock() {
+        true => stock_program(solver.name())?,
+        false => own.clone(),
+    };
+    Ok((path, own))
 }
 
 /// A program of Debian's OpenFOAM, on the path.

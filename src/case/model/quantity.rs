@@ -132,6 +132,14 @@ pub enum ToleranceBand {
     Absolute(f64),
 }
 
+impl Quantity {
+    /// The process time in s for which a value is expected, where that is after the end of the run.
+    pub fn expected_after(&self, end: f64) -> Option<f64> {
+        let at = self.expect.and_then(|expect| expect.at);
+        at.filter(|&at| at > end)
+    }
+}
+
 /// An expected value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expect {

@@ -1,0 +1,247 @@
+//! What the command line says of mistakes, and that nothing is left of what it refuses.
+
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use crate::support::program::shipped;
+
+fn calcine(folder: &Path, words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_calcine"))
+        .args(words)
+        .current_dir(folder)
+        .output()
+        .unwrap()
+}
+
+fn column() -> PathBuf {
+    shipped("heated-column")
+}
+
+/// Standard error of a command that fails with this exit code.
+fn refused(folder: &Path, code: i32, words: &[&str]) -> String {
+    let output = calcine(folder, words);
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{words:?}: {text}");
+    text
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_run_that_is_refused_leaves_no_folder_and_is_refused_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = column();
+    let run = |more: &[&str]| {
+        let words = ["run", case.to_str().unwrap(), "--quiet"];
+        refused(folder.path(), 2, &[&words, more].concat())
+    };
+    for _ in 0..2 {
+        let text = run(&["--resume", "--out", "deep/out"]);
+        assert!(
+            text.contains("there is no checkpoint in deep/out"),
+            "{text}"
+        );
+        assert_eq!(names(folder.path()), [""; 0]);
+    }
+    let text = run(&["--from", "nosuch", "--out", "deep/out"]);
+    let said = "nosuch is not the results folder of a run: there is no such folder";
+    assert!(text.contains(said), "{text}");
+    assert!(
+        text.contains("help: name the folder that a run wrote"),
+        "{text}"
+    );
+    assert_eq!(names(folder.path()), [""; 0]);
+    // What was in the folder before stays; nothing is added to it.
+    fs::create_dir_all(folder.path().join("own/log")).unwrap();
+    fs::write(folder.path().join("own/notes.txt"), "mine").unwrap();
+    for words in [["--resume"].as_slice(), &["--from", "own"]] {
+        run(&[words, &["--out", "own"]].concat());
+        assert_eq!(names(&folder.path().join("own")), ["log", "notes.txt"]);
+        assert_eq!(names(&folder.path().join("own/log")), [""; 0]);
+    }
+}
+
+#[test]
+fn a_run_that_its_solver_refuses_leaves_what_was_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let column = column();
+    let words = [
+        "run",
+        column.to_str().unwrap(),
+        "--quiet",
+        "--out",
+        "out",
+        "--gas",
+        "external",
+    ];
+    let text = refused(folder.path(), 2, &words);
+    assert!(text.contains("add [external.gas]"), "{text}");
+    assert_eq!(names(folder.path()), [""; 0]);
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_named_with_the_option_that_names_another() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = column();
+    let case = case.to_str().unwrap();
+    let text = refused(
+        folder.path(),
+        2,
+        &["run", case, "--quiet", "--out", "/dev/null/x"],
+    );
+    assert!(
+        text.contains("no results can be written to /dev/null/x"),
+        "{text}"
+    );
+    assert!(text.contains("another folder with `--out`"), "{text}");
+    for (words, option) in [
+        (["schema", "--out", "/dev/null/x"].as_slice(), "--out"),
+        (&["new", "/dev/null/x"], "NAME"),
+        (
+            &[
+                "sweep",
+                case,
+                "--set",
+                "time.end=1 s,2 s",
+                "--table",
+                "/dev/null/x",
+            ],
+            "--table",
+        ),
+        (
+            &["conform", "--gas", "native", "--out", "/dev/null/x"],
+            "--out",
+        ),
+        (&["prepare", case, "--out", "/dev/null/x"], "--out"),
+    ] {
+        let text = refused(folder.path(), 2, words);
+        assert!(text.contains("/dev/null/x"), "{text}");
+        assert!(
+            text.contains(&format!("name another with `{option}`")),
+            "{text}"
+        );
+    }
+    assert_eq!(names(folder.path()), [""; 0]);
+}
+
+#[test]
+fn a_report_of_what_is_no_results_folder_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = refused(folder.path(), 1, &["report", "nosuch"]);
+    assert!(text.contains("there is no such folder"), "{text}");
+    assert!(
+        text.contains("help: name the folder that a run wrote"),
+        "{text}"
+    );
+    fs::create_dir(folder.path().join("empty")).unwrap();
+    let text = refused(folder.path(), 1, &["report", "empty"]);
+    assert!(text.contains("it holds no summary.json"), "{text}");
+}
+
+#[test]
+fn conform_removes_only_what_it_wrote_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("thesis.tex"), "years of work").unwrap();
+    let text = refused(
+        folder.path(),
+        2,
+        &["conform", "--gas", "native", "--out", "."],
+    );
+    assert!(
+        text.contains("thesis.tex, which is not of this command"),
+        "{text}"
+    );
+    assert_eq!(names(folder.path()), ["thesis.tex"]);
+}
+
+/// A shipped case with two expectations: one that is missed, one after the end of the run.
+fn expecting(folder: &Path) -> PathBuf {
+    let quantity = |name: &str, at: &str| {
+        format!(
+            "\n[[quantities]]\nname = \"{name}\"\nmeasure = {{ particle = \"temperature\", number = 1 }}\n\
+             expect = {{ at = \"{at}\", value = \"900 K\", within = \"1 %\" }}\n"
+        )
+    };
+    let text = fs::read_to_string(column()).unwrap();
+    let path = folder.join("case.toml");
+    let text = text + &quantity("missed", "0.5 s") + &quantity("late", "1 h");
+    fs::write(&path, text).unwrap();
+    path
+}
+
+#[test]
+fn an_expectation_that_fails_says_what_was_expected_and_when() {
+    let folder = tempfile::tempdir().unwrap();
+    expecting(folder.path());
+    let set = ["case.toml", "--set", "time.end=1 s"];
+    let late = "`late` is expected to have its value at 3600 s, but the run ends at 1 s";
+    let output = calcine(folder.path(), &[&["check"], &set[..]].concat());
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(text.contains(&format!("warning: {late}")), "{text}");
+    assert!(!text.contains("`missed` is expected"), "{text}");
+
+    let output = calcine(
+        folder.path(),
+        &[&["run", "--quiet"], &set[..], &["--out", "out"]].concat(),
+    );
+    assert_eq!(output.status.code(), Some(5));
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(text.contains(late), "{text}");
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let line = |name: &str| text.lines().find(|line| line.trim().starts_with(name));
+    let missed = line("missed").unwrap();
+    assert!(
+        missed.contains("fail: expected 891 to 909 K at 0.5 s"),
+        "{missed}"
+    );
+    let late = line("late").unwrap();
+    assert!(
+        late.contains("unknown")
+            && late.contains("at 3600 s, but the run ended at 1 s: raise `time.end`"),
+        "{late}"
+    );
+}
+
+#[test]
+fn a_comparison_of_all_pairings_leaves_out_those_that_cannot_run_before_anything_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let compare = |variables: &[(&str, &str)], more: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
+        command
+            .current_dir(folder.path())
+            .args(["compare", "--quiet"]);
+        command.arg(column()).args(["--set", "time.end=0.1 s"]);
+        command.args(["--out", "out"]).args(more);
+        for (name, value) in variables {
+            command.env(name, value);
+        }
+        command.output().unwrap()
+    };
+    let gas = ("CALCINE_GASFOAM", "/nowhere/calcineGasFoam");
+    let host = ("CALCINE_LIGGGHTS_HOST", "/nowhere/calcine-liggghts");
+    let none = compare(&[gas, host], &[]);
+    let text = String::from_utf8_lossy(&none.stderr).into_owned();
+    assert_eq!(none.status.code(), Some(4), "{text}");
+    assert!(
+        text.contains("a comparison needs two pairings at least"),
+        "{text}"
+    );
+    let why = "/nowhere/calcineGasFoam, which the variable CALCINE_GASFOAM names, is no file";
+    assert!(
+        text.contains("openfoam+native cannot run: ") && text.contains(why),
+        "{text}"
+    );
+    let named = compare(&[gas], &["--pairings", "native+native,openfoam+native"]);
+    assert_eq!(named.status.code(), Some(4));
+    assert_eq!(names(folder.path()), [""; 0]);
+}
