@@ -60,6 +60,44 @@ fn burning_lime_converges_with_its_windows_and_closes_elements_and_energy() {
     );
 }
 
+/// Baker (1962), J. Chem. Soc. 464: the pressure of carbon dioxide over calcite and lime in Pa.
+fn over_lime(temperature: f64) -> f64 {
+    101_325.0 * 10f64.powf(7.079 - 8308.0 / temperature)
+}
+
+#[test]
+fn a_stone_in_a_closed_box_of_its_own_gas_ends_at_equilibrium_whatever_the_window() {
+    let case = "tests/inputs/good/calcining-box.toml";
+    let folder = tempfile::tempdir().unwrap();
+    // Windows shorter and longer than the box takes to come to equilibrium.
+    let runs = [("60 s", "10"), ("600 s", "30")];
+    let pressures = runs.map(|(step, attempts)| {
+        let settings = [
+            &*format!("time.process_step={step}"),
+            "time.end=2 h",
+            &*format!("coupling.exchange.attempts={attempts}"),
+        ];
+        let summary = run(case, &folder.path().join(attempts), &settings);
+        assert!(!summary.warnings.contains_key("exchange_attempts"));
+        for element in ["C", "O", "Ca"] {
+            let error = summary.ledger.elements[element].relative_error;
+            assert!(error < 1e-9, "{element}: {error}");
+        }
+        let pressure = value(&summary, "pressure");
+        // As far as published equilibria lie apart.
+        let expected = over_lime(value(&summary, "stone_temperature"));
+        assert!(
+            (pressure / expected - 1.0).abs() < 0.08,
+            "{step}: {pressure} {expected}"
+        );
+        pressure
+    });
+    assert!(
+        (pressures[1] / pressures[0] - 1.0).abs() < 0.01,
+        "{pressures:?}"
+    );
+}
+
 #[test]
 fn iron_that_heats_itself_gains_the_mass_of_the_oxygen_it_takes() {
     let folder = tempfile::tempdir().unwrap();

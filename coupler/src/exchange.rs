@@ -58,6 +58,10 @@ pub struct ExchangeInputs<'a> {
     pub acceleration: f64,
 }
 
+/// Difference of temperatures in K whose heat is none at all for the convergence of attempts: a bed in equilibrium
+/// with its gas exchanges what round-off and the gas' own tolerance leave.
+const FAINT: f64 = 1e-3;
+
 /// The exchange of one window, with its scratch memory.
 #[derive(Debug, Default)]
 pub struct Exchange {
@@ -180,6 +184,7 @@ impl Exchange {
         }
         operator.spread(&self.scalar, &mut self.cell_scalar);
         let (mut misplaced, mut exchanged) = (0.0, 0.0);
+        let faint: f64 = self.conductance.iter().sum::<f64>() * FAINT;
         for c in 0..operator.cells() {
             let before = std::mem::replace(&mut self.iterate.temperature[c], gas.temperature[c]);
             let change = gas.temperature[c] - before;
@@ -187,7 +192,7 @@ impl Exchange {
                 (self.iterate.coupling_coefficient[c] * change - self.cell_scalar[c]).abs();
             exchanged += received.heat[c].abs();
         }
-        share(misplaced, exchanged)
+        share(misplaced, exchanged.max(faint))
     }
 
     /// Gives each particle the drag that the gas reports.

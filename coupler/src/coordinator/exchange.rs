@@ -89,9 +89,9 @@ impl ExchangeStage {
             if channels {
                 // What the particles say of the gas that came of their lines, beside what the lines said of it.
                 self.follow_rates(with);
-                self.advance_iterate(with);
+                let extrapolated = self.advance_iterate(with);
                 self.respond(with, window)?;
-                off = off.max(self.tell_rates(with));
+                off = off.max(self.tell_rates(with)).max(extrapolated);
             }
             let settled = off <= limits.tolerance;
             tracing::debug!(
@@ -148,12 +148,14 @@ impl ExchangeStage {
         with.meter.stop(running);
     }
 
-    /// Takes the gas of the last attempt as the next about which particles are linearised, accelerated.
-    fn advance_iterate(&mut self, with: &mut Participants<'_>) {
+    /// Takes the gas of the last attempt as the next about which particles are linearised, accelerated; how far the
+    /// acceleration took it from the gas that is there.
+    fn advance_iterate(&mut self, with: &mut Participants<'_>) -> f64 {
         let running = Meter::start(Stage::Exchange);
-        self.iterate
-            .advance(&with.mapped.operator, &with.gas.fields());
+        let (operator, gas) = (&with.mapped.operator, with.gas.fields());
+        let extrapolated = self.iterate.advance(operator, &gas);
         with.meter.stop(running);
+        extrapolated
     }
 
     /// What the interior does over the window with the gas as it is.
@@ -309,6 +311,9 @@ impl ExchangeStage {
 struct GasIterate {
     temperature: Vec<f64>,
     composition: Vec<f64>,
+    pressure: Vec<f64>,
+    /// Logarithm of the mean pressure in Pa, which follows what reacts where gas cannot leave.
+    level: f64,
     sampled_temperature: Vec<f64>,
     acceleration: Anderson,
     /// Iterate and what came of it as one list, scaled.
@@ -329,36 +334,61 @@ impl GasIterate {
         self.temperature.extend_from_slice(gas.temperature);
         self.composition.clear();
         self.composition.extend_from_slice(gas.composition);
+        self.pressure.clear();
+        self.pressure.extend_from_slice(gas.pressure);
+        self.level = level(gas.pressure);
         self.sample(operator);
     }
 
-    /// Takes up what the gas made of the lines about the iterate.
-    fn advance(&mut self, operator: &Operator, gas: &GasFields<'_>) {
-        let scaled = |temperature: &[f64], composition: &[f64], out: &mut Vec<f64>| {
+    /// Takes up what the gas made of the lines about the iterate. The result is how far the next one is from that gas:
+    /// the largest of the logarithm of their pressures, and the root mean squares of the differences of temperatures
+    /// (over [`KELVIN`]) and of mass fractions.
+    fn advance(&mut self, operator: &Operator, gas: &GasFields<'_>) -> f64 {
+        let cells = gas.temperature.len();
+        // The one level weighs as much as a field.
+        let weight = (cells.max(1) as f64).sqrt();
+        let scaled = |temperature: &[f64], composition: &[f64], level: f64, out: &mut Vec<f64>| {
             out.clear();
             out.extend(temperature.iter().map(|kelvin| kelvin / KELVIN));
             out.extend_from_slice(composition);
+            out.push(weight * level);
         };
-        scaled(&self.temperature, &self.composition, &mut self.before);
-        scaled(gas.temperature, gas.composition, &mut self.made);
+        let made = level(gas.pressure);
+        scaled(
+            &self.temperature,
+            &self.composition,
+            self.level,
+            &mut self.before,
+        );
+        scaled(gas.temperature, gas.composition, made, &mut self.made);
         self.acceleration.accelerate(&self.before, &mut self.made);
-        let cells = gas.temperature.len();
+        self.level = self.made.pop().map_or(made, |sum| sum / weight);
+        self.pressure.clear();
+        let shift = (self.level - made).exp();
+        self.pressure
+            .extend(gas.pressure.iter().map(|pascal| pascal * shift));
         let species = gas.composition.len() / cells.max(1);
         self.temperature.clear();
         self.temperature.extend_from_slice(gas.temperature);
         self.composition.clear();
         self.composition.extend_from_slice(gas.composition);
         let (temperature, composition) = self.made.split_at(cells);
+        let (mut warmer, mut other) = (0.0, 0.0);
         for (cell, t) in temperature.iter().enumerate() {
             let own = cell * species..(cell + 1) * species;
             let fractions = &composition[own.clone()];
             // Where it is extrapolated beyond what a gas can be, the gas of the attempt stays.
             if *t > 0.0 && fractions.iter().all(|y| (0.0..=1.0).contains(y)) {
+                warmer += (t - self.temperature[cell] / KELVIN).powi(2);
+                let pairs = fractions.iter().zip(&self.composition[own.clone()]);
+                other += pairs.map(|(one, gas)| (one - gas).powi(2)).sum::<f64>();
                 self.temperature[cell] = t * KELVIN;
                 self.composition[own].copy_from_slice(fractions);
             }
         }
         self.sample(operator);
+        let mean = |sum: f64| sum.sqrt() / weight;
+        (self.level - made).abs().max(mean(warmer)).max(mean(other))
     }
 
     fn sample(&mut self, operator: &Operator) {
@@ -366,12 +396,21 @@ impl GasIterate {
         operator.sample(&self.temperature, &mut self.sampled_temperature);
     }
 
-    /// The fields of the gas with temperature and composition of the iterate.
+    /// The fields of the gas with pressure, temperature and composition of the iterate.
     fn fields<'a>(&'a self, gas: GasFields<'a>) -> GasFields<'a> {
         GasFields {
+            pressure: &self.pressure,
             temperature: &self.temperature,
             composition: &self.composition,
             ..gas
         }
     }
+}
+
+/// Logarithm of the mean pressure in Pa.
+fn level(pressure: &[f64]) -> f64 {
+    let sum: f64 = pressure.iter().sum();
+    (sum / pressure.len().max(1) as f64)
+        .max(f64::MIN_POSITIVE)
+        .ln()
 }

@@ -14,13 +14,13 @@ const SMOOTHER: &[Key] = &[
 #[rustfmt::skip]
 const EXCHANGE: &[Key] = &[
     key("tolerance", Number(D::NONE, Within(0.0, 1.0)), Default("1e-3"), "A window is repeated while the relative mismatch of the exchange is above this.", "1e-3"),
-    key("attempts", Whole(1, 1000), Default("4"), "Attempts per window at most.", "4"),
+    key("attempts", Whole(1, 1000), Default("10"), "Attempts per window at most.", "10"),
 ];
 
 #[rustfmt::skip]
 pub(super) const COUPLING: &[Key] = &[
     key("mapping", Choice(words::<MappingSpec>), Required, "Mapping of a particle onto cells: exact volumes, satellite points, or its centre.", "\"overlap\""),
     key("smoother", Table(SMOOTHER), Without("see its keys"), "Smoother of the solid fraction.", "{ max_solid_fraction = 0.64 }"),
-    key("exchange", Table(EXCHANGE), Without("see its keys"), "Repetition of windows.", "{ tolerance = 1e-3, attempts = 4 }"),
+    key("exchange", Table(EXCHANGE), Without("see its keys"), "Repetition of windows.", "{ tolerance = 1e-3, attempts = 10 }"),
     key("deadline", Number(D::TIME, Positive), Default("60 s"), "The longest wall time that a solver may stay silent.", "\"60 s\""),
 ];
