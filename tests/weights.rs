@@ -167,6 +167,36 @@ fn a_bed_with_weights_resumes_to_the_same_bits() {
 }
 
 #[test]
+fn weights_go_with_their_particles_to_two_ranks_and_into_comparisons() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = program::shipped("lime-burning");
+    let place = grid(&folder.path().join("bed.csv"), [5, 5, 7], 0.02, 0.02, 1);
+    let keys = [
+        place.as_str(),
+        "particles[0].weight=1.7",
+        "particles[0].diameter=15 mm",
+        "time.end=40 s",
+        "output.every=40 s",
+        "output.series_every=20 s",
+    ];
+    // Side by side along x, so that each rank has some of the 175.
+    let words = ["--particles", "liggghts", "--ranks-particles", "2"];
+    let [native, ranks] = [("native", &[][..]), ("ranks", &words[..])].map(|(name, words)| {
+        let out = folder.path().join(name);
+        program::run(&case, &out, words, &keys);
+        closes(&out);
+        assert_eq!(last(&out, "particles.pvd")["weight"].values, [1.7; 175]);
+        out
+    });
+    for field in ["temperature", "velocity", "void_fraction"] {
+        // A held bed: LIGGGHTS has no part in what the gas does but for its columns.
+        assert!(off(&native, &ranks, field) < 1e-12, "{field}");
+    }
+    let out = folder.path().join("compared");
+    program::compare(&case, &out, "native+native,native+liggghts", &keys);
+}
+
+#[test]
 fn a_run_continues_only_with_the_same_weights() {
     let folder = tempfile::tempdir().unwrap();
     let place = column(&folder.path().join("bed.csv"), 1);
