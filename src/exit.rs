@@ -52,7 +52,11 @@ pub fn of(error: &RunError) -> u8 {
             | FailureKind::InvalidInput
             | FailureKind::Reported => PEER,
         },
-        RunError::Smoother(_) | RunError::Mapping(_) | RunError::Origin(_) => CASE,
+        RunError::Smoother(_)
+        | RunError::Mapping(_)
+        | RunError::Origin(_)
+        | RunError::NoFollowingDrag { .. } => CASE,
+        RunError::NoDragImpulse { .. } => PEER,
         RunError::Closure { .. } => DIVERGED,
         _ => OTHER,
     }

@@ -146,6 +146,7 @@ fn liggghts(setup: &ParticleSetup, supervisor: &mut Supervisor, folder: &Path) -
             step: STEP,
             ranks: 1,
             wall_impulse: false,
+            moving_drag: false,
             template: None,
         },
         case_hash: "contacts".into(),

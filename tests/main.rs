@@ -52,3 +52,4 @@ mod test_programs;
 mod time_splitting;
 mod verification_beds;
 mod weights;
+mod window_drag;

@@ -72,6 +72,7 @@ fn liggghts_obeys(ranks: u32) {
                     step: particles::STEP,
                     ranks,
                     wall_impulse: true,
+                    moving_drag: true,
                     template: None,
                 },
                 case_hash: "conformance".into(),

@@ -81,6 +81,7 @@ impl Bench {
                 step: FROZEN_STEP,
                 ranks,
                 wall_impulse: false,
+                moving_drag: false,
                 template: None,
             },
             launcher: Launcher::Mpirun,

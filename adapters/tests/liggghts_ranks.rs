@@ -10,7 +10,9 @@
 
 use calcine_adapters::particles::LinkedParticles;
 use calcine_coupler::motion::{NewParticle, ParticleChanges};
-use calcine_coupler::part::Particles;
+use calcine_coupler::part::{
+    DRAG_COEFFICIENT, DRAG_IMPULSE, GAS_VELOCITY, ParticlePush, Particles,
+};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 
@@ -125,5 +127,54 @@ fn what_two_and_three_ranks_give_each_other_cancels_while_particles_come_and_go(
         }
         println!("{ranks} ranks: {worst:.1e} of the weight");
         assert!(worst < 1e-12, "{ranks} ranks: {worst}");
+    }
+}
+
+#[test]
+fn drag_that_follows_particles_goes_with_them_from_rank_to_rank_and_closes_their_momentum() {
+    let gravity = Vec3::new(0.0, 0.0, -9.81);
+    for (ranks, x) in [(1, 0.04), (2, 0.045), (3, 0.028)] {
+        let mut bench = Bench::new();
+        bench.ranks = ranks;
+        let mut particles = bench.launch(&touching_from(x), "a", None);
+        let (start, mut worst) = (particles.fields().position[0].x, 0.0f64);
+        for round in 0..8u64 {
+            // A gale along x with relaxation times of a third of a window, which carries the heap over a rank's end.
+            let count = particles.fields().len();
+            let mut push = ParticlePush {
+                force: press(&particles),
+                ..ParticlePush::default()
+            };
+            let gas = (0..count).flat_map(|p| [5.0, 0.1 * p as f64, 0.0]);
+            push.columns.set(GAS_VELOCITY, 3, gas.collect());
+            let drag = vec![MASS / 7e-5; count];
+            push.columns.set(DRAG_COEFFICIENT, 1, drag);
+            let before = momentum(&particles);
+            let received = bench.push(&mut particles, 2.003e-4, &push).unwrap();
+            let drags = received.columns.get(DRAG_IMPULSE, 3, count).unwrap();
+            let dragged: Vec3 = drags
+                .as_chunks::<3>()
+                .0
+                .iter()
+                .map(|x| Vec3::from(*x))
+                .sum();
+            let forced: Vec3 = push.force.iter().map(|force| force * 2.003e-4).sum();
+            let pushed: Vec3 = received.impulse.iter().sum();
+            assert!((pushed - forced - dragged).norm() < 1e-13 * dragged.norm());
+            let weight = count as f64 * MASS * received.acted * gravity;
+            let left = momentum(&particles) - before - pushed - weight - received.support.unwrap();
+            worst = worst.max(left.norm() / dragged.norm().max(weight.norm()));
+            let ids = particles.fields().id;
+            let change = ParticleChanges {
+                remove: vec![ids[ids.len() / 2]],
+                insert: vec![elsewhere(100 + round, 0.01 + 0.01 * round as f64)],
+                ..ParticleChanges::default()
+            };
+            particles.change(&bench.supervisor, &change).unwrap();
+        }
+        let way = particles.fields().position[0].x - start;
+        println!("{ranks} ranks: {worst:.1e}; the first particle went {way} m");
+        assert!(worst < 1e-12, "{ranks} ranks: {worst}");
+        assert!(way > 5e-3, "{way}");
     }
 }

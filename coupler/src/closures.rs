@@ -129,6 +129,8 @@ pub struct CouplingCoefficients {
     pub slip: Vec<f64>,
     /// Conductivity of the gas in W/m/K.
     pub gas_conductivity: Vec<f64>,
+    /// The drag coefficients in kg/s before [`CouplingCoefficients::relax`], by which drag follows a particle.
+    pub instantaneous_drag: Vec<f64>,
     /// Share of the other forces in N that drag holds back within the window (docs/theory.md,
     /// DRG-2, see [`CouplingCoefficients::relax`]); zero, or empty, where particles are held.
     pub held_back: Vec<Vec3>,
@@ -162,6 +164,7 @@ impl CouplingCoefficients {
     /// long the window; one that contacts hold has F = −K u at rest and feels its full drag K u.
     pub fn relax(&mut self, inertia: &DragInertia<'_>) {
         self.held_back.clear();
+        self.instantaneous_drag.clone_from(&self.drag);
         for (p, drag) in self.drag.iter_mut().enumerate() {
             if !inertia.free[p] {
                 self.held_back.push(Vec3::zeros());

@@ -31,7 +31,10 @@ use calcine_physics::Vec3;
 
 use crate::closures::CouplingCoefficients;
 use crate::momentum_model::MomentumModel;
-use crate::part::{CellExchange, CellReceived, GasFields, ParticleFields, ParticlePush};
+use crate::part::{
+    CellExchange, CellReceived, DRAG_COEFFICIENT, GAS_VELOCITY, GasFields, ParticleFields,
+    ParticlePush,
+};
 use crate::smoother::Operator;
 
 /// How well the attempts of a window placed what they exchanged.
@@ -73,6 +76,8 @@ pub struct Exchange {
     pub drag: Vec<Vec3>,
     /// K_p in W/K, set by the interior before `linearise`.
     pub conductance: Vec<f64>,
+    /// Velocity in m/s of the gas that each particle sees, as the drag on it has it.
+    gas_velocity: Vec<Vec3>,
     iterate: Iterate,
     scalar: Vec<f64>,
     vector: Vec<Vec3>,
@@ -121,6 +126,14 @@ impl Exchange {
             *source = coefficients.drag_source(p, velocity, inputs.acceleration);
         }
         operator.spread_vectors(&self.vector, &mut self.cells.drag_source);
+    }
+
+    /// Takes from the gas, over a window of a motion span in s, the impulse of drag in N s that each cell owes from the
+    /// window before; after [`Exchange::begin`].
+    pub fn repay(&mut self, owed: &[Vec3], span: f64) {
+        for (source, owed) in self.cells.drag_source.iter_mut().zip(owed) {
+            *source -= owed / span;
+        }
     }
 
     /// The gas temperature that each particle sees at the last iterate in K.
@@ -209,9 +222,11 @@ impl Exchange {
             self.cell_vector[c] = own - beyond.map(|beyond| ratio(beyond, coefficient));
         }
         let operator = inputs.operator;
-        operator.sample_vectors(&self.cell_vector, &mut self.vector);
+        self.gas_velocity
+            .resize(operator.particles(), Vec3::zeros());
+        operator.sample_vectors(&self.cell_vector, &mut self.gas_velocity);
         for (p, drag) in self.drag.iter_mut().enumerate() {
-            let slip = self.vector[p] - inputs.particles.velocity[p] / inputs.acceleration;
+            let slip = self.gas_velocity[p] - inputs.particles.velocity[p] / inputs.acceleration;
             *drag = inputs.coefficients.drag_at(p, slip);
         }
     }
@@ -240,6 +255,7 @@ impl Exchange {
         for (force, &volume) in pressure_force.iter_mut().zip(solid_volume) {
             *force = model.pressure_force(volume, *force, *force);
         }
+        push.columns.clear();
         push.force.clear();
         push.force.extend(
             self.drag
@@ -247,6 +263,27 @@ impl Exchange {
                 .zip(pressure_force.iter())
                 .map(|(d, p)| d + p),
         );
+    }
+
+    /// Has drag follow the particles as they move (docs/theory.md, DRG-3): in place of the mean of the window the solver
+    /// gets coefficient and gas velocity, on the motion clock K/AF and AF u, beside the force of pressure or buoyancy.
+    /// After [`Exchange::push`].
+    pub fn follow(
+        &self,
+        coefficients: &CouplingCoefficients,
+        acceleration: f64,
+        pressure_force: &[Vec3],
+        push: &mut ParticlePush,
+    ) {
+        push.force.copy_from_slice(pressure_force);
+        let drag = coefficients.instantaneous_drag.iter();
+        let coefficient = drag.map(|drag| drag / acceleration).collect();
+        let velocity = self
+            .gas_velocity
+            .iter()
+            .flat_map(|u| <[f64; 3]>::from(acceleration * u));
+        push.columns.set(DRAG_COEFFICIENT, 1, coefficient);
+        push.columns.set(GAS_VELOCITY, 3, velocity.collect());
     }
 }
 

@@ -5,6 +5,9 @@ use calcine_physics::Vec3;
 /// Name of the line that is no error: see [`Ledger::storage_clock`].
 pub const STORAGE_CLOCK: &str = "storage_clock";
 
+/// Name of the line that is no error either: see [`Ledger::drag_carry`].
+pub const DRAG_CARRY: &str = "drag_carry";
+
 /// One line: the sum of |Σ terms| over the windows, against the sum of Σ|terms|.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BalanceLine {
@@ -37,7 +40,7 @@ impl BalanceLine {
 /// What particles carried in or out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CarriedInventory {
-    /// Number of particles.
+    /// Number of particles of the computation, whatever number of real ones each stands for; all else is of the real ones.
     pub particles: u64,
     /// Their mass in kg.
     pub mass: f64,
@@ -91,8 +94,12 @@ pub struct Ledger {
     pub energy: BalanceLine,
     /// What one side gave against what the other took, in J.
     pub energy_exchange: BalanceLine,
-    /// The impulse of drag on the gas against that on the particles, in N s.
+    /// The impulse of drag on the gas against that on the particles, in N s, with what the gas owes at the end of a window
+    /// and at its start.
     pub momentum_exchange: BalanceLine,
+    /// The impulse in N s of drag that followed the particles (docs/theory.md, DRG-3) and that the gas gives a window late:
+    /// no error. `drift` is what it owes at the end of the last window. `None` where drag is constant over windows.
+    pub drag_carry: Option<BalanceLine>,
     /// The gas' own momentum balance (residual of pressure and momentum solves), in N s.
     pub gas_momentum: BalanceLine,
     /// The momentum of that balance that two clocks make, Σ u (1 − 1/AF) Δ(ε ρ V) (docs/theory.md, TSM-8), in N s: no
@@ -112,9 +119,9 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Lines by their stable names, those of elements apart.
-    pub fn lines(&self) -> [(&'static str, &'static str, BalanceLine); 8] {
-        [
+    /// Lines by their stable names, those of elements apart; what is carried only where drag follows particles.
+    pub fn lines(&self) -> Vec<(&'static str, &'static str, BalanceLine)> {
+        let mut lines = vec![
             ("mass", "kg", self.mass),
             ("energy", "J", self.energy),
             ("energy_exchange", "J", self.energy_exchange),
@@ -123,10 +130,12 @@ impl Ledger {
             (STORAGE_CLOCK, "N s", self.storage_clock),
             ("particle_mass", "kg", self.particle_mass),
             ("particle_momentum", "N s", self.particle_momentum),
-        ]
+        ];
+        lines.extend(self.drag_carry.map(|line| (DRAG_CARRY, "N s", line)));
+        lines
     }
 
-    /// All lines in one order, elements last, to be restored from a checkpoint.
+    /// All lines in one order, elements and what is carried last, to be restored from a checkpoint.
     pub fn lines_mut(&mut self) -> Vec<&mut BalanceLine> {
         let mut lines = vec![
             &mut self.mass,
@@ -139,13 +148,13 @@ impl Ledger {
             &mut self.particle_momentum,
         ];
         lines.extend(self.elements.iter_mut().map(|(_, line)| line));
+        lines.extend(self.drag_carry.as_mut());
         lines
     }
 
     /// All lines, in the order of `lines_mut`.
     pub fn all(&self) -> Vec<BalanceLine> {
-        let mut lines: Vec<BalanceLine> = self.lines().iter().map(|&(_, _, line)| line).collect();
-        lines.extend(self.elements.iter().map(|&(_, line)| line));
-        lines
+        let mut ledger = self.clone();
+        ledger.lines_mut().into_iter().map(|line| *line).collect()
     }
 }

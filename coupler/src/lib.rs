@@ -32,6 +32,7 @@ pub mod supervisor;
 pub mod time;
 pub mod turbulence;
 pub mod view_factors;
+pub mod window_drag;
 
 pub use calcine_interior as interior;
 pub use calcine_physics as physics;

@@ -24,6 +24,7 @@ pub(super) fn plan(case: &Case, prepared: &PreparedCase, checkpoint: CheckpointP
         exchange_tolerance: case.coupling.exchange_tolerance,
         exchange_attempts: case.coupling.exchange_attempts,
         repeats: true,
+        window_drag: case.coupling.window_drag,
         case_hash: case.hash.clone(),
         checkpoint,
         free: match &prepared.particles.motion {

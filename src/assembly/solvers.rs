@@ -140,6 +140,7 @@ fn liggghts_inputs<'a>(
         },
         ranks,
         wall_impulse: case.liggghts.wall_impulse,
+        moving_drag: case.coupling.window_drag.follows(),
         template,
     }
 }

@@ -19,6 +19,7 @@ pub use calcine_coupler::paths::SURROUNDINGS;
 use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::setup::{GasSetup, Schedule};
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
+use calcine_coupler::window_drag::WindowDrag;
 
 pub use laws::{ConductionArea, ConductionSpec, Laws, RadiationSpec};
 pub use material::{MaterialSpec, SizeLaw};
@@ -193,6 +194,8 @@ pub struct Coupling {
     pub exchange_tolerance: f64,
     /// Attempts per window at most.
     pub exchange_attempts: u32,
+    /// How drag acts on particles that move within a window.
+    pub window_drag: WindowDrag,
     /// The longest a solver may stay silent.
     pub deadline: Duration,
 }

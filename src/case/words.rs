@@ -7,6 +7,7 @@ pub(super) use calcine_coupler::packing::Share;
 use calcine_coupler::packing::regular::Lattice;
 pub(super) use calcine_coupler::setup::{Convection, WallVelocity};
 pub(super) use calcine_coupler::time::GasStorage;
+pub(super) use calcine_coupler::window_drag::WindowDrag;
 
 pub(super) use super::model::{MappingSpec, MotionKind, MotionSpec, Statistic};
 
@@ -106,6 +107,7 @@ case_words! {
         "hexagonal" => PackingName(Some(Lattice::HexagonalClose)),
         "face-centred" => PackingName(Some(Lattice::FaceCentred)),
     }
+    WindowDrag { "constant" => WindowDrag::Constant, "following" => WindowDrag::Following }
     MomentumModel { "a" => MomentumModel::A, "b" => MomentumModel::B }
     AreaName {
         "overlap" => AreaName::Overlap,

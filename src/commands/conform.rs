@@ -239,6 +239,7 @@ fn spheres(arguments: &Arguments, program: &Path, out: &Path) -> Vec<LawOutcome>
                         step: particles::STEP,
                         ranks,
                         wall_impulse: true,
+                        moving_drag: true,
                         template: None,
                     },
                     case_hash: "conform".into(),

@@ -13,7 +13,7 @@ mod warnings;
 
 use std::path::{Path, PathBuf};
 
-use calcine_coupler::ledger::STORAGE_CLOCK;
+use calcine_coupler::ledger::{DRAG_CARRY, STORAGE_CLOCK};
 
 use self::number::{figure, span, with_unit};
 use self::page::{Page, badge, bars, escape, table, tiles};
@@ -257,6 +257,7 @@ fn ledger(summary: &Summary) -> String {
             vec![
                 escape(&match name.as_str() {
                     STORAGE_CLOCK => "storage clock (not an error)".to_owned(),
+                    DRAG_CARRY => "drag carried over (not an error)".to_owned(),
                     _ => name.replace('_', " "),
                 }),
                 figure(line.relative_error, 3),

@@ -1,6 +1,8 @@
 //! The host's loop: hello, state, then windows, commits and checkpoints until the coordinator says
 //! goodbye.
 
+mod window;
+
 use std::collections::HashMap;
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -14,6 +16,7 @@ use calcine_wire::{
     Transport, TransportKind, WireError,
 };
 
+use crate::drag::{self, DRAG};
 use crate::error::HostError;
 use crate::library::{self, Liggghts};
 use crate::parent::ParentCarrier;
@@ -28,6 +31,8 @@ const GREETING: Duration = Duration::from_secs(30);
 const RESTART: &str = "liggghts.restart";
 /// How the lines of a script begin that make its groups by particles' types.
 const GROUPS: &str = "group calcine_";
+/// How the line of a script begins that makes the group of particles that are held.
+const HELD: &str = "group calcine_held type ";
 /// The fix that holds the pushed forces; the script of a moving bed makes it.
 const PUSH: &str = "calcine_push";
 /// What a wall's line of the script has where its forces are to be counted; LIGGGHTS keeps them by particle
@@ -65,6 +70,12 @@ pub struct Host {
     walls: Vec<String>,
     /// True where rows have statistical weights.
     weights: bool,
+    /// True where drag may be pushed by coefficient and gas velocity.
+    moving_drag: bool,
+    /// True where the whole bed is held.
+    frozen: bool,
+    /// Populations that are held in a bed that moves.
+    held: Vec<u64>,
 }
 
 impl Host {
@@ -91,6 +102,9 @@ impl Host {
             told: Instant::now(),
             walls: Vec::new(),
             weights: false,
+            moving_drag: false,
+            frozen: false,
+            held: Vec::new(),
         };
         let restart = host.start.restart.clone();
         host.set_up(restart.as_deref())?;
@@ -109,10 +123,7 @@ impl Host {
             ),
             count: host.particles,
             ranks,
-            catalogue: Catalogue::particles(&match host.weights {
-                true => Catalogue::weights(),
-                false => Vec::new(),
-            }),
+            catalogue: Catalogue::particles_with(host.weights, host.moving_drag),
         };
         host.tell(&format!("{} with {} particles", hello.version, hello.count));
         on_link(|link| link.greet(&hello, GREETING).map(|_| ()))?;
@@ -156,125 +167,6 @@ impl Host {
         }
     }
 
-    /// Advances one window and answers with state and impulses.
-    fn window(&mut self, header: Header) -> Result<(), HostError> {
-        let force = on_link(|link| {
-            let ids = link.column_words("id")?;
-            let all = link.column("force")?;
-            let find = |&id: &u64| ids.binary_search(&id).map_err(|_| HostError::Push { id });
-            let rows = self.state.id.iter().map(find);
-            let rows =
-                rows.map(|row| row.map(|row| [all[3 * row], all[3 * row + 1], all[3 * row + 2]]));
-            Ok::<_, WireError>(rows.collect::<Result<Vec<_>, _>>())
-        })??;
-        let steps = self.steps(&header)?;
-        if self.told.elapsed() > Duration::from_secs(1) {
-            self.tell(&format!("window {}: {steps} steps", header.window));
-        }
-        self.push(&force, &header, steps)?;
-        let [x, y, z] = self.run(steps)?;
-        self.look()?;
-        let impulse = self.impulse(&force, &header, steps)?;
-        let acted = steps as f64 * self.step()?;
-        let support = [acted, x, y, z];
-        self.reply(header.answer(MessageKind::Finished), &impulse, support)
-    }
-
-    /// Runs so many steps; the impulse in N s that walls gave this rank's particles, step by step where it
-    /// is counted: the forces at the ends of a step act for half of it each.
-    fn run(&mut self, steps: i64) -> Result<[f64; 3], HostError> {
-        if self.walls.is_empty() {
-            if steps > 0 {
-                self.liggghts
-                    .command(&format!("run {steps} pre no post no"));
-            }
-            return Ok(UNCOUNTED);
-        }
-        let half = 0.5 * self.step()?;
-        let mut impulse = [0.0; 3];
-        let mut add = |force: [f64; 3]| {
-            for (sum, force) in impulse.iter_mut().zip(force) {
-                *sum += half * force;
-            }
-        };
-        for _ in 0..steps {
-            add(self.wall_force());
-            self.liggghts.command("run 1 pre no post no");
-            add(self.wall_force());
-        }
-        Ok(impulse)
-    }
-
-    /// Force in N of all walls on this rank's particles at the last step.
-    fn wall_force(&mut self) -> [f64; 3] {
-        let mut sum = [0.0; 3];
-        for wall in &self.walls {
-            let forces = self.liggghts.fix_vectors_mut(wall).unwrap_or_default();
-            for force in forces.chunks_exact(3) {
-                for (sum, force) in sum.iter_mut().zip(force) {
-                    *sum += force;
-                }
-            }
-        }
-        sum
-    }
-
-    /// LIGGGHTS' time step in s.
-    fn step(&self) -> Result<f64, HostError> {
-        self.liggghts
-            .step()
-            .ok_or(HostError::Missing { name: "dt" })
-    }
-
-    /// Impulse in N s that the pushed forces gave each particle that is here now, in the order of the state: of
-    /// free ones what their steps add up to (the pushed forces go with them from rank to rank), of held ones
-    /// what their support takes up.
-    fn impulse(
-        &mut self,
-        force: &[[f64; 3]],
-        header: &Header,
-        steps: i64,
-    ) -> Result<Vec<f64>, HostError> {
-        let step = self.step()?;
-        let Some(pushed) = self.liggghts.fix_vectors_mut(PUSH) else {
-            let span = header.span_motion as f64 / TICKS;
-            return Ok(force.iter().flatten().map(|force| force * span).collect());
-        };
-        let acted = steps as f64 * step;
-        let rows = self.state.place.iter();
-        let here = rows.flat_map(|&place| &pushed[3 * place..3 * place + 3]);
-        Ok(here.map(|force| force * acted).collect())
-    }
-
-    /// Has the forces act from the first half step on, and over the window's steps so much that their
-    /// impulse is that over its span.
-    fn push(&mut self, force: &[[f64; 3]], header: &Header, steps: i64) -> Result<(), HostError> {
-        let step = self.step()?;
-        let Some(pushed) = self.liggghts.fix_vectors_mut(PUSH) else {
-            return Ok(()); // a bed that is held
-        };
-        let span = header.span_motion as f64 / TICKS;
-        if steps == 0 {
-            return Err(HostError::NoStep { span, step });
-        }
-        let scale = span / (steps as f64 * step);
-        let mut change = vec![0.0; pushed.len()];
-        for (&place, force) in self.state.place.iter().zip(force) {
-            for (axis, value) in force.iter().enumerate() {
-                let index = 3 * place + axis;
-                change[index] = scale * value - pushed[index];
-                pushed[index] = scale * value;
-            }
-        }
-        // The first half kick of a run uses the forces of the last one's end.
-        let forces = self.liggghts.vectors_mut("f");
-        let forces = forces.ok_or(HostError::Missing { name: "f" })?;
-        for (force, change) in forces.iter_mut().zip(change) {
-            *force += change;
-        }
-        Ok(())
-    }
-
     /// Takes particles out and puts new ones in, then sets everything up for them.
     fn change(&mut self, text: &str) -> Result<(), HostError> {
         let change = PopulationUpdate::parse(text)?;
@@ -286,16 +178,8 @@ impl Host {
             }
         }
         self.liggghts.command("run 0 post no");
+        drag::forget(&mut self.liggghts);
         self.look()
-    }
-
-    /// Steps of a window: those between the steps nearest to its start and to its end, so that
-    /// rounding never adds up.
-    fn steps(&self, header: &Header) -> Result<i64, HostError> {
-        let step = self.step()? * TICKS;
-        let nearest = |ticks: i64| (ticks as f64 / step).round() as i64;
-        let end = header.start_motion.saturating_add(header.span_motion);
-        Ok(nearest(end) - nearest(header.start_motion))
     }
 
     /// Writes a checkpoint and goes on from what it wrote.
@@ -350,6 +234,10 @@ impl Host {
             self.walls.clear(); // of a script of the user's: a part of the walls is no balance
         }
         self.liggghts.command("run 0");
+        self.moving_drag = self.has_fix(DRAG)?;
+        self.frozen = !self.has_fix(PUSH)?;
+        self.held = held(&self.script()?);
+        drag::forget(&mut self.liggghts);
         self.weights = self.has_fix(WEIGHT)?;
         if self.weights && restart.is_none() {
             self.weigh()?;
@@ -447,11 +335,17 @@ impl Host {
     /// Sends the state between windows, with impulses of zero.
     fn answer(&self, header: Header) -> Result<(), HostError> {
         let none = vec![0.0; 3 * self.state.id.len()];
-        self.reply(header, &none, [0.0; 4])
+        self.reply(header, [&none, &none], [0.0; 4])
     }
 
-    fn reply(&self, header: Header, impulse: &[f64], support: [f64; 4]) -> Result<(), HostError> {
-        on_link(|link| self.state.send(link, header, impulse, support))
+    fn reply(
+        &self,
+        header: Header,
+        [impulse, drag]: [&[f64]; 2],
+        support: [f64; 4],
+    ) -> Result<(), HostError> {
+        let drag = self.moving_drag.then_some(drag);
+        on_link(|link| self.state.send(link, header, (impulse, drag), support))
     }
 
     /// A line for the log that the coordinator shows when something goes wrong.
@@ -461,6 +355,14 @@ impl Host {
         // In one piece, or the ranks' lines would mix; a log that is full ends no run.
         let _ = io::stderr().write_all(line.as_bytes());
     }
+}
+
+/// Populations whose particles the script holds: LIGGGHTS' types, counted from 1, of the group of these.
+fn held(script: &str) -> Vec<u64> {
+    let lines = script.lines().filter_map(|line| line.strip_prefix(HELD));
+    let types = lines.flat_map(str::split_ascii_whitespace);
+    let types = types.filter_map(|word| word.parse::<u64>().ok());
+    types.map(|kind| kind.saturating_sub(1)).collect()
 }
 
 fn on_link<T>(work: impl FnOnce(&mut Link) -> Result<T, WireError>) -> Result<T, HostError> {

@@ -147,6 +147,49 @@ extern "C" fn _ZN9LAMMPS_NS5Error9fix_errorEPKciPNS_3FixES2_S2_(
     fail(file, line, [style, text])
 }
 
+/// What is done at each step.
+pub type StepWork = Box<dyn FnMut(&mut Liggghts) + Send>;
+
+/// The open handle.
+struct Handle(*mut c_void);
+
+// SAFETY: LIGGGHTS is used by one thread, that which runs its commands and from which it calls.
+unsafe impl Send for Handle {}
+
+/// Work at each step. Taken out while it is done.
+static HOOK: Mutex<Option<(Handle, StepWork)>> = Mutex::new(None);
+
+/// Keeps the work at each step alive.
+pub struct StepHook(());
+
+impl Drop for StepHook {
+    fn drop(&mut self) {
+        *HOOK.lock().unwrap_or_else(PoisonError::into_inner) = None;
+    }
+}
+
+/// `FixExternal::post_force(step)`, of the fix that stands last in the script: it is called at each step when all forces
+/// are there, and once with LIGGGHTS' setup.
+#[unsafe(no_mangle)]
+extern "C" fn _ZN9LAMMPS_NS11FixExternal10post_forceEi(_fix: *mut c_void, _: c_int) {
+    let taken = HOOK.lock().unwrap_or_else(PoisonError::into_inner).take();
+    let Some((handle, mut work)) = taken else {
+        return;
+    };
+    work(&mut Liggghts { handle: handle.0 });
+    *HOOK.lock().unwrap_or_else(PoisonError::into_inner) = Some((handle, work));
+}
+
+/// Velocities and forces of this rank's particles with the numbers of a fix, in LIGGGHTS' order, interleaved.
+pub struct ForceRows<'a> {
+    /// Velocities in m/s.
+    pub velocity: &'a [f64],
+    /// Forces in N.
+    pub force: &'a mut [f64],
+    /// The numbers of the fix.
+    pub fix: &'a mut [f64],
+}
+
 /// Starts MPI; rank and number of ranks.
 pub fn start_mpi() -> (u32, u32) {
     let (mut rank, mut size) = (0, 1);
@@ -297,10 +340,17 @@ impl Liggghts {
     /// Vectors of a `fix property/atom`, one for each of this rank's particles, to be written;
     /// `None` where there is no such fix.
     pub fn fix_vectors_mut(&mut self, fix: &str) -> Option<&mut [f64]> {
+        self.fix_rows_mut(fix, 3)
+    }
+
+    /// Rows of so many numbers of a `fix property/atom`, one for each of this rank's particles, to be written; `None`
+    /// where there is no such fix.
+    fn fix_rows_mut(&mut self, fix: &str, numbers: usize) -> Option<&mut [f64]> {
         let count = self.local();
         let name = c_text(fix);
         // SAFETY: the handle is open; style 1 and kind 2 ask for per-atom vectors, a table of row
-        // pointers whose rows are contiguous, at least `nlocal` of them; an unknown fix gives NULL.
+        // pointers whose rows are contiguous, at least `nlocal` of them; an unknown fix gives NULL. The
+        // callers give the number that the script makes the fix with.
         unsafe {
             let rows: *const *mut f64 =
                 lammps_extract_fix(self.handle, name.as_ptr(), 1, 2, 0, 0).cast();
@@ -308,8 +358,35 @@ impl Liggghts {
             if count == 0 || first.is_null() {
                 return Some(&mut []);
             }
-            Some(std::slice::from_raw_parts_mut(first, 3 * count))
+            Some(std::slice::from_raw_parts_mut(first, numbers * count))
         }
+    }
+
+    /// Velocities, forces and the numbers of a fix of this rank's particles, all interleaved; `None` where LIGGGHTS lacks a
+    /// part of it.
+    pub fn forces_with(&mut self, fix: &str, numbers: usize) -> Option<ForceRows<'_>> {
+        let velocity = self.vectors("v")?;
+        let velocity = (velocity.as_ptr(), velocity.len());
+        let force = self.vectors_mut("f")?;
+        let force = (force.as_mut_ptr(), force.len());
+        let fix = self.fix_rows_mut(fix, numbers)?;
+        // SAFETY: arrays of their own, of the lengths that were found, which live until the next command; borrowed with
+        // `self`. Those of no rows are empty slices.
+        unsafe {
+            Some(ForceRows {
+                velocity: std::slice::from_raw_parts(velocity.0, velocity.1),
+                force: std::slice::from_raw_parts_mut(force.0, force.1),
+                fix,
+            })
+        }
+    }
+
+    /// Has a function called at each step from now on, when all other forces of the step are there, for as long as what is
+    /// given back lives.
+    pub fn at_each_step(&mut self, work: StepWork) -> StepHook {
+        let handle = Handle(self.handle);
+        *HOOK.lock().unwrap_or_else(PoisonError::into_inner) = Some((handle, work));
+        StepHook(())
     }
 
     /// Scalars of a `fix property/atom`, one for each of this rank's particles; `None` where there is no such fix.

@@ -3,6 +3,7 @@
 //!
 //! `calcine-liggghts SCRIPT CASE-HASH [RESTART-FILE]`, started by Calcine in the script's folder.
 
+mod drag;
 mod error;
 mod host;
 #[allow(unsafe_code)]

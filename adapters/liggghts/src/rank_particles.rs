@@ -83,13 +83,23 @@ impl RankParticles {
         )))
     }
 
-    /// Sends the state with the impulses in N s, and the time in s that the window's steps cover with the
+    /// 1/m in 1/kg of each, 0 for those of populations that are held.
+    pub fn inverse_masses(&self, held: &[u64]) -> Vec<f64> {
+        let pairs = self.population.iter().zip(&self.mass);
+        let each = pairs.map(|(population, mass)| match held.contains(population) {
+            true => 0.0,
+            false => 1.0 / mass,
+        });
+        each.collect()
+    }
+
+    /// Sends the state with the impulses in N s, those of drag where they are told, and the time in s that the window's steps cover with the
     /// impulse of walls on this rank's particles in N s.
     pub fn send(
         &self,
         link: &mut Link,
         header: Header,
-        impulse: &[f64],
+        (impulse, drag): (&[f64], Option<&[f64]>),
         support: [f64; 4],
     ) -> Result<(), WireError> {
         link.loan(header, self.id.len())?;
@@ -107,6 +117,9 @@ impl RankParticles {
         ];
         for (name, values) in columns {
             link.column_mut(name)?.copy_from_slice(values);
+        }
+        if let Some(drag) = drag {
+            link.column_mut("drag_impulse")?.copy_from_slice(drag);
         }
         if let Some(weight) = &self.weight {
             link.column_mut("weight")?.copy_from_slice(weight);

@@ -28,6 +28,13 @@ const WEIGHTS: (&str, &str) = (
     "fix calcine_weight all property/atom calcine_weight scalar yes no no 1.\n",
 );
 
+/// What has LIGGGHTS keep eleven numbers for the drag of each particle, and call the host at each step when all forces are
+/// there: the fix must stand last.
+const DRAG: &str = "\
+fix calcine_drag all property/atom calcine_drag vector no no no 0. 0. 0. 0. 0. 0. 0. 0. 0. 0. 0.
+fix calcine_drag_step all external pf/array 1
+";
+
 /// What the inputs are made from.
 #[derive(Clone, Copy, Debug)]
 pub struct Inputs<'a> {
@@ -41,6 +48,8 @@ pub struct Inputs<'a> {
     pub ranks: u32,
     /// Whether the impulse of walls is counted, step by step.
     pub wall_impulse: bool,
+    /// Whether drag may be pushed by coefficient and gas velocity.
+    pub moving_drag: bool,
     /// The user's own script in place of the generated one; of a bed that moves only.
     pub template: Option<&'a ScriptTemplate>,
 }
@@ -124,10 +133,14 @@ impl Inputs<'_> {
             script.push('\n');
             script.push_str(WEIGHTS.1);
         }
+        if self.moving_drag {
+            script.push('\n');
+            script.push_str(DRAG);
+        }
         Ok(script)
     }
 
-    /// The script without statistical weights.
+    /// The script without what comes last.
     fn bare_script(&self) -> Result<String, PartError> {
         let (lower, upper) = self.corners();
         let along_x = upper.x - lower.x >= upper.y - lower.y;
@@ -277,6 +290,7 @@ mod tests {
             step: 1e-4,
             ranks: 1,
             wall_impulse: false,
+            moving_drag: false,
             template: None,
         }
     }

@@ -83,10 +83,10 @@ impl LiggghtsLaunch<'_> {
             origin,
             count: ids.len() as u64,
             ranks: launch.inputs.ranks,
-            catalogue: Catalogue::particles(&match setup.weight.is_empty() {
-                true => Vec::new(),
-                false => Catalogue::weights(),
-            }),
+            catalogue: Catalogue::particles_with(
+                !setup.weight.is_empty(),
+                launch.inputs.moving_drag,
+            ),
         };
         let solver = ExternalSolver::launch(
             Launch {

@@ -403,6 +403,10 @@ fn check(commands: &[Command]) -> Result<(), ScriptTemplateError> {
                 let rule = "particles come in as the case file says";
                 return Err(command.refuse(rule, "write a `[[feeds]]`"));
             }
+            ["fix", _, _, "external", ..] => {
+                let rule = "by this fix the host has drag follow the particles";
+                return Err(command.refuse(rule, "leave the line out"));
+            }
             [first, ..] => {
                 let refused = REFUSED.iter().find(|(names, ..)| names.contains(&first));
                 if let Some((_, rule, remedy)) = refused {
@@ -445,6 +449,7 @@ mod tests {
                 "fix ins all &\n insert/rate/region seed 1",
                 "line 5, `fix ins all  insert/rate/region",
             ),
+            ("fix own all external pf/array 1", "leave the line out"),
             ("include other.in", "calcine.walls"),
         ] {
             assert!(refused(more).contains(part), "{}", refused(more));

@@ -105,6 +105,7 @@ impl Bench {
                 step: STEP,
                 ranks: self.ranks,
                 wall_impulse: true,
+                moving_drag: true,
                 template: None,
             },
             case_hash: "moving".into(),
@@ -127,6 +128,19 @@ impl Bench {
         span: f64,
         force: &[Vec3],
     ) -> Result<Vec<Vec3>, PartError> {
+        let push = ParticlePush {
+            force: force.to_vec(),
+            ..ParticlePush::default()
+        };
+        Ok(self.push(particles, span, &push)?.impulse)
+    }
+
+    pub fn push(
+        &mut self,
+        particles: &mut LinkedParticles,
+        span: f64,
+        push: &ParticlePush,
+    ) -> Result<ParticleReceived, PartError> {
         let span = Ticks::from_seconds(span).unwrap();
         let window = Window {
             index: self.index,
@@ -140,18 +154,14 @@ impl Bench {
                 process: span,
             },
         };
-        let push = ParticlePush {
-            force: force.to_vec(),
-            ..ParticlePush::default()
-        };
-        particles.start(&window, &VoidFractions::default(), &push)?;
+        particles.start(&window, &VoidFractions::default(), push)?;
         let mut received = ParticleReceived::default();
         particles.finish(&self.supervisor, &mut received)?;
         particles.commit()?;
         (self.acted, self.support) = (received.acted, received.support);
         self.index += 1;
         self.start = self.start.checked_add(span).unwrap();
-        Ok(received.impulse)
+        Ok(received)
     }
 }
 

@@ -141,6 +141,16 @@ impl Catalogue {
         particles
     }
 
+    /// The same with the groups of columns that the coordinator knows.
+    pub fn particles_with(weights: bool, moving_drag: bool) -> Self {
+        let groups = [
+            (weights, Self::weights()),
+            (moving_drag, Self::moving_drag()),
+        ];
+        let further = groups.into_iter().filter(|(has, _)| *has);
+        Self::particles(&further.flat_map(|(_, group)| group).collect::<Vec<_>>())
+    }
+
     /// The columns of drag that particles evaluate as they move: a coefficient, the gas' velocity, and its impulse.
     pub fn moving_drag() -> Vec<Field> {
         let own = |presence| presence == ColumnPresence::MovingDrag;

@@ -133,8 +133,9 @@ pub fn follows(under_test: DragUnderTest<'_>, supervisor: &Supervisor) -> Result
             )
         })?;
         for (p, impulse) in received.impulse.iter().enumerate() {
-            let due = told[p] + push.force[p] * span;
-            holds((impulse - due).norm() <= 1e-12 * due.norm(), || {
+            let pushed = push.force[p] * span;
+            let (due, size) = (told[p] + pushed, told[p].norm() + pushed.norm());
+            holds((impulse - due).norm() <= 1e-12 * size, || {
                 let id = fields.id[p];
                 format!("window {index}: particle {id} got {impulse:?} N s, due are {due:?} N s")
             })?;

@@ -122,14 +122,22 @@ impl WindowBalances<'_> {
             .enumerate()
             .map(|(row, drag)| self.particles.weight_of(row) * drag)
             .sum();
+        let carry = &self.motion.carry;
         let moved: f64 = received
             .drag
             .iter()
             .map(|force| force.norm() * motion)
             .sum();
-        ledger
-            .momentum_exchange
-            .book((drag_on_gas + drag_on_particles).norm(), 2.0 * moved);
+        ledger.momentum_exchange.book(
+            (drag_on_gas + drag_on_particles - carry.change()).norm(),
+            2.0 * moved,
+        );
+        if let Some(line) = &mut ledger.drag_carry {
+            let late = carry.total().norm();
+            line.drift = late;
+            line.error += late;
+            line.throughput += 2.0 * moved;
+        }
         for (balance, clock) in received.momentum.iter().zip(&received.storage_clock) {
             let (sum, magnitude) = open(balance);
             ledger.gas_momentum.book(sum, magnitude);

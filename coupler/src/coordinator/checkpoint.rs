@@ -3,6 +3,8 @@
 use std::fs;
 use std::time::Instant;
 
+use calcine_physics::Vec3;
+
 use super::CoupledRun;
 use super::error::{CheckpointError, RunError};
 use super::meter::{Meter, Stage};
@@ -84,6 +86,11 @@ impl CoupledRun {
             .flat_map(|f| f.iter().copied())
             .collect();
         state.set_f64s("particle_other_force", &other);
+        if self.plan.window_drag.follows() {
+            let owed = self.motion.carry.owed().iter();
+            let owed: Vec<f64> = owed.flat_map(|impulse| impulse.iter().copied()).collect();
+            state.set_f64s("drag_carry", &owed);
+        }
         let moved: Vec<f64> = self
             .ledger
             .fed_and_discharged
@@ -130,6 +137,11 @@ impl CoupledRun {
         let other = state.f64s_of("particle_other_force", 3 * expected)?;
         for (force, values) in self.motion.other.iter_mut().zip(other.chunks_exact(3)) {
             force.copy_from_slice(values);
+        }
+        if self.plan.window_drag.follows() {
+            let owed = state.f64s("drag_carry")?.as_chunks::<3>().0.iter();
+            let owed = owed.map(|impulse| Vec3::from(*impulse)).collect();
+            self.motion.carry.restore(owed);
         }
         let moved = state.f64s_of("traffic_moved", 18)?.chunks_exact(6);
         let Ledger {

@@ -69,6 +69,27 @@ pub enum RunError {
         /// Its statistical weight.
         weight: f64,
     },
+    /// Drag that follows the particles, with a solver that does not take it.
+    #[error(
+        "{solver} takes no column `{column}`, by which drag follows the particles within a window; write \
+         `coupling.window_drag` = \"constant\", or leave it out"
+    )]
+    NoFollowingDrag {
+        /// The solver.
+        solver: String,
+        /// The column that it does not take.
+        column: &'static str,
+    },
+    /// Drag that followed the particles, whose impulse is not reported.
+    #[error(
+        "{solver} does not report the impulse of drag on {count} particles: the column `drag_impulse`, three values each"
+    )]
+    NoDragImpulse {
+        /// The solver.
+        solver: String,
+        /// Number of particles.
+        count: usize,
+    },
     /// A particle too light for the solver's time step.
     #[error(transparent)]
     TooLight(#[from] TooLight),

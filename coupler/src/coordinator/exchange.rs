@@ -14,6 +14,7 @@ use crate::supervisor::Supervisor;
 use crate::time::Window;
 use calcine_interior::Surroundings;
 use calcine_numerics::Anderson;
+use calcine_physics::Vec3;
 
 /// What the gas and the particles exchanged in the last attempt.
 #[derive(Default)]
@@ -46,6 +47,8 @@ pub(super) struct Participants<'a> {
     pub laws: &'a mut LawStage,
     pub mapped: &'a MappedBed,
     pub particles: ParticleFields<'a>,
+    /// Impulse of drag in N s that the gas of each cell owes from the window before; empty where it owes none.
+    pub owed: &'a [Vec3],
     pub supervisor: &'a Supervisor,
     pub meter: &'a mut Meter,
 }
@@ -134,6 +137,8 @@ impl ExchangeStage {
         let running = Meter::start(Stage::Exchange);
         let inputs = with.inputs(window);
         self.exchange.begin(&inputs, &with.gas.fields());
+        let span = window.span.motion.seconds();
+        self.exchange.repay(with.owed, span);
         if with.interior.has_channels() {
             let channels = with.interior.models.channels();
             let units = channels.iter().flat_map(|channel| &channel.mass);

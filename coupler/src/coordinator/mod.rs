@@ -137,9 +137,11 @@ impl CoupledRun {
         let names = elements(&laws.closures, &models).into_iter();
         let ledger = Ledger {
             elements: names.map(|name| (name, BalanceLine::default())).collect(),
+            drag_carry: plan.window_drag.follows().then(BalanceLine::default),
             ..Ledger::default()
         };
-        let motion = MotionStage::new(plan.free.clone(), plan.gravity, &fields);
+        let motion = MotionStage::new(plan.free.clone(), plan.gravity, plan.window_drag, &fields);
+        particles::check_window_drag(plan.window_drag, &*parts.particles)?;
         let paths = Paths::new(plan.paths.clone());
         let substance = plan.substance.clone();
         let interior = InteriorStage::new(models, network, paths, substance, &fields);
@@ -357,6 +359,7 @@ impl CoupledRun {
             laws: &mut self.laws,
             mapped: &self.bed.mapped,
             particles: self.parts.particles.fields(),
+            owed: self.motion.carry.owed(),
             supervisor,
             meter: &mut self.meter,
         };
@@ -368,6 +371,7 @@ impl CoupledRun {
             mapped: &self.bed.mapped,
             gas: self.parts.gas.fields(),
             exchange: &self.exchange.exchange,
+            coefficients: &self.laws.coefficients,
             model: self.laws.closures.momentum,
             window,
             holds: self.holds(window),
@@ -395,9 +399,8 @@ impl CoupledRun {
         if self.holds(window) {
             self.motion.held = self.motion.held.checked_add(window.span.motion)?;
         } else {
-            let drag = &self.exchange.exchange.drag;
             self.motion
-                .note_forces(&particles, drag, window, &mut self.ledger);
+                .note_forces(&particles, window, &mut self.ledger);
         }
         let used_up = self.interior.commit(&particles);
         self.gather_findings();
@@ -445,7 +448,7 @@ impl CoupledRun {
             particle_mass: &self.interior.mass,
             models: &self.interior.models,
             particle_gas: ParticleGasExchange {
-                force: &self.motion.push.force,
+                force: &self.motion.force,
                 void_fraction: &self.laws.sampled_gas.void_fraction,
                 slip: &self.laws.coefficients.slip,
             },

@@ -8,13 +8,17 @@ use calcine_physics::Vec3;
 use super::bed::MappedBed;
 use super::error::RunError;
 use super::meter::{Meter, Stage};
-use crate::closures::DragInertia;
+use crate::closures::{CouplingCoefficients, DragInertia};
 use crate::exchange::Exchange;
 use crate::ledger::Ledger;
 use crate::momentum_model::MomentumModel;
-use crate::part::{GasFields, ParticleFields, ParticlePush, ParticleReceived, Particles};
+use crate::part::{
+    DRAG_COEFFICIENT, DRAG_IMPULSE, GAS_VELOCITY, GasFields, ParticleFields, ParticlePush,
+    ParticleReceived, Particles,
+};
 use crate::supervisor::Supervisor;
 use crate::time::{Clocks, Ticks, Window};
+use crate::window_drag::{DragCarry, WindowDrag};
 
 /// What acts on the particles, and what came of it.
 #[derive(Default)]
@@ -30,6 +34,14 @@ pub(super) struct MotionStage {
     pub other: Vec<Vec3>,
     /// Velocities in m/s at the start of the window.
     velocity: Vec<Vec3>,
+    /// How drag acts within a window.
+    window_drag: WindowDrag,
+    /// What the gas owes of drag that followed the particles.
+    pub carry: DragCarry,
+    /// Mean drag on each particle over the window in N.
+    drag: Vec<Vec3>,
+    /// Mean force of the gas on each particle over the window in N.
+    pub force: Vec<Vec3>,
     pub push: ParticlePush,
     pub pressure_force: Vec<Vec3>,
     pub received: ParticleReceived,
@@ -42,6 +54,7 @@ pub(super) struct MotionInputs<'a> {
     pub mapped: &'a MappedBed,
     pub gas: GasFields<'a>,
     pub exchange: &'a Exchange,
+    pub coefficients: &'a CouplingCoefficients,
     pub model: MomentumModel,
     pub window: &'a Window,
     /// True where the bed is held.
@@ -50,10 +63,16 @@ pub(super) struct MotionInputs<'a> {
 
 impl MotionStage {
     /// Before the first window nothing but its weight is known to act on a particle.
-    pub fn new(moves: Vec<bool>, gravity: Vec3, particles: &ParticleFields<'_>) -> Self {
+    pub fn new(
+        moves: Vec<bool>,
+        gravity: Vec3,
+        window_drag: WindowDrag,
+        particles: &ParticleFields<'_>,
+    ) -> Self {
         let mut stage = Self {
             moves,
             gravity,
+            window_drag,
             ..Self::default()
         };
         stage.change(&[], particles, 0);
@@ -98,15 +117,59 @@ impl MotionStage {
                 &mut self.push,
             );
         });
+        self.drag.clone_from(&inputs.exchange.drag);
+        self.force.clone_from(&self.push.force);
+        self.carry.settle();
         if inputs.holds {
             self.hold(inputs.window);
             return Ok(());
+        }
+        let follows = self.window_drag.follows();
+        if follows {
+            inputs.exchange.follow(
+                inputs.coefficients,
+                inputs.window.acceleration(),
+                &self.pressure_force,
+                &mut self.push,
+            );
         }
         let own = self.own_window(inputs.window);
         meter.time(Stage::Particles, || {
             particles.start(&own, &inputs.mapped.bed, &self.push)?;
             particles.finish(supervisor, &mut self.received)
         })?;
+        if follows {
+            meter.time(Stage::Exchange, || self.note_drag(particles, inputs))?;
+        }
+        Ok(())
+    }
+
+    /// Takes up what drag that followed the particles came to; what they got beyond what the gas gave, the gas owes.
+    fn note_drag(
+        &mut self,
+        particles: &dyn Particles,
+        inputs: &MotionInputs<'_>,
+    ) -> Result<(), RunError> {
+        let span = inputs.window.span.motion.seconds();
+        let count = self.drag.len();
+        if count == 0 {
+            return Ok(());
+        }
+        let Some(impulses) = self.received.columns.get(DRAG_IMPULSE, 3, count) else {
+            let solver = particles.about().name.clone();
+            return Err(RunError::NoDragImpulse { solver, count });
+        };
+        let mut beyond = vec![Vec3::zeros(); count];
+        let impulses = impulses.as_chunks::<3>().0.iter();
+        for ((drag, beyond), got) in self.drag.iter_mut().zip(&mut beyond).zip(impulses) {
+            let got = Vec3::from(*got);
+            *beyond = got - span * *drag;
+            *drag = got / span;
+        }
+        self.carry.carry(&inputs.mapped.operator, &beyond);
+        self.force.clear();
+        let forces = self.received.impulse.iter();
+        self.force.extend(forces.map(|impulse| impulse / span));
         Ok(())
     }
 
@@ -134,13 +197,12 @@ impl MotionStage {
     pub fn note_forces(
         &mut self,
         particles: &ParticleFields<'_>,
-        drag: &[Vec3],
         window: &Window,
         ledger: &mut Ledger,
     ) {
         self.book_momentum(particles, ledger);
         let span = window.span.motion.seconds();
-        for (p, drag) in drag.iter().enumerate() {
+        for (p, drag) in self.drag.iter().enumerate() {
             let change = particles.velocity[p] - self.velocity[p];
             self.other[p] = particles.mass[p] * change / span - drag;
         }
@@ -177,7 +239,24 @@ impl MotionStage {
         }
         self.push.force.clear();
         self.push.force.resize(particles.len(), Vec3::zeros());
+        self.force.clone_from(&self.push.force);
         debug_assert!(self.other.len() == particles.len() && self.free.len() == particles.len());
+    }
+}
+
+/// Drag can follow the particles only where their solver takes it so.
+pub(super) fn check_window_drag(
+    drag: WindowDrag,
+    particles: &dyn Particles,
+) -> Result<(), RunError> {
+    let columns = [DRAG_COEFFICIENT, GAS_VELOCITY];
+    let missing = columns.into_iter().find(|column| !particles.takes(column));
+    match (drag, missing) {
+        (WindowDrag::Constant, _) | (WindowDrag::Following, None) => Ok(()),
+        (WindowDrag::Following, Some(column)) => Err(RunError::NoFollowingDrag {
+            solver: particles.about().name.clone(),
+            column,
+        }),
     }
 }
 

@@ -11,6 +11,7 @@ use crate::hold::Holds;
 use crate::mapping::Method;
 use crate::paths::PathsSetup;
 use crate::time::{Acceleration, GasStorage, Ticks};
+use crate::window_drag::WindowDrag;
 
 /// When windows, checkpoints and the run end, and how exactly a window is exchanged.
 #[derive(Clone, Debug)]
@@ -35,6 +36,8 @@ pub struct Plan {
     pub exchange_attempts: u32,
     /// False for a gas that cannot go back to the start of a window: then there is one attempt at each.
     pub repeats: bool,
+    /// How drag acts on particles that move within a window.
+    pub window_drag: WindowDrag,
     /// Hash of the case, compared on resume.
     pub case_hash: String,
     /// Where checkpoints go.

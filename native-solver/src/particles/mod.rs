@@ -8,8 +8,10 @@ use std::path::Path;
 
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::motion::{Contacts, Motion, ParticleChanges};
+use calcine_coupler::named_columns::NamedColumns;
 use calcine_coupler::part::{
-    Bed, Part, ParticleFields, ParticlePush, ParticleReceived, Particles, SolverInfo,
+    Bed, DRAG_COEFFICIENT, DRAG_IMPULSE, GAS_VELOCITY, Part, ParticleFields, ParticlePush,
+    ParticleReceived, Particles, SolverInfo,
 };
 use calcine_coupler::physics::{Vec3, sphere};
 use calcine_coupler::setup::ParticleSetup;
@@ -41,6 +43,9 @@ pub struct NativeParticles {
     weight: Vec<f64>,
     started: Option<Window>,
     impulse: Vec<Vec3>,
+    /// Coefficients and gas velocities of the drag that follows velocities in the window, as its steps have them; empty
+    /// where there is none.
+    drag: (Vec<f64>, Vec<Vec3>),
     /// Motion time in s that the steps of the window cover.
     acted: f64,
     /// The solver of moving particles.
@@ -73,6 +78,7 @@ impl NativeParticles {
             weight: setup.weight.clone(),
             started: None,
             impulse: vec![Vec3::zeros(); count],
+            drag: (Vec::new(), Vec::new()),
             acted: 0.0,
             engine: None,
             steps: 0,
@@ -190,6 +196,68 @@ impl NativeParticles {
             engine.push(&scaled);
         }
         Ok(())
+    }
+
+    /// Takes up drag by coefficient and gas velocity, after the forces. Like these, coefficients are scaled such that they
+    /// act over the window's span, whatever the steps.
+    fn take_drag(&mut self, window: &Window, columns: &NamedColumns) -> Result<(), PartError> {
+        self.drag.0.clear();
+        self.drag.1.clear();
+        if columns.is_empty() {
+            return Ok(());
+        }
+        let (drag, gas) = self
+            .drag_columns(columns)
+            .map_err(|error| error.in_window(window))?;
+        let scale = window.span.motion.seconds() / self.acted;
+        self.drag.0.extend(drag.iter().map(|drag| scale * drag));
+        self.drag
+            .1
+            .extend(gas.as_chunks::<3>().0.iter().map(|one| Vec3::from(*one)));
+        if let Some(engine) = &mut self.engine {
+            engine.drag(&self.drag.0, &self.drag.1);
+        }
+        Ok(())
+    }
+
+    /// The two columns of drag, which come together and with no others.
+    fn drag_columns<'a>(
+        &self,
+        columns: &'a NamedColumns,
+    ) -> Result<(&'a [f64], &'a [f64]), PartError> {
+        let refuse = |message: String| self.failure(FailureKind::Protocol, message);
+        if let Some(other) = columns.iter().find(|column| !takes(column.name)) {
+            return Err(refuse(format!("it takes no column `{}`", other.name)));
+        }
+        let count = self.id.len();
+        let column = |name: &str, components: usize| {
+            let found = columns.get(name, components, count);
+            found.ok_or_else(|| {
+                refuse(format!(
+                    "the column `{name}` does not have {components} values for each of {count} particles"
+                ))
+            })
+        };
+        Ok((column(DRAG_COEFFICIENT, 1)?, column(GAS_VELOCITY, 3)?))
+    }
+
+    /// Reports the impulse of drag that followed velocities, and adds it to that of the forces.
+    fn report_drag(&mut self, received: &mut ParticleReceived) {
+        received.columns.clear();
+        let (coefficient, gas) = &self.drag;
+        if coefficient.is_empty() {
+            return;
+        }
+        let pairs = coefficient.iter().zip(gas);
+        let mut drags: Vec<Vec3> = pairs.map(|(drag, gas)| *drag * self.acted * gas).collect();
+        if let Some(engine) = &self.engine {
+            engine.read_drag(&mut drags);
+        }
+        for (impulse, drag) in self.impulse.iter_mut().zip(&drags) {
+            *impulse += drag;
+        }
+        let values = drags.iter().flat_map(|drag| <[f64; 3]>::from(*drag));
+        received.columns.set(DRAG_IMPULSE, 3, values.collect());
     }
 
     fn advance(&mut self, window: &Window, supervisor: &Supervisor) -> Result<(), PartError> {
@@ -316,6 +384,11 @@ impl NativeParticles {
     }
 }
 
+/// True for the columns of a push that the native particles take.
+fn takes(column: &str) -> bool {
+    [DRAG_COEFFICIENT, GAS_VELOCITY].contains(&column)
+}
+
 fn retain<T>(values: &mut Vec<T>, keep: &[bool]) {
     let mut keep = keep.iter();
     values.retain(|_| keep.next().copied().unwrap_or(true));
@@ -375,6 +448,10 @@ impl Particles for NativeParticles {
         self.exchange(change).map_err(|error| self.refused(error))
     }
 
+    fn takes(&self, column: &str) -> bool {
+        takes(column)
+    }
+
     fn start(&mut self, window: &Window, _bed: &Bed, push: &ParticlePush) -> Result<(), PartError> {
         if push.force.len() != self.id.len() {
             let (found, count) = (push.force.len(), self.id.len());
@@ -383,13 +460,8 @@ impl Particles for NativeParticles {
                 .failure(FailureKind::Protocol, message)
                 .in_window(window));
         }
-        if let Some(column) = push.columns.iter().next() {
-            let message = format!("it takes no column `{}`", column.name);
-            return Err(self
-                .failure(FailureKind::Protocol, message)
-                .in_window(window));
-        }
         self.push(window, &push.force)?;
+        self.take_drag(window, &push.columns)?;
         self.started = Some(*window);
         Ok(())
     }
@@ -405,6 +477,7 @@ impl Particles for NativeParticles {
         if self.engine.is_some() {
             self.advance(&window, supervisor)?;
         }
+        self.report_drag(received);
         received.impulse.clone_from(&self.impulse);
         received.acted = self.acted;
         received.support = self.engine.as_mut().map(|engine| engine.take_support());

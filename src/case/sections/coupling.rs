@@ -28,6 +28,7 @@ pub(super) fn read(root: &TableReader<'_>) -> Option<Coupling> {
     let exchange_tolerance = exchange.number("tolerance");
     let exchange_attempts = exchange.small_whole("attempts");
     exchange.finish();
+    let window_drag = section.choice("window_drag");
     let deadline = section.wall_time("deadline");
     section.finish();
     Some(Coupling {
@@ -38,6 +39,7 @@ pub(super) fn read(root: &TableReader<'_>) -> Option<Coupling> {
         diffusion_length,
         exchange_tolerance: exchange_tolerance?,
         exchange_attempts: exchange_attempts?,
+        window_drag: window_drag.unwrap_or_default(),
         deadline: deadline?,
     })
 }

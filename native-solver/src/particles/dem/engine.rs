@@ -1,5 +1,6 @@
 //! The solver: steps of velocity Verlet, and when to find candidates anew.
 
+mod drag;
 mod pass;
 
 use calcine_coupler::motion::{ContactForce, Contacts};
@@ -191,8 +192,9 @@ impl Engine {
         (stored.pairs.clone(), stored.walls.clone())
     }
 
-    /// Sets the force of the gas on each particle, by rows, in N.
+    /// Sets the force of the gas on each particle, by rows, in N; no drag acts beside it.
     pub fn push(&mut self, force: &[Vec3]) {
+        self.spheres.drag.clear();
         for (push, &row) in self.spheres.push.iter_mut().zip(&self.spheres.row) {
             *push = force[row as usize];
         }
@@ -340,6 +342,9 @@ impl Engine {
         let (parallel, counting) = (self.parallel(), self.counting);
         let kick = self.kick(times);
         let size = size(self.spheres.len());
+        if !self.spheres.drag.is_empty() {
+            return self.drift_with_drag(&kick, size, parallel);
+        }
         let (outgoing, spheres) = (&self.outgoing, &mut self.spheres);
         let work = |(((block, place), moves), push): Portion<'_>| {
             if times > 1 {
@@ -374,6 +379,9 @@ impl Engine {
     fn close(&mut self) {
         let kick = self.kick(1);
         let size = size(self.spheres.len());
+        if !self.spheres.drag.is_empty() {
+            return self.close_with_drag(&kick, size);
+        }
         let chunks = self.spheres.moves.chunks_mut(size);
         for ((block, moves), push) in self
             .blocks

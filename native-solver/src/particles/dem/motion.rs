@@ -8,7 +8,7 @@
 use calcine_coupler::physics::Vec3;
 
 use super::block::Block;
-use super::sphere::{SphereMotion, SpherePosition};
+use super::sphere::{SphereDrag, SphereMotion, SpherePosition};
 
 /// What a kick needs.
 #[derive(Clone, Copy, Debug)]
@@ -36,6 +36,84 @@ fn kick(kick: &KickInputs, moves: &mut SphereMotion, force: Vec3, torque: Vec3) 
         moves.velocity += change;
         moves.spin += turn;
     }
+}
+
+/// Kicks a particle that also feels a drag K (u − v): with the other forces constant over the kick the exact solution of
+/// m dv/dt = K (u − v) + F, stable however stiff. The impulse of the drag is what the others leave of the change of
+/// momentum.
+#[inline(always)]
+fn drag_kick(
+    now: &KickInputs,
+    moves: &mut SphereMotion,
+    force: Vec3,
+    torque: Vec3,
+    drag: &mut SphereDrag,
+) -> Vec3 {
+    let span = now.half * f64::from(now.times);
+    if moves.inverse_mass == 0.0 {
+        let impulse = drag.coefficient * span * drag.gas;
+        drag.impulse += impulse;
+        return impulse;
+    }
+    let other = force * moves.inverse_mass + now.gravity;
+    let rate = drag.coefficient * moves.inverse_mass;
+    let a = rate * span;
+    let share = if a > 0.0 { -(-a).exp_m1() / a } else { 1.0 };
+    let change = (other + rate * (drag.gas - moves.velocity)) * (share * span);
+    moves.velocity += change;
+    moves.spin += torque * (moves.inverse_inertia * span);
+    let impulse = (change - other * span) / moves.inverse_mass;
+    drag.impulse += impulse;
+    impulse
+}
+
+/// Kicks and moves the particles of a block that feel a drag by their velocity; returns the square of their largest speed in
+/// m²/s².
+pub fn drift_with_drag<const BUDGET: bool>(
+    block: &mut Block,
+    now: &KickInputs,
+    (place, moves): (&mut [SpherePosition], &mut [SphereMotion]),
+    push: &[Vec3],
+    drag: &mut [SphereDrag],
+) -> f64 {
+    let step = 2.0 * now.half;
+    let mut fastest = 0.0f64;
+    let mut held = Vec3::zeros();
+    let spheres = block.load.iter().zip(place).zip(moves).zip(push).zip(drag);
+    for ((((load, place), moves), push), drag) in spheres {
+        let impulse = drag_kick(now, moves, load.force + push, load.torque, drag);
+        place.centre += moves.velocity * step;
+        fastest = fastest.max(moves.velocity.norm_squared());
+        if moves.inverse_mass == 0.0 {
+            held += load.force;
+        }
+        if BUDGET && moves.inverse_mass > 0.0 {
+            let way = moves.velocity * step;
+            block.budget.gravity_work += now.gravity.dot(&way) / moves.inverse_mass;
+            let dragged = impulse / (now.half * f64::from(now.times));
+            block.budget.push_work += (push + dragged).dot(&way);
+        }
+    }
+    block.support += (block.wall_force - held) * (now.half * f64::from(now.times));
+    fastest
+}
+
+/// The last half kick of a window for particles that feel a drag by their velocity.
+pub fn close_with_drag(
+    block: &mut Block,
+    now: &KickInputs,
+    moves: &mut [SphereMotion],
+    push: &[Vec3],
+    drag: &mut [SphereDrag],
+) {
+    let mut held = Vec3::zeros();
+    for (((load, moves), push), drag) in block.load.iter().zip(moves).zip(push).zip(drag) {
+        drag_kick(now, moves, load.force + push, load.torque, drag);
+        if moves.inverse_mass == 0.0 {
+            held += load.force;
+        }
+    }
+    block.support += (block.wall_force - held) * now.half;
 }
 
 /// Kicks and moves the particles of a block; returns the square of their largest speed in m²/s².

@@ -26,6 +26,17 @@ pub struct SphereMotion {
     pub inverse_inertia: f64,
 }
 
+/// Drag of the gas on a sphere that follows its velocity.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SphereDrag {
+    /// K in kg/s of the drag K (u − v).
+    pub coefficient: f64,
+    /// u in m/s.
+    pub gas: Vec3,
+    /// Its impulse over the window so far in N s.
+    pub impulse: Vec3,
+}
+
 /// Force and torque of all contacts of a sphere.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SphereLoad {
@@ -55,6 +66,8 @@ pub struct Spheres {
     pub material: Vec<u32>,
     /// Force of the gas in N.
     pub push: Vec<Vec3>,
+    /// Drag that follows velocities; empty where there is none.
+    pub drag: Vec<SphereDrag>,
     /// Rows in ascending id.
     pub row: Vec<u32>,
 }
@@ -76,6 +89,9 @@ impl Spheres {
         gather(&mut self.moves, order, &mut spare.moves);
         gather(&mut self.material, order, &mut spare.material);
         gather(&mut self.push, order, &mut spare.push);
+        if !self.drag.is_empty() {
+            gather(&mut self.drag, order, &mut spare.drag);
+        }
         gather(&mut self.row, order, &mut spare.row);
     }
 }

@@ -16,10 +16,10 @@ impl Engine {
         self.pass(step, false);
     }
 
-    /// True where a step may go block by block: by one thread, and where a block's particles get loads of blocks
-    /// before it only.
+    /// True where a step may go block by block: by one thread, without drag by velocities, and where a block's particles
+    /// get loads of blocks before it only.
     pub(super) fn sweeps(&self) -> bool {
-        !self.parallel() && self.search.forward
+        !self.parallel() && self.search.forward && self.spheres.drag.is_empty()
     }
 
     /// Forces of a step, and the kick and the move to the next one as soon as a block has all its loads, while its
