@@ -8,7 +8,7 @@ use crate::assembly::{
     AssemblyError, GasBackend, Pairing, PreparedCase, native_parts, write_inputs,
 };
 use crate::case::model::Case;
-use crate::case::{CaseErrors, read_with, settle};
+use crate::case::{CaseErrors, located, read_with, settle};
 use crate::laws::LawCatalogue;
 use crate::results::{self, ResultsError};
 
@@ -37,6 +37,14 @@ pub enum InvalidCase {
     Results(#[from] ResultsError),
 }
 
+/// An error with the lines of the case that it is about, where it is about some.
+fn placed(case: &Case, error: AssemblyError) -> InvalidCase {
+    match error.key(case) {
+        Some(key) => InvalidCase::File(located(case, &key, &error)),
+        None => error.into(),
+    }
+}
+
 impl ValidCase {
     /// Reads a case with `--set key=value` applied, makes its mesh and particles, and fits the bed into the mesh.
     pub fn open(path: &Path, set: &[String]) -> Result<Self, InvalidCase> {
@@ -50,9 +58,10 @@ impl ValidCase {
         laws: &LawCatalogue,
     ) -> Result<Self, InvalidCase> {
         let mut case = read_with(path, set, laws)?;
-        let prepared = PreparedCase::new(&case)?;
+        let prepared = PreparedCase::new(&case).map_err(|error| placed(&case, error))?;
         settle(&mut case, &prepared.mesh);
-        let void_fraction = prepared.void_fraction(&case)?;
+        let void_fraction = prepared.void_fraction(&case);
+        let void_fraction = void_fraction.map_err(|error| placed(&case, error))?;
         results::fits(&case, &prepared.mesh)?;
         Ok(Self {
             case,

@@ -367,3 +367,57 @@ fn every_documented_key_occurs_in_a_good_case_and_refuses_a_value_of_a_wrong_kin
     }
     assert!(missing.is_empty(), "in no good case: {missing:#?}");
 }
+
+/// Dotted keys of all values of a table, those of lists with their number.
+fn all_keys(place: &str, table: &dyn toml_edit::TableLike, found: &mut Vec<String>) {
+    for (key, item) in table.iter() {
+        let place = match place {
+            "" => key.to_owned(),
+            _ => format!("{place}.{key}"),
+        };
+        found.push(place.clone());
+        if let Some(list) = item.as_array_of_tables() {
+            for (index, table) in list.iter().enumerate() {
+                all_keys(&format!("{place}[{index}]"), table, found);
+            }
+        } else if let Some(table) = item.as_table_like() {
+            all_keys(&place, table, found);
+        }
+    }
+}
+
+#[test]
+fn a_value_of_a_wrong_kind_is_one_error_and_nothing_that_only_follows_from_it() {
+    let mut tried = 0;
+    for path in files("cases") {
+        let text = fs::read_to_string(&path).unwrap();
+        let document: toml_edit::DocumentMut = text.parse().unwrap();
+        let mut all = Vec::new();
+        all_keys("", document.as_table(), &mut all);
+        for set in all
+            .iter()
+            .flat_map(|key| [format!("{key}=true"), format!("{key}=nan")])
+        {
+            // The only ones that may be true.
+            if set == "gas.held=true" || set == "liggghts.wall_impulse=true" {
+                continue;
+            }
+            tried += 1;
+            let errors = read(&path, std::slice::from_ref(&set)).unwrap_err();
+            let found = errors.problems();
+            assert!(
+                found.len() == 1 && found[0].message.starts_with(&format!("`--set {set}`: ")),
+                "{} {set}: {errors}",
+                path.display()
+            );
+            if set.ends_with("=nan") {
+                let message = &found[0].message;
+                assert!(
+                    message.contains(" is nan, not a finite number"),
+                    "{message}"
+                );
+            }
+        }
+    }
+    assert!(tried > 1000, "{tried}");
+}

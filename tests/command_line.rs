@@ -245,3 +245,84 @@ fn a_comparison_of_all_pairings_leaves_out_those_that_cannot_run_before_anything
     assert_eq!(named.status.code(), Some(4));
     assert_eq!(names(folder.path()), [""; 0]);
 }
+
+/// What `check` says of a shipped bed with a key set.
+fn checked(folder: &Path, set: &str) -> String {
+    let case = shipped("heated-bed");
+    refused(folder, 2, &["check", case.to_str().unwrap(), "--set", set])
+}
+
+#[test]
+fn particles_that_cannot_be_placed_are_told_with_the_line_of_the_case() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |text: &str| {
+        let path = folder.path().join("bed.csv");
+        fs::write(&path, text).unwrap();
+        format!("particles[0].place={{ file = \"{}\" }}", path.display())
+    };
+    for (set, line, fact, help) in [
+        (
+            "particles=[]".to_owned(),
+            "particles= []",
+            "`particles` is an empty list",
+            "add one: [[particles]]",
+        ),
+        (
+            file(""),
+            "place = { file",
+            "bed.csv: it is empty",
+            "its first line names the columns: x, y and z (in m)",
+        ),
+        (
+            file("x,y,z\n"),
+            "[[particles]]",
+            "the case has no particles: \"beads\" (",
+            "a run needs one particle at least",
+        ),
+        (
+            "particles[0].diameter=60 mm".into(),
+            "diameter = \"60 mm\"",
+            "spheres of 0.06 m do not fit between walls that are 0.0496 m apart",
+            "take smaller spheres or a wider vessel",
+        ),
+        (
+            "particles[0].diameter={ uniform = { min = \"5 mm\", max = \"4 mm\" }, share = \"number\", seed = 1 }"
+                .into(),
+            "diameter = { uniform",
+            "uniform.min` is 0.005 m, not below `max` of 0.004 m",
+            "write the smaller diameter as min",
+        ),
+    ] {
+        let text = checked(folder.path(), &set);
+        let shown = text.lines().find(|text| text.contains(" │ ") && text.contains(line));
+        assert!(shown.is_some(), "{set}: {text}");
+        assert!(text.contains(fact), "{set}: {text}");
+        assert!(text.contains(&format!("help: {help}")), "{set}: {text}");
+    }
+}
+
+#[test]
+fn a_unit_that_is_not_known_and_a_law_in_words_say_what_is_meant() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = checked(folder.path(), "particles[0].temperature=700 C");
+    assert!(text.contains("did you mean \"degC\"?"), "{text}");
+    let text = checked(folder.path(), "laws.mass_transfer=\"none\"");
+    assert!(
+        text.contains("help: write a table such as { law = \"none\" }"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_case_that_is_not_there_is_answered_with_those_of_its_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let check = |name: &str| refused(folder.path(), 2, &["check", name]);
+    assert!(
+        check("bed.toml")
+            .contains("help: name a case that exists, or make one with `calcine new NAME`")
+    );
+    fs::write(folder.path().join("my-bed.toml"), "").unwrap();
+    assert!(check("my-bad.toml").contains("help: did you mean my-bed.toml?"));
+    assert!(check("column").contains("help: name a case; there are my-bed.toml"));
+    assert!(check(".").contains("help: name a case; there are my-bed.toml"));
+}

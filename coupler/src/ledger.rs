@@ -8,6 +8,9 @@ pub const STORAGE_CLOCK: &str = "storage_clock";
 /// Name of the line that is no error either: see [`Ledger::drag_carry`].
 pub const DRAG_CARRY: &str = "drag_carry";
 
+/// Of what all elements move, the share below which an element does not take part: what the balances may leave open.
+const TAKES_PART: f64 = 1e-10;
+
 /// One line: the sum of |Σ terms| over the windows, against the sum of Σ|terms|.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BalanceLine {
@@ -135,6 +138,17 @@ impl Ledger {
         lines
     }
 
+    /// The relative error of an element's line. An element that does not take part, so that all its line holds is
+    /// round-off of what the others move, is measured against what all elements move.
+    pub fn relative_error_of(&self, element: &BalanceLine) -> f64 {
+        let lines = self.elements.iter().map(|(_, line)| line.throughput);
+        let all: f64 = lines.sum();
+        match element.throughput < TAKES_PART * all {
+            true => element.error / all,
+            false => element.relative_error(),
+        }
+    }
+
     /// All lines in one order, elements and what is carried last, to be restored from a checkpoint.
     pub fn lines_mut(&mut self) -> Vec<&mut BalanceLine> {
         let mut lines = vec![
@@ -156,5 +170,34 @@ impl Ledger {
     pub fn all(&self) -> Vec<BalanceLine> {
         let mut ledger = self.clone();
         ledger.lines_mut().into_iter().map(|line| *line).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_element_that_does_not_take_part_is_measured_against_those_that_do() {
+        let line = |error: f64, throughput: f64| BalanceLine {
+            drift: error,
+            error,
+            throughput,
+        };
+        let (carbon, aluminium, nothing) = (line(2e-16, 0.5), line(3e-18, 3e-18), line(0.0, 0.0));
+        let ledger = Ledger {
+            elements: vec![
+                ("C".into(), carbon),
+                ("Al".into(), aluminium),
+                ("Fe".into(), nothing),
+            ],
+            ..Ledger::default()
+        };
+        assert_eq!(ledger.relative_error_of(&carbon), 4e-16);
+        assert_eq!(ledger.relative_error_of(&aluminium), 6e-18);
+        assert_eq!(ledger.relative_error_of(&nothing), 0.0);
+        // A trace that takes part keeps its own scale.
+        let trace = line(1e-6, 1e-6);
+        assert_eq!(ledger.relative_error_of(&trace), 1.0);
     }
 }

@@ -6,6 +6,7 @@ use calcine_coupler::interior::reacting::LayersError;
 use calcine_native::gas::NativeError;
 use thiserror::Error;
 
+use crate::case::model::Case;
 use crate::case::sizes::TooLarge;
 use crate::case::{MeshingError, PlaceError};
 
@@ -50,4 +51,18 @@ pub enum AssemblyError {
     /// The bed does not fit, or a checkpoint cannot be taken up.
     #[error(transparent)]
     Run(#[from] RunError),
+}
+
+impl AssemblyError {
+    /// The key of the case that the error is about, where it is about one.
+    pub fn key(&self, case: &Case) -> Option<String> {
+        match self {
+            Self::Mesh(_) => Some("mesh".into()),
+            Self::Excluded { index } => Some(format!("coupling.smoother.excluded[{index}]")),
+            Self::Particles(error) => Some(error.key(case)),
+            Self::Layers(_) => Some("reactions".into()),
+            Self::NoExternalGas | Self::NoExternalParticles => None,
+            Self::TooLarge(_) | Self::Native(_) | Self::Part(_) | Self::Run(_) => None,
+        }
+    }
 }

@@ -6,6 +6,7 @@ mod check;
 pub mod contacts;
 pub mod expectations;
 pub mod keys;
+mod located;
 mod meshing;
 pub mod model;
 mod overlap;
@@ -27,6 +28,7 @@ use sha2::{Digest, Sha256};
 use toml_edit::{Document, DocumentMut, Item, Value};
 
 pub use check::check_report;
+pub use located::located;
 pub use meshing::{MeshingError, mesh};
 pub use place::{InitialParticles, particles};
 pub use place_error::PlaceError;
@@ -52,7 +54,7 @@ pub fn read_with(path: &Path, set: &[String], laws: &LawCatalogue) -> Result<Cas
             "",
             0..0,
             format!("the case file cannot be read: {cause}"),
-            "name a file that exists, such as cases/heated-column.toml",
+            &table::instead_of_file(path),
         )
     })?;
     parse_with(path, &text, set, laws)
@@ -73,6 +75,7 @@ pub fn parse_with(
     let effective = apply(path, text, set)?;
     let document = syntax(path, &effective)?;
     let problems = Problems::default();
+    problems.not_finite("", document.as_table());
     let root = TableReader::root(&problems, laws, document.as_table());
     let case = sections::case(&root, path, &effective, hash(document.as_table()));
     root.finish();

@@ -32,7 +32,11 @@ pub fn particles(case: &Case) -> Result<InitialParticles, PlaceError> {
         let density = case.materials[population.material].density;
         let (factor, _) = case.time.acceleration.at(Ticks::ZERO);
         let velocity = factor * population.velocity;
-        for sphere in spheres(case, population)? {
+        let spheres = spheres(case, population).map_err(|cause| PlaceError::Population {
+            index: index as usize,
+            cause: Box::new(cause),
+        })?;
+        for sphere in spheres {
             setup.id.push(setup.id.len() as u64 + 1);
             setup.population.push(index);
             setup.position.push(sphere.centre);
@@ -44,7 +48,14 @@ pub fn particles(case: &Case) -> Result<InitialParticles, PlaceError> {
         }
     }
     if setup.id.is_empty() {
-        return Err(PlaceError::Empty);
+        let names = case.particles.iter();
+        let names = names.map(|one| match &one.place {
+            PlacementSpec::File { path, .. } => format!("\"{}\" ({})", one.name, path.display()),
+            _ => format!("\"{}\"", one.name),
+        });
+        return Err(PlaceError::Empty {
+            names: names.collect(),
+        });
     }
     if setup
         .velocity

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use calcine_coupler::packing::PackingError;
 use thiserror::Error;
 
+use super::contacts::ContactsError;
+use super::model::Case;
 use super::units::shown;
 
 /// Particles that cannot be placed.
@@ -50,10 +52,48 @@ pub enum PlaceError {
         /// Why.
         cause: PackingError,
     },
+    /// What is wrong with one population.
+    #[error("{cause}")]
+    Population {
+        /// Its number, from 0.
+        index: usize,
+        /// What is wrong.
+        cause: Box<PlaceError>,
+    },
     /// Contacts that cannot be stepped through.
     #[error(transparent)]
     Contacts(#[from] super::contacts::ContactsError),
     /// No particle at all.
-    #[error("the case has no particles")]
-    Empty,
+    #[error(
+        "the case has no particles: {} place none; a run needs one particle at least", .names.join(", ")
+    )]
+    Empty {
+        /// The populations.
+        names: Vec<String>,
+    },
+}
+
+impl PlaceError {
+    /// The key of the case that the error is about.
+    pub fn key(&self, case: &Case) -> String {
+        match self {
+            Self::Population { index, cause } => match **cause {
+                Self::Packing {
+                    cause: PackingError::TooNarrow { .. },
+                    ..
+                } => format!("particles[{index}].diameter"),
+                _ => format!("particles[{index}].place"),
+            },
+            Self::Overlap { names, .. } => {
+                let second = case.particles.iter().position(|one| one.name == names[1]);
+                second.map_or("particles".into(), |index| {
+                    format!("particles[{index}].place")
+                })
+            }
+            Self::Contacts(ContactsError::Step { .. }) => "motion.motion_step".into(),
+            Self::Contacts(ContactsError::Short { .. }) => "motion.held".into(),
+            Self::Contacts(_) => "motion".into(),
+            _ => "particles".into(),
+        }
+    }
 }

@@ -62,6 +62,43 @@ pub(super) fn symbols() -> impl Iterator<Item = &'static str> {
     UNITS.iter().map(|unit| unit.0)
 }
 
+/// What people write for units, and what is meant.
+const MEANT: &[(&str, &str)] = &[
+    ("C", "degC"),
+    ("celsius", "degC"),
+    ("kelvin", "K"),
+    ("sec", "s"),
+    ("second", "s"),
+    ("minute", "min"),
+    ("hr", "h"),
+    ("hour", "h"),
+    ("day", "d"),
+    ("micron", "um"),
+    ("meter", "m"),
+    ("metre", "m"),
+    ("gram", "g"),
+    ("liter", "l"),
+    ("litre", "l"),
+    ("lpm", "l/min"),
+    ("pascal", "Pa"),
+    ("joule", "J"),
+    ("watt", "W"),
+    ("degree", "deg"),
+];
+
+/// The unit that was meant by one that is not known: another word for it, or another spelling.
+pub(super) fn meant(unit: &str) -> Option<&'static str> {
+    let singular = unit.strip_suffix('s').unwrap_or(unit);
+    let same = |name: &str| {
+        [unit, singular]
+            .iter()
+            .any(|one| one.eq_ignore_ascii_case(name))
+    };
+    let word = MEANT.iter().find(|(name, _)| same(name));
+    let spelt = || symbols().find(|symbol| symbol.eq_ignore_ascii_case(unit));
+    word.map(|(_, meant)| *meant).or_else(spelt)
+}
+
 /// Zero of the Celsius scale in K.
 const CELSIUS: f64 = 273.15;
 
@@ -237,6 +274,22 @@ mod tests {
         assert!(quantities("1 m^99").is_err());
         assert!(quantities(&format!("1 {}", ["m^9"; 20].join("*"))).is_err());
         assert!(quantities("1e308 t/l").is_err());
+    }
+
+    #[test]
+    fn other_words_and_spellings_of_a_unit_say_what_is_meant() {
+        for (written, known) in [
+            ("C", "degC"),
+            ("Celsius", "degC"),
+            ("Hours", "h"),
+            ("MM", "mm"),
+            ("k", "K"),
+            ("Lpm", "l/min"),
+        ] {
+            assert_eq!(meant(written), Some(known), "{written}");
+            assert!(quantities(&format!("1 {known}")).is_ok());
+        }
+        assert_eq!(meant("furlong"), None);
     }
 
     #[test]

@@ -413,7 +413,14 @@ impl Recorder {
                     .ledger
                     .elements
                     .iter()
-                    .map(|(name, line)| (name.clone(), ledger_line("kg", *line)))
+                    .map(|(name, line)| {
+                        let relative_error = moment.ledger.relative_error_of(line);
+                        let line = LedgerLineSummary {
+                            relative_error,
+                            ..ledger_line("kg", *line)
+                        };
+                        (name.clone(), line)
+                    })
                     .collect(),
             },
             wall_time_s: self.wall(moment.timing),

@@ -195,8 +195,14 @@ pub(super) fn row(
     values.push(f64::from(moment.convergence.linear_iterations));
     values.push(moment.convergence.residual);
     values.push(moment.convergence.volume_residual);
-    for line in moment.ledger.all() {
-        values.extend([line.relative_error(), line.drift, line.throughput]);
+    let ledger = moment.ledger;
+    let lines = ledger
+        .lines()
+        .map(|(_, _, line)| (line.relative_error(), line));
+    let elements = ledger.elements.iter();
+    let elements = elements.map(|(_, line)| (ledger.relative_error_of(line), *line));
+    for (relative_error, line) in lines.into_iter().chain(elements) {
+        values.extend([relative_error, line.drift, line.throughput]);
     }
     let temperature = |id: &u64| {
         let place = moment.particles.id.binary_search(id).ok()?;

@@ -5,8 +5,19 @@ use thiserror::Error;
 /// A packing that cannot be made.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum PackingError {
+    /// Spheres that are larger than the vessel is wide.
+    #[error(
+        "spheres of {diameter} m do not fit between walls that are {width:.4} m apart; take smaller spheres or a wider \
+         vessel"
+    )]
+    TooNarrow {
+        /// The largest diameter in m.
+        diameter: f64,
+        /// Narrowest width of the vessel in m.
+        width: f64,
+    },
     /// A number that has no meaning.
-    #[error("the packing's {what} is {value}; it needs {need}")]
+    #[error("the {what} is {value}; it needs {need}")]
     Value {
         /// Which number.
         what: &'static str,

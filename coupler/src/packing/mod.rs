@@ -107,12 +107,10 @@ fn fill(origin: Vec3, section: Section, spec: &RandomSpec) -> Result<Packing, Pa
     if let Fill::Number(_) = spec.fill {
         container.height = volume / (spec.solid_fraction * container.area());
     }
-    if diameters.iter().any(|&d| d > container.width()) {
-        return Err(PackingError::Value {
-            what: "narrowest width in m",
-            value: container.width(),
-            need: "at least the largest diameter",
-        });
+    let diameter = diameters.iter().copied().fold(0.0, f64::max);
+    if diameter > container.width() {
+        let width = container.width();
+        return Err(PackingError::TooNarrow { diameter, width });
     }
     let radii: Vec<f64> = diameters.iter().map(|d| 0.5 * d).collect();
     let mut centres: Vec<Vec3> = radii

@@ -85,11 +85,8 @@ fn filled(container: &Container, diameter: f64, lattice: Lattice) -> Result<Pack
     positive("height", container.height)?;
     positive("diameter", diameter)?;
     if diameter > container.width() * (1.0 + ROUND_OFF) {
-        return Err(PackingError::Value {
-            what: "narrowest width in m",
-            value: container.width(),
-            need: "at least the diameter",
-        });
+        let width = container.width();
+        return Err(PackingError::TooNarrow { diameter, width });
     }
     // 0.74 is the densest, and the sites around the space come on top.
     let sites = container.area() * container.height / diameter.powi(3) * 2f64.sqrt();

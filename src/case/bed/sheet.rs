@@ -89,10 +89,13 @@ impl Sheet {
         let [x, y, z] = AXES.map(|names| self.column(&names));
         let (Some(x), Some(y), Some(z)) = (x, y, z) else {
             let names: Vec<&str> = self.columns.iter().map(|(name, _)| name.as_str()).collect();
-            let what = format!(
-                "it has the columns {}, and needs x, y and z (in m)",
-                names.join(", ")
-            );
+            let what = match names[..] {
+                [] => "it is empty; its first line names the columns: x, y and z (in m)".into(),
+                _ => format!(
+                    "it has the columns {}, and needs x, y and z (in m)",
+                    names.join(", ")
+                ),
+            };
             return Err((None, what));
         };
         let kinds = self.column(&TYPE);

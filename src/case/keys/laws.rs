@@ -29,7 +29,7 @@ const RADIATION: &[Key] = &[
 pub(super) const LAWS: &[Key] = &[
     key("drag", Law(laws::drag, DRAG), Required, "Drag on a particle.", "{ law = \"ergun-wen-yu\" }"),
     key("heat_transfer", Law(laws::heat_transfer, &[]), Required, "Heat transfer between gas and particle.", "{ law = \"gunn\" }"),
-    key("mass_transfer", Law(laws::heat_transfer, &[]), Without("none"), "Mass transfer between gas and particles that react, by a law of heat transfer with the Schmidt number in place of the Prandtl number; required where reactions exchange gas.", "{ law = \"gunn\" }"),
+    key("mass_transfer", Law(laws::heat_transfer, &[]), Without("none"), "Mass transfer between gas and particles that react, by a law of heat transfer with the Schmidt number in place of the Prandtl number; required, and not `none`, where reactions exchange gas.", "{ law = \"gunn\" }"),
     key("conduction", Law(laws::conduction, CONDUCTION), Required, "Heat conduction between particles and to walls of a temperature.", "{ law = \"none\" }"),
     key("radiation", Law(laws::radiation, RADIATION), Required, "Radiation between particles, to walls and surroundings; the gas is transparent.", "{ law = \"none\" }"),
 ];

@@ -65,6 +65,16 @@ pub(super) fn case(
         folder,
     );
     let particles = particles::populations(root, &materials, mesh.as_ref(), folder);
+    for (section, is_read) in [
+        ("time", time.is_some()),
+        ("mesh", mesh.is_some()),
+        ("gas", gas.is_some()),
+        ("particles", particles.is_some()),
+    ] {
+        if !is_read {
+            root.unusable(section);
+        }
+    }
     let feeds = feeds::feeds(root, particles.as_deref());
     let outlets = feeds::outlets(root);
     let laws = laws::read(root);

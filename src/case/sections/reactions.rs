@@ -437,12 +437,9 @@ pub(super) fn fits(
         return;
     }
     if laws.mass_transfer.is_none() {
-        let help = "add mass_transfer = { law = \"gunn\" } to [laws]";
-        root.fail(
-            "laws",
-            "has no mass transfer, by which gas reaches particles that react",
-            help,
-        );
+        let rule = "has no mass transfer, by which gas reaches particles that react";
+        let help = "write mass_transfer = { law = \"gunn\" }: \"none\" is for cases whose reactions exchange no gas";
+        root.fail("laws", rule, help);
     }
     if solver.is_stock() {
         let help = "leave `openfoam.solver` out: calcineGasFoam has sources of species";

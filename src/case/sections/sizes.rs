@@ -4,7 +4,7 @@ use calcine_coupler::packing::{Shape, Share, Sizes};
 use toml_edit::Value;
 
 use crate::case::table::TableReader;
-use crate::case::units::Dimension;
+use crate::case::units::{Dimension, shown};
 
 const EXAMPLE: &str = "for example { normal = { mean = \"4 mm\", deviation = \"0.4 mm\", \
                        min = \"3 mm\", max = \"5 mm\" }, share = \"number\", seed = 1 }";
@@ -60,6 +60,21 @@ fn range(table: &TableReader<'_>, kind: &str, share: Option<Share>) -> Option<Si
     let min = range.number("min");
     let max = range.number("max");
     range.finish();
+    if let (Some(least), Some(most)) = (min, max)
+        && least >= most
+    {
+        let rule = format!(
+            "is {} m, not below `max` of {} m",
+            shown(least),
+            shown(most)
+        );
+        range.fail(
+            "min",
+            rule,
+            "write the smaller diameter as min, the larger one as max",
+        );
+        return None;
+    }
     Some(Sizes::Range {
         shape: shape?,
         min: min?,

@@ -5,48 +5,128 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use toml_edit::{Item, TableLike};
+use toml_edit::{Item, TableLike, Value};
 
 use super::keys::{Key, KeyPresence, KeyValue, ROOT};
 use super::problem::Problem;
 use crate::laws::LawCatalogue;
 
+mod consequences;
 mod law;
 mod nearest;
 mod nested;
 mod quantity;
 mod words;
 
+use consequences::{follows, names, uses};
+pub(super) use nearest::instead_of_file;
 use nearest::nearest;
 
 /// What is said of a key that is not declared.
 pub(super) const UNKNOWN: &str = " is not a key of a case";
 
+/// What is said of a key that goes with another choice.
+const NO_EFFECT: &str = " has no effect here";
+
 /// Collects the problems of one file.
 #[derive(Debug, Default)]
 pub struct Problems {
-    found: RefCell<Vec<Problem>>,
+    found: RefCell<Vec<(Problem, ProblemKind)>>,
     told: RefCell<BTreeSet<(usize, String)>>,
     asked: RefCell<BTreeSet<String>>,
+    /// Places whose values are of another kind, or have no meaning.
+    unread: RefCell<BTreeSet<String>>,
+    /// Places whose values can be read, but are not taken.
+    refused: RefCell<BTreeSet<String>>,
+    /// Sections of which nothing could be made.
+    unusable: RefCell<BTreeSet<String>>,
+    /// Values that are no finite numbers; whatever else may be said of them is left out.
+    spoilt: RefCell<Vec<Range<usize>>>,
+}
+
+/// What a problem is about.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ProblemKind {
+    /// A place whose value cannot be read, is missing, or is not known.
+    Value,
+    /// A rule that values which were read break at this place.
+    Rule(String),
+    /// A key that something else needs.
+    Missing(String),
 }
 
 impl Problems {
     /// Records one; what was said of a place already is not said again.
-    pub fn add(&self, span: Range<usize>, message: String, help: String) {
+    fn add(&self, span: Range<usize>, message: String, help: String, kind: ProblemKind) {
+        let inside = |spoilt: &Range<usize>| spoilt.contains(&span.start) || spoilt == &span;
+        if self.spoilt.borrow().iter().any(inside) {
+            return;
+        }
         if !self.told.borrow_mut().insert((span.start, message.clone())) {
             return;
         }
-        self.found.borrow_mut().push(Problem {
+        let problem = Problem {
             message,
             help,
             span,
             line: 0,
-        });
+        };
+        self.found.borrow_mut().push((problem, kind));
     }
 
-    /// All of them.
+    /// Records every number of a table, and of all that is in it, that is not finite.
+    pub fn not_finite(&self, place: &str, table: &dyn TableLike) {
+        for (key, item) in table.iter() {
+            let place = dotted(place, key);
+            if let Some(list) = item.as_array_of_tables() {
+                for (index, table) in list.iter().enumerate() {
+                    self.not_finite(&format!("{place}[{index}]"), table);
+                }
+            } else if let Some(value) = item.as_value() {
+                self.not_finite_value(&place, value);
+            } else if let Some(table) = item.as_table_like() {
+                self.not_finite(&place, table);
+            }
+        }
+    }
+
+    fn not_finite_value(&self, place: &str, value: &Value) {
+        match value {
+            Value::Float(number) if !number.value().is_finite() => {
+                let span = value.span().unwrap_or(0..0);
+                let text = value.to_string();
+                let message = format!("`{place}` is {}, not a finite number", text.trim());
+                let help = "write a finite number".into();
+                self.unread.borrow_mut().insert(place.to_owned());
+                self.add(span.clone(), message, help, ProblemKind::Value);
+                self.spoilt.borrow_mut().push(span);
+            }
+            Value::Array(array) => {
+                for (index, value) in array.iter().enumerate() {
+                    self.not_finite_value(&format!("{place}[{index}]"), value);
+                }
+            }
+            Value::InlineTable(table) => self.not_finite(place, table),
+            _ => {}
+        }
+    }
+
+    /// All of them but those that only follow from values that could not be read.
     pub fn take(&self) -> Vec<Problem> {
-        self.found.take()
+        let (unread, unusable) = (self.unread.take(), self.unusable.take());
+        let refused = self.refused.take();
+        let only_follows = |place: &str, message: &str| {
+            unusable.iter().any(|other| uses(place, other))
+                || unread.iter().any(|other| follows(place, other))
+                || refused.iter().any(|other| names(place, message, other))
+        };
+        let mut found = self.found.take();
+        found.retain(|(problem, kind)| match kind {
+            ProblemKind::Value => true,
+            ProblemKind::Rule(place) => !only_follows(place, &problem.message),
+            ProblemKind::Missing(place) => !unread.contains(place) && !refused.contains(place),
+        });
+        found.into_iter().map(|(problem, _)| problem).collect()
     }
 
     /// Every key that the reader asked for; names chosen by the user as `NAME`.
@@ -102,16 +182,47 @@ impl<'a> TableReader<'a> {
             .unwrap_or_else(|| self.span.clone())
     }
 
-    /// Records an error about the value of a key.
+    /// Records a rule that the value of a key breaks.
     pub fn fail(&self, key: &str, rule: impl AsRef<str>, help: impl Into<String>) {
-        let message = format!("`{}` {}", self.place_of(key), rule.as_ref());
-        self.problems.add(self.span_of(key), message, help.into());
+        let place = self.place_of(key);
+        let message = format!("`{place}` {}", rule.as_ref());
+        let kind = ProblemKind::Rule(place);
+        self.problems
+            .add(self.span_of(key), message, help.into(), kind);
+    }
+
+    /// Records that the value of a key cannot be read; checks that use it are left out.
+    fn unread(&self, key: &str, rule: impl AsRef<str>, help: impl Into<String>) {
+        let place = self.place_of(key);
+        let message = format!("`{place}` {}", rule.as_ref());
+        self.problems.unread.borrow_mut().insert(place);
+        let kind = ProblemKind::Value;
+        self.problems
+            .add(self.span_of(key), message, help.into(), kind);
+    }
+
+    /// Records that the value of a key, which can be read, is not taken.
+    fn refuse(&self, key: &str, rule: impl AsRef<str>, help: impl Into<String>) {
+        let place = self.place_of(key);
+        let message = format!("`{place}` {}", rule.as_ref());
+        self.problems.refused.borrow_mut().insert(place);
+        let kind = ProblemKind::Value;
+        self.problems
+            .add(self.span_of(key), message, help.into(), kind);
+    }
+
+    /// Leaves out the checks that use a section, of which something is wrong that was told.
+    pub fn unusable(&self, section: &str) {
+        let mut unusable = self.problems.unusable.borrow_mut();
+        unusable.insert(section.to_owned());
     }
 
     /// Records an error about this table as a whole.
     pub fn fail_whole(&self, rule: &str, help: &str) {
         let message = format!("`{}` {rule}", self.place);
-        self.problems.add(self.span.clone(), message, help.into());
+        let kind = ProblemKind::Rule(self.place.clone());
+        self.problems
+            .add(self.span.clone(), message, help.into(), kind);
     }
 
     /// The declaration of a key. That there is one is this program's own affair: a test asks every reader.
@@ -119,7 +230,7 @@ impl<'a> TableReader<'a> {
         let found = self.keys.iter().find(|one| one.name == key);
         if found.is_none() {
             let help = "report it: this is a fault of Calcine, not of the case";
-            self.fail(key, "is asked for but not declared", help);
+            self.unread(key, "is asked for but not declared", help);
         }
         found.copied()
     }
@@ -134,7 +245,7 @@ impl<'a> TableReader<'a> {
         let found = declared.value.alternatives().into_iter().find_map(wanted);
         if found.is_none() {
             let help = "report it: this is a fault of Calcine, not of the case";
-            self.fail(key, "is read as something else than it is declared", help);
+            self.unread(key, "is read as something else than it is declared", help);
         }
         Some((declared, found?))
     }
@@ -180,13 +291,15 @@ impl<'a> TableReader<'a> {
 
     /// Records that a key of the user's own name is missing.
     pub fn missing_like(&self, key: &str, example: &str) {
-        let message = format!("`{}` is missing", self.place_of(key));
+        let place = self.place_of(key);
+        let message = format!("`{place}` is missing");
         // The heading of a table, such as [mesh], stands by itself.
         let help = match example.starts_with('[') && !example.contains(['"', ',', '{']) {
             true => format!("add {example}"),
             false => format!("add it, for example {key} = {example}"),
         };
-        self.problems.add(self.span.clone(), message, help);
+        let kind = ProblemKind::Missing(place);
+        self.problems.add(self.span.clone(), message, help, kind);
     }
 
     /// Records that a key is missing unless it is there.
@@ -197,7 +310,7 @@ impl<'a> TableReader<'a> {
     }
 
     fn wrong_type(&self, key: &str, needs: &str, item: &Item) {
-        self.fail(
+        self.unread(
             key,
             format!("needs {needs}, but is {}", kind(item)),
             format!("write {needs}"),
@@ -238,13 +351,12 @@ impl<'a> TableReader<'a> {
             }
             let declared = self.keys.iter().find(|one| one.name == key);
             let (rule, help) = match declared.map(|one| one.presence) {
-                Some(KeyPresence::With(other)) => (
-                    " has no effect here",
-                    format!("remove it: it goes with `{other}`"),
-                ),
+                Some(KeyPresence::With(other)) => {
+                    (NO_EFFECT, format!("remove it: it goes with `{other}`"))
+                }
                 Some(_) => {
                     let help = "remove it: it belongs to another choice than this table's";
-                    (" has no effect here", help.into())
+                    (NO_EFFECT, help.into())
                 }
                 None => (UNKNOWN, self.instead_of(key)),
             };
@@ -253,8 +365,13 @@ impl<'a> TableReader<'a> {
                 .and_then(|(key, _)| key.span())
                 .or_else(|| item.span());
             let span = span.unwrap_or_else(|| self.span.clone());
-            let message = format!("`{}`{rule}", self.place_of(key));
-            self.problems.add(span, message, help);
+            let place = self.place_of(key);
+            let message = format!("`{place}`{rule}");
+            let kind = match rule == UNKNOWN {
+                true => ProblemKind::Value,
+                false => ProblemKind::Rule(place),
+            };
+            self.problems.add(span, message, help, kind);
         }
     }
 

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 use toml_edit::{Item, TableLike, Value};
 
-use super::{Key, KeyValue, TableReader, dotted};
+use super::{Key, KeyPresence, KeyValue, TableReader, dotted};
 use crate::case::units::Dimension;
 
 /// What stands for a table that a case leaves out.
@@ -41,7 +41,13 @@ impl<'a> TableReader<'a> {
         })?;
         let item = self.item_of(&declared)?;
         let Some(table) = item.as_table_like() else {
-            self.wrong_type(key, "a table", item);
+            let needs = match (declared.value.alternatives().first(), item.as_str()) {
+                (Some(KeyValue::Law(..)), Some(name)) => {
+                    format!("a table such as {{ law = \"{name}\" }}")
+                }
+                _ => "a table".into(),
+            };
+            self.wrong_type(key, &needs, item);
             return None;
         };
         Some(self.below(self.place_of(key), key, &declared, table, item.span()))
@@ -68,6 +74,13 @@ impl<'a> TableReader<'a> {
         let Some(item) = self.item_of(&declared) else {
             return Vec::new();
         };
+        let inline = item.as_array().map(|array| array.is_empty());
+        let listed = item.as_array_of_tables().map(|list| list.is_empty());
+        if inline.or(listed) == Some(true) && declared.presence == KeyPresence::Required {
+            let help = format!("add one: [[{}]]", self.place_of(key));
+            self.unread(key, "is an empty list", help);
+            return Vec::new();
+        }
         let reader = |index: usize, table: &'a dyn TableLike, span| {
             let place = format!("{}[{index}]", self.place_of(key));
             self.below(place, key, &declared, table, span)
@@ -138,12 +151,12 @@ impl<'a> TableReader<'a> {
             let pair = pair.and_then(|pair| Some((pair.get(0)?, pair.get(1)?.as_inline_table()?)));
             let Some((time, table)) = pair else {
                 let help = format!("for example {}", declared.example);
-                self.fail(key, "needs a table, or pairs of time and table", help);
+                self.unread(key, "needs a table, or pairs of time and table", help);
                 return None;
             };
             let time = self.value(key, time, Dimension::TIME)?;
             if found.last().is_some_and(|(last, _)| *last >= time) {
-                self.fail(
+                self.refuse(
                     key,
                     format!("has the time {time} s after a later or equal one"),
                     "the times must increase",
@@ -155,7 +168,7 @@ impl<'a> TableReader<'a> {
         }
         if found.is_empty() {
             let help = "write at least one pair of time and table";
-            self.fail(key, "is an empty schedule", help);
+            self.refuse(key, "is an empty schedule", help);
             return None;
         }
         Some(found)

@@ -6,7 +6,7 @@ use toml_edit::Value;
 
 use super::{Key, KeyPresence, KeyValue, TableReader};
 use crate::case::keys::parse_number;
-use crate::case::units::{Dimension, UnitError, quantities, shown};
+use crate::case::units::{Dimension, UnitError, meant, quantities, shown};
 
 impl TableReader<'_> {
     /// A quantity with its unit, in SI, or a plain number, as it is declared; without it its default.
@@ -51,7 +51,7 @@ impl TableReader<'_> {
         let holds = bound.holds(value);
         if !holds {
             let rule = format!("is {} {}", shown(value), dimension.unit());
-            self.fail(key, rule.trim_end(), format!("it {}", bound.words()));
+            self.refuse(key, rule.trim_end(), format!("it {}", bound.words()));
         }
         holds
     }
@@ -61,7 +61,7 @@ impl TableReader<'_> {
         let seconds = self.number(key)?;
         let time = std::time::Duration::try_from_secs_f64(seconds).ok();
         if time.is_none() {
-            self.fail(
+            self.refuse(
                 key,
                 format!("is {seconds:e} s, beyond any clock"),
                 "write a shorter time",
@@ -98,7 +98,7 @@ impl TableReader<'_> {
         let numbers = self.parsed(key, text, dimension)?;
         let vector = <[f64; 3]>::try_from(numbers.as_slice()).ok();
         if vector.is_none() {
-            self.fail(
+            self.unread(
                 key,
                 format!("has {} numbers in \"{text}\"", numbers.len()),
                 format!("write {needs}"),
@@ -176,7 +176,7 @@ impl TableReader<'_> {
                 };
                 let value = dimension.example();
                 let example = format!("[[\"{low}\", \"{value}\"], [\"{high}\", \"{value}\"]]");
-                self.fail(
+                self.unread(
                     key,
                     format!("needs pairs of {word} and value"),
                     format!("for example {example}"),
@@ -186,7 +186,7 @@ impl TableReader<'_> {
             let time = self.value(key, time, over)?;
             let value = self.value(key, value, dimension)?;
             if entries.last().is_some_and(|last| last.0 >= time) {
-                self.fail(
+                self.refuse(
                     key,
                     format!("has the {word} {time} {unit} after a later or equal one"),
                     format!("the {word}s must increase"),
@@ -196,7 +196,7 @@ impl TableReader<'_> {
             entries.push((time, value));
         }
         if entries.is_empty() {
-            self.fail(
+            self.refuse(
                 key,
                 "is an empty schedule",
                 format!("write at least one pair of {word} and value"),
@@ -216,7 +216,7 @@ impl TableReader<'_> {
             if dimension == Dimension::NONE && number.is_finite() {
                 return Some(number);
             }
-            self.fail(
+            self.unread(
                 key,
                 format!("needs a unit, for example \"{example}\""),
                 format!("{number} has none: write it in quotes with a unit"),
@@ -229,14 +229,14 @@ impl TableReader<'_> {
                 dimension.words(),
                 value.type_name()
             );
-            self.fail(key, rule, format!("write \"{example}\""));
+            self.unread(key, rule, format!("write \"{example}\""));
             return None;
         };
         let numbers = self.parsed(key, text, dimension)?;
         if let [number] = numbers[..] {
             return Some(number);
         }
-        self.fail(
+        self.unread(
             key,
             format!("has {} numbers in \"{text}\"", numbers.len()),
             format!("write one, for example \"{example}\""),
@@ -248,12 +248,12 @@ impl TableReader<'_> {
         let (words, example) = (dimension.words(), dimension.example());
         match quantities(text) {
             Ok((numbers, found)) if found == dimension => return Some(numbers),
-            Ok((_, Dimension::NONE)) => self.fail(
+            Ok((_, Dimension::NONE)) => self.unread(
                 key,
                 format!("needs a unit, for example \"{example}\""),
                 format!("\"{text}\" has none"),
             ),
-            Ok((_, found)) => self.fail(
+            Ok((_, found)) => self.unread(
                 key,
                 format!(
                     "needs {words} such as \"{example}\", but \"{text}\" is {}",
@@ -261,12 +261,15 @@ impl TableReader<'_> {
                 ),
                 format!("write {words}"),
             ),
-            Err(UnitError::Unknown(unit)) => self.fail(
+            Err(UnitError::Unknown(unit)) => self.unread(
                 key,
                 format!("has the unit \"{unit}\", which is not known"),
-                format!("it needs {words} such as \"{example}\""),
+                match meant(&unit) {
+                    Some(known) => format!("did you mean \"{known}\"?"),
+                    None => format!("it needs {words} such as \"{example}\""),
+                },
             ),
-            Err(UnitError::Number(text)) => self.fail(
+            Err(UnitError::Number(text)) => self.unread(
                 key,
                 format!("needs {words} such as \"{example}\", but \"{text}\" has no finite number"),
                 "write a number and a unit",

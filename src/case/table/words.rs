@@ -53,7 +53,7 @@ impl<'a> TableReader<'a> {
             .map(|name| format!("; did you mean \"{name}\"?"))
             .unwrap_or_default();
         let help = format!("it may be {}{hint}", quoted(names));
-        self.fail(key, format!("is \"{text}\""), help);
+        self.refuse(key, format!("is \"{text}\""), help);
         None
     }
 
@@ -76,7 +76,7 @@ impl<'a> TableReader<'a> {
                 .map(|name| format!("; did you mean \"{name}\"?"))
                 .unwrap_or_default();
             let help = format!("known are {}{hint}", words.join(", "));
-            self.fail(key, format!("names \"{name}\""), help);
+            self.refuse(key, format!("names \"{name}\""), help);
         }
         Some(found)
     }
@@ -97,7 +97,7 @@ impl<'a> TableReader<'a> {
             Some(number) if (least..=most).contains(&number) => u64::try_from(number).ok(),
             Some(number) => {
                 let help = format!("it must lie between {least} and {most}");
-                self.fail(key, format!("is {number}"), help);
+                self.refuse(key, format!("is {number}"), help);
                 None
             }
             None => {
@@ -149,7 +149,7 @@ impl<'a> TableReader<'a> {
         });
         let numbers = numbers.and_then(|numbers| <[usize; N]>::try_from(numbers).ok());
         if numbers.is_none() {
-            self.fail(
+            self.unread(
                 key,
                 format!("needs {N} whole numbers of at least 1"),
                 format!("for example {}", declared.example),
