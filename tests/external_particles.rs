@@ -1,5 +1,5 @@
 //! Particles that are not ours, in plain C against the wire's header alone
-//! (`adapters/wire/examples/ballistic_particles.c`): coupled with the native gas, OpenFOAM's and one in C, resumed.
+//! (`adapters/wire/examples/ballistic_particles.c`): coupled with the native gas and with a gas in C, resumed.
 
 #![cfg(feature = "hdf5")]
 #![allow(clippy::unwrap_used, clippy::print_stdout)]

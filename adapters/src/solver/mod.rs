@@ -1,23 +1,26 @@
 //! An external solver as both adapters use it: launched, linked, shaken hands with, asked, waited for,
 //! and ended. One link per rank; every wait goes through a supervisor.
 
+mod cells;
+mod peer;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::Mesh;
-use calcine_coupler::physics::Vec3;
 use calcine_coupler::supervisor::{SolverWait, Supervisor, log_end};
 use calcine_coupler::time::Window;
 use calcine_wire::shared_memory::LinkEnd;
 use calcine_wire::{
-    ColumnSet, Field, Header, Hello, Link, MessageKind, RunDirectory, SharedMemory, SolverFailure,
-    SolverNetwork, WireError,
+    ColumnSet, Field, Header, Hello, Link, MessageKind, RunDirectory, SharedMemory, SolverNetwork,
+    WireError,
 };
 
 use crate::answer::WrongAnswer;
 use crate::launch::{Launcher, Processes, Program, Spawner, spawn};
+use peer::Peer;
 
 /// What is to be launched.
 #[derive(Clone, Debug)]
@@ -44,22 +47,6 @@ pub struct Launch {
 
 /// How long somebody may take who starts a solver by hand.
 const BY_HAND: Duration = Duration::from_secs(24 * 3600);
-
-/// How far a solver's cells may be from the mesh's: of a cell's size, and of its volume. Far above what rounding
-/// and another way to weigh warped faces make, far below another mesh.
-const GEOMETRY: f64 = 1e-6;
-
-/// Who is at the other end, for errors and for waits of its own.
-struct Peer {
-    name: String,
-    /// The solver or its launcher; `None` where somebody else started it.
-    pid: Option<u32>,
-    /// Ranks' process ids, once they introduced themselves.
-    ranks: Vec<u32>,
-    log: PathBuf,
-    /// Watches this solver only, for waits that have no supervisor of the run.
-    own: Supervisor,
-}
 
 /// A running solver. Dropping it ends its processes and removes the run's files.
 pub struct ExternalSolver {
@@ -94,21 +81,6 @@ pub fn header(kind: MessageKind, window: &Window) -> Header {
     }
 }
 
-/// The kind of failure that a solver reported.
-fn reported(kind: SolverFailure) -> FailureKind {
-    match kind {
-        SolverFailure::Other => FailureKind::Reported,
-        SolverFailure::Diverged => FailureKind::Diverged,
-        SolverFailure::NotConverged => FailureKind::NotConverged,
-        SolverFailure::InvalidInput => FailureKind::InvalidInput,
-        SolverFailure::LostParticles => FailureKind::LostParticles,
-        SolverFailure::OutOfMemory => FailureKind::OutOfMemory,
-        SolverFailure::NotFinite => FailureKind::NotFinite,
-        SolverFailure::File => FailureKind::Io,
-        SolverFailure::Unsupported => FailureKind::Refused,
-    }
-}
-
 /// Opens the coordinator's end of every rank's link, which the ranks wait for.
 fn open_links(run: &RunDirectory, hello: &Hello) -> Result<Vec<Link>, WireError> {
     let address = run.address(&hello.role);
@@ -118,134 +90,6 @@ fn open_links(run: &RunDirectory, hello: &Hello) -> Result<Vec<Link>, WireError>
             Ok(Link::new(Box::new(transport), address.number(), rank))
         })
         .collect()
-}
-
-impl Peer {
-    fn new(launch: &Launch, pid: Option<u32>, supervisor: &Supervisor) -> Result<Self, PartError> {
-        let silence = if launch.launcher == Launcher::Hand {
-            BY_HAND
-        } else {
-            launch.handshake
-        };
-        let mut peer = Self {
-            name: launch.name.clone(),
-            pid,
-            ranks: Vec::new(),
-            log: launch.log.clone(),
-            own: Supervisor::new(silence, supervisor.interrupts().clone()),
-        };
-        if let Some(pid) = pid {
-            peer.own.watch(&peer.name, pid, Some(&peer.log))?;
-        }
-        Ok(peer)
-    }
-
-    /// Has a supervisor watch every process of the solver, the ranks first: a launcher ends soon after
-    /// the rank that is to be named.
-    fn watch(&self, supervisor: &mut Supervisor, local: &[(usize, u32)]) -> Result<(), PartError> {
-        for &(rank, pid) in local.iter().filter(|(_, pid)| Some(*pid) != self.pid) {
-            supervisor.watch(&self.called(&format!("rank {rank}")), pid, Some(&self.log))?;
-        }
-        let Some(pid) = self.pid else { return Ok(()) };
-        let name = if local.iter().any(|&(_, rank)| rank == pid) {
-            self.name.clone()
-        } else {
-            self.called("launcher")
-        };
-        supervisor.watch(&name, pid, Some(&self.log))
-    }
-
-    /// The name with more in its brackets: "OpenFOAM (gas, rank 1)".
-    fn called(&self, what: &str) -> String {
-        match self.name.strip_suffix(')') {
-            Some(name) => format!("{name}, {what})"),
-            None => format!("{} ({what})", self.name),
-        }
-    }
-
-    /// Name and process id, of a rank where one is meant.
-    fn who(&self, rank: Option<usize>) -> String {
-        let of_rank = rank.and_then(|rank| self.ranks.get(rank));
-        match (rank, of_rank, self.pid) {
-            (Some(rank), Some(pid), _) if self.ranks.len() > 1 => {
-                format!("{}, pid {pid}", self.called(&format!("rank {rank}")))
-            }
-            (_, Some(pid), None) => format!("{}, pid {pid}", self.name),
-            (_, _, Some(pid)) => format!("{}, pid {pid}", self.name),
-            _ => self.name.clone(),
-        }
-    }
-
-    /// A wire's error as the part's: its own words, else its death, else the wire's.
-    fn failure(&self, rank: Option<usize>, window: Option<&Window>, error: WireError) -> PartError {
-        let who = self.who(rank);
-        let log = log_end(&self.log);
-        let mut part = match error {
-            WireError::Failed { kind, text } => PartError::new(who, reported(kind), text),
-            WireError::Mismatch { .. } => {
-                PartError::new(who, FailureKind::NotStarted, error.to_string())
-            }
-            error => {
-                // What ended may be noticed on the wire before its process is gone.
-                std::thread::sleep(Duration::from_millis(50));
-                if let Err(death) = self.own.check(window) {
-                    return death;
-                }
-                let message = format!("the link failed: {error}");
-                PartError::new(who, FailureKind::Protocol, message)
-            }
-        };
-        part.window = window.copied();
-        part.with_log(log)
-    }
-
-    /// Waits until every link holds a message of a kind, which it was asked for when the supervisor had waited `asked`.
-    fn wait(
-        &self,
-        links: &mut [Link],
-        supervisor: &Supervisor,
-        window: Option<&Window>,
-        kind: MessageKind,
-        asked: Duration,
-    ) -> Result<(), PartError> {
-        let mut arrived = vec![false; links.len()];
-        let mut poll = |slice: Duration| {
-            let share = slice / u32::try_from(arrived.len().max(1)).unwrap_or(1);
-            for (rank, (link, arrived)) in links.iter_mut().zip(&mut arrived).enumerate() {
-                if *arrived {
-                    continue;
-                }
-                let received = link.receive(share);
-                let received = received.map_err(|error| self.failure(Some(rank), window, error))?;
-                if let Some(header) = received {
-                    if header.kind() != Some(kind) {
-                        let error = WireError::Unexpected {
-                            found: header.kind,
-                            expected: kind.name(),
-                        };
-                        return Err(self.failure(Some(rank), window, error));
-                    }
-                    *arrived = true;
-                }
-            }
-            Ok(arrived.iter().all(|&arrived| arrived).then_some(()))
-        };
-        let waited = supervisor.wait_since(asked, &self.name, window, &mut poll);
-        match waited {
-            // The last word of a solver that ended says more than its end.
-            Err(death) if death.kind == FailureKind::Died => match poll(Duration::ZERO) {
-                Ok(Some(())) => Ok(()),
-                Err(word) if word.kind.is_reported() => Err(word),
-                _ => Err(death),
-            },
-            Err(mut silence) if silence.kind == FailureKind::Silent => {
-                let rank = arrived.iter().position(|arrived| !arrived);
-                silence.who = self.who(rank);
-                Err(silence.with_log(log_end(&self.log)))
-            }
-            waited => waited,
-        }
-    }
 }
 
 impl ExternalSolver {
@@ -306,7 +150,12 @@ impl ExternalSolver {
             links = open_links(&own, &launch.hello).map_err(unopened)?;
             run = Some(own);
         }
-        let mut peer = Peer::new(&launch, processes.pid(), supervisor)?;
+        let silence = match launch.launcher {
+            Launcher::Hand => BY_HAND,
+            _ => launch.handshake,
+        };
+        let about = (launch.name.as_str(), launch.log.as_path());
+        let mut peer = Peer::new(about, silence, processes.pid(), supervisor)?;
         if let Launcher::Network(Spawner(network)) = &launch.launcher {
             // No launcher of ours would end with a rank that dies before it introduces itself.
             let mut own = Supervisor::new(launch.handshake, supervisor.interrupts().clone());
@@ -374,63 +223,6 @@ impl ExternalSolver {
             }
         }
         self.wait_alone(MessageKind::State)
-    }
-
-    /// The cells that each rank says it has.
-    fn claims(&self) -> Result<Vec<Vec<usize>>, WireError> {
-        let claim = |link: &Link| {
-            let cells = link.column_words("cell")?.iter();
-            Ok(cells.map(|&cell| cell as usize).collect())
-        };
-        self.links.iter().map(claim).collect()
-    }
-
-    /// Every cell must be on one rank.
-    fn check_claims(&self) -> Result<(), PartError> {
-        let mut times = vec![0u32; self.hello.count as usize];
-        for &cell in self.owned.iter().flatten() {
-            let Some(times) = times.get_mut(cell) else {
-                let message = format!("a rank has cell {cell} of {}", self.hello.count);
-                return Err(self.refuse(None, message));
-            };
-            *times += 1;
-        }
-        match times.iter().position(|&times| times != 1) {
-            None => Ok(()),
-            Some(cell) => {
-                let message = format!("{} ranks have cell {cell}", times[cell]);
-                Err(self.refuse(None, message))
-            }
-        }
-    }
-
-    /// Every cell must lie where the mesh has it, and be as large.
-    fn check_geometry(&self, mesh: &Mesh) -> Result<(), PartError> {
-        for (link, cells) in self.links.iter().zip(self.owned.iter()) {
-            let columns = link.column("centre").and_then(|centres| {
-                let volumes = link.column("volume")?;
-                Ok((centres.as_chunks::<3>().0, volumes))
-            });
-            let (centres, volumes) = columns.map_err(|error| self.failure(None, error))?;
-            for ((&cell, &centre), &volume) in cells.iter().zip(centres).zip(volumes) {
-                let (own, size) = (mesh.cell_centre()[cell], mesh.cell_volume()[cell]);
-                let shift = (own - Vec3::from(centre)).norm();
-                let is_close =
-                    shift <= GEOMETRY * size.cbrt() && (volume - size).abs() <= GEOMETRY * size;
-                if !is_close {
-                    let [x, y, z] = centre;
-                    let message = format!(
-                        "its cell {cell} has {volume} m^3 about ({x}, {y}, {z}) m, that of the case's mesh {size} m^3 \
-                         about ({}, {}, {}) m; both must have the same mesh, numbered alike",
-                        own.x, own.y, own.z
-                    );
-                    let mut error = self.refuse(None, message);
-                    error.kind = FailureKind::NotStarted;
-                    return Err(error);
-                }
-            }
-        }
-        Ok(())
     }
 
     /// By rank: the cells of the whole mesh that it has, in the order of its columns.
