@@ -255,8 +255,8 @@ fn checked(folder: &Path, set: &str) -> String {
 #[test]
 fn particles_that_cannot_be_placed_are_told_with_the_line_of_the_case() {
     let folder = tempfile::tempdir().unwrap();
-    let file = |text: &str| {
-        let path = folder.path().join("bed.csv");
+    let file = |name: &str, text: &str| {
+        let path = folder.path().join(name);
         fs::write(&path, text).unwrap();
         format!("particles[0].place={{ file = \"{}\" }}", path.display())
     };
@@ -268,13 +268,13 @@ fn particles_that_cannot_be_placed_are_told_with_the_line_of_the_case() {
             "add one: [[particles]]",
         ),
         (
-            file(""),
+            file("none.csv", ""),
             "place = { file",
-            "bed.csv: it is empty",
+            "none.csv: it is empty",
             "its first line names the columns: x, y and z (in m)",
         ),
         (
-            file("x,y,z\n"),
+            file("head.csv", "x,y,z\n"),
             "[[particles]]",
             "the case has no particles: \"beads\" (",
             "a run needs one particle at least",

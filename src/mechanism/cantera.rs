@@ -208,7 +208,7 @@ fn pressure(node: &YamlNode) -> Result<f64, Fault> {
         }
     };
     match number.parse::<f64>() {
-        Ok(number) if number > 0.0 => Ok(number * unit),
+        Ok(number) if number > 0.0 && number.is_finite() => Ok(number * unit),
         _ => fault(
             node.line,
             format!("the reference-pressure {text} is no pressure"),

@@ -52,7 +52,7 @@ pub fn parse(text: &str, section: Option<usize>) -> Result<Vec<Thermo>, Fault> {
 fn temperatures(line: &str) -> Option<f64> {
     let numbers: Option<Vec<f64>> = line
         .split_whitespace()
-        .map(|word| word.parse().ok())
+        .map(|word| word.parse().ok().filter(|number: &f64| number.is_finite()))
         .collect();
     match numbers?[..] {
         [_, common, _] => Some(common),

@@ -1,5 +1,8 @@
 //! Which errors of a case only follow from a value that could not be read.
 
+/// What is said of a key that goes with another choice.
+pub(super) const NO_EFFECT: &str = " has no effect here";
+
 /// For a section of a case those whose values its checks use.
 const USES: &[(&str, &[&str])] = &[
     ("gas", &["mesh", "time"]),
@@ -57,7 +60,7 @@ pub(super) fn uses(check: &str, other: &str) -> bool {
 pub(super) fn names(check: &str, message: &str, refused: &str) -> bool {
     let (table, key) = refused.rsplit_once('.').unwrap_or(("", refused));
     let own_table = check.rsplit_once('.').map_or("", |(table, _)| table);
-    let idle = message.ends_with(super::NO_EFFECT) && own_table == table;
+    let idle = message.ends_with(NO_EFFECT) && own_table == table;
     let named = message.contains(&format!("`{key}`")) || message.contains(&format!(" no {key},"));
     idle || (named && entry(check) == entry(refused))
 }

@@ -18,15 +18,12 @@ mod nested;
 mod quantity;
 mod words;
 
-use consequences::{follows, names, uses};
+use consequences::{NO_EFFECT, follows, names, uses};
 pub(super) use nearest::instead_of_file;
 use nearest::nearest;
 
 /// What is said of a key that is not declared.
 pub(super) const UNKNOWN: &str = " is not a key of a case";
-
-/// What is said of a key that goes with another choice.
-const NO_EFFECT: &str = " has no effect here";
 
 /// Collects the problems of one file.
 #[derive(Debug, Default)]
