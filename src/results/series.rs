@@ -196,12 +196,11 @@ pub(super) fn row(
     values.push(moment.convergence.residual);
     values.push(moment.convergence.volume_residual);
     let ledger = moment.ledger;
-    let lines = ledger
-        .lines()
-        .map(|(_, _, line)| (line.relative_error(), line));
+    let lines = ledger.lines().into_iter();
+    let lines = lines.map(|(_, _, line)| (line.relative_error(), line));
     let elements = ledger.elements.iter();
     let elements = elements.map(|(_, line)| (ledger.relative_error_of(line), *line));
-    for (relative_error, line) in lines.into_iter().chain(elements) {
+    for (relative_error, line) in lines.chain(elements) {
         values.extend([relative_error, line.drift, line.throughput]);
     }
     let temperature = |id: &u64| {
