@@ -320,19 +320,18 @@ impl NativeParticles {
     /// Takes particles out and puts new ones in; the others keep the memories of their contacts.
     fn exchange(&mut self, change: &ParticleChanges) -> Result<(), NativeError> {
         self.resize(change)?;
-        let Some(engine) = &mut self.engine else {
-            return Ok(());
-        };
         if change.rest {
             self.velocity.fill(Vec3::zeros());
             self.angular_velocity.fill(Vec3::zeros());
         }
-        let (mut pairs, mut walls) = engine.memories();
-        let populations = engine
-            .contacts()
-            .material_of
-            .len()
-            .min(engine.contacts().held.len());
+        let (mut pairs, mut walls) = (Vec::new(), Vec::new());
+        // A frozen bed has no materials to its populations.
+        let mut populations = usize::MAX;
+        if let Some(engine) = &mut self.engine {
+            (pairs, walls) = engine.memories();
+            let contacts = engine.contacts();
+            populations = contacts.material_of.len().min(contacts.held.len());
+        }
         let gone = check::change(change, &self.id, populations)?;
         let mut keep = vec![true; self.id.len()];
         for &row in &gone {
@@ -379,6 +378,9 @@ impl NativeParticles {
             }
         }
         self.impulse = vec![Vec3::zeros(); self.id.len()];
+        if self.engine.is_none() {
+            return Ok(());
+        }
         self.hand_over((pairs, walls))
             .map_err(|stray| self.outside(stray))
     }
@@ -439,11 +441,8 @@ impl Particles for NativeParticles {
         if change.is_empty() {
             return Ok(());
         }
-        if self.engine.is_none() && !(change.remove.is_empty() && change.insert.is_empty()) {
-            return Err(self.failure(
-                FailureKind::Protocol,
-                "a frozen bed takes no particles in or out",
-            ));
+        if self.engine.is_none() && !change.insert.is_empty() {
+            return Err(self.failure(FailureKind::Protocol, "a frozen bed takes no particles in"));
         }
         self.exchange(change).map_err(|error| self.refused(error))
     }

@@ -36,7 +36,7 @@ pub struct ParticleStart<'a> {
     pub temperature: f64,
     /// The gas about it.
     pub around: ParticleSurroundings<'a>,
-    /// h A in W/K.
+    /// h A in W/K at the start.
     pub conductance: f64,
     /// Heat that it conducts and radiates, in W.
     pub heat: f64,
@@ -45,12 +45,12 @@ pub struct ParticleStart<'a> {
 /// What a window does to a particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParticleOutcome {
-    /// Its mean temperature in K.
-    pub mean: f64,
+    /// Mean heat from the gas in W.
+    pub flow: f64,
     /// Its temperature at the end in K.
     pub end: f64,
-    /// Change of the mean temperature with that of the gas.
-    pub mean_slope: f64,
+    /// Change of that heat with the temperature of the gas in W/K.
+    pub flow_slope: f64,
     /// What its integration took.
     pub statistics: IntegrationStatistics,
 }
@@ -88,6 +88,9 @@ impl Default for ParticleWorkspace {
 const VARIED: f64 = 10.0;
 /// Rounds of taking back at most.
 const MOST_ROUNDS: usize = 100;
+/// Share of its heat capacity at the start of a window that a particle has at least: what is used up has the
+/// temperature at which the heat of its reactions passes.
+const LEAST_CAPACITY: f64 = 1e-9;
 /// Directions of derivatives that one evaluation gives.
 const WIDTH: usize = 8;
 type Slopes = Dual<WIDTH>;
@@ -103,6 +106,8 @@ struct Buffers {
     warmth: Vec<[f64; 3]>,
     /// Molar heat capacity of each solid in J/mol/K, and its slope.
     molar: Vec<[f64; 2]>,
+    /// Change of h A with the amount of each solid that reacts, in W/K/mol.
+    conductance_slopes: Vec<f64>,
 }
 
 impl SolidChemistry {
@@ -111,6 +116,9 @@ impl SolidChemistry {
     /// The unknowns are the amounts n of the solids that react, and the temperature T, the integrals the extents ξ:
     ///
     /// dn_s/dτ = Σ_j ν_sj r_j,   C dT/dτ = h A (T_gas − T) + Q + Σ_j r_j q_j,   dξ_j/dτ = r_j.
+    ///
+    /// Radius, film and h A follow the amounts. The heat from the gas is what the balance of energy leaves for it between
+    /// start and end: ∫ h A (T_gas − T) dτ has no digits where h A is large.
     ///
     /// Amounts, not extents, are the unknowns, because what is left of a solid that a fast reaction uses as
     /// it is made is a difference of extents without digits. The extents keep all amounts: n = n₀ + ν ξ to round-off.
@@ -139,8 +147,6 @@ impl SolidChemistry {
         tolerance.resize(moving, accuracy.amount * all);
         tolerance.push(accuracy.temperature);
         tolerance.resize(moving + 1 + count, accuracy.amount * all);
-        // The integral of the temperature follows it.
-        tolerance.push(f64::INFINITY);
         buffers.begin(self, start);
         method.algebra().resize(moving + 1);
         let mut system = ParticleSystem {
@@ -148,6 +154,7 @@ impl SolidChemistry {
             start,
             trace: TRACE * all,
             tolerance: accuracy.amount * all,
+            least_capacity: LEAST_CAPACITY * self.heat_capacity(start.amounts, start.temperature),
             buffers,
         };
         let accuracy = IntegrationAccuracy {
@@ -176,10 +183,23 @@ impl SolidChemistry {
             local_slopes.push(direction.map_or(0.0, |one| method.direct(one)[j]));
         }
         let gas_temperature = self.directions().len();
+        let changed = method.tangent(gas_temperature);
+        let (end, hot) = (unknowns[moving], start.around.temperature);
+        let capacity = self.heat_capacity(start.amounts, end);
+        let (mut brought, mut slope) = (-start.heat * span, capacity * changed[moving]);
+        brought +=
+            self.enthalpy(start.amounts, end) - self.enthalpy(start.amounts, start.temperature);
+        for (j, extent) in extents.iter().enumerate() {
+            let warmth = self.warmth(j, end, hot);
+            let [_, by_particle, by_gas] = buffers.warmth[j];
+            brought -= extent * warmth;
+            slope -= changed[moving + 1 + j] * warmth
+                + extent * (by_particle * changed[moving] + by_gas);
+        }
         Ok(ParticleOutcome {
-            mean: method.integrals()[count] / span,
-            end: unknowns[moving],
-            mean_slope: method.tangent(gas_temperature)[moving + 1 + count] / span,
+            flow: brought / span,
+            end,
+            flow_slope: slope / span,
             statistics,
         })
     }
@@ -226,6 +246,9 @@ impl Buffers {
         self.fractions_dual
             .resize(start.around.fractions.len(), zero);
         self.molar.resize(start.amounts.len(), [0.0; 2]);
+        self.conductance_slopes.clear();
+        self.conductance_slopes
+            .resize(chemistry.moving().len(), 0.0);
         // The heat of a reaction follows temperature so slowly that a line will do here; what is booked is exact.
         self.warmth.clear();
         self.warmth.extend((0..chemistry.reactions.len()).map(|j| {
@@ -244,13 +267,28 @@ struct ParticleSystem<'a> {
     trace: f64,
     /// What an amount may be below zero, in mol.
     tolerance: f64,
+    /// In J/K.
+    least_capacity: f64,
     buffers: &'a mut Buffers,
+}
+
+/// What the temperature of a particle follows from.
+struct ParticleHeat {
+    /// Heat capacity in J/K and its change with temperature.
+    capacity: [f64; 2],
+    /// Change with temperature of the heat of reaction in W, at fixed rates.
+    released: f64,
+    /// h A in W/K.
+    conductance: f64,
+    /// T_gas − T in K.
+    difference: f64,
 }
 
 impl ParticleSystem<'_> {
     /// Heat capacity in J/K and its change with temperature; the molar ones stay in the buffer.
     fn capacity(&mut self, temperature: f64) -> [f64; 2] {
         let mut all = [0.0; 2];
+        // The molar ones are those of the slopes, which the least capacity does not have.
         let solids = self.chemistry.solids.iter().zip(&self.buffers.amounts);
         for ((solid, n), molar) in solids.zip(&mut self.buffers.molar) {
             let mass = solid.molar_mass();
@@ -261,7 +299,19 @@ impl ParticleSystem<'_> {
             all[0] += n * molar[0];
             all[1] += n * molar[1];
         }
-        all
+        if all[0] > self.least_capacity {
+            all
+        } else {
+            self.buffers.molar.fill([0.0; 2]);
+            [self.least_capacity, 0.0]
+        }
+    }
+
+    /// h A in W/K.
+    fn conductance(&self) -> f64 {
+        let around = &self.start.around;
+        let radius = around.size.radius_of(&self.buffers.amounts, around.radius);
+        around.conductance_of(self.start.conductance, radius)
     }
 
     /// Takes up the unknowns; their temperature in K.
@@ -272,9 +322,8 @@ impl ParticleSystem<'_> {
         y[self.chemistry.moving().len()]
     }
 
-    /// What follows from the rates: changes of amounts, of temperature, of extents, of its integral. The result is
-    /// the capacity, and the heat of reaction in W with its change with temperature at fixed rates.
-    fn fill(&mut self, temperature: f64, out: &mut [f64]) -> ([f64; 2], [f64; 2]) {
+    /// What follows from the rates: changes of amounts, of temperature, of extents.
+    fn fill(&mut self, temperature: f64, out: &mut [f64]) -> ParticleHeat {
         let moving = self.chemistry.moving().len();
         out.fill(0.0);
         let mut released = [0.0; 2];
@@ -293,11 +342,16 @@ impl ParticleSystem<'_> {
             out[moving + 1 + j] = *rate;
         }
         let capacity = self.capacity(temperature);
-        let taken = self.start.conductance * (self.start.around.temperature - temperature);
+        let conductance = self.conductance();
+        let difference = self.start.around.temperature - temperature;
+        let taken = conductance * difference;
         out[moving] = (taken + self.start.heat + released[0]) / capacity[0];
-        let last = out.len() - 1;
-        out[last] = temperature;
-        (capacity, released)
+        ParticleHeat {
+            capacity,
+            released: released[1],
+            conductance,
+            difference,
+        }
     }
 }
 
@@ -307,7 +361,7 @@ impl StiffSystem for ParticleSystem<'_> {
     }
 
     fn integrals(&self) -> usize {
-        self.chemistry.reactions.len() + 1
+        self.chemistry.reactions.len()
     }
 
     fn parameters(&self) -> usize {
@@ -365,24 +419,23 @@ impl StiffSystem for ParticleSystem<'_> {
                 }
             }
         }
-        let (capacity, released) = self.fill(temperature, out);
+        let heat = self.fill(temperature, out);
         // C dT/dτ = …: the row of the temperature holds the slopes of its right side so far.
         let rise = out[place_of_temperature];
+        let widening = &self.buffers.conductance_slopes;
         let row = &mut derivatives.jacobian[place_of_temperature * n..];
-        for (slope, &s) in row.iter_mut().zip(chemistry.moving()) {
-            *slope -= rise * self.buffers.molar[s][0];
+        for (k, &s) in chemistry.moving().iter().enumerate() {
+            row[k] += widening[k] * heat.difference - rise * self.buffers.molar[s][0];
         }
-        row[place_of_temperature] += released[1] - self.start.conductance - rise * capacity[1];
-        row.iter_mut().for_each(|slope| *slope /= capacity[0]);
-        derivatives.integrals[chemistry.reactions.len() * n + place_of_temperature] = 1.0;
+        row[place_of_temperature] += heat.released - heat.conductance - rise * heat.capacity[1];
+        row.iter_mut().for_each(|slope| *slope /= heat.capacity[0]);
         for column in derivatives.parameters.chunks_exact_mut(out.len()) {
-            column[place_of_temperature] /= capacity[0];
+            column[place_of_temperature] /= heat.capacity[0];
         }
-        let last = chemistry.directions().len() * out.len();
         let heats = self.buffers.rates.iter().zip(&self.buffers.warmth);
         let brought: f64 = heats.map(|(rate, warmth)| rate * warmth[2]).sum();
-        derivatives.parameters[last + place_of_temperature] =
-            (self.start.conductance + brought) / capacity[0];
+        let column = &mut derivatives.parameters[chemistry.directions().len() * out.len()..];
+        column[place_of_temperature] = (heat.conductance + brought) / heat.capacity[0];
     }
 
     fn admissible(&self, from: &[f64], to: &[f64]) -> f64 {
@@ -501,7 +554,16 @@ impl ParticleSystem<'_> {
             temperature: warm,
             trace: self.trace,
         };
-        chemistry.rates(&self.start.around, &state, &mut buffers.rates_dual);
+        let around = &self.start.around;
+        chemistry.rates(around, &state, &mut buffers.rates_dual);
+        if around.size.volumes().is_some() {
+            let radius = around.size.radius_of(state.amounts, around.radius);
+            let conductance = around.conductance_of(self.start.conductance, radius);
+            let slopes = buffers.conductance_slopes.iter_mut().skip(first);
+            for (slope, lane) in slopes.zip(conductance.slope) {
+                *slope = lane;
+            }
+        }
     }
 }
 

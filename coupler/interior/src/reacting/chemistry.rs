@@ -200,10 +200,11 @@ impl SolidChemistry {
     }
 
     /// Temperature in K of a sensible enthalpy in J of these amounts; `guess` in K is near it. Newton's
-    /// method, whose slope is piecewise linear, held between bounds.
-    pub fn temperature(&self, amounts: &[f64], enthalpy: f64, guess: f64) -> f64 {
-        let (mut low, mut high): (f64, f64) = (1.0, 2e4);
-        let mut temperature = guess.clamp(2.0, 1e4);
+    /// method, whose slope is piecewise linear, held within [`LOWEST`] and [`HIGHEST`]; the bound as an error where the
+    /// enthalpy has none within.
+    pub fn temperature(&self, amounts: &[f64], enthalpy: f64, guess: f64) -> Result<f64, f64> {
+        let (mut low, mut high) = (LOWEST, HIGHEST);
+        let mut temperature = guess.clamp(2.0 * LOWEST, 0.5 * HIGHEST);
         for _ in 0..100 {
             let off = self.enthalpy(amounts, temperature) - enthalpy;
             if off > 0.0 {
@@ -214,7 +215,13 @@ impl SolidChemistry {
             let step = off / self.heat_capacity(amounts, temperature);
             let next = temperature - step;
             if step.abs() <= 4e-15 * temperature {
-                return next;
+                return Ok(next);
+            }
+            for (bound, beyond) in [(LOWEST, next < LOWEST), (HIGHEST, next > HIGHEST)] {
+                let lacking = enthalpy - self.enthalpy(amounts, bound);
+                if beyond && lacking * (bound - temperature) > 0.0 {
+                    return Err(bound);
+                }
             }
             temperature = if next > low && next < high {
                 next
@@ -222,7 +229,7 @@ impl SolidChemistry {
                 0.5 * (low + high)
             };
         }
-        temperature
+        Ok(temperature)
     }
 
     /// Mass in kg of amounts of solids.
@@ -231,6 +238,10 @@ impl SolidChemistry {
         parts.map(|(solid, n)| solid.molar_mass() * n).sum()
     }
 }
+
+/// Bounds of the temperature of a particle in K.
+const LOWEST: f64 = 1.0;
+const HIGHEST: f64 = 2e4;
 
 /// The gas by whose amount a power law's rate is taken as linear: the first that is used up, or else the
 /// first that is set free.

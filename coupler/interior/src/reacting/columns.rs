@@ -7,7 +7,11 @@ use crate::thin::TEMPERATURE;
 /// Name of the group of columns that hold the mass fraction of each solid.
 const SOLIDS: &str = "solids";
 
-/// Temperature, the amount of each solid in mol, and its mass fraction, which follows.
+/// Name of the column of the mass with which a particle came.
+const FIRST_MASS: &str = "first_mass";
+
+/// Temperature, the amount of each solid in mol, the mass with which it came, and the mass fraction of each solid, which
+/// follows.
 pub(super) fn columns(chemistry: &SolidChemistry) -> Vec<StateColumn> {
     let names = || chemistry.solids.iter().map(|solid| solid.name());
     let amount = |name: &str| {
@@ -20,6 +24,9 @@ pub(super) fn columns(chemistry: &SolidChemistry) -> Vec<StateColumn> {
             .in_group(SOLIDS)
     };
     let temperature = StateColumn::shown(TEMPERATURE, "K", "temperature of the particle");
-    let others = names().map(amount).chain(names().map(fraction));
-    std::iter::once(temperature).chain(others).collect()
+    let first = StateColumn::shown(FIRST_MASS, "kg", "mass with which the particle came")
+        .with_role(ColumnRole::Private);
+    let state = std::iter::once(temperature).chain(names().map(amount));
+    let all = state.chain([first]).chain(names().map(fraction));
+    all.collect()
 }

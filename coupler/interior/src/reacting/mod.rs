@@ -80,7 +80,15 @@ struct Amounts {
     amount: Vec<f64>,
     /// In K.
     temperature: Vec<f64>,
+    /// Mass in kg with which each particle came.
+    first_mass: Vec<f64>,
+    /// Heat in J that particles which are used up no longer hold: what the window brought them beyond the enthalpy of what
+    /// is left of them.
+    unheld: Vec<f64>,
 }
+
+/// Share of the mass with which it came below which a particle is used up.
+pub(crate) const USED_UP: f64 = 1e-6;
 
 impl Reacting {
     /// No particles yet, of a material that is at first made of these mass fractions of the chemistry's solids.
@@ -130,6 +138,11 @@ impl Reacting {
 
     fn count(&self) -> usize {
         self.committed.temperature.len()
+    }
+
+    /// True where so little mass in kg is left of a particle that it is used up.
+    fn is_used_up(&self, row: usize, mass: f64) -> bool {
+        mass <= USED_UP * self.committed.first_mass[row]
     }
 
     /// Everything as at the last commit.

@@ -2,6 +2,7 @@
 
 use calcine_physics::thermo::Element;
 
+use super::step::TemperatureBeyond;
 use super::{Amounts, Reacting};
 use crate::column::{ColumnKind, Ragged, StateColumn};
 use crate::error::ModelError;
@@ -30,8 +31,12 @@ impl ParticleModel for Reacting {
             Some(solid) if solid < solids => {
                 particles.for_each(|amounts| out.push_reals(&[amounts[solid]]));
             }
+            Some(place) if place == solids => {
+                let masses = &self.committed.first_mass;
+                masses.iter().for_each(|mass| out.push_reals(&[*mass]));
+            }
             Some(place) => {
-                let solid = place - solids;
+                let solid = place - solids - 1;
                 let molar = self.chemistry.solids[solid].molar_mass();
                 let masses = &self.bodies[1].mass;
                 for (amounts, mass) in particles.zip(masses) {
@@ -50,6 +55,7 @@ impl ParticleModel for Reacting {
             let list = values.to_scalars(&of.name, rows)?;
             match column.checked_sub(1) {
                 None => self.committed.temperature.copy_from_slice(list),
+                Some(place) if place == solids => self.committed.first_mass.copy_from_slice(list),
                 Some(solid) => {
                     let amounts = self.committed.amount.chunks_exact_mut(solids);
                     for (amounts, value) in amounts.zip(list) {
@@ -160,7 +166,30 @@ impl ParticleModel for Reacting {
             }
             let gained = (took.heat[p] + took.network[p] + took.carried[p]) * span + released;
             let before = chemistry.enthalpy(held, self.committed.temperature[p]);
-            self.now.temperature[p] = chemistry.temperature(amounts, before + gained, self.end[p]);
+            let (enthalpy, guess) = (before + gained, self.end[p]);
+            if self.is_used_up(
+                p,
+                chemistry.mass(&self.now.amount[p * solids..(p + 1) * solids]),
+            ) {
+                let left = &self.now.amount[p * solids..(p + 1) * solids];
+                self.now.temperature[p] = guess;
+                self.now.unheld[p] = enthalpy - chemistry.enthalpy(left, guess);
+                continue;
+            }
+            self.now.unheld[p] = 0.0;
+            let amounts = &self.now.amount[p * solids..(p + 1) * solids];
+            self.now.temperature[p] =
+                chemistry
+                    .temperature(amounts, enthalpy, guess)
+                    .map_err(|bound| ModelError::Particle {
+                        row: p,
+                        cause: Box::new(TemperatureBeyond {
+                            bound,
+                            from: self.committed.temperature[p],
+                            exchanged: gained - released,
+                            released,
+                        }),
+                    })?;
         }
         self.measure(0);
         Ok(())
@@ -183,7 +212,8 @@ impl ParticleModel for Reacting {
                 add_elements(&mut all, solid.atoms(), change);
             }
             let sensible = chemistry.enthalpy(now, self.now.temperature[p])
-                - chemistry.enthalpy(before, self.committed.temperature[p]);
+                - chemistry.enthalpy(before, self.committed.temperature[p])
+                + (self.now.unheld[p] - self.committed.unheld[p]);
             let extents = &self.extents[p * count..(p + 1) * count];
             let turned = extents.iter().zip(&chemistry.heat);
             let heat: f64 = turned.map(|(extent, heat)| (extent * heat).abs()).sum();
@@ -207,7 +237,8 @@ impl ParticleModel for Reacting {
                 add_elements(&mut all, solid.atoms(), *n);
             }
             all.mass.add(chemistry.mass(amounts));
-            let sensible = chemistry.enthalpy(amounts, self.committed.temperature[row]);
+            let sensible = chemistry.enthalpy(amounts, self.committed.temperature[row])
+                + self.committed.unheld[row];
             all.energy.add(formed + sensible);
         }
         all
@@ -216,7 +247,10 @@ impl ParticleModel for Reacting {
     fn commit(&mut self) -> Vec<usize> {
         self.committed.clone_from(&self.now);
         self.begin();
-        Vec::new()
+        let rows = self.bodies[1].mass.iter().enumerate();
+        rows.filter(|(row, mass)| self.is_used_up(*row, **mass))
+            .map(|(row, _)| row)
+            .collect()
     }
 
     fn change(&mut self, gone: &[usize], new: &[Newcomer<'_>]) -> Result<(), ModelError> {
@@ -228,12 +262,18 @@ impl ParticleModel for Reacting {
         let Amounts {
             amount,
             temperature,
+            first_mass,
+            unheld,
         } = &mut self.committed;
         without(amount, &places);
         without(temperature, gone);
+        without(first_mass, gone);
+        without(unheld, gone);
         for one in new {
             one.only(&[TEMPERATURE])?;
             temperature.push(one.scalar(TEMPERATURE)?);
+            first_mass.push(one.mass);
+            unheld.push(0.0);
             amount.extend(self.composition.iter().map(|n| n * one.mass));
         }
         self.begin();

@@ -36,12 +36,40 @@ pub struct ParticleSurroundings<'a> {
     pub pressure: f64,
     /// Mole fractions.
     pub fractions: &'a [f64],
-    /// Mass transfer coefficient of each species in m/s.
+    /// Mass transfer coefficient of each species in m/s, in gas of its temperature about a particle of the radius.
     pub film: &'a [f64],
     /// Radius of the particle in m at the start, which stays where its diameter does.
     pub radius: f64,
     /// How it takes up room.
     pub size: &'a SizeChange,
+}
+
+impl ParticleSurroundings<'_> {
+    /// How much smaller than at the start a particle of a radius in m is; one where its diameter stays.
+    fn shrinkage<N: Number>(&self, radius: N) -> Option<N> {
+        let changes = self.size.volumes().is_some() && self.radius > 0.0;
+        changes.then(|| radius.times(1.0 / self.radius))
+    }
+
+    /// Mass transfer coefficient of a species in m/s for concentrations at the temperature of the particle in K, which has
+    /// a radius in m. What passes the film is β (p/R T_gas) (X_gas − X_surface): both ends in the gas of the film, whose
+    /// coefficient it is (docs/theory.md, RXN-3). The Sherwood number is that of the start of the window.
+    fn film_of<N: Number>(&self, species: usize, radius: N, temperature: N) -> N {
+        let film = temperature.times(self.film[species] / self.temperature);
+        match self.shrinkage(radius) {
+            Some(shrinkage) => film / shrinkage,
+            None => film,
+        }
+    }
+
+    /// Conductance of the film in W/K about a particle of a radius in m; at the start it is `conductance`. The Nusselt
+    /// number is that of the start of the window.
+    pub fn conductance_of<N: Number>(&self, conductance: f64, radius: N) -> N {
+        match self.shrinkage(radius) {
+            Some(shrinkage) => shrinkage.times(conductance),
+            None => N::constant(conductance),
+        }
+    }
 }
 
 /// What the rates of a particle depend on within a window.
@@ -150,7 +178,7 @@ impl SolidChemistry {
         for path in &layers.paths {
             let mut interfaces = [Interface::<N>::none(); MOST_INTERFACES];
             let bulk = all_gas * state.fractions[path.key];
-            let film = around.film[path.key];
+            let film = around.film_of(path.key, radius, state.temperature);
             for (k, interface) in interfaces.iter_mut().enumerate().take(count) {
                 let (inner, outer) = (places[k], places.get(k + 1).copied());
                 let outer = outer.filter(|_| k + 1 < count).unwrap_or(N::constant(1.0));
@@ -160,8 +188,7 @@ impl SolidChemistry {
                 interface.diffusivity = path.diffusivity[k].at(state.temperature);
                 if let Some(index) = path.reactions[k] {
                     let solids = [layers.solids[k], layers.solids[k + 1]];
-                    let passed =
-                        interface.diffusivity.times(1.0 / around.radius) + N::constant(film);
+                    let passed = interface.diffusivity.times(1.0 / around.radius) + film;
                     (interface.rate_constant, interface.equilibrium) = interface_of(
                         &self.reactions[index],
                         (path, passed.times(FAST)),
@@ -286,7 +313,8 @@ fn power<N: Number>(
     } else if order == 0.0 && state.fractions[key].value() <= 0.0 {
         zero
     } else {
-        let film = area.times(around.film[key] / -moles);
+        let film = around.film_of(key, radius, state.temperature);
+        let film = (area * film).times(-1.0 / moles);
         let surface = power_law::at_surface(gas(key), film, rest, order);
         let forward = if order == 0.0 && surface.value() <= 0.0 {
             film * gas(key)

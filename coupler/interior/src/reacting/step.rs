@@ -28,6 +28,24 @@ pub struct ReactError {
     pub cause: IntegrationStalled,
 }
 
+/// A particle whose heat has no temperature.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[error(
+    "the particle comes to its bound of {bound} K from {from} K within one window, with {exchanged:.4e} J from gas, \
+     contacts and radiation and {released:.4e} J from its reactions: shorten the windows (time.process_step), or check \
+     the heats of reaction"
+)]
+pub struct TemperatureBeyond {
+    /// The bound in K that it would pass.
+    pub bound: f64,
+    /// Its temperature in K at the start of the window.
+    pub from: f64,
+    /// Heat in J that it exchanged over the window.
+    pub exchanged: f64,
+    /// Heat in J that its reactions set free.
+    pub released: f64,
+}
+
 /// Places of a particle's results in a row of them; extents and lines follow.
 const CONDUCTANCE: usize = 0;
 const START: usize = 1;
@@ -128,16 +146,13 @@ impl Reacting {
                 cause,
             })?;
         row[END] = outcome.end;
-        let flow = exchanged * (hot - outcome.mean);
+        let flow = outcome.flow;
         // Only how fast attempts converge depends on the slope.
-        let slope = exchanged * (1.0 - outcome.mean_slope);
-        let slope = slope.clamp(0.2 * inert, exchanged.max(0.2 * inert));
+        let slope = outcome
+            .flow_slope
+            .clamp(0.2 * inert, exchanged.max(0.2 * inert));
         row[CONDUCTANCE] = slope;
-        row[START] = if slope > 0.0 {
-            hot - flow / slope
-        } else {
-            outcome.mean
-        };
+        row[START] = if slope > 0.0 { hot - flow / slope } else { hot };
         let count = self.chemistry.reactions.len();
         row[EXTENTS..EXTENTS + count].copy_from_slice(&workspace.extents);
         self.draw_lines(p, around, span, workspace, &mut row[EXTENTS + count..]);

@@ -61,13 +61,7 @@ impl<N: Number> Interface<N> {
 /// Source: Yagi and Kunii, 5th Symposium on Combustion (1955) 231, doi 10.1016/S0082-0784(55)80033-1, for one
 /// interface; Spitzer, Manning and Philbrook, Trans. Metall. Soc. AIME 236 (1966) 1715, and Tsay, Ray and
 /// Szekely, AIChE J. 22 (1976) 1064, doi 10.1002/aic.690220617, for three.
-pub fn flows<N: Number>(
-    radius: N,
-    film: f64,
-    bulk: N,
-    interfaces: &[Interface<N>],
-    flows: &mut [N],
-) {
+pub fn flows<N: Number>(radius: N, film: N, bulk: N, interfaces: &[Interface<N>], flows: &mut [N]) {
     let area = sphere::surface_of(radius);
     let count = interfaces.len();
     flows[..count].fill(N::constant(0.0));
@@ -97,7 +91,7 @@ pub fn flows<N: Number>(
     }
     // From the outside in: what each interface takes of the flow that arrives.
     let Some((z, e)) = within else { return };
-    let mut flow = (bulk - e) / (z + N::constant(1.0 / film));
+    let mut flow = (bulk - e) / (z + film.inverse());
     for (branch, out) in branches[..count].iter().zip(flows.iter_mut()).rev() {
         let Some(branch) = branch else {
             continue;
