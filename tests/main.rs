@@ -6,6 +6,7 @@
 mod agreement;
 mod architecture;
 mod beds;
+mod burn_out;
 mod case_files;
 mod check_and_run;
 mod command_line;

@@ -15,8 +15,8 @@ use super::series::{self, Row, TRACKED_PARTICLES, Table};
 use super::status::{Status, Watch};
 use super::store::Store;
 use super::summary::{
-    Backends, CaseName, LedgerLineSummary, LedgerSummary, ProcessorTimes, Provenance, RunFailure,
-    SolverSummaries, SolverSummary, Summary, Verdict, WallTimes,
+    Backends, CaseName, LedgerLineSummary, LedgerSummary, PassedParticles, ProcessorTimes,
+    Provenance, RunFailure, SolverSummaries, SolverSummary, Summary, Verdict, WallTimes,
 };
 use super::vtk::{self, Cells};
 use super::{
@@ -402,6 +402,7 @@ impl Recorder {
             windows: moment.windows,
             particles: moment.particles.len(),
             cells: moment.mesh.cells(),
+            passed: PassedParticles::of(moment.ledger),
             ledger: LedgerSummary {
                 lines: moment
                     .ledger

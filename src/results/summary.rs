@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use calcine_coupler::ledger::{CarriedInventory, Ledger};
 use serde::{Deserialize, Serialize};
 
 use super::files::{self, number};
@@ -76,6 +77,9 @@ pub struct Summary {
     pub particles: usize,
     /// Cells of the gas mesh.
     pub cells: usize,
+    /// Particles that came and went.
+    #[serde(default)]
+    pub passed: PassedParticles,
     /// The ledger.
     pub ledger: LedgerSummary,
     /// Wall times by stage in s, over all processes of the run.
@@ -163,6 +167,45 @@ pub struct SolverSummary {
     pub version: String,
     /// Ranks it ran on.
     pub ranks: usize,
+}
+
+/// Particles that came and went over the run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PassedParticles {
+    /// By feeds.
+    pub fed: PassedInventory,
+    /// By outlets.
+    pub discharged: PassedInventory,
+    /// What was left of those that were used up, burnt for example, as they were taken out.
+    pub used_up: PassedInventory,
+}
+
+impl PassedParticles {
+    /// As the ledger has them.
+    pub fn of(ledger: &Ledger) -> Self {
+        let of = |inventory: &CarriedInventory| PassedInventory {
+            rows: inventory.particles,
+            mass_kg: inventory.mass,
+            energy_j: inventory.enthalpy,
+        };
+        let [fed, discharged] = &ledger.fed_and_discharged;
+        Self {
+            fed: of(fed),
+            discharged: of(discharged),
+            used_up: of(&ledger.used_up),
+        }
+    }
+}
+
+/// What particles carried.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PassedInventory {
+    /// Number of rows; each stands for as many particles as its weight says.
+    pub rows: u64,
+    /// Their mass in kg.
+    pub mass_kg: f64,
+    /// Their energy in J, as their models count it.
+    pub energy_j: f64,
 }
 
 /// The ledger's lines by their stable names; elements get a table of their own.
