@@ -22,6 +22,10 @@ const ONLY_PARSED: &[(&str, &str)] = &[
         "compiles; run by the tests of the solvers in C",
     ),
     ("cargo bench", "measures for minutes"),
+    (
+        "cargo run --release",
+        "compiles Calcine for another program",
+    ),
     ("cc -std", "compiles; run by the tests of the solvers in C"),
     (".ci/run", "runs this test"),
     (
@@ -327,6 +331,32 @@ fn shortened(words: &[String]) -> Vec<String> {
 #[test]
 fn the_commands_of_the_tutorial_run_as_they_stand() {
     execute(Path::new("docs/tutorial.md"));
+}
+
+#[test]
+fn what_the_tutorial_shows_of_check_is_what_check_prints() {
+    let page = text(Path::new("docs/tutorial.md"));
+    let shown: Vec<String> = blocks(&page, "text")
+        .into_iter()
+        .filter(|block| block.contains("of process time   AF"))
+        .collect();
+    let folder = tempfile::tempdir().unwrap();
+    let run = |words: &[&str]| {
+        let words: Vec<String> = words.iter().map(|word| (*word).to_owned()).collect();
+        let output = calcine(folder.path(), &words);
+        assert!(output.status.success(), "{}", said(&output));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    run(&["new", "my-bed", "--like", "heated-bed"]);
+    save_cases(Path::new("docs/tutorial.md"), folder.path());
+    let printed = [
+        run(&["check", "my-bed/my-bed.toml"]).replace("my-bed/my-bed.toml", "my-bed.toml"),
+        run(&["check", "regenerator.toml"]),
+    ];
+    assert_eq!(shown.len(), printed.len());
+    // The first is shown as a whole, of the second the lines that are told of.
+    assert_eq!(shown[0].trim_end(), printed[0].trim_end());
+    assert!(printed[1].contains(&shown[1]), "{}", printed[1]);
 }
 
 #[test]

@@ -38,8 +38,10 @@ for file in library/*.C calcineGasFoam/*.C; do
 done
 # Two compilers at a time: each takes about half a GB.
 ((${#jobs[@]})) && printf '%s\0' "${jobs[@]}" | xargs -0 -n 3 -P 2 bash -c '
+    echo "compile $(basename "${@: -3:1}")"
     g++ "${@:1:$#-3}" -c "${@: -3:1}" -o "${@: -2:1}" && mv "${@: -2:1}" "${@: -1}"' build "${flags[@]}" || ((${#jobs[@]} == 0))
 
+echo "link the library and the solver"
 own() { for file in "$1"/*.C; do echo "$objects/$(basename "$file" .C).o"; done; }
 # A new file takes the old one's place at once: a running solver keeps what it has opened.
 mapfile -t library < <(own library)

@@ -80,11 +80,24 @@ pub(crate) struct ExpectedBand {
     pub label: String,
 }
 
+/// Between the labels of y and the axis.
+const GAP: f64 = 8.0;
 /// Half the width of the mark of what is expected.
 const MARK: f64 = 6.0;
 
+/// Width of a letter of the labels, about.
+const LETTER: f64 = 7.0;
+
+/// The middle of a label about a place along x, shifted so that none of its letters is cut off.
+fn within_picture(at: f64, label: &str) -> f64 {
+    let half = 0.5 * LETTER * label.chars().count() as f64;
+    at.min(WIDTH - half).max(half)
+}
+
 /// Where values lie on the picture.
 struct Frame {
+    /// The left end of the axis of x, right of the labels of y.
+    left: f64,
     x: Range,
     y: Range,
     logarithmic: bool,
@@ -93,7 +106,7 @@ struct Frame {
 impl Frame {
     fn across(&self, x: f64) -> f64 {
         let span = (self.x.high - self.x.low).max(f64::MIN_POSITIVE);
-        LEFT + (x - self.x.low) / span * (WIDTH - LEFT - RIGHT)
+        self.left + (x - self.x.low) / span * (WIDTH - self.left - RIGHT)
     }
 
     /// Upwards; `y` already as logarithm where the scale is one.
@@ -104,6 +117,21 @@ impl Frame {
 
     fn value(&self, y: f64) -> f64 {
         if self.logarithmic { y.log10() } else { y }
+    }
+
+    /// Ticks along y with their labels.
+    fn ups(&self) -> Vec<(f64, String)> {
+        let ups = match self.logarithmic {
+            true => decades(self.y),
+            false => ticks(self.y, 5),
+        };
+        let steps = ups.windows(2).map(|pair| pair[1] - pair[0]);
+        let step = steps.fold(f64::INFINITY, f64::min);
+        let label = |y: f64| match self.logarithmic {
+            true => figure(10f64.powf(y), 1),
+            false => figure(y, digits(self.y, step)),
+        };
+        ups.into_iter().map(|y| (y, label(y))).collect()
     }
 }
 
@@ -169,71 +197,65 @@ impl Plot<'_> {
         } else {
             padded(Range::of(values)?)
         };
-        Some(Frame {
+        let mut frame = Frame {
+            left: LEFT,
             x,
             y,
             logarithmic: self.logarithmic,
-        })
+        };
+        let letters = frame.ups().into_iter();
+        let letters = letters.map(|(_, label)| label.chars().count()).max();
+        frame.left = LEFT.max(LETTER * letters.unwrap_or(0) as f64 + GAP);
+        Some(frame)
     }
 
     fn axes(&self, frame: &Frame, svg: &mut String) {
-        let (right, floor) = (WIDTH - RIGHT, HEIGHT - BOTTOM);
-        let ups = if self.logarithmic {
-            decades(frame.y)
-        } else {
-            ticks(frame.y, 5)
-        };
-        let step = ups
-            .windows(2)
-            .map(|pair| pair[1] - pair[0])
-            .fold(f64::INFINITY, f64::min);
-        for y in ups {
+        let (left, right, floor) = (frame.left, WIDTH - RIGHT, HEIGHT - BOTTOM);
+        for (y, text) in frame.ups() {
             let at = frame.up(y);
-            let text = match self.logarithmic {
-                true => figure(10f64.powf(y), 1),
-                false => figure(y, digits(frame.y, step)),
-            };
             let _ = write!(
                 svg,
-                "<line class=\"grid\" x1=\"{LEFT}\" x2=\"{right}\" y1=\"{at:.1}\" y2=\"{at:.1}\"/>\
+                "<line class=\"grid\" x1=\"{left}\" x2=\"{right}\" y1=\"{at:.1}\" y2=\"{at:.1}\"/>\
                  <text text-anchor=\"end\" x=\"{}\" y=\"{:.1}\">{text}</text>",
-                LEFT - 8.0,
+                left - GAP,
                 at + 4.0
             );
         }
         for x in ticks(frame.x, 6) {
             let at = frame.across(x);
+            let text = figure(x, 5);
             let _ = write!(
                 svg,
                 "<line class=\"tick\" x1=\"{at:.1}\" x2=\"{at:.1}\" y1=\"{floor}\" y2=\"{}\"/>\
-                 <text text-anchor=\"middle\" x=\"{at:.1}\" y=\"{}\">{}</text>",
+                 <text text-anchor=\"middle\" x=\"{:.1}\" y=\"{}\">{text}</text>",
                 floor + 5.0,
-                floor + 19.0,
-                figure(x, 5)
+                within_picture(at, &text),
+                floor + 19.0
             );
             if let Some((_, over, values)) = self.above {
+                let text = figure(between(over, values, x), 4);
                 let _ = write!(
                     svg,
                     "<line class=\"tick\" x1=\"{at:.1}\" x2=\"{at:.1}\" y1=\"{TOP}\" y2=\"{}\"/>\
-                     <text class=\"faint\" text-anchor=\"middle\" x=\"{at:.1}\" y=\"{}\">{}</text>",
+                     <text class=\"faint\" text-anchor=\"middle\" x=\"{:.1}\" y=\"{}\">{text}</text>",
                     TOP - 4.0,
-                    TOP - 8.0,
-                    figure(between(over, values, x), 4)
+                    within_picture(at, &text),
+                    TOP - 8.0
                 );
             }
         }
         let _ = write!(
             svg,
-            "<line class=\"axis\" x1=\"{LEFT}\" x2=\"{right}\" y1=\"{floor}\" y2=\"{floor}\"/>\
+            "<line class=\"axis\" x1=\"{left}\" x2=\"{right}\" y1=\"{floor}\" y2=\"{floor}\"/>\
              <text class=\"label\" text-anchor=\"middle\" x=\"{}\" y=\"{}\">{}</text>",
-            (LEFT + right) / 2.0,
+            (left + right) / 2.0,
             HEIGHT - 8.0,
             escape(self.x_label)
         );
         if let Some((label, _, _)) = self.above {
             let _ = write!(
                 svg,
-                "<line class=\"axis thin\" x1=\"{LEFT}\" x2=\"{right}\" y1=\"{TOP}\" y2=\"{TOP}\"/>\
+                "<line class=\"axis thin\" x1=\"{left}\" x2=\"{right}\" y1=\"{TOP}\" y2=\"{TOP}\"/>\
                  <text class=\"faint\" x=\"0\" y=\"{}\">{}</text>",
                 TOP - 22.0,
                 escape(label)
@@ -421,6 +443,45 @@ mod tests {
         assert!(render(None).contains(&format!("M{:.1} ", WIDTH - RIGHT)));
         // A run that ended before.
         assert!(!render(Some(200.0)).contains("expected"));
+    }
+
+    #[test]
+    fn no_label_is_cut_off_at_an_edge_of_the_picture() {
+        let (x, y) = ([0.0, 3e5], [101_325.123, 101_325.125]);
+        let plot = Plot {
+            title: "pressure".into(),
+            x_label: TIME,
+            logarithmic: false,
+            above: Some(("motion time in s", &x, &[0.0, 1.187_333])),
+            band: None,
+            curves: vec![Curve {
+                label: String::new(),
+                colour: "red".into(),
+                x: &x,
+                y: &y,
+                stroke: Stroke::Solid,
+            }],
+        };
+        let svg = plot.render();
+        let mut labels = 0;
+        for part in svg.split("<text ").skip(1) {
+            let (head, rest) = part.split_once('>').unwrap();
+            let text = rest.split('<').next().unwrap();
+            let width = LETTER * text.chars().count() as f64;
+            let at = head.split(" x=\"").nth(1).or(head.strip_prefix("x=\""));
+            let at: f64 = at.unwrap().split('"').next().unwrap().parse().unwrap();
+            let left = match head {
+                _ if head.contains("middle") => at - 0.5 * width,
+                _ if head.contains("end") => at - width,
+                _ => at,
+            };
+            assert!(
+                left >= -0.1 && left + width <= WIDTH + 0.1,
+                "{text}: {left}"
+            );
+            labels += 1;
+        }
+        assert!(labels > 10, "{labels}");
     }
 
     #[test]

@@ -65,7 +65,7 @@ impl OpenfoamAdapter {
             .env("WIRE_INCLUDE", sources.join("wire/include"))
             .env("WIRE_LIB", &library)
             .env("OUT_DIR", &self.folder);
-        step("compile the OpenFOAM adapter", || {
+        step("compile the OpenFOAM adapter (a few minutes)", || {
             quietly(&mut command, &log)
         })?;
         if !self.folder.join(SOLVER).is_file() {

@@ -3,10 +3,10 @@
 
 use std::ffi::OsStr;
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::Instant;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
 
 /// Why a task stopped: a sentence or several for the user.
 #[derive(Debug)]
@@ -56,7 +56,50 @@ pub fn new_log(folder: &Path, name: &str) -> TaskResult<PathBuf> {
     Ok(path)
 }
 
-/// Runs a command quietly: its output is appended to `log`, whose end is shown if it fails.
+/// How often a quiet command that takes long tells what it is at.
+const TELL_EVERY: Duration = Duration::from_secs(10);
+/// How often its end is looked for.
+const LOOK_EVERY: Duration = Duration::from_millis(20);
+
+/// Waits for a command; from time to time tells how long it has taken and the last line of its log.
+fn wait(
+    child: &mut Child,
+    log: &Path,
+    every: Duration,
+    tell: &mut dyn FnMut(&str),
+) -> io::Result<ExitStatus> {
+    let (begun, mut told) = (Instant::now(), Instant::now());
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(status);
+        }
+        std::thread::sleep(LOOK_EVERY);
+        if told.elapsed() >= every {
+            told = Instant::now();
+            tell(&format!(
+                "{:.0} s: {}",
+                begun.elapsed().as_secs_f64(),
+                last_line(log).unwrap_or_default()
+            ));
+        }
+    }
+}
+
+/// The last line of a log that is not blank, as far as one reads.
+fn last_line(log: &Path) -> Option<String> {
+    const END: i64 = 4096;
+    let mut file = File::open(log).ok()?;
+    let length = i64::try_from(file.metadata().ok()?.len()).ok()?;
+    file.seek(SeekFrom::End(-length.min(END))).ok()?;
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes).ok()?;
+    let text = String::from_utf8_lossy(&bytes).into_owned();
+    let line = text.lines().rfind(|line| !line.trim().is_empty())?;
+    Some(line.trim().chars().take(100).collect())
+}
+
+/// Runs a command quietly: its output is appended to `log`, whose end is shown if it fails. One that takes long tells
+/// the last line of its log from time to time.
 pub fn quietly(command: &mut Command, log: &Path) -> TaskResult<()> {
     let file = File::options()
         .append(true)
@@ -66,9 +109,13 @@ pub fn quietly(command: &mut Command, log: &Path) -> TaskResult<()> {
     let second = file.try_clone().map_err(|cause| Stop::io(log, &cause))?;
     let _ = writeln!(&file, "$ {}", shown(command));
     command.stdin(Stdio::null()).stdout(file).stderr(second);
-    let status = command
-        .status()
+    let mut child = command
+        .spawn()
         .map_err(|cause| not_started(command, &cause))?;
+    let status = wait(&mut child, log, TELL_EVERY, &mut |text| {
+        let _ = write!(io::stderr(), "\n  {text}");
+    });
+    let status = status.map_err(|cause| not_started(command, &cause))?;
     if status.success() {
         return Ok(());
     }
@@ -150,6 +197,27 @@ mod tests {
         let mut command = Command::new("cp");
         command.args(["a b", "it's", "plain-1.2", ""]);
         assert_eq!(shown(&command), r"cp 'a b' 'it'\''s' plain-1.2 ''");
+    }
+
+    #[test]
+    fn a_command_that_takes_long_tells_the_last_line_of_its_log() {
+        let folder = std::env::temp_dir().join(format!("xtask told {}", std::process::id()));
+        let log = new_log(&folder, "long").unwrap();
+        let mut command = Command::new("sh");
+        command.args(["-c", "echo compile UEqn.C; echo; sleep 1"]);
+        command.stdout(File::options().append(true).open(&log).unwrap());
+        let mut told = Vec::new();
+        let mut child = command.spawn().unwrap();
+        let every = Duration::from_millis(200);
+        let status = wait(&mut child, &log, every, &mut |text| {
+            told.push(text.to_owned())
+        });
+        fs::remove_dir_all(&folder).unwrap();
+        assert!(status.unwrap().success());
+        assert!(
+            told.iter().any(|text| text.ends_with(" s: compile UEqn.C")),
+            "{told:?}"
+        );
     }
 
     #[test]
