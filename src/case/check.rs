@@ -14,7 +14,7 @@ use calcine_coupler::physics::sphere;
 use calcine_coupler::setup::{GasPatch, InletFlow};
 
 use super::model::{Case, Population};
-use super::{buoyancy, expectations, sizes};
+use super::{buoyancy, expectations, ranges, sizes};
 
 /// Above this, a number of the time splitting gets a warning (docs/theory.md, TSM-6, TSM-8).
 const WARNING: f64 = 0.1;
@@ -276,6 +276,9 @@ fn splitting(text: &mut String, case: &Case, population: &Population, eps: f64) 
         "    0.11 hA AF dt/(m c), error of process storage       {error:.2e}{}",
         warn(error)
     );
+    for line in ranges::lines(case, &local, d) {
+        let _ = writeln!(text, "    {line}");
+    }
     if !case.laws.drag.is_none() {
         let coefficient = case.laws.drag.make().coefficient(&local, d);
         let response = material.density * volume / coefficient;

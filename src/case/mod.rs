@@ -13,6 +13,7 @@ mod overlap;
 mod place;
 mod place_error;
 mod problem;
+mod ranges;
 pub mod schema;
 mod sections;
 pub mod sizes;
