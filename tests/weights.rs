@@ -1,5 +1,6 @@
 //! Rows that stand for several particles: a held bed of particles of weight w gives the gas what w particles at each
-//! place give it; the ledger closes, runs resume to the same bits, and LIGGGHTS carries the weights too.
+//! place give it; the ledger closes, runs resume to the same bits, and LIGGGHTS and particles in C
+//! carry the weights too.
 
 #![cfg(feature = "hdf5")]
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
@@ -12,7 +13,7 @@ use std::process::Command;
 use calcine::results::Summary;
 use calcine::results::read::{Arrays, Series, arrays, collection};
 
-use crate::support::{killed, program};
+use crate::support::{c_solver, killed, program};
 
 /// A file of centres in a grid of 10 mm from 5 mm on, each place `times` over.
 fn grid(path: &Path, counts: [usize; 3], pitch: f64, above: f64, times: usize) -> String {
@@ -151,12 +152,18 @@ fn so_are_two_that_react() {
 
 #[test]
 fn a_bed_with_weights_resumes_to_the_same_bits() {
-    for particles in ["native", "liggghts"] {
+    let program = c_solver::particles().display();
+    let external = [
+        format!("external.particles.program={program}"),
+        "external.particles.arguments=[\"width=1\", \"depth=1\", \"height=1\"]".into(),
+    ];
+    for particles in ["native", "liggghts", "external"] {
         let folder = tempfile::tempdir().unwrap();
         let place = column(&folder.path().join("bed.csv"), 1);
         let command = |out: &Path| -> Command {
             let mut keys = vec![place.as_str(), "particles[0].weight=1.7"];
             keys.extend(COLUMN);
+            keys.extend(external.iter().map(String::as_str));
             let words = ["--particles", particles];
             program::command(&program::shipped("heated-column"), out, &words, &keys)
         };

@@ -89,9 +89,38 @@ fn the_momentum_of_gas_and_particles_closes_with_what_is_carried_over() {
         let carry = &summary.ledger.lines["drag_carry"];
         assert!(carry.relative_error > 1e-6, "{particles}: {carry:?}");
     }
+    // And with OpenFOAM's gas, whose own balance ends at its solvers' tolerances.
     let folder = tempfile::tempdir().unwrap();
+    let summary = run(folder.path(), "run", &["--gas", "openfoam"], &[FOLLOWING]);
+    closes(&summary, "openfoam", &["momentum", "particle_momentum"]);
     let constant = run(folder.path(), "constant", &[], &CLOSED);
     assert!(!constant.ledger.lines.contains_key("drag_carry"));
+}
+
+#[test]
+fn it_closes_with_time_splitting_feeds_and_a_bed_that_is_held_for_a_time() {
+    let folder = tempfile::tempdir().unwrap();
+    // Held, the bed takes what the gas owes it of the window before; at another pace, the next one is as long as it likes.
+    let held = [
+        FOLLOWING,
+        CLOSED[0],
+        CLOSED[1],
+        "time.end=0.16 s",
+        "time.acceleration=[[\"0 s\", 1], [\"0.05 s\", 20], [\"0.15 s\", 1]]",
+        "motion.held=[[\"0.05 s\", \"0.15 s\"]]",
+        "materials.glass.density=67 kg/m^3",
+    ];
+    for particles in ["native", "liggghts"] {
+        let out = folder.path().join(particles);
+        let case = program::shipped("settled-bed");
+        program::run(&case, &out, &["--particles", particles], &held);
+        closes(&Summary::read(&out).unwrap(), particles, &LINES);
+    }
+    let out = folder.path().join("fed");
+    let case = program::shipped("moving-bed");
+    program::run(&case, &out, &[], &["time.end=20 s", FOLLOWING]);
+    let lines = ["mass", "energy", "momentum", "particle_momentum"];
+    closes(&Summary::read(&out).unwrap(), "fed", &lines);
 }
 
 /// Dust so thin and slow that neither the gas moves nor its drag depends much on its speed: relaxation times of 2 ms.

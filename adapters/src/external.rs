@@ -196,24 +196,34 @@ impl ExternalParticlesLaunch<'_> {
             optional: [Catalogue::moving_drag(), Catalogue::weights()].concat(),
             cells: None,
         };
+        let (setup, anew) = (self.setup, resume.is_none());
         let solver = self.solver.start(terms, supervisor)?;
-        let particles = LinkedParticles::new(PARTICLES, solver, self.setup, u64::MAX)?;
+        let particles = LinkedParticles::new(PARTICLES, solver, setup, u64::MAX)?;
         let fields = particles.fields();
         let pairs = ids.iter().zip(&radii);
         let other = pairs
             .zip(fields.id.iter().zip(fields.radius))
             .find(|((id, radius), (other, own))| id != other || radius.to_bits() != own.to_bits());
-        match other {
-            None => Ok(particles),
-            Some(((id, radius), (other, own))) => {
-                let message = format!(
-                    "it starts with particle {other} of radius {own} m where the run has particle {id} of radius \
-                     {radius} m; take ids and radii as `particles.csv` or the checkpoint has them"
-                );
-                let kind = FailureKind::NotStarted;
-                Err(PartError::new(PARTICLES, kind, message))
-            }
+        let refuse = |message: String| {
+            let kind = FailureKind::NotStarted;
+            Err(PartError::new(PARTICLES, kind, message))
+        };
+        if let Some(((id, radius), (other, own))) = other {
+            return refuse(format!(
+                "it starts with particle {other} of radius {own} m where the run has particle {id} of radius {radius} m; \
+                 take ids and radii as `particles.csv` or the checkpoint has them"
+            ));
         }
+        let mut rows = 0..if anew { ids.len() } else { 0 };
+        if let Some(row) = rows.find(|&row| fields.weight_of(row) != setup.weight_of(row)) {
+            return refuse(format!(
+                "its particle {} stands for {}, in the case for {}; take weights as `particles.csv` has them",
+                ids[row],
+                fields.weight_of(row),
+                setup.weight_of(row)
+            ));
+        }
+        Ok(particles)
     }
 
     /// The folder in which the solver runs, with what it may use of the case: particles in ascending id, in SI, with
