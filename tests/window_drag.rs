@@ -6,6 +6,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use calcine::results::Summary;
 
@@ -152,6 +153,22 @@ fn long_windows_find_the_fall_of_short_ones_where_constant_drag_does_not() {
         constant > 0.1 && following < 0.25 * constant,
         "{following} {constant}"
     );
+}
+
+#[test]
+fn check_says_where_windows_are_long_for_constant_drag() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = light(folder.path());
+    let told = |key: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
+        let output = command.arg("check").arg(&case).args(["--set", key]);
+        let output = output.output().unwrap();
+        assert!(output.status.success());
+        String::from_utf8_lossy(&output.stdout).contains("coupling.window_drag = \"following\"")
+    };
+    assert!(told("coupling.window_drag=constant"));
+    assert!(!told(FOLLOWING));
+    assert!(!told("time.motion_window=1 ms"));
 }
 
 #[test]

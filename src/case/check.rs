@@ -13,7 +13,7 @@ use calcine_coupler::physics::numbers::VoidFraction;
 use calcine_coupler::physics::sphere;
 use calcine_coupler::setup::{GasPatch, InletFlow};
 
-use super::model::{Case, Population};
+use super::model::{Case, MotionSpec, Population};
 use super::{buoyancy, expectations, ranges, sizes};
 
 /// Above this, a number of the time splitting gets a warning (docs/theory.md, TSM-6, TSM-8).
@@ -283,10 +283,16 @@ fn splitting(text: &mut String, case: &Case, population: &Population, eps: f64) 
         let coefficient = case.laws.drag.make().coefficient(&local, d);
         let response = material.density * volume / coefficient;
         let window = case.time.motion_window.seconds();
+        let share = window / response;
+        let constant =
+            population.motion == MotionSpec::Free && !case.coupling.window_drag.follows();
         let _ = writeln!(
             text,
-            "    window over the drag's time m/K                      {:.2e}",
-            window / response
+            "    window over the drag's time m/K                      {share:.2e}{}",
+            match constant && share > 1.0 {
+                true => "   long: shorten it, or write coupling.window_drag = \"following\"",
+                false => "",
+            }
         );
     }
 }
