@@ -2,27 +2,35 @@
 
 #![allow(clippy::unwrap_used)]
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use calcine::results::Summary;
 use calcine::results::read::Series;
 
-use crate::support::program;
+use crate::support::{killed, program};
 
-fn run(out: &Path, arguments: &[&str], settings: &[&str]) -> Summary {
-    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/burning-beads.toml");
-    program::run(&case, out, arguments, settings);
+/// Held beads in air.
+const BEADS: &str = "burning-beads";
+
+fn case(name: &str) -> PathBuf {
+    let inputs = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good");
+    inputs.join(format!("{name}.toml"))
+}
+
+fn run(name: &str, out: &Path, arguments: &[&str], settings: &[&str]) -> Summary {
+    program::run(&case(name), out, arguments, settings);
     Summary::read(out).unwrap()
 }
 
-/// All four beads are gone without a trace, and what they were made of is in the gas.
-fn assert_burnt_out(summary: &Summary) {
+/// All four beads are gone, less than a share of their mass is left, and what they were made of is in the gas.
+fn assert_burnt_out(summary: &Summary, share: f64) {
     assert_eq!(summary.particles, 0);
     let used_up = summary.passed.used_up;
     assert_eq!(used_up.rows, 4);
-    // Less than the share of the first mass at which a particle is used up: 4 beads of 1 mm and 1000 kg/m³.
+    // Four beads of 1 mm and 1000 kg/m³.
+    let first = 2.0944e-6;
     assert!(
-        (0.0..=1e-6 * 2.1e-6).contains(&used_up.mass_kg),
+        (0.0..=share * first).contains(&used_up.mass_kg),
         "{used_up:?}"
     );
     let lines = &summary.ledger.lines;
@@ -42,8 +50,8 @@ fn beads_burn_out_in_windows_short_and_longer_than_their_life() {
     let folder = tempfile::tempdir().unwrap();
     for step in ["0.5 s", "2 s", "16 s"] {
         let out = folder.path().join(step.replace(' ', "-"));
-        let summary = run(&out, &[], &[&format!("time.process_step={step}")]);
-        assert_burnt_out(&summary);
+        let settings = [&*format!("time.process_step={step}")];
+        assert_burnt_out(&run(BEADS, &out, &[], &settings), 1e-6);
     }
 }
 
@@ -56,7 +64,7 @@ fn the_square_of_their_diameter_falls_linearly_whatever_the_window_up_to_a_tenth
             &*format!("time.process_step={step}"),
             &*format!("output.series_every={step}"),
         ];
-        run(&out, &[], &settings);
+        run(BEADS, &out, &[], &settings);
         let series = Series::read(&out).unwrap();
         let mass = series.column("quantities.mass");
         let time = series.column("process_time");
@@ -75,5 +83,32 @@ fn the_square_of_their_diameter_falls_linearly_whatever_the_window_up_to_a_tenth
 fn so_they_do_in_liggghts() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = ["--particles", "liggghts"];
-    assert_burnt_out(&run(folder.path(), &arguments, &["time.process_step=1 s"]));
+    let summary = run(BEADS, folder.path(), &arguments, &["time.process_step=1 s"]);
+    assert_burnt_out(&summary, 1e-6);
+}
+
+#[test]
+fn beads_that_fall_and_collide_burn_out_in_both_solvers() {
+    let folder = tempfile::tempdir().unwrap();
+    for solver in ["native", "liggghts"] {
+        let out = folder.path().join(solver);
+        let summary = run("burning-moving", &out, &["--particles", solver], &[]);
+        assert_burnt_out(&summary, 0.02);
+        let momentum = summary.ledger.lines["particle_momentum"].relative_error;
+        assert!(momentum < 1e-12, "{momentum}");
+    }
+}
+
+#[test]
+fn a_run_killed_while_beads_burn_resumes_to_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    // So many windows that it can be killed before and after the beads are gone, at some 11 s.
+    let settings = [
+        "time.process_step=5 ms",
+        "output.series_every=20 ms",
+        "time.checkpoint.every=0.1 s",
+    ];
+    killed::resumes_to_the_same_bits(folder.path(), &[300, 600], |out| {
+        program::command(&case(BEADS), out, &[], &settings)
+    });
 }

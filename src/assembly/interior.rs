@@ -69,7 +69,8 @@ fn model(case: &Case, material: usize) -> Result<Box<dyn ParticleModel>, Assembl
     }
     let made = Reacting::new(chemistry(case)?, &case.chemistry.compositions[material]);
     let size = case.chemistry.sizes[material].clone();
-    Ok(Box::new(made.with_size(size)))
+    let used_up = case.materials[material].used_up;
+    Ok(Box::new(made.with_size(size).with_used_up(used_up)))
 }
 
 /// Heat between particles and to walls, without particles yet; `None` where there is none.

@@ -29,6 +29,7 @@ pub(super) const MATERIALS: &[Key] = &[
     key("composition", Table(COMPOSITION), OneOf, "What the material is made of, where it reacts: mass or mole fractions of solids, which sum to 1. Either this or `heat_capacity`.", "{ mass = { Fe2O3 = 0.95, Al2O3 = 0.05 } }"),
     key("heat_capacity", Either(&Curve(D::HEAT_CAPACITY, Positive), &Table(HEAT_CAPACITY)), OneOf, "Specific heat capacity; linear between points, constant outside them; or NASA's polynomials as a table.", "[[\"300 K\", \"780 J/kg/K\"], [\"800 K\", \"1150 J/kg/K\"]]"),
     key("size", Law(laws::size, SIZE), Without("diameters stay"), "How particles of the material take up room while they react; goes with `composition`.", "{ law = \"constant-density\", least_diameter = \"1 mm\" }"),
+    key("used_up", Number(D::NONE, Between(0.0, 1.0)), Default("1e-6"), "Share of the mass with which a particle came below which it is used up by reactions and goes out of the run; goes with `composition`. Moving particles need one at which they are not yet too light for the time step of contacts.", "0.01"),
     key("conductivity", Curve(D::CONDUCTIVITY, Positive), Without("not known"), "Thermal conductivity; linear between points, constant outside them.", "[[\"300 K\", \"80 W/m/K\"], [\"1000 K\", \"33 W/m/K\"]]"),
     key("emissivity", Number(D::NONE, UpTo(0.0, 1.0)), Without("not known"), "Emissivity of the surface, above 0 and up to 1.", "0.9"),
     key("young", Number(D::PRESSURE, Positive), Without("not known"), "Young's modulus by which contacts are computed.", "\"50 MPa\""),

@@ -20,6 +20,8 @@ pub struct MaterialSpec {
     pub composition: Option<Vec<f64>>,
     /// How its particles take up room while they react.
     pub size: SizeLaw,
+    /// Share of its first mass below which a particle is used up.
+    pub used_up: f64,
     /// Thermal conductivity over temperature.
     pub conductivity: Option<Conductivity>,
     /// Emissivity of its surface.

@@ -45,6 +45,7 @@ fn material(name: String, table: &TableReader<'_>, solids: &[SolidSpecies]) -> M
         density: table.number("density").unwrap_or(f64::NAN),
         heat_capacity,
         size: conversion::read(table, solids),
+        used_up: table.number("used_up").unwrap_or(f64::NAN),
         composition,
         conductivity: conductivity(table),
         emissivity: table.number("emissivity"),

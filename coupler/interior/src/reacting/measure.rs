@@ -10,6 +10,12 @@ impl Reacting {
         self
     }
 
+    /// The same particles, which are used up below another share of their first mass than [`super::USED_UP`].
+    pub fn with_used_up(mut self, share: f64) -> Self {
+        self.used_up = share;
+        self
+    }
+
     pub(super) fn size(&self) -> &SizeChange {
         &self.size
     }

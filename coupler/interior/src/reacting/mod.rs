@@ -64,6 +64,8 @@ pub struct Reacting {
     /// What the last attempt came to, row by row.
     results: Vec<f64>,
     accuracy: ParticleAccuracy,
+    /// Share of its first mass below which a particle is used up.
+    used_up: f64,
 }
 
 /// Masses and radii that follow from amounts.
@@ -87,8 +89,8 @@ struct Amounts {
     unheld: Vec<f64>,
 }
 
-/// Share of the mass with which it came below which a particle is used up.
-pub(crate) const USED_UP: f64 = 1e-6;
+/// Share of the mass with which it came below which a particle is used up, unless said otherwise.
+pub const USED_UP: f64 = 1e-6;
 
 impl Reacting {
     /// No particles yet, of a material that is at first made of these mass fractions of the chemistry's solids.
@@ -117,6 +119,7 @@ impl Reacting {
             capacity: Vec::new(),
             results: Vec::new(),
             accuracy: ParticleAccuracy::default(),
+            used_up: USED_UP,
         }
     }
 
@@ -142,7 +145,7 @@ impl Reacting {
 
     /// True where so little mass in kg is left of a particle that it is used up.
     fn is_used_up(&self, row: usize, mass: f64) -> bool {
-        mass <= USED_UP * self.committed.first_mass[row]
+        mass <= self.used_up * self.committed.first_mass[row]
     }
 
     /// Everything as at the last commit.
