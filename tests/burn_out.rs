@@ -108,7 +108,9 @@ fn a_run_killed_while_beads_burn_resumes_to_the_same_bits() {
         "output.series_every=20 ms",
         "time.checkpoint.every=0.1 s",
     ];
-    killed::resumes_to_the_same_bits(folder.path(), &[300, 600], |out| {
-        program::command(&case(BEADS), out, &[], &settings)
-    });
+    for solver in ["native", "liggghts"] {
+        killed::resumes_to_the_same_bits(&folder.path().join(solver), &[300, 600], |out| {
+            program::command(&case(BEADS), out, &["--particles", solver], &settings)
+        });
+    }
 }
