@@ -8,6 +8,7 @@ mod picture;
 pub(crate) mod plot;
 mod probes;
 mod section;
+mod ticks;
 mod voids;
 mod warnings;
 

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::colour::Range;
 use super::number::figure;
 use super::page::escape;
+use super::ticks::{decades, digits, padded, ticks};
 
 /// Points of a curve at most; more would not be seen.
 const POINTS: usize = 600;
@@ -290,21 +291,6 @@ impl Plot<'_> {
     }
 }
 
-/// A range with some air around it; a flat one gets a visible height.
-fn padded(range: Range) -> Range {
-    let span = range.high - range.low;
-    let size = range.high.abs().max(range.low.abs());
-    let air = match size {
-        0.0 => 1.0,
-        _ if span > 1e-6 * size => 0.06 * span,
-        _ => 0.01 * size,
-    };
-    Range {
-        low: range.low - air,
-        high: range.high + air,
-    }
-}
-
 fn path(curve: &Curve<'_>, frame: &Frame) -> String {
     let count = curve.x.len().min(curve.y.len());
     let stride = count.div_ceil(POINTS).max(1);
@@ -324,44 +310,6 @@ fn path(curve: &Curve<'_>, frame: &Frame) -> String {
         pen_down = true;
     }
     text
-}
-
-/// Round values inside a range, about so many.
-fn ticks(range: Range, about: usize) -> Vec<f64> {
-    let span = range.high - range.low;
-    if span <= 0.0 {
-        return vec![range.low];
-    }
-    let raw = span / about as f64;
-    let power = 10f64.powf(raw.log10().floor());
-    let step = [1.0, 2.0, 2.5, 5.0, 10.0]
-        .into_iter()
-        .map(|factor| factor * power)
-        .find(|&step| step >= raw)
-        .unwrap_or(10.0 * power);
-    let first = (range.low / step - 1e-9).ceil() as i64;
-    let last = (range.high / step + 1e-9).floor() as i64;
-    (first..=last).map(|n| n as f64 * step).collect()
-}
-
-/// Significant digits that tell neighbouring ticks apart.
-fn digits(range: Range, step: f64) -> usize {
-    let largest = range.low.abs().max(range.high.abs());
-    let places = (largest / step).log10().floor();
-    if places.is_finite() {
-        (places as usize + 2).clamp(2, 12)
-    } else {
-        5
-    }
-}
-
-fn decades(range: Range) -> Vec<f64> {
-    let count = (range.high - range.low).round() as usize;
-    let step = count.div_ceil(5).max(1);
-    (0..=count)
-        .step_by(step)
-        .map(|n| range.low + n as f64)
-        .collect()
 }
 
 /// The value at `x` of a line through points with ascending `over`.
@@ -386,25 +334,6 @@ pub(crate) fn between(over: &[f64], values: &[f64], x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn ticks_are_round_and_inside_the_range() {
-        let range = Range {
-            low: 0.0,
-            high: 300.0,
-        };
-        assert_eq!(
-            ticks(range, 6),
-            [0.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0]
-        );
-        let narrow = Range {
-            low: 17.93,
-            high: 18.07,
-        };
-        for tick in ticks(narrow, 5) {
-            assert!((17.93..=18.07).contains(&tick), "{tick}");
-        }
-    }
 
     #[test]
     fn a_value_between_two_points_lies_on_the_line() {
