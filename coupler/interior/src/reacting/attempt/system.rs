@@ -1,0 +1,319 @@
+//! The equations of one particle within a window.
+
+use calcine_numerics::StiffSystem;
+use calcine_numerics::rosenbrock::SystemDerivatives;
+
+use super::{Buffers, ParticleStart, Slopes, WIDTH};
+use crate::reacting::chemistry::SolidChemistry;
+use crate::reacting::rates::{RateState, TRACE};
+
+/// Rounds of taking back at most.
+const MOST_ROUNDS: usize = 100;
+
+/// The equations of a particle ([`SolidChemistry::follow`]).
+pub(super) struct ParticleSystem<'a> {
+    pub chemistry: &'a SolidChemistry,
+    pub start: &'a ParticleStart<'a>,
+    /// In mol.
+    pub trace: f64,
+    /// What an amount may be below zero, in mol.
+    pub tolerance: f64,
+    /// In J/K.
+    pub least_capacity: f64,
+    pub buffers: &'a mut Buffers,
+}
+
+/// What the temperature of a particle follows from.
+struct ParticleHeat {
+    /// Heat capacity in J/K and its change with temperature.
+    capacity: [f64; 2],
+    /// Change with temperature of the heat of reaction in W, at fixed rates.
+    released: f64,
+    /// h A in W/K.
+    conductance: f64,
+    /// T_gas − T in K.
+    difference: f64,
+}
+
+impl ParticleSystem<'_> {
+    /// Heat capacity in J/K and its change with temperature; the molar ones stay in the buffer.
+    fn capacity(&mut self, temperature: f64) -> [f64; 2] {
+        let mut all = [0.0; 2];
+        // The molar ones are those of the slopes, which the least capacity does not have.
+        let solids = self.chemistry.solids.iter().zip(&self.buffers.amounts);
+        for ((solid, n), molar) in solids.zip(&mut self.buffers.molar) {
+            let mass = solid.molar_mass();
+            *molar = [
+                mass * solid.heat_capacity(temperature),
+                mass * solid.heat_capacity_slope(temperature),
+            ];
+            all[0] += n * molar[0];
+            all[1] += n * molar[1];
+        }
+        if all[0] > self.least_capacity {
+            all
+        } else {
+            self.buffers.molar.fill([0.0; 2]);
+            [self.least_capacity, 0.0]
+        }
+    }
+
+    /// h A in W/K.
+    fn conductance(&self) -> f64 {
+        let around = &self.start.around;
+        let radius = around.size.radius_of(&self.buffers.amounts, around.radius);
+        around.conductance_of(self.start.conductance, radius)
+    }
+
+    /// Takes up the unknowns; their temperature in K.
+    fn place(&mut self, y: &[f64]) -> f64 {
+        for (&s, n) in self.chemistry.moving().iter().zip(y) {
+            self.buffers.amounts[s] = *n;
+        }
+        y[self.chemistry.moving().len()]
+    }
+
+    /// What follows from the rates: changes of amounts, of temperature, of extents.
+    fn fill(&mut self, temperature: f64, out: &mut [f64]) -> ParticleHeat {
+        let moving = self.chemistry.moving().len();
+        out.fill(0.0);
+        let mut released = [0.0; 2];
+        for (j, (rate, warmth)) in self
+            .buffers
+            .rates
+            .iter()
+            .zip(&self.buffers.warmth)
+            .enumerate()
+        {
+            for &(k, n) in self.chemistry.effects(j) {
+                out[k] += n * rate;
+            }
+            released[0] += rate * (warmth[0] + warmth[1] * (temperature - self.start.temperature));
+            released[1] += rate * warmth[1];
+            out[moving + 1 + j] = *rate;
+        }
+        let capacity = self.capacity(temperature);
+        let conductance = self.conductance();
+        let difference = self.start.around.temperature - temperature;
+        let taken = conductance * difference;
+        out[moving] = (taken + self.start.heat + released[0]) / capacity[0];
+        ParticleHeat {
+            capacity,
+            released: released[1],
+            conductance,
+            difference,
+        }
+    }
+}
+
+impl StiffSystem for ParticleSystem<'_> {
+    fn unknowns(&self) -> usize {
+        self.chemistry.moving().len() + 1
+    }
+
+    fn integrals(&self) -> usize {
+        self.chemistry.reactions.len()
+    }
+
+    fn parameters(&self) -> usize {
+        self.chemistry.directions().len() + 1
+    }
+
+    fn direct(&self) -> bool {
+        true
+    }
+
+    fn rates(&mut self, y: &[f64], out: &mut [f64]) {
+        let temperature = self.place(y);
+        let state = RateState {
+            amounts: &self.buffers.amounts,
+            fractions: self.start.around.fractions,
+            temperature,
+            trace: self.trace,
+        };
+        let rates = &mut self.buffers.rates;
+        self.chemistry.rates(&self.start.around, &state, rates);
+        self.fill(temperature, out);
+    }
+
+    fn differentiate(&mut self, y: &[f64], out: &mut [f64], derivatives: &mut SystemDerivatives) {
+        let chemistry = self.chemistry;
+        let n = y.len();
+        let (temperature, place_of_temperature) = (self.place(y), n - 1);
+        let directions = n + chemistry.directions().len();
+        for first in (0..directions).step_by(WIDTH) {
+            let last = (first + WIDTH).min(directions);
+            self.differentiate_by(first..last, temperature);
+            if first == 0 {
+                let values = self.buffers.rates_dual.iter().map(|one| one.value);
+                self.buffers.rates.clear();
+                self.buffers.rates.extend(values);
+            }
+            for (j, rate) in self.buffers.rates_dual.iter().enumerate() {
+                let warmth = self.buffers.warmth[j];
+                let heat = warmth[0] + warmth[1] * (temperature - self.start.temperature);
+                for (direction, slope) in (first..last).zip(rate.slope) {
+                    if direction < n {
+                        for &(k, moles) in chemistry.effects(j) {
+                            derivatives.jacobian[k * n + direction] += moles * slope;
+                        }
+                        derivatives.jacobian[place_of_temperature * n + direction] += heat * slope;
+                        derivatives.integrals[j * n + direction] = slope;
+                    } else {
+                        let column = &mut derivatives.parameters[(direction - n) * out.len()..];
+                        for &(k, moles) in chemistry.effects(j) {
+                            column[k] += moles * slope;
+                        }
+                        column[place_of_temperature] += heat * slope;
+                        column[n + j] = slope;
+                    }
+                }
+            }
+        }
+        let heat = self.fill(temperature, out);
+        // C dT/dτ = …: the row of the temperature holds the slopes of its right side so far.
+        let rise = out[place_of_temperature];
+        let widening = &self.buffers.conductance_slopes;
+        let row = &mut derivatives.jacobian[place_of_temperature * n..];
+        for (k, &s) in chemistry.moving().iter().enumerate() {
+            row[k] += widening[k] * heat.difference - rise * self.buffers.molar[s][0];
+        }
+        row[place_of_temperature] += heat.released - heat.conductance - rise * heat.capacity[1];
+        row.iter_mut().for_each(|slope| *slope /= heat.capacity[0]);
+        for column in derivatives.parameters.chunks_exact_mut(out.len()) {
+            column[place_of_temperature] /= heat.capacity[0];
+        }
+        let heats = self.buffers.rates.iter().zip(&self.buffers.warmth);
+        let brought: f64 = heats.map(|(rate, warmth)| rate * warmth[2]).sum();
+        let column = &mut derivatives.parameters[chemistry.directions().len() * out.len()..];
+        column[place_of_temperature] = (heat.conductance + brought) / heat.capacity[0];
+    }
+
+    fn admissible(&self, from: &[f64], to: &[f64]) -> f64 {
+        let amounts = from.iter().zip(to).take(self.chemistry.moving().len());
+        amounts.fold(1.0, |least: f64, (from, to)| {
+            if *to < -self.tolerance {
+                least.min((from / (from - to)).max(0.0))
+            } else {
+                least
+            }
+        })
+    }
+
+    /// Takes back what reactions used of a solid beyond what was there, by their shares in all that was used of it.
+    fn correct(&mut self, y: &mut [f64], extents: &mut [f64], tangent: &mut [f64]) {
+        let chemistry = self.chemistry;
+        let (moving, count) = (chemistry.moving().len(), chemistry.reactions.len());
+        let width = y.len() + extents.len();
+        // What one solid gets back another may lack: the rounds end where only round-off is missing.
+        let round_off = -f64::EPSILON * self.trace / TRACE;
+        for _ in 0..MOST_ROUNDS {
+            let uses_of = |solid: usize, j: usize, extent: f64| {
+                let effects = chemistry.effects(j).iter();
+                let moles: f64 = effects.filter(|one| one.0 == solid).map(|one| one.1).sum();
+                (moles, (-moles * extent).max(0.0))
+            };
+            let mut lacking: Option<(usize, f64)> = None;
+            for solid in (0..moving).filter(|&k| y[k] < round_off) {
+                let used: f64 = (0..count).map(|j| uses_of(solid, j, extents[j]).1).sum();
+                if used > 0.0 && lacking.is_none_or(|(worst, _)| y[solid] < y[worst]) {
+                    lacking = Some((solid, used));
+                }
+            }
+            let Some((solid, used)) = lacking else {
+                break;
+            };
+            let uses = |j: usize, extent: f64| uses_of(solid, j, extent);
+            for (j, extent) in extents.iter_mut().enumerate().take(count) {
+                let (moles, own) = uses(j, *extent);
+                if own == 0.0 {
+                    continue;
+                }
+                // What a unit of the lack takes back of this reaction.
+                let share = own / (used * moles);
+                let give_back = |lack: f64, amounts: &mut [f64], extent: usize| {
+                    amounts[extent] -= share * lack;
+                    for &(k, n) in chemistry.effects(j).iter().filter(|one| one.0 != solid) {
+                        amounts[k] -= n * share * lack;
+                    }
+                };
+                for column in tangent.chunks_exact_mut(width) {
+                    give_back(column[solid], column, moving + 1 + j);
+                }
+                let lack = y[solid];
+                *extent -= share * lack;
+                for &(k, n) in chemistry.effects(j).iter().filter(|one| one.0 != solid) {
+                    y[k] -= n * share * lack;
+                }
+            }
+            y[solid] = 0.0;
+            for column in tangent.chunks_exact_mut(width) {
+                column[solid] = 0.0;
+            }
+        }
+        for value in y[..moving]
+            .iter_mut()
+            .filter(|n| **n < 0.0 && **n >= round_off)
+        {
+            *value = 0.0;
+        }
+    }
+}
+
+impl ParticleSystem<'_> {
+    /// Rates with their derivatives in a range of the directions: amounts, temperature, gases.
+    fn differentiate_by(&mut self, directions: std::ops::Range<usize>, temperature: f64) {
+        let chemistry = self.chemistry;
+        let (moving, first) = (chemistry.moving().len(), directions.start);
+        let buffers = &mut *self.buffers;
+        let zero = [0.0; WIDTH];
+        for (dual, value) in buffers.amounts_dual.iter_mut().zip(&buffers.amounts) {
+            *dual = Slopes {
+                value: *value,
+                slope: zero,
+            };
+        }
+        let fractions = self.start.around.fractions;
+        for (dual, value) in buffers.fractions_dual.iter_mut().zip(fractions) {
+            *dual = Slopes {
+                value: *value,
+                slope: zero,
+            };
+        }
+        let mut warm = Slopes {
+            value: temperature,
+            slope: zero,
+        };
+        for direction in directions {
+            let lane = direction - first;
+            if direction < moving {
+                let solid = chemistry.moving()[direction];
+                buffers.amounts_dual[solid].slope[lane] = 1.0;
+            } else if direction == moving {
+                warm.slope[lane] = 1.0;
+            } else {
+                let (key, product) = chemistry.directions()[direction - moving - 1];
+                buffers.fractions_dual[key].slope[lane] = 1.0;
+                if let Some(product) = product {
+                    buffers.fractions_dual[product].slope[lane] = -1.0;
+                }
+            }
+        }
+        let state = RateState {
+            amounts: &buffers.amounts_dual,
+            fractions: &buffers.fractions_dual,
+            temperature: warm,
+            trace: self.trace,
+        };
+        let around = &self.start.around;
+        chemistry.rates(around, &state, &mut buffers.rates_dual);
+        if around.size.volumes().is_some() {
+            let radius = around.size.radius_of(state.amounts, around.radius);
+            let conductance = around.conductance_of(self.start.conductance, radius);
+            let slopes = buffers.conductance_slopes.iter_mut().skip(first);
+            for (slope, lane) in slopes.zip(conductance.slope) {
+                *slope = lane;
+            }
+        }
+    }
+}
