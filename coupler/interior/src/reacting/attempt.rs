@@ -4,13 +4,14 @@ mod system;
 
 use calcine_numerics::rosenbrock::{IntegrationAccuracy, MOST_STEPS};
 use calcine_numerics::{
-    DenseMatrix, Dual, IntegrationStalled, IntegrationStatistics, Rosenbrock, RosenbrockTableau,
+    DenseMatrix, IntegrationStalled, IntegrationStatistics, Rosenbrock, RosenbrockTableau,
     StiffSystem,
 };
 
-use self::system::ParticleSystem;
+pub use self::system::ParticleStart;
+use self::system::{Buffers, ParticleSystem};
 use super::chemistry::SolidChemistry;
-use super::rates::{ParticleSurroundings, TRACE};
+use super::rates::TRACE;
 
 /// How exactly particles are integrated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,21 +29,6 @@ impl Default for ParticleAccuracy {
             temperature: 1e-2,
         }
     }
-}
-
-/// A particle at the start of a window, and what acts on it.
-#[derive(Clone, Copy, Debug)]
-pub struct ParticleStart<'a> {
-    /// Amounts of all solids in mol.
-    pub amounts: &'a [f64],
-    /// Its temperature in K.
-    pub temperature: f64,
-    /// The gas about it.
-    pub around: ParticleSurroundings<'a>,
-    /// h A in W/K at the start.
-    pub conductance: f64,
-    /// Heat that it conducts and radiates, in W.
-    pub heat: f64,
 }
 
 /// What a window does to a particle.
@@ -87,30 +73,9 @@ impl Default for ParticleWorkspace {
     }
 }
 
-/// By how much temperatures are varied for the slopes of heats, in K.
-const VARIED: f64 = 10.0;
 /// Share of its heat capacity at the start of a window that a particle has at least: what is used up has the
 /// temperature at which the heat of its reactions passes.
 const LEAST_CAPACITY: f64 = 1e-9;
-/// Directions of derivatives that one evaluation gives.
-const WIDTH: usize = 8;
-type Slopes = Dual<WIDTH>;
-
-#[derive(Clone, Debug, Default)]
-struct Buffers {
-    amounts: Vec<f64>,
-    rates: Vec<f64>,
-    amounts_dual: Vec<Slopes>,
-    fractions_dual: Vec<Slopes>,
-    rates_dual: Vec<Slopes>,
-    /// Heat of each reaction in J/mol at the start, and its changes with the temperatures of the particle and the gas.
-    warmth: Vec<[f64; 3]>,
-    /// Molar heat capacity of each solid in J/mol/K, and its slope.
-    molar: Vec<[f64; 2]>,
-    /// Change of h A with the amount of each solid that reacts, in W/K/mol.
-    conductance_slopes: Vec<f64>,
-}
-
 impl SolidChemistry {
     /// Follows a particle over a span in s. Extents and their slopes are left in the workspace.
     ///
@@ -228,35 +193,6 @@ impl SolidChemistry {
         };
         let found = (0..self.reactions.len()).fold(0, largest);
         self.reactions.get(found).map_or("", |one| &one.name)
-    }
-}
-
-impl Buffers {
-    fn begin(&mut self, chemistry: &SolidChemistry, start: &ParticleStart<'_>) {
-        let (begin, hot) = (start.temperature, start.around.temperature);
-        let zero = Slopes {
-            value: 0.0,
-            slope: [0.0; WIDTH],
-        };
-        self.amounts.clear();
-        self.amounts.extend_from_slice(start.amounts);
-        self.rates.clear();
-        self.rates.resize(chemistry.reactions.len(), 0.0);
-        self.rates_dual.resize(chemistry.reactions.len(), zero);
-        self.amounts_dual.resize(start.amounts.len(), zero);
-        self.fractions_dual
-            .resize(start.around.fractions.len(), zero);
-        self.molar.resize(start.amounts.len(), [0.0; 2]);
-        self.conductance_slopes.clear();
-        self.conductance_slopes
-            .resize(chemistry.moving().len(), 0.0);
-        // The heat of a reaction follows temperature so slowly that a line will do here; what is booked is exact.
-        self.warmth.clear();
-        self.warmth.extend((0..chemistry.reactions.len()).map(|j| {
-            let at = chemistry.warmth(j, begin, hot);
-            let rise = |begin: f64, hot: f64| (chemistry.warmth(j, begin, hot) - at) / VARIED;
-            [at, rise(begin + VARIED, hot), rise(begin, hot + VARIED)]
-        }));
     }
 }
 

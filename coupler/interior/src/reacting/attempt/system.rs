@@ -1,14 +1,79 @@
 //! The equations of one particle within a window.
 
-use calcine_numerics::StiffSystem;
 use calcine_numerics::rosenbrock::SystemDerivatives;
+use calcine_numerics::{Dual, StiffSystem};
 
-use super::{Buffers, ParticleStart, Slopes, WIDTH};
 use crate::reacting::chemistry::SolidChemistry;
-use crate::reacting::rates::{RateState, TRACE};
+use crate::reacting::rates::{ParticleSurroundings, RateState, TRACE};
 
 /// Rounds of taking back at most.
 const MOST_ROUNDS: usize = 100;
+
+/// By how much temperatures are varied for the slopes of heats, in K.
+const VARIED: f64 = 10.0;
+/// Directions of derivatives that one evaluation gives.
+const WIDTH: usize = 8;
+type Slopes = Dual<WIDTH>;
+
+/// A particle at the start of a window, and what acts on it.
+#[derive(Clone, Copy, Debug)]
+pub struct ParticleStart<'a> {
+    /// Amounts of all solids in mol.
+    pub amounts: &'a [f64],
+    /// Its temperature in K.
+    pub temperature: f64,
+    /// The gas about it.
+    pub around: ParticleSurroundings<'a>,
+    /// h A in W/K at the start.
+    pub conductance: f64,
+    /// Heat that it conducts and radiates, in W.
+    pub heat: f64,
+}
+
+/// Memory of the equations.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Buffers {
+    amounts: Vec<f64>,
+    pub rates: Vec<f64>,
+    amounts_dual: Vec<Slopes>,
+    fractions_dual: Vec<Slopes>,
+    rates_dual: Vec<Slopes>,
+    /// Heat of each reaction in J/mol at the start, and its changes with the temperatures of the particle and the gas.
+    pub warmth: Vec<[f64; 3]>,
+    /// Molar heat capacity of each solid in J/mol/K, and its slope.
+    molar: Vec<[f64; 2]>,
+    /// Change of h A with the amount of each solid that reacts, in W/K/mol.
+    conductance_slopes: Vec<f64>,
+}
+
+impl Buffers {
+    pub fn begin(&mut self, chemistry: &SolidChemistry, start: &ParticleStart<'_>) {
+        let (begin, hot) = (start.temperature, start.around.temperature);
+        let zero = Slopes {
+            value: 0.0,
+            slope: [0.0; WIDTH],
+        };
+        self.amounts.clear();
+        self.amounts.extend_from_slice(start.amounts);
+        self.rates.clear();
+        self.rates.resize(chemistry.reactions.len(), 0.0);
+        self.rates_dual.resize(chemistry.reactions.len(), zero);
+        self.amounts_dual.resize(start.amounts.len(), zero);
+        self.fractions_dual
+            .resize(start.around.fractions.len(), zero);
+        self.molar.resize(start.amounts.len(), [0.0; 2]);
+        self.conductance_slopes.clear();
+        self.conductance_slopes
+            .resize(chemistry.moving().len(), 0.0);
+        // The heat of a reaction follows temperature so slowly that a line will do here; what is booked is exact.
+        self.warmth.clear();
+        self.warmth.extend((0..chemistry.reactions.len()).map(|j| {
+            let at = chemistry.warmth(j, begin, hot);
+            let rise = |begin: f64, hot: f64| (chemistry.warmth(j, begin, hot) - at) / VARIED;
+            [at, rise(begin + VARIED, hot), rise(begin, hot + VARIED)]
+        }));
+    }
+}
 
 /// The equations of a particle ([`SolidChemistry::follow`]).
 pub(super) struct ParticleSystem<'a> {

@@ -6,6 +6,7 @@ use calcine_physics::solids::SolidSpecies;
 use calcine_physics::thermo::{Element, Mixture, Species};
 
 use super::*;
+use crate::reacting::rates::ParticleSurroundings;
 use crate::reacting::{LayerDiffusivity, Rate, Reaction, SizeChange};
 
 const SOLIDS: [&str; 4] = ["Fe2O3", "Fe3O4", "Fe0.947O", "Fe"];
