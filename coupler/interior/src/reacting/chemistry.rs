@@ -240,8 +240,8 @@ impl SolidChemistry {
 }
 
 /// Bounds of the temperature of a particle in K.
-const LOWEST: f64 = 1.0;
-const HIGHEST: f64 = 2e4;
+pub(super) const LOWEST: f64 = 1.0;
+pub(super) const HIGHEST: f64 = 2e4;
 
 /// The gas by whose amount a power law's rate is taken as linear: the first that is used up, or else the
 /// first that is set free.

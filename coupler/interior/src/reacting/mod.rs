@@ -84,9 +84,9 @@ struct Amounts {
     temperature: Vec<f64>,
     /// Mass in kg with which each particle came.
     first_mass: Vec<f64>,
-    /// Heat in J that particles which are used up no longer hold: what the window brought them beyond the enthalpy of what
-    /// is left of them.
-    unheld: Vec<f64>,
+    /// Heat in J that windows brought each particle beyond what its temperature shows. It is given in the next one, or booked
+    /// with what is left of a particle that is used up.
+    owed: Vec<f64>,
 }
 
 /// Share of the mass with which it came below which a particle is used up, unless said otherwise.

@@ -2,6 +2,7 @@
 
 use calcine_physics::thermo::Element;
 
+use super::chemistry::{HIGHEST, LOWEST};
 use super::step::TemperatureBeyond;
 use super::{Amounts, Reacting};
 use crate::column::{ColumnKind, Ragged, StateColumn};
@@ -12,6 +13,11 @@ use crate::model::{
 };
 use crate::thin::{SECANT, TEMPERATURE};
 use crate::without;
+
+/// By what share the temperature that the balance of energy gives a particle may be off from the one that its integration
+/// came to. What is left of a particle that burns holds so little heat that the last per mille of what it exchanged would be
+/// thousands of kelvin: it has the temperature of the integration, and the heat is owed to it.
+const APART: f64 = 0.02;
 
 impl ParticleModel for Reacting {
     fn columns(&self) -> &[StateColumn] {
@@ -35,8 +41,12 @@ impl ParticleModel for Reacting {
                 let masses = &self.committed.first_mass;
                 masses.iter().for_each(|mass| out.push_reals(&[*mass]));
             }
+            Some(place) if place == solids + 1 => {
+                let heats = &self.committed.owed;
+                heats.iter().for_each(|heat| out.push_reals(&[*heat]));
+            }
             Some(place) => {
-                let solid = place - solids - 1;
+                let solid = place - solids - 2;
                 let molar = self.chemistry.solids[solid].molar_mass();
                 let masses = &self.bodies[1].mass;
                 for (amounts, mass) in particles.zip(masses) {
@@ -56,6 +66,7 @@ impl ParticleModel for Reacting {
             match column.checked_sub(1) {
                 None => self.committed.temperature.copy_from_slice(list),
                 Some(place) if place == solids => self.committed.first_mass.copy_from_slice(list),
+                Some(place) if place == solids + 1 => self.committed.owed.copy_from_slice(list),
                 Some(solid) => {
                     let amounts = self.committed.amount.chunks_exact_mut(solids);
                     for (amounts, value) in amounts.zip(list) {
@@ -166,22 +177,16 @@ impl ParticleModel for Reacting {
             }
             let gained = (took.heat[p] + took.network[p] + took.carried[p]) * span + released;
             let before = chemistry.enthalpy(held, self.committed.temperature[p]);
-            let (enthalpy, guess) = (before + gained, self.end[p]);
-            if self.is_used_up(
-                p,
-                chemistry.mass(&self.now.amount[p * solids..(p + 1) * solids]),
-            ) {
-                let left = &self.now.amount[p * solids..(p + 1) * solids];
-                self.now.temperature[p] = guess;
-                self.now.unheld[p] = enthalpy - chemistry.enthalpy(left, guess);
-                continue;
-            }
-            self.now.unheld[p] = 0.0;
+            let enthalpy = before + gained + self.committed.owed[p];
             let amounts = &self.now.amount[p * solids..(p + 1) * solids];
-            self.now.temperature[p] =
-                chemistry
-                    .temperature(amounts, enthalpy, guess)
-                    .map_err(|bound| ModelError::Particle {
+            let followed = self.end[p];
+            let found = chemistry.temperature(amounts, enthalpy, followed);
+            let near = |kelvin: &f64| (kelvin - followed).abs() <= APART * followed;
+            let used_up = self.is_used_up(p, chemistry.mass(amounts));
+            (self.now.temperature[p], self.now.owed[p]) = match found {
+                Ok(kelvin) if near(&kelvin) && !used_up => (kelvin, 0.0),
+                Err(bound) if !(LOWEST..=HIGHEST).contains(&followed) => {
+                    return Err(ModelError::Particle {
                         row: p,
                         cause: Box::new(TemperatureBeyond {
                             bound,
@@ -189,7 +194,13 @@ impl ParticleModel for Reacting {
                             exchanged: gained - released,
                             released,
                         }),
-                    })?;
+                    });
+                }
+                _ => {
+                    let held = chemistry.enthalpy(amounts, followed);
+                    (followed, enthalpy - held)
+                }
+            };
         }
         self.measure(0);
         Ok(())
@@ -213,7 +224,7 @@ impl ParticleModel for Reacting {
             }
             let sensible = chemistry.enthalpy(now, self.now.temperature[p])
                 - chemistry.enthalpy(before, self.committed.temperature[p])
-                + (self.now.unheld[p] - self.committed.unheld[p]);
+                + (self.now.owed[p] - self.committed.owed[p]);
             let extents = &self.extents[p * count..(p + 1) * count];
             let turned = extents.iter().zip(&chemistry.heat);
             let heat: f64 = turned.map(|(extent, heat)| (extent * heat).abs()).sum();
@@ -238,7 +249,7 @@ impl ParticleModel for Reacting {
             }
             all.mass.add(chemistry.mass(amounts));
             let sensible = chemistry.enthalpy(amounts, self.committed.temperature[row])
-                + self.committed.unheld[row];
+                + self.committed.owed[row];
             all.energy.add(formed + sensible);
         }
         all
@@ -263,17 +274,17 @@ impl ParticleModel for Reacting {
             amount,
             temperature,
             first_mass,
-            unheld,
+            owed,
         } = &mut self.committed;
         without(amount, &places);
         without(temperature, gone);
         without(first_mass, gone);
-        without(unheld, gone);
+        without(owed, gone);
         for one in new {
             one.only(&[TEMPERATURE])?;
             temperature.push(one.scalar(TEMPERATURE)?);
             first_mass.push(one.mass);
-            unheld.push(0.0);
+            owed.push(0.0);
             amount.extend(self.composition.iter().map(|n| n * one.mass));
         }
         self.begin();

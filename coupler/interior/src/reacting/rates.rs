@@ -46,7 +46,7 @@ pub struct ParticleSurroundings<'a> {
 
 impl ParticleSurroundings<'_> {
     /// How much smaller than at the start a particle of a radius in m is; one where its diameter stays.
-    fn shrinkage<N: Number>(&self, radius: N) -> Option<N> {
+    pub fn shrinkage<N: Number>(&self, radius: N) -> Option<N> {
         let changes = self.size.volumes().is_some() && self.radius > 0.0;
         changes.then(|| radius.times(1.0 / self.radius))
     }
@@ -59,15 +59,6 @@ impl ParticleSurroundings<'_> {
         match self.shrinkage(radius) {
             Some(shrinkage) => film / shrinkage,
             None => film,
-        }
-    }
-
-    /// Conductance of the film in W/K about a particle of a radius in m; at the start it is `conductance`. The Nusselt
-    /// number is that of the start of the window.
-    pub fn conductance_of<N: Number>(&self, conductance: f64, radius: N) -> N {
-        match self.shrinkage(radius) {
-            Some(shrinkage) => shrinkage.times(conductance),
-            None => N::constant(conductance),
         }
     }
 }

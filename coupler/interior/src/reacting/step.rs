@@ -102,6 +102,7 @@ impl Reacting {
     ) -> Result<(), ReactError> {
         let (hot, exchanged) = (around.temperature[p], around.conductance[p]);
         let begin = self.committed.temperature[p];
+        let heat = heat + self.committed.owed[p] / span;
         // Without reactions: the implicit step.
         let inert = exchanged / (1.0 + exchanged * span / self.capacity[p]);
         if !self.can_react(p) {

@@ -42,8 +42,8 @@ pub(super) struct Buffers {
     pub warmth: Vec<[f64; 3]>,
     /// Molar heat capacity of each solid in J/mol/K, and its slope.
     molar: Vec<[f64; 2]>,
-    /// Change of h A with the amount of each solid that reacts, in W/K/mol.
-    conductance_slopes: Vec<f64>,
+    /// Change of the radius over that at the start with the amount of each solid that reacts, in 1/mol.
+    shrinkage_slopes: Vec<f64>,
 }
 
 impl Buffers {
@@ -62,9 +62,8 @@ impl Buffers {
         self.fractions_dual
             .resize(start.around.fractions.len(), zero);
         self.molar.resize(start.amounts.len(), [0.0; 2]);
-        self.conductance_slopes.clear();
-        self.conductance_slopes
-            .resize(chemistry.moving().len(), 0.0);
+        self.shrinkage_slopes.clear();
+        self.shrinkage_slopes.resize(chemistry.moving().len(), 0.0);
         // The heat of a reaction follows temperature so slowly that a line will do here; what is booked is exact.
         self.warmth.clear();
         self.warmth.extend((0..chemistry.reactions.len()).map(|j| {
@@ -96,8 +95,8 @@ struct ParticleHeat {
     released: f64,
     /// h A in W/K.
     conductance: f64,
-    /// T_gas − T in K.
-    difference: f64,
+    /// Change with the radius over that at the start of what comes from outside, in W.
+    widened: f64,
 }
 
 impl ParticleSystem<'_> {
@@ -123,11 +122,11 @@ impl ParticleSystem<'_> {
         }
     }
 
-    /// h A in W/K.
-    fn conductance(&self) -> f64 {
+    /// The radius over that at the start.
+    fn shrinkage(&self) -> f64 {
         let around = &self.start.around;
         let radius = around.size.radius_of(&self.buffers.amounts, around.radius);
-        around.conductance_of(self.start.conductance, radius)
+        around.shrinkage(radius).unwrap_or(1.0)
     }
 
     /// Takes up the unknowns; their temperature in K.
@@ -158,15 +157,17 @@ impl ParticleSystem<'_> {
             out[moving + 1 + j] = *rate;
         }
         let capacity = self.capacity(temperature);
-        let conductance = self.conductance();
+        // The film conducts in proportion to the radius, contacts and radiation act on the surface.
+        let shrinkage = self.shrinkage();
+        let conductance = shrinkage * self.start.conductance;
         let difference = self.start.around.temperature - temperature;
-        let taken = conductance * difference;
-        out[moving] = (taken + self.start.heat + released[0]) / capacity[0];
+        let taken = conductance * difference + shrinkage * shrinkage * self.start.heat;
+        out[moving] = (taken + released[0]) / capacity[0];
         ParticleHeat {
             capacity,
             released: released[1],
             conductance,
-            difference,
+            widened: self.start.conductance * difference + 2.0 * shrinkage * self.start.heat,
         }
     }
 }
@@ -238,10 +239,10 @@ impl StiffSystem for ParticleSystem<'_> {
         let heat = self.fill(temperature, out);
         // C dT/dτ = …: the row of the temperature holds the slopes of its right side so far.
         let rise = out[place_of_temperature];
-        let widening = &self.buffers.conductance_slopes;
+        let widening = &self.buffers.shrinkage_slopes;
         let row = &mut derivatives.jacobian[place_of_temperature * n..];
         for (k, &s) in chemistry.moving().iter().enumerate() {
-            row[k] += widening[k] * heat.difference - rise * self.buffers.molar[s][0];
+            row[k] += widening[k] * heat.widened - rise * self.buffers.molar[s][0];
         }
         row[place_of_temperature] += heat.released - heat.conductance - rise * heat.capacity[1];
         row.iter_mut().for_each(|slope| *slope /= heat.capacity[0]);
@@ -372,11 +373,10 @@ impl ParticleSystem<'_> {
         };
         let around = &self.start.around;
         chemistry.rates(around, &state, &mut buffers.rates_dual);
-        if around.size.volumes().is_some() {
-            let radius = around.size.radius_of(state.amounts, around.radius);
-            let conductance = around.conductance_of(self.start.conductance, radius);
-            let slopes = buffers.conductance_slopes.iter_mut().skip(first);
-            for (slope, lane) in slopes.zip(conductance.slope) {
+        let radius = around.size.radius_of(state.amounts, around.radius);
+        if let Some(shrinkage) = around.shrinkage(radius) {
+            let slopes = buffers.shrinkage_slopes.iter_mut().skip(first);
+            for (slope, lane) in slopes.zip(shrinkage.slope) {
                 *slope = lane;
             }
         }
