@@ -51,6 +51,12 @@ pub trait StiffSystem {
         1.0
     }
 
+    /// Longest first step in s, from the unknowns y with their rates: where these bend so soon that a step beyond it would
+    /// see neither the bend nor its own error.
+    fn first_step(&self, _y: &[f64], _rates: &[f64]) -> f64 {
+        f64::INFINITY
+    }
+
     /// Puts right what an accepted step left outside by less than the tolerance of [`StiffSystem::admissible`], in a way
     /// that conserves what it has to: unknowns, integrals, and their derivatives by each parameter likewise (unknowns,
     /// then integrals, in slices of that length).
@@ -146,7 +152,7 @@ pub struct IntegrationStalled {
 /// tolerance is repeated with a smaller one ([`StiffSystem::admissible`]); what is left within the tolerance the system
 /// corrects in a way that conserves what it has to ([`StiffSystem::correct`]). Nothing is clipped.
 ///
-/// *Steps.* The first is the whole span; then Gustafsson's predictive control.
+/// *Steps.* The first is the whole span, or what the system says ([`StiffSystem::first_step`]); then Gustafsson's predictive control.
 ///
 /// Sources: Hairer and Wanner, Solving Ordinary Differential Equations II, 2nd ed. (1996), sections IV.7 and IV.8,
 /// doi 10.1007/978-3-642-05221-7; Gustafsson, ACM Trans. Math. Softw. 20 (1994) 496, doi 10.1145/198429.198437.
@@ -240,6 +246,7 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
         };
         self.differentiate(system, y)
             .map_err(|worst| fail(time, StallCause::NotFinite, worst))?;
+        step = step.min(system.first_step(y, &self.start));
         let mut last_rejected = false;
         while done.steps + done.rejected < accuracy.steps {
             let left = span - time;

@@ -255,6 +255,17 @@ impl StiffSystem for ParticleSystem<'_> {
         column[place_of_temperature] = (heat.conductance + brought) / heat.capacity[0];
     }
 
+    /// Where a solid begins to be made, what uses it again begins within one trace of it: a step from there linearises with
+    /// the slope of that beginning, which its stages and their errors do not leave.
+    fn first_step(&self, y: &[f64], rates: &[f64]) -> f64 {
+        let moving = self.chemistry.moving().len();
+        let made = y.iter().zip(rates).take(moving);
+        let beginning = made.filter(|(n, rate)| **n < self.trace && **rate > 0.0);
+        beginning.fold(f64::INFINITY, |least, (_, rate)| {
+            least.min(self.trace / rate)
+        })
+    }
+
     fn admissible(&self, from: &[f64], to: &[f64]) -> f64 {
         let amounts = from.iter().zip(to).take(self.chemistry.moving().len());
         amounts.fold(1.0, |least: f64, (from, to)| {

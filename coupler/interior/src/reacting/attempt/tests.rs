@@ -449,3 +449,30 @@ fn a_sphere_limited_by_its_film_follows_the_d_squared_law_at_any_temperature_and
         }
     }
 }
+
+#[test]
+fn a_reversible_reaction_begins_though_nothing_is_there_of_what_it_makes() {
+    let chemistry = chemistry(vec![step(2, 2, 0.02, 1e-4)]);
+    let accuracy = ParticleAccuracy {
+        amount: 1e-8,
+        temperature: 1e-4,
+    };
+    let made = |iron: f64, span: f64| {
+        let case = Case {
+            amounts: vec![0.0, 0.0, 0.0154, iron],
+            fractions: vec![0.0, 0.0, 0.9, 0.0, 0.1],
+            temperature: 900.0,
+            gas_temperature: 900.0,
+            ..Case::ore()
+        };
+        let coarse = case.follow(&chemistry, span, ParticleAccuracy::default());
+        let fine = case.follow(&chemistry, span, accuracy);
+        (coarse.unwrap().1[0], fine.unwrap().1[0])
+    };
+    for span in [0.01, 1.0, 20.0, 600.0] {
+        let (none, fine) = made(0.0, span);
+        let (some, _) = made(1e-6, span);
+        assert!((none / fine - 1.0).abs() < 1e-2, "{span} s: {none} {fine}");
+        assert!((none / some - 1.0).abs() < 2e-2, "{span} s: {none} {some}");
+    }
+}
