@@ -13,6 +13,5 @@ mod openfoam_flow;
 mod openfoam_life;
 mod openfoam_pasr;
 mod openfoam_ranks;
-mod openfoam_stirred_cells;
 mod openfoam_support;
 mod openfoam_trials;

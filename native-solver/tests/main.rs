@@ -20,7 +20,6 @@ mod numerics;
 mod resume;
 mod species;
 mod stirred;
-mod stirred_cells;
 mod verification_flow;
 mod verification_heat;
 mod verification_porous;

@@ -132,7 +132,7 @@ Foam::calcine::gas::gas
     models_.reset(new models(mesh, U_, phi_, *thermo_));
     if (species_ && reactions::wanted(mesh))
     {
-        reactions_.reset(new reactions(mesh, thermo_->T(), species_->mixture()));
+        reactions_.reset(new reactions(mesh, thermo_->T(), speciesNames()));
     }
 
     const scalarField reference(1, 298.15);

@@ -11,6 +11,18 @@ using namespace Foam;
 const scalar straight = 1e-9;
 // K between which a step that an integration tries, and will take back, evaluates rates.
 const scalar coldest = 200, hottest = 5000;
+// kmol/m3, of such a step: more than there is in any gas.
+const scalar densest = 1e3;
+// J/(m3 K): a gas at 5000 K has this at 1 Pa.
+const scalar leastCapacity = 1e-3;
+// K, of the difference quotients by temperature.
+const scalar apart = 1e-2;
+
+scalar bounded(scalar T)
+{
+    // NaN is not hotter.
+    return T > coldest ? min(T, hottest) : coldest;
+}
 
 scalar power(scalar c, scalar order)
 {
@@ -58,27 +70,31 @@ defineTypeNameAndDebug(gasChemistry, 0);
 Foam::calcine::gasChemistry::gasChemistry(psiReactionThermo& thermo)
 :
     StandardChemistryModel<psiReactionThermo, gasHThermoPhysics>(thermo),
+    positive_(nSpecie_),
+    hotter_(nSpecie_ + 2),
+    colder_(nSpecie_ + 2),
     slopes_(nSpecie_)
 {}
 
 
-void Foam::calcine::gasChemistry::solve
-(
-    scalarField&,
-    scalar&,
-    scalar&,
-    scalar&,
-    scalar&
-) const
+void Foam::calcine::gasChemistry::setPositive(const scalarField& c) const
 {
-    FatalErrorInFunction << "cells are integrated with what flows through them" << exit(FatalError);
+    forAll(positive_, i)
+    {
+        // NaN is not positive.
+        positive_[i] = c[i] > 0 ? min(c[i], densest) : 0;
+    }
 }
 
 
-Foam::scalar Foam::calcine::gasChemistry::bounded(scalar T)
+Foam::scalar Foam::calcine::gasChemistry::heatCapacity(scalar p, scalar T) const
 {
-    // NaN is not hotter.
-    return T > coldest ? min(T, hottest) : coldest;
+    scalar capacity = 0;
+    for (label i = 0; i < nSpecie_; ++i)
+    {
+        capacity += specieThermo_[i].cp(p, T)*positive_[i];
+    }
+    return max(capacity, leastCapacity);
 }
 
 
@@ -106,31 +122,23 @@ Foam::scalar Foam::calcine::gasChemistry::omega
 }
 
 
-Foam::scalar Foam::calcine::gasChemistry::rates
+void Foam::calcine::gasChemistry::derivatives
 (
+    const scalar,
     const scalarField& c,
-    scalar T,
-    scalar p,
     scalarField& slope
 ) const
 {
-    slope = Zero;
-    scalar gained = 0, pf, cf, pr, cr;
-    label left, right;
-    for (const reaction& r : reactions_)
+    setPositive(c);
+    const scalar T = bounded(c[nSpecie_]), p = c[nSpecie_ + 1];
+    omega(positive_, T, p, slope);
+    scalar heat = 0;
+    for (label i = 0; i < nSpecie_; ++i)
     {
-        const scalar rate = omega(r, c, T, p, pf, cf, left, pr, cr, right);
-        for (const auto& one : r.lhs())
-        {
-            slope[one.index] -= one.stoichCoeff*rate;
-        }
-        for (const auto& one : r.rhs())
-        {
-            slope[one.index] += one.stoichCoeff*rate;
-            gained += one.stoichCoeff*pf*cf;
-        }
+        heat -= specieThermo_[i].ha(p, T)*slope[i];
     }
-    return gained;
+    slope[nSpecie_] = heat/heatCapacity(p, T);
+    slope[nSpecie_ + 1] = 0;
 }
 
 
@@ -138,9 +146,8 @@ void Foam::calcine::gasChemistry::addSlopes
 (
     const List<reaction::specieCoeffs>& side,
     const scalarField& c,
-    scalar k,
-    scalarField& slopes
-)
+    scalar k
+) const
 {
     forAll(side, i)
     {
@@ -149,44 +156,63 @@ void Foam::calcine::gasChemistry::addSlopes
         {
             others *= j == i ? scalar(1) : power(c[side[j].index], side[j].exponent);
         }
-        slopes[side[i].index] += others*slopeOfPower(c[side[i].index], side[i].exponent);
+        slopes_[side[i].index] += others*slopeOfPower(c[side[i].index], side[i].exponent);
     }
 }
 
 
-void Foam::calcine::gasChemistry::slopes
+void Foam::calcine::gasChemistry::jacobian
 (
+    const scalar time,
     const scalarField& c,
-    scalar T,
-    scalar p,
-    scalarSquareMatrix& byConcentration,
-    scalarField& gained
+    scalarField& byTime,
+    scalarSquareMatrix& byState
 ) const
 {
-    byConcentration = Zero;
-    gained = Zero;
+    byTime = Zero;
+    byState = Zero;
+
+    // By temperature.
+    scalarField moved(c);
+    moved[nSpecie_] = bounded(c[nSpecie_]) + apart;
+    derivatives(time, moved, hotter_);
+    moved[nSpecie_] -= 2*apart;
+    derivatives(time, moved, colder_);
+    for (label i = 0; i <= nSpecie_; ++i)
+    {
+        byState(i, nSpecie_) = (hotter_[i] - colder_[i])/(2*apart);
+    }
+
+    // By concentrations.
+    setPositive(c);
+    const scalar T = bounded(c[nSpecie_]), p = c[nSpecie_ + 1];
     for (const reaction& r : reactions_)
     {
-        const scalar forth = r.kf(p, T, c), back = r.kr(forth, p, T, c);
+        const scalar forth = r.kf(p, T, positive_), back = r.kr(forth, p, T, positive_);
         slopes_ = Zero;
-        addSlopes(r.lhs(), c, forth, slopes_);
-        scalar numbers = 0;
-        for (const auto& one : r.rhs())
-        {
-            numbers += one.stoichCoeff;
-        }
-        gained += numbers*slopes_;
-        addSlopes(r.rhs(), c, -back, slopes_);
+        addSlopes(r.lhs(), positive_, forth);
+        addSlopes(r.rhs(), positive_, -back);
         for (label j = 0; j < nSpecie_; ++j)
         {
             for (const auto& one : r.lhs())
             {
-                byConcentration(one.index, j) -= one.stoichCoeff*slopes_[j];
+                byState(one.index, j) -= one.stoichCoeff*slopes_[j];
             }
             for (const auto& one : r.rhs())
             {
-                byConcentration(one.index, j) += one.stoichCoeff*slopes_[j];
+                byState(one.index, j) += one.stoichCoeff*slopes_[j];
             }
         }
+    }
+    const scalar slope = 0.5*(hotter_[nSpecie_] + colder_[nSpecie_]);
+    const scalar capacity = heatCapacity(p, T);
+    for (label j = 0; j < nSpecie_; ++j)
+    {
+        scalar heat = -specieThermo_[j].cp(p, T)*slope;
+        for (label i = 0; i < nSpecie_; ++i)
+        {
+            heat -= specieThermo_[i].ha(p, T)*byState(i, j);
+        }
+        byState(nSpecie_, j) = heat/capacity;
     }
 }

@@ -214,8 +214,9 @@ impl SpeciesEquations {
         let (grid, species) = (frame.grid, frame.species());
         let diffusion = &self.diffusion;
         let given = &frame.exchange.species;
+        let reactions = &self.reactions;
         self.matrix.assemble(|cell, diagonal, neighbours| {
-            *diagonal = frame.old.mass[cell] / frame.storage_span;
+            *diagonal = frame.old.mass[cell] / frame.storage_span + reactions.inertia(cell);
             if !given.is_none() {
                 *diagonal += frame.mass_source(now, cell) + given.coefficient[cell * species + k];
             }
@@ -283,7 +284,7 @@ impl SpeciesEquations {
         fill(&mut self.source, |cell| {
             let old = frame.old.composition[cell * species + k];
             let mut source = frame.old.mass[cell] * old / frame.storage_span
-                + reactions.gain(cell * species + k);
+                + reactions.explicit(cell, cell * species + k);
             if let Some(given) = frame.exchange.species.source.get(cell * species + k) {
                 source += given;
             }
