@@ -198,7 +198,7 @@ fn numbers_without_meaning_are_refused() {
     };
     assert!(said(|s| s.solid_fraction = f64::NAN).contains("solid fraction is NaN"));
     assert!(said(|s| s.sizes = Sizes::Equal(0.0)).contains("diameter is 0"));
-    assert!(said(|s| s.sizes = Sizes::Equal(0.06)).contains("narrowest width"));
+    assert!(said(|s| s.sizes = Sizes::Equal(0.06)).contains("do not fit between walls"));
     assert!(said(|s| s.fill = Fill::Number(0)).contains("number of spheres is 0"));
     assert!(
         said(|s| s.sizes = mixture(vec![], Share::Number)).contains("number of diameters is 0")
@@ -351,7 +351,7 @@ fn stackings_fill_containers_from_wall_to_wall() {
     // Nine whole spheres with one on the axis.
     assert_eq!(on_axis, 9);
     let narrow = regular_in_box(origin, [0.5, 1.0, 1.0], 1.0, Lattice::SimpleCubic).unwrap_err();
-    assert!(narrow.to_string().contains("narrowest width in m is 0.5"));
+    assert!(narrow.to_string().contains("0.5000 m apart"));
 }
 
 #[test]
