@@ -3,6 +3,8 @@
 mod drag;
 mod pass;
 
+use std::iter::repeat;
+
 use calcine_coupler::motion::{ContactForce, Contacts};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{ContactModel, HertzMindlin, Linear, SpringSliderDashpot};
@@ -10,7 +12,7 @@ use rayon::prelude::*;
 
 use super::block::{Block, size};
 use super::energy::{BedEnergy, ContactEnergy};
-use super::motion::{self, KickInputs};
+use super::motion::{self, ForceKick, Kick, KickInputs};
 use super::rebuild::{NeighbourSearch, SearchInputs};
 use super::rules::ContactRules;
 use super::sphere::{SphereLoad, SphereMotion, SpherePosition, Spheres};
@@ -36,6 +38,30 @@ type Portion<'a> = (
     ),
     &'a [Vec3],
 );
+
+/// Kick and move of one step.
+struct Drift<'a> {
+    kick: &'a KickInputs,
+    /// Whether works are counted.
+    counting: bool,
+    outgoing: &'a [Vec<SphereLoad>],
+}
+
+impl Drift<'_> {
+    /// Kicks and moves the particles of a block, with the loads of other blocks taken up first where this is not the first
+    /// step of a window; the square of their largest speed in m²/s².
+    fn of<K: Kick>(&self, portion: Portion<'_>, kicks: impl IntoIterator<Item = K>) -> f64 {
+        let (((block, place), moves), push) = portion;
+        if self.kick.times > 1 {
+            block.take_up(self.outgoing);
+        }
+        if self.counting {
+            motion::drift::<true, K>(block, self.kick, (place, moves), push, kicks)
+        } else {
+            motion::drift::<false, K>(block, self.kick, (place, moves), push, kicks)
+        }
+    }
+}
 
 /// A particle as it comes into the solver.
 #[derive(Clone, Copy, Debug, Default)]
@@ -339,57 +365,68 @@ impl Engine {
     /// Kicks and moves all particles; returns their largest speed in m/s. The loads of the step before are
     /// taken up first where this is not the first step of a window.
     fn drift(&mut self, times: u32) -> f64 {
-        let (parallel, counting) = (self.parallel(), self.counting);
-        let kick = self.kick(times);
-        let size = size(self.spheres.len());
-        if !self.spheres.drag.is_empty() {
-            return self.drift_with_drag(&kick, size, parallel);
-        }
-        let (outgoing, spheres) = (&self.outgoing, &mut self.spheres);
-        let work = |(((block, place), moves), push): Portion<'_>| {
-            if times > 1 {
-                block.take_up(outgoing);
-            }
-            if counting {
-                motion::drift::<true>(block, &kick, place, moves, push)
-            } else {
-                motion::drift::<false>(block, &kick, place, moves, push)
-            }
+        let (parallel, kick, size) = (self.parallel(), self.kick(times), size(self.spheres.len()));
+        let drift = Drift {
+            kick: &kick,
+            counting: self.counting,
+            outgoing: &self.outgoing,
         };
+        let Spheres {
+            place,
+            moves,
+            push,
+            drag,
+            ..
+        } = &mut self.spheres;
         let fastest = if parallel {
-            self.blocks
+            let portions = self
+                .blocks
                 .par_iter_mut()
-                .zip(spheres.place.par_chunks_mut(size))
-                .zip(spheres.moves.par_chunks_mut(size))
-                .zip(spheres.push.par_chunks(size))
-                .map(work)
-                .reduce(|| 0.0, f64::max)
+                .zip(place.par_chunks_mut(size))
+                .zip(moves.par_chunks_mut(size))
+                .zip(push.par_chunks(size));
+            if drag.is_empty() {
+                let speeds = portions.map(|portion| drift.of(portion, repeat(ForceKick)));
+                speeds.reduce(|| 0.0, f64::max)
+            } else {
+                let portions = portions.zip(drag.par_chunks_mut(size));
+                let speeds = portions.map(|(portion, drag)| drift.of(portion, drag));
+                speeds.reduce(|| 0.0, f64::max)
+            }
         } else {
-            self.blocks
+            let portions = self
+                .blocks
                 .iter_mut()
-                .zip(spheres.place.chunks_mut(size))
-                .zip(spheres.moves.chunks_mut(size))
-                .zip(spheres.push.chunks(size))
-                .map(work)
-                .fold(0.0, f64::max)
+                .zip(place.chunks_mut(size))
+                .zip(moves.chunks_mut(size))
+                .zip(push.chunks(size));
+            if drag.is_empty() {
+                let speeds = portions.map(|portion| drift.of(portion, repeat(ForceKick)));
+                speeds.fold(0.0, f64::max)
+            } else {
+                let portions = portions.zip(drag.chunks_mut(size));
+                let speeds = portions.map(|(portion, drag)| drift.of(portion, drag));
+                speeds.fold(0.0, f64::max)
+            }
         };
         fastest.sqrt()
     }
 
     fn close(&mut self) {
-        let kick = self.kick(1);
-        let size = size(self.spheres.len());
-        if !self.spheres.drag.is_empty() {
-            return self.close_with_drag(&kick, size);
-        }
-        let chunks = self.spheres.moves.chunks_mut(size);
-        for ((block, moves), push) in self
-            .blocks
-            .iter_mut()
-            .zip(chunks)
-            .zip(self.spheres.push.chunks(size))
-        {
-            motion::close(block, &kick, moves, push);
+        let (kick, size) = (self.kick(1), size(self.spheres.len()));
+        let Spheres {
+            moves, push, drag, ..
+        } = &mut self.spheres;
+        let portions = self.blocks.iter_mut().zip(moves.chunks_mut(size));
+        let portions = portions.zip(push.chunks(size));
+        if drag.is_empty() {
+            for ((block, moves), push) in portions {
+                motion::close(block, &kick, moves, push, repeat(ForceKick));
+            }
+        } else {
+            for (((block, moves), push), drag) in portions.zip(drag.chunks_mut(size)) {
+                motion::close(block, &kick, moves, push, drag);
+            }
         }
     }
 

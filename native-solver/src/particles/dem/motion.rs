@@ -21,67 +21,74 @@ pub struct KickInputs {
     pub gravity: Vec3,
 }
 
-/// Kicks the particles of a block.
-#[inline(always)]
-fn kick(kick: &KickInputs, moves: &mut SphereMotion, force: Vec3, torque: Vec3) {
-    // A held particle has no inverse mass: no gravity either.
-    let gravity = if moves.inverse_mass > 0.0 {
-        kick.gravity
-    } else {
+/// What kicks a particle.
+pub trait Kick {
+    /// Kicks it with a force in N and a torque in N m of contacts and push; the impulse in N s of what acts beside them.
+    fn kick(self, now: &KickInputs, moves: &mut SphereMotion, force: Vec3, torque: Vec3) -> Vec3;
+}
+
+/// Force, torque and gravity alone.
+#[derive(Clone, Copy, Debug)]
+pub struct ForceKick;
+
+impl Kick for ForceKick {
+    #[inline(always)]
+    fn kick(self, now: &KickInputs, moves: &mut SphereMotion, force: Vec3, torque: Vec3) -> Vec3 {
+        // A held particle has no inverse mass: no gravity either.
+        let gravity = if moves.inverse_mass > 0.0 {
+            now.gravity
+        } else {
+            Vec3::zeros()
+        };
+        let change = (force * moves.inverse_mass + gravity) * now.half;
+        let turn = torque * (moves.inverse_inertia * now.half);
+        for _ in 0..now.times {
+            moves.velocity += change;
+            moves.spin += turn;
+        }
         Vec3::zeros()
-    };
-    let change = (force * moves.inverse_mass + gravity) * kick.half;
-    let turn = torque * (moves.inverse_inertia * kick.half);
-    for _ in 0..kick.times {
-        moves.velocity += change;
-        moves.spin += turn;
     }
 }
 
-/// Kicks a particle that also feels a drag K (u − v): with the other forces constant over the kick the exact solution of
+/// A drag K (u − v) beside them: with the other forces constant over the kick the exact solution of
 /// m dv/dt = K (u − v) + F, stable however stiff. The impulse of the drag is what the others leave of the change of
 /// momentum.
-#[inline(always)]
-fn drag_kick(
-    now: &KickInputs,
-    moves: &mut SphereMotion,
-    force: Vec3,
-    torque: Vec3,
-    drag: &mut SphereDrag,
-) -> Vec3 {
-    let span = now.half * f64::from(now.times);
-    if moves.inverse_mass == 0.0 {
-        let impulse = drag.coefficient * span * drag.gas;
-        drag.impulse += impulse;
-        return impulse;
+impl Kick for &mut SphereDrag {
+    #[inline(always)]
+    fn kick(self, now: &KickInputs, moves: &mut SphereMotion, force: Vec3, torque: Vec3) -> Vec3 {
+        let span = now.half * f64::from(now.times);
+        if moves.inverse_mass == 0.0 {
+            let impulse = self.coefficient * span * self.gas;
+            self.impulse += impulse;
+            return impulse;
+        }
+        let other = force * moves.inverse_mass + now.gravity;
+        let rate = self.coefficient * moves.inverse_mass;
+        let a = rate * span;
+        let share = if a > 0.0 { -(-a).exp_m1() / a } else { 1.0 };
+        let change = (other + rate * (self.gas - moves.velocity)) * (share * span);
+        moves.velocity += change;
+        moves.spin += torque * (moves.inverse_inertia * span);
+        let impulse = (change - other * span) / moves.inverse_mass;
+        self.impulse += impulse;
+        impulse
     }
-    let other = force * moves.inverse_mass + now.gravity;
-    let rate = drag.coefficient * moves.inverse_mass;
-    let a = rate * span;
-    let share = if a > 0.0 { -(-a).exp_m1() / a } else { 1.0 };
-    let change = (other + rate * (drag.gas - moves.velocity)) * (share * span);
-    moves.velocity += change;
-    moves.spin += torque * (moves.inverse_inertia * span);
-    let impulse = (change - other * span) / moves.inverse_mass;
-    drag.impulse += impulse;
-    impulse
 }
 
-/// Kicks and moves the particles of a block that feel a drag by their velocity; returns the square of their largest speed in
-/// m²/s².
-pub fn drift_with_drag<const BUDGET: bool>(
+/// Kicks and moves the particles of a block; returns the square of their largest speed in m²/s².
+pub fn drift<const BUDGET: bool, K: Kick>(
     block: &mut Block,
     now: &KickInputs,
     (place, moves): (&mut [SpherePosition], &mut [SphereMotion]),
     push: &[Vec3],
-    drag: &mut [SphereDrag],
+    kicks: impl IntoIterator<Item = K>,
 ) -> f64 {
     let step = 2.0 * now.half;
     let mut fastest = 0.0f64;
     let mut held = Vec3::zeros();
-    let spheres = block.load.iter().zip(place).zip(moves).zip(push).zip(drag);
-    for ((((load, place), moves), push), drag) in spheres {
-        let impulse = drag_kick(now, moves, load.force + push, load.torque, drag);
+    let spheres = block.load.iter().zip(place).zip(moves).zip(push).zip(kicks);
+    for ((((load, place), moves), push), kick) in spheres {
+        let impulse = kick.kick(now, moves, load.force + push, load.torque);
         place.centre += moves.velocity * step;
         fastest = fastest.max(moves.velocity.norm_squared());
         if moves.inverse_mass == 0.0 {
@@ -90,54 +97,8 @@ pub fn drift_with_drag<const BUDGET: bool>(
         if BUDGET && moves.inverse_mass > 0.0 {
             let way = moves.velocity * step;
             block.budget.gravity_work += now.gravity.dot(&way) / moves.inverse_mass;
-            let dragged = impulse / (now.half * f64::from(now.times));
-            block.budget.push_work += (push + dragged).dot(&way);
-        }
-    }
-    block.support += (block.wall_force - held) * (now.half * f64::from(now.times));
-    fastest
-}
-
-/// The last half kick of a window for particles that feel a drag by their velocity.
-pub fn close_with_drag(
-    block: &mut Block,
-    now: &KickInputs,
-    moves: &mut [SphereMotion],
-    push: &[Vec3],
-    drag: &mut [SphereDrag],
-) {
-    let mut held = Vec3::zeros();
-    for (((load, moves), push), drag) in block.load.iter().zip(moves).zip(push).zip(drag) {
-        drag_kick(now, moves, load.force + push, load.torque, drag);
-        if moves.inverse_mass == 0.0 {
-            held += load.force;
-        }
-    }
-    block.support += (block.wall_force - held) * now.half;
-}
-
-/// Kicks and moves the particles of a block; returns the square of their largest speed in m²/s².
-pub fn drift<const BUDGET: bool>(
-    block: &mut Block,
-    now: &KickInputs,
-    place: &mut [SpherePosition],
-    moves: &mut [SphereMotion],
-    push: &[Vec3],
-) -> f64 {
-    let step = 2.0 * now.half;
-    let mut fastest = 0.0f64;
-    let mut held = Vec3::zeros();
-    for (((load, place), moves), push) in block.load.iter().zip(place).zip(moves).zip(push) {
-        kick(now, moves, load.force + push, load.torque);
-        place.centre += moves.velocity * step;
-        fastest = fastest.max(moves.velocity.norm_squared());
-        if moves.inverse_mass == 0.0 {
-            held += load.force;
-        }
-        if BUDGET && moves.inverse_mass > 0.0 {
-            let way = moves.velocity * step;
-            block.budget.gravity_work += now.gravity.dot(&way) / moves.inverse_mass;
-            block.budget.push_work += push.dot(&way);
+            let beside = impulse / (now.half * f64::from(now.times));
+            block.budget.push_work += (push + beside).dot(&way);
         }
     }
     block.support += (block.wall_force - held) * (now.half * f64::from(now.times));
@@ -145,10 +106,16 @@ pub fn drift<const BUDGET: bool>(
 }
 
 /// The last half kick of a window.
-pub fn close(block: &mut Block, now: &KickInputs, moves: &mut [SphereMotion], push: &[Vec3]) {
+pub fn close<K: Kick>(
+    block: &mut Block,
+    now: &KickInputs,
+    moves: &mut [SphereMotion],
+    push: &[Vec3],
+    kicks: impl IntoIterator<Item = K>,
+) {
     let mut held = Vec3::zeros();
-    for ((load, moves), push) in block.load.iter().zip(moves).zip(push) {
-        kick(now, moves, load.force + push, load.torque);
+    for (((load, moves), push), kick) in block.load.iter().zip(moves).zip(push).zip(kicks) {
+        kick.kick(now, moves, load.force + push, load.torque);
         if moves.inverse_mass == 0.0 {
             held += load.force;
         }

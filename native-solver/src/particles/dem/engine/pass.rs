@@ -1,13 +1,15 @@
 //! The passes of a step over all contacts: forces alone, or forces and motion block by block.
 
+use std::iter::repeat;
+
 use calcine_coupler::motion::ContactForce;
 use calcine_coupler::physics::contact::{ContactModel, HertzMindlin, Linear, SpringSliderDashpot};
 use rayon::prelude::*;
 
 use super::super::block::{Block, size};
 use super::super::force_context::ForceContext;
-use super::super::motion;
-use super::super::sphere::SphereLoad;
+use super::super::motion::{self, ForceKick};
+use super::super::sphere::{SphereLoad, Spheres};
 use super::Engine;
 
 impl Engine {
@@ -16,10 +18,10 @@ impl Engine {
         self.pass(step, false);
     }
 
-    /// True where a step may go block by block: by one thread, without drag by velocities, and where a block's particles
-    /// get loads of blocks before it only.
+    /// True where a step may go block by block: by one thread, and where a block's particles get loads of blocks before it
+    /// only.
     pub(super) fn sweeps(&self) -> bool {
-        !self.parallel() && self.search.forward && self.spheres.drag.is_empty()
+        !self.parallel() && self.search.forward
     }
 
     /// Forces of a step, and the kick and the move to the next one as soon as a block has all its loads, while its
@@ -96,12 +98,20 @@ impl Engine {
             let (before, rest) = self.outgoing.split_at_mut(index);
             block.evaluate::<L, BUDGET>(&scene, &mut rest[0]);
             block.take_up(before);
-            let spheres = &mut self.spheres;
-            let (place, moves) = (
-                &mut spheres.place[own.clone()],
-                &mut spheres.moves[own.clone()],
-            );
-            let largest = motion::drift::<BUDGET>(block, &kick, place, moves, &spheres.push[own]);
+            let Spheres {
+                place,
+                moves,
+                push,
+                drag,
+                ..
+            } = &mut self.spheres;
+            let bodies = (&mut place[own.clone()], &mut moves[own.clone()]);
+            let push = &push[own.clone()];
+            let largest = if drag.is_empty() {
+                motion::drift::<BUDGET, _>(block, &kick, bodies, push, repeat(ForceKick))
+            } else {
+                motion::drift::<BUDGET, _>(block, &kick, bodies, push, &mut drag[own])
+            };
             fastest = fastest.max(largest);
             std::mem::swap(&mut self.spare, &mut block.load);
         }
