@@ -10,7 +10,8 @@ impl Reacting {
         self
     }
 
-    /// The same particles, which are used up below another share of their first mass than [`super::USED_UP`].
+    /// The same particles, which are used up where no more than this share of their first mass is left; without it, where
+    /// nothing is left.
     pub fn with_used_up(mut self, share: f64) -> Self {
         self.used_up = share;
         self

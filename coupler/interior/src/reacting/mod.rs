@@ -89,9 +89,6 @@ struct Amounts {
     owed: Vec<f64>,
 }
 
-/// Share of the mass with which it came below which a particle is used up, unless said otherwise.
-pub const USED_UP: f64 = 1e-6;
-
 impl Reacting {
     /// No particles yet, of a material that is at first made of these mass fractions of the chemistry's solids.
     pub fn new(chemistry: SolidChemistry, fractions: &[f64]) -> Self {
@@ -119,7 +116,7 @@ impl Reacting {
             capacity: Vec::new(),
             results: Vec::new(),
             accuracy: ParticleAccuracy::default(),
-            used_up: USED_UP,
+            used_up: 0.0,
         }
     }
 

@@ -523,3 +523,53 @@ fn a_reaction_of_order_zero_takes_from_a_cell_in_proportion_to_what_it_holds() {
     assert!((lines.local_slope[0] * composition[0] / rate - 1.0).abs() < 1e-6);
     assert!(lines.slope[0].abs() < 1e-3 * lines.local_slope[0]);
 }
+
+#[test]
+fn heat_that_would_take_a_particle_2_percent_from_its_integration_is_owed_to_it() {
+    let gas = Mixture::new(["CO", "CO2", "N2"]).unwrap();
+    let composition = gas.mass_fractions(&[0.3, 0.0, 0.7]);
+    let around = Surroundings {
+        temperature: &[HOT],
+        pressure: &[PRESSURE],
+        composition: &composition,
+        conductance: &[0.01],
+        film: &[0.05; 3],
+        radius: &[RADIUS],
+    };
+    for (share, is_owed) in [(0.0199, false), (0.0201, true), (-0.0201, true)] {
+        let mut reacting = particle(reduction(0.01, 1e-4));
+        // A window whose heat is off, and one in which it is not.
+        for off in [share, 0.0] {
+            let mut lines = GasLines::default();
+            lines.reset(1, 1);
+            reacting.respond(&around, 1.0, &[0.0], &mut lines).unwrap();
+            let rates = [lines.slope[0] * composition[0] - lines.offset[0]];
+            let followed = reacting.end[0];
+            let mut left = reacting.amounts().to_vec();
+            left[0] -= rates[0];
+            left[1] += rates[0];
+            let chemistry = reacting.chemistry();
+            let beyond = chemistry.enthalpy(&left, followed * (1.0 + off))
+                - chemistry.enthalpy(&left, followed);
+            let heat = lines.conductance[0] * (HOT - lines.temperature[0]) + beyond;
+            let took = Transfer {
+                heat: &[heat],
+                network: &[0.0],
+                carried: &[carried(&reacting, &rates)],
+                rates: &rates,
+            };
+            let given = reacting.committed.owed[0];
+            reacting.settle(&took, 1.0).unwrap();
+            let change = reacting.now.temperature[0] / followed - 1.0;
+            if is_owed && off != 0.0 {
+                assert_eq!(change, 0.0);
+                assert!((reacting.now.owed[0] / beyond - 1.0).abs() < 1e-9);
+            } else {
+                assert!((change - off).abs() < 1e-9, "{change}");
+                assert_eq!(reacting.now.owed[0], 0.0);
+            }
+            assert!(off != 0.0 || is_owed == (given != 0.0));
+            reacting.commit();
+        }
+    }
+}
