@@ -27,6 +27,7 @@
 //! here are those that the model makes of the laws' K_A, and `push` adds what else the gas does to a
 //! particle, −V_p Σ_c W_cp ∇p or the weight of what it displaces.
 
+use calcine_numerics::parallel::{self, fill};
 use calcine_physics::Vec3;
 
 use crate::closures::CouplingCoefficients;
@@ -121,10 +122,10 @@ impl Exchange {
 
         let coefficients = inputs.coefficients;
         operator.spread(&coefficients.drag, &mut self.cells.drag_coefficient);
-        for (p, source) in self.vector.iter_mut().enumerate() {
+        fill(&mut self.vector, |p| {
             let velocity = inputs.particles.velocity[p];
-            *source = coefficients.drag_source(p, velocity, inputs.acceleration);
-        }
+            coefficients.drag_source(p, velocity, inputs.acceleration)
+        });
         operator.spread_vectors(&self.vector, &mut self.cells.drag_source);
     }
 
@@ -146,20 +147,22 @@ impl Exchange {
     pub fn linearise(&mut self, inputs: &ExchangeInputs<'_>, temperature: &[f64]) {
         let (operator, iterate) = (inputs.operator, &mut self.iterate);
         // K_p, g_p and the source side by side: three components cost little more than one.
-        for (p, kelvin) in temperature.iter().enumerate() {
+        fill(&mut self.vector, |p| {
             let own = self.conductance[p];
             let coupling_coefficient =
                 coupling_coefficient(inputs.coefficients.conductance[p], own);
-            let source = own * kelvin + coupling_coefficient * iterate.sampled_temperature[p];
-            self.vector[p] = Vec3::new(own, coupling_coefficient, source);
-        }
+            let seen = iterate.sampled_temperature[p];
+            let source = own * temperature[p] + coupling_coefficient * seen;
+            Vec3::new(own, coupling_coefficient, source)
+        });
         operator.spread_vectors(&self.vector, &mut self.cell_vector);
-        for c in 0..operator.cells() {
-            let [own, coupling_coefficient, source] = self.cell_vector[c].into();
-            self.cells.heat_coefficient[c] = own;
-            iterate.coupling_coefficient[c] = coupling_coefficient;
-            self.cells.heat_source[c] = source - coupling_coefficient * iterate.temperature[c];
-        }
+        let sums = &self.cell_vector;
+        fill(&mut self.cells.heat_coefficient, |c| sums[c].x);
+        fill(&mut iterate.coupling_coefficient, |c| sums[c].y);
+        let kelvin = &iterate.temperature;
+        fill(&mut self.cells.heat_source, |c| {
+            sums[c].z - sums[c].y * kelvin[c]
+        });
     }
 
     /// Gives each particle the heat that the gas reports, takes the gas as the next iterate, and
@@ -178,33 +181,34 @@ impl Exchange {
         let (operator, coefficients) = (inputs.operator, inputs.coefficients);
         let exchange = &self.cells;
         // T_c − δ_c/H_c, with δ_c what the gas reports beyond R_c, and T_c side by side.
-        for c in 0..operator.cells() {
+        fill(&mut self.cell_vector, |c| {
             let (own, coefficient) = (gas.temperature[c], exchange.heat_coefficient[c]);
             let apart = carried.get(c).copied().unwrap_or(0.0);
             let told = exchange.heat_source[c] - coefficient * own;
             let beyond = received.heat[c] - apart - told;
             let credited = own - ratio(beyond, coefficient);
-            self.cell_vector[c] = Vec3::new(credited, own, 0.0);
-        }
+            Vec3::new(credited, own, 0.0)
+        });
         operator.sample_vectors(&self.cell_vector, &mut self.vector);
-        for (p, kelvin) in temperature.iter().enumerate() {
-            let [credited, sampled, _] = self.vector[p].into();
-            let own = self.conductance[p];
-            self.heat[p] = own * (credited - kelvin);
-            let before = std::mem::replace(&mut self.iterate.sampled_temperature[p], sampled);
-            self.scalar[p] =
-                coupling_coefficient(coefficients.conductance[p], own) * (sampled - before);
-        }
+        let (seen, conductance, iterate) = (&self.vector, &self.conductance, &mut self.iterate);
+        fill(&mut self.heat, |p| {
+            conductance[p] * (seen[p].x - temperature[p])
+        });
+        let sampled = &mut iterate.sampled_temperature;
+        parallel::update_both(&mut self.scalar, sampled, |p, drawn, sampled| {
+            let before = std::mem::replace(sampled, seen[p].y);
+            *drawn = coupling_coefficient(coefficients.conductance[p], conductance[p])
+                * (*sampled - before);
+        });
         operator.spread(&self.scalar, &mut self.cell_scalar);
-        let (mut misplaced, mut exchanged) = (0.0, 0.0);
-        let faint: f64 = self.conductance.iter().sum::<f64>() * FAINT;
-        for c in 0..operator.cells() {
-            let before = std::mem::replace(&mut self.iterate.temperature[c], gas.temperature[c]);
-            let change = gas.temperature[c] - before;
-            misplaced +=
-                (self.iterate.coupling_coefficient[c] * change - self.cell_scalar[c]).abs();
-            exchanged += received.heat[c].abs();
-        }
+        let drawn = &self.cell_scalar;
+        let [misplaced, exchanged] = parallel::sums(operator.cells(), |c| {
+            let change = gas.temperature[c] - iterate.temperature[c];
+            let misplaced = iterate.coupling_coefficient[c] * change - drawn[c];
+            [misplaced.abs(), received.heat[c].abs()]
+        });
+        iterate.temperature.copy_from_slice(gas.temperature);
+        let faint = FAINT * parallel::sum(conductance.len(), |p| conductance[p]);
         share(misplaced, exchanged.max(faint))
     }
 
@@ -216,19 +220,20 @@ impl Exchange {
         received: &CellReceived,
     ) {
         let exchange = &self.cells;
-        for c in 0..inputs.operator.cells() {
+        fill(&mut self.cell_vector, |c| {
             let (own, coefficient) = (gas.velocity[c], exchange.drag_coefficient[c]);
             let beyond = received.drag[c] - (exchange.drag_source[c] - coefficient * own);
-            self.cell_vector[c] = own - beyond.map(|beyond| ratio(beyond, coefficient));
-        }
+            own - beyond.map(|beyond| ratio(beyond, coefficient))
+        });
         let operator = inputs.operator;
         self.gas_velocity
             .resize(operator.particles(), Vec3::zeros());
         operator.sample_vectors(&self.cell_vector, &mut self.gas_velocity);
-        for (p, drag) in self.drag.iter_mut().enumerate() {
-            let slip = self.gas_velocity[p] - inputs.particles.velocity[p] / inputs.acceleration;
-            *drag = inputs.coefficients.drag_at(p, slip);
-        }
+        let seen = &self.gas_velocity;
+        fill(&mut self.drag, |p| {
+            let slip = seen[p] - inputs.particles.velocity[p] / inputs.acceleration;
+            inputs.coefficients.drag_at(p, slip)
+        });
     }
 
     /// The force pushed to the particles: drag, and the force of pressure or buoyancy as the model has it
@@ -252,17 +257,12 @@ impl Exchange {
             }
         };
         operator.sample_vectors(field, pressure_force);
-        for (force, &volume) in pressure_force.iter_mut().zip(solid_volume) {
-            *force = model.pressure_force(volume, *force, *force);
-        }
+        parallel::update(pressure_force, |p, force| {
+            *force = model.pressure_force(solid_volume[p], *force, *force);
+        });
         push.columns.clear();
-        push.force.clear();
-        push.force.extend(
-            self.drag
-                .iter()
-                .zip(pressure_force.iter())
-                .map(|(d, p)| d + p),
-        );
+        push.force.resize(operator.particles(), Vec3::zeros());
+        fill(&mut push.force, |p| self.drag[p] + pressure_force[p]);
     }
 
     /// Has drag follow the particles as they move (docs/theory.md, DRG-3): in place of the mean of the window the solver

@@ -15,7 +15,9 @@
 //! particle's.
 
 use calcine_interior::{Channel, GasLines};
+use calcine_numerics::parallel::{self, CHUNK};
 use calcine_physics::gas_model::GasModel;
+use rayon::prelude::*;
 
 use crate::part::{GasFields, SpeciesExchange};
 use crate::smoother::Operator;
@@ -152,19 +154,18 @@ impl SpeciesCoupling {
         told: &SpeciesExchange,
     ) {
         let species = properties.species().len();
-        self.cell_heat.clear();
-        self.cell_heat
-            .extend(told.heat.iter().enumerate().map(|(cell, brought)| {
-                let taken = (0..species).map(|k| {
-                    let mass = told.taken[cell * species + k];
-                    if mass == 0.0 {
-                        0.0
-                    } else {
-                        mass * properties.species_enthalpy(k, gas.temperature[cell])
-                    }
-                });
-                brought - taken.sum::<f64>()
-            }));
+        self.cell_heat.resize(told.heat.len(), 0.0);
+        parallel::fill(&mut self.cell_heat, |cell| {
+            let taken = (0..species).map(|k| {
+                let mass = told.taken[cell * species + k];
+                if mass == 0.0 {
+                    0.0
+                } else {
+                    mass * properties.species_enthalpy(k, gas.temperature[cell])
+                }
+            });
+            told.heat[cell] - taken.sum::<f64>()
+        });
     }
 
     /// Sets `carried`: the sensible heat of what each particle takes from its cells, less that of what it makes.
@@ -183,38 +184,28 @@ impl SpeciesCoupling {
         self.sampled.resize(particles, 0.0);
         let mut enthalpy = vec![0.0; cells];
         for (c, channel) in channels.iter().enumerate() {
-            for (cell, sum) in enthalpy.iter_mut().enumerate() {
-                let used = channel
-                    .mass
-                    .iter()
-                    .enumerate()
-                    .filter(|(_, mass)| **mass < 0.0);
-                *sum = used
-                    .map(|(k, mass)| -mass * properties.species_enthalpy(k, gas.temperature[cell]))
-                    .sum();
-            }
+            let at = |p: usize| p * channels.len() + c;
+            parallel::fill(&mut enthalpy, |cell| {
+                let parts = channel.mass.iter().enumerate();
+                let used = parts.filter(|(_, mass)| **mass < 0.0);
+                used.map(|(k, mass)| -mass * properties.species_enthalpy(k, gas.temperature[cell]))
+                    .sum()
+            });
             operator.sample(&enthalpy, &mut self.sampled);
-            for (p, sampled) in self.sampled.iter().enumerate() {
-                let at = p * channels.len() + c;
-                self.carried[p] -= self.shares[at] * self.offset[at] * sampled;
-            }
-            for (cell, value) in enthalpy.iter_mut().enumerate() {
-                *value *= self.fraction(cell, species, channel);
-            }
+            let (shares, sampled) = (&self.shares, &self.sampled);
+            parallel::update(&mut self.carried, |p, carried| {
+                *carried -= shares[at(p)] * self.offset[at(p)] * sampled[p];
+            });
+            parallel::update(&mut enthalpy, |cell, value| {
+                *value *= fraction(&self.fractions, cell, species, channel);
+            });
             operator.sample(&enthalpy, &mut self.sampled);
-            for (p, sampled) in self.sampled.iter().enumerate() {
-                let at = p * channels.len() + c;
-                self.carried[p] += self.shares[at] * self.slope[at] * sampled
-                    - self.rates[at] * made(channel, properties, given.lines.released[p]);
-            }
+            let sampled = &self.sampled;
+            parallel::update(&mut self.carried, |p, carried| {
+                *carried += shares[at(p)] * self.slope[at(p)] * sampled[p]
+                    - self.rates[at(p)] * made(channel, properties, given.lines.released[p]);
+            });
         }
-    }
-
-    /// Mass fraction in a cell of the key gas of a channel.
-    fn fraction(&self, cell: usize, species: usize, channel: &Channel) -> f64 {
-        channel
-            .key
-            .map_or(0.0, |key| self.fractions[cell * species + key])
     }
 
     /// Brings the particles' lines to the cells.
@@ -270,11 +261,9 @@ impl SpeciesCoupling {
         for (c, channel) in channels.iter().enumerate() {
             if sampled != Some(channel.key) {
                 self.key_fraction.resize(operator.cells(), 0.0);
-                for (cell, value) in self.key_fraction.iter_mut().enumerate() {
-                    *value = channel
-                        .key
-                        .map_or(0.0, |key| fractions[cell * species + key]);
-                }
+                parallel::fill(&mut self.key_fraction, |cell| {
+                    fraction(fractions, cell, species, channel)
+                });
                 operator.sample(&self.key_fraction, &mut self.sampled);
                 sampled = Some(channel.key);
             }
@@ -296,41 +285,76 @@ impl SpeciesCoupling {
     ) {
         let cells = self.fractions.len() / species.max(1);
         out.reset(cells, species);
-        for (c, (channel, lines)) in given.channels.iter().zip(&self.cells).enumerate() {
-            for cell in 0..cells {
-                let (slope, offset) = (lines.slope[cell], lines.offset[cell]);
-                if slope == 0.0 && offset == 0.0 {
-                    continue;
-                }
-                let fraction = self.fraction(cell, species, channel);
-                let rate = slope * fraction - offset;
-                for (k, mass) in channel.mass.iter().enumerate().filter(|(_, m)| **m != 0.0) {
-                    let at = cell * species + k;
-                    let taken = lines.implicit[cell];
-                    let steepness = -mass * taken;
-                    if implicit && channel.key == Some(k) && steepness > 0.0 {
-                        out.coefficient[at] += steepness;
-                        out.source[at] += mass * rate + steepness * fraction;
-                    } else if implicit && taken > 0.0 && self.counter[c] == Some(k) {
-                        // What the key gas loses, this one gains, mole for mole, in a gas whose mass changes with it.
-                        let key = channel.key.map_or(0.0, |key| -channel.mass[key]);
-                        let gain = mass - key;
-                        let ratio = (1.0 + fraction * gain / key)
-                            / (1.0 - self.fractions[at] * gain / mass);
-                        let coefficient = key * taken * ratio;
-                        out.coefficient[at] += coefficient;
-                        out.source[at] += mass * rate + coefficient * self.fractions[at];
-                    } else {
-                        out.source[at] += mass * rate;
-                    }
-                    if *mass < 0.0 {
-                        out.taken[at] -= mass * rate;
-                    }
-                }
-                out.heat[cell] += lines.warm_slope[cell] * fraction - lines.warm_offset[cell];
+        let width = (species * CHUNK).max(1);
+        let coefficients = out.coefficient.par_chunks_mut(width);
+        let gained = out.source.par_chunks_mut(width);
+        let taken = out.taken.par_chunks_mut(width);
+        let chunks = (coefficients.zip(gained).zip(taken)).zip(out.heat.par_chunks_mut(CHUNK));
+        chunks.enumerate().for_each(|(chunk, (rows, heat))| {
+            let ((coefficient, source), taken) = rows;
+            for (row, heat) in heat.iter_mut().enumerate() {
+                let own = row * species..(row + 1) * species;
+                let told = CellRows {
+                    coefficient: &mut coefficient[own.clone()],
+                    source: &mut source[own.clone()],
+                    taken: &mut taken[own],
+                    heat,
+                };
+                self.fill_cell(given.channels, chunk * CHUNK + row, implicit, told);
             }
+        });
+    }
+
+    /// The same for one cell.
+    fn fill_cell(&self, channels: &[Channel], cell: usize, implicit: bool, told: CellRows<'_>) {
+        let species = told.source.len();
+        let fractions = &self.fractions[cell * species..(cell + 1) * species];
+        for (c, (channel, lines)) in channels.iter().zip(&self.cells).enumerate() {
+            let (slope, offset) = (lines.slope[cell], lines.offset[cell]);
+            if slope == 0.0 && offset == 0.0 {
+                continue;
+            }
+            let fraction = channel.key.map_or(0.0, |key| fractions[key]);
+            let rate = slope * fraction - offset;
+            let taken = lines.implicit[cell];
+            for (k, mass) in channel.mass.iter().enumerate().filter(|(_, m)| **m != 0.0) {
+                let steepness = -mass * taken;
+                if implicit && channel.key == Some(k) && steepness > 0.0 {
+                    told.coefficient[k] += steepness;
+                    told.source[k] += mass * rate + steepness * fraction;
+                } else if implicit && taken > 0.0 && self.counter[c] == Some(k) {
+                    // What the key gas loses, this one gains, mole for mole, in a gas whose mass changes with it.
+                    let key = channel.key.map_or(0.0, |key| -channel.mass[key]);
+                    let gain = mass - key;
+                    let ratio = (1.0 + fraction * gain / key) / (1.0 - fractions[k] * gain / mass);
+                    let coefficient = key * taken * ratio;
+                    told.coefficient[k] += coefficient;
+                    told.source[k] += mass * rate + coefficient * fractions[k];
+                } else {
+                    told.source[k] += mass * rate;
+                }
+                if *mass < 0.0 {
+                    told.taken[k] -= mass * rate;
+                }
+            }
+            *told.heat += lines.warm_slope[cell] * fraction - lines.warm_offset[cell];
         }
     }
+}
+
+/// What the gas is told of one cell, by species.
+struct CellRows<'a> {
+    coefficient: &'a mut [f64],
+    source: &'a mut [f64],
+    taken: &'a mut [f64],
+    heat: &'a mut f64,
+}
+
+/// Mass fraction in a cell of the key gas of a channel.
+fn fraction(fractions: &[f64], cell: usize, species: usize, channel: &Channel) -> f64 {
+    channel
+        .key
+        .map_or(0.0, |key| fractions[cell * species + key])
 }
 
 /// The slope that the gas takes implicitly: that of the whole particle, which its total follows, and no less than half of

@@ -4,12 +4,14 @@
 //! - [`linear`]: LU factors of dense and of block-tridiagonal matrices;
 //! - [`rosenbrock`]: one integrator for stiff systems, with the tangent of what it integrates;
 //! - [`batch`]: many systems on threads, in fixed chunks;
+//! - [`parallel`]: loops and sums on threads;
 //! - [`anderson`]: fixed points, accelerated.
 
 pub mod anderson;
 pub mod batch;
 pub mod linear;
 pub mod number;
+pub mod parallel;
 pub mod rosenbrock;
 
 pub use anderson::Anderson;

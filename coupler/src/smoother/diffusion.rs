@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::graph::Graph;
-use super::parallel;
 use super::scratch::{Kept, Scratch};
 use super::sparse::{Sparse, Stencil};
+use calcine_numerics::parallel;
 
 /// Diffusion over a length ℓ: F = Xᵐ with X = I − τ L V⁻¹ and mτ = ℓ², L the Laplacian of the
 /// conductances and V the cell volumes. It approaches the heat kernel of variance 2ℓ² per axis, as the

@@ -1,9 +1,9 @@
 //! Cells joined by conductances: how excess and diffusion pass between neighbours.
 
-use super::parallel;
 use super::sparse::Sparse;
 use crate::mapping::Amount;
 use crate::mesh::Mesh;
+use calcine_numerics::parallel;
 
 /// Symmetric conductances g = |S_f|/|d_f| in m between neighbouring cells, fixed by the mesh
 /// (docs/theory.md, VFS-4), zero into excluded cells. L is their Laplacian,

@@ -32,10 +32,10 @@ use super::graph::Graph;
 use super::multigrid::Multigrid;
 use super::multigrid::level::Matrix;
 use super::obstacle;
-use super::parallel;
 use super::scratch::{Kept, Scratch};
 use super::sparse::Sparse;
 use crate::mapping::Amount;
+use calcine_numerics::parallel;
 
 /// S and its transpose. Takes about 120 bytes per active cell with sweeps, 340 with multigrid.
 #[derive(Clone, Debug)]

@@ -20,13 +20,13 @@ mod kernel;
 mod multigrid;
 mod obstacle;
 mod operator;
-mod parallel;
 mod scratch;
 mod sparse;
 mod sweeps;
 
 use std::sync::{Arc, OnceLock};
 
+use calcine_numerics::parallel;
 use calcine_physics::Vec3;
 
 pub use error::SmootherError;
@@ -206,7 +206,9 @@ impl Smoother {
         let mut left = vec![0.0; excess.len()];
         self.graph.excess(excess, potential, &mut left);
         let total = parallel::sum(left.len(), |cell| left[cell].max(0.0));
-        let largest = parallel::largest(left.len(), |cell| left[cell] / self.graph.volume[cell]);
+        let largest = parallel::largest(left.len(), |cell| left[cell] / self.graph.volume[cell])
+            .1
+            .max(0.0);
         total <= enough.total && largest <= enough.largest
     }
 

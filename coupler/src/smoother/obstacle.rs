@@ -17,8 +17,8 @@
 use super::graph::Graph;
 use super::multigrid::Multigrid;
 use super::multigrid::level::Matrix;
-use super::parallel;
 use super::sparse::Sparse;
+use calcine_numerics::parallel;
 
 /// How exactly the problem is solved.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::parallel;
 use crate::mapping::Amount;
+use calcine_numerics::parallel;
 
 /// A sparse matrix by rows, 12 bytes per entry and 8 per row.
 #[derive(Clone, Debug, PartialEq)]
@@ -145,10 +145,10 @@ impl Sparse {
         memory: impl Fn() -> M + Sync + Send,
         row: impl Fn(&mut M, usize, &mut Self) + Sync,
     ) -> Self {
-        let starts = (0..rows.div_ceil(parallel::BLOCK)).into_par_iter();
+        let starts = (0..rows.div_ceil(parallel::CHUNK)).into_par_iter();
         let blocks: Vec<Self> = starts
             .map_init(memory, |memory, block| {
-                let range = block * parallel::BLOCK..rows.min((block + 1) * parallel::BLOCK);
+                let range = block * parallel::CHUNK..rows.min((block + 1) * parallel::CHUNK);
                 let mut matrix = Self::with_capacity(range.len(), width * range.len());
                 for index in range {
                     row(memory, index, &mut matrix);

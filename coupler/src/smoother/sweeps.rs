@@ -5,7 +5,6 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::graph::Graph;
-use super::parallel::BLOCK;
 
 /// What sweeps left.
 pub(super) struct Swept {
@@ -24,6 +23,9 @@ pub(super) struct Enough {
     /// In a cell, as a solid fraction.
     pub largest: f64,
 }
+
+/// Cells of a block: those without excess are skipped as one.
+const BLOCK: usize = 2048;
 
 /// Sweeps that are not worth doing: active sets take as long as some hundreds.
 pub(super) const MOST: u32 = 500;

@@ -10,6 +10,6 @@ pub mod grid;
 pub mod krylov;
 pub mod matrix;
 pub mod operators;
-pub mod parallel;
+pub use calcine_numerics::parallel;
 pub mod preconditioner;
 pub mod sparse;

@@ -15,6 +15,7 @@ mod neighbours;
 mod radiation;
 mod solver;
 
+use calcine_numerics::parallel::fill;
 use calcine_physics::conduction::{
     Conduction, Conductivity, ContactArea, GasGap, SphereContact, SphereGap, Stiffness,
 };
@@ -105,6 +106,8 @@ pub struct HeatNetwork {
 #[derive(Debug, Default)]
 struct Work {
     solver: NetworkSolver,
+    /// Of each pair that touches in W/K.
+    conductance: Vec<f64>,
     /// Pairs of nodes with their conductance in W/K; contacts first.
     bonds: Vec<([usize; 2], f64)>,
     /// Node and reservoir with their conductance in W/K; contacts first.
@@ -319,17 +322,20 @@ impl HeatNetwork {
         } = self;
         work.bonds.clear();
         work.reservoir_links.clear();
-        for touch in &self.pairs {
+        work.conductance.resize(self.pairs.len(), 0.0);
+        fill(&mut work.conductance, |pair| {
+            let touch = &self.pairs[pair];
             let [i, j] = touch.particles;
             let of = [i, j].map(|p| &materials[material[p]]);
             let conductivity = [of[0].conductivity.at(old[i]), of[1].conductivity.at(old[j])];
             let gas = [i, j].map(|p| surroundings.gas_conductivity[p]);
             let gas = 2.0 * gas[0] * gas[1] / (gas[0] + gas[1]);
-            let g = conductance(laws, of, touch.radius, touch.overlap, conductivity, gas);
-            if g > 0.0 {
-                work.bonds.push(([i, j], g));
-            }
-        }
+            conductance(laws, of, touch.radius, touch.overlap, conductivity, gas)
+        });
+        let bonds = self.pairs.iter().zip(&work.conductance);
+        let conducting = bonds.filter(|(_, g)| **g > 0.0);
+        let bond = |(touch, g): (&NeighbourPair, &f64)| (touch.particles, *g);
+        work.bonds.extend(conducting.map(bond));
         for touch in &self.wall_touches {
             let (i, reservoir) = (touch.particle, touch.reservoir);
             let Some(&wall) = walls.get(reservoir) else {

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use calcine_numerics::parallel::fill;
 use calcine_physics::radiation::linear;
 use calcine_physics::sphere;
 
@@ -118,11 +119,14 @@ impl Radiation {
         reservoir_links: &mut Vec<([usize; 2], f64)>,
     ) {
         let shift = self.radiosities();
-        for &([i, j], area) in &self.views.pairs {
+        let solid = bonds.len();
+        bonds.resize(solid + self.views.pairs.len(), ([0; 2], 0.0));
+        fill(&mut bonds[solid..], |pair| {
+            let ([i, j], area) = self.views.pairs[pair];
             let ends = [i + shift, j + shift];
             let left = (self.of(i) * self.of(j)).sqrt();
-            bonds.push((ends, left * area * linear(kelvin[ends[0]], kelvin[ends[1]])));
-        }
+            (ends, left * area * linear(kelvin[ends[0]], kelvin[ends[1]]))
+        });
         for &([i, reservoir], area) in &self.views.reservoirs {
             let node = i + shift;
             let h = linear(kelvin[node], reservoirs[reservoir]);

@@ -1,4 +1,6 @@
-//! Conjugate gradients on a network of conductances.
+//! Conjugate gradients on a network of conductances, on threads with the same bits on any number of them.
+
+use calcine_numerics::parallel::{fill, sum, update, update_both};
 
 /// Relative residual at which an implicit step ends: far below what a window's other errors are, and
 /// energy does not depend on it, because flows go from one node to the other whatever they are.
@@ -30,10 +32,55 @@ pub struct UnsolvedNetwork {
 /// Scratch of the conjugate gradients.
 #[derive(Debug, Default)]
 pub struct NetworkSolver {
+    graph: BondGraph,
     diagonal: Vec<f64>,
     residual: Vec<f64>,
     direction: Vec<f64>,
     product: Vec<f64>,
+}
+
+/// What is bonded to each node, in the order of the bonds.
+#[derive(Debug, Default)]
+struct BondGraph {
+    /// Where the neighbours of each node end; those of the next begin there.
+    ends: Vec<usize>,
+    neighbour: Vec<u32>,
+    conductance: Vec<f64>,
+}
+
+impl BondGraph {
+    fn set(&mut self, nodes: usize, bonds: &[([usize; 2], f64)]) {
+        let ends = &mut self.ends;
+        ends.clear();
+        ends.resize(nodes + 1, 0);
+        for &([i, j], _) in bonds {
+            ends[i + 1] += 1;
+            ends[j + 1] += 1;
+        }
+        for node in 0..nodes {
+            ends[node + 1] += ends[node];
+        }
+        self.neighbour.resize(2 * bonds.len(), 0);
+        self.conductance.resize(2 * bonds.len(), 0.0);
+        // Each entry counts from the start of its node on, which so becomes its end.
+        for &([i, j], g) in bonds {
+            for (node, other) in [(i, j), (j, i)] {
+                let place = ends[node];
+                self.neighbour[place] = other as u32;
+                self.conductance[place] = g;
+                ends[node] = place + 1;
+            }
+        }
+    }
+
+    /// Neighbours of a node and the conductances to them in W/K.
+    fn around(&self, node: usize) -> impl Iterator<Item = (usize, f64)> {
+        let start = if node == 0 { 0 } else { self.ends[node - 1] };
+        let own = start..self.ends[node];
+        let neighbour = self.neighbour[own.clone()].iter();
+        let pairs = neighbour.zip(&self.conductance[own]);
+        pairs.map(|(other, g)| (*other as usize, *g))
+    }
 }
 
 impl NetworkSolver {
@@ -52,48 +99,38 @@ impl NetworkSolver {
             sink_conductance,
             drive,
         } = *system;
+        self.graph.set(count, bonds);
         let Self {
+            graph,
             diagonal,
             residual: r,
             direction: p,
             product: q,
         } = self;
         let x = temperature;
-        diagonal.clear();
-        diagonal.extend(capacity.iter().zip(sink_conductance).map(|(c, h)| c + h));
-        for &([i, j], g) in bonds {
-            diagonal[i] += g;
-            diagonal[j] += g;
+        for scratch in [&mut *diagonal, r, p, q] {
+            scratch.resize(count, 0.0);
         }
+        fill(diagonal, |i| {
+            let own = capacity[i] + sink_conductance[i];
+            let sum = graph.around(i).fold(own, |sum, (_, g)| sum + g);
+            // A node to which nothing leads has no equation.
+            if sum == 0.0 { 1.0 } else { sum }
+        });
         // Residuals at the old temperatures, which set the scale, and at those to start from.
-        p.clear();
-        p.extend_from_slice(drive);
-        r.clear();
-        r.extend(
-            (0..count).map(|i| drive[i] - (capacity[i] + sink_conductance[i]) * (x[i] - old[i])),
-        );
-        for &([i, j], g) in bonds {
-            let (before, now) = (g * (old[j] - old[i]), g * (x[j] - x[i]));
-            p[i] += before;
-            p[j] -= before;
-            r[i] += now;
-            r[j] -= now;
-        }
-        // A node to which nothing leads has no equation.
-        for d in diagonal.iter_mut().filter(|d| **d == 0.0) {
-            *d = 1.0;
-        }
-        let norm = |of: &[f64]| {
-            of.iter()
-                .zip(&*diagonal)
-                .map(|(r, d)| r * r / d)
-                .sum::<f64>()
-        };
+        fill(p, |i| {
+            let flows = graph.around(i).map(|(j, g)| g * (old[j] - old[i]));
+            flows.fold(drive[i], |sum, flow| sum + flow)
+        });
+        fill(r, |i| {
+            let own = drive[i] - (capacity[i] + sink_conductance[i]) * (x[i] - old[i]);
+            let flows = graph.around(i).map(|(j, g)| g * (x[j] - x[i]));
+            flows.fold(own, |sum, flow| sum + flow)
+        });
+        let norm = |of: &[f64]| sum(count, |i| of[i] * of[i] / diagonal[i]);
         let scale = norm(p);
         let goal = TOLERANCE * TOLERANCE * scale;
-        p.clear();
-        p.resize(count, 0.0);
-        q.resize(count, 0.0);
+        p.fill(0.0);
         let mut before = 0.0;
         for step in 0..count.max(10) * 10 {
             let product = norm(r);
@@ -105,20 +142,20 @@ impl NetworkSolver {
             }
             let share = if step == 0 { 0.0 } else { product / before };
             before = product;
-            for i in 0..count {
-                p[i] = r[i] / diagonal[i] + share * p[i];
-                q[i] = diagonal[i] * p[i];
-            }
-            for &([i, j], g) in bonds {
-                q[i] -= g * p[j];
-                q[j] -= g * p[i];
-            }
-            let curvature: f64 = p.iter().zip(q.iter()).map(|(p, q)| p * q).sum();
+            update(p, |i, p| *p = r[i] / diagonal[i] + share * *p);
+            let direction = &*p;
+            fill(q, |i| {
+                let own = diagonal[i] * direction[i];
+                graph
+                    .around(i)
+                    .fold(own, |sum, (j, g)| sum - g * direction[j])
+            });
+            let curvature = sum(count, |i| direction[i] * q[i]);
             let length = product / curvature;
-            for i in 0..count {
-                x[i] += length * p[i];
-                r[i] -= length * q[i];
-            }
+            update_both(x, r, |i, x, r| {
+                *x += length * direction[i];
+                *r -= length * q[i];
+            });
         }
         let residual = (norm(r) / scale).sqrt();
         Err(UnsolvedNetwork { residual })

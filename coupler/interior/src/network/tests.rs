@@ -316,3 +316,23 @@ fn a_wall_heats_by_contact_and_through_the_gas() {
     assert!((heat(-1e-4) / (100.0 * film.conductance(&apart)) - 1.0).abs() < 1e-9);
     assert_eq!(heat(-1.1e-3), 0.0);
 }
+
+#[test]
+fn many_particles_exchange_the_same_bits_on_any_number_of_threads() {
+    let count = 20_000;
+    let old: Vec<f64> = (0..count)
+        .map(|p| 300.0 + (p * 7919 % 1013) as f64)
+        .collect();
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let mut network = chain(count);
+        let still = still(count);
+        let solve = || step(&mut network, 0.2, &old, &still, &still, &[]);
+        pool.unwrap().install(solve);
+        network.heat
+    };
+    let (one, three) = (on(1), on(3));
+    assert_eq!(one, three);
+    let sizes: f64 = one.iter().map(|q| q.abs()).sum();
+    assert!(sizes > 1.0 && one.iter().sum::<f64>().abs() < 1e-13 * sizes);
+}

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::Multigrid;
-use super::parallel;
+use calcine_numerics::parallel;
 
 const MOST_STEPS: usize = 200;
 /// Steps without a smaller residual after which round-off is all that is left.
@@ -20,7 +20,7 @@ impl Multigrid {
         let mut waited = 0;
         self.conjugate(rhs, x, MOST_STEPS, |residual| {
             let relative = |row: usize| residual[row].abs() / scale[row];
-            let largest = parallel::largest(residual.len(), relative);
+            let largest = parallel::largest(residual.len(), relative).1;
             waited = if largest < least { 0 } else { waited + 1 };
             least = least.min(largest);
             largest <= tolerance || waited > PATIENCE

@@ -1,9 +1,9 @@
 //! One level of the multigrid: a symmetric matrix, its smoothing, and the way to the next level.
 
-use super::super::parallel;
 use super::super::sparse::Sparse;
 use super::aggregate::Aggregates;
 use crate::mapping::Amount;
+use calcine_numerics::parallel;
 
 /// A symmetric matrix with a positive diagonal, as (H x)_i = d_i x_i − Σ_j p_ij x_j.
 #[derive(Clone, Debug)]
@@ -143,9 +143,9 @@ impl Level {
 impl Matrix {
     /// No eigenvalue of D⁻¹H is larger (Gershgorin).
     fn bound(&self) -> f64 {
-        1.0 + parallel::largest(self.rows(), |row| {
-            self.pull.row(row).map(|(_, p)| p.abs()).sum::<f64>() / self.diagonal[row]
-        })
+        let sum =
+            |row: usize| self.pull.row(row).map(|(_, p)| p.abs()).sum::<f64>() / self.diagonal[row];
+        1.0 + parallel::largest(self.rows(), sum).1.max(0.0)
     }
 
     fn times(&self, other: &Sparse, columns: usize) -> Sparse {

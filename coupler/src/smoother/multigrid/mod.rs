@@ -11,8 +11,8 @@ pub(super) mod level;
 
 use nalgebra::DMatrix;
 
-use super::parallel;
 use crate::mapping::Amount;
+use calcine_numerics::parallel;
 use level::{Level, Matrix};
 
 /// The V-cycle of a matrix.

@@ -45,6 +45,29 @@ pub fn update<T: Send>(values: &mut [T], change: impl Fn(usize, &mut T) + Sync) 
     }
 }
 
+/// Changes every element of two slices of one length side by side, given the index.
+#[inline]
+pub fn update_both<A: Send, B: Send>(
+    first: &mut [A],
+    second: &mut [B],
+    change: impl Fn(usize, &mut A, &mut B) + Sync,
+) {
+    let chunk = |start: usize, first: &mut [A], second: &mut [B]| {
+        for (i, (first, second)) in first.iter_mut().zip(second).enumerate() {
+            change(start + i, first, second);
+        }
+    };
+    if first.len() <= ALONE {
+        chunk(0, first, second);
+    } else {
+        first
+            .par_chunks_mut(CHUNK)
+            .zip(second.par_chunks_mut(CHUNK))
+            .enumerate()
+            .for_each(|(k, (first, second))| chunk(k * CHUNK, first, second));
+    }
+}
+
 /// The sums of several functions over `0..count`: chunk by chunk, then pairwise over the chunks.
 #[inline]
 pub fn sums<const N: usize>(count: usize, terms: impl Fn(usize) -> [f64; N] + Sync) -> [f64; N] {
