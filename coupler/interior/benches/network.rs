@@ -3,7 +3,7 @@
 
 use std::time::Instant;
 
-use calcine_interior::network::{
+use calcine_interior::{
     ExchangeAreas, HeatLaws, HeatNetwork, NeighbourPair, Neighbours, NetworkOutcome,
     NetworkSurroundings, RowImbalance, ThermalProperties,
 };
@@ -38,7 +38,7 @@ fn network(pairs: &[[usize; 2]], count: usize, radiates: bool) -> HeatNetwork {
         poisson: 0.25,
     };
     let material = ThermalProperties {
-        conductivity: Conductivity::Constant(2.0),
+        conductivity: Conductivity::constant(2.0),
         emissivity: 0.8,
         density: 2000.0,
         soft: stiffness,
