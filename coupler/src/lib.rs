@@ -35,4 +35,5 @@ pub mod view_factors;
 pub mod window_drag;
 
 pub use calcine_interior as interior;
+pub use calcine_numerics as numerics;
 pub use calcine_physics as physics;

@@ -97,12 +97,12 @@ fn a_killed_mpirun_is_named_and_its_ranks_and_their_memory_go_with_it() {
 
 #[test]
 fn a_stopped_rank_is_silent_and_says_for_how_long() {
-    let deadline = ["--set", "coupling.deadline=2 s"];
+    let deadline = ["--set", "coupling.deadline=10 s"];
     let words = [&RANKS[..], &deadline].concat();
     let (_, code, text) = strike(&words, "calcine-liggghts", Signal::STOP);
     assert_eq!(code, 4, "{text}");
     assert!(text.contains("LIGGGHTS"), "{text}");
-    assert!(text.contains("silent for 2 s"), "{text}");
+    assert!(text.contains("silent for 10 s"), "{text}");
 }
 
 #[test]

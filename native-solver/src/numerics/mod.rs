@@ -10,6 +10,7 @@ pub mod grid;
 pub mod krylov;
 pub mod matrix;
 pub mod operators;
-pub use calcine_numerics::parallel;
 pub mod preconditioner;
 pub mod sparse;
+
+pub use calcine_coupler::numerics::parallel;
