@@ -3,7 +3,9 @@
 #![cfg(feature = "hdf5")]
 #![allow(clippy::unwrap_used)]
 
+use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 use calcine::assembly::GasBackend;
 use calcine::simulation::{BoundaryQuantity, Control, Ending, Simulation, SimulationBuilder};
@@ -184,4 +186,50 @@ fn a_simulation_goes_on_in_another_thread_and_ends_on_an_interrupt() {
         .unwrap();
     assert!(matches!(ending, Ok(Ending::Checkpointed(_))));
     assert_eq!(windows, 2);
+}
+
+/// Cargo builds examples with the tests, beside the folder of the test programs.
+#[test]
+fn the_program_of_the_docs_holds_its_inlet_as_it_stands() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let page = fs::read_to_string(root.join("docs/how-to/drive-from-a-program.md")).unwrap();
+    let program = page
+        .split("```rust\n")
+        .nth(1)
+        .and_then(|rest| rest.split("```").next());
+    let source = fs::read_to_string(root.join("examples/keep_warm.rs")).unwrap();
+    assert!(
+        source.ends_with(program.unwrap()),
+        "the page and examples/keep_warm.rs differ"
+    );
+
+    let folder = tempfile::tempdir().unwrap();
+    let case = fs::read_to_string(shipped("heated-column")).unwrap();
+    let short = case.replace("\nend = \"10 min\"", "\nend = \"1 s\"");
+    assert_ne!(short, case);
+    fs::write(folder.path().join("bed.toml"), short).unwrap();
+    let tests = std::env::current_exe().unwrap();
+    let built = tests.parent().and_then(Path::parent).unwrap();
+    let output = Command::new(built.join("examples/keep_warm"))
+        .current_dir(folder.path())
+        .output()
+        .expect("built by `cargo build --example keep_warm`");
+    let (text, told) = (output.stdout, String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{told}");
+    let text = String::from_utf8(text).unwrap();
+    let columns = |line: &str| -> Vec<f64> {
+        line.split_whitespace()
+            .filter_map(|word| word.parse().ok())
+            .collect()
+    };
+    let rows: Vec<Vec<f64>> = text.lines().map(columns).collect();
+    assert!(rows.len() > 10, "{text}");
+    let mut inlet = 400.0;
+    for row in &rows {
+        inlet += 0.1 * (450.0 - row[2]);
+        assert!((row[1] - inlet).abs() < 0.02, "{row:?}, {inlet} K");
+        inlet = row[1];
+    }
+    let hottest = rows[rows.len() - 1][2];
+    assert!(hottest > 380.0, "{text}");
 }

@@ -110,8 +110,11 @@ impl Simulation {
         self.act(|run, _, observers| run.checkpoint(observers))
     }
 
-    /// Ends the run where it stands, with a checkpoint from which `resume` goes on.
+    /// Ends the run where it stands, with a checkpoint from which `resume` goes on. One that has ended stays as it is.
     pub fn stop(&mut self) -> Result<Ending, SimulationError> {
+        if let Some(ending) = &self.ending {
+            return Ok(ending.clone());
+        }
         let ending = self.act(|run, supervisor, observers| run.stop(supervisor, observers))?;
         self.ending = Some(ending.clone());
         self.record_stop(None);
