@@ -229,6 +229,20 @@ fn native_particles_and_liggghts_fall_alike_with_it() {
     }
 }
 
+/// LIGGGHTS gets the columns of moving drag as messages; both ways give the same bits.
+#[test]
+fn over_mpi_particles_follow_as_over_shared_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let ways = ["shared-memory", "mpi"].map(|transport| {
+        let words = ["--particles", "liggghts", "--transport", transport];
+        let set = [&CLOSED[..], &[FOLLOWING, "time.end=80 ms"]].concat();
+        let summary = run(folder.path(), transport, &words, &set);
+        closes(&summary, transport, &LINES);
+        summary.quantities
+    });
+    assert_eq!(ways[0], ways[1]);
+}
+
 #[test]
 fn particles_that_do_not_take_it_are_refused_with_the_key() {
     let folder = tempfile::tempdir().unwrap();
