@@ -22,7 +22,7 @@ pub struct NetworkSystem<'a> {
     pub drive: &'a [f64],
 }
 
-/// Conjugate gradients that ended at their limit, or with NaN.
+/// Conjugate gradients that ended at their limit, with NaN, or on a network that is not positive definite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnsolvedNetwork {
     /// Residual over that at the old temperatures.
@@ -127,7 +127,7 @@ impl NetworkSolver {
             let flows = graph.around(i).map(|(j, g)| g * (x[j] - x[i]));
             flows.fold(own, |sum, flow| sum + flow)
         });
-        let norm = |of: &[f64]| sum(count, |i| of[i] * of[i] / diagonal[i]);
+        let norm = |of: &[f64]| sum(count, |i| of[i] * of[i] / diagonal[i].abs());
         let scale = norm(p);
         let goal = TOLERANCE * TOLERANCE * scale;
         p.fill(0.0);
@@ -151,6 +151,10 @@ impl NetworkSolver {
                     .fold(own, |sum, (j, g)| sum - g * direction[j])
             });
             let curvature = sum(count, |i| direction[i] * q[i]);
+            // Of a network that is not positive definite: there is no minimum to go to.
+            if curvature.is_nan() || curvature <= 0.0 {
+                break;
+            }
             let length = product / curvature;
             update_both(x, r, |i, x, r| {
                 *x += length * direction[i];
@@ -159,5 +163,43 @@ impl NetworkSolver {
         }
         let residual = (norm(r) / scale).sqrt();
         Err(UnsolvedNetwork { residual })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A chain of three nodes with a surface line of conductance c in W/K each, of which the first begins hotter.
+    fn chain(capacity: [f64; 3]) -> (Result<(), UnsolvedNetwork>, Vec<f64>) {
+        let old = [400.0, 300.0, 300.0];
+        let mut temperature = old.to_vec();
+        let system = NetworkSystem {
+            bonds: &[([0, 1], 2.0), ([1, 2], 1.0)],
+            capacity: &capacity,
+            old: &old,
+            sink_conductance: &[0.0; 3],
+            drive: &[0.0; 3],
+        };
+        let solved = NetworkSolver::default().solve(&system, &mut temperature);
+        (solved, temperature)
+    }
+
+    #[test]
+    fn a_positive_definite_network_is_solved_and_keeps_its_heat() {
+        let (solved, temperature) = chain([3.0, 1.0, 2.0]);
+        assert_eq!(solved, Ok(()));
+        let heat: f64 = 3.0 * temperature[0] + temperature[1] + 2.0 * temperature[2];
+        assert!((heat - 2100.0).abs() < 1e-9, "{temperature:?}");
+    }
+
+    #[test]
+    fn one_that_is_not_positive_definite_is_told_of_with_finite_temperatures() {
+        for capacity in [[-3.0, -1.0, -2.0], [-30.0, -10.0, -20.0]] {
+            let (solved, temperature) = chain(capacity);
+            let residual = solved.unwrap_err().residual;
+            assert!(residual.is_finite() && residual > TOLERANCE, "{residual}");
+            assert!(temperature.iter().all(|kelvin| kelvin.is_finite()));
+        }
     }
 }
