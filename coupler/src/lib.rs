@@ -9,6 +9,7 @@ pub mod coordinator;
 pub mod error;
 pub mod exchange;
 pub mod excursion;
+pub mod extreme;
 pub mod feeds;
 pub mod findings;
 pub mod gas_chemistry;

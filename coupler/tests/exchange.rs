@@ -156,10 +156,26 @@ fn attempts(
     count: usize,
     beyond: f64,
 ) -> (Vec<f64>, Exchange, CellReceived, Thin, StillGas) {
+    attempts_from(
+        (StillGas::new(8), [400.0, 350.0]),
+        conductance,
+        span,
+        count,
+        beyond,
+    )
+}
+
+/// The same from a gas and the temperatures of the particles in K.
+fn attempts_from(
+    (mut gas, particles): (StillGas, [f64; 2]),
+    conductance: f64,
+    span: f64,
+    count: usize,
+    beyond: f64,
+) -> (Vec<f64>, Exchange, CellReceived, Thin, StillGas) {
     let bench = Bench::new();
-    let mut gas = StillGas::new(8);
     let mut thin = Thin::new(HeatCapacity::constant(1.0));
-    for (id, mass, kelvin) in [(1, 5e-3, 400.0), (2, 8e-3, 350.0)] {
+    for (id, mass, kelvin) in [(1, 5e-3, particles[0]), (2, 8e-3, particles[1])] {
         let state: [(&str, &[f64]); 1] = [(TEMPERATURE, &[kelvin])];
         let radius = bench.radius[0];
         let one = Newcomer {
@@ -255,6 +271,30 @@ fn the_iteration_converges_to_the_coupled_system_of_cells_and_particles() {
         let expected = 0.02 * (seen - own);
         assert!((heat - expected).abs() < 1e-10 * expected.abs());
     }
+}
+
+#[test]
+fn a_bed_within_the_gas_own_tolerance_of_equilibrium_counts_as_settled_and_one_a_hundredth_kelvin_off_does_not()
+ {
+    // The default of `coupling.exchange.tolerance`.
+    const TOLERANCE: f64 = 1e-3;
+    // The same bed with all differences of temperature scaled down: without a limit the share would be the same.
+    let first = |kelvin: f64| {
+        let mut gas = StillGas::new(8);
+        for c in 0..8 {
+            gas.start_temperature[c] = 350.0 + kelvin * (c as f64 - 3.5) / 3.5;
+        }
+        gas.temperature.clone_from(&gas.start_temperature);
+        let particles = [350.0 + kelvin, 350.0];
+        attempts_from((gas, particles), 0.02, 0.5, 1, 0.0).0[0]
+    };
+    // What a gas of 350 K may be off where its outer loop ends at the default residual of 1e-8.
+    let noise = first(350.0 * 1e-8);
+    assert!(noise < TOLERANCE, "{noise:e}");
+    // A hundredth of a kelvin is a difference that results show; its heat must come to its cells.
+    let shown = first(0.01);
+    assert!(shown > TOLERANCE, "{shown:e}");
+    println!("{noise:e} {shown:e}");
 }
 
 #[test]

@@ -7,6 +7,7 @@ use super::interior::InteriorStage;
 use super::laws::LawStage;
 use super::meter::{Meter, Stage};
 use crate::exchange::{Exchange, ExchangeConvergence, ExchangeInputs};
+use crate::extreme::{larger, smaller};
 use crate::part::{CellReceived, Convergence, Gas, GasFields, ParticleFields};
 use crate::smoother::Operator;
 use crate::species_coupling::{ChannelLines, SpeciesCoupling};
@@ -94,7 +95,7 @@ impl ExchangeStage {
                 self.follow_rates(with);
                 let extrapolated = self.advance_iterate(with);
                 self.respond(with, window)?;
-                off = off.max(self.tell_rates(with)).max(extrapolated);
+                off = larger(larger(off, self.tell_rates(with)), extrapolated);
             }
             let settled = off <= limits.tolerance;
             tracing::debug!(
@@ -126,7 +127,11 @@ impl ExchangeStage {
         self.settle(with, window)?;
         self.agreement = ExchangeConvergence {
             attempts: window.attempt,
-            misplaced: if settled { misplaced.min(off) } else { off },
+            misplaced: if settled {
+                smaller(misplaced, off)
+            } else {
+                off
+            },
             settled,
         };
         Ok(())
@@ -393,7 +398,8 @@ impl GasIterate {
         }
         self.sample(operator);
         let mean = |sum: f64| sum.sqrt() / weight;
-        (self.level - made).abs().max(mean(warmer)).max(mean(other))
+        let apart = larger((self.level - made).abs(), mean(warmer));
+        larger(apart, mean(other))
     }
 
     fn sample(&mut self, operator: &Operator) {
