@@ -76,13 +76,19 @@ pub enum GasFailure {
         place: Place,
     },
     /// Fields that are not finite.
-    #[error("diverged: fields that are not finite {place}; a shorter `motion_window` may help")]
+    #[error(
+        "diverged: fields that are not finite {place}; shorter windows may help (`time.motion_window`, or `time.process_step` \
+         where the case has it)"
+    )]
     NotFinite {
         /// Where.
         place: Place,
     },
     /// A value that no gas has.
-    #[error("diverged: {field} of {value} {unit} {place}; a shorter `motion_window` may help")]
+    #[error(
+        "diverged: {field} of {value} {unit} {place}; shorter windows may help (`time.motion_window`, or `time.process_step` \
+         where the case has it)"
+    )]
     OutOfRange {
         /// What the value is.
         field: &'static str,
@@ -95,8 +101,8 @@ pub enum GasFailure {
     },
     /// Turbulence that is not positive.
     #[error(
-        "diverged: turbulent energy of {energy} m^2/s^2 with a dissipation of {dissipation} m^2/s^3 {place}; a \
-         shorter `motion_window` may help"
+        "diverged: turbulent energy of {energy} m^2/s^2 with a dissipation of {dissipation} m^2/s^3 {place}; \
+         shorter windows may help (`time.motion_window`, or `time.process_step` where the case has it)"
     )]
     Turbulence {
         /// k in m²/s².
