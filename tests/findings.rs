@@ -23,6 +23,7 @@ use calcine_coupler::physics::local::LocalGas;
 use calcine_coupler::physics::solid::HeatCapacity;
 use tempfile::TempDir;
 
+use crate::agreement::cases;
 use crate::support::program;
 
 /// Air of oxygen and nitrogen at 7000 K flows past a bead.
@@ -187,14 +188,42 @@ fn iterations_that_end_at_their_limits_are_counted_over_a_resume_and_told_of_onc
     assert_eq!(exit::complete(summary, true), exit::WARNINGS);
 }
 
-/// Thin particles whose surface takes twice as much from the network at each other question: the network's iteration
-/// over surfaces finds no end.
-struct Undecided {
+/// Thin particles whose surface lines are spoilt, by how often they have been asked for.
+struct Spoilt {
     thin: Thin,
     asked: u64,
+    spoil: fn(u64, &mut SurfaceLine),
 }
 
-impl ParticleModel for Undecided {
+/// Particles of iron with spoilt surface lines that touch, for two seconds; the summary after the report was written.
+fn two_with_spoilt_lines(kind: &str, spoil: fn(u64, &mut SurfaceLine)) -> Summary {
+    let directory = TempDir::new().unwrap();
+    let out = directory.path().join("out");
+    let mut simulation = Simulation::open(good("two-in-contact"))
+        .set("time.end=2 s")
+        .model("iron", move |_| {
+            Box::new(Spoilt {
+                thin: Thin::new(HeatCapacity::constant(450.0)),
+                asked: 0,
+                spoil,
+            })
+        })
+        .out(&out)
+        .start()
+        .unwrap();
+    simulation.finish().unwrap();
+    let summary = simulation.summary().unwrap().clone();
+    assert_eq!(summary.warnings[kind].windows, summary.windows);
+    assert!(summary.ledger.lines["energy"].relative_error < 1e-11);
+    assert_eq!(exit::complete(&summary, false), exit::OK);
+    assert_eq!(exit::complete(&summary, true), exit::WARNINGS);
+    report::write(&out).unwrap();
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains(kind));
+    summary
+}
+
+impl ParticleModel for Spoilt {
     fn columns(&self) -> &[StateColumn] {
         self.thin.columns()
     }
@@ -220,9 +249,8 @@ impl ParticleModel for Undecided {
     ) -> Result<(), ModelError> {
         self.thin.surface(around, span, at, out)?;
         self.asked += 1;
-        if self.asked.is_multiple_of(2) {
-            out.iter_mut().for_each(|line| line.conductance *= 2.0);
-        }
+        out.iter_mut()
+            .for_each(|line| (self.spoil)(self.asked, line));
         Ok(())
     }
 
@@ -259,29 +287,95 @@ impl ParticleModel for Undecided {
 
 #[test]
 fn heat_between_particles_that_does_not_converge_is_told_of_and_closes_its_balance() {
-    let directory = TempDir::new().unwrap();
-    let out = directory.path().join("out");
-    let mut simulation = Simulation::open(good("two-in-contact"))
-        .set("time.end=2 s")
-        .model("iron", |_| {
-            let thin = Thin::new(HeatCapacity::constant(450.0));
-            Box::new(Undecided { thin, asked: 0 })
-        })
-        .out(&out)
-        .start()
-        .unwrap();
-    simulation.finish().unwrap();
-    let summary = simulation.summary().unwrap();
+    // Each other time a surface takes twice as much: the iteration over surfaces finds no end.
+    let summary = two_with_spoilt_lines("network_iterations", |asked, line| {
+        if asked.is_multiple_of(2) {
+            line.conductance *= 2.0;
+        }
+    });
     let warning = &summary.warnings["network_iterations"];
-    assert_eq!(warning.windows, summary.windows);
     assert!(warning.worst > 1e-6, "{}", warning.worst);
     assert!(matches!(warning.place, WarningPlace::Particle(1 | 2)));
-    assert!(summary.ledger.lines["energy"].relative_error < 1e-11);
-    assert_eq!(exit::complete(summary, false), exit::OK);
-    assert_eq!(exit::complete(summary, true), exit::WARNINGS);
-    report::write(&out).unwrap();
-    let page = fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(page.contains("network_iterations"));
+}
+
+#[test]
+fn a_network_that_is_not_positive_definite_is_told_of_and_closes_its_balance() {
+    // A surface that gives the more heat the hotter it is leaves the network without a minimum.
+    let summary = two_with_spoilt_lines("network_solver", |_, line| line.conductance *= -1.0);
+    let warning = &summary.warnings["network_solver"];
+    assert!(warning.worst.is_finite() && warning.worst > 1e-12);
+    assert_eq!(warning.place, WarningPlace::Run);
+    assert!(!summary.warnings.contains_key("network_iterations"));
+}
+
+/// Eddies whose linear solvers end after one iteration, by one of the solvers.
+fn turbulence_that_does_not_converge(solver: &[&str]) {
+    let case = good("turbulent-duct");
+    let run = |limit: &str, more: &[&str]| {
+        let directory = TempDir::new().unwrap();
+        let out = directory.path().join("out");
+        let set = [format!("gas.turbulence.iterations={limit}")];
+        let words = [solver, more].concat();
+        let output = program::command(&case, &out, &words, &set).output();
+        (output.unwrap(), out, directory)
+    };
+    let (output, out, _directory) = run("1", &[]);
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(exit::OK.into()), "{told}");
+    let warning = shown(&output, &out, "turbulence_solver");
+    // Each of the ten windows, the last one too.
+    assert_eq!((warning.windows, warning.count), (10, 10));
+    assert!(warning.worst.is_finite() && warning.worst > 1e-10);
+    assert_eq!((warning.limit, warning.place), (None, WarningPlace::Run));
+
+    let (output, _, _directory) = run("1", &["--strict"]);
+    assert_eq!(output.status.code(), Some(exit::WARNINGS.into()));
+
+    let (_, out, _directory) = run("1000", &[]);
+    let summary = Summary::read(&out).unwrap();
+    assert!(!summary.warnings.contains_key("turbulence_solver"));
+}
+
+#[test]
+fn eddies_that_the_native_gas_does_not_solve_are_told_of() {
+    turbulence_that_does_not_converge(&[]);
+}
+
+#[test]
+fn eddies_that_openfoam_does_not_solve_are_told_of_over_the_wire() {
+    turbulence_that_does_not_converge(&["--gas", "openfoam"]);
+}
+
+#[test]
+fn eddies_of_a_template_s_own_model_that_openfoam_does_not_solve_are_told_of() {
+    let template = Path::new(env!("CARGO_MANIFEST_DIR")).join("of-cases");
+    let directory = TempDir::new().unwrap();
+    let own = directory.path().join("foam");
+    for (from, name) in [
+        ("k-epsilon", "constant/turbulenceProperties"),
+        ("k-epsilon", "0/k"),
+        ("k-epsilon", "0/epsilon"),
+        ("k-epsilon", "0/nut"),
+        ("k-epsilon", "0/alphat"),
+        ("default", "system/fvSolution"),
+    ] {
+        let file = own.join(name);
+        fs::create_dir_all(file.parent().unwrap()).unwrap();
+        let text = fs::read_to_string(template.join(from).join(name)).unwrap();
+        let text = text.replace("tolerance       1e-10;", "tolerance 1e-10; maxIter 1;");
+        fs::write(file, text).unwrap();
+    }
+    let text = cases::duct("upwind").replace(r#""0 s", "0.4 kg/h""#, r#""0 s", "6 kg/h""#);
+    let case = directory.path().join("duct.toml");
+    fs::write(&case, text).unwrap();
+    let set = [
+        format!("openfoam.template={}", own.display()),
+        "time.end=0.05 s".into(),
+    ];
+    let out = directory.path().join("out");
+    let output = program::command(&case, &out, &["--gas", "openfoam"], &set).output();
+    let warning = shown(&output.unwrap(), &out, "turbulence_solver");
+    assert_eq!(warning.windows, Summary::read(&out).unwrap().windows);
 }
 
 /// A film whose source states void fractions that no bed of spheres has.

@@ -136,7 +136,10 @@ impl ExternalGasLaunch<'_> {
             role: "gas",
             count: self.mesh.cells() as u64,
             catalogue: Catalogue::gas(species, turbulent).with_geometry(),
-            optional: Vec::new(),
+            optional: match turbulent {
+                true => Catalogue::turbulence_report(),
+                false => Vec::new(),
+            },
             cells: Some(Arc::clone(&self.mesh)),
         };
         let solver = self.solver.start(terms, supervisor)?;

@@ -34,6 +34,8 @@ pub struct LinkedGas {
     /// Conditions of the patches as they were set last.
     patches: Vec<(String, GasPatch)>,
     state: ReceivedGas,
+    /// What the last commit left unconverged of the equations of turbulence.
+    turbulence_residual: Option<f64>,
     window: Option<Window>,
 }
 
@@ -60,6 +62,7 @@ impl LinkedGas {
             takes_conditions,
             patches: setup.patches.clone(),
             state: ReceivedGas::default(),
+            turbulence_residual: None,
             window: None,
         };
         gas.read_state(None)?;
@@ -122,7 +125,12 @@ impl Part for LinkedGas {
     }
 
     fn commit(&mut self) -> Result<(), PartError> {
-        self.solver.commit()
+        if self.solver.commit()? {
+            let residual = columns::turbulence_residual(self.solver.links());
+            self.turbulence_residual =
+                residual.map_err(|error| self.solver.failure(None, error))?;
+        }
+        Ok(())
     }
 
     fn checkpoint(&mut self, directory: &Path) -> Result<(), PartError> {
@@ -156,6 +164,10 @@ impl Gas for LinkedGas {
 
     fn fields(&self) -> GasFields<'_> {
         self.state.fields()
+    }
+
+    fn turbulence_residual(&self) -> Option<f64> {
+        self.turbulence_residual
     }
 
     fn start(

@@ -1,10 +1,14 @@
 //! What the columns of a gas' link mean.
 
+use calcine_coupler::extreme::larger;
 use calcine_coupler::part::{
     Balance, Bed, CellExchange, CellReceived, Convergence, GasFields, TurbulenceFields,
 };
 use calcine_coupler::physics::Vec3;
-use calcine_wire::{Link, WireError};
+use calcine_wire::{ColumnSet, Link, WireError};
+
+/// Column of a commit's answer.
+const TURBULENCE_RESIDUAL: &str = "turbulence_residual";
 
 /// The gas as the solver sent it last, one value per cell.
 #[derive(Clone, Debug, Default)]
@@ -199,6 +203,26 @@ pub fn read(ranks: GasRanks<'_>, received: &mut CellReceived) -> Result<Converge
         volume_residual: volume,
         converged: converged != 0.0,
     })
+}
+
+/// The largest relative residual at which a rank's equations of turbulence ended above their tolerance, from the answers
+/// to a commit; NaN where one is NaN.
+pub fn turbulence_residual(links: &[Link]) -> Result<Option<f64>, WireError> {
+    let mut worst = None;
+    for link in links {
+        if !link
+            .catalogue()
+            .has(ColumnSet::Committed, TURBULENCE_RESIDUAL)
+        {
+            continue;
+        }
+        for &residual in link.column(TURBULENCE_RESIDUAL)? {
+            if residual != 0.0 {
+                worst = Some(worst.map_or(residual, |other| larger(other, residual)));
+            }
+        }
+    }
+    Ok(worst)
 }
 
 fn balance(numbers: [f64; 7]) -> Balance {

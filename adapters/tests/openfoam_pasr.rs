@@ -57,6 +57,7 @@ fn stirred(combustion: Combustion) -> GasSetup {
         length_scale: SCALE,
         prandtl: 0.85,
         schmidt: 0.7,
+        iterations: 1000,
     };
     gas.controls.outer_tolerance = 1e-9;
     gas.chemistry = GasChemistry::Reacting(Box::new(ReactingGas {

@@ -28,6 +28,8 @@ pub enum Turbulence {
         prandtl: f64,
         /// Turbulent Schmidt number: eddies carry species with μ_t/Sc_t.
         schmidt: f64,
+        /// Iterations of the linear solver of k and of ε_t at most.
+        iterations: u32,
     },
 }
 

@@ -35,6 +35,7 @@ fn taken(combustion: Combustion, void_fraction: f64) -> f64 {
         length_scale: SCALE,
         prandtl: 0.85,
         schmidt: 0.7,
+        iterations: 1000,
     };
     setup.temperature = 1500.0;
     setup.composition = fresh();
@@ -97,6 +98,7 @@ fn carried(length_scale: f64, schmidt: f64) -> Vec<f64> {
         length_scale,
         prandtl: 0.85,
         schmidt,
+        iterations: 1000,
     };
     setup.properties = GasModel::Mixture(Mixture::new(["N2", "CO"]).unwrap());
     setup.schmidt = 0.7;

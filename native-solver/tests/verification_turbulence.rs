@@ -20,6 +20,7 @@ fn k_epsilon(energy: f64, length_scale: f64) -> Turbulence {
         length_scale,
         prandtl: 0.85,
         schmidt: 0.7,
+        iterations: 1000,
     }
 }
 

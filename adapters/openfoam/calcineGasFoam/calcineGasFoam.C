@@ -190,7 +190,8 @@ void serve
     calcine::link& link,
     calcine::gas& gas,
     const calcine::addressing& numbers,
-    calcine::windowLog& log
+    calcine::windowLog& log,
+    bool answersCommits
 )
 {
     const label cells = numbers.cells.size();
@@ -228,6 +229,12 @@ void serve
             }
             case CALCINE_COMMIT:
                 gas.commit();
+                if (answersCommits)
+                {
+                    link.loan(CALCINE_COMMITTED, 0);
+                    link.put("turbulence_residual", scalarList{gas.eddies().unsolved()});
+                    link.send();
+                }
                 break;
             case CALCINE_CHECKPOINT:
                 gas.checkpoint(link.text());
@@ -289,15 +296,18 @@ void run(const argList& args, calcine::link& link)
     own.meshHash = calcine::meshHash(mesh, numbers);
     own.cells = numbers.allCells;
     own.ranks = Pstream::nProcs();
+    // Where the link has columns for it.
+    bool answersCommits = false;
     for (const string& column : properties.get<stringList>("catalogue"))
     {
         own.catalogue += (own.catalogue.empty() ? "" : "\n") + column;
+        answersCommits = answersCommits || column.compare(0, 10, "committed ") == 0;
     }
     link.greet(own);
     link.claim(numbers.cells);
     send(link, CALCINE_STATE, gas, emptyReport(mesh.nCells(), gas.speciesNames().size()));
     calcine::windowLog log(properties.lookupOrDefault<scalar>("logInterval", 1));
-    serve(link, gas, numbers, log);
+    serve(link, gas, numbers, log, answersCommits);
     Info<< "End" << endl;
 }
 

@@ -130,6 +130,10 @@ Foam::calcine::gas::gas
     linearTolerance_ = controls.get<scalar>("linearTolerance");
     measureFaces();
     models_.reset(new models(mesh, U_, phi_, *thermo_));
+    if (properties.found("turbulenceIterations"))
+    {
+        models_->limitIterations(properties.get<label>("turbulenceIterations"));
+    }
     if (species_ && reactions::wanted(mesh))
     {
         reactions_.reset(new reactions(mesh, thermo_->T(), speciesNames()));

@@ -250,9 +250,47 @@ void Foam::calcine::models::advance
         ++time;
         setDensity(density);
         density_.oldTime().primitiveFieldRef() = density + motionSpan*outflow;
+        // What is recorded from here on is of turbulence alone.
+        const_cast<dictionary&>(mesh_.solverPerformanceDict()).clear();
         turbulence_->correct();
+        unsolved_ = recorded();
     }
     store();
+}
+
+
+Foam::scalar Foam::calcine::models::recorded() const
+{
+    scalar worst = 0;
+    const dictionary& record = mesh_.solverPerformanceDict();
+    for (const word& name : record.toc())
+    {
+        const dictionary& controls = mesh_.solverDict(name);
+        // Those that OpenFOAM takes where the dictionary has none.
+        const scalar tolerance = controls.lookupOrDefault<scalar>("tolerance", 1e-6);
+        const scalar relative = controls.lookupOrDefault<scalar>("relTol", 0);
+        const List<SolverPerformance<scalar>> solves(record.lookup(name));
+        for (const SolverPerformance<scalar>& solve : solves)
+        {
+            // A solve that ends at its limit does not check the last iteration. False for what is not a number.
+            const scalar left = solve.finalResidual();
+            const bool solved = left <= max(tolerance, relative*solve.initialResidual());
+            if (!solved && worst == worst && !(left <= worst))
+            {
+                worst = left;
+            }
+        }
+    }
+    return worst;
+}
+
+
+void Foam::calcine::models::limitIterations(label iterations)
+{
+    for (const char* name : {"k", "epsilon"})
+    {
+        const_cast<dictionary&>(mesh_.solverDict(name)).set("maxIter", iterations);
+    }
 }
 
 

@@ -41,9 +41,7 @@ impl OpenfoamCase<'_> {
     /// Writes the case into a folder, which is made if it is not there.
     pub fn write(&self, folder: &Path) -> Result<(), PartError> {
         self.check()?;
-        let turbulent = !self.setup.turbulence.is_laminar();
-        let species = self.setup.properties.species().len();
-        let catalogue = Catalogue::gas(species, turbulent);
+        let catalogue = self.catalogue();
         make(folder)?;
         if let Some(template) = self.template {
             copy(template, folder)?;
@@ -92,6 +90,18 @@ impl OpenfoamCase<'_> {
             let message = format!("the mesh cannot be written to {}", poly_mesh.display());
             PartError::new(NAME, FailureKind::Io, message).caused_by(error)
         })
+    }
+
+    /// Columns of the link. calcineGasFoam reports how it solved the equations of turbulence, be they the case's or a
+    /// template's.
+    pub(super) fn catalogue(&self) -> Catalogue {
+        let turbulent = !self.setup.turbulence.is_laminar();
+        let catalogue = Catalogue::gas(self.setup.properties.species().len(), turbulent);
+        let models = |folder: &Path| folder.join("constant/turbulenceProperties").is_file();
+        match !self.solver.is_stock() && (turbulent || self.template.is_some_and(models)) {
+            true => catalogue.with_turbulence_report(),
+            false => catalogue,
+        }
     }
 
     fn write_own(&self, folder: &Path, start: &StartFields) -> Result<(), PartError> {

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::{
-    Convection, GasPatch, GasSetup, InletFlow, Schedule, WallHeat, WallVelocity,
+    Convection, GasPatch, GasSetup, InletFlow, Schedule, Turbulence, WallHeat, WallVelocity,
 };
 use calcine_wire::Catalogue;
 
@@ -147,8 +147,12 @@ pub fn calcine(setup: &GasSetup, case_hash: &str, catalogue: &Catalogue) -> Stri
     }
     text += "}\n\n// Schmidt number of all species of a mixture.\n";
     let _ = writeln!(text, "schmidt         {:e};\n", setup.schmidt);
-    if !setup.turbulence.is_laminar() {
-        text += "// The eddies go to Calcine with the state.\nsendsEddies     yes;\n\n";
+    if let Turbulence::KEpsilon { iterations, .. } = setup.turbulence {
+        let _ = write!(
+            text,
+            "// The eddies go to Calcine with the state.\nsendsEddies     yes;\n// Iterations of the linear solvers of k and \
+             epsilon at most.\nturbulenceIterations {iterations};\n\n"
+        );
     }
     text += "// Columns of the link to Calcine.\ncatalogue\n(\n";
     for column in catalogue.fields() {

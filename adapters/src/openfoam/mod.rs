@@ -21,8 +21,8 @@ use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::setup::GasSetup;
 use calcine_coupler::supervisor::Supervisor;
+use calcine_wire::Hello;
 use calcine_wire::hello::NEW;
-use calcine_wire::{Catalogue, Hello};
 
 use crate::gas::LinkedGas;
 use crate::launch::{Launcher, Program, find_program};
@@ -110,6 +110,7 @@ impl OpenfoamLaunch<'_> {
             without_spaces(folder)?;
         }
         case.write(&launch.folder)?;
+        let catalogue = case.catalogue();
         let mut arguments: Vec<OsString> = Vec::new();
         if launch.ranks > 1 {
             let patience = launch.deadline + DIVIDING_PER_CELL * launch.mesh.cells() as u32;
@@ -128,8 +129,6 @@ impl OpenfoamLaunch<'_> {
             origin = folder.to_string_lossy().into_owned();
             arguments.extend([option.into(), folder.into()]);
         }
-        let species = launch.setup.properties.species().len();
-        let turbulent = !launch.setup.turbulence.is_laminar();
         let hello = Hello {
             role: "gas".into(),
             name: "Calcine".into(),
@@ -139,7 +138,7 @@ impl OpenfoamLaunch<'_> {
             case_hash: launch.case_hash,
             count: launch.mesh.cells() as u64,
             ranks: launch.ranks,
-            catalogue: Catalogue::gas(species, turbulent),
+            catalogue,
         };
         let program = Program {
             path,

@@ -14,6 +14,7 @@ pub fn files(setup: &GasSetup, options: &str) -> Vec<(&'static str, String)> {
         length_scale,
         prandtl,
         schmidt,
+        ..
     } = setup.turbulence
     else {
         return Vec::new();

@@ -320,9 +320,20 @@ impl ExternalSolver {
         self.peer.wait(&mut self.links, own, None, kind, asked)
     }
 
-    /// Tells every rank to take the last attempt as the new start; there is no answer.
-    pub fn commit(&mut self) -> Result<(), PartError> {
-        self.send_text(MessageKind::Commit, "")
+    /// Tells every rank to take the last attempt as the new start. True where it is answered: each link then holds a
+    /// `Committed`.
+    pub fn commit(&mut self) -> Result<bool, PartError> {
+        self.send_text(MessageKind::Commit, "")?;
+        let answers = self
+            .hello
+            .catalogue
+            .of(ColumnSet::Committed)
+            .next()
+            .is_some();
+        if answers {
+            self.wait_alone(MessageKind::Committed)?;
+        }
+        Ok(answers)
     }
 
     /// Has a checkpoint written into a directory; afterwards each link holds a `Checkpointed`.

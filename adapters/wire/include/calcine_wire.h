@@ -59,7 +59,8 @@ typedef enum calcine_kind {
     CALCINE_OWNED = 10,
     CALCINE_CHANGE = 11,
     CALCINE_CHANGED = 12,
-    CALCINE_BOUNDARY = 13
+    CALCINE_BOUNDARY = 13,
+    CALCINE_COMMITTED = 14
 } calcine_kind;
 
 /* Why a solver cannot go on. */
@@ -83,8 +84,8 @@ typedef enum calcine_failure {
  * START        coordinator: columns "start"; the header has window, attempt and clocks; asks for one attempt at a
  *     window, always from the last commit. A gas gets several in a window, particles one. Answer: FINISHED.
  * FINISHED     solver: columns "state": the state at the end of the window, and what the attempt took; answers START.
- * COMMIT       coordinator: nothing; makes the last attempt the start of the next. No answer; the next request may
- *     follow at once.
+ * COMMIT       coordinator: nothing; makes the last attempt the start of the next. Answer: COMMITTED where the link
+ *     has columns "committed"; else none, and the next request may follow at once.
  * CHECKPOINT   coordinator: text: an existing folder, absolute; after a commit: write what is committed into the
  *     folder, to last, and go on from what was written. Answer: CHECKPOINTED.
  * CHECKPOINTED solver: columns "state", as with STATE; answers CHECKPOINT.
@@ -100,6 +101,7 @@ typedef enum calcine_failure {
  *     as in the case file (superficial_velocity, mass_flow, temperature, composition, pressure, heat_flux,
  *     heat_transfer_coefficient, ambient), in SI; nothing back; between a commit and the next START, from which on it
  *     holds; after a resume it comes again. Answer: BOUNDARY, or FAILED with CALCINE_FAILURE_UNSUPPORTED.
+ * COMMITTED    a gas with columns "committed": these columns; answers COMMIT.
  */
 
 /* Columns of the role "gas": name, numbers a cell [unit], what it holds.
@@ -143,6 +145,10 @@ typedef enum calcine_failure {
  *   turbulent_energy 1 [m^2/s^2]: k. Of a turbulent gas.
  *   dissipation 1 [m^2/s^3]: epsilon. Of a turbulent gas.
  *   eddy_viscosity 1 [Pas]: void fraction times eddy viscosity; 0 in the bed. Of a turbulent gas.
+ *
+ * "committed", with COMMITTED:
+ *   turbulence_residual 1 [1], once a rank: largest relative residual of an equation of turbulence that its linear
+ *     solver left above its tolerance; 0 where it left none. Of a gas that answers COMMIT.
  */
 
 /* Columns of the role "particles": name, numbers a particle [unit], what it holds.

@@ -55,6 +55,7 @@ impl FromStr for Field {
             "start" => ColumnSet::Start,
             "state" => ColumnSet::State,
             "owned" => ColumnSet::Owned,
+            "committed" => ColumnSet::Committed,
             _ => return Err(refuse()),
         };
         let name = next()?.to_owned();
@@ -120,6 +121,7 @@ impl Catalogue {
             ColumnPresence::Species => species > 0,
             ColumnPresence::Turbulent => turbulent,
             ColumnPresence::ForeignInputs
+            | ColumnPresence::TurbulenceReport
             | ColumnPresence::MovingDrag
             | ColumnPresence::Weights => false,
         })
@@ -130,6 +132,18 @@ impl Catalogue {
         let own = |presence| presence == ColumnPresence::ForeignInputs;
         let geometry = Self::of_table(columns::GAS, 0, own);
         self.fields.extend(geometry.fields);
+        self
+    }
+
+    /// The column of a gas that answers commits with how its equations of turbulence were solved.
+    pub fn turbulence_report() -> Vec<Field> {
+        let own = |presence| presence == ColumnPresence::TurbulenceReport;
+        Self::of_table(columns::GAS, 0, own).fields
+    }
+
+    /// The same catalogue with that column.
+    pub fn with_turbulence_report(mut self) -> Self {
+        self.fields.extend(Self::turbulence_report());
         self
     }
 

@@ -11,6 +11,8 @@ pub enum ColumnSet {
     State,
     /// `Owned`, from a gas.
     Owned,
+    /// `Committed`, from a gas that answers commits.
+    Committed,
 }
 
 impl ColumnSet {
@@ -23,6 +25,7 @@ impl ColumnSet {
             | MessageKind::Checkpointed
             | MessageKind::Changed => Some(ColumnSet::State),
             MessageKind::Owned => Some(ColumnSet::Owned),
+            MessageKind::Committed => Some(ColumnSet::Committed),
             MessageKind::Hello
             | MessageKind::Commit
             | MessageKind::Checkpoint
@@ -39,6 +42,7 @@ impl ColumnSet {
             ColumnSet::Start => "start",
             ColumnSet::State => "state",
             ColumnSet::Owned => "owned",
+            ColumnSet::Committed => "committed",
         }
     }
 }

@@ -25,6 +25,8 @@ pub enum ColumnPresence {
     Species,
     /// Those of a turbulent gas.
     Turbulent,
+    /// Those of a gas that answers commits with how its equations of turbulence were solved.
+    TurbulenceReport,
     /// Those of particles that feel drag as they move.
     MovingDrag,
     /// Those of rows that stand for several real particles.
@@ -104,7 +106,7 @@ impl ProtocolColumn {
     }
 }
 
-use ColumnSet::{Owned, Start, State};
+use ColumnSet::{Committed, Owned, Start, State};
 
 /// Columns of the role "gas"; an item is a cell.
 #[rustfmt::skip]
@@ -161,6 +163,9 @@ pub const GAS: &[ProtocolColumn] = &[
     column(State, "dissipation", 1, "m^2/s^3", "epsilon").only(ColumnPresence::Turbulent),
     column(State, "eddy_viscosity", 1, "Pas",
         "void fraction times eddy viscosity; 0 in the bed").only(ColumnPresence::Turbulent),
+    column(Committed, "turbulence_residual", 1, "1",
+        "largest relative residual of an equation of turbulence that its linear solver left above its tolerance; 0 where \
+         it left none").per_rank().only(ColumnPresence::TurbulenceReport),
 ];
 
 /// Columns of the role "particles"; an item is a particle of the rank, in ascending id.

@@ -19,7 +19,7 @@ pub enum MessageKind {
     Start = 3,
     /// The attempt is finished (columns): what was received, and the state.
     Finished = 4,
-    /// Take the last attempt as the start of the next; the only request without an answer.
+    /// Take the last attempt as the start of the next; without an answer unless the catalogue has columns "committed".
     Commit = 5,
     /// Write a checkpoint into a directory (text) and re-initialise from it.
     Checkpoint = 6,
@@ -39,11 +39,13 @@ pub enum MessageKind {
     /// Conditions of a gas' patches from the next window on (text: a line each of patch, condition and values);
     /// answered by the same kind without a payload.
     Boundary = 13,
+    /// The attempt is taken; what a gas computed as it was (columns).
+    Committed = 14,
 }
 
 impl MessageKind {
     /// All kinds.
-    pub const ALL: [MessageKind; 13] = [
+    pub const ALL: [MessageKind; 14] = [
         MessageKind::Hello,
         MessageKind::State,
         MessageKind::Start,
@@ -57,6 +59,7 @@ impl MessageKind {
         MessageKind::Change,
         MessageKind::Changed,
         MessageKind::Boundary,
+        MessageKind::Committed,
     ];
 
     /// Its name, as the C header has it behind `CALCINE_`.
@@ -75,6 +78,7 @@ impl MessageKind {
             MessageKind::Change => "CHANGE",
             MessageKind::Boundary => "BOUNDARY",
             MessageKind::Changed => "CHANGED",
+            MessageKind::Committed => "COMMITTED",
         }
     }
 

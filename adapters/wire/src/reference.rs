@@ -48,7 +48,8 @@ fn about(kind: MessageKind) -> About {
         MessageKind::Commit => (
             "coordinator",
             "nothing",
-            "makes the last attempt the start of the next. No answer; the next request may follow at once",
+            "makes the last attempt the start of the next. Answer: COMMITTED where the link has columns \"committed\"; \
+             else none, and the next request may follow at once",
         ),
         MessageKind::Checkpoint => (
             "coordinator",
@@ -91,6 +92,11 @@ fn about(kind: MessageKind) -> About {
             "particles",
             "columns \"state\", as with STATE",
             "answers CHANGE",
+        ),
+        MessageKind::Committed => (
+            "a gas with columns \"committed\"",
+            "these columns",
+            "answers COMMIT",
         ),
     }
 }
@@ -170,6 +176,7 @@ fn columns(text: &mut String, role: &str, item: &str, table: &[ProtocolColumn]) 
             ColumnSet::State,
             "with STATE, FINISHED, CHECKPOINTED, CHANGED",
         ),
+        (ColumnSet::Committed, "with COMMITTED"),
     ] {
         let mut own = table
             .iter()
@@ -196,6 +203,7 @@ fn one(text: &mut String, column: &ProtocolColumn) {
         ColumnPresence::ForeignInputs => " Where `mesh_hash` is NULL.",
         ColumnPresence::Species => " Of a gas of N species.",
         ColumnPresence::Turbulent => " Of a turbulent gas.",
+        ColumnPresence::TurbulenceReport => " Of a gas that answers COMMIT.",
         ColumnPresence::MovingDrag => " Where drag is pushed as a coefficient.",
         ColumnPresence::Weights => " Where rows may stand for several particles.",
     };

@@ -30,7 +30,7 @@ use calcine_coupler::part::{
     Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
 };
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::setup::GasSetup;
+use calcine_coupler::setup::{GasSetup, Turbulence};
 use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::Window;
 
@@ -160,6 +160,9 @@ impl NativeGas {
         let (Some(eddies), Some(window)) = (&mut self.eddies, self.attempted) else {
             return Ok(());
         };
+        let Turbulence::KEpsilon { iterations, .. } = self.setup.turbulence else {
+            return Ok(());
+        };
         let step = TurbulenceStep {
             grid: &self.grid,
             boundary: &self.boundaries,
@@ -168,6 +171,7 @@ impl NativeGas {
             gradients: self.equations.momentum.gradients(),
             span: window.span.motion.seconds(),
             tolerance: self.setup.controls.linear_tolerance,
+            iterations,
         };
         eddies.advance(&step, &mut self.equations.krylov, &mut self.now)
     }

@@ -93,6 +93,7 @@ const TURBULENCE: &[Key] = &[
     key("initial", Table(TURBULENCE_INITIAL), Without("none; `k-epsilon` needs it"), "Eddies at the start, everywhere.", "{ energy = \"0.01 m^2/s^2\", length_scale = \"5 mm\" }"),
     key("prandtl", Number(D::NONE, Positive), Default("0.85"), "Turbulent Prandtl number: eddies carry heat with c_p times their viscosity over this.", "0.9"),
     key("schmidt", Number(D::NONE, Positive), Default("0.7"), "Turbulent Schmidt number of all species.", "0.7"),
+    key("iterations", Whole(1, 1_000_000), Default("1000"), "Iterations of the linear solvers of k and epsilon at most. Windows in which they end above their tolerance are counted as `turbulence_solver`.", "200"),
 ];
 
 #[rustfmt::skip]

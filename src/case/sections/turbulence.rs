@@ -15,6 +15,7 @@ pub(super) fn turbulence(section: &TableReader<'_>) -> Option<Turbulence> {
     let initial = table.table("initial");
     let prandtl = table.number("prandtl");
     let schmidt = table.number("schmidt");
+    let iterations = table.small_whole("iterations");
     let start = initial.and_then(|initial| {
         let energy = initial.number("energy");
         let length_scale = initial.number("length_scale");
@@ -32,6 +33,7 @@ pub(super) fn turbulence(section: &TableReader<'_>) -> Option<Turbulence> {
         length_scale,
         prandtl: prandtl?,
         schmidt: schmidt?,
+        iterations: iterations?,
     })
 }
 

@@ -7,6 +7,7 @@
 //! no solution is below what a cell would have if nothing came from its neighbours; the linear solver's rounding
 //! is cut there, and only there.
 
+use calcine_coupler::extreme::larger;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::turbulence::KEpsilon;
@@ -26,9 +27,6 @@ use crate::numerics::operators::{conductance, displacement, face_values, gradien
 use crate::numerics::parallel::{fill, largest, update};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
-/// Iterations of a solve at most.
-const ITERATIONS: u32 = 1000;
-
 /// What a step of the eddies looks at, beside the state that it advances.
 #[derive(Clone, Copy, Debug)]
 pub struct TurbulenceStep<'a> {
@@ -46,6 +44,8 @@ pub struct TurbulenceStep<'a> {
     pub span: f64,
     /// Tolerance of the linear solver, relative to the terms of its equation.
     pub tolerance: f64,
+    /// Its iterations at most.
+    pub iterations: u32,
 }
 
 /// The two equations and their scratch memory.
@@ -323,7 +323,7 @@ impl KEpsilonEquations {
             absolute: 0.0,
             of_terms: step.tolerance,
             relative: 0.0,
-            iterations: ITERATIONS,
+            iterations: step.iterations,
         };
         let mut new = scalar.old.to_vec();
         self.preconditioner.update(&self.matrix);
@@ -337,7 +337,7 @@ impl KEpsilonEquations {
         let solved = krylov.general(matrix, preconditioner, source, &mut new, target);
         if !solved.converged {
             let residual = solved.residual / matrix.terms(&new, source);
-            *unsolved = Some(unsolved.map_or(residual, |other| other.max(residual)));
+            *unsolved = Some(unsolved.map_or(residual, |other| larger(other, residual)));
         }
         // Exactly solved none is lower: see above.
         let diagonal = matrix.diagonal();
