@@ -2,6 +2,7 @@
 
 use calcine_coupler::coordinator::RunError;
 use calcine_coupler::error::FailureKind;
+use calcine_coupler::models::ParticleModelError;
 
 use crate::results::{Summary, Verdict};
 
@@ -11,7 +12,7 @@ pub const OK: u8 = 0;
 pub const OTHER: u8 = 1;
 /// The case, or the command line, is wrong.
 pub const CASE: u8 = 2;
-/// A solver diverged, did not converge, or lost particles.
+/// A solver diverged, did not converge, or lost particles; the inside of a particle could not be integrated.
 pub const DIVERGED: u8 = 3;
 /// A peer died, was silent, or could not be started.
 pub const PEER: u8 = 4;
@@ -57,7 +58,37 @@ pub fn of(error: &RunError) -> u8 {
         | RunError::Origin(_)
         | RunError::NoFollowingDrag { .. } => CASE,
         RunError::NoDragImpulse { .. } => PEER,
-        RunError::Closure { .. } => DIVERGED,
+        RunError::Closure { .. }
+        | RunError::Interior {
+            cause: ParticleModelError::Particle { .. },
+            ..
+        } => DIVERGED,
         _ => OTHER,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use calcine_coupler::interior::ModelError;
+
+    #[test]
+    fn an_interior_that_cannot_be_integrated_is_a_numerical_failure_and_a_wrong_column_is_not() {
+        let of = |cause| of(&RunError::Interior { window: 3, cause });
+        let broken = || ModelError::Particle {
+            row: 0,
+            cause: "the integration ended after 1000 steps".into(),
+        };
+        let particle = ParticleModelError::Particle {
+            id: 7,
+            cause: broken(),
+        };
+        assert_eq!(of(particle), DIVERGED);
+        let column = ModelError::Column {
+            column: "temperature".into(),
+            found: "2 values".into(),
+            expected: "3 values".into(),
+        };
+        assert_eq!(of(ParticleModelError::Column(column)), OTHER);
     }
 }
