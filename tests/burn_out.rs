@@ -52,6 +52,8 @@ fn beads_burn_out_in_windows_short_and_longer_than_their_life() {
         let out = folder.path().join(step.replace(' ', "-"));
         let settings = [&*format!("time.process_step={step}")];
         assert_burnt_out(&run(BEADS, &out, &[], &settings), 1e-6);
+        let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+        assert!(page.contains("Particles that came and went") && page.contains("used up"));
     }
 }
 

@@ -46,6 +46,11 @@ pub fn write(directory: &Path) -> Result<PathBuf, ResultsError> {
         page.section("Warnings", text, &told);
     }
     page.section("Quantities of interest", "", &quantities(&summary));
+    let came_and_went = passed(&summary);
+    if !came_and_went.is_empty() {
+        let text = "Particles that feeds brought, that outlets took, and what was left of those that reactions used up.";
+        page.section("Particles that came and went", text, &came_and_went);
+    }
     page.section(
         "Bed and gas",
         "A cut through the middle, seen from the side: gas cells and particles in one colour scale, that of \
@@ -166,6 +171,31 @@ fn quantities(summary: &Summary) -> String {
         &["quantity", "#value", "#at", "#expected", "verdict"],
         &rows,
     )
+}
+
+/// Particles that came and went; empty where none did.
+fn passed(summary: &Summary) -> String {
+    let passed = &summary.passed;
+    let rows: Vec<Vec<String>> = [
+        ("fed", passed.fed),
+        ("discharged", passed.discharged),
+        ("used up", passed.used_up),
+    ]
+    .into_iter()
+    .filter(|(_, inventory)| inventory.rows > 0)
+    .map(|(name, inventory)| {
+        vec![
+            name.into(),
+            inventory.rows.to_string(),
+            with_unit(inventory.mass_kg, 4, "kg"),
+            with_unit(inventory.energy_j, 4, "J"),
+        ]
+    })
+    .collect();
+    match rows.is_empty() {
+        true => String::new(),
+        false => table(&["", "#rows", "#mass", "#energy"], &rows),
+    }
 }
 
 fn verdict(result: &QuantityResult) -> String {
