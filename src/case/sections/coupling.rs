@@ -44,6 +44,19 @@ pub(super) fn read(root: &TableReader<'_>) -> Option<Coupling> {
     })
 }
 
+/// Drag within a window acts on particles that move.
+pub(super) fn check_drag(root: &TableReader<'_>, particles: &[Population]) {
+    let moves = |population: &Population| population.motion == MotionSpec::Free;
+    if particles.iter().any(moves) {
+        return;
+    }
+    if let Some(section) = root.table("coupling").filter(|one| one.has("window_drag")) {
+        let help = "remove it, or write motion = \"free\"";
+        let rule = "has no effect: all particles are frozen, and none moves within a window";
+        section.fail("window_drag", rule, help);
+    }
+}
+
 /// A stock solver does less than calcineGasFoam: what this case asks of it in vain.
 pub(super) fn check_stock(
     root: &TableReader<'_>,

@@ -19,6 +19,7 @@ mod particles;
 mod place;
 mod probes;
 mod quantities;
+mod rate_constants;
 mod reactions;
 mod sizes;
 mod solids;
@@ -121,6 +122,7 @@ pub(super) fn case(
     }
     if let Some(particles) = &particles {
         coupling::check_script(root, &liggghts, particles);
+        coupling::check_drag(root, particles);
     }
     if let (Some((time, _)), Some(particles)) = (&time, &particles) {
         motion::fits(root, motion.as_ref(), time, particles);

@@ -40,6 +40,10 @@ fn material(name: String, table: &TableReader<'_>, solids: &[SolidSpecies]) -> M
         None if table.has("composition") => HeatCapacity::constant(f64::NAN),
         None => heat_capacity(table),
     };
+    if table.has("used_up") && !table.has("composition") {
+        let help = "add a composition, or remove it: only what reacts is used up";
+        table.fail("used_up", "stands beside no `composition`", help);
+    }
     let made = MaterialSpec {
         name,
         density: table.number("density").unwrap_or(f64::NAN),

@@ -12,6 +12,7 @@ use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{GasPatch, GasSetup};
 
+use super::rate_constants;
 use crate::case::model::{Laws, ReactionSpec};
 use crate::case::table::TableReader;
 use crate::case::units::Dimension;
@@ -130,6 +131,9 @@ fn reaction(table: &TableReader<'_>, known: &Known<'_>) -> Option<Reaction> {
         .and_then(|(equation, parts)| equilibrium(table, equation, parts, known));
     let heat = table.number("heat");
     table.finish();
+    if let Some(rate) = &rate {
+        rate_constants::possible(table, rate);
+    }
     let (equation, parts) = equation?;
     let made = Reaction {
         name: name?.into(),

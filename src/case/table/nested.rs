@@ -189,6 +189,12 @@ impl<'a> TableReader<'a> {
         let mut found = Vec::new();
         for (name, item) in self.table.iter() {
             self.asked.borrow_mut().push(name.into());
+            if let Some(rest) = item.as_table_like().and_then(dots) {
+                let whole = format!("{name}.{rest}");
+                let rule = "is a table: a dot in a name without quotes parts it";
+                self.unread(name, rule, format!("write the name in quotes: \"{whole}\""));
+                return None;
+            }
             let number = item
                 .as_float()
                 .or_else(|| item.as_integer().map(|n| n as f64));
@@ -242,4 +248,13 @@ impl<'a> TableReader<'a> {
             asked: RefCell::default(),
         }
     }
+}
+
+/// The rest of a name that TOML has parted at its dots, where a table comes of that.
+fn dots(table: &dyn TableLike) -> Option<String> {
+    let mut entries = table.iter();
+    let (name, item) = entries.next().filter(|_| table.is_dotted())?;
+    let rest = item.as_table_like().and_then(dots);
+    let one = entries.next().is_none();
+    one.then(|| rest.map_or(name.to_owned(), |rest| format!("{name}.{rest}")))
 }

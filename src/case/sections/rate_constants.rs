@@ -1,0 +1,49 @@
+//! Which rate constants of particles' reactions a case may state.
+
+use calcine_coupler::interior::reacting::Rate;
+use calcine_coupler::physics::reaction::Arrhenius;
+
+use crate::case::table::TableReader;
+
+/// Temperatures in K at which rate constants are looked at.
+const LOOKED_AT: [f64; 3] = [298.15, 1000.0, 3000.0];
+/// Largest rate constant of a surface in m/s: a hundred times what meets a surface of hydrogen at 3000 K, a quarter of the
+/// mean speed of its molecules.
+const FASTEST_SURFACE: f64 = 1.4e5;
+/// Largest rate constant in mol, m and s: molecules vibrate 1e14 times a second, and what orders do to the unit is within
+/// a factor of 1e16, three orders of the concentration of a solid.
+const FASTEST_VOLUME: f64 = 1e30;
+
+/// Refuses rate constants that no reaction has: with them fields and particles would overflow.
+pub(super) fn possible(reaction: &TableReader<'_>, rate: &Rate) {
+    let Some(table) = reaction.table("rate") else {
+        return;
+    };
+    match rate {
+        Rate::Core { rate_constant, .. } => {
+            let why = "above 1.4e5 m/s, where molecules meet a surface at 1400 m/s at most";
+            within(&table, rate_constant, FASTEST_SURFACE, (" m/s", why));
+        }
+        Rate::Power(law) => {
+            let why = "above 1e30, where molecules vibrate 1e14 times a second";
+            let words = (" in mol, m and s", why);
+            within(&table, &law.rate_constant, FASTEST_VOLUME, words);
+            if let (Some(constant), Some(table)) = (&law.in_series, table.table("in_series")) {
+                within(&table, constant, FASTEST_VOLUME, words);
+            }
+        }
+    }
+}
+
+fn within(table: &TableReader<'_>, constant: &Arrhenius, most: f64, words: (&str, &str)) {
+    let (unit, why) = words;
+    let beyond = |kelvin: &&f64| !(0.0..=most).contains(&constant.at(**kelvin));
+    if let Some(kelvin) = LOOKED_AT.iter().find(beyond) {
+        let rule = format!(
+            "makes the rate constant {:.3e}{unit} at {kelvin} K, {why}",
+            constant.at(*kelvin)
+        );
+        let help = "correct the factor and its unit, `exponent` or `activation_energy`";
+        table.fail("factor", rule, help);
+    }
+}
