@@ -469,6 +469,10 @@ fn a_film_without_a_value_ends_the_run_and_its_failure_is_in_the_summary() {
         told.message
             .contains("breaks coefficient of particle 1 is NaN W/K")
     );
+    assert!(
+        told.message
+            .contains("it must be finite and zero or above: look at `warnings`")
+    );
     report::write(&out).unwrap();
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(page.contains("The run ended with exit code 3"));

@@ -49,7 +49,9 @@ pub enum ClosureError {
     },
     /// A coefficient that is negative or not finite.
     #[error(
-        "the {law} coefficient of particle {id} is {value} {unit} at a gas temperature of {temperature} K and a slip of {slip} m/s"
+        "the {law} coefficient of particle {id} is {value} {unit} at a gas temperature of {temperature} K and a slip of {slip} \
+         m/s; it must be finite and zero or above: look at `warnings` of summary.json for what left its range before, shorten \
+         the windows, or choose another law"
     )]
     Coefficient {
         /// Which law.
