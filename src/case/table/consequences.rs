@@ -1,8 +1,5 @@
 //! Which errors of a case only follow from a value that could not be read.
 
-/// What is said of a key that goes with another choice.
-pub(super) const NO_EFFECT: &str = " has no effect here";
-
 /// For a section of a case those whose values its checks use.
 const USES: &[(&str, &[&str])] = &[
     ("gas", &["mesh", "time"]),
@@ -55,14 +52,21 @@ pub(super) fn uses(check: &str, other: &str) -> bool {
     found.is_some_and(|(_, sections)| sections.contains(&other))
 }
 
-/// True where a check of the same entry is about a key whose value was not taken: it names it, or calls another key of
-/// its table without effect.
+/// True where a check of the same entry names a key whose value was not taken.
 pub(super) fn names(check: &str, message: &str, refused: &str) -> bool {
-    let (table, key) = refused.rsplit_once('.').unwrap_or(("", refused));
-    let own_table = check.rsplit_once('.').map_or("", |(table, _)| table);
-    let idle = message.ends_with(NO_EFFECT) && own_table == table;
+    let (_, key) = parts(refused);
     let named = message.contains(&format!("`{key}`")) || message.contains(&format!(" no {key},"));
-    idle || (named && entry(check) == entry(refused))
+    named && entry(check) == entry(refused)
+}
+
+/// True where both keys stand in one table: one may have no effect only because the choice by the other was not taken.
+pub(super) fn beside(idle: &str, refused: &str) -> bool {
+    parts(idle).0 == parts(refused).0
+}
+
+/// Table and key of a place.
+fn parts(place: &str) -> (&str, &str) {
+    place.rsplit_once('.').unwrap_or(("", place))
 }
 
 /// `particles` of `particles[0].place`.
@@ -90,5 +94,13 @@ mod tests {
         assert!(!follows("particles[0].material", "particles[1].diameter"));
         assert!(!follows("materials.glass", "materials.iron.young"));
         assert!(!follows("mesh.box", "gas.mixture"));
+    }
+
+    #[test]
+    fn a_key_is_idle_because_of_a_refused_choice_of_its_own_table_alone() {
+        assert!(beside("laws.radiation.rays", "laws.radiation.law"));
+        assert!(!beside("laws.radiation.rays", "laws.drag.law"));
+        assert!(!beside("laws.radiation.rays", "laws.radiation"));
+        assert!(beside("format", "title"));
     }
 }

@@ -18,12 +18,14 @@ mod nested;
 mod quantity;
 mod words;
 
-use consequences::{NO_EFFECT, follows, names, uses};
+use consequences::{beside, follows, names, uses};
 pub(super) use nearest::instead_of_file;
 use nearest::nearest;
 
 /// What is said of a key that is not declared.
 pub(super) const UNKNOWN: &str = " is not a key of a case";
+/// What is said of a key that goes with another choice.
+const NO_EFFECT: &str = " has no effect here";
 
 /// Collects the problems of one file.
 #[derive(Debug, Default)]
@@ -48,6 +50,8 @@ pub enum ProblemKind {
     Value,
     /// A rule that values which were read break at this place.
     Rule(String),
+    /// A key at this place that goes with another choice of its table.
+    Idle(String),
     /// A key that something else needs.
     Missing(String),
 }
@@ -121,6 +125,10 @@ impl Problems {
         found.retain(|(problem, kind)| match kind {
             ProblemKind::Value => true,
             ProblemKind::Rule(place) => !only_follows(place, &problem.message),
+            ProblemKind::Idle(place) => {
+                let chosen = refused.iter().any(|other| beside(place, other));
+                !chosen && !only_follows(place, &problem.message)
+            }
             ProblemKind::Missing(place) => !unread.contains(place) && !refused.contains(place),
         });
         found.into_iter().map(|(problem, _)| problem).collect()
@@ -357,6 +365,7 @@ impl<'a> TableReader<'a> {
                 }
                 None => (UNKNOWN, self.instead_of(key)),
             };
+            let is_known = declared.is_some();
             let place = self.table.get_key_value(key);
             let span = place
                 .and_then(|(key, _)| key.span())
@@ -364,9 +373,9 @@ impl<'a> TableReader<'a> {
             let span = span.unwrap_or_else(|| self.span.clone());
             let place = self.place_of(key);
             let message = format!("`{place}`{rule}");
-            let kind = match rule == UNKNOWN {
-                true => ProblemKind::Value,
-                false => ProblemKind::Rule(place),
+            let kind = match is_known {
+                true => ProblemKind::Idle(place),
+                false => ProblemKind::Value,
             };
             self.problems.add(span, message, help, kind);
         }
