@@ -178,9 +178,7 @@ fn turbulent_air_in_a_duct_and_through_a_bed_with_walls_of_each_kind() {
     }
 }
 
-/// Bands of two gases that burn, as shares of a field's span, once they are steady: OpenFOAM's chemistry keeps the density over a
-/// window where native reactors keep the pressure. That makes the gas burn in fewer places a little earlier, and leaves
-/// less of the carbon monoxide, of which there is little.
+/// Bands of two gases that burn, as shares of a field's span, once they are steady; what is measured is in docs/verification.md.
 const BURNING: [(&str, f64); 9] = [
     ("gas.temperature", 0.01),
     ("gas.velocity", 0.01),

@@ -191,7 +191,7 @@ symmetry = {{}}
 pub fn stirred_duct(model: &str) -> String {
     let bead = r#"first = "10 5 45 mm", spacing = "5 5 5 mm", counts = [1, 1, 1]"#;
     let model = match model {
-        "pasr" => r#"model = "pasr", mixing_constant = 0.02"#,
+        "pasr" => r#"model = "pasr", mixing_constant = 2"#,
         _ => r#"model = "laminar""#,
     };
     format!(
