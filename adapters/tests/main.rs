@@ -13,5 +13,6 @@ mod openfoam_flow;
 mod openfoam_life;
 mod openfoam_pasr;
 mod openfoam_ranks;
+mod openfoam_stirred_cells;
 mod openfoam_support;
 mod openfoam_trials;

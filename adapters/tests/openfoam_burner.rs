@@ -64,7 +64,7 @@ fn burner() -> GasSetup {
     }
     burner.temperature = 1800.0;
     burner.composition = mixture.mass_fractions(&LEAN);
-    burner.controls.outer_tolerance = 1e-6;
+    burner.controls.outer_tolerance = 1e-8;
     burner.controls.outer_iterations = OUTER;
     burner.chemistry = GasChemistry::Reacting(Box::new(ReactingGas {
         mechanism: Mechanism::jones_lindstedt(&mixture).unwrap(),
@@ -140,9 +140,9 @@ fn elements_and_heat_of_a_burner_are_at_the_outlet_at_once_on_any_number_of_rank
     let fresh = mixture().mass_fractions(&FRESH)[0];
     let left = |cell: usize| fields.composition[cell * SPECIES.len()] / fresh;
     println!("left of the methane: {:?}", [0, 1, 2, 3].map(left));
-    // As natively: what reacts at once takes four fifths of what comes in, as the pseudo-step is a quarter of the residence time.
-    assert!((left(0) / 0.2 - 1.0).abs() < 0.005, "{}", left(0));
-    assert!((left(1) / 0.04 - 1.0).abs() < 0.01, "{}", left(1));
+    // As natively: a stirred reactor of 0.7 ms of burnt gas leaves some 5e-5 of what burns at once, and as much of that each cell on.
+    assert!(left(0) < 1e-4, "{}", left(0));
+    assert!(left(1) < 1e-4 * left(0), "{}", left(1));
     // The adiabatic equilibrium of the fresh gas is 2164.6 K; natively 2164.2 K.
     let last = fields.temperature[CELLS - 1];
     println!("{last} K");

@@ -160,10 +160,10 @@ fn a_flame_of_openfoam_stands_where_it_stands_whatever_the_acceleration() {
         "AF 678: {place} m, {peak} K after {} windows",
         duct.window.index
     );
-    // The native one stands at 1.7546 mm with 1930.8 K: its reactors keep the pressure over a window, where OpenFOAM's
-    // keep the density.
-    assert!((place / 1.7546e-3 - 1.0).abs() < 0.02, "{place}");
-    assert!((peak - 1930.8).abs() < 3.0, "{peak}");
+    // The native one stands at 1.79756 mm with 1933.69 K: reactor and splitting are the same, apart by some last digits of
+    // temperature from enthalpy.
+    assert!((place / 1.79756e-3 - 1.0).abs() < 1e-4, "{place}");
+    assert!((peak - 1933.69).abs() < 0.05, "{peak}");
     for (factor, windows) in [(50.0, 3), (1.0, 20)] {
         for _ in 0..windows {
             window(&mut duct, factor);

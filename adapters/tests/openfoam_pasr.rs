@@ -82,11 +82,11 @@ fn bed(cells: usize, void_fraction: f64) -> Bed {
     }
 }
 
-/// Methane in kg that reactions take in a first window of 0.1 µs.
+/// Methane in kg that reactions take in a first window of 1 ns.
 fn taken(combustion: Combustion, void_fraction: f64, folder: &Path) -> f64 {
     let division = [1, 1, 4];
     let mut duct = Duct::launch_on(mesh(division), &stirred(combustion), folder);
-    window(&mut duct, 1e-7, 1.0);
+    window(&mut duct, 1e-9, 1.0);
     duct.attempt(&bed(4, void_fraction), &exchange_of_nothing(4));
     let taken = -duct.received.species[0].source;
     duct.gas.finish_run(&duct.supervisor).unwrap();

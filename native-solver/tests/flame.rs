@@ -29,9 +29,9 @@ const RATIO: f64 = 0.8;
 /// verification; to be recorded again, with the reason, where mesh, scheme or mechanism change.
 mod regression {
     /// Distance of the flame from the inlet in m: four cells.
-    pub const PLACE: f64 = 1.7546e-3;
+    pub const PLACE: f64 = 1.79756e-3;
     /// Highest temperature in K.
-    pub const PEAK: f64 = 1930.81;
+    pub const PEAK: f64 = 1933.69;
 }
 
 /// Mass fractions of methane in air (O2 with 3.76 N2).

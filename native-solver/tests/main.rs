@@ -20,6 +20,7 @@ mod numerics;
 mod resume;
 mod species;
 mod stirred;
+mod stirred_cells;
 mod verification_flow;
 mod verification_heat;
 mod verification_porous;

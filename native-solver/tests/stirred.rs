@@ -47,7 +47,8 @@ fn taken(combustion: Combustion, void_fraction: f64) -> f64 {
     }));
     let mut driver = Driver::new(&duct([0.1, 0.1, 0.1], [1, 1, 2]), &setup);
     driver.bed.void_fraction.fill(void_fraction);
-    driver.window(1e-7, 1.0);
+    // So short that the share stays that of the start.
+    driver.window(1e-9, 1.0);
     fresh()[0] - driver.gas.fields().composition[0]
 }
 
@@ -72,7 +73,7 @@ fn the_share_that_eddies_mix_reacts() {
         mixing_constant: MIXING,
     };
     let laminar = taken(Combustion::Laminar, 1.0);
-    assert!(laminar > 1e-5);
+    assert!(laminar > 1e-7);
     let ratio = taken(stirred, 1.0) / laminar;
     assert!((ratio / share - 1.0).abs() < 1e-4, "{ratio} {share}");
     // The bed has no eddies: its pores mix.

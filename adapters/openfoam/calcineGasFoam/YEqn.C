@@ -1,8 +1,8 @@
 // Species, as mass fractions Y_k, with exactly the fluxes and masses of continuity, per cell:
 //
-//   (m Y - m_old Y_old)/dtau + sum phi_f Y_f - sum (eps mu)_f/Sc grad(Y).S = S - C Y + m w
+//   (m Y - m_old Y_old)/dtau + sum phi_f Y_f - sum (eps mu)_f/Sc grad(Y).S = S - C Y + M
 //
-// with what particles give and take, whose sum continuity has, and what reactions make (chemistry.C).
+// with what particles give and take, whose sum continuity has, and what reactions make, M (chemistry.C).
 //
 // All species diffuse alike, so that Fick's fluxes sum to zero. Y_f as div(phi,Yi) of fvSchemes says, beyond
 // upwind explicitly and with the smallest limiter of all species, so that the fractions go on summing to
@@ -124,7 +124,10 @@ Foam::scalar Foam::calcine::gas::solveSpecies(report& result)
         const fvScalarMatrix laplacian(fvm::laplacian(transport.diffusion, Y[k]));
         tmp<fvScalarMatrix> equation(speciesEquation(k, transport, laplacian));
         fvScalarMatrix& matrix = equation.ref();
-        addMade(k, matrix);
+        if (reactions_)
+        {
+            matrix.source() += speciesMade_[k];
+        }
 
         const scalarField source(matrix.source());
         const solved solution =

@@ -1,69 +1,35 @@
-// Reactions of the gas with itself, in species and enthalpy alike, as in Calcine's native gas: per kg of gas
+// Reactions of the gas with itself by balanced splitting, in species and enthalpy alike, as in Calcine's native gas (docs/theory.md, CHM-2). The
+// equation of each species is per cell
 //
-//   w_k = (R_k(Y, T; dt) - Y_k)/dt,   q = -sum h0_k w_k,
+//   m_old (Y - Y_old)/dtau + D' Y = b' + M,
 //
-// with what OpenFOAM's chemistry makes of a cell's gas over the motion span, R, and the enthalpies of formation h0.
+// D' Y what leaves the cell with its own gas and by diffusion from it, b' what enters, the neighbours' share included. M is what a stirred
+// reactor makes in the mean of the window, which starts with the cell's old gas and into which b' flows:
 //
-// Where the gas stores over the motion span the window takes the rates of its start once. Where it stores over a longer
-// one, the equations with the rates of their own end are iterated in pseudo-steps d (dual time stepping),
+//   dY/dt = w(Y, T) + (b' - D' Y)/m,   M = int m w dt/dtau,   m = m_old (1 + theta max(rho/rho_old - 1, 0)),
 //
-//   m (Y - Y0)/d + (m Y - m_old Y_old)/dtau + transport = m w(Y0),   w = (R(Y0, T0; d) - Y0)/d,
-//
-// so that the place of a steady flame does not depend on dtau. d is dt, or a quarter of the time in which the gas that leaves a
-// cell empties it where that is shorter: else a flame would be spread over all cells that the gas passes in dt. After the last pseudo-step the equations are solved once
-// more without it, with m (R' - Y)/d in place of m w (m as in that step), which is what that step took in all, R' being R(Y0) with the elements of
-// the new Y: so energy and every element close whatever the iteration did, and no cell gives what it does not have.
+// theta = D' dtau/(m_old + D' dtau), as flow fills a cell whose gas contracts. So a steady cell is a stirred reactor at any span and storage, and one without flow a closed one. M is free of every element to round-off. b' is found by
+// nonlinear Gauss-Seidel iteration: cells are visited downstream, each with the newest gas of those above it, and all go on from there by Newton's
+// step (newtonStep.H). Across borders between ranks the last iterate is taken.
 #include "gas.H"
 #include "clockValue.H"
+#include "link.H"
+#include "newtonStep.H"
+#include "speciesTransport.H"
+#include "fvm.H"
+#include "OStringStream.H"
 
 namespace
 {
 
-// A span is longer than the motion span beyond this share: less is round-off of clocks.
-const Foam::scalar longer = 1e-6;
-// Pseudo-steps in an outer iteration at most.
-const Foam::label pseudoSteps = 5;
+// Sweeps in an outer iteration at most.
+const Foam::label mostSweeps = 5;
 // They need not change a value by less than this share of the residual of momentum and continuity, whose fluxes they take.
 const Foam::scalar closer = 0.1;
-// A pseudo-step is no longer than this share of the time in which the gas that leaves a cell empties it.
-const Foam::scalar residence = 0.25;
+// Solves at the end of an attempt by which fractions below zero are taken out of what reacts, at most.
+const Foam::label closings = 3;
 
 } // End anonymous namespace
-
-
-bool Foam::calcine::gas::isDual() const
-{
-    return reactions_ && window_.storageSpan > (1 + longer)*window_.motionSpan;
-}
-
-
-void Foam::calcine::gas::evaluateReactions()
-{
-    const clockValue begun(true);
-    reactionSpan_ = scalarField(mesh_.nCells(), window_.motionSpan);
-    if (isDual())
-    {
-        scalarField leaving(mesh_.nCells(), Zero);
-        forAll(flux_, facei)
-        {
-            leaving[mesh_.faceOwner()[facei]] += max(flux_[facei], scalar(0));
-            if (facei < mesh_.nInternalFaces())
-            {
-                leaving[mesh_.faceNeighbour()[facei]] += max(-flux_[facei], scalar(0));
-            }
-        }
-        const scalarField held(residence*given_.voidFraction*density()*mesh_.cellVolumes());
-        forAll(held, celli)
-        {
-            if (leaving[celli]*window_.motionSpan > held[celli])
-            {
-                reactionSpan_[celli] = held[celli]/leaving[celli];
-            }
-        }
-    }
-    reactions_->evaluate(reactionSpan_, thermo_->T(), species_->Y(), *models_);
-    reactionTime_ += begun.elapsed();
-}
 
 
 void Foam::calcine::gas::beginReactions()
@@ -72,82 +38,77 @@ void Foam::calcine::gas::beginReactions()
     {
         return;
     }
-    speciesMade_.setSize(species_->Y().size());
+    speciesMade_ = List<scalarField>(species_->Y().size(), scalarField(mesh_.nCells(), Zero));
+    heatMade_ = scalarField(mesh_.nCells(), Zero);
     particlesExchangeGas_ = particlesExchangeGas();
-    // Else each pseudo-step takes the rates of its own start.
-    if (!isDual())
+    mixingTime_ = scalarField(mesh_.nCells(), Zero);
+    if (reactions_->mixingConstant() >= 0)
     {
-        evaluateReactions();
-        react();
+        mixingTime_ = reactions_->mixingConstant()
+           *models_->mixingTime(thermo_->mu()().primitiveField(), density());
     }
+    const scalarField content(thermo_->Cp()().primitiveField()*thermo_->T().primitiveField());
+    enthalpyUnit_ = content.size() ? max(content) : scalar(1);
 }
 
 
-// Sets what the equations take, with the pseudo-step where there is one.
-void Foam::calcine::gas::react()
+// Cells behind those that they get gas from. Where gas goes round, the first of the round that is found in the order of the cells
+// opens it.
+Foam::labelList Foam::calcine::gas::downstream() const
 {
-    const bool pseudo = isDual();
-    // In an early iterate the masses of continuity may be no masses of a gas.
-    const scalarField mass
-    (
-        pseudo
-      ? scalarField(given_.voidFraction*density()*mesh_.cellVolumes())
-      : committed_.mass
-    );
-    heatMade_ = scalarField(mass.size(), Zero);
+    const label internal = mesh_.nInternalFaces();
+    const labelUList& owner = mesh_.faceOwner();
+    const labelUList& neighbour = mesh_.faceNeighbour();
+    labelList order(mesh_.nCells());
+    boolList seen(mesh_.nCells(), false);
+    DynamicList<label> stack;
+    label found = 0;
+    forAll(order, first)
+    {
+        if (seen[first])
+        {
+            continue;
+        }
+        seen[first] = true;
+        stack.append(first);
+        while (stack.size())
+        {
+            const label celli = stack.last();
+            label next = -1;
+            for (const label facei : mesh_.cells()[celli])
+            {
+                if (facei >= internal)
+                {
+                    continue;
+                }
+                const bool owns = owner[facei] == celli;
+                const label other = owns ? neighbour[facei] : owner[facei];
+                if ((owns ? flux_[facei] < 0 : flux_[facei] > 0) && !seen[other])
+                {
+                    next = other;
+                    break;
+                }
+            }
+            if (next >= 0)
+            {
+                seen[next] = true;
+                stack.append(next);
+                continue;
+            }
+            order[found++] = celli;
+            stack.remove();
+        }
+    }
+    return order;
+}
+
+
+void Foam::calcine::gas::setHeatMade()
+{
+    heatMade_ = Zero;
     forAll(speciesMade_, k)
     {
-        speciesMade_[k] = mass*reactions_->rates()[k];
         heatMade_ -= species_->mixture()[k].formationEnthalpy()*speciesMade_[k];
-    }
-    pseudoInertia_.clear();
-    if (pseudo)
-    {
-        // Where nothing reacts nothing need be held back.
-        scalarField fastest(mass.size(), Zero);
-        for (const scalarField& rate : reactions_->rates())
-        {
-            fastest = max(fastest, mag(rate));
-        }
-        pseudoInertia_ = pos(fastest - VSMALL)*mass/reactionSpan_;
-        speciesBefore_.setSize(speciesMade_.size());
-        forAll(speciesMade_, k)
-        {
-            speciesBefore_[k] = species_->Y()[k].primitiveField();
-        }
-        temperatureBefore_ = thermo_->T().primitiveField();
-    }
-}
-
-
-// What reactions give to a species, with the pseudo-step; the sign is that of a source.
-void Foam::calcine::gas::addMade(label k, fvScalarMatrix& matrix) const
-{
-    if (!reactions_)
-    {
-        return;
-    }
-    matrix.source() += speciesMade_[k];
-    if (pseudoInertia_.size())
-    {
-        matrix.diag() += pseudoInertia_;
-        matrix.source() += pseudoInertia_*speciesBefore_[k];
-    }
-}
-
-
-// The same for the enthalpy h, whose fractions were those before the pseudo-step.
-void Foam::calcine::gas::addHeatMade(fvScalarMatrix& matrix) const
-{
-    if (!reactions_)
-    {
-        return;
-    }
-    matrix.source() += heatMade_;
-    if (pseudoInertia_.size())
-    {
-        matrix.diag() += pseudoInertia_;
-        matrix.source() += pseudoInertia_*enthalpyBefore_;
     }
 }
 
@@ -155,32 +116,38 @@ void Foam::calcine::gas::addHeatMade(fvScalarMatrix& matrix) const
 // `flow`: the residual of momentum and continuity.
 Foam::scalar Foam::calcine::gas::solveScalars(scalar flow, report& result)
 {
-    if (!isDual())
+    if (!reactions_)
     {
         const scalar residual = solveSpecies(result);
         return max(residual, solveEnthalpy(result));
     }
     const scalar enough = max(outerTolerance_, closer*flow);
+    PtrList<volScalarField>& Y = species_->Y();
     scalar first = 0, change = 0;
-    for (label step = 0; step < pseudoSteps; ++step)
+    for (label sweep = 0; sweep < mostSweeps; ++sweep)
     {
-        scalar residual = conserveElements(result);
-        evaluateReactions();
-        react();
-        enthalpyBefore_ = thermo_->he().primitiveField();
-        residual = max(residual, solveSpecies(result));
-        residual = max(residual, solveEnthalpy(result));
+        List<scalarField> fractions(Y.size());
+        forAll(Y, k)
+        {
+            fractions[k] = Y[k].primitiveField();
+        }
+        const scalarField before(thermo_->T().primitiveField());
+        const scalar residual = conserveElements(result);
+        const clockValue begun(true);
+        sweepReactions();
+        reactionTime_ += begun.elapsed();
         guard(true);
         thermo_->correct();
-        if (step == 0)
-        {
-            first = residual;
-        }
         const scalarField& T = thermo_->T().primitiveField();
-        change = gMax(mag(T - temperatureBefore_)/T);
-        forAll(speciesBefore_, k)
+        change = gMax(mag(T - before)/T);
+        forAll(Y, k)
         {
-            change = max(change, gMax(mag(species_->Y()[k].primitiveField() - speciesBefore_[k])));
+            change = max(change, gMax(mag(Y[k].primitiveField() - fractions[k])));
+        }
+        if (sweep == 0)
+        {
+            // The flow of this iteration is that of the fields before.
+            first = max(residual, change);
         }
         if (change <= enough)
         {
@@ -191,41 +158,197 @@ Foam::scalar Foam::calcine::gas::solveScalars(scalar flow, report& result)
 }
 
 
+// Runs the reactors of all cells downstream and goes on by Newton's step; the fields become what they reach.
+void Foam::calcine::gas::sweepReactions()
+{
+    PtrList<volScalarField>& Y = species_->Y();
+    const label species = Y.size();
+    const speciesTransport transport(*this);
+    PtrList<fvScalarMatrix> laplacians(species), matrices(species);
+    PtrList<surfaceScalarField> diffused(species);
+    forAll(Y, k)
+    {
+        laplacians.set(k, fvm::laplacian(transport.diffusion, Y[k]).ptr());
+        matrices.set(k, speciesEquation(k, transport, laplacians[k]).ptr());
+        diffused.set(k, (-laplacians[k].flux()).ptr());
+    }
+    carryEnthalpy(transport.limitedFlux, diffused);
+    heatMade_ = Zero;
+    assembleEnthalpy();
+    const scalarEquations equations(matrices, Y, *enthalpy_, thermo_->he());
+
+    newtonStep newton(mesh_, equations, downstream(), enthalpyUnit_);
+    for (const label celli : newton.order)
+    {
+        runCell(celli, equations, newton);
+    }
+    newton.correct(Y, thermo_->he(), species_->mixture(), thermo_->T().primitiveField());
+    forAll(Y, k)
+    {
+        Y[k].correctBoundaryConditions();
+    }
+    thermo_->he().correctBoundaryConditions();
+    setHeatMade();
+}
+
+
+// The reactor of a cell, whose fractions and enthalpy become those at the end of the window.
+void Foam::calcine::gas::runCell
+(
+    label celli,
+    const scalarEquations& equations,
+    newtonStep& newton
+)
+{
+    PtrList<volScalarField>& Y = species_->Y();
+    const label species = Y.size();
+    const scalar held = committed_.mass[celli];
+    const scalar storage = held/window_.storageSpan;
+    scalarList given(species + 1), start(species), made(species);
+    equations.enter(mesh_, celli, Y, thermo_->he(), given);
+    // An early iterate's fluxes may fill a cell; what leaves is then none.
+    const auto leaving = [&](scalar diagonal)
+    {
+        return max(diagonal - storage, scalar(0))/held;
+    };
+    throughflow flow;
+    flow.entering.setSize(species);
+    flow.leaving.setSize(species);
+    scalar all = 0;
+    forAll(start, k)
+    {
+        flow.entering[k] = (given[k] - storage*committed_.composition[k][celli])/held;
+        flow.leaving[k] = leaving(equations.diagonal[k][celli]);
+        start[k] = max(committed_.composition[k][celli], scalar(0));
+        all += start[k];
+    }
+    for (scalar& y : start)
+    {
+        y /= all;
+    }
+    flow.heatEntering = (given[species] - storage*committed_.enthalpy[celli])/held;
+    flow.heatLeaving = leaving(equations.diagonal[species][celli]);
+    flow.opening = 1 - storage/(storage + flow.leaving[0]*held);
+    flow.mixing = mixingTime_[celli];
+    const scalar p = modelPressure_[celli], span = window_.storageSpan;
+    bool reacts = false;
+    try
+    {
+        reacts = reactions_->flowThrough
+        (
+            p, committed_.temperature[celli], start, flow, span, made
+        );
+    }
+    catch (const Foam::error& what)
+    {
+        OStringStream text;
+        text<< "reactions in cell " << numbers_.cells[celli] << " at " << mesh_.cellCentres()[celli] << " m: "
+            << what.message().c_str();
+        throw solverFailure(CALCINE_FAILURE_DIVERGED, text.str());
+    }
+    scalar heat = 0;
+    scalarList inert(species + 1), reached(species);
+    forAll(made, k)
+    {
+        const scalar diagonal = equations.diagonal[k][celli];
+        const scalar mass = made[k]*(storage + flow.leaving[k]*held);
+        inert[k] = given[k]/diagonal;
+        reached[k] = (given[k] + mass)/diagonal;
+        speciesMade_[k][celli] = mass;
+        heat -= species_->mixture()[k].formationEnthalpy()*mass;
+        Y[k].primitiveFieldRef()[celli] = reached[k];
+    }
+    inert[species] = given[species]/equations.diagonal[species][celli];
+    scalar& h = thermo_->he().primitiveFieldRef()[celli];
+    h = (given[species] + heat)/equations.diagonal[species][celli];
+    newton.note(celli, inert);
+    if (reacts)
+    {
+        const scalar guess = thermo_->T().primitiveField()[celli];
+        const scalar T = species_->mixture().temperature(h, reached, guess);
+        if (T > 0)
+        {
+            scalarSquareMatrix response(species + 1);
+            const scalar begun =
+                p*species_->mixture().compressibility(committed_.temperature[celli], start);
+            reactions_->response(p, T, reached, flow, span, begun, enthalpyUnit_, response);
+            newton.responses.set(celli, new scalarSquareMatrix(response));
+        }
+    }
+}
+
+
+// Takes what the last solve left below zero out of what is made, in the cells that react and where it begins, the elements kept;
+// whether there was any.
+bool Foam::calcine::gas::keepPositive()
+{
+    const PtrList<volScalarField>& Y = species_->Y();
+    const speciesTransport transport(*this);
+    const fvScalarMatrix laplacian(fvm::laplacian(transport.diffusion, Y[0]));
+    PtrList<fvScalarMatrix> matrices(1);
+    matrices.set(0, speciesEquation(0, transport, laplacian).ptr());
+    const scalarEquations equations(matrices, Y, matrices[0], Y[0]);
+    scalarList own(Y.size()), positive(Y.size()), wanted(reactions_->elements().size());
+    bool any = false;
+    forAll(mass_, celli)
+    {
+        bool below = false;
+        forAll(Y, k)
+        {
+            own[k] = Y[k].primitiveField()[celli];
+            // Fractions that transport itself leaves below zero stay.
+            below |= own[k] < 0 && speciesMade_[k][celli] < 0;
+        }
+        if (!below)
+        {
+            continue;
+        }
+        // What comes in below zero begins elsewhere.
+        const scalar diagonal = equations.diagonal[0][celli];
+        for (const label facei : mesh_.cells()[celli])
+        {
+            if (facei < mesh_.nInternalFaces())
+            {
+                label other;
+                const scalar weight = equations.weight(mesh_, celli, facei, other)/diagonal;
+                forAll(Y, k)
+                {
+                    own[k] -= weight*min(Y[k].primitiveField()[other], scalar(0));
+                }
+            }
+        }
+        if (min(own) >= 0)
+        {
+            continue;
+        }
+        any = true;
+        positive = own;
+        reactions_->elementsOf(own, wanted);
+        reactions_->restoreElements(wanted, positive);
+        forAll(Y, k)
+        {
+            speciesMade_[k][celli] += diagonal*(positive[k] - own[k]);
+        }
+    }
+    setHeatMade();
+    return returnReduce(any, orOp<bool>());
+}
+
+
 void Foam::calcine::gas::closeReactions(report& result)
 {
-    if (!isDual())
+    if (!reactions_)
     {
         return;
     }
-    const label species = speciesMade_.size();
-    scalarList here(species), reached(species), masses(reactions_->elements().size());
-    heatMade_ = Zero;
-    forAll(pseudoInertia_, celli)
+    for (label closing = 0; closing <= closings; ++closing)
     {
-        // Where there is less than nothing of an element, beside steep gradients on skewed meshes, nothing is made of that.
-        for (const scalar least : {-GREAT, scalar(0)})
+        solveSpecies(result);
+        solveEnthalpy(result);
+        thermo_->correct();
+        if (closing == closings || !keepPositive())
         {
-            for (label k = 0; k < species; ++k)
-            {
-                here[k] = max(species_->Y()[k][celli], least);
-                reached[k] = speciesBefore_[k][celli]
-                  + reactionSpan_[celli]*reactions_->rates()[k][celli];
-            }
-            reactions_->elementsOf(here, masses);
-            if (reactions_->restoreElements(masses, reached))
-            {
-                break;
-            }
-        }
-        for (label k = 0; k < species; ++k)
-        {
-            speciesMade_[k][celli] = pseudoInertia_[celli]*(reached[k] - here[k]);
-            heatMade_[celli] -=
-                species_->mixture()[k].formationEnthalpy()*speciesMade_[k][celli];
+            break;
         }
     }
-    pseudoInertia_.clear();
-    solveSpecies(result);
-    solveEnthalpy(result);
-    thermo_->correct();
 }

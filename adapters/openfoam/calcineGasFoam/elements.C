@@ -1,6 +1,6 @@
-// Elements before species, as in Calcine's native gas. A pseudo-step (chemistry.C) holds back what reacts, and with it what no
-// reaction changes, which would then need many pseudo-steps through every cell. But elements obey the equation of the species
-// without w, as all species diffuse alike. So they are solved first, over the whole window at once; the species take them over,
+// Elements before species, as in Calcine's native gas. The iteration of reacting species (chemistry.C) carries what diffuses upstream or
+// goes round from cell to cell only. But elements obey the equation of the species
+// without what reactions make, as all species diffuse alike. So they are solved first, over the whole window at once; the species take them over,
 // in proportion to what is there. What then has to be made of each, A Y - S, is the heat by which the enthalpy follows. Where the
 // equations are solved nothing of this changes anything.
 #include "gas.H"
@@ -48,7 +48,6 @@ Foam::scalar Foam::calcine::gas::conserveElements(report& result)
     giveElements(masses);
 
     heatMade_ = scalarField(mesh_.nCells(), Zero);
-    pseudoInertia_.clear();
     PtrList<surfaceScalarField> diffused(Y.size());
     forAll(Y, k)
     {

@@ -136,7 +136,7 @@ Foam::calcine::gas::gas
     }
     if (species_ && reactions::wanted(mesh))
     {
-        reactions_.reset(new reactions(mesh, thermo_->T(), speciesNames()));
+        reactions_.reset(new reactions(mesh, thermo_->T(), species_->mixture()));
     }
 
     const scalarField reference(1, 298.15);

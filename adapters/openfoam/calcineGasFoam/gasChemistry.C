@@ -11,18 +11,6 @@ using namespace Foam;
 const scalar straight = 1e-9;
 // K between which a step that an integration tries, and will take back, evaluates rates.
 const scalar coldest = 200, hottest = 5000;
-// kmol/m3, of such a step: more than there is in any gas.
-const scalar densest = 1e3;
-// J/(m3 K): a gas at 5000 K has this at 1 Pa.
-const scalar leastCapacity = 1e-3;
-// K, of the difference quotients by temperature.
-const scalar apart = 1e-2;
-
-scalar bounded(scalar T)
-{
-    // NaN is not hotter.
-    return T > coldest ? min(T, hottest) : coldest;
-}
 
 scalar power(scalar c, scalar order)
 {
@@ -70,31 +58,27 @@ defineTypeNameAndDebug(gasChemistry, 0);
 Foam::calcine::gasChemistry::gasChemistry(psiReactionThermo& thermo)
 :
     StandardChemistryModel<psiReactionThermo, gasHThermoPhysics>(thermo),
-    positive_(nSpecie_),
-    hotter_(nSpecie_ + 2),
-    colder_(nSpecie_ + 2),
     slopes_(nSpecie_)
 {}
 
 
-void Foam::calcine::gasChemistry::setPositive(const scalarField& c) const
+void Foam::calcine::gasChemistry::solve
+(
+    scalarField&,
+    scalar&,
+    scalar&,
+    scalar&,
+    scalar&
+) const
 {
-    forAll(positive_, i)
-    {
-        // NaN is not positive.
-        positive_[i] = c[i] > 0 ? min(c[i], densest) : 0;
-    }
+    FatalErrorInFunction << "cells are integrated with what flows through them" << exit(FatalError);
 }
 
 
-Foam::scalar Foam::calcine::gasChemistry::heatCapacity(scalar p, scalar T) const
+Foam::scalar Foam::calcine::gasChemistry::bounded(scalar T)
 {
-    scalar capacity = 0;
-    for (label i = 0; i < nSpecie_; ++i)
-    {
-        capacity += specieThermo_[i].cp(p, T)*positive_[i];
-    }
-    return max(capacity, leastCapacity);
+    // NaN is not hotter.
+    return T > coldest ? min(T, hottest) : coldest;
 }
 
 
@@ -122,23 +106,31 @@ Foam::scalar Foam::calcine::gasChemistry::omega
 }
 
 
-void Foam::calcine::gasChemistry::derivatives
+Foam::scalar Foam::calcine::gasChemistry::rates
 (
-    const scalar,
     const scalarField& c,
+    scalar T,
+    scalar p,
     scalarField& slope
 ) const
 {
-    setPositive(c);
-    const scalar T = bounded(c[nSpecie_]), p = c[nSpecie_ + 1];
-    omega(positive_, T, p, slope);
-    scalar heat = 0;
-    for (label i = 0; i < nSpecie_; ++i)
+    slope = Zero;
+    scalar gained = 0, pf, cf, pr, cr;
+    label left, right;
+    for (const reaction& r : reactions_)
     {
-        heat -= specieThermo_[i].ha(p, T)*slope[i];
+        const scalar rate = omega(r, c, T, p, pf, cf, left, pr, cr, right);
+        for (const auto& one : r.lhs())
+        {
+            slope[one.index] -= one.stoichCoeff*rate;
+        }
+        for (const auto& one : r.rhs())
+        {
+            slope[one.index] += one.stoichCoeff*rate;
+            gained += one.stoichCoeff*pf*cf;
+        }
     }
-    slope[nSpecie_] = heat/heatCapacity(p, T);
-    slope[nSpecie_ + 1] = 0;
+    return gained;
 }
 
 
@@ -146,8 +138,9 @@ void Foam::calcine::gasChemistry::addSlopes
 (
     const List<reaction::specieCoeffs>& side,
     const scalarField& c,
-    scalar k
-) const
+    scalar k,
+    scalarField& slopes
+)
 {
     forAll(side, i)
     {
@@ -156,63 +149,44 @@ void Foam::calcine::gasChemistry::addSlopes
         {
             others *= j == i ? scalar(1) : power(c[side[j].index], side[j].exponent);
         }
-        slopes_[side[i].index] += others*slopeOfPower(c[side[i].index], side[i].exponent);
+        slopes[side[i].index] += others*slopeOfPower(c[side[i].index], side[i].exponent);
     }
 }
 
 
-void Foam::calcine::gasChemistry::jacobian
+void Foam::calcine::gasChemistry::slopes
 (
-    const scalar time,
     const scalarField& c,
-    scalarField& byTime,
-    scalarSquareMatrix& byState
+    scalar T,
+    scalar p,
+    scalarSquareMatrix& byConcentration,
+    scalarField& gained
 ) const
 {
-    byTime = Zero;
-    byState = Zero;
-
-    // By temperature.
-    scalarField moved(c);
-    moved[nSpecie_] = bounded(c[nSpecie_]) + apart;
-    derivatives(time, moved, hotter_);
-    moved[nSpecie_] -= 2*apart;
-    derivatives(time, moved, colder_);
-    for (label i = 0; i <= nSpecie_; ++i)
-    {
-        byState(i, nSpecie_) = (hotter_[i] - colder_[i])/(2*apart);
-    }
-
-    // By concentrations.
-    setPositive(c);
-    const scalar T = bounded(c[nSpecie_]), p = c[nSpecie_ + 1];
+    byConcentration = Zero;
+    gained = Zero;
     for (const reaction& r : reactions_)
     {
-        const scalar forth = r.kf(p, T, positive_), back = r.kr(forth, p, T, positive_);
+        const scalar forth = r.kf(p, T, c), back = r.kr(forth, p, T, c);
         slopes_ = Zero;
-        addSlopes(r.lhs(), positive_, forth);
-        addSlopes(r.rhs(), positive_, -back);
+        addSlopes(r.lhs(), c, forth, slopes_);
+        scalar numbers = 0;
+        for (const auto& one : r.rhs())
+        {
+            numbers += one.stoichCoeff;
+        }
+        gained += numbers*slopes_;
+        addSlopes(r.rhs(), c, -back, slopes_);
         for (label j = 0; j < nSpecie_; ++j)
         {
             for (const auto& one : r.lhs())
             {
-                byState(one.index, j) -= one.stoichCoeff*slopes_[j];
+                byConcentration(one.index, j) -= one.stoichCoeff*slopes_[j];
             }
             for (const auto& one : r.rhs())
             {
-                byState(one.index, j) += one.stoichCoeff*slopes_[j];
+                byConcentration(one.index, j) += one.stoichCoeff*slopes_[j];
             }
         }
-    }
-    const scalar slope = 0.5*(hotter_[nSpecie_] + colder_[nSpecie_]);
-    const scalar capacity = heatCapacity(p, T);
-    for (label j = 0; j < nSpecie_; ++j)
-    {
-        scalar heat = -specieThermo_[j].cp(p, T)*slope;
-        for (label i = 0; i < nSpecie_; ++i)
-        {
-            heat -= specieThermo_[i].ha(p, T)*byState(i, j);
-        }
-        byState(nSpecie_, j) = heat/capacity;
     }
 }

@@ -1,6 +1,6 @@
 // Enthalpy, with exactly the fluxes and masses of continuity, per cell:
 //
-//   (m h - m_old h_old)/dtau + sum phi_f h_f - sum (eps kappa)_f grad(T).S = S - K T(h) + eps V (p0 - p0_old)/dtau + H - sum_k D_k h_k(T) + m q
+//   (m h - m_old h_old)/dtau + sum phi_f h_f - sum (eps kappa)_f grad(T).S = S - K T(h) + eps V (p0 - p0_old)/dtau + H - sum_k D_k h_k(T) + Q
 //
 // h_f as fvSchemes says, beyond upwind explicitly; T linear in h: T = T* + (h - h*)/c_p. Because m = m_old - dtau sum phi_f, a uniform temperature
 // stays uniform whatever the flow does (p0, the model's pressure, changes in a closed domain alone), and energy closes to the linear tolerance whatever the outer
@@ -10,9 +10,9 @@
 #include "fvm.H"
 #include "fvc.H"
 
-Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
+void Foam::calcine::gas::assembleEnthalpy()
 {
-    volScalarField& h = thermo_->he();
+    const volScalarField& h = thermo_->he();
     const volScalarField& T = thermo_->T();
     const scalar span = window_.storageSpan;
     heatCapacity_ = thermo_->Cp()().primitiveField();
@@ -39,7 +39,10 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
     matrix.source() += committed_.mass*committed_.enthalpy/span
       + heatGiven_ - heatSlope_*temperatureBase_
       - outOf(*beyondH_) + compression*given_.voidFraction*mesh_.cellVolumes();
-    addHeatMade(matrix);
+    if (reactions_)
+    {
+        matrix.source() += heatMade_;
+    }
     if (models_->radiates())
     {
         const scalarField pores(given_.voidFraction*mesh_.cellVolumes());
@@ -58,6 +61,16 @@ Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
         ownerDistance_,
         matrix
     );
+}
+
+
+Foam::scalar Foam::calcine::gas::solveEnthalpy(report& result)
+{
+    assembleEnthalpy();
+    fvScalarMatrix& matrix = *enthalpy_;
+    volScalarField& h = thermo_->he();
+    const volScalarField& T = thermo_->T();
+    const scalar span = window_.storageSpan;
 
     // The tolerance is a share of the energy that moves; no closer than round-off of the terms.
     const scalar content = gSumMag(matrix.diag()*heatCapacity_*T.primitiveField());

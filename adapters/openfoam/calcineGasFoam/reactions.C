@@ -1,17 +1,4 @@
 #include "reactions.H"
-#include "gasChemistry.H"
-#include "models.H"
-#include "ode.H"
-#include "SquareMatrix.H"
-
-namespace Foam
-{
-
-typedef ode<calcine::gasChemistry> odeOfGasChemistry;
-defineTemplateTypeNameAndDebugWithName(odeOfGasChemistry, "ode<calcine>", 0);
-
-} // End namespace Foam
-
 
 namespace
 {
@@ -22,8 +9,10 @@ const char* const phase = "chemistry";
 const Foam::label mostPasses = 8;
 // Pivot, of a matrix with a unit diagonal, below which a row is a combination of earlier ones.
 const Foam::scalar dependent = 1e-13;
-// A span in s that OpenFOAM's chemistry takes for none.
-const Foam::scalar nothing = 1e-3*Foam::SMALL;
+// Mixtures between a cell's gas and the one that would be there without reactions, at which rates are asked.
+const Foam::label samples = 5;
+// Error of a step in the temperature that counts as none, in K, as in Calcine's coordinator.
+const Foam::scalar temperatureTolerance = 1e-3;
 // What an element may be off by at the end, as a share of the total mass.
 const Foam::scalar kept = 1e-15;
 // More than that is no round-off.
@@ -32,6 +21,12 @@ const Foam::scalar roundOff = 100;
 Foam::word named(const char* name)
 {
     return Foam::IOobject::groupName(name, phase);
+}
+
+// A value after a time by implicit Euler without reactions.
+Foam::scalar without(Foam::scalar start, Foam::scalar entering, Foam::scalar leaving, Foam::scalar time)
+{
+    return (start + time*entering)/(1 + leaving*time);
 }
 
 } // End anonymous namespace
@@ -48,7 +43,7 @@ Foam::calcine::reactions::reactions
 (
     const fvMesh& mesh,
     const volScalarField& T,
-    const wordList& species
+    const gasMixture& mixture
 )
 :
     T_
@@ -58,105 +53,218 @@ Foam::calcine::reactions::reactions
         dimensionedScalar(dimTemperature, Zero),
         "zeroGradient"
     ),
-    own_(species.size()),
+    mixture_(mixture),
+    own_(mixture.names().size()),
     mixing_(-1),
-    rates_(species.size(), scalarField(mesh.nCells(), Zero))
+    unknowns_(2*mixture.names().size() + 1)
 {
     T_.primitiveFieldRef() = T.primitiveField();
     T_.correctBoundaryConditions();
     thermo_ = psiReactionThermo::New(mesh, phase);
-    chemistry_.reset(new ode<gasChemistry>(*thermo_));
-    basicSpecieMixture& mixture = thermo_->composition();
-    forAll(species, k)
+    chemistry_.reset(new gasChemistry(*thermo_));
+    basicSpecieMixture& known = thermo_->composition();
+    forAll(own_, k)
     {
-        own_[k] = mixture.species()[species[k]];
+        own_[k] = known.species()[mixture.names()[k]];
         // A checkpoint keeps the gas' own fractions.
-        mixture.Y(own_[k]).writeOpt() = IOobject::NO_WRITE;
+        known.Y(own_[k]).writeOpt() = IOobject::NO_WRITE;
     }
+    cell_.reset(new stirredCell(*chemistry_, mixture_, own_));
+    solver_ = ODESolver::New(*cell_, chemistry_->subDict("odeCoeffs"));
+    solver_->absTol()[own_.size()] = temperatureTolerance;
     negligible_ = chemistry_->get<scalar>("negligible");
     mixing_ = chemistry_->lookupOrDefault<scalar>("mixingConstant", -1);
     elements_ = List<scalarList>(chemistry_->lookup("elementShares"));
 }
 
 
-void Foam::calcine::reactions::evaluate
+bool Foam::calcine::reactions::reacts
 (
-    const scalarField& span,
-    const volScalarField& T,
-    const PtrList<volScalarField>& Y,
-    const models& turbulence
-)
+    scalar p,
+    scalar T,
+    const scalarList& Y,
+    const throughflow& flow,
+    scalar time
+) const
 {
-    T_.primitiveFieldRef() = T.primitiveField();
-    T_.correctBoundaryConditions();
-    // Iteration leaves fractions a little below zero.
-    scalarField sum(T.size(), Zero);
+    const label count = Y.size();
+    scalarList end(count), fractions(count);
     forAll(Y, k)
     {
-        sum += max(Y[k].primitiveField(), scalar(0));
+        end[k] = max(without(Y[k], flow.entering[k], flow.leaving[k], time), scalar(0));
     }
-    forAll(Y, k)
+    const scalar heat =
+        without(mixture_.enthalpy(T, Y), flow.heatEntering, flow.heatLeaving, time);
+    const scalar last = mixture_.temperature(heat, end, T);
+    if (!(last > 0))
     {
-        volScalarField& own = thermo_->composition().Y(own_[k]);
-        own.primitiveFieldRef() = max(Y[k].primitiveField(), scalar(0))/sum;
-        own.correctBoundaryConditions();
+        return true;
     }
-    thermo_->he() = thermo_->he(thermo_->p(), T_);
-    thermo_->correct();
-    // The result must not depend on what the model did before: each integration tries the whole span first.
-    T_.mesh().lookupObjectRef<volScalarField::Internal>(named("deltaTChem")).field() = span;
-    chemistry_->calculate();
-    chemistry_->solve(spans(span));
-
-    const scalarField density(thermo_->rho()().primitiveField());
-    const scalarField share(mixing_ < 0 ? scalarField() : reactingShare(turbulence));
-    // OpenFOAM's integration keeps the elements to some 1e-8 of what reacts.
-    scalarList before(Y.size()), after(Y.size()), masses(elements_.size());
-    forAll(density, celli)
+    throughflow none;
+    none.entering = scalarList(count, Zero);
+    none.leaving = none.entering;
+    cell_->set(none, p, time, 1);
+    scalarField slope(unknowns_.size());
+    for (label sample = 0; sample < samples; ++sample)
     {
+        const scalar share = scalar(sample)/(samples - 1);
         forAll(Y, k)
         {
-            before[k] = thermo_->composition().Y(own_[k])[celli];
-            after[k] = before[k] + span[celli]*chemistry_->RR(own_[k])[celli]/density[celli];
-            if (!(mag(after[k]) < GREAT))
+            unknowns_[k] = Y[k] + share*(end[k] - Y[k]);
+        }
+        unknowns_[count] = T + share*(last - T);
+        cell_->derivatives(0, unknowns_, slope);
+        forAll(Y, k)
+        {
+            if (mag(slope[k])*time > negligible_*(1 + flow.leaving[k]*time))
             {
-                FatalErrorInFunction
-                    << "the integration of reactions over " << span[celli] << " s from " << T_[celli] << " K gave "
-                    << after[k] << " for the mass fraction of " << Y[k].name() << " at "
-                    << T_.mesh().C()[celli] << " m; another solver may do: `odeCoeffs` of chemistryProperties"
-                    << exit(FatalError);
+                return true;
             }
         }
-        elementsOf(before, masses);
-        restoreElements(masses, after);
-        forAll(Y, k)
+    }
+    return false;
+}
+
+
+bool Foam::calcine::reactions::flowThrough
+(
+    scalar p,
+    scalar T,
+    const scalarList& Y,
+    const throughflow& flow,
+    scalar time,
+    scalarList& made
+) const
+{
+    made = Zero;
+    if (!reacts(p, T, Y, flow, time))
+    {
+        return false;
+    }
+    const label count = Y.size();
+    unknowns_ = Zero;
+    forAll(Y, k)
+    {
+        unknowns_[k] = Y[k];
+    }
+    unknowns_[count] = T;
+    cell_->set(flow, p, time, p*mixture_.compressibility(T, Y));
+    // The result must not depend on what was integrated before: the whole window is tried first.
+    scalar step = time;
+    solver_->solve(0, time, unknowns_, step);
+    forAll(Y, k)
+    {
+        made[k] = unknowns_[count + 1 + k];
+        if (!(mag(made[k]) < GREAT))
         {
-            rates_[k][celli] =
-                (share.size() ? share[celli] : 1)*(after[k] - before[k])/span[celli];
+            FatalErrorInFunction
+                << "the integration of reactions over " << time << " s from " << T << " K gave "
+                << made[k] << " for what is made of " << mixture_.names()[k]
+                << "; another solver may do: `odeCoeffs` of chemistryProperties" << exit(FatalError);
         }
+    }
+    keepPositive(Y, flow, time, made);
+    return true;
+}
+
+
+void Foam::calcine::reactions::keepPositive
+(
+    const scalarList& Y,
+    const throughflow& flow,
+    scalar time,
+    scalarList& made
+) const
+{
+    // Of what is there without reactions, and what is made, times 1 + l t: elements are kept of these.
+    const label count = Y.size();
+    scalarList weight(count), inert(count), all(count), wanted(elements_.size());
+    forAll(Y, k)
+    {
+        weight[k] = 1 + flow.leaving[k]*time;
+        // Fractions that transport itself leaves below zero stay.
+        inert[k] = max(Y[k] + time*flow.entering[k], scalar(0));
+        all[k] = inert[k] + weight[k]*made[k];
+    }
+    // What is made is free of elements but for the integration's tolerance and round-off.
+    scalar total = 0;
+    for (scalar& y : all)
+    {
+        total += max(y, scalar(0));
+    }
+    scalarList shares(inert);
+    for (scalar& y : shares)
+    {
+        y /= total;
+    }
+    elementsOf(shares, wanted);
+    forAll(all, k)
+    {
+        shares[k] = all[k]/total;
+    }
+    restoreElements(wanted, shares);
+    forAll(Y, k)
+    {
+        made[k] = (shares[k]*total - inert[k])/weight[k];
     }
 }
 
 
-// The span that each cell is integrated over, by the rates of its start: none to speak of where nothing reacts, as natively.
-Foam::scalarField Foam::calcine::reactions::spans(const scalarField& span) const
+void Foam::calcine::reactions::response
+(
+    scalar p,
+    scalar T,
+    const scalarList& Y,
+    const throughflow& flow,
+    scalar time,
+    scalar start,
+    scalar unit,
+    scalarSquareMatrix& result
+) const
 {
-    const scalarField density(thermo_->rho()().primitiveField());
-    scalarField fastest(density.size(), Zero);
-    forAll(own_, k)
+    const label count = Y.size(), width = count + 1;
+    forAll(Y, k)
     {
-        fastest = max(fastest, mag(chemistry_->RR(own_[k]).field()));
+        unknowns_[k] = Y[k];
     }
-    scalarField result(span);
-    forAll(result, celli)
+    unknowns_[count] = T;
+    cell_->set(flow, p, time, start);
+    scalarField byTime(unknowns_.size());
+    scalarSquareMatrix slopes(unknowns_.size());
+    cell_->jacobian(0, unknowns_, byTime, slopes);
+
+    // What reactions change, by fractions and enthalpy: T follows h = sum Y_k h_k(T).
+    const scalar capacity = mixture_.heatCapacity(T, Y);
+    scalarSquareMatrix factors(width, Zero);
+    for (label k = 0; k < count; ++k)
     {
-        if (fastest[celli]*span[celli] <= negligible_*density[celli])
+        const scalar byTemperature = time*slopes(width + k, count)/capacity;
+        const scalar released = mixture_[k].formationEnthalpy()*(1 + flow.leaving[k]*time)
+           /((1 + flow.heatLeaving*time)*unit);
+        for (label j = 0; j < width; ++j)
         {
-            // OpenFOAM's model steps over what is below SMALL, and divides by it.
-            result[celli] = nothing;
+            const scalar change = j < count
+              ? time*slopes(width + k, j) - byTemperature*mixture_[j].enthalpy(T)
+              : byTemperature*unit;
+            factors(k, j) -= change;
+            factors(count, j) += released*change;
+        }
+        factors(k, k) += 1;
+    }
+    factors(count, count) += 1;
+    labelList pivots(width);
+    LUDecompose(factors, pivots);
+    scalarField column(width);
+    for (label j = 0; j < width; ++j)
+    {
+        column = Zero;
+        column[j] = 1;
+        LUBacksubstitute(factors, pivots, column);
+        for (label i = 0; i < width; ++i)
+        {
+            result(i, j) = column[i];
         }
     }
-    return result;
 }
 
 
@@ -272,15 +380,4 @@ bool Foam::calcine::reactions::restoreElements
         }
     }
     return left <= roundOff*kept;
-}
-
-
-Foam::scalarField Foam::calcine::reactions::reactingShare(const models& turbulence) const
-{
-    const scalarField chemical(chemistry_->tc()().primitiveField());
-    const scalarField mixing
-    (
-        mixing_*turbulence.mixingTime(thermo_->mu()().primitiveField(), thermo_->rho()().primitiveField())
-    );
-    return chemical/(chemical + mixing);
 }

@@ -14,10 +14,6 @@ use thiserror::Error;
 
 use super::foam_file::{field, header, zero_gradient};
 
-/// Absolute tolerance of OpenFOAM's integration in kmol/m³, beside the relative one of the case: a mole fraction of
-/// about 1e-10 in a flame.
-const CONCENTRATION: f64 = 1e-12;
-
 /// A reaction that OpenFOAM's chemistry cannot take.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum UnsupportedReaction {
@@ -118,12 +114,13 @@ fn species(mixture: &Mixture) -> String {
 fn properties(mixture: &Mixture, gas: &ReactingGas) -> String {
     let mut text = header("dictionary", "chemistryProperties.chemistry");
     let (relative, negligible) = (gas.tolerances.relative, gas.tolerances.negligible);
+    let (fraction, steps) = (gas.tolerances.fraction, gas.tolerances.steps);
     let _ = write!(
         text,
         "chemistry       on;\n\
          // What each integration tries first is the span of the window.\ninitialChemicalTimeStep 1e-7;\n\
          // Change of a mass fraction over that span below which nothing reacts.\nnegligible      {negligible:e};\n\nodeCoeffs\n{{\n    solver          rodas34;\n    \
-         absTol          {CONCENTRATION:e};\n    relTol          {relative:e};\n}}\n"
+         absTol          {fraction:e};\n    relTol          {relative:e};\n    maxSteps        {steps};\n}}\n"
     );
     text += "\n// Mass of each element in a unit mass of each species, in the order of calcineGasFoam's own.\nelementShares\n(\n";
     for (element, shares) in mixture.elements() {

@@ -1,77 +1,59 @@
-//! Reactions of the gas with itself (docs/theory.md, CHM-1, TSM-10), in species and enthalpy alike:
+//! Reactions of the gas with itself by balanced splitting (docs/theory.md, CHM-2), in species and enthalpy alike.
 //!
-//! w_k = (R_k(Y, T; Δt) − Y_k)/Δt,   q = −Σ_k h°_k w_k,
+//! The equation of each species, with what reactions make of it as M_k, is per cell
 //!
-//! per kg of gas, with what a closed adiabatic reactor of constant pressure makes of the cell's gas over the motion
-//! span, R, and the enthalpies of formation h°: the gas' own enthalpy is the sensible one.
+//! m_old (Y − Y_old)/Δτ + D′ Y = b′ + M,
 //!
-//! Where the gas stores over the motion span (AF = 1, or `accelerated` storage) the window takes the rates of its
-//! start once, and its first half is the reactor itself: what reacts is there, whatever the rates.
+//! D′ Y what leaves the cell with its own gas and by diffusion from it, b′ what enters, the neighbours' share included. M is
+//! what a stirred reactor makes in the mean of the window, which starts with the cell's old gas and into which b′ flows:
 //!
-//! Where it stores over a longer span Δτ, such a source would take more than there is. Then the equations with
-//! the rates of their own end are iterated in pseudo-steps δ (dual time stepping),
+//! dY/dt = w(Y, T) + (b′ − D′ Y)/m,   M = ∫ m w dt/Δτ,   m = m_old (1 + θ max(ρ/ρ_old − 1, 0)),
 //!
-//! m (Y − Y°)/δ + (m Y − m_old Y_old)/Δτ + transport = m w(Y°),   w = (R(Y°, T°; δ) − Y°)/δ,
+//! θ = D′Δτ/(m_old + D′Δτ), as flow fills a cell whose gas contracts; and the same with the enthalpy, whose source is −Σ_k h°_k M_k with the enthalpies of formation h° as the gas' own enthalpy
+//! is the sensible one. So a steady cell is a stirred reactor at any span and storage, a cell without flow a closed one, what a
+//! cell reaches of several states is what the reactor reaches from the window's start, and no cell gives what it does not have.
+//! M is free of every element to round-off.
 //!
-//! whose right side with m Y°/δ is m R(Y°)/δ, not negative. A converged window, and so a steady flame, has the same w
-//! at any Δτ: its place does not depend on AF. After the last pseudo-step the equations are solved once more without
-//! it, with m (R′ − Y)/δ in place of m w, which is what that step took in all, R′ being R(Y°) with the elements of the new Y:
-//! so energy and every element close whatever the iteration did, and no cell gives what it does not have.
-//!
-//! δ is Δt, or a quarter of the time in which the gas that leaves a cell empties it where that is shorter: over a Δt in which the gas
-//! passes many cells mean rates would spread a flame over all of them. What reacts at once is then used up to a fifth in the
-//! cell that it comes into, to a twenty-fifth in the next.
+//! b′ is found by nonlinear Gauss–Seidel iteration: cells are visited downstream ([`order`]), each with the newest
+//! gas of those above it.
+
+mod equations;
+mod newton;
+mod order;
 
 use calcine_coupler::gas_chemistry::ReactingGas;
 use calcine_coupler::physics::kinetics::elements::Elements;
-use calcine_coupler::physics::kinetics::{self, Reactor, ReactorWorkspace};
+use calcine_coupler::physics::kinetics::{MixtureState, Reactor, ReactorWorkspace, Throughflow};
 use calcine_coupler::physics::thermo::mixture::MOST_SPECIES;
 use rayon::prelude::*;
 
-use super::attempt::{AttemptFrame, CellProperties};
+pub use self::equations::ScalarEquations;
+use self::newton::NewtonStep;
+use self::order::DownstreamOrder;
+use super::attempt::AttemptFrame;
 use super::failure::{GasFailure, Place};
 use super::state::GasState;
-use super::stirring::reacting_share;
+use super::stirring::mixing_time;
+use crate::numerics::matrix::Matrix;
 use crate::numerics::parallel::{fill, largest};
 
-/// A pseudo-step is no longer than this share of the time in which the gas that leaves a cell empties it.
-const RESIDENCE: f64 = 0.25;
-/// Cells that a thread takes at a time: a reactor costs some ten to hundred microseconds.
-const GRAIN: usize = 16;
-/// A span is longer than the motion span beyond this share: less is round-off of clocks.
-const LONGER: f64 = 1e-6;
+/// Cells that a thread takes at a time at least: a reactor costs some ten to hundred microseconds.
+const GRAIN: usize = 4;
+/// A reactor is not run again while what enters has changed by less than this share of the outer tolerance.
+const SAME: f64 = 0.1;
 
-/// What reactions add to an equation of a quantity x per kg of gas: gain + inertia (x° − x).
+/// What reactions add to an equation.
 #[derive(Clone, Debug, Default)]
 pub struct ReactionSource {
-    /// In the unit of x times kg/s, in the order of the values.
+    /// In the unit of the equation's value times kg/s, in the order of the values; empty where nothing reacts.
     gain: Vec<f64>,
-    /// That of a pseudo-step in kg/s, cell by cell; empty outside pseudo-steps.
-    inertia: Vec<f64>,
-    /// x° in the order of the values; empty outside pseudo-steps.
-    before: Vec<f64>,
 }
 
 impl ReactionSource {
-    /// What reactions give to a value, without the pseudo-step; zero where nothing reacts.
+    /// What reactions give to a value; zero where nothing reacts.
     #[inline]
     pub fn gain(&self, at: usize) -> f64 {
         self.gain.get(at).copied().unwrap_or(0.0)
-    }
-
-    /// Inertia of the pseudo-step of a cell in kg/s.
-    #[inline]
-    pub fn inertia(&self, cell: usize) -> f64 {
-        self.inertia.get(cell).copied().unwrap_or(0.0)
-    }
-
-    /// All that does not depend on the new value, at `at` of a cell.
-    #[inline]
-    pub fn explicit(&self, cell: usize, at: usize) -> f64 {
-        match self.inertia.get(cell) {
-            Some(inertia) => self.gain[at] + inertia * self.before[at],
-            None => self.gain(at),
-        }
     }
 
     /// True where nothing reacts.
@@ -80,267 +62,386 @@ impl ReactionSource {
     }
 }
 
-/// The rates of all cells.
+/// What reactions make in all cells.
 #[derive(Debug, Default)]
 pub struct CellChemistry {
-    /// w of the fields last evaluated in 1/s, species by species within each cell.
-    rates: Vec<f64>,
-    /// Spans over which they are, cell by cell, in s.
-    spans: Vec<f64>,
-    /// R of the start of the last pseudo-step, in the order of the rates.
-    reached: Vec<f64>,
-    /// Inertia of the last pseudo-step of each cell in kg/s.
-    inertia: Vec<f64>,
+    /// M in kg/s, species by species within each cell.
+    made: Vec<f64>,
+    /// What cells were last run with: for each the gas that would be there without reactions, its enthalpy and the
+    /// diagonals of both equations; empty before the first run.
+    seen: Vec<f64>,
+    order: DownstreamOrder,
     /// Enthalpies of formation in J/kg.
     formation: Vec<f64>,
-    /// What no reaction changes; where something reacts.
     elements: Option<Elements>,
-    /// True while the rates are those of the fields at hand.
-    fresh: bool,
-    /// Largest change by the last pseudo-step: of a mass fraction, or of an enthalpy over c_p T.
+    /// Values at the start of the last iteration.
+    before: [Vec<f64>; 2],
+    newton: NewtonStep,
+    /// Largest c_p T of the window's start in J/kg, the unit of enthalpies.
+    unit: f64,
+    /// Largest change by the last iteration: of a mass fraction, or of an enthalpy over c_p T.
     pub change: f64,
 }
 
-/// Whether the window's reactions take pseudo-steps.
-pub fn is_dual(frame: &AttemptFrame<'_>) -> bool {
-    frame.chemistry.reacting().is_some() && frame.storage_span > (1.0 + LONGER) * frame.motion_span
+/// A cell at the end of its reactor's window.
+struct CellEnd {
+    fractions: [f64; MOST_SPECIES],
+    made: [f64; MOST_SPECIES],
+    enthalpy: f64,
+    temperature: f64,
+    seen: [f64; MOST_SPECIES + 3],
+    /// What would be there without reactions.
+    inert: [f64; MOST_SPECIES + 1],
+    /// How it follows that; of a cell that was run.
+    response: Option<Vec<f64>>,
 }
 
 impl CellChemistry {
-    /// Takes up the start of an attempt, which may continue the one before: rates of the window's start are the
-    /// same in all its attempts.
-    pub fn begin(&mut self, frame: &AttemptFrame<'_>, continues: bool) -> Result<(), GasFailure> {
-        self.fresh = false;
+    /// Takes up the start of an attempt, which may continue the one before.
+    pub fn begin(&mut self, frame: &AttemptFrame<'_>, continues: bool) {
         self.change = 0.0;
         let Some(gas) = frame.chemistry.reacting() else {
-            return Ok(());
+            return;
         };
-        if !continues {
-            let formation = |k| frame.properties.formation_enthalpy(k);
-            self.formation = (0..frame.species()).map(formation).collect();
-            self.elements = Some(Elements::new(gas.mechanism.mixture()));
-        }
-        if is_dual(frame) {
-            self.change = f64::INFINITY;
-            return Ok(());
-        }
+        self.change = f64::INFINITY;
         if continues {
-            return Ok(());
-        }
-        self.evaluate(frame, gas, frame.old)
-    }
-
-    /// The fields have changed.
-    pub fn spoil(&mut self) {
-        self.fresh = false;
-    }
-
-    /// Follows the fields, where a window's reactions take pseudo-steps.
-    pub fn follow(&mut self, frame: &AttemptFrame<'_>, now: &GasState) -> Result<(), GasFailure> {
-        match frame.chemistry.reacting() {
-            Some(gas) if is_dual(frame) && !self.fresh => self.evaluate(frame, gas, now),
-            _ => Ok(()),
-        }
-    }
-
-    fn evaluate(
-        &mut self,
-        frame: &AttemptFrame<'_>,
-        gas: &ReactingGas,
-        at: &GasState,
-    ) -> Result<(), GasFailure> {
-        let species = frame.species();
-        let dual = is_dual(frame);
-        self.spans.resize(frame.grid.cells(), 0.0);
-        fill(&mut self.spans, |cell| match dual {
-            true => pseudo_step(frame, at, cell),
-            false => frame.motion_span,
-        });
-        let spans = &self.spans;
-        self.rates.resize(frame.grid.cells() * species, 0.0);
-        let reactor = Reactor::new(&gas.mechanism, gas.tolerances);
-        let one = |cell: usize, rates: &mut [f64], workspace: &mut ReactorWorkspace| {
-            let mut before = [0.0; MOST_SPECIES];
-            let before = &mut before[..species];
-            before.copy_from_slice(at.composition_of(cell, species));
-            valid(before);
-            let mut after = [0.0; MOST_SPECIES];
-            let after = &mut after[..species];
-            after.copy_from_slice(before);
-            let mut temperature = at.temperature[cell];
-            let pressure = at.base_pressure;
-            let state = kinetics::MixtureState {
-                pressure,
-                temperature,
-                fractions: before,
-            };
-            let share = reacting_share(frame, gas, cell, state);
-            let span = spans[cell];
-            let reacted = reactor.advance_in(workspace, pressure, &mut temperature, after, span);
-            for (rate, (after, before)) in rates.iter_mut().zip(after.iter().zip(before.iter())) {
-                *rate = share * (after - before) / span;
-            }
-            reacted.map(|_| ()).map_err(|cause| GasFailure::Reactions {
-                place: Place {
-                    cell,
-                    centre: frame.grid.centre[cell],
-                },
-                cause,
-            })
-        };
-        let failed: Vec<GasFailure> = self
-            .rates
-            .par_chunks_mut(GRAIN * species)
-            .enumerate()
-            .map_init(ReactorWorkspace::default, |workspace, (k, rates)| {
-                let mut cells = rates.chunks_mut(species).enumerate();
-                cells.try_for_each(|(i, rates)| one(k * GRAIN + i, rates, workspace))
-            })
-            .filter_map(Result::err)
-            .collect();
-        self.fresh = true;
-        match failed.into_iter().next() {
-            Some(failure) => Err(failure),
-            None => Ok(()),
-        }
-    }
-
-    /// Sets what the equations of species and enthalpy take, with the pseudo-step or without.
-    pub fn apply(
-        &self,
-        frame: &AttemptFrame<'_>,
-        material: &CellProperties,
-        pseudo: bool,
-        now: &GasState,
-        [composition, enthalpy]: [&mut ReactionSource; 2],
-    ) {
-        if frame.chemistry.reacting().is_none() {
             return;
         }
-        let (cells, species) = (frame.grid.cells(), frame.species());
-        let dual = is_dual(frame);
-        let mass = |cell: usize| match dual {
-            true => held(frame, material, cell),
-            false => frame.old.mass[cell],
+        let formation = |k| frame.properties.formation_enthalpy(k);
+        self.formation = (0..frame.species()).map(formation).collect();
+        self.elements = Some(Elements::new(gas.mechanism.mixture()));
+        let heat = |cell: usize| {
+            let (old, species) = (frame.old, frame.species());
+            let temperature = old.temperature[cell];
+            let composition = old.composition_of(cell, species);
+            temperature * frame.properties.heat_capacity(temperature, composition)
         };
-        composition.gain.resize(cells * species, 0.0);
-        fill(&mut composition.gain, |at| {
-            let cell = at / species;
-            mass(cell) * self.rates[at]
-        });
-        self.heat(species, &composition.gain, &mut enthalpy.gain);
-        for (source, values) in [(composition, &now.composition), (enthalpy, &now.enthalpy)] {
-            source.inertia.clear();
-            source.before.clear();
-            if pseudo {
-                // Where nothing reacts nothing need be held back.
-                let rates = |cell: usize| &self.rates[cell * species..(cell + 1) * species];
-                let inertia = |cell: usize| match rates(cell).iter().all(|rate| *rate == 0.0) {
-                    true => 0.0,
-                    false => mass(cell) / self.spans[cell],
-                };
-                source.inertia.extend((0..cells).map(inertia));
-                source.before.extend_from_slice(values);
-            }
-        }
+        self.unit = largest(frame.grid.cells(), heat).1;
+        self.newton.begin(frame.grid.cells(), frame.species() + 1);
+        self.made.clear();
+        self.made.resize(frame.grid.cells() * frame.species(), 0.0);
+        self.seen.clear();
     }
 
-    /// What no reaction changes, where pseudo-steps are taken.
+    /// What no reaction changes, where something reacts.
     pub fn elements(&self) -> Option<&Elements> {
         self.elements.as_ref()
     }
 
-    /// Source of the enthalpy by what is made of each species in kg/s.
-    pub fn source_of(&self, species: usize, made: &[f64]) -> ReactionSource {
-        let mut source = ReactionSource::default();
-        self.heat(species, made, &mut source.gain);
-        source
+    /// Takes up the start of an iteration.
+    pub fn start(&mut self, now: &GasState) {
+        self.before[0].clone_from(&now.composition);
+        self.before[1].clone_from(&now.enthalpy);
     }
 
-    /// Heat of what is made, in W.
-    fn heat(&self, species: usize, made: &[f64], heat: &mut Vec<f64>) {
-        heat.resize(made.len() / species, 0.0);
-        fill(heat, |cell| {
-            let own = self.formation.iter().zip(&made[cell * species..]);
-            -own.map(|(formation, made)| formation * made).sum::<f64>()
-        });
+    /// Follows the fluxes.
+    pub fn follow(&mut self, frame: &AttemptFrame<'_>, now: &GasState) {
+        self.order.update(frame.grid, &now.flux);
     }
 
-    /// Sets what the equations take at the end of the iteration.
-    pub fn conclude(
-        &self,
-        frame: &AttemptFrame<'_>,
-        elements: &Elements,
-        now: &GasState,
-        [composition, enthalpy]: [&mut ReactionSource; 2],
-    ) {
-        let (cells, species) = (frame.grid.cells(), frame.species());
-        let one = |(cell, gain): (usize, &mut [f64])| {
-            let inertia = self.inertia[cell];
-            let here = now.composition_of(cell, species);
-            let mut reached = [0.0; MOST_SPECIES];
-            let reached = &mut reached[..species];
-            reached.copy_from_slice(&self.reached[cell * species..][..species]);
-            elements.restore(&elements.of(here), reached);
-            for (gain, (after, before)) in gain.iter_mut().zip(reached.iter().zip(here)) {
-                *gain = inertia * (after - before);
-            }
-        };
-        composition.gain.resize(cells * species, 0.0);
-        let gains = composition.gain.par_chunks_mut(species);
-        gains.enumerate().for_each(one);
-        self.heat(species, &composition.gain, &mut enthalpy.gain);
-        for source in [composition, enthalpy] {
-            source.inertia.clear();
-            source.before.clear();
-        }
-    }
-
-    /// Books what the pseudo-step changed, and what its reactors reached.
-    pub fn measure(
+    /// Runs the reactors of all cells downstream; the fields become what they reach. What enters a cell and changes by
+    /// less than a share of the tolerance counts as the same.
+    pub fn sweep(
         &mut self,
-        [composition, enthalpy]: [&ReactionSource; 2],
-        heat: &[f64],
-        now: &GasState,
-    ) {
-        self.reached.resize(self.rates.len(), 0.0);
-        self.inertia.clone_from(&composition.inertia);
-        let (rates, spans) = (&self.rates, &self.spans);
-        let species = rates.len() / spans.len();
-        fill(&mut self.reached, |at| {
-            composition.before[at] + rates[at] * spans[at / species]
-        });
-        let fractions = |at: usize| (now.composition[at] - composition.before[at]).abs();
+        frame: &AttemptFrame<'_>,
+        gas: &ReactingGas,
+        equations: ScalarEquations<'_>,
+        tolerance: f64,
+        now: &mut GasState,
+    ) -> Result<(), GasFailure> {
+        let species = frame.species();
+        let width = species + 3;
+        let reactor = Reactor::new(&gas.mechanism, gas.tolerances);
+        let known = !self.seen.is_empty();
+        self.seen.resize(frame.grid.cells() * width, f64::NAN);
+        for level in self.order.levels() {
+            let run = |workspace: &mut ReactorWorkspace, &cell: &u32| {
+                let cell = cell as usize;
+                let seen = known.then(|| &self.seen[cell * width..(cell + 1) * width]);
+                let made = &self.made[cell * species..(cell + 1) * species];
+                let cell_run = CellRun {
+                    frame,
+                    gas,
+                    reactor: &reactor,
+                    equations,
+                    formation: &self.formation,
+                    unit: self.unit,
+                    same: SAME * tolerance,
+                };
+                cell_run.run(workspace, cell, seen, made, now)
+            };
+            let ends: Result<Vec<CellEnd>, GasFailure> = if level.len() < 2 * GRAIN {
+                let mut workspace = ReactorWorkspace::default();
+                level.iter().map(|cell| run(&mut workspace, cell)).collect()
+            } else {
+                let cells = level.par_iter().with_min_len(GRAIN);
+                cells.map_init(ReactorWorkspace::default, run).collect()
+            };
+            for (&cell, end) in level.iter().zip(ends?) {
+                let cell = cell as usize;
+                let own = cell * species..(cell + 1) * species;
+                now.composition[own.clone()].copy_from_slice(&end.fractions[..species]);
+                now.enthalpy[cell] = end.enthalpy;
+                now.temperature[cell] = end.temperature;
+                self.made[own].copy_from_slice(&end.made[..species]);
+                self.seen[cell * width..(cell + 1) * width].copy_from_slice(&end.seen[..width]);
+                self.newton.note(cell, &end.inert[..=species], end.response);
+            }
+        }
+        Ok(())
+    }
+
+    /// How far the fields are from those at the start of the iteration.
+    pub fn measure(&mut self, heat_capacity: &[f64], now: &GasState) {
+        let [composition, enthalpy] = &self.before;
+        let fractions = |at: usize| (now.composition[at] - composition[at]).abs();
         let warmth = |cell: usize| {
-            let content = heat[cell] * now.temperature[cell];
-            (now.enthalpy[cell] - enthalpy.before[cell]).abs() / content
+            let content = heat_capacity[cell] * now.temperature[cell];
+            (now.enthalpy[cell] - enthalpy[cell]).abs() / content
         };
         let (_, changed) = largest(now.composition.len(), fractions);
         let (_, warmed) = largest(now.enthalpy.len(), warmth);
         self.change = changed.max(warmed);
     }
+
+    /// Goes on from what the sweep found by a Newton step of all cells.
+    pub fn correct(
+        &mut self,
+        frame: &AttemptFrame<'_>,
+        equations: ScalarEquations<'_>,
+        now: &mut GasState,
+    ) {
+        self.newton
+            .correct(frame, equations, self.order.cells(), self.unit, now);
+    }
+
+    /// Sets what the equations of species and enthalpy take.
+    pub fn apply(
+        &self,
+        frame: &AttemptFrame<'_>,
+        [composition, enthalpy]: [&mut ReactionSource; 2],
+    ) {
+        if frame.chemistry.reacting().is_none() {
+            return;
+        }
+        composition.gain.clone_from(&self.made);
+        *enthalpy = self.source_of(frame.species(), &self.made);
+    }
+
+    /// Takes what the last solve left below zero out of what is made, in the cells that react and where it begins, the elements
+    /// kept; whether there was any.
+    pub fn keep_positive(&mut self, matrix: &Matrix, now: &GasState) -> bool {
+        let Some(elements) = &self.elements else {
+            return false;
+        };
+        let species = self.formation.len();
+        let mut any = false;
+        for (cell, made) in self.made.chunks_mut(species).enumerate() {
+            let mut own = [0.0; MOST_SPECIES];
+            let own = &mut own[..species];
+            own.copy_from_slice(now.composition_of(cell, species));
+            // Fractions that transport itself leaves below zero stay.
+            let below = |(y, made): (&f64, &f64)| *y < 0.0 && *made < 0.0;
+            if !own.iter().zip(made.iter()).any(below) {
+                continue;
+            }
+            // What comes in below zero begins elsewhere.
+            let diagonal = matrix.diagonal()[cell];
+            let (columns, values) = matrix.row(cell);
+            for (&other, value) in columns.iter().zip(values) {
+                let beside = now.composition_of(other as usize, species);
+                for (own, y) in own.iter_mut().zip(beside) {
+                    *own += value / diagonal * y.min(0.0);
+                }
+            }
+            if !own.iter().any(|y| *y < 0.0) {
+                continue;
+            }
+            any = true;
+            let mut positive = [0.0; MOST_SPECIES];
+            let positive = &mut positive[..species];
+            positive.copy_from_slice(own);
+            elements.restore(&elements.of(own), positive);
+            for (made, (after, before)) in made.iter_mut().zip(positive.iter().zip(own.iter())) {
+                *made += diagonal * (after - before);
+            }
+        }
+        any
+    }
+
+    /// Source of the enthalpy by what is made of each species in kg/s.
+    pub fn source_of(&self, species: usize, made: &[f64]) -> ReactionSource {
+        let mut source = ReactionSource::default();
+        source.gain.resize(made.len() / species, 0.0);
+        fill(&mut source.gain, |cell| {
+            let own = self.formation.iter().zip(&made[cell * species..]);
+            -own.map(|(formation, made)| formation * made).sum::<f64>()
+        });
+        source
+    }
 }
 
-/// Gas of a cell in kg by the equation of state: in an early iterate the masses of continuity may be no masses of a gas.
-fn held(frame: &AttemptFrame<'_>, material: &CellProperties, cell: usize) -> f64 {
-    material.density[cell] * frame.void_fraction[cell] * frame.grid.volume[cell]
+/// What the run of a cell's reactor looks at.
+struct CellRun<'a> {
+    frame: &'a AttemptFrame<'a>,
+    gas: &'a ReactingGas,
+    reactor: &'a Reactor,
+    equations: ScalarEquations<'a>,
+    formation: &'a [f64],
+    unit: f64,
+    same: f64,
 }
 
-/// Span of a cell's pseudo-step in s, for the fluxes at hand.
-fn pseudo_step(frame: &AttemptFrame<'_>, now: &GasState, cell: usize) -> f64 {
-    let composition = now.composition_of(cell, frame.species());
-    let density = frame
-        .properties
-        .density(now.base_pressure, now.temperature[cell], composition);
-    let links = frame.grid.links(cell).iter();
-    let leaving = links.fold(0.0, |sum, link| {
-        sum + (link.sign * now.flux[link.face as usize]).max(0.0)
-    });
-    let held = RESIDENCE * density * frame.void_fraction[cell] * frame.grid.volume[cell];
-    if leaving * frame.motion_span > held {
-        held / leaving
-    } else {
-        frame.motion_span
+impl CellRun<'_> {
+    fn run(
+        &self,
+        workspace: &mut ReactorWorkspace,
+        cell: usize,
+        seen: Option<&[f64]>,
+        made: &[f64],
+        now: &GasState,
+    ) -> Result<CellEnd, GasFailure> {
+        let (frame, species) = (self.frame, self.frame.species());
+        let old = frame.old;
+        let storage = old.mass[cell] / frame.storage_span;
+        let mut diagonal = [0.0; MOST_SPECIES];
+        let mut given = [0.0; MOST_SPECIES];
+        let (matrix, exchange) = (self.equations.species, &frame.exchange.species);
+        given[..species].copy_from_slice(&self.equations.sources[cell * species..][..species]);
+        let (columns, values) = matrix.row(cell);
+        for (&other, value) in columns.iter().zip(values) {
+            let beside = now.composition_of(other as usize, species);
+            for (given, y) in given.iter_mut().zip(beside) {
+                *given -= value * y;
+            }
+        }
+        for k in 0..species {
+            diagonal[k] = matrix.diagonal()[cell];
+            if !exchange.is_none() {
+                let own = &exchange.coefficient[cell * species..][..species];
+                diagonal[k] += own[k] - own[0];
+            }
+        }
+        let (columns, values) = self.equations.enthalpy.row(cell);
+        let beside = columns.iter().zip(values);
+        let heat = beside.fold(self.equations.heat[cell], |sum, (&other, value)| {
+            sum - value * now.enthalpy[other as usize]
+        });
+        let warmth = self.equations.enthalpy.diagonal()[cell];
+
+        let mut end = CellEnd {
+            fractions: [0.0; MOST_SPECIES],
+            made: [0.0; MOST_SPECIES],
+            enthalpy: 0.0,
+            temperature: 0.0,
+            seen: [0.0; MOST_SPECIES + 3],
+            inert: [0.0; MOST_SPECIES + 1],
+            response: None,
+        };
+        for k in 0..species {
+            end.seen[k] = given[k] / diagonal[k];
+        }
+        end.seen[species] = heat / warmth;
+        end.inert[..=species].copy_from_slice(&end.seen[..=species]);
+        end.seen[species + 1] = diagonal[0];
+        end.seen[species + 2] = warmth;
+        let content = now.temperature[cell]
+            * frame
+                .properties
+                .heat_capacity(now.temperature[cell], now.composition_of(cell, species));
+        let (mut entering, mut leaving) = ([0.0; MOST_SPECIES], [0.0; MOST_SPECIES]);
+        let start = old.composition_of(cell, species);
+        let split = |diagonal: f64, given: f64, start: f64| {
+            let out = diagonal - storage;
+            let held = 1.0 / old.mass[cell];
+            // An early iterate's fluxes may fill a cell; what leaves is then none.
+            ((given - storage * start) * held, out.max(0.0) * held)
+        };
+        for k in 0..species {
+            (entering[k], leaving[k]) = split(diagonal[k], given[k], start[k]);
+        }
+        let (heat_entering, heat_leaving) = split(warmth, heat, old.enthalpy[cell]);
+        let flow = Throughflow {
+            entering: &entering[..species],
+            leaving: &leaving[..species],
+            heat_entering,
+            heat_leaving,
+            opening: 1.0 - storage / (storage + leaving[0] * old.mass[cell]),
+            mixing: mixing_time(frame, self.gas, cell),
+        };
+        let mut steps = 0;
+        let fresh = !seen.is_some_and(|seen| self.is_same(seen, &end.seen[..species + 3], content));
+        if fresh {
+            let mut fractions = [0.0; MOST_SPECIES];
+            let fractions = &mut fractions[..species];
+            fractions.copy_from_slice(start);
+            valid(fractions);
+            let state = MixtureState {
+                pressure: now.base_pressure,
+                temperature: old.temperature[cell],
+                fractions,
+            };
+            let made = &mut end.made[..species];
+            let run = self
+                .reactor
+                .flow_through(workspace, state, &flow, frame.storage_span, made)
+                .map_err(|cause| GasFailure::Reactions {
+                    place: Place {
+                        cell,
+                        centre: frame.grid.centre[cell],
+                    },
+                    cause,
+                })?;
+            for (k, made) in made.iter_mut().enumerate() {
+                *made *= storage + leaving[k] * old.mass[cell];
+            }
+            steps = run.steps;
+        } else {
+            end.made[..species].copy_from_slice(made);
+            if let Some(seen) = seen {
+                end.seen[..species + 3].copy_from_slice(seen);
+            }
+        }
+        let mut released = 0.0;
+        for k in 0..species {
+            end.fractions[k] = (given[k] + end.made[k]) / diagonal[k];
+            released -= self.formation[k] * end.made[k];
+        }
+        end.enthalpy = (heat + released) / warmth;
+        end.temperature = frame.properties.temperature(
+            end.enthalpy,
+            &end.fractions[..species],
+            now.temperature[cell],
+        );
+        if fresh {
+            end.response = Some(if steps == 0 || end.temperature.is_nan() {
+                Vec::new()
+            } else {
+                let state = MixtureState {
+                    pressure: now.base_pressure,
+                    temperature: end.temperature,
+                    fractions: &end.fractions[..species],
+                };
+                let span = frame.storage_span;
+                let begun =
+                    frame
+                        .properties
+                        .density(now.base_pressure, old.temperature[cell], start);
+                self.reactor
+                    .response(workspace, (begun, state), &flow, span, self.unit)
+            });
+        }
+        Ok(end)
+    }
+
+    /// Whether a cell would be run as it was, with c_p T in J/kg.
+    fn is_same(&self, seen: &[f64], now: &[f64], content: f64) -> bool {
+        let species = seen.len() - 3;
+        let near = |at: usize, scale: f64| (seen[at] - now[at]).abs() <= self.same * scale;
+        (0..species).all(|k| near(k, 1.0))
+            && near(species, content)
+            && near(species + 1, seen[species + 1])
+            && near(species + 2, seen[species + 2])
     }
 }
 

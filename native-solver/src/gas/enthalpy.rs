@@ -182,6 +182,11 @@ impl Enthalpy {
         }
     }
 
+    /// Matrix and right side in W as assembled.
+    pub fn equation(&self) -> (&Matrix, &[f64]) {
+        (&self.matrix, &self.source)
+    }
+
     /// Forgets what earlier attempts left, so that a repeated or resumed window takes the same path.
     pub fn begin(&mut self) {
         for gradients in &mut self.gradients {
@@ -213,12 +218,10 @@ impl Enthalpy {
         self.update_given(frame, now);
         let (conduction, heat_capacity) = (&self.conduction, &self.heat_capacity);
         let [_, coefficient] = &self.given;
-        let reactions = &self.reactions;
         self.matrix.assemble(|cell, diagonal, neighbours| {
             let own = heat_capacity[cell];
             *diagonal = frame.old.mass[cell] / frame.storage_span
                 + frame.mass_source(now, cell)
-                + reactions.inertia(cell)
                 + coefficient[cell] / own;
             for link in grid.links(cell) {
                 let index = link.face as usize;
@@ -240,10 +243,11 @@ impl Enthalpy {
         let compression = (now.base_pressure - frame.old.base_pressure) / frame.storage_span;
         let (base, explicit) = (&self.base, &self.explicit);
         let [given, coefficient] = &self.given;
+        let reactions = &self.reactions;
         fill(&mut self.source, |cell| {
             let mut source = frame.old.mass[cell] * frame.old.enthalpy[cell] / frame.storage_span
                 + given[cell]
-                + reactions.explicit(cell, cell)
+                + reactions.gain(cell)
                 - coefficient[cell] * base[cell]
                 + compression * frame.void_fraction[cell] * grid.volume[cell];
             for link in grid.links(cell) {

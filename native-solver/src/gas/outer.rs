@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
+use calcine_coupler::gas_chemistry::ReactingGas;
 use calcine_coupler::part::Convergence;
 use calcine_coupler::setup::GasControls;
 
 use super::attempt::{AttemptFrame, CellProperties};
-use super::chemistry::{self, CellChemistry};
+use super::chemistry::{CellChemistry, ReactionSource, ScalarEquations};
 use super::enthalpy::Enthalpy;
 use super::failure::GasFailure;
 use super::guard;
@@ -28,8 +29,11 @@ const SCALARS: f64 = 1e-2;
 /// switching may otherwise lead from one iterate to another and back for ever.
 const FOLLOWED: u32 = 8;
 
-/// Pseudo-steps of reacting species and enthalpy in an outer iteration at most.
-const PSEUDO_STEPS: u32 = 5;
+/// Sweeps of reacting species and enthalpy in an outer iteration at most.
+const SWEEPS: u32 = 5;
+
+/// Solves at the end of an attempt by which fractions below zero are taken out of what reacts, at most.
+const CLOSINGS: u32 = 3;
 
 /// They need not change a value by less than this share of the residual of momentum and continuity, whose fluxes they take.
 const CLOSER: f64 = 0.1;
@@ -90,7 +94,7 @@ impl Equations {
             self.enthalpy.begin();
             self.species.begin(frame);
         }
-        self.chemistry.begin(frame, continues)?;
+        self.chemistry.begin(frame, continues);
         self.share = 1.0;
         self.assess(frame, now)?;
         for outer in 1..=controls.outer_iterations.max(1) {
@@ -121,8 +125,7 @@ impl Equations {
     /// all equations at once: the largest scaled residual.
     fn assess(&mut self, frame: &AttemptFrame<'_>, now: &mut GasState) -> Result<f64, GasFailure> {
         self.material.update(frame, now);
-        self.chemistry.follow(frame, now)?;
-        self.react(frame, false, now);
+        self.react(frame);
         let material = &self.material;
         self.momentum.assemble(frame, material, self.share, now);
         let carried = &self.species.carried;
@@ -135,7 +138,7 @@ impl Equations {
         let change = self.chemistry.change;
         tracing::debug!(
             "residuals: momentum {momentum:.1e}, continuity {continuity:.1e}, enthalpy {enthalpy:.1e}, species \
-             {species:.1e}, pseudo-step {change:.1e}"
+             {species:.1e}, sweep {change:.1e}"
         );
         self.flow = momentum.max(continuity);
         Ok(self.flow.max(enthalpy).max(species).max(change))
@@ -159,12 +162,16 @@ impl Equations {
                     .correct(frame, material, &self.momentum, krylov, tolerance, now);
         }
         pressure::advance_mass(frame, now);
-        if !chemistry::is_dual(frame) {
+        let Some(gas) = frame.chemistry.reacting() else {
             return Ok(iterations + self.scalars(frame, tolerance, SCALARS, now));
-        }
-        for _ in 0..PSEUDO_STEPS {
-            iterations += self.pseudo_step(frame, tolerance, now)?;
-            if self.chemistry.change <= controls.outer_tolerance.max(CLOSER * self.flow) {
+        };
+        let enough = controls.outer_tolerance.max(CLOSER * self.flow);
+        self.chemistry.follow(frame, now);
+        for _ in 0..SWEEPS {
+            self.chemistry.start(now);
+            iterations += self.conserve(frame, tolerance, now)?;
+            self.sweep(frame, gas, controls.outer_tolerance, now)?;
+            if self.chemistry.change <= enough {
                 break;
             }
         }
@@ -172,30 +179,43 @@ impl Equations {
     }
 
     /// Gives species and enthalpy what reacts.
-    fn react(&mut self, frame: &AttemptFrame<'_>, pseudo: bool, now: &GasState) {
+    fn react(&mut self, frame: &AttemptFrame<'_>) {
         let sources = [&mut self.species.reactions, &mut self.enthalpy.reactions];
-        self.chemistry
-            .apply(frame, &self.material, pseudo, now, sources);
+        self.chemistry.apply(frame, sources);
     }
 
-    /// A pseudo-step of species and enthalpy, with the rates of its start.
-    fn pseudo_step(
+    /// A sweep of species and enthalpy through all cells.
+    fn sweep(
         &mut self,
         frame: &AttemptFrame<'_>,
+        gas: &ReactingGas,
         tolerance: f64,
         now: &mut GasState,
-    ) -> Result<u32, GasFailure> {
-        let mut iterations = self.conserve(frame, tolerance, now)?;
-        self.chemistry.follow(frame, now)?;
-        self.react(frame, true, now);
-        iterations += self.scalars(frame, tolerance, SCALARS, now);
-        self.chemistry.spoil();
+    ) -> Result<(), GasFailure> {
+        let sources = self
+            .species
+            .transport(frame, &self.material, self.share, now);
+        self.species.take(frame, now);
+        self.enthalpy.reactions = ReactionSource::default();
+        let carried = &self.species.carried;
+        self.enthalpy
+            .assemble(frame, &self.material, carried, self.share, now);
+        let (matrix, heat) = self.enthalpy.equation();
+        let equations = ScalarEquations {
+            species: self.species.matrix(),
+            sources: &sources,
+            enthalpy: matrix,
+            heat,
+        };
+        self.chemistry
+            .sweep(frame, gas, equations, tolerance, now)?;
         guard::nonsense(now, &frame.grid.centre)?;
+        self.chemistry.correct(frame, equations, now);
+        self.chemistry.measure(&self.material.heat_capacity, now);
+        self.species.take(frame, now);
+        self.react(frame);
         self.material.update(frame, now);
-        let sources = [&self.species.reactions, &self.enthalpy.reactions];
-        let heat = &self.material.heat_capacity;
-        self.chemistry.measure(sources, heat, now);
-        Ok(iterations)
+        Ok(())
     }
 
     /// Elements, and the enthalpy with the heat of what has to be made; returns linear iterations.
@@ -223,7 +243,6 @@ impl Equations {
         self.enthalpy
             .assemble(frame, material, carried, self.share, now);
         let iterations = iterations + self.enthalpy.solve(frame, krylov, goal, now);
-        self.chemistry.spoil();
         guard::nonsense(now, &frame.grid.centre)?;
         self.material.update(frame, now);
         Ok(iterations)
@@ -231,15 +250,15 @@ impl Equations {
 
     /// Species and enthalpy once more to the linear tolerance, with the rates at hand.
     fn close(&mut self, frame: &AttemptFrame<'_>, tolerance: f64, now: &mut GasState) -> u32 {
-        if !chemistry::is_dual(frame) {
-            return self.scalars(frame, tolerance, 0.0, now);
+        let mut iterations = self.scalars(frame, tolerance, 0.0, now);
+        for _ in 0..CLOSINGS {
+            if !self.chemistry.keep_positive(self.species.matrix(), now) {
+                break;
+            }
+            self.react(frame);
+            iterations += self.scalars(frame, tolerance, 0.0, now);
         }
-        // The last pseudo-step's inertia goes, with what it took.
-        let sources = [&mut self.species.reactions, &mut self.enthalpy.reactions];
-        if let Some(elements) = self.chemistry.elements() {
-            self.chemistry.conclude(frame, elements, now, sources);
-        }
-        self.scalars(frame, tolerance, 0.0, now)
+        iterations
     }
 
     /// Species and enthalpy with the fluxes and masses at hand, to a tolerance relative to what moves or a

@@ -214,9 +214,8 @@ impl SpeciesEquations {
         let (grid, species) = (frame.grid, frame.species());
         let diffusion = &self.diffusion;
         let given = &frame.exchange.species;
-        let reactions = &self.reactions;
         self.matrix.assemble(|cell, diagonal, neighbours| {
-            *diagonal = frame.old.mass[cell] / frame.storage_span + reactions.inertia(cell);
+            *diagonal = frame.old.mass[cell] / frame.storage_span;
             if !given.is_none() {
                 *diagonal += frame.mass_source(now, cell) + given.coefficient[cell * species + k];
             }
@@ -284,7 +283,7 @@ impl SpeciesEquations {
         fill(&mut self.source, |cell| {
             let old = frame.old.composition[cell * species + k];
             let mut source = frame.old.mass[cell] * old / frame.storage_span
-                + reactions.explicit(cell, cell * species + k);
+                + reactions.gain(cell * species + k);
             if let Some(given) = frame.exchange.species.source.get(cell * species + k) {
                 source += given;
             }

@@ -129,15 +129,18 @@ impl Mechanism {
         self.steps.len() as f64 * total / made
     }
 
-    /// How fast each species is made in kg/m³/s, from concentrations in mol/m³.
+    /// How fast each species is made in kg/m³/s, from concentrations in mol/m³; the result is Σ_r (Σ_j ν_j,r) q_r of
+    /// [`Mechanism::chemical_time`] in mol/m³/s.
     pub(super) fn mass_rates<N: Number>(
         &self,
         temperature: N,
         concentrations: &[N; MOST_SPECIES],
         out: &mut [N],
-    ) {
+    ) -> N {
         out.fill(N::constant(0.0));
+        let mut gained = N::constant(0.0);
         self.each(temperature, concentrations, |one, forth, back| {
+            gained = gained + forth.times(one.right.iter().map(|(_, n)| n).sum());
             let progress = forth - back;
             for &(k, n) in &one.net {
                 out[k] = out[k] + progress.times(n);
@@ -146,6 +149,7 @@ impl Mechanism {
         for (w, one) in out.iter_mut().zip(self.mixture.species()) {
             *w = w.times(one.molar_mass());
         }
+        gained
     }
 
     /// Visits every reaction with its rates of progress forth and back.

@@ -53,17 +53,17 @@ pub struct ReactorStatistics {
 /// mixture's enthalpy with that of formation, which is kept exactly.
 #[derive(Clone, Debug)]
 pub struct Reactor {
-    mechanism: Mechanism,
-    tolerances: Tolerances,
-    elements: Elements,
+    pub(super) mechanism: Mechanism,
+    pub(super) tolerances: Tolerances,
+    pub(super) elements: Elements,
 }
 
 /// Memory of integrations, reused; no result depends on what it was used for before.
 #[derive(Clone, Debug)]
 pub struct ReactorWorkspace {
-    method: Rosenbrock<DenseMatrix>,
-    unknowns: Vec<f64>,
-    tolerance: Vec<f64>,
+    pub(super) method: Rosenbrock<DenseMatrix>,
+    pub(super) unknowns: Vec<f64>,
+    pub(super) tolerance: Vec<f64>,
 }
 
 impl Default for ReactorWorkspace {
@@ -222,7 +222,7 @@ impl Reactor {
     }
 
     /// Refuses a state in which nothing can be said.
-    fn sound(
+    pub(super) fn sound(
         &self,
         pressure: f64,
         temperature: f64,
@@ -245,7 +245,7 @@ impl Reactor {
         Err(KineticsError::State { state })
     }
 
-    fn words(&self, pressure: f64, temperature: f64, fractions: &[f64]) -> String {
+    pub(super) fn words(&self, pressure: f64, temperature: f64, fractions: &[f64]) -> String {
         let names = self.mechanism.mixture().names().iter();
         let parts: Vec<String> = names
             .zip(fractions)
@@ -267,7 +267,7 @@ struct ParcelEquations<'a> {
 }
 
 /// Columns of the Jacobian that one evaluation gives.
-const COLUMNS: usize = 8;
+pub(super) const COLUMNS: usize = 8;
 
 impl StiffSystem for ParcelEquations<'_> {
     fn unknowns(&self) -> usize {

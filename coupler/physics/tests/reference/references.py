@@ -5,7 +5,7 @@ From this folder, with Cantera 3.2.0 (pip install cantera==3.2.0):
 
     python3 references.py
 
-writes ignition.csv, equilibrium.csv and rates.csv. A test tool: nothing of it runs in Calcine's tests, which read the
+writes ignition.csv, equilibrium.csv, rates.csv and stirred.csv. A test tool: nothing of it runs in Calcine's tests, which read the
 tables only.
 """
 
@@ -52,6 +52,76 @@ def ignition(mechanism, phi, temperature, pressure):
     return delay, reactor.T
 
 
+def stirred(gas, inflow, start, residence, density=None):
+    """Steady stirred reactor of one volume, found from a start; the residence time is that of gas of a density, else the inflow's."""
+    parts = dict(thermo="ideal-gas", kinetics="gas", species=gas.species(), reactions=gas.reactions())
+    entering, inside, leaving = ct.Solution(**parts), ct.Solution(**parts), ct.Solution(**parts)
+    entering.TPY, inside.TPY, leaving.TPY = inflow, start, start
+    flow = (density or entering.density) / residence
+    # [CH4]^0.5 has an infinite slope at its end, which no integration passes: without methane its reactions are left out.
+    for k, reaction in enumerate(inside.reactions()):
+        ends = "CH4" in reaction.reactants and inflow[2][inside.species_index("CH4")] == 0.0
+        inside.set_multiplier(0.0 if ends else 1.0, k)
+    up, down = ct.Reservoir(entering, clone=False), ct.Reservoir(leaving, clone=False)
+    reactor = ct.IdealGasReactor(inside, clone=False)
+    inlet = ct.MassFlowController(up, reactor, mdot=flow)
+    ct.PressureController(reactor, down, primary=inlet, K=1e-3 * flow)
+    net = ct.ReactorNet([reactor])
+    net.rtol, net.atol = 1e-10, 1e-15
+    net.max_steps = 1_000_000
+    net.advance(100 * residence)
+    return inside.T, dict(zip(SPECIES, inside[SPECIES].Y))
+
+
+def one_step(base):
+    """CH4 + 2 O2 and H2 + 1/2 O2, each with k = 1e9 m3/mol/s exp(-100 kJ/mol/RT) [fuel] [O2]."""
+    steps = []
+    for equation, fuel in [("CH4 + 2 O2 => CO2 + 2 H2O", "CH4"), ("H2 + 0.5 O2 => H2O", "H2")]:
+        step = ct.Reaction(equation=equation, rate=ct.ArrheniusRate(1e12, 0.0, 1e8))
+        step.orders = {fuel: 1.0, "O2": 1.0}
+        steps.append(step)
+    return ct.Solution(thermo="ideal-gas", kinetics="gas", species=base.species(), reactions=steps)
+
+
+def write_stirred():
+    """Chains of three stirred reactors from hot burnt gas, the residence time at which one goes out, and CHM-3."""
+    columns = ",".join("Y_" + name for name in SPECIES)
+    with open("stirred.csv", "w") as out:
+        out.write(HEAD + "case,residence_s,cell,T_K," + columns + "\n")
+
+        def line(case, residence, cell, found):
+            values = ",".join(f"{max(found[1][name], 0.0):.10e}" for name in SPECIES)
+            out.write(f"{case},{residence:.8e},{cell},{found[0]:.6f},{values}\n")
+
+        gas = ct.Solution("jones-lindstedt.yaml")
+        gas.TPX = 1800.0, ct.one_atm, {"O2": 0.4, "CO2": 0.8, "H2O": 1.6, "N2": 7.52}
+        hot = gas.TPY
+        gas.TPX = 300.0, ct.one_atm, {"CH4": 0.8, "O2": 2.0, "N2": 7.52}
+        fresh, density = gas.TPY, gas.density
+        for exponent in range(-6, 2):
+            inflow = fresh
+            for cell in range(3):
+                found = stirred(gas, inflow, hot, 10.0**exponent, density)
+                line("chain", 10.0**exponent, cell, found)
+                gas.TPY = found[0], ct.one_atm, {k: y if y > 1e-6 else 0.0 for k, y in found[1].items()}
+                inflow = gas.TPY
+        short, long = 1e-4, 1e-3
+        while long / short > 1.0001:
+            middle = (short * long) ** 0.5
+            lit = stirred(gas, fresh, hot, middle)[0] > 1000.0
+            short, long = (short, middle) if lit else (middle, long)
+        for share in [0.98, 1.02]:
+            line("blow-out", share * long, 0, stirred(gas, fresh, hot, share * long))
+        gas = one_step(gas)
+        # phi 0.8 of CH4 and H2, 70 to 30.
+        oxygen = (0.7 * 2.0 + 0.3 * 0.5) / 0.8
+        gas.TPX = 2000.0, ct.one_atm, {"CO2": 0.7, "H2O": 1.7, "O2": oxygen - 1.55, "N2": 3.76 * oxygen}
+        hot = gas.TPY
+        gas.TPX = 500.0, ct.one_atm, {"CH4": 0.7, "H2": 0.3, "O2": oxygen, "N2": 3.76 * oxygen}
+        for residence in [1e-3, 1e-2, 1e-1]:
+            line("flame", residence, 0, stirred(gas, gas.TPY, hot, residence))
+
+
 def main():
     pressure = ct.one_atm
     with open("ignition.csv", "w") as out:
@@ -81,6 +151,7 @@ def main():
                 back = 1e3 * gas.reverse_rates_of_progress
                 for k, (f, b) in enumerate(zip(forth, back)):
                     out.write(f"{mechanism},{temperature},{p:.1f},{k},{f:.12e},{b:.12e}\n")
+    write_stirred()
 
 
 main()

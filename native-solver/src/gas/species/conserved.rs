@@ -1,6 +1,6 @@
-//! Elements before species. A pseudo-step (see [`crate::gas::chemistry`]) holds back what reacts, and with it what no reaction
-//! changes, which would then need many pseudo-steps through every cell. But elements obey the equation of the species
-//! without w, as all species diffuse alike. So they are solved first, over the whole window at once; the species
+//! Elements before species. The iteration of reacting species (see [`crate::gas::chemistry`]) carries what diffuses upstream or
+//! goes round from cell to cell only. But elements obey the equation of the species
+//! without what reactions make, as all species diffuse alike. So they are solved first, over the whole window at once; the species
 //! take them over, in proportion to what is there. What then has to be made of each, A Y − S, is the heat by which the enthalpy
 //! follows. Where the equations are solved nothing of this changes anything.
 
@@ -13,6 +13,7 @@ use crate::gas::chemistry::ReactionSource;
 use crate::gas::state::GasState;
 use crate::gas::tolerance::ScalarTolerance;
 use crate::numerics::krylov::{Krylov, SolveTolerance};
+use crate::numerics::matrix::Matrix;
 use crate::numerics::parallel::{fill, update};
 use crate::numerics::preconditioner::Preconditioner;
 
@@ -36,18 +37,8 @@ impl SpeciesEquations {
             return None;
         }
         let (cells, species) = (frame.grid.cells(), frame.species());
-        self.reactions = ReactionSource::default();
-        self.update_diffusion(frame, material);
-        self.assemble(frame, now, 0);
-        self.update_explicit(frame, share, now);
+        let mut sources = self.transport(frame, material, share, now);
         self.preconditioner.update(&self.matrix);
-        let mut sources = vec![0.0; cells * species];
-        for k in 0..species {
-            self.fill_source(frame, now, k);
-            let own = &self.source;
-            let given = sources.iter_mut().skip(k).step_by(species);
-            given.zip(own).for_each(|(given, own)| *given = *own);
-        }
         let target = SolveTolerance {
             absolute: goal.absolute * self.throughput(frame, now, species - 1),
             of_terms: 0.0,
@@ -92,16 +83,50 @@ impl SpeciesEquations {
             let sum: f64 = fractions.iter().sum();
             fractions.iter_mut().for_each(|y| *y /= sum);
         }
-        let composition = &now.composition;
-        for (k, fractions) in self.fractions.iter_mut().enumerate() {
-            fill(fractions, |cell| composition[cell * species + k]);
-        }
+        self.take(frame, now);
         let (matrix, fractions) = (&self.matrix, &self.fractions);
         update(&mut sources, |at, made| {
             *made = matrix.row_times(at / species, &fractions[at % species]) - *made;
         });
+        Some((sources, iterations))
+    }
+
+    /// Assembles the equations without reactions; the right sides in kg/s, species by species within each cell. The matrix
+    /// is that of the first species.
+    pub fn transport(
+        &mut self,
+        frame: &AttemptFrame<'_>,
+        material: &CellProperties,
+        share: f64,
+        now: &GasState,
+    ) -> Vec<f64> {
+        let (cells, species) = (frame.grid.cells(), frame.species());
+        self.reactions = ReactionSource::default();
+        self.update_diffusion(frame, material);
+        self.assemble(frame, now, 0);
+        self.update_explicit(frame, share, now);
+        let mut sources = vec![0.0; cells * species];
+        for k in 0..species {
+            self.fill_source(frame, now, k);
+            let own = &self.source;
+            let given = sources.iter_mut().skip(k).step_by(species);
+            given.zip(own).for_each(|(given, own)| *given = *own);
+        }
+        sources
+    }
+
+    /// The matrix as last assembled.
+    pub fn matrix(&self) -> &Matrix {
+        &self.matrix
+    }
+
+    /// Takes the fractions of a state over.
+    pub fn take(&mut self, frame: &AttemptFrame<'_>, now: &GasState) {
+        let species = frame.species();
+        for (k, fractions) in self.fractions.iter_mut().enumerate() {
+            fill(fractions, |cell| now.composition[cell * species + k]);
+        }
         self.record(frame, now);
         self.update_carried(frame, now);
-        Some((sources, iterations))
     }
 }
