@@ -104,16 +104,11 @@ Foam::scalar Foam::calcine::gas::speciesTarget(label k, const scalarField& diago
 }
 
 
-Foam::scalar Foam::calcine::gas::solveSpecies(report& result)
+Foam::scalar Foam::calcine::gas::solveSpecies(const speciesTransport& transport, report& result)
 {
-    if (!species_)
-    {
-        return 0;
-    }
     PtrList<volScalarField>& Y = species_->Y();
     const label last = Y.size() - 1;
     const label internal = mesh_.nInternalFaces();
-    const speciesTransport transport(*this);
 
     scalar residual = 0;
     PtrList<surfaceScalarField> diffused(Y.size());

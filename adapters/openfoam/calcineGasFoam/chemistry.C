@@ -26,6 +26,8 @@ namespace
 const Foam::label mostSweeps = 5;
 // They need not change a value by less than this share of the residual of momentum and continuity, whose fluxes they take.
 const Foam::scalar closer = 0.1;
+// A reactor is not run again while what enters has changed by less than this share of the outer tolerance.
+const Foam::scalar same = 0.1;
 // Solves at the end of an attempt by which fractions below zero are taken out of what reacts, at most.
 const Foam::label closings = 3;
 
@@ -40,6 +42,7 @@ void Foam::calcine::gas::beginReactions()
     }
     speciesMade_ = List<scalarField>(species_->Y().size(), scalarField(mesh_.nCells(), Zero));
     heatMade_ = scalarField(mesh_.nCells(), Zero);
+    reactions_->begin(mesh_.nCells());
     particlesExchangeGas_ = particlesExchangeGas();
     mixingTime_ = scalarField(mesh_.nCells(), Zero);
     if (reactions_->mixingConstant() >= 0)
@@ -60,7 +63,7 @@ Foam::labelList Foam::calcine::gas::downstream() const
     const labelUList& owner = mesh_.faceOwner();
     const labelUList& neighbour = mesh_.faceNeighbour();
     labelList order(mesh_.nCells());
-    boolList seen(mesh_.nCells(), false);
+    bitSet seen(mesh_.nCells());
     DynamicList<label> stack;
     label found = 0;
     forAll(order, first)
@@ -69,7 +72,7 @@ Foam::labelList Foam::calcine::gas::downstream() const
         {
             continue;
         }
-        seen[first] = true;
+        seen.set(first);
         stack.append(first);
         while (stack.size())
         {
@@ -91,7 +94,7 @@ Foam::labelList Foam::calcine::gas::downstream() const
             }
             if (next >= 0)
             {
-                seen[next] = true;
+                seen.set(next);
                 stack.append(next);
                 continue;
             }
@@ -118,7 +121,7 @@ Foam::scalar Foam::calcine::gas::solveScalars(scalar flow, report& result)
 {
     if (!reactions_)
     {
-        const scalar residual = solveSpecies(result);
+        const scalar residual = species_ ? solveSpecies(speciesTransport(*this), result) : 0;
         return max(residual, solveEnthalpy(result));
     }
     const scalar enough = max(outerTolerance_, closer*flow);
@@ -177,7 +180,7 @@ void Foam::calcine::gas::sweepReactions()
     assembleEnthalpy();
     const scalarEquations equations(matrices, Y, *enthalpy_, thermo_->he());
 
-    newtonStep newton(mesh_, equations, downstream(), enthalpyUnit_);
+    newtonStep newton(mesh_, equations, downstream(), enthalpyUnit_, reactions_->runs());
     for (const label celli : newton.order)
     {
         runCell(celli, equations, newton);
@@ -201,17 +204,81 @@ void Foam::calcine::gas::runCell
 )
 {
     PtrList<volScalarField>& Y = species_->Y();
+    const gasMixture& mixture = species_->mixture();
     const label species = Y.size();
-    const scalar held = committed_.mass[celli];
-    const scalar storage = held/window_.storageSpan;
-    scalarList given(species + 1), start(species), made(species);
+    scalarField& h = thermo_->he().primitiveFieldRef();
+    const scalar guess = thermo_->T().primitiveField()[celli];
+    scalarList given(species + 1), inert(species + 1), with(species + 4), reached(species);
     equations.enter(mesh_, celli, Y, thermo_->he(), given);
+    forAll(inert, value)
+    {
+        inert[value] = given[value]/equations.diagonal[value][celli];
+        with[value] = inert[value];
+    }
+    with[species + 1] = equations.diagonal[0][celli];
+    with[species + 2] = equations.diagonal[species][celli];
+    with[species + 3] = modelPressure_[celli];
+    newton.note(celli, inert);
+
+    forAll(reached, k)
+    {
+        reached[k] = max(Y[k].primitiveField()[celli], scalar(0));
+    }
+    const scalar content = mixture.heatCapacity(guess, reached)*guess;
+    cellRun& run = reactions_->runs()[celli];
+    const bool again = !run.is(with, same*outerTolerance_, content);
+    throughflow flow;
+    scalarList start(species);
+    bool reacts = false;
+    if (again)
+    {
+        reacts = react(celli, equations, given, flow, start, run.made);
+        run.with = with;
+        run.response.clear();
+    }
+
+    scalar heat = 0;
+    forAll(reached, k)
+    {
+        speciesMade_[k][celli] = run.made[k];
+        heat -= mixture[k].formationEnthalpy()*run.made[k];
+        reached[k] = (given[k] + run.made[k])/equations.diagonal[k][celli];
+        Y[k].primitiveFieldRef()[celli] = reached[k];
+    }
+    h[celli] = (given[species] + heat)/equations.diagonal[species][celli];
+    const scalar T = reacts ? mixture.temperature(h[celli], reached, guess) : 0;
+    if (T > 0)
+    {
+        const scalar p = modelPressure_[celli];
+        const scalar begun = p*mixture.compressibility(committed_.temperature[celli], start);
+        run.response = scalarSquareMatrix(species + 1);
+        reactions_->response
+        (
+            p, T, reached, flow, window_.storageSpan, begun, enthalpyUnit_, run.response
+        );
+    }
+}
+
+
+// What flows through a cell, the fractions that it starts with, and what its reactor makes in kg/s; whether anything reacts.
+bool Foam::calcine::gas::react
+(
+    label celli,
+    const scalarEquations& equations,
+    const scalarList& given,
+    throughflow& flow,
+    scalarList& start,
+    scalarList& made
+)
+{
+    const label species = start.size();
+    const scalar held = committed_.mass[celli], span = window_.storageSpan;
+    const scalar storage = held/span;
     // An early iterate's fluxes may fill a cell; what leaves is then none.
     const auto leaving = [&](scalar diagonal)
     {
         return max(diagonal - storage, scalar(0))/held;
     };
-    throughflow flow;
     flow.entering.setSize(species);
     flow.leaving.setSize(species);
     scalar all = 0;
@@ -230,13 +297,13 @@ void Foam::calcine::gas::runCell
     flow.heatLeaving = leaving(equations.diagonal[species][celli]);
     flow.opening = 1 - storage/(storage + flow.leaving[0]*held);
     flow.mixing = mixingTime_[celli];
-    const scalar p = modelPressure_[celli], span = window_.storageSpan;
+    made.setSize(species);
     bool reacts = false;
     try
     {
         reacts = reactions_->flowThrough
         (
-            p, committed_.temperature[celli], start, flow, span, made
+            modelPressure_[celli], committed_.temperature[celli], start, flow, span, made
         );
     }
     catch (const Foam::error& what)
@@ -246,88 +313,90 @@ void Foam::calcine::gas::runCell
             << what.message().c_str();
         throw solverFailure(CALCINE_FAILURE_DIVERGED, text.str());
     }
-    scalar heat = 0;
-    scalarList inert(species + 1), reached(species);
     forAll(made, k)
     {
-        const scalar diagonal = equations.diagonal[k][celli];
-        const scalar mass = made[k]*(storage + flow.leaving[k]*held);
-        inert[k] = given[k]/diagonal;
-        reached[k] = (given[k] + mass)/diagonal;
-        speciesMade_[k][celli] = mass;
-        heat -= species_->mixture()[k].formationEnthalpy()*mass;
-        Y[k].primitiveFieldRef()[celli] = reached[k];
+        made[k] *= storage + flow.leaving[k]*held;
     }
-    inert[species] = given[species]/equations.diagonal[species][celli];
-    scalar& h = thermo_->he().primitiveFieldRef()[celli];
-    h = (given[species] + heat)/equations.diagonal[species][celli];
-    newton.note(celli, inert);
-    if (reacts)
-    {
-        const scalar guess = thermo_->T().primitiveField()[celli];
-        const scalar T = species_->mixture().temperature(h, reached, guess);
-        if (T > 0)
-        {
-            scalarSquareMatrix response(species + 1);
-            const scalar begun =
-                p*species_->mixture().compressibility(committed_.temperature[celli], start);
-            reactions_->response(p, T, reached, flow, span, begun, enthalpyUnit_, response);
-            newton.responses.set(celli, new scalarSquareMatrix(response));
-        }
-    }
+    return reacts;
 }
 
 
 // Takes what the last solve left below zero out of what is made, in the cells that react and where it begins, the elements kept;
 // whether there was any.
-bool Foam::calcine::gas::keepPositive()
+bool Foam::calcine::gas::keepPositive(const speciesTransport& transport)
 {
     const PtrList<volScalarField>& Y = species_->Y();
-    const speciesTransport transport(*this);
     const fvScalarMatrix laplacian(fvm::laplacian(transport.diffusion, Y[0]));
     PtrList<fvScalarMatrix> matrices(1);
     matrices.set(0, speciesEquation(0, transport, laplacian).ptr());
     const scalarEquations equations(matrices, Y, matrices[0], Y[0]);
-    scalarList own(Y.size()), positive(Y.size()), wanted(reactions_->elements().size());
+    // What the cells of other ranks give below zero, in kg/s.
+    List<scalarField> foreign(Y.size(), scalarField(mesh_.nCells(), Zero));
+    forAll(mesh_.boundary(), patchi)
+    {
+        const labelUList& cells = mesh_.boundary()[patchi].faceCells();
+        if (boundary_.of(patchi) == passage::within)
+        {
+            forAll(Y, k)
+            {
+                const scalarField beyond(Y[k].boundaryField()[patchi].patchNeighbourField());
+                forAll(cells, i)
+                {
+                    foreign[k][cells[i]] +=
+                        matrices[0].boundaryCoeffs()[patchi][i]*min(beyond[i], scalar(0));
+                }
+            }
+        }
+    }
+    scalarList inert(Y.size()), made(Y.size());
     bool any = false;
     forAll(mass_, celli)
     {
         bool below = false;
         forAll(Y, k)
         {
-            own[k] = Y[k].primitiveField()[celli];
             // Fractions that transport itself leaves below zero stay.
-            below |= own[k] < 0 && speciesMade_[k][celli] < 0;
+            below |= Y[k].primitiveField()[celli] < 0 && speciesMade_[k][celli] < 0;
         }
         if (!below)
         {
             continue;
         }
-        // What comes in below zero begins elsewhere.
-        const scalar diagonal = equations.diagonal[0][celli];
+        // What there would be without reactions, times the diagonal, in kg/s; what comes in below zero begins elsewhere.
+        forAll(Y, k)
+        {
+            const scalar diagonal = equations.diagonal[0][celli]
+              + given_.speciesCoefficient[k][celli] - given_.speciesCoefficient[0][celli];
+            made[k] = speciesMade_[k][celli];
+            inert[k] = diagonal*Y[k].primitiveField()[celli] - made[k] - foreign[k][celli];
+        }
         for (const label facei : mesh_.cells()[celli])
         {
             if (facei < mesh_.nInternalFaces())
             {
                 label other;
-                const scalar weight = equations.weight(mesh_, celli, facei, other)/diagonal;
+                const scalar weight = equations.weight(mesh_, celli, facei, other);
                 forAll(Y, k)
                 {
-                    own[k] -= weight*min(Y[k].primitiveField()[other], scalar(0));
+                    inert[k] += weight*min(Y[k].primitiveField()[other], scalar(0));
                 }
             }
         }
-        if (min(own) >= 0)
+        below = false;
+        forAll(Y, k)
+        {
+            inert[k] = max(inert[k], scalar(0));
+            below |= inert[k] + made[k] < 0;
+        }
+        if (!below)
         {
             continue;
         }
         any = true;
-        positive = own;
-        reactions_->elementsOf(own, wanted);
-        reactions_->restoreElements(wanted, positive);
+        reactions_->limitMade(inert, made);
         forAll(Y, k)
         {
-            speciesMade_[k][celli] += diagonal*(positive[k] - own[k]);
+            speciesMade_[k][celli] = made[k];
         }
     }
     setHeatMade();
@@ -335,18 +404,21 @@ bool Foam::calcine::gas::keepPositive()
 }
 
 
+// Species and enthalpy once more to the linear tolerance, with what the last sweep has made. Transport stays that of one set of fields: by
+// another diffusivity a cell that burns all that comes in would get less than it has burnt.
 void Foam::calcine::gas::closeReactions(report& result)
 {
     if (!reactions_)
     {
         return;
     }
+    const speciesTransport transport(*this);
     for (label closing = 0; closing <= closings; ++closing)
     {
-        solveSpecies(result);
+        solveSpecies(transport, result);
         solveEnthalpy(result);
         thermo_->correct();
-        if (closing == closings || !keepPositive())
+        if (closing == closings || !keepPositive(transport))
         {
             break;
         }

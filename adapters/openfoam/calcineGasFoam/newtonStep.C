@@ -129,7 +129,8 @@ Foam::calcine::gas::newtonStep::newtonStep
     const fvMesh& mesh,
     const scalarEquations& equations,
     const labelList& order,
-    scalar unit
+    scalar unit,
+    const List<cellRun>& runs
 )
 :
     mesh(mesh),
@@ -137,8 +138,8 @@ Foam::calcine::gas::newtonStep::newtonStep
     order(order),
     unit(unit),
     width(equations.diagonal.size()),
-    visited(mesh.nCells()*width),
-    responses(mesh.nCells())
+    runs(runs),
+    visited(mesh.nCells()*width)
 {}
 
 
@@ -187,12 +188,12 @@ void Foam::calcine::gas::newtonStep::respond
     scalarList& out
 ) const
 {
-    if (!responses.set(celli))
+    const scalarSquareMatrix& response = runs[celli].response;
+    if (response.empty())
     {
         out = x;
         return;
     }
-    const scalarSquareMatrix& response = responses[celli];
     forAll(out, i)
     {
         out[i] = 0;

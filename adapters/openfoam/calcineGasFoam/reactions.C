@@ -177,35 +177,58 @@ void Foam::calcine::reactions::keepPositive
 ) const
 {
     // Of what is there without reactions, and what is made, times 1 + l t: elements are kept of these.
-    const label count = Y.size();
-    scalarList weight(count), inert(count), all(count), wanted(elements_.size());
+    scalarList inert(Y.size()), change(made);
     forAll(Y, k)
     {
-        weight[k] = 1 + flow.leaving[k]*time;
-        // Fractions that transport itself leaves below zero stay.
         inert[k] = max(Y[k] + time*flow.entering[k], scalar(0));
-        all[k] = inert[k] + weight[k]*made[k];
+        change[k] *= 1 + flow.leaving[k]*time;
     }
-    // What is made is free of elements but for the integration's tolerance and round-off.
+    limitMade(inert, change);
+    forAll(Y, k)
+    {
+        made[k] = change[k]/(1 + flow.leaving[k]*time);
+    }
+}
+
+
+void Foam::calcine::reactions::limitMade(const scalarList& inert, scalarList& made) const
+{
+    scalarList shares(inert), all(inert), wanted(elements_.size());
     scalar total = 0;
-    for (scalar& y : all)
+    forAll(inert, k)
     {
-        total += max(y, scalar(0));
+        all[k] += made[k];
+        total += max(all[k], scalar(0));
     }
-    scalarList shares(inert);
-    for (scalar& y : shares)
+    forAll(inert, k)
     {
-        y /= total;
+        shares[k] /= total;
     }
     elementsOf(shares, wanted);
-    forAll(all, k)
+    forAll(inert, k)
     {
         shares[k] = all[k]/total;
     }
-    restoreElements(wanted, shares);
-    forAll(Y, k)
+    if (restoreElements(wanted, shares))
     {
-        made[k] = (shares[k]*total - inert[k])/weight[k];
+        forAll(inert, k)
+        {
+            made[k] = shares[k]*total - inert[k];
+        }
+        return;
+    }
+    // Nothing that is there can give an element back: less of all is made.
+    scalar share = 1;
+    forAll(inert, k)
+    {
+        if (all[k] < 0)
+        {
+            share = min(share, -inert[k]/made[k]);
+        }
+    }
+    for (scalar& one : made)
+    {
+        one *= share;
     }
 }
 
