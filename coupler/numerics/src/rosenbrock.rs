@@ -39,6 +39,11 @@ pub trait StiffSystem {
         false
     }
 
+    /// True where the tangent is wanted ([`Rosenbrock::tangent`]); it is zero elsewhere.
+    fn follows_tangent(&self) -> bool {
+        true
+    }
+
     /// f, then g, at the unknowns y.
     fn rates(&mut self, y: &[f64], out: &mut [f64]);
 
@@ -177,6 +182,8 @@ pub struct Rosenbrock<L> {
     tangent: Vec<f64>,
     /// ∫ ∂g/∂p dτ, parameter by parameter.
     direct: Vec<f64>,
+    /// Length of the first accepted step of the last integration in s.
+    first_step: f64,
 }
 
 impl<L: LinearAlgebra> Rosenbrock<L> {
@@ -197,6 +204,7 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
             integrals: Vec::new(),
             tangent: Vec::new(),
             direct: Vec::new(),
+            first_step: 0.0,
         }
     }
 
@@ -208,6 +216,12 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
     /// Values of the integrals at the end of the last integration.
     pub fn integrals(&self) -> &[f64] {
         &self.integrals
+    }
+
+    /// Length of the first accepted step of the last integration in s: where a like one may begin
+    /// ([`StiffSystem::first_step`]).
+    pub fn first_step(&self) -> f64 {
+        self.first_step
     }
 
     /// SystemDerivatives by a parameter of the unknowns, then the integrals, at the end of the last integration.
@@ -261,7 +275,12 @@ impl<L: LinearAlgebra> Rosenbrock<L> {
                 1.0
             };
             if error <= 1.0 && inside >= 1.0 {
-                self.follow_tangent(system.parameters(), step);
+                if system.follows_tangent() {
+                    self.follow_tangent(system.parameters(), step);
+                }
+                if done.steps == 0 {
+                    self.first_step = step;
+                }
                 y.copy_from_slice(&self.next[..self.unknowns]);
                 let gains = self.next[self.unknowns..].iter();
                 for (z, gain) in self.integrals.iter_mut().zip(gains) {

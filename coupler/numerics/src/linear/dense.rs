@@ -47,7 +47,16 @@ impl LinearAlgebra for DenseMatrix {
     }
 
     fn solve(&mut self, x: &mut [f64]) {
-        solve(&self.factors, &self.pivots, x);
+        let (factors, pivots) = (&self.factors[..], &self.pivots[..]);
+        // Orders of particles and small mechanisms, with loops of known length: the same operations in the same order.
+        match self.order {
+            2 => solve_of::<2>(factors, pivots, x),
+            3 => solve_of::<3>(factors, pivots, x),
+            4 => solve_of::<4>(factors, pivots, x),
+            5 => solve_of::<5>(factors, pivots, x),
+            6 => solve_of::<6>(factors, pivots, x),
+            _ => solve(factors, pivots, x),
+        }
     }
 }
 
@@ -107,6 +116,33 @@ pub(super) fn solve(factors: &[f64], pivots: &[usize], x: &mut [f64]) {
     }
 }
 
+/// [`solve`] of an order that the compiler knows.
+fn solve_of<const N: usize>(factors: &[f64], pivots: &[usize], x: &mut [f64]) {
+    let (rows, []) = factors.as_chunks::<N>() else {
+        return solve(factors, pivots, x);
+    };
+    let (Some(rows), Ok(x)) = (rows.first_chunk::<N>(), <&mut [f64; N]>::try_from(&mut *x)) else {
+        return solve(factors, pivots, x);
+    };
+    for (k, &pivot) in pivots.iter().take(N).enumerate() {
+        x.swap(k, pivot);
+    }
+    for row in 1..N {
+        let mut sum = 0.0;
+        for k in 0..row {
+            sum += rows[row][k] * x[k];
+        }
+        x[row] -= sum;
+    }
+    for row in (0..N).rev() {
+        let mut sum = 0.0;
+        for k in row + 1..N {
+            sum += rows[row][k] * x[k];
+        }
+        x[row] = (x[row] - sum) * rows[row][row];
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -124,6 +160,21 @@ mod tests {
             let line = &jacobian[3 * row..3 * row + 3];
             let product: f64 = line.iter().zip(x).map(|(a, x)| a * x).sum();
             assert!((2.0 * x[row] - product - right).abs() < 1e-14, "{x:?}");
+        }
+    }
+
+    #[test]
+    fn orders_that_the_compiler_knows_have_the_bits_of_all_others() {
+        for order in 1..9 {
+            let value = |k: usize| ((7 * k + 3) as f64).sin();
+            let jacobian: Vec<f64> = (0..order * order).map(value).collect();
+            let mut matrix = DenseMatrix::new(order);
+            assert!(matrix.factorise(1.5, &jacobian));
+            let mut x: Vec<f64> = (0..order).map(|k| value(k + 100)).collect();
+            let mut other = x.clone();
+            matrix.solve(&mut x);
+            solve(&matrix.factors, &matrix.pivots, &mut other);
+            assert_eq!(x, other);
         }
     }
 
