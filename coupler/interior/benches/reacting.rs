@@ -231,7 +231,12 @@ fn advance(
 fn main() {
     // `cargo bench` and `cargo test --benches` pass words of their own.
     let quick = std::env::args().any(|word| word == "--test");
-    let kinds = [ore(), oxidation(), calcination()];
+    let early = Kind {
+        name: "three cores, first ten minutes",
+        windows: 30,
+        ..ore()
+    };
+    let kinds = [ore(), early, oxidation(), calcination()];
     println!("processor time of an attempt at one particle, over its whole conversion");
     for kind in &kinds {
         let mut workspace = ParticleWorkspace::default();

@@ -8,7 +8,7 @@ use calcine_numerics::{
     StiffSystem,
 };
 
-pub use self::system::ParticleStart;
+pub use self::system::{AttemptGuess, ParticleStart};
 use self::system::{Buffers, ParticleSystem};
 use super::chemistry::SolidChemistry;
 use super::rates::TRACE;
@@ -40,6 +40,8 @@ pub struct ParticleOutcome {
     pub end: f64,
     /// Change of that heat with the temperature of the gas in W/K.
     pub flow_slope: f64,
+    /// Length of its first step in s.
+    pub first_step: f64,
     /// What its integration took.
     pub statistics: IntegrationStatistics,
 }
@@ -95,6 +97,18 @@ impl SolidChemistry {
         accuracy: ParticleAccuracy,
         workspace: &mut ParticleWorkspace,
     ) -> Result<ParticleOutcome, IntegrationStalled> {
+        self.follow_again(start, span, accuracy, AttemptGuess::default(), workspace)
+    }
+
+    /// The same after another attempt of the window.
+    pub fn follow_again(
+        &self,
+        start: &ParticleStart<'_>,
+        span: f64,
+        accuracy: ParticleAccuracy,
+        guess: AttemptGuess,
+        workspace: &mut ParticleWorkspace,
+    ) -> Result<ParticleOutcome, IntegrationStalled> {
         let ParticleWorkspace {
             method,
             unknowns,
@@ -113,7 +127,7 @@ impl SolidChemistry {
         tolerance.resize(moving, accuracy.amount * all);
         tolerance.push(accuracy.temperature);
         tolerance.resize(moving + 1 + count, accuracy.amount * all);
-        buffers.begin(self, start);
+        buffers.begin(self, start, guess.slopes);
         method.algebra().resize(moving + 1);
         let mut system = ParticleSystem {
             chemistry: self,
@@ -121,6 +135,7 @@ impl SolidChemistry {
             trace: TRACE * all,
             tolerance: accuracy.amount * all,
             least_capacity: LEAST_CAPACITY * self.heat_capacity(start.amounts, start.temperature),
+            guess,
             buffers,
         };
         let accuracy = IntegrationAccuracy {
@@ -166,6 +181,7 @@ impl SolidChemistry {
             flow: brought / span,
             end,
             flow_slope: slope / span,
+            first_step: method.first_step(),
             statistics,
         })
     }

@@ -61,7 +61,7 @@ pub struct Reacting {
     /// Sensible heat in W that exchanged gases bring in.
     carried: Vec<f64>,
     capacity: Vec<f64>,
-    /// What the last attempt came to, row by row.
+    /// What the last attempt of the window came to, row by row; empty before the first.
     results: Vec<f64>,
     accuracy: ParticleAccuracy,
     /// Share of its first mass below which a particle is used up.
@@ -148,6 +148,7 @@ impl Reacting {
     /// Everything as at the last commit.
     fn begin(&mut self) {
         let (count, reactions) = (self.count(), self.chemistry.reactions.len());
+        self.results.clear();
         self.start.clone_from(&self.committed.temperature);
         self.end.clone_from(&self.committed.temperature);
         self.conductance.clear();

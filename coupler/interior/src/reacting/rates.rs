@@ -9,7 +9,7 @@ use calcine_physics::sphere;
 
 use super::chemistry::SolidChemistry;
 use super::layers::{GasPath, Layers};
-use super::reaction::{Rate, Reaction};
+use super::reaction::{LayerDiffusivity, Rate, Reaction};
 use super::size::SizeChange;
 
 /// A trace: the share of a particle's solids at the start of a window below which the rate of what uses a solid goes to
@@ -166,6 +166,8 @@ impl SolidChemistry {
                 N::constant(TRACE.cbrt())
             };
         }
+        // Layers of one case mostly follow temperature alike.
+        let mut grown: Option<(&LayerDiffusivity, N)> = None;
         for path in &layers.paths {
             let mut interfaces = [Interface::<N>::none(); MOST_INTERFACES];
             let bulk = all_gas * state.fractions[path.key];
@@ -176,7 +178,13 @@ impl SolidChemistry {
                 interface.radius = inner;
                 interface.thickness =
                     layers_of[k] / (inner * inner + inner * outer + outer * outer);
-                interface.diffusivity = path.diffusivity[k].at(state.temperature);
+                let diffusivity = &path.diffusivity[k];
+                let growth = match grown {
+                    Some((like, growth)) if diffusivity.grows_like(like) => growth,
+                    _ => diffusivity.growth(state.temperature),
+                };
+                grown = Some((diffusivity, growth));
+                interface.diffusivity = growth.times(diffusivity.value);
                 if let Some(index) = path.reactions[k] {
                     let solids = [layers.solids[k], layers.solids[k + 1]];
                     let passed = interface.diffusivity.times(1.0 / around.radius) + film;

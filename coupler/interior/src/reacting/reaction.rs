@@ -57,13 +57,18 @@ pub struct LayerDiffusivity {
 }
 
 impl LayerDiffusivity {
-    /// D at a temperature in K in m²/s.
-    pub fn at<N: Number>(&self, temperature: N) -> N {
+    /// (T/T₀)^n at a temperature in K.
+    pub fn growth<N: Number>(&self, temperature: N) -> N {
         if self.exponent == 0.0 {
-            return N::constant(self.value);
+            return N::constant(1.0);
         }
         let t = temperature.value();
-        let value = self.value * (t / self.at).powf(self.exponent);
+        let value = (t / self.at).powf(self.exponent);
         temperature.through(value, self.exponent * value / t)
+    }
+
+    /// True where another diffusivity grows alike.
+    pub fn grows_like(&self, other: &Self) -> bool {
+        self.at == other.at && self.exponent == other.exponent
     }
 }

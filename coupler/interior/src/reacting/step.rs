@@ -5,7 +5,7 @@ use calcine_numerics::batch::each_row;
 use thiserror::Error;
 
 use super::Reacting;
-use super::attempt::{ParticleStart, ParticleWorkspace};
+use super::attempt::{AttemptGuess, ParticleStart, ParticleWorkspace};
 use super::rates::ParticleSurroundings;
 use crate::model::Surroundings;
 
@@ -46,11 +46,16 @@ pub struct TemperatureBeyond {
     pub released: f64,
 }
 
-/// Places of a particle's results in a row of them; extents and lines follow.
+/// Places of a particle's results in a row of them: extents follow, those with which slopes were taken, and lines.
 const CONDUCTANCE: usize = 0;
 const START: usize = 1;
 const END: usize = 2;
-const EXTENTS: usize = 3;
+const FIRST_STEP: usize = 3;
+const EXTENTS: usize = 4;
+
+/// By what share the extents of a window may move before slopes over the window are taken anew. Only how fast attempts
+/// converge depends on the slopes.
+const SLOPES_HOLD: f64 = 0.1;
 
 impl Reacting {
     /// Follows every particle over a process span in s, each by itself, with the network's heat in W, and takes the
@@ -62,19 +67,23 @@ impl Reacting {
         network: &[f64],
     ) -> Result<(), ReactError> {
         let (count, channels) = (self.chemistry.reactions.len(), self.channels.len());
-        let width = EXTENTS + count + 3 * channels;
+        let width = EXTENTS + 2 * count + 3 * channels;
+        // The attempt before of the same window, in which each particle finds its own row.
         let mut results = std::mem::take(&mut self.results);
-        results.clear();
-        results.resize(self.count() * width, 0.0);
+        let first = results.len() != self.count() * width;
+        if first {
+            results.clear();
+            results.resize(self.count() * width, 0.0);
+        }
         let done = each_row(
             &mut results,
             width,
             ParticleScratch::default,
-            |p, row, scratch| self.react_one(p, around, (span, network[p]), row, scratch),
+            |p, row, scratch| self.react_one(p, around, (span, network[p], first), row, scratch),
         );
         for (p, row) in results.chunks_exact(width).enumerate() {
             let (head, rest) = row.split_at(EXTENTS);
-            let (extents, lines) = rest.split_at(count);
+            let (extents, lines) = (&rest[..count], &rest[2 * count..]);
             self.conductance[p] = head[CONDUCTANCE];
             self.start[p] = head[START];
             self.end[p] = head[END];
@@ -91,12 +100,12 @@ impl Reacting {
         done
     }
 
-    /// One particle; a function of its committed state and its surroundings alone.
+    /// One particle; a function of its committed state, its surroundings and its row of the attempt before.
     fn react_one(
         &self,
         p: usize,
         around: &Surroundings<'_>,
-        (span, heat): (f64, f64),
+        (span, heat, first): (f64, f64, bool),
         row: &mut [f64],
         scratch: &mut ParticleScratch,
     ) -> Result<(), ReactError> {
@@ -106,6 +115,7 @@ impl Reacting {
         // Without reactions: the implicit step.
         let inert = exchanged / (1.0 + exchanged * span / self.capacity[p]);
         if !self.can_react(p) {
+            row.fill(0.0);
             row[CONDUCTANCE] = inert;
             row[START] = begin + heat * span / self.capacity[p];
             row[END] = row[START] + inert * (hot - row[START]) * span / self.capacity[p];
@@ -132,10 +142,12 @@ impl Reacting {
             conductance: exchanged,
             heat,
         };
+        let count = self.chemistry.reactions.len();
+        let guess = guess(&row[..EXTENTS + 2 * count], first);
         let workspace = &mut scratch.workspace;
         let outcome = self
             .chemistry
-            .follow(&start, span, self.accuracy, workspace)
+            .follow_again(&start, span, self.accuracy, guess, workspace)
             .map_err(|cause| ReactError {
                 row: p,
                 temperature: begin,
@@ -149,23 +161,32 @@ impl Reacting {
         row[END] = outcome.end;
         let flow = outcome.flow;
         // Only how fast attempts converge depends on the slope.
-        let slope = outcome
-            .flow_slope
-            .clamp(0.2 * inert, exchanged.max(0.2 * inert));
+        let slope = if guess.slopes {
+            let least = 0.2 * inert;
+            outcome.flow_slope.clamp(least, exchanged.max(least))
+        } else {
+            row[CONDUCTANCE]
+        };
         row[CONDUCTANCE] = slope;
         row[START] = if slope > 0.0 { hot - flow / slope } else { hot };
-        let count = self.chemistry.reactions.len();
-        row[EXTENTS..EXTENTS + count].copy_from_slice(&workspace.extents);
-        self.draw_lines(p, around, span, workspace, &mut row[EXTENTS + count..]);
+        row[FIRST_STEP] = outcome.first_step;
+        let (extents, rest) = row[EXTENTS..].split_at_mut(count);
+        let (those_of_slopes, lines) = rest.split_at_mut(count);
+        extents.copy_from_slice(&workspace.extents);
+        if guess.slopes {
+            those_of_slopes.copy_from_slice(extents);
+        }
+        self.draw_lines(p, around, (span, guess.slopes), workspace, lines);
         Ok(())
     }
 
-    /// The lines of a particle's channels: tangents of their mean rates, offsets, and slopes in single cells.
+    /// The lines of a particle's channels: tangents of their mean rates, or those that `lines` holds, offsets, and slopes in
+    /// single cells.
     fn draw_lines(
         &self,
         p: usize,
         around: &Surroundings<'_>,
-        span: f64,
+        (span, slopes): (f64, bool),
         workspace: &ParticleWorkspace,
         lines: &mut [f64],
     ) {
@@ -198,8 +219,10 @@ impl Reacting {
                     0.0
                 }
             };
-            let slope = told(workspace.slopes[*reaction]);
-            lines[c] = slope;
+            if slopes {
+                lines[c] = told(workspace.slopes[*reaction]);
+            }
+            let slope = lines[c];
             lines[count + c] = slope * composition[key] - mean;
             let local = told(workspace.local_slopes[*reaction]);
             // A cell gives no more than its share of the gas that is used: orders below one follow a gas less than in proportion,
@@ -220,6 +243,22 @@ impl Reacting {
         let amounts = &self.committed.amount[p * solids..(p + 1) * solids];
         let moving = self.chemistry.moving().iter();
         moving.copied().any(|s| amounts[s] > 0.0)
+    }
+}
+
+/// What a row of the attempt before tells the next one; a first attempt has none.
+fn guess(row: &[f64], first: bool) -> AttemptGuess {
+    if first || row[FIRST_STEP] == 0.0 {
+        return AttemptGuess::default();
+    }
+    let (extents, those_of_slopes) = row[EXTENTS..].split_at((row.len() - EXTENTS) / 2);
+    let pairs = extents.iter().zip(those_of_slopes);
+    let (moved, all) = pairs.fold((0.0, 0.0), |(moved, all): (f64, f64), (now, then)| {
+        (moved + (now - then).abs(), all + then.abs())
+    });
+    AttemptGuess {
+        first_step: row[FIRST_STEP],
+        slopes: moved > SLOPES_HOLD * all,
     }
 }
 

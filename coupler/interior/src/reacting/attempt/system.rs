@@ -30,6 +30,25 @@ pub struct ParticleStart<'a> {
     pub heat: f64,
 }
 
+/// What an attempt before tells the next one of the same window. Amounts and temperature depend on it by no more than
+/// the accuracy of the integration.
+#[derive(Clone, Copy, Debug)]
+pub struct AttemptGuess {
+    /// Longest first step in s.
+    pub first_step: f64,
+    /// True where slopes over the window are wanted; they are zero elsewhere.
+    pub slopes: bool,
+}
+
+impl Default for AttemptGuess {
+    fn default() -> Self {
+        Self {
+            first_step: f64::INFINITY,
+            slopes: true,
+        }
+    }
+}
+
 /// Memory of the equations.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Buffers {
@@ -47,7 +66,7 @@ pub(super) struct Buffers {
 }
 
 impl Buffers {
-    pub fn begin(&mut self, chemistry: &SolidChemistry, start: &ParticleStart<'_>) {
+    pub fn begin(&mut self, chemistry: &SolidChemistry, start: &ParticleStart<'_>, slopes: bool) {
         let (begin, hot) = (start.temperature, start.around.temperature);
         let zero = Slopes {
             value: 0.0,
@@ -69,7 +88,13 @@ impl Buffers {
         self.warmth.extend((0..chemistry.reactions.len()).map(|j| {
             let at = chemistry.warmth(j, begin, hot);
             let rise = |begin: f64, hot: f64| (chemistry.warmth(j, begin, hot) - at) / VARIED;
-            [at, rise(begin + VARIED, hot), rise(begin, hot + VARIED)]
+            // That with the temperature of the gas enters slopes over the window alone.
+            let by_gas = if slopes {
+                rise(begin, hot + VARIED)
+            } else {
+                0.0
+            };
+            [at, rise(begin + VARIED, hot), by_gas]
         }));
     }
 }
@@ -84,6 +109,7 @@ pub(super) struct ParticleSystem<'a> {
     pub tolerance: f64,
     /// In J/K.
     pub least_capacity: f64,
+    pub guess: AttemptGuess,
     pub buffers: &'a mut Buffers,
 }
 
@@ -100,8 +126,15 @@ struct ParticleHeat {
 }
 
 impl ParticleSystem<'_> {
+    /// Heat capacity in J/K.
+    fn capacity(&self, temperature: f64) -> f64 {
+        let amounts = &self.buffers.amounts;
+        let all = self.chemistry.heat_capacity(amounts, temperature);
+        all.max(self.least_capacity)
+    }
+
     /// Heat capacity in J/K and its change with temperature; the molar ones stay in the buffer.
-    fn capacity(&mut self, temperature: f64) -> [f64; 2] {
+    fn capacity_with_slopes(&mut self, temperature: f64) -> [f64; 2] {
         let mut all = [0.0; 2];
         // The molar ones are those of the slopes, which the least capacity does not have.
         let solids = self.chemistry.solids.iter().zip(&self.buffers.amounts);
@@ -137,8 +170,8 @@ impl ParticleSystem<'_> {
         y[self.chemistry.moving().len()]
     }
 
-    /// What follows from the rates: changes of amounts, of temperature, of extents.
-    fn fill(&mut self, temperature: f64, out: &mut [f64]) -> ParticleHeat {
+    /// What follows from the rates with a heat capacity in J/K and its slope: changes of amounts, of temperature, of extents.
+    fn fill(&self, temperature: f64, capacity: [f64; 2], out: &mut [f64]) -> ParticleHeat {
         let moving = self.chemistry.moving().len();
         out.fill(0.0);
         let mut released = [0.0; 2];
@@ -156,7 +189,6 @@ impl ParticleSystem<'_> {
             released[1] += rate * warmth[1];
             out[moving + 1 + j] = *rate;
         }
-        let capacity = self.capacity(temperature);
         // The film conducts in proportion to the radius, contacts and radiation act on the surface.
         let shrinkage = self.shrinkage();
         let conductance = shrinkage * self.start.conductance;
@@ -189,6 +221,10 @@ impl StiffSystem for ParticleSystem<'_> {
         true
     }
 
+    fn follows_tangent(&self) -> bool {
+        self.guess.slopes
+    }
+
     fn rates(&mut self, y: &[f64], out: &mut [f64]) {
         let temperature = self.place(y);
         let state = RateState {
@@ -199,7 +235,7 @@ impl StiffSystem for ParticleSystem<'_> {
         };
         let rates = &mut self.buffers.rates;
         self.chemistry.rates(&self.start.around, &state, rates);
-        self.fill(temperature, out);
+        self.fill(temperature, [self.capacity(temperature), 0.0], out);
     }
 
     fn differentiate(&mut self, y: &[f64], out: &mut [f64], derivatives: &mut SystemDerivatives) {
@@ -236,7 +272,8 @@ impl StiffSystem for ParticleSystem<'_> {
                 }
             }
         }
-        let heat = self.fill(temperature, out);
+        let capacity = self.capacity_with_slopes(temperature);
+        let heat = self.fill(temperature, capacity, out);
         // C dT/dτ = …: the row of the temperature holds the slopes of its right side so far.
         let rise = out[place_of_temperature];
         let widening = &self.buffers.shrinkage_slopes;
@@ -261,7 +298,7 @@ impl StiffSystem for ParticleSystem<'_> {
         let moving = self.chemistry.moving().len();
         let made = y.iter().zip(rates).take(moving);
         let beginning = made.filter(|(n, rate)| **n < self.trace && **rate > 0.0);
-        beginning.fold(f64::INFINITY, |least, (_, rate)| {
+        beginning.fold(self.guess.first_step, |least, (_, rate)| {
             least.min(self.trace / rate)
         })
     }
