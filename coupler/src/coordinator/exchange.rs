@@ -39,6 +39,9 @@ pub(super) struct ExchangeLimits {
     pub tolerance: f64,
     /// Attempts at most.
     pub attempts: u32,
+    /// False where the attempts only find the gas on which laws are evaluated next: what reacts is then not fixed, and
+    /// nothing is credited.
+    pub last: bool,
 }
 
 /// What takes part in the attempts of a window.
@@ -83,7 +86,7 @@ impl ExchangeStage {
     ) -> Result<(), RunError> {
         let first = window.attempt;
         let channels = with.interior.has_channels();
-        let fixes = u32::from(channels);
+        let fixes = u32::from(channels && limits.last);
         self.begin(with, window);
         self.respond(with, window)?;
         self.tell_rates(with);
@@ -111,6 +114,9 @@ impl ExchangeStage {
                 self.respond(with, window)?;
             }
         };
+        if channels && !limits.last {
+            return Ok(());
+        }
         if fixes > 0 {
             self.fix_rates(with, window);
             misplaced = self.attempt(with, window)?;
