@@ -70,6 +70,13 @@ impl LawCatalogue {
         self
     }
 
+    /// Adds a law of the rates of particles' reactions.
+    #[must_use]
+    pub fn with_rate(mut self, law: &'static LawEntry<RateLaw>) -> Self {
+        self.rate.push(law);
+        self
+    }
+
     /// All families by the table in which a law is chosen.
     pub fn families(&self) -> Vec<(&'static str, Vec<LawSummary>)> {
         vec![

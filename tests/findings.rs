@@ -415,6 +415,7 @@ static SPARSE: LawEntry<dyn HeatTransfer> = LawEntry {
     summary: "Gunn's law, for void fractions up to 0.25 only.",
     source: "none",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(Sparse { breaks: false }),
 };
 
@@ -423,6 +424,7 @@ static BREAKS: LawEntry<dyn HeatTransfer> = LawEntry {
     summary: "No value outside its range.",
     source: "none",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(Sparse { breaks: true }),
 };
 

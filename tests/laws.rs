@@ -8,10 +8,12 @@ use std::path::{Path, PathBuf};
 use calcine::case::{keys, parse_with, schema};
 use calcine::laws::LawCatalogue;
 use calcine::simulation::Simulation;
+use calcine_coupler::interior::reacting::Rate;
 use calcine_coupler::physics::dimension::Dimension;
 use calcine_coupler::physics::drag::Drag;
-use calcine_coupler::physics::law::{Bound, LawEntry, LawParameter};
+use calcine_coupler::physics::law::{Bound, LawEntry, LawParameter, LawTable};
 use calcine_coupler::physics::local::LocalGas;
+use calcine_coupler::physics::reaction::{Arrhenius, LayerDiffusivity, RateLaw};
 use tempfile::TempDir;
 
 /// Stokes' drag of a lone sphere times a number.
@@ -37,9 +39,11 @@ static STOKES: LawEntry<dyn Drag> = LawEntry {
         dimension: Dimension::NONE,
         bound: Bound::Positive,
         default: Some(1.0),
+        needed_with: None,
         meaning: "What the drag of a lone sphere is multiplied by.",
         example: "20",
     }],
+    tables: &[],
     make: |values| Box::new(Stokes(values[0])),
 };
 
@@ -110,4 +114,182 @@ fn a_law_of_another_program_is_in_schema_and_reference_with_its_keys() {
     let names = drag["law"]["enum"].as_array().unwrap();
     assert!(names.iter().any(|name| name == "stokes"));
     assert_eq!(drag["factor"]["default"], 1.0);
+}
+
+/// A shrinking core whose rate constant a share slows, stated in a table within a table.
+static HALVED: LawEntry<RateLaw> = LawEntry {
+    name: "halved-core",
+    summary: "A shrinking core of a rate constant times a share.",
+    source: "tests/laws.rs",
+    parameters: &[],
+    tables: &[LawTable {
+        name: "rate",
+        required: true,
+        meaning: "Rate constant.",
+        example: "{ factor = \"0.3 m/s\", slowed = { share = 0.5 } }",
+        by_name: None,
+        parameters: &[LawParameter {
+            name: "factor",
+            dimension: Dimension::VELOCITY,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Before it is slowed.",
+            example: "\"0.3 m/s\"",
+        }],
+        tables: &[LawTable {
+            name: "slowed",
+            required: true,
+            meaning: "By how much it is slowed.",
+            example: "{ share = 0.5 }",
+            by_name: None,
+            parameters: &[
+                LawParameter {
+                    name: "share",
+                    dimension: Dimension::NONE,
+                    bound: Bound::UpTo(0.0, 1.0),
+                    default: None,
+                    needed_with: None,
+                    meaning: "What is left of it.",
+                    example: "0.5",
+                },
+                LawParameter {
+                    name: "through",
+                    dimension: Dimension::DIFFUSIVITY,
+                    bound: Bound::Positive,
+                    default: Some(1e-5),
+                    needed_with: None,
+                    meaning: "Diffusivity of the layer.",
+                    example: "\"1e-5 m^2/s\"",
+                },
+            ],
+            tables: &[],
+        }],
+    }],
+    make: |values| {
+        let rate = values.table(0).unwrap();
+        let slowed = rate.table(0).unwrap();
+        Box::new(RateLaw::ShrinkingCore {
+            rate_constant: Arrhenius {
+                factor: rate[0] * slowed[0],
+                exponent: 0.0,
+                activation_energy: 0.0,
+            },
+            diffusivity: LayerDiffusivity {
+                value: slowed[1],
+                at: 1.0,
+                exponent: 0.0,
+            },
+        })
+    },
+};
+
+/// The rate of a box of limestone whose reaction goes by a law with these keys; else messages and helps.
+fn limestone(law: &str) -> Result<Rate, Vec<String>> {
+    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/calcining-box.toml");
+    let text = std::fs::read_to_string(&case).unwrap();
+    let keys = |line: &&str| {
+        ["rate =", "layer_diffusivity ="]
+            .iter()
+            .all(|key| !line.starts_with(key))
+    };
+    let text: Vec<&str> = text.lines().filter(keys).collect();
+    let text = text.join("\n");
+    assert!(text.contains("law = \"shrinking-core\""));
+    let text = text.replace("law = \"shrinking-core\"", law);
+    let laws = LawCatalogue::default().with_rate(&HALVED);
+    match parse_with(&case, &text, &[], &laws) {
+        Ok(case) => Ok(case.chemistry.reactions[0].rate.clone()),
+        Err(error) => {
+            let told = error.problems().iter();
+            Err(told
+                .map(|one| format!("{}; {}", one.message, one.help))
+                .collect())
+        }
+    }
+}
+
+#[test]
+fn a_rate_law_of_another_program_is_read_with_its_nested_tables() {
+    let rate = limestone(
+        "law = \"halved-core\"\nrate = { factor = \"0.3 m/s\", slowed = { share = 0.5 } }",
+    );
+    let Ok(Rate::Core {
+        rate_constant,
+        diffusivity,
+    }) = rate
+    else {
+        panic!("{rate:?}");
+    };
+    assert_eq!((rate_constant.factor, diffusivity.value), (0.15, 1e-5));
+    for (keys, expected) in [
+        (
+            "rate = { factor = \"0.3 m/s\", slowed = { shair = 0.5, share = 0.5 } }",
+            "`reactions[0].rate.slowed.shair` is not a key of a case; did you mean `share`?",
+        ),
+        (
+            "rate = { factor = \"0.3 m/s\", slowed = {} }",
+            "`reactions[0].rate.slowed.share` is missing; add it, for example share = 0.5",
+        ),
+        (
+            "rate = { factor = \"0.3 m/s\" }",
+            "`reactions[0].rate.slowed` is missing; add it, for example slowed = { share = 0.5 }",
+        ),
+        (
+            "rate = { factor = \"0.3 m/s\", slowed = { share = 2 } }",
+            "`reactions[0].rate.slowed.share` is 2; it lies above 0 and up to 1",
+        ),
+        (
+            "rate = { factor = \"0.3 m/s\", slowed = { share = 1 }, orders = { CO2 = 1 } }",
+            "`reactions[0].rate.orders` does not go with law = \"halved-core\"; remove it, or write law = \"power-law\"",
+        ),
+    ] {
+        let told = limestone(&format!("law = \"halved-core\"\n{keys}")).unwrap_err();
+        assert_eq!(told.len(), 1, "{told:?}");
+        assert!(told[0].ends_with(expected), "{told:?}");
+    }
+    let core = "rate = { factor = \"0.3 m/s\", slowed = { share = 1 } }\nlayer_diffusivity = { value = \"1e-5 m^2/s\" }";
+    let told = limestone(&format!("law = \"shrinking-core\"\n{core}")).unwrap_err();
+    let expected = "`reactions[0].rate.slowed` does not go with law = \"shrinking-core\"; \
+                    remove it, or write law = \"halved-core\"";
+    assert!(told.len() == 1 && told[0].ends_with(expected), "{told:?}");
+}
+
+#[test]
+fn a_rate_law_of_another_program_is_in_schema_and_reference_with_its_nested_tables() {
+    let laws = LawCatalogue::default().with_rate(&HALVED);
+    let placed = keys::keys(&laws);
+    let meaning = |place: &str| {
+        placed
+            .iter()
+            .find(|key| key.place == place)
+            .unwrap()
+            .meaning()
+    };
+    assert_eq!(
+        meaning("reactions.rate.slowed"),
+        "By how much it is slowed. Of `halved-core`."
+    );
+    assert_eq!(
+        meaning("reactions.rate.slowed.share"),
+        "What is left of it."
+    );
+    let factor = meaning("reactions.rate.factor");
+    assert!(
+        factor.contains("With `halved-core`: Before it is slowed."),
+        "{factor}"
+    );
+    let schema = schema::schema(&laws);
+    let reaction = &schema["properties"]["reactions"]["items"]["properties"];
+    let names = reaction["law"]["enum"].as_array().unwrap();
+    assert!(names.iter().any(|name| name == "halved-core"));
+    let slowed = &reaction["rate"]["properties"]["slowed"];
+    assert_eq!(slowed["required"][0], "share");
+    assert_eq!(slowed["properties"]["through"]["default"], "0.00001 m^2/s");
+    // The rate is every law's, the diffusivity of a layer that of one.
+    let required = schema["properties"]["reactions"]["items"]["required"]
+        .as_array()
+        .unwrap();
+    assert!(required.iter().any(|key| key == "rate"));
+    assert!(required.iter().all(|key| key != "layer_diffusivity"));
 }

@@ -136,6 +136,7 @@ pub static CONTACT_LAWS: &[&LawEntry<ContactForce>] = &[
         summary: "Hertz, Mindlin and Tsuji with tangential history.",
         source: "Tsuji, Tanaka and Ishida, Powder Technol. 71 (1992) 239, doi 10.1016/0032-5910(92)88030-L",
         parameters: &[],
+        tables: &[],
         make: |_| Box::new(ContactForce::HertzMindlin),
     },
     &LawEntry {
@@ -147,9 +148,11 @@ pub static CONTACT_LAWS: &[&LawEntry<ContactForce>] = &[
             dimension: Dimension::VELOCITY,
             bound: Bound::Positive,
             default: None,
+            needed_with: None,
             meaning: "Speed of impact at which the linear spring overlaps as much as by the law of Hertz.",
             example: "\"1 m/s\"",
         }],
+        tables: &[],
         make: |values| {
             Box::new(ContactForce::Linear {
                 characteristic_speed: values[0],
@@ -161,6 +164,7 @@ pub static CONTACT_LAWS: &[&LawEntry<ContactForce>] = &[
         summary: "OpenFOAM's pair of spring, slider and dashpot.",
         source: "OpenFOAM 6, `PairSpringSliderDashpot.C`",
         parameters: &[],
+        tables: &[],
         make: |_| Box::new(ContactForce::SpringSliderDashpot),
     },
 ];
@@ -172,6 +176,7 @@ pub static ROLLING_LAWS: &[&LawEntry<Rolling>] = &[
         summary: "No resistance to rolling.",
         source: "",
         parameters: &[],
+        tables: &[],
         make: |_| Box::new(Rolling::None),
     },
     &LawEntry {
@@ -179,6 +184,7 @@ pub static ROLLING_LAWS: &[&LawEntry<Rolling>] = &[
         summary: "A torque of one size against the relative rotation.",
         source: "Zhou, Wright, Yang, Xu and Yu, Physica A 269 (1999) 536, doi 10.1016/S0378-4371(99)00183-1",
         parameters: &[],
+        tables: &[],
         make: |_| Box::new(Rolling::ConstantTorque),
     },
     &LawEntry {
@@ -186,6 +192,7 @@ pub static ROLLING_LAWS: &[&LawEntry<Rolling>] = &[
         summary: "A spring and dashpot of rolling that yields.",
         source: "Ai, Chen, Rotter and Ooi, Powder Technol. 206 (2011) 269, doi 10.1016/j.powtec.2010.09.030",
         parameters: &[],
+        tables: &[],
         make: |_| Box::new(Rolling::ElasticPlastic),
     },
 ];
@@ -197,6 +204,7 @@ pub static COHESION_LAWS: &[&LawEntry<Cohesion>] = &[
         summary: "No attraction.",
         source: "",
         parameters: &[],
+        tables: &[],
         make: |_| Box::new(Cohesion::None),
     },
     &LawEntry {
@@ -204,6 +212,7 @@ pub static COHESION_LAWS: &[&LawEntry<Cohesion>] = &[
         summary: "Simplified Johnson, Kendall and Roberts: cohesion energy density times the contact area.",
         source: "Johnson, Kendall and Roberts, Proc. R. Soc. Lond. A 324 (1971) 301, doi 10.1098/rspa.1971.0141",
         parameters: &[],
+        tables: &[],
         make: |_| Box::new(Cohesion::Sjkr),
     },
 ];

@@ -73,7 +73,7 @@ fn described(key: &Key, laws: &LawCatalogue) -> Value {
         Value::Object(schema) => schema,
         other => Map::from_iter([("const".into(), other)]),
     };
-    let mut description = format!("{} ({})", key.meaning, key.value.words(laws));
+    let mut description = format!("{} ({})", key.told(laws), key.value.words(laws));
     let without = match (key.presence, key.value) {
         (KeyPresence::Default(text) | KeyPresence::Without(text), _) => Some(text.to_owned()),
         (KeyPresence::With(partner), _) => Some(format!("goes with `{partner}`")),
@@ -97,7 +97,7 @@ fn described(key: &Key, laws: &LawCatalogue) -> Value {
 
 /// What a value may be.
 fn form(value: KeyValue, laws: &LawCatalogue) -> Value {
-    let table = |keys: &[Key]| Value::Object(object(keys, laws));
+    let table = || Value::Object(object(&value.below(laws), laws));
     let texts = || json!({"type": "string"});
     match value {
         KeyValue::Text | KeyValue::Path => texts(),
@@ -127,11 +127,11 @@ fn form(value: KeyValue, laws: &LawCatalogue) -> Value {
         KeyValue::Spans => pairs(quantity(1), quantity(1)),
         KeyValue::Shares => pairs(quantity(1), plain()),
         KeyValue::Grading => either(plain(), list(tuple(3, plain()))),
-        KeyValue::Table(keys) => table(keys),
-        KeyValue::Tables(keys) => list(table(keys)),
-        KeyValue::Dated(keys) => either(table(keys), pairs(quantity(1), table(keys))),
-        KeyValue::Named(keys) => {
-            json!({"type": "object", "additionalProperties": table(keys)})
+        KeyValue::Table(_) | KeyValue::Law(..) | KeyValue::LawTable(..) => table(),
+        KeyValue::Tables(_) => list(table()),
+        KeyValue::Dated(_) => either(table(), pairs(quantity(1), table())),
+        KeyValue::Named(_) => {
+            json!({"type": "object", "additionalProperties": table()})
         }
         KeyValue::ByName(dimension) => {
             let value = match dimension {
@@ -140,12 +140,31 @@ fn form(value: KeyValue, laws: &LawCatalogue) -> Value {
             };
             json!({"type": "object", "additionalProperties": value})
         }
-        KeyValue::Law(..) => table(&value.below(laws)),
+        KeyValue::OfLaws(..) => any_of_laws(value, laws),
         // A number in quotes would be both.
         KeyValue::Either(one, KeyValue::Number(Dimension::NONE, _)) => {
             either(form(*one, laws), json!({"type": "number"}))
         }
         KeyValue::Either(one, other) => either(form(*one, laws), form(*other, laws)),
+    }
+}
+
+/// What a value may be that laws take differently.
+fn any_of_laws(value: KeyValue, laws: &LawCatalogue) -> Value {
+    let mut forms: Vec<Value> = Vec::new();
+    for one in value.alternatives(laws) {
+        let form = match one {
+            // A number in quotes would be a quantity too.
+            KeyValue::Number(Dimension::NONE, _) => json!({"type": "number"}),
+            one => form(one, laws),
+        };
+        if !forms.contains(&form) {
+            forms.push(form);
+        }
+    }
+    match &forms[..] {
+        [form] => form.clone(),
+        _ => json!({"oneOf": forms}),
     }
 }
 

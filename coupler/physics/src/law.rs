@@ -1,6 +1,7 @@
 //! Laws by name: each law declares beside its code what a case file writes to choose it.
 
 use std::fmt;
+use std::ops::Deref;
 
 use crate::dimension::Dimension;
 
@@ -35,6 +36,7 @@ pub const NONE: &str = "none";
 ///     summary: "A lone sphere in creeping flow.",
 ///     source: "Stokes, Trans. Camb. Phil. Soc. 9 (1851) 8",
 ///     parameters: &[],
+///     tables: &[],
 ///     make: |_| Box::new(Stokes),
 /// };
 ///
@@ -48,10 +50,12 @@ pub struct LawEntry<L: ?Sized + 'static> {
     pub summary: &'static str,
     /// Where it was published; empty for the law that does nothing.
     pub source: &'static str,
-    /// The numbers that it takes from the case.
+    /// The numbers that it takes from the case, beside its name.
     pub parameters: &'static [LawParameter],
-    /// Makes it from the values of its parameters, in their order and in SI units.
-    pub make: fn(&[f64]) -> Box<L>,
+    /// The tables that it takes from the case, beside its name.
+    pub tables: &'static [LawTable],
+    /// Makes it from the values of its keys.
+    pub make: fn(&LawValues) -> Box<L>,
 }
 
 /// What a law declares, whatever its family.
@@ -65,6 +69,8 @@ pub struct LawSummary {
     pub source: &'static str,
     /// The numbers that it takes from the case.
     pub parameters: &'static [LawParameter],
+    /// The tables that it takes from the case.
+    pub tables: &'static [LawTable],
 }
 
 impl<L: ?Sized> LawEntry<L> {
@@ -75,6 +81,7 @@ impl<L: ?Sized> LawEntry<L> {
             summary: self.summary,
             source: self.source,
             parameters: self.parameters,
+            tables: self.tables,
         }
     }
 }
@@ -90,10 +97,68 @@ pub struct LawParameter {
     pub bound: Bound,
     /// Its value in SI units where the case does not state it; `None` where the case must.
     pub default: Option<f64>,
+    /// A number of the same table beside which the case must state it, unless that one is zero; `None` of most. Its
+    /// default then has no meaning of its own.
+    pub needed_with: Option<&'static str>,
     /// What it means.
     pub meaning: &'static str,
     /// An example of a value, as a case writes it.
     pub example: &'static str,
+}
+
+/// A table that a law takes from the case: a key beside `law`, or in another table of the law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LawTable {
+    /// The key.
+    pub name: &'static str,
+    /// True where the case must state it.
+    pub required: bool,
+    /// What it means.
+    pub meaning: &'static str,
+    /// An example of it, as a case writes it.
+    pub example: &'static str,
+    /// Dimension of the numbers of a table whose keys are names of the user's, such as those of species; it has no
+    /// parameters and tables then.
+    pub by_name: Option<Dimension>,
+    /// The numbers in it.
+    pub parameters: &'static [LawParameter],
+    /// The tables in it.
+    pub tables: &'static [LawTable],
+}
+
+/// The values of a law's keys, or of one of its tables; as a slice those of its parameters, in their order and in SI units.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LawValues {
+    /// Values of the parameters.
+    pub numbers: Vec<f64>,
+    /// What a table of names holds, in the order of the case.
+    pub by_name: Vec<(String, f64)>,
+    /// The tables in their order; `None` for one that the case leaves out.
+    pub tables: Vec<Option<LawValues>>,
+}
+
+impl LawValues {
+    /// A table by its place among those of the law; `None` where the case leaves it out.
+    pub fn table(&self, index: usize) -> Option<&Self> {
+        self.tables.get(index)?.as_ref()
+    }
+}
+
+impl From<Vec<f64>> for LawValues {
+    fn from(numbers: Vec<f64>) -> Self {
+        Self {
+            numbers,
+            ..Self::default()
+        }
+    }
+}
+
+impl Deref for LawValues {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        &self.numbers
+    }
 }
 
 /// The values that a number may have.
@@ -157,13 +222,15 @@ impl<L: ?Sized> fmt::Debug for LawEntry<L> {
 /// A law that a case chose, with the values of its parameters.
 pub struct LawChoice<L: ?Sized + 'static> {
     entry: &'static LawEntry<L>,
-    values: Vec<f64>,
+    values: LawValues,
 }
 
 impl<L: ?Sized> LawChoice<L> {
-    /// A law with its values in the order of its parameters, in SI units.
-    pub fn new(entry: &'static LawEntry<L>, values: Vec<f64>) -> Self {
+    /// A law with the values of its keys, in SI units; numbers alone are those of its parameters in their order.
+    pub fn new(entry: &'static LawEntry<L>, values: impl Into<LawValues>) -> Self {
+        let values = values.into();
         debug_assert_eq!(values.len(), entry.parameters.len());
+        debug_assert_eq!(values.tables.len(), entry.tables.len());
         Self { entry, values }
     }
 
@@ -206,7 +273,11 @@ impl<L: ?Sized> PartialEq for LawChoice<L> {
 
 impl<L: ?Sized> fmt::Debug for LawChoice<L> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}{:?}", self.entry.name, self.values)
+        write!(f, "{}{:?}", self.entry.name, self.values.numbers)?;
+        match self.values.tables.is_empty() {
+            true => Ok(()),
+            false => write!(f, "{:?}", self.values.tables),
+        }
     }
 }
 

@@ -19,6 +19,7 @@ pub static RAYS: LawEntry<RadiationLaw> = LawEntry {
     summary: "View factors by rays, with what stands between.",
     source: "docs/theory.md, THP-5",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(RadiationLaw::Rays),
 };
 
@@ -29,6 +30,7 @@ pub static DISTANCE: LawEntry<RadiationLaw> = LawEntry {
     source: "after Feng and Han, Int. J. Heat Mass Transf. 55 (2012) 6374, doi \
              10.1016/j.ijheatmasstransfer.2012.06.021",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(RadiationLaw::Distance),
 };
 
@@ -38,6 +40,7 @@ static NO_RADIATION: LawEntry<RadiationLaw> = LawEntry {
     summary: "Particles do not radiate.",
     source: "",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(RadiationLaw::None),
 };
 

@@ -65,7 +65,20 @@ impl KeyValue {
             KeyValue::Spans => "list of [begin, end]".into(),
             KeyValue::Shares => "list of pairs".into(),
             KeyValue::Grading => "number, or list".into(),
-            KeyValue::Table(_) | KeyValue::Named(_) | KeyValue::Law(..) => "table".into(),
+            KeyValue::Table(_)
+            | KeyValue::Named(_)
+            | KeyValue::Law(..)
+            | KeyValue::LawTable(..) => "table".into(),
+            KeyValue::OfLaws(..) => {
+                let mut words: Vec<String> = Vec::new();
+                for value in self.alternatives(laws) {
+                    let one = value.words(laws);
+                    if !words.contains(&one) {
+                        words.push(one);
+                    }
+                }
+                words.join(", or ")
+            }
             KeyValue::Tables(_) => "list of tables".into(),
             KeyValue::Dated(_) => "table, or schedule of tables".into(),
             KeyValue::ByName(Dimension::NONE) => "table of numbers".into(),

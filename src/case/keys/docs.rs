@@ -1,6 +1,6 @@
 //! The reference part of `docs/reference/case-file.md`, made from the keys and the laws.
 
-use calcine_coupler::physics::law::LawSummary;
+use calcine_coupler::physics::law::{LawParameter, LawSummary, LawTable};
 
 use super::describe::number_words;
 use super::key::{KeyPresence, KeyValue};
@@ -57,11 +57,8 @@ pub fn markdown() -> String {
 }
 
 fn row(law: &LawSummary) -> String {
-    let keys: Vec<String> = law
-        .parameters
-        .iter()
-        .map(|one| format!("`{}`", one.name))
-        .collect();
+    let mut keys = Vec::new();
+    names("", law.parameters, law.tables, &mut keys);
     let keys = if keys.is_empty() {
         "–".to_owned()
     } else {
@@ -73,6 +70,21 @@ fn row(law: &LawSummary) -> String {
         law.source
     };
     format!("| `{}` | {} | {keys} | {source} |\n", law.name, law.summary)
+}
+
+/// The dotted names of a law's keys; of a table those that are in it.
+fn names(above: &str, parameters: &[LawParameter], tables: &[LawTable], keys: &mut Vec<String>) {
+    let numbers = parameters.iter();
+    keys.extend(numbers.map(|one| format!("`{above}{}`", one.name)));
+    for table in tables {
+        match table.by_name {
+            Some(_) => keys.push(format!("`{above}{}`", table.name)),
+            None => {
+                let within = format!("{above}{}.", table.name);
+                names(&within, table.parameters, table.tables, keys);
+            }
+        }
+    }
 }
 
 /// What stands in the docs for the need of a key, or for what holds without it.

@@ -1,8 +1,9 @@
 //! A key of a case file, and what its value may be.
 
 use calcine_coupler::physics::dimension::Dimension;
-use calcine_coupler::physics::law::{Bound, LawParameter, LawSummary};
+use calcine_coupler::physics::law::{Bound, LawParameter};
 
+use super::law_path::{LawFamily, LawPath};
 use crate::case::words::CaseWord;
 use crate::laws::LawCatalogue;
 
@@ -22,7 +23,7 @@ pub enum KeyPresence {
     Without(&'static str),
     /// It is there where this other key of its table is, and only there.
     With(&'static str),
-    /// A law's parameter: its value in SI units without it; `None` where the law needs it.
+    /// A law's key: its value in SI units without it; `None` where the law needs it.
     OfLaw(Option<f64>),
 }
 
@@ -59,42 +60,19 @@ pub(super) const fn key(
 }
 
 impl Key {
-    /// The keys of the table that it is, or may be.
-    pub(in crate::case) fn below(&self, laws: &LawCatalogue) -> Vec<Key> {
-        self.value.below(laws)
-    }
-
-    fn of_parameter(parameter: &LawParameter) -> Self {
+    /// The key of a law's number.
+    pub(in crate::case) fn of_parameter(parameter: &LawParameter) -> Self {
         Self {
             name: parameter.name,
             value: KeyValue::Number(parameter.dimension, parameter.bound),
-            presence: KeyPresence::OfLaw(parameter.default),
+            presence: match parameter.needed_with {
+                Some(_) => KeyPresence::Without("none"),
+                None => KeyPresence::OfLaw(parameter.default),
+            },
             meaning: parameter.meaning,
             example: parameter.example,
         }
     }
-}
-
-/// The keys of a table in which a law is chosen: its name, what laws of the family take, and the table's own.
-fn law_keys(
-    laws: fn(&LawCatalogue) -> Vec<LawSummary>,
-    known: &LawCatalogue,
-    own: &[Key],
-) -> Vec<Key> {
-    let mut keys = vec![Key {
-        name: "law",
-        value: KeyValue::LawName(laws),
-        presence: KeyPresence::Required,
-        meaning: "The law, see \"Laws\" below.",
-        example: "",
-    }];
-    for parameter in laws(known).iter().flat_map(|law| law.parameters) {
-        if keys.iter().all(|key| key.name != parameter.name) {
-            keys.push(Key::of_parameter(parameter));
-        }
-    }
-    keys.extend(own);
-    keys
 }
 
 /// What the value of a key may be.
@@ -149,9 +127,13 @@ pub enum KeyValue {
     /// Numbers or quantities by names that the user chooses.
     ByName(Dimension),
     /// A table in which a law of a family is chosen, with keys of its own.
-    Law(fn(&LawCatalogue) -> Vec<LawSummary>, &'static [Key]),
-    /// The name of a law of a family.
-    LawName(fn(&LawCatalogue) -> Vec<LawSummary>),
+    Law(LawFamily, &'static [Key]),
+    /// The name of a law of a family; the keys of its laws stand in the same table.
+    LawName(LawFamily),
+    /// A table of laws of a family.
+    LawTable(LawFamily, LawPath),
+    /// What one law or another of a family takes here.
+    OfLaws(LawFamily, LawPath),
     /// One or the other.
     Either(&'static KeyValue, &'static KeyValue),
 }
@@ -162,38 +144,9 @@ pub(super) fn words<T: CaseWord>() -> Vec<&'static str> {
 }
 
 impl KeyValue {
-    /// The values that it may be, one or two.
-    pub(in crate::case) fn alternatives(self) -> Vec<KeyValue> {
-        match self {
-            KeyValue::Either(one, other) => [one.alternatives(), other.alternatives()].concat(),
-            one => vec![one],
-        }
-    }
-
-    /// The keys of the table that it may be.
-    pub(in crate::case) fn below(self, laws: &LawCatalogue) -> Vec<Key> {
-        let of = |value: KeyValue| match value {
-            KeyValue::Table(keys)
-            | KeyValue::Tables(keys)
-            | KeyValue::Dated(keys)
-            | KeyValue::Named(keys) => keys.to_vec(),
-            KeyValue::Law(family, own) => law_keys(family, laws, own),
-            _ => Vec::new(),
-        };
-        self.alternatives().into_iter().flat_map(of).collect()
-    }
-
     /// True where the user chooses the names below.
     pub(super) fn is_named(self) -> bool {
         matches!(self, KeyValue::Named(_))
-    }
-
-    /// The laws of the table.
-    pub(super) fn family(self) -> Option<fn(&LawCatalogue) -> Vec<LawSummary>> {
-        match self {
-            KeyValue::Law(family, _) => Some(family),
-            _ => None,
-        }
     }
 
     /// The words that it may be.

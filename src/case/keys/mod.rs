@@ -2,6 +2,7 @@
 //! whether it must be there, what holds without it, what it means and an example. The reader, the JSON schema and
 //! the reference in the docs take them from here; a reader that asks for what is not declared is refused.
 
+mod below;
 mod contacts;
 mod coupling;
 mod describe;
@@ -9,10 +10,12 @@ mod docs;
 mod external;
 mod gas;
 mod key;
+mod law_path;
 mod laws;
 mod materials;
 mod mesh;
 mod motion;
+mod of_laws;
 mod output;
 mod particles;
 mod placed;
@@ -26,6 +29,7 @@ mod zone;
 pub(super) use describe::{number_words, parse_number};
 pub use docs::{BEGIN, markdown};
 pub use key::{Key, KeyPresence, KeyValue, MOST};
+pub use law_path::{LawFamily, LawPath};
 pub use placed::{PlacedKey, keys};
 pub(super) use root::ROOT;
 

@@ -1,8 +1,8 @@
 //! All keys of a case file with their places.
 
-use calcine_coupler::physics::law::LawSummary;
-
-use super::key::{Key, KeyPresence, KeyValue};
+use super::key::{Key, KeyValue};
+use super::law_path::{LawFamily, LawPath};
+use super::of_laws;
 use super::root::ROOT;
 use crate::laws::LawCatalogue;
 
@@ -15,6 +15,7 @@ pub struct PlacedKey {
     pub key: Key,
     /// The laws that it belongs to; empty where it belongs to all.
     pub laws: Vec<&'static str>,
+    told: String,
 }
 
 impl PlacedKey {
@@ -22,8 +23,8 @@ impl PlacedKey {
     pub fn meaning(&self) -> String {
         let laws: Vec<String> = self.laws.iter().map(|law| format!("`{law}`")).collect();
         match &laws[..] {
-            [] => self.key.meaning.to_owned(),
-            laws => format!("{} Of {}.", self.key.meaning, laws.join(", ")),
+            [] => self.told.clone(),
+            laws => format!("{} Of {}.", self.told, laws.join(", ")),
         }
     }
 
@@ -42,40 +43,44 @@ impl PlacedKey {
 /// All keys in the order of a case file.
 pub fn keys(laws: &LawCatalogue) -> Vec<PlacedKey> {
     let mut all = Vec::new();
-    place("", ROOT, laws, &mut all);
+    place("", ROOT, None, laws, &mut all);
     all
 }
 
-fn place(above: &str, keys: &[Key], laws: &LawCatalogue, all: &mut Vec<PlacedKey>) {
+/// Places keys of a table; those of laws are of a family, in its table at a path.
+fn place(
+    above: &str,
+    keys: &[Key],
+    family: Option<(LawFamily, LawPath)>,
+    laws: &LawCatalogue,
+    all: &mut Vec<PlacedKey>,
+) {
+    let named = keys.iter().find_map(|key| match key.value {
+        KeyValue::LawName(family) => Some((family, LawPath::default())),
+        _ => None,
+    });
+    let family = family.or(named);
     for key in keys {
         let place_of = match above {
             "" => key.name.to_owned(),
             _ => format!("{above}.{}", key.name),
         };
+        let takers = family.map(|(family, path)| of_laws::takers(family, laws, path, key.name));
         all.push(PlacedKey {
             place: place_of.clone(),
             key: *key,
-            laws: Vec::new(),
+            laws: takers.unwrap_or_default(),
+            told: key.told(laws),
         });
-        let from = all.len();
         let inner = match key.value.is_named() {
             true => format!("{place_of}.NAME"),
             false => place_of,
         };
-        place(&inner, &key.below(laws), laws, all);
-        if let Some(family) = key.value.family() {
-            let of = |name: &str| {
-                let takes = |law: &LawSummary| law.parameters.iter().any(|one| one.name == name);
-                let laws = family(laws).into_iter();
-                laws.filter(takes).map(|law| law.name).collect()
-            };
-            // Those of a law below this one are told already.
-            let own = |placed: &&mut PlacedKey| {
-                matches!(placed.key.presence, KeyPresence::OfLaw(_)) && placed.laws.is_empty()
-            };
-            for placed in all[from..].iter_mut().filter(own) {
-                placed.laws = of(placed.key.name);
-            }
-        }
+        let tables = key.value.alternatives(laws);
+        let below = tables.into_iter().find_map(|value| match value {
+            KeyValue::LawTable(family, path) => Some((family, path)),
+            _ => None,
+        });
+        place(&inner, &key.below(laws), below, laws, all);
     }
 }

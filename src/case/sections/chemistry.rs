@@ -8,14 +8,13 @@ use calcine_coupler::physics::kinetics::{
     Collider, KineticsError, Mechanism, MechanismReaction, RateConstant, ReactionStatement,
     Tolerances,
 };
-use calcine_coupler::physics::reaction::Equation;
+use calcine_coupler::physics::reaction::{Arrhenius, Equation};
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::GasPatch;
 
 use super::common::existing;
-use super::reactions::{arrhenius, heat_agrees, lacking};
+use super::reactions::{heat_agrees, lacking};
 use crate::case::table::TableReader;
-use crate::case::units::Dimension;
 use crate::case::words::CombustionModel;
 use crate::mechanism;
 
@@ -191,6 +190,18 @@ fn reactions(table: &TableReader<'_>, mixture: &Mixture, around: &Around<'_>) ->
     }
 }
 
+/// Factor, exponent and activation energy of a rate constant.
+fn arrhenius(table: &TableReader<'_>) -> Option<Arrhenius> {
+    let factor = table.number("factor");
+    let exponent = table.number("exponent");
+    let energy = table.number("activation_energy");
+    Some(Arrhenius {
+        factor: factor?,
+        exponent: exponent?,
+        activation_energy: energy?,
+    })
+}
+
 fn reaction(
     table: &TableReader<'_>,
     mixture: &Mixture,
@@ -201,7 +212,7 @@ fn reaction(
     let rate = table.table("rate");
     let (mut constant, mut orders) = (None, None);
     if let Some(rate) = &rate {
-        constant = arrhenius(rate, Dimension::NONE);
+        constant = arrhenius(rate);
         orders = rate.by_name("orders");
         rate.finish();
     }

@@ -1,12 +1,10 @@
 //! `[[reactions]]`, and what materials are made of.
 
 use calcine_adapters::openfoam::stock::StockSolver;
-use calcine_coupler::interior::reacting::{LayerDiffusivity, Rate, Reaction, SolidChemistry};
+use calcine_coupler::interior::reacting::{Rate, Reaction, SolidChemistry};
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::reaction::equilibrium::GibbsLine;
-use calcine_coupler::physics::reaction::{
-    Arrhenius, Equation, Equilibrium, PowerLaw, RateLaw, imbalance,
-};
+use calcine_coupler::physics::reaction::{Equation, Equilibrium, PowerLaw, RateLaw, imbalance};
 use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::physics::thermo::Mixture;
@@ -15,7 +13,6 @@ use calcine_coupler::setup::{GasPatch, GasSetup};
 use super::rate_constants;
 use crate::case::model::{Laws, ReactionSpec};
 use crate::case::table::TableReader;
-use crate::case::units::Dimension;
 
 /// How far fractions may be from summing to 1, as of gases.
 const SLACK: f64 = 1e-3;
@@ -117,13 +114,9 @@ pub(super) fn reactions(
 fn reaction(table: &TableReader<'_>, known: &Known<'_>) -> Option<Reaction> {
     let name = table.text("name");
     let text = table.text("equation");
-    let law = table.named_law("law", &table.laws().rate);
+    let law = table.law_here(&table.laws().rate);
     let equation = text.and_then(|text| equation(table, text, known));
-    let rate = match law.map(|law| *law.make()) {
-        Some(RateLaw::ShrinkingCore) => core_rate(table),
-        Some(RateLaw::PowerLaw) => power_rate(table, known, equation.as_ref()),
-        None => None,
-    };
+    let rate = law.and_then(|law| rate(table, *law.make(), known, equation.as_ref()));
     // Known, even where the equation could not be read.
     table.has("equilibrium");
     let equilibrium = equation
@@ -232,99 +225,71 @@ fn balanced(table: &TableReader<'_>, parts: &Parts, known: &Known<'_>) -> Option
     None
 }
 
-/// Factor, exponent and activation energy of a rate constant.
-pub(super) fn arrhenius(table: &TableReader<'_>, unit: Dimension) -> Option<Arrhenius> {
-    let factor = table.number_as("factor", unit);
-    let exponent = table.number("exponent");
-    let energy = table.number("activation_energy");
-    Some(Arrhenius {
-        factor: factor?,
-        exponent: exponent?,
-        activation_energy: energy?,
-    })
-}
-
-fn core_rate(table: &TableReader<'_>) -> Option<Rate> {
-    let rate = table.table("rate");
-    let constant = rate.and_then(|rate| {
-        let made = arrhenius(&rate, Dimension::VELOCITY);
-        rate.finish();
-        made
-    });
-    table.need("layer_diffusivity");
-    let layer = table.table("layer_diffusivity");
-    let diffusivity = layer.and_then(|layer| {
-        let value = layer.number("value");
-        let exponent = layer.number("exponent")?;
-        if exponent != 0.0 {
-            layer.need("at");
-        }
-        let at = layer.number("at").unwrap_or(1.0);
-        layer.finish();
-        Some(LayerDiffusivity {
-            value: value?,
-            at,
-            exponent,
-        })
-    });
-    Some(Rate::Core {
-        rate_constant: constant?,
-        diffusivity: diffusivity?,
-    })
-}
-
-fn power_rate(
+/// A law of a rate with the places of its species among those of the case.
+fn rate(
     table: &TableReader<'_>,
+    law: RateLaw,
     known: &Known<'_>,
     equation: Option<&(Equation, Parts)>,
 ) -> Option<Rate> {
-    let rate = table.table("rate")?;
-    let constant = arrhenius(&rate, Dimension::NONE);
-    let in_series = rate.table("in_series").map(|slow| {
-        let made = arrhenius(&slow, Dimension::NONE);
-        slow.finish();
-        made
-    });
-    rate.need("orders");
-    let orders = rate.by_name("orders").and_then(|(orders, given)| {
-        let mut made: [Vec<(usize, f64)>; 2] = Default::default();
-        for (name, order) in given? {
-            let solid = known.solids.iter().position(|one| one.name() == name);
-            let gas = known
-                .gas
-                .and_then(|gas| gas.names().iter().position(|one| *one == name));
-            match (solid, gas) {
-                (_, Some(k)) => made[1].push((k, order)),
-                (Some(k), None) => made[0].push((k, order)),
-                (None, None) => {
-                    let help = "name gases and solids of the case";
-                    orders.fail(&name, "is neither a gas nor a solid of the case", help);
-                    return None;
-                }
-            }
-            if order < 0.0
-                && let Some(why) = absent(known, gas, equation)
-            {
-                let rule = format!("is {order}, but {name} {why}: the rate would be infinite");
-                let help = "write an order of zero or above, or see to it that the species is always there";
-                orders.fail(&name, rule, help);
+    match law {
+        RateLaw::ShrinkingCore {
+            rate_constant,
+            diffusivity,
+        } => Some(Rate::Core {
+            rate_constant,
+            diffusivity,
+        }),
+        RateLaw::PowerLaw {
+            rate_constant,
+            in_series,
+            orders,
+        } => {
+            let [solids, gases] = placed(table, orders, known, equation)?;
+            Some(Rate::Power(PowerLaw {
+                rate_constant,
+                in_series,
+                solids,
+                gases,
+            }))
+        }
+    }
+}
+
+/// Orders of solids and of gases by their places among those of the case.
+fn placed(
+    table: &TableReader<'_>,
+    given: Vec<(String, f64)>,
+    known: &Known<'_>,
+    equation: Option<&(Equation, Parts)>,
+) -> Option<[Vec<(usize, f64)>; 2]> {
+    let orders = table.table("rate")?.table("orders")?;
+    let mut made: [Vec<(usize, f64)>; 2] = Default::default();
+    for (name, order) in given {
+        let solid = known.solids.iter().position(|one| one.name() == name);
+        let gas = known
+            .gas
+            .and_then(|gas| gas.names().iter().position(|one| *one == name));
+        match (solid, gas) {
+            (_, Some(k)) => made[1].push((k, order)),
+            (Some(k), None) => made[0].push((k, order)),
+            (None, None) => {
+                let help = "name gases and solids of the case";
+                orders.fail(&name, "is neither a gas nor a solid of the case", help);
                 return None;
             }
         }
-        Some(made)
-    });
-    rate.finish();
-    let [solids, gases] = orders?;
-    let in_series = match in_series {
-        Some(step) => Some(step?),
-        None => None,
-    };
-    Some(Rate::Power(PowerLaw {
-        rate_constant: constant?,
-        in_series,
-        solids,
-        gases,
-    }))
+        if order < 0.0
+            && let Some(why) = absent(known, gas, equation)
+        {
+            let rule = format!("is {order}, but {name} {why}: the rate would be infinite");
+            let help =
+                "write an order of zero or above, or see to it that the species is always there";
+            orders.fail(&name, rule, help);
+            return None;
+        }
+    }
+    Some(made)
 }
 
 /// Where a species of a negative order may be missing.

@@ -1,9 +1,17 @@
 //! Tables in which a law of a family is chosen: `drag = { law = "ergun-wen-yu" }`.
 
-use calcine_coupler::physics::law::{LawChoice, LawEntry, NONE};
+use calcine_coupler::physics::law::{
+    LawChoice, LawEntry, LawParameter, LawSummary, LawTable, LawValues, NONE,
+};
 
-use super::TableReader;
 use super::words::quoted;
+use super::{Key, TableReader};
+
+/// The names of a law's keys.
+fn keys(law: &LawSummary) -> impl Iterator<Item = &'static str> {
+    let numbers = law.parameters.iter().map(|one| one.name);
+    numbers.chain(law.tables.iter().map(|one| one.name))
+}
 
 impl<'a> TableReader<'a> {
     /// The law that a table below names, with the values of its keys, and the table for keys of its own; the caller
@@ -14,50 +22,106 @@ impl<'a> TableReader<'a> {
         laws: &[&'static LawEntry<L>],
     ) -> Option<(Option<LawChoice<L>>, TableReader<'a>)> {
         let table = self.table(key)?;
-        let names: Vec<&str> = laws.iter().map(|law| law.name).collect();
-        let name = table.word("law", &names);
-        let entry = name.and_then(|name| laws.iter().find(|law| law.name == name).copied());
-        // Keys of other laws are known, so that they are told by their law.
-        for parameter in laws.iter().flat_map(|law| law.parameters) {
-            let own =
-                entry.is_none_or(|law| law.parameters.iter().any(|one| one.name == parameter.name));
-            if table.has(parameter.name) && !own {
-                let takes = laws.iter().filter(|law| {
-                    let mut parameters = law.parameters.iter();
-                    parameters.any(|one| one.name == parameter.name)
-                });
-                let takes: Vec<&str> = takes.map(|law| law.name).collect();
-                let chosen = entry.map_or("", |law| law.name);
-                let rule = format!("does not go with law = \"{chosen}\"");
-                let help = format!("remove it, or write law = {}", quoted(&takes));
-                table.fail(parameter.name, rule, help);
-            }
-        }
-        let choice = entry.and_then(|law| {
-            let values: Vec<Option<f64>> = law
-                .parameters
-                .iter()
-                .map(|parameter| {
-                    if parameter.default.is_none() {
-                        table.need(parameter.name);
-                    }
-                    table.number(parameter.name)
-                })
-                .collect();
-            let values: Option<Vec<f64>> = values.into_iter().collect();
-            Some(LawChoice::new(law, values?))
-        });
-        Some((choice, table))
+        Some((table.law_here(laws), table))
     }
 
-    /// A law without keys of its own that a key of this table names.
-    pub fn named_law<L: ?Sized>(
-        &self,
-        key: &str,
-        laws: &[&'static LawEntry<L>],
-    ) -> Option<LawChoice<L>> {
+    /// The law that this table names by its key `law`, with the values of the law's keys beside it.
+    pub fn law_here<L: ?Sized>(&self, laws: &[&'static LawEntry<L>]) -> Option<LawChoice<L>> {
         let names: Vec<&str> = laws.iter().map(|law| law.name).collect();
-        LawChoice::named(laws, self.word(key, &names)?, Vec::new())
+        let name = self.word("law", &names);
+        let entry = name.and_then(|name| laws.iter().find(|law| law.name == name).copied());
+        let known: Vec<LawSummary> = laws.iter().map(|law| law.about()).collect();
+        let Some(entry) = entry else {
+            // The keys of all laws are known, whichever is meant.
+            for name in known.iter().flat_map(keys) {
+                self.has(name);
+            }
+            return None;
+        };
+        let values = self.law_values(&known, &entry.about())?;
+        Some(LawChoice::new(entry, values))
+    }
+
+    /// The values of a law's keys in this table, and an error for each key of other laws.
+    fn law_values(&self, known: &[LawSummary], law: &LawSummary) -> Option<LawValues> {
+        // Keys of other laws are known, so that they are told by their law.
+        for name in known.iter().flat_map(keys) {
+            if self.has(name) && keys(law).all(|own| own != name) {
+                let takes = known.iter().filter(|law| keys(law).any(|one| one == name));
+                let takes: Vec<&str> = takes.map(|law| law.name).collect();
+                let rule = format!("does not go with law = \"{}\"", law.name);
+                let help = format!("remove it, or write law = {}", quoted(&takes));
+                self.fail(name, rule, help);
+            }
+        }
+        let numbers = law.parameters.iter();
+        let numbers = numbers.map(|one| self.law_parameter(one, law.parameters));
+        let numbers: Vec<Option<f64>> = numbers.collect();
+        let tables = law.tables.iter();
+        let tables = tables.map(|one| self.law_table(one, known, law));
+        let tables: Vec<Option<Option<LawValues>>> = tables.collect();
+        Some(LawValues {
+            numbers: numbers.into_iter().collect::<Option<_>>()?,
+            by_name: Vec::new(),
+            tables: tables.into_iter().collect::<Option<_>>()?,
+        })
+    }
+
+    fn law_parameter(&self, parameter: &LawParameter, beside: &[LawParameter]) -> Option<f64> {
+        let read = |one: &LawParameter| {
+            let key = Key::of_parameter(one);
+            self.number_of(&key, one.dimension, one.bound)
+        };
+        if self.has(parameter.name) {
+            return read(parameter);
+        }
+        let other = parameter.needed_with;
+        let other = other.and_then(|name| beside.iter().find(|one| one.name == name));
+        let needed = match other {
+            Some(other) => read(other)? != 0.0,
+            None => parameter.default.is_none(),
+        };
+        if needed {
+            self.missing(parameter.name);
+            return None;
+        }
+        parameter.default
+    }
+
+    /// A table of a law, `Some(None)` for one that need not be there.
+    fn law_table(
+        &self,
+        table: &LawTable,
+        known: &[LawSummary],
+        law: &LawSummary,
+    ) -> Option<Option<LawValues>> {
+        if !self.has(table.name) {
+            if table.required {
+                self.missing(table.name);
+                return None;
+            }
+            return Some(None);
+        }
+        let reader = self.table(table.name)?;
+        if let Some(dimension) = table.by_name {
+            let by_name = reader.all(dimension)?;
+            return Some(Some(LawValues {
+                by_name,
+                ..LawValues::default()
+            }));
+        }
+        let within = |law: &LawSummary| {
+            let table = law.tables.iter().find(|one| one.name == table.name)?;
+            Some(LawSummary {
+                parameters: table.parameters,
+                tables: table.tables,
+                ..*law
+            })
+        };
+        let known: Vec<LawSummary> = known.iter().filter_map(within).collect();
+        let values = reader.law_values(&known, &within(law)?);
+        reader.finish();
+        values.map(Some)
     }
 
     /// A law whose table has no keys of its own.

@@ -247,7 +247,11 @@ impl<'a> TableReader<'a> {
         wanted: impl Fn(KeyValue) -> Option<T>,
     ) -> Option<(Key, T)> {
         let declared = self.declared(key)?;
-        let found = declared.value.alternatives().into_iter().find_map(wanted);
+        let found = declared
+            .value
+            .alternatives(self.laws)
+            .into_iter()
+            .find_map(wanted);
         if found.is_none() {
             let help = "report it: this is a fault of Calcine, not of the case";
             self.unread(key, "is read as something else than it is declared", help);

@@ -34,14 +34,19 @@ impl<'a> TableReader<'a> {
     /// A table below a key.
     pub fn table(&self, key: &str) -> Option<TableReader<'a>> {
         let (declared, ()) = self.declared_as(key, |value| match value {
-            KeyValue::Table(_) | KeyValue::Named(_) | KeyValue::ByName(_) | KeyValue::Law(..) => {
-                Some(())
-            }
+            KeyValue::Table(_)
+            | KeyValue::Named(_)
+            | KeyValue::ByName(_)
+            | KeyValue::Law(..)
+            | KeyValue::LawTable(..) => Some(()),
             _ => None,
         })?;
         let item = self.item_of(&declared)?;
         let Some(table) = item.as_table_like() else {
-            let needs = match (declared.value.alternatives().first(), item.as_str()) {
+            let needs = match (
+                declared.value.alternatives(self.laws).first(),
+                item.as_str(),
+            ) {
                 (Some(KeyValue::Law(..)), Some(name)) => {
                     format!("a table such as {{ law = \"{name}\" }}")
                 }
@@ -185,7 +190,8 @@ impl<'a> TableReader<'a> {
         Some((table, numbers))
     }
 
-    fn all(&self, dimension: Dimension) -> Option<NamedNumbers> {
+    /// All numbers of this table, whose keys are names of the user's.
+    pub(super) fn all(&self, dimension: Dimension) -> Option<NamedNumbers> {
         let mut found = Vec::new();
         for (name, item) in self.table.iter() {
             self.asked.borrow_mut().push(name.into());

@@ -28,7 +28,7 @@ impl TableReader<'_> {
         self.number_of(&declared, dimension, bound)
     }
 
-    fn number_of(&self, key: &Key, dimension: Dimension, bound: Bound) -> Option<f64> {
+    pub(super) fn number_of(&self, key: &Key, dimension: Dimension, bound: Bound) -> Option<f64> {
         let Some(item) = self.item_of(key) else {
             return match key.presence {
                 KeyPresence::Default(text) => parse_number(text),

@@ -22,6 +22,7 @@ pub static CONSTANT_DIAMETER: LawEntry<SizeRule> = LawEntry {
     summary: "The diameter stays and the density follows the mass.",
     source: "docs/theory.md, RXN-1",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(SizeRule::ConstantDiameter),
 };
 
@@ -31,6 +32,7 @@ pub static CONSTANT_DENSITY: LawEntry<SizeRule> = LawEntry {
     summary: "The density stays and particles shrink or grow.",
     source: "docs/theory.md, RXN-1",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(SizeRule::ConstantDensity),
 };
 
@@ -40,6 +42,7 @@ pub static DENSITIES: LawEntry<SizeRule> = LawEntry {
     summary: "Each solid has its own density in the particle.",
     source: "docs/theory.md, RXN-1",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(SizeRule::Densities),
 };
 

@@ -22,6 +22,7 @@ pub(super) static LAW: LawEntry<dyn Conduction> = LawEntry {
     summary: "By Hertz' contact radius.",
     source: "Batchelor and O'Brien, Proc. R. Soc. Lond. A 355 (1977) 313, doi 10.1098/rspa.1977.0100",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(BatchelorObrien),
 };
 

@@ -36,6 +36,7 @@ pub(super) static LAW: LawEntry<dyn GasGap> = LawEntry {
             dimension: Dimension::NONE,
             bound: Bound::Positive,
             default: Some(0.66),
+            needed_with: None,
             meaning: "Radius of the cone of paths between two neighbours over the smaller radius, 0.56 (1 - eps)^(-1/3).",
             example: "0.66",
         },
@@ -44,10 +45,12 @@ pub(super) static LAW: LawEntry<dyn GasGap> = LawEntry {
             dimension: Dimension::NONE,
             bound: Bound::Positive,
             default: Some(1.0),
+            needed_with: None,
             meaning: "Widest gap over the smaller radius.",
             example: "1",
         },
     ],
+    tables: &[],
     make: |values| {
         Box::new(Cheng {
             cone: values[0],

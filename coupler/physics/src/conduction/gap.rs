@@ -73,6 +73,7 @@ pub(super) static NO_GAP: LawEntry<dyn GasGap> = LawEntry {
     summary: "No conduction through the gas between surfaces.",
     source: "",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(NoGap),
 };
 

@@ -26,6 +26,7 @@ pub(super) static LAW: LawEntry<dyn Conduction> = LawEntry {
     summary: "By the circle in which two spheres cut each other, as LIGGGHTS has it; for comparison with it.",
     source: "Chaudhuri, Muzzio and Tomassone, Chem. Eng. Sci. 61 (2006) 6348, doi 10.1016/j.ces.2006.05.034",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(Lens),
 };
 

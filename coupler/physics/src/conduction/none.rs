@@ -13,6 +13,7 @@ pub(super) static LAW: LawEntry<dyn Conduction> = LawEntry {
     summary: "No conduction through contacts.",
     source: "",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(NoConduction),
 };
 

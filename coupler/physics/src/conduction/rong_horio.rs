@@ -59,6 +59,7 @@ pub(super) static LAW: LawEntry<dyn GasGap> = LawEntry {
             dimension: Dimension::NONE,
             bound: Bound::Positive,
             default: Some(0.2),
+            needed_with: None,
             meaning: "Thickness of the film of gas over the radius.",
             example: "0.2",
         },
@@ -67,10 +68,12 @@ pub(super) static LAW: LawEntry<dyn GasGap> = LawEntry {
             dimension: Dimension::LENGTH,
             bound: Bound::Positive,
             default: None,
+            needed_with: None,
             meaning: "Least width of a gap (roughness).",
             example: "\"1 um\"",
         },
     ],
+    tables: &[],
     make: |values| {
         Box::new(RongHorio {
             lens: values[0],

@@ -37,6 +37,7 @@ pub(super) static LAW: LawEntry<dyn Drag> = LawEntry {
     summary: "Random arrays of equal spheres by lattice-Boltzmann simulations, to Reynolds numbers of 1000.",
     source: "Beetstra, van der Hoef and Kuipers, AIChE J. 53 (2007) 489, doi 10.1002/aic.11065",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(Beetstra),
 };
 

@@ -36,6 +36,7 @@ pub(super) static LAW: LawEntry<dyn Drag> = LawEntry {
     summary: "A lone sphere times a power of the void fraction, packed to dilute.",
     source: "Di Felice, Int. J. Multiphase Flow 20 (1994) 153, doi 10.1016/0301-9322(94)90011-6",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(DiFelice),
 };
 

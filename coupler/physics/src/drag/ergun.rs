@@ -28,6 +28,7 @@ pub(super) static LAW: LawEntry<dyn Drag> = LawEntry {
     summary: "Packed beds.",
     source: "Ergun, Chem. Eng. Prog. 48 (1952) 89",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(Ergun),
 };
 

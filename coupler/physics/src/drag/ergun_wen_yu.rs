@@ -35,6 +35,7 @@ pub(super) static LAW: LawEntry<dyn Drag> = LawEntry {
     summary: "Ergun below a void fraction of 0.8, Wen and Yu above.",
     source: "Gidaspow, Multiphase Flow and Fluidization (1994), doi 10.1016/C2009-0-21244-X",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(ErgunWenYu),
 };
 

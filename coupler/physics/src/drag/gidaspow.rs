@@ -38,6 +38,7 @@ pub(super) static LAW: LawEntry<dyn Drag> = LawEntry {
     summary: "Ergun and Wen and Yu with a smooth passage at a void fraction of 0.8.",
     source: "Huilin and Gidaspow, Chem. Eng. Sci. 58 (2003) 3777, doi 10.1016/S0009-2509(03)00238-0",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(Gidaspow),
 };
 

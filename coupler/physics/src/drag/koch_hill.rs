@@ -51,6 +51,7 @@ pub(super) static LAW: LawEntry<dyn Drag> = LawEntry {
     summary: "Random arrays of spheres by lattice-Boltzmann simulations.",
     source: "Koch and Hill, Annu. Rev. Fluid Mech. 33 (2001) 619, doi 10.1146/annurev.fluid.33.1.619",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(KochHill),
 };
 

@@ -51,11 +51,14 @@ pub static DRAG_LAWS: &[&LawEntry<dyn Drag>] = &[
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::NONE;
+    use crate::law::{LawValues, NONE};
     use crate::local::LocalGas;
 
     fn laws() -> Vec<Box<dyn Drag>> {
-        DRAG_LAWS.iter().map(|law| (law.make)(&[])).collect()
+        DRAG_LAWS
+            .iter()
+            .map(|law| (law.make)(&LawValues::default()))
+            .collect()
     }
 
     #[test]

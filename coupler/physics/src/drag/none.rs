@@ -14,6 +14,7 @@ pub(super) static LAW: LawEntry<dyn Drag> = LawEntry {
     summary: "No drag.",
     source: "",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(NoDrag),
 };
 

@@ -35,6 +35,7 @@ pub(super) static LAW: LawEntry<dyn Drag> = LawEntry {
     source: "Tenneti, Garg and Subramaniam, Int. J. Multiphase Flow 37 (2011) 1072, \
              doi 10.1016/j.ijmultiphaseflow.2011.05.010",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(Tenneti),
 };
 

@@ -30,6 +30,7 @@ pub(super) static LAW: LawEntry<dyn Drag> = LawEntry {
     summary: "Suspensions, void fractions above 0.8.",
     source: "Wen and Yu, Chem. Eng. Prog. Symp. Ser. 62 (1966) 100",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(WenYu),
 };
 

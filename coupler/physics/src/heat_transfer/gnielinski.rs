@@ -31,6 +31,7 @@ pub(super) static LAW: LawEntry<dyn HeatTransfer> = LawEntry {
     summary: "Packed beds, from a single sphere in the flow of the gaps.",
     source: "VDI Heat Atlas, chapter G9, doi 10.1007/978-3-540-77877-6_42",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(Gnielinski),
 };
 

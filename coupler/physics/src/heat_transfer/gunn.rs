@@ -24,6 +24,7 @@ pub(super) static LAW: LawEntry<dyn HeatTransfer> = LawEntry {
     summary: "Fixed and fluidised beds, void fractions of 0.35 to 1.",
     source: "Gunn, Int. J. Heat Mass Transfer 21 (1978) 467, doi 10.1016/0017-9310(78)90080-7",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(Gunn),
 };
 

@@ -14,6 +14,7 @@ pub(super) static LAW: LawEntry<dyn HeatTransfer> = LawEntry {
     summary: "No transfer.",
     source: "",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(NoHeatTransfer),
 };
 

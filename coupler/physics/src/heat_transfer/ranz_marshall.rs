@@ -21,6 +21,7 @@ pub(super) static LAW: LawEntry<dyn HeatTransfer> = LawEntry {
     summary: "A single sphere.",
     source: "Ranz and Marshall, Chem. Eng. Prog. 48 (1952) 141",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(RanzMarshall),
 };
 

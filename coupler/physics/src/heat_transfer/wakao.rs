@@ -22,6 +22,7 @@ pub(super) static LAW: LawEntry<dyn HeatTransfer> = LawEntry {
     summary: "Packed beds, Reynolds numbers of 3 to 3000.",
     source: "Wakao, Kaguei and Funazkri, Chem. Eng. Sci. 34 (1979) 325, doi 10.1016/0009-2509(79)85064-2",
     parameters: &[],
+    tables: &[],
     make: |_| Box::new(Wakao),
 };
 

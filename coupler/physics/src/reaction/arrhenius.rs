@@ -2,7 +2,31 @@
 
 use calcine_numerics::Number;
 
+use crate::dimension::Dimension;
 use crate::gas::GAS_CONSTANT;
+use crate::law::{Bound, LawParameter};
+
+/// Key of the exponent b, for laws that take a rate constant from a case.
+pub(super) const EXPONENT: LawParameter = LawParameter {
+    name: "exponent",
+    dimension: Dimension::NONE,
+    bound: Bound::Any,
+    default: Some(0.0),
+    needed_with: None,
+    meaning: "Exponent of the temperature in K.",
+    example: "0.5",
+};
+
+/// Key of the activation energy E.
+pub(super) const ACTIVATION_ENERGY: LawParameter = LawParameter {
+    name: "activation_energy",
+    dimension: Dimension::MOLAR_ENERGY,
+    bound: Bound::Any,
+    default: Some(0.0),
+    needed_with: None,
+    meaning: "Activation energy.",
+    example: "\"60 kJ/mol\"",
+};
 
 /// A rate constant k = A T^b exp(−E/(R T)), or two of them in series, 1/k = 1/k₁ + 1/k₂, where the
 /// slower of two steps (chemistry, diffusion in pores) governs.
@@ -19,6 +43,15 @@ pub struct Arrhenius {
 }
 
 impl Arrhenius {
+    /// From the values of its keys: the factor, [`EXPONENT`] and [`ACTIVATION_ENERGY`].
+    pub(super) fn from_values(values: &[f64]) -> Self {
+        Self {
+            factor: values[0],
+            exponent: values[1],
+            activation_energy: values[2],
+        }
+    }
+
     /// k at a temperature in K.
     pub fn at(&self, temperature: f64) -> f64 {
         let power = if self.exponent == 0.0 {

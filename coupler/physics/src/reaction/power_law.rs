@@ -2,9 +2,10 @@
 
 use calcine_numerics::Number;
 
-use super::arrhenius::{self, Arrhenius};
+use super::arrhenius::{self, ACTIVATION_ENERGY, Arrhenius, EXPONENT};
 use super::rate_law::RateLaw;
-use crate::law::LawEntry;
+use crate::dimension::Dimension;
+use crate::law::{Bound, LawEntry, LawParameter, LawTable, LawValues};
 
 /// Its entry in a case file.
 pub static LAW: LawEntry<RateLaw> = LawEntry {
@@ -12,8 +13,68 @@ pub static LAW: LawEntry<RateLaw> = LawEntry {
     summary: "In the whole particle, by powers of concentrations.",
     source: "docs/theory.md, RXN-1",
     parameters: &[],
-    make: |_| Box::new(RateLaw::PowerLaw),
+    tables: &[RATE],
+    make: |values| Box::new(made(values)),
 };
+
+const RATE: LawTable = LawTable {
+    name: "rate",
+    required: true,
+    meaning: "Rate constant k = factor T^exponent exp(-activation_energy/RT) of the forward reaction.",
+    example: "{ factor = 3e4, activation_energy = \"60 kJ/mol\", orders = { Fe = 1, O2 = 1 } }",
+    by_name: None,
+    parameters: &[FACTOR, EXPONENT, ACTIVATION_ENERGY],
+    tables: &[ORDERS, IN_SERIES],
+};
+
+const FACTOR: LawParameter = LawParameter {
+    name: "factor",
+    dimension: Dimension::NONE,
+    bound: Bound::Positive,
+    default: None,
+    needed_with: None,
+    meaning: "A number in mol, m and s, of the rate in mol/m^3/s by concentrations in mol/m^3.",
+    example: "3e4",
+};
+
+const ORDERS: LawTable = LawTable {
+    name: "orders",
+    required: true,
+    meaning: "Order of each gas and solid; a negative one only of a gas that is always there.",
+    example: "{ Fe = 1, O2 = 1 }",
+    by_name: Some(Dimension::NONE),
+    parameters: &[],
+    tables: &[],
+};
+
+const IN_SERIES: LawTable = LawTable {
+    name: "in_series",
+    required: false,
+    meaning: "A second rate constant in series, 1/k = 1/k1 + 1/k2, such as that of diffusion in pores.",
+    example: "{ factor = 0.2, activation_energy = \"18 kJ/mol\" }",
+    by_name: None,
+    parameters: &[
+        LawParameter {
+            meaning: "As that of the first.",
+            example: "0.2",
+            ..FACTOR
+        },
+        EXPONENT,
+        ACTIVATION_ENERGY,
+    ],
+    tables: &[],
+};
+
+/// From the values of its keys, in the order in which they are declared.
+fn made(values: &LawValues) -> RateLaw {
+    let rate = values.table(0).cloned().unwrap_or_default();
+    let orders = rate.table(0).cloned().unwrap_or_default();
+    RateLaw::PowerLaw {
+        rate_constant: Arrhenius::from_values(&rate),
+        in_series: rate.table(1).map(|slow| Arrhenius::from_values(slow)),
+        orders: orders.by_name,
+    }
+}
 
 /// Rate of a reaction in the volume of a particle in mol/m³/s,
 ///

@@ -1,10 +1,25 @@
 //! Which law the rate of a reaction of particles follows.
 
-/// Where in a particle a reaction takes place, and what its rate goes by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+use super::arrhenius::Arrhenius;
+use super::layer_diffusivity::LayerDiffusivity;
+
+/// Where in a particle a reaction takes place, and what its rate goes by, as a case states it.
+#[derive(Clone, Debug, PartialEq)]
 pub enum RateLaw {
     /// At the surface of a core, see [`super::shrinking_core`].
-    ShrinkingCore,
+    ShrinkingCore {
+        /// k in m/s, of the forward reaction, per area of the interface.
+        rate_constant: Arrhenius,
+        /// Of the gas in the layer that the reaction leaves.
+        diffusivity: LayerDiffusivity,
+    },
     /// In the whole particle, see [`super::power_law`].
-    PowerLaw,
+    PowerLaw {
+        /// k in (mol/m³)^(1 − Σ n)/s.
+        rate_constant: Arrhenius,
+        /// A second step in series with it, in the same unit.
+        in_series: Option<Arrhenius>,
+        /// Order of each gas and solid, by its name.
+        orders: Vec<(String, f64)>,
+    },
 }

@@ -1,9 +1,13 @@
 //! Shrinking cores with any number of interfaces.
 
-use super::rate_law::RateLaw;
-use crate::law::LawEntry;
-use crate::sphere;
 use calcine_numerics::Number;
+
+use super::arrhenius::{ACTIVATION_ENERGY, Arrhenius, EXPONENT};
+use super::layer_diffusivity::LayerDiffusivity;
+use super::rate_law::RateLaw;
+use crate::dimension::Dimension;
+use crate::law::{Bound, LawEntry, LawParameter, LawTable, LawValues};
+use crate::sphere;
 
 /// Its entry in a case file.
 pub static LAW: LawEntry<RateLaw> = LawEntry {
@@ -12,8 +16,83 @@ pub static LAW: LawEntry<RateLaw> = LawEntry {
     source: "Yagi and Kunii, 5th Symposium on Combustion (1955) 231, doi 10.1016/S0082-0784(55)80033-1; Spitzer, \
              Manning and Philbrook, Trans. Metall. Soc. AIME 236 (1966) 1715",
     parameters: &[],
-    make: |_| Box::new(RateLaw::ShrinkingCore),
+    tables: &[RATE, LAYER_DIFFUSIVITY],
+    make: |values| Box::new(made(values)),
 };
+
+const RATE: LawTable = LawTable {
+    name: "rate",
+    required: true,
+    meaning: "Rate constant k = factor T^exponent exp(-activation_energy/RT) of the forward reaction.",
+    example: "{ factor = \"0.3 m/s\", activation_energy = \"70 kJ/mol\" }",
+    by_name: None,
+    parameters: &[
+        LawParameter {
+            name: "factor",
+            dimension: Dimension::VELOCITY,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Of the rate by area of the interface and concentration of the gas.",
+            example: "\"0.3 m/s\"",
+        },
+        EXPONENT,
+        ACTIVATION_ENERGY,
+    ],
+    tables: &[],
+};
+
+const LAYER_DIFFUSIVITY: LawTable = LawTable {
+    name: "layer_diffusivity",
+    required: true,
+    meaning: "Diffusivity of the gas in the pores of the layer that the reaction leaves, value (T/at)^exponent.",
+    example: "{ value = \"1e-5 m^2/s\", at = \"1100 K\", exponent = 1.75 }",
+    by_name: None,
+    parameters: &[
+        LawParameter {
+            name: "value",
+            dimension: Dimension::DIFFUSIVITY,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Its value.",
+            example: "\"1e-5 m^2/s\"",
+        },
+        LawParameter {
+            name: "at",
+            dimension: Dimension::TEMPERATURE,
+            bound: Bound::Positive,
+            default: Some(1.0),
+            needed_with: Some("exponent"),
+            meaning: "The temperature of the value; required with an exponent.",
+            example: "\"1100 K\"",
+        },
+        LawParameter {
+            name: "exponent",
+            dimension: Dimension::NONE,
+            bound: Bound::Any,
+            default: Some(0.0),
+            needed_with: None,
+            meaning: "Exponent of the temperature.",
+            example: "1.75",
+        },
+    ],
+    tables: &[],
+};
+
+/// From the values of its keys, in the order in which they are declared.
+fn made(values: &LawValues) -> RateLaw {
+    let rate = values.table(0).cloned().unwrap_or_default();
+    let layer = values.table(1).cloned().unwrap_or_default();
+    RateLaw::ShrinkingCore {
+        rate_constant: Arrhenius::from_values(&rate),
+        diffusivity: LayerDiffusivity {
+            value: layer[0],
+            at: layer[1],
+            exponent: layer[2],
+        },
+    }
+}
 
 /// One interface of a particle whose layers react from the outside inwards, innermost first.
 #[derive(Clone, Copy, Debug, PartialEq)]
