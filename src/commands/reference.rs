@@ -22,7 +22,7 @@ const EXIT_CODES: &str = "
 | 0 | success |
 | 1 | any failure without a code of its own |
 | 2 | the case or the command line is wrong |
-| 3 | a solver diverged, or a law has no value for the state that it got |
+| 3 | a solver diverged, the inside of a particle could not be integrated, or a law has no value for the state that it got |
 | 4 | a solver died, was silent, or could not be started |
 | 5 | a quantity lies outside its band, or a solver breaks a law of `calcine conform` |
 | 6 | with `--strict`: complete and within all bands, but with [warnings](results.md#warnings) |
