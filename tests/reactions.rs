@@ -98,6 +98,33 @@ fn a_stone_in_a_closed_box_of_its_own_gas_ends_at_equilibrium_whatever_the_windo
     );
 }
 
+/// Over windows of a thousand times what the box takes to equilibrium, a pellet reacts in full or not at all, by the gas
+/// that it is asked about: the rates agree long before the gas does.
+#[test]
+fn a_window_over_which_the_gas_of_a_closed_box_does_not_settle_is_told() {
+    let case = "tests/inputs/good/wustite-box.toml";
+    let folder = tempfile::tempdir().unwrap();
+    let short = run(case, &folder.path().join("short"), &[]);
+    assert!(!short.warnings.contains_key("exchange_attempts"));
+    let moles = value(&short, "carbon_dioxide") / 44.0095 * 28.0101;
+    let constant = (-0.3 + 100.0 / value(&short, "pellet_temperature")).exp();
+    let quotient = moles / value(&short, "carbon_monoxide");
+    assert!(
+        (quotient / constant - 1.0).abs() < 2e-3,
+        "{quotient} {constant}"
+    );
+    let settings = [
+        "time.process_step=1e6 s",
+        "time.end=1e6 s",
+        "output.every=1e6 s",
+    ];
+    let long = run(case, &folder.path().join("long"), &settings);
+    let told = &long.warnings["exchange_attempts"];
+    assert_eq!(told.windows, 1);
+    let apart = value(&long, "wustite") / value(&short, "wustite") - 1.0;
+    assert!(apart.abs() > 0.1, "it has settled: {apart}");
+}
+
 #[test]
 fn iron_that_heats_itself_gains_the_mass_of_the_oxygen_it_takes() {
     let folder = tempfile::tempdir().unwrap();

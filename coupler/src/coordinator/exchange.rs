@@ -86,41 +86,35 @@ impl ExchangeStage {
     ) -> Result<(), RunError> {
         let first = window.attempt;
         let channels = with.interior.has_channels();
-        let fixes = u32::from(channels && limits.last);
         self.begin(with, window);
         self.respond(with, window)?;
         self.tell_rates(with);
-        let (settled, mut misplaced, off) = loop {
-            let misplaced = self.attempt(with, window)?;
-            let mut off = misplaced;
-            if channels {
-                // What the particles say of the gas that came of their lines, beside what the lines said of it.
-                self.follow_rates(with);
-                let extrapolated = self.advance_iterate(with);
-                self.respond(with, window)?;
-                off = larger(larger(off, self.tell_rates(with)), extrapolated);
-            }
-            let settled = off <= limits.tolerance;
-            tracing::debug!(
-                window = window.index,
-                attempt = window.attempt,
-                misplaced,
-                off
-            );
-            if settled || window.attempt - first + fixes >= limits.attempts {
-                break (settled, misplaced, off);
+        let (mut limits, limit) = (limits, limits.attempts);
+        // True where the rates agreed before they had been fixed, but the gas of the fixed rates was another.
+        let mut damped = false;
+        let (settled, misplaced, off) = loop {
+            limits.attempts = limit.saturating_sub(window.attempt - first);
+            let (settled, misplaced, off) = self.iterate(with, (&limits, damped), window)?;
+            if channels && !limits.last {
+                return Ok(());
             }
             if !channels {
-                self.respond(with, window)?;
+                break (settled, misplaced, off);
             }
-        };
-        if channels && !limits.last {
-            return Ok(());
-        }
-        if fixes > 0 {
+            self.iterate.keep(&with.gas.fields());
             self.fix_rates(with, window);
-            misplaced = self.attempt(with, window)?;
-        }
+            let misplaced = self.attempt(with, window)?;
+            // The lines may damp what the fixed rates do not; then the gas comes to where particles may do otherwise.
+            let moved = self.iterate.moved(&with.gas.fields());
+            tracing::debug!(window = window.index, moved, "rates fixed");
+            if !settled || moved <= limits.tolerance {
+                break (settled, misplaced, off);
+            }
+            if window.attempt - first + 1 >= limit {
+                break (false, misplaced, larger(off, moved));
+            }
+            damped = true;
+        };
         if !settled {
             tracing::debug!(
                 window = window.index,
@@ -141,6 +135,48 @@ impl ExchangeStage {
             settled,
         };
         Ok(())
+    }
+
+    /// Attempts until the exchange is where it belongs and what reacts is what the gas has for it, or the limit is
+    /// reached: whether it is, the share of heat in the wrong cells, and how far off the last attempt was. Where lines
+    /// damp the rates, until the gas stays as well.
+    fn iterate(
+        &mut self,
+        with: &mut Participants<'_>,
+        (limits, damped): (&ExchangeLimits, bool),
+        window: &mut Window,
+    ) -> Result<(bool, f64, f64), RunError> {
+        let first = window.attempt;
+        let channels = with.interior.has_channels();
+        let fixes = u32::from(channels && limits.last);
+        loop {
+            let misplaced = self.attempt(with, window)?;
+            let mut off = misplaced;
+            if channels {
+                if damped {
+                    off = larger(off, self.iterate.moved(&with.gas.fields()));
+                    self.iterate.keep(&with.gas.fields());
+                }
+                // What the particles say of the gas that came of their lines, beside what the lines said of it.
+                self.follow_rates(with);
+                let extrapolated = self.advance_iterate(with);
+                self.respond(with, window)?;
+                off = larger(larger(off, self.tell_rates(with)), extrapolated);
+            }
+            let settled = off <= limits.tolerance;
+            tracing::debug!(
+                window = window.index,
+                attempt = window.attempt,
+                misplaced,
+                off
+            );
+            if settled || window.attempt - first + fixes >= limits.attempts {
+                return Ok((settled, misplaced, off));
+            }
+            if !channels {
+                self.respond(with, window)?;
+            }
+        }
     }
 
     /// Spreads what does not change between attempts.
@@ -332,6 +368,8 @@ struct GasIterate {
     level: f64,
     sampled_temperature: Vec<f64>,
     acceleration: Anderson,
+    /// Temperature over [`KELVIN`] and mass fractions of an earlier attempt.
+    kept: Vec<f64>,
     /// Iterate and what came of it as one list, scaled.
     before: Vec<f64>,
     made: Vec<f64>,
@@ -406,6 +444,25 @@ impl GasIterate {
         let mean = |sum: f64| sum.sqrt() / weight;
         let apart = larger((self.level - made).abs(), mean(warmer));
         larger(apart, mean(other))
+    }
+
+    /// Keeps the gas of an attempt.
+    fn keep(&mut self, gas: &GasFields<'_>) {
+        self.kept.clear();
+        let kelvin = gas.temperature.iter().map(|kelvin| kelvin / KELVIN);
+        self.kept
+            .extend(kelvin.chain(gas.composition.iter().copied()));
+    }
+
+    /// How far a gas is from the one that was kept: root mean square over cells of the differences of temperature (over
+    /// [`KELVIN`]) and mass fractions.
+    fn moved(&self, gas: &GasFields<'_>) -> f64 {
+        let kelvin = gas.temperature.iter().map(|kelvin| kelvin / KELVIN);
+        let pairs = kelvin
+            .chain(gas.composition.iter().copied())
+            .zip(&self.kept);
+        let sum: f64 = pairs.map(|(now, before)| (now - before).powi(2)).sum();
+        (sum / gas.temperature.len().max(1) as f64).sqrt()
     }
 
     fn sample(&mut self, operator: &Operator) {
