@@ -4,7 +4,8 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
 
 use crate::support::program::shipped;
 
@@ -325,4 +326,134 @@ fn a_case_that_is_not_there_is_answered_with_those_of_its_folder() {
     assert!(check("my-bad.toml").contains("help: did you mean my-bed.toml?"));
     assert!(check("column").contains("help: name a case; there are my-bed.toml"));
     assert!(check(".").contains("help: name a case; there are my-bed.toml"));
+}
+
+/// A native run in `out` that stops with a checkpoint, long before its end; standard output.
+fn stopped(folder: &Path) -> String {
+    fs::copy(column(), folder.join("my case.toml")).unwrap();
+    let words = ["run", "my case.toml", "--out", "out", "--quiet", "--strict"];
+    let more = ["--threads", "1", "--set", "time.end=1000000 s"];
+    let output = calcine(
+        folder,
+        &[&words[..], &more, &["--stop-after", "0.2s"]].concat(),
+    );
+    assert_eq!(output.status.code(), Some(75), "{output:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn the_line_that_a_stopped_run_prints_continues_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let told = stopped(folder.path());
+    let line = told.trim_end().lines().last().unwrap().trim();
+    assert_eq!(
+        line,
+        "calcine run 'my case.toml' --out out --resume --set 'time.end=1000000 s' --threads 1 --strict --quiet"
+    );
+    let rest = line.strip_prefix("calcine").unwrap();
+    let program = env!("CARGO_BIN_EXE_calcine");
+    let output = Command::new("sh")
+        .args(["-c", &format!("'{program}' {rest} --stop-after 0.2s")])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(75), "{output:?}");
+    assert!(String::from_utf8(output.stdout).unwrap().contains(line));
+}
+
+#[test]
+fn a_sweep_that_is_stopped_does_not_print_a_line_that_resumes_one_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = column();
+    let child = Command::new(env!("CARGO_BIN_EXE_calcine"))
+        .arg("sweep")
+        .arg(&case)
+        .args(["--quiet", "--out", "out"])
+        .args(["--set", "time.end=1000000 s,2000000 s"])
+        .current_dir(folder.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let series = folder.path().join("out/1000000-s/series.csv");
+    let begun = Instant::now();
+    while !series.is_file() && begun.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let id = child.id().to_string();
+    assert!(Command::new("kill").arg(&id).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(75), "{text}");
+    let said =
+        "the sweep is not complete and cannot be resumed: begin it again with another folder";
+    assert!(text.contains(said) && !text.contains("--resume"), "{text}");
+}
+
+#[test]
+fn a_run_is_not_resumed_by_other_solvers_and_its_own_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    stopped(folder.path());
+    let words = ["run", "my case.toml", "--out", "out", "--quiet", "--resume"];
+    let set = ["--set", "time.end=1000000 s"];
+    for other in [["--gas", "openfoam"], ["--particles", "liggghts"]] {
+        let text = refused(folder.path(), 2, &[&words[..], &set, &other].concat());
+        assert!(
+            text.contains(
+                "the run in out has native gas and native particles, this command asks for"
+            ) && text.contains("resume with `--gas native --particles native`"),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn doctor_looks_for_solvers_where_runs_look() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = folder.path().canonicalize().unwrap().join("my-gas");
+    fs::write(&own, "").unwrap();
+    let doctor = |gas: &Path| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
+        let command = command.arg("doctor").env("CALCINE_GASFOAM", gas);
+        let command = command.env("CALCINE_LIGGGHTS_HOST", "/nowhere/host");
+        String::from_utf8(command.output().unwrap().stdout).unwrap()
+    };
+    let text = doctor(&own);
+    let found = format!("calcineGasFoam    {}\n", own.display());
+    assert!(text.contains(&found), "{text}");
+    let why = "calcine-liggghts  /nowhere/host, which the variable CALCINE_LIGGGHTS_HOST names, is no file";
+    assert!(text.contains(why), "{text}");
+    assert!(!text.contains("native+liggghts"), "{text}");
+}
+
+#[test]
+fn a_command_without_its_adapters_says_what_installs_them_in_runs_and_in_doctor() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("calcine");
+    fs::copy(env!("CARGO_BIN_EXE_calcine"), &program).unwrap();
+    let case = column();
+    let run = ["run", case.to_str().unwrap(), "--gas", "openfoam"];
+    for words in [&run[..], &["doctor"]] {
+        let mut command = Command::new(&program);
+        let command = command.args(words).current_dir(folder.path());
+        let command = command.env_remove("CALCINE_GASFOAM");
+        let output = command.output().unwrap();
+        let text = [output.stdout, output.stderr].concat();
+        let text = String::from_utf8(text).unwrap();
+        assert!(text.contains(calcine_adapters::find::REMEDY), "{text}");
+    }
+}
+
+#[test]
+fn a_case_that_is_not_utf_8_is_refused_with_the_place_of_the_byte() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("latin.toml"), b"# a bed\n# caf\xe9\n").unwrap();
+    let text = refused(folder.path(), 2, &["check", "latin.toml"]);
+    for words in [
+        "the case file is not UTF-8: byte 6 of line 2 is 0xE9",
+        "# caf\u{fffd}",
+        "help: save the file as UTF-8",
+    ] {
+        assert!(text.contains(words), "{text}");
+    }
 }

@@ -171,43 +171,6 @@ impl Program {
     }
 }
 
-/// Finds a program of Calcine: the variable's path, or beside the running executable (also one folder
-/// up, for tests; in `openfoam/bin` of the target folder; in `libexec/calcine` of an installation).
-pub fn find_program(variable: &str, name: &str, remedy: &str) -> Result<PathBuf, PartError> {
-    if let Some(path) = std::env::var_os(variable).map(PathBuf::from) {
-        if path.is_file() {
-            return Ok(path);
-        }
-        let message = format!(
-            "{}, which the variable {variable} names, is no file: name the program, or unset the variable",
-            path.display()
-        );
-        return Err(PartError::new(name, FailureKind::NotStarted, message));
-    }
-    let own = std::env::current_exe()
-        .and_then(|path| path.canonicalize())
-        .unwrap_or_default();
-    let folder = own.parent().unwrap_or(Path::new("."));
-    let places = [
-        ".",
-        "..",
-        "../libexec/calcine",
-        "../openfoam/bin",
-        "../../openfoam/bin",
-    ];
-    let found = places
-        .map(|place| folder.join(place).join(name))
-        .into_iter()
-        .find(|path| path.is_file());
-    found.ok_or_else(|| {
-        let place = folder.display();
-        let message = format!(
-            "the program was found neither in {place} nor in the variable {variable}; {remedy}"
-        );
-        PartError::new(name, FailureKind::NotStarted, message)
-    })
-}
-
 /// Has MPI start a program on every rank, its output in a log; gives the coordinator's ends.
 pub fn spawn(
     network: &dyn SolverNetwork,
@@ -237,7 +200,7 @@ pub fn spawn(
 }
 
 /// A word for a shell.
-fn quoted(word: &OsStr) -> String {
+pub fn quoted(word: &OsStr) -> String {
     format!("'{}'", word.to_string_lossy().replace('\'', "'\\''"))
 }
 

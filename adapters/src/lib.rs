@@ -5,6 +5,7 @@
 
 pub mod answer;
 pub mod external;
+pub mod find;
 pub mod gas;
 mod gas_columns;
 pub mod launch;

@@ -49,7 +49,7 @@ pub fn read(path: &Path, set: &[String]) -> Result<Case, CaseErrors> {
 
 /// Reads a case file that may choose among these laws.
 pub fn read_with(path: &Path, set: &[String], laws: &LawCatalogue) -> Result<Case, CaseErrors> {
-    let text = std::fs::read_to_string(path).map_err(|cause| {
+    let bytes = std::fs::read(path).map_err(|cause| {
         one(
             path,
             "",
@@ -58,7 +58,27 @@ pub fn read_with(path: &Path, set: &[String], laws: &LawCatalogue) -> Result<Cas
             &table::instead_of_file(path),
         )
     })?;
+    let text = String::from_utf8(bytes).map_err(|error| not_utf8(path, &error))?;
     parse_with(path, &text, set, laws)
+}
+
+/// A case file in another encoding: the first byte that is wrong, with its line.
+fn not_utf8(path: &Path, error: &std::string::FromUtf8Error) -> CaseErrors {
+    let (bytes, at) = (error.as_bytes(), error.utf8_error().valid_up_to());
+    let before = bytes.get(..at).unwrap_or_default();
+    let line = 1 + before.iter().filter(|&&byte| byte == b'\n').count();
+    let start = before.iter().rposition(|&byte| byte == b'\n');
+    let column = 1 + at - start.map_or(0, |newline| newline + 1);
+    let byte = bytes.get(at).copied().unwrap_or_default();
+    one(
+        path,
+        &String::from_utf8_lossy(bytes),
+        at..at + char::REPLACEMENT_CHARACTER.len_utf8(),
+        format!(
+            "the case file is not UTF-8: byte {column} of line {line} is 0x{byte:02X}, which is no character there"
+        ),
+        "save the file as UTF-8",
+    )
 }
 
 /// Checks the text of a case file; `path` places relative paths and messages.

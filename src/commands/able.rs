@@ -1,5 +1,7 @@
 //! Whether pairings can run a case on this machine, found out before anything runs.
 
+use calcine_adapters::find::REMEDY;
+
 use super::doctor;
 use super::failure::Failure;
 use crate::assembly::{Pairing, SolverStarts, programs};
@@ -14,7 +16,7 @@ pub(super) fn able(valid: &ValidCase, pairing: Pairing) -> Result<(), Failure> {
         let absent = doctor::absent_libraries(&program);
         if !absent.is_empty() {
             return Err(missing(format!(
-                "{} needs {}, which is not on this machine: `cargo xtask setup` installs it",
+                "{} needs {}, which is not on this machine; {REMEDY}",
                 program.display(),
                 absent.join(", ")
             )));
@@ -23,10 +25,9 @@ pub(super) fn able(valid: &ValidCase, pairing: Pairing) -> Result<(), Failure> {
     let starts = SolverStarts::of(&valid.case, pairing);
     let parallel = !pairing.is_native() && starts.gas.ranks.max(starts.particles.ranks) > 1;
     if parallel && doctor::mpi().is_none() {
-        return Err(missing(
-            "mpirun is not on this machine, and the case asks for several ranks: `cargo xtask setup` installs it"
-                .into(),
-        ));
+        return Err(missing(format!(
+            "mpirun is not on this machine, and the case asks for several ranks; {REMEDY}"
+        )));
     }
     Ok(valid.honoured_by(pairing)?)
 }

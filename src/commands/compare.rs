@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::able::able;
 use super::console::say;
+use super::continuation::begin_again;
 use super::execute::{self, Settings};
 use super::failure::Failure;
 use super::inputs::results_folder;
@@ -111,6 +112,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         let free = unoccupied(&out.join(pairing.name()));
         free.map_err(|error| Failure::told(exit::CASE, &error))?;
     }
+    let go_on = begin_again("comparison", &out);
     let mut runs = Vec::new();
     for pairing in pairings {
         let folder = out.join(pairing.name());
@@ -125,6 +127,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
             progress: !arguments.quiet,
             stop_after: None,
             strict: false,
+            go_on: &go_on,
         };
         let done = execute::execute(&case, &prepared, &settings)?;
         say(&done.text);

@@ -2,11 +2,18 @@
 //!
 //! It looks, it starts no solver, and it works where none is installed.
 
-use std::env;
 use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+
+use calcine_adapters::find::{NotFound, REMEDY, look_for};
+use calcine_adapters::{liggghts, openfoam};
+
+/// The program that spawns solvers by MPI.
+pub(super) const MPI_PROGRAM: &str = "calcine-mpi";
+/// The variable that names another one.
+pub(super) const MPI_VARIABLE: &str = "CALCINE_MPI";
 
 /// Free shared memory in bytes below which a coupled run may not start: Docker gives a
 /// container 64 MB in all.
@@ -43,6 +50,8 @@ pub enum Adapter {
     /// Not built, or not where Calcine looks for it.
     #[default]
     Missing,
+    /// The variable that names it names no file: in words, with the remedy.
+    Misnamed(String),
     /// There, but these shared libraries of its are not.
     Broken(PathBuf, Vec<String>),
     /// There.
@@ -50,13 +59,12 @@ pub enum Adapter {
 }
 
 impl Adapter {
-    fn find(name: &str, folders: &[PathBuf]) -> Self {
-        let Some(path) = folders
-            .iter()
-            .map(|folder| folder.join(name))
-            .find(|path| path.is_file())
-        else {
-            return Self::Missing;
+    /// Looks where a run looks.
+    fn find(variable: &str, name: &str) -> Self {
+        let path = match look_for(variable, name) {
+            Ok(path) => path,
+            Err(why @ NotFound::Misnamed { .. }) => return Self::Misnamed(why.to_string()),
+            Err(NotFound::Nowhere { .. }) => return Self::Missing,
         };
         let path = path.canonicalize().unwrap_or(path);
         let absent = absent_libraries(&path);
@@ -70,12 +78,18 @@ impl Adapter {
     fn works(&self) -> bool {
         matches!(self, Self::Found(_))
     }
+
+    /// True where there is nothing to install: it works, or its variable is to be mended.
+    fn needs_nothing(&self) -> bool {
+        matches!(self, Self::Found(_) | Self::Misnamed(_))
+    }
 }
 
 impl fmt::Display for Adapter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Missing => f.write_str("not found"),
+            Self::Misnamed(why) => f.write_str(why),
             Self::Broken(path, libraries) => {
                 write!(
                     f,
@@ -91,17 +105,16 @@ impl fmt::Display for Adapter {
 
 /// Looks at this machine.
 pub fn run() -> DoctorReport {
-    let folders = adapter_folders();
     DoctorReport {
         system: system(),
         processors: std::thread::available_parallelism().map_or(1, usize::from),
         hdf5: hdf5_version(),
         mpi: mpi(),
         openfoam: package_version("openfoam"),
-        openfoam_adapter: Adapter::find("calcineGasFoam", &folders),
+        openfoam_adapter: Adapter::find(openfoam::SOLVER_VARIABLE, openfoam::SOLVER),
         liggghts: package_version("libliggghts-dev").or_else(|| package_version("liggghts")),
-        liggghts_adapter: Adapter::find("calcine-liggghts", &folders),
-        mpi_adapter: Adapter::find("calcine-mpi", &folders),
+        liggghts_adapter: Adapter::find(liggghts::HOST_VARIABLE, liggghts::HOST),
+        mpi_adapter: Adapter::find(MPI_VARIABLE, MPI_PROGRAM),
         shared_memory: shared_memory(Path::new("/dev/shm")),
     }
 }
@@ -115,22 +128,6 @@ pub(super) fn absent_libraries(program: &Path) -> Vec<String> {
         .filter_map(|line| line.split_whitespace().next())
         .map(str::to_owned)
         .collect()
-}
-
-/// Folders in which adapters lie: beside the command, installed (PREFIX/libexec/calcine), and in
-/// Cargo's target folder, where the command itself lies in TARGET/PROFILE.
-fn adapter_folders() -> Vec<PathBuf> {
-    let own = env::current_exe()
-        .and_then(|path| path.canonicalize())
-        .unwrap_or_default();
-    let Some(folder) = own.parent() else {
-        return Vec::new();
-    };
-    let mut folders = vec![folder.to_path_buf()];
-    for other in ["../libexec/calcine", "../openfoam/bin"] {
-        folders.push(folder.join(other));
-    }
-    folders
 }
 
 fn system() -> Option<String> {
@@ -198,16 +195,16 @@ impl DoctorReport {
         self.liggghts.is_some() && self.mpi.is_some() && self.liggghts_adapter.works()
     }
 
-    /// Names of what is missing.
+    /// Names of what is missing and can be installed.
     fn missing(&self) -> Vec<&'static str> {
         let all = [
             ("HDF5", self.hdf5.is_some()),
             ("MPI", self.mpi.is_some()),
             ("OpenFOAM", self.openfoam.is_some()),
-            ("calcineGasFoam", self.openfoam_adapter.works()),
+            ("calcineGasFoam", self.openfoam_adapter.needs_nothing()),
             ("LIGGGHTS", self.liggghts.is_some()),
-            ("calcine-liggghts", self.liggghts_adapter.works()),
-            ("calcine-mpi", self.mpi_adapter.works()),
+            ("calcine-liggghts", self.liggghts_adapter.needs_nothing()),
+            ("calcine-mpi", self.mpi_adapter.needs_nothing()),
         ];
         all.into_iter()
             .filter(|(_, here)| !here)
@@ -288,12 +285,7 @@ impl fmt::Display for DoctorReport {
         if missing.is_empty() {
             return Ok(());
         }
-        write!(
-            f,
-            "\nmissing: {}. In a clone of Calcine, this installs and builds it:\n  \
-             cargo xtask setup --all",
-            missing.join(", ")
-        )
+        write!(f, "\nmissing: {}\n  {REMEDY}", missing.join(", "))
     }
 }
 
@@ -323,7 +315,10 @@ mod tests {
             text.contains("pairings that run here: native+native\n"),
             "{text}"
         );
-        assert!(text.ends_with("cargo xtask setup --all"), "{text}");
+        assert!(text.ends_with(REMEDY), "{text}");
+        for command in ["cargo xtask setup --all", "cargo xtask install --prefix"] {
+            assert!(REMEDY.contains(command), "{REMEDY}");
+        }
         assert!(
             text.contains("missing: HDF5, MPI, OpenFOAM, calcineGasFoam, LIGGGHTS"),
             "{text}"
@@ -355,7 +350,7 @@ mod tests {
             text.contains("/opt/calcine-liggghts, but without libliggghts.so"),
             "{text}"
         );
-        assert!(text.contains("missing: calcine-liggghts."), "{text}");
+        assert!(text.contains("missing: calcine-liggghts\n"), "{text}");
     }
 
     #[test]

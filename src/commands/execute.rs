@@ -10,7 +10,7 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
 use super::failure::{Failure, chain};
-use super::parallel::{self, Transport};
+use super::parallel::Transport;
 use crate::assembly::{Pairing, PreparedCase, SolverStarts};
 use crate::case::model::Case;
 use crate::case::{buoyancy, expectations};
@@ -40,6 +40,8 @@ pub(super) struct Settings<'a> {
     pub(super) stop_after: Option<Duration>,
     /// Ends with an exit code of its own where a complete run has warnings.
     pub(super) strict: bool,
+    /// How to go on after an interrupt, in words.
+    pub(super) go_on: &'a str,
 }
 
 /// How a run ended.
@@ -97,12 +99,9 @@ pub(super) fn execute(
         }
         Ok(Ending::Checkpointed(path)) => {
             let text = format!(
-                "stopped with a checkpoint in {}; continue with\n  calcine run {} --out {} --resume{}{}",
+                "stopped with a checkpoint in {}; {}",
                 path.display(),
-                case.path.display(),
-                out.display(),
-                backend_flags(settings.pairing),
-                parallel::flags(settings.starts),
+                settings.go_on,
             );
             Ok(Done {
                 code: exit::CHECKPOINTED,
@@ -208,18 +207,6 @@ fn failed(out: &Path, failure: &SimulationError) -> Failure {
         ));
     }
     Failure::new(failure.exit_code(), message)
-}
-
-fn backend_flags(pairing: Pairing) -> String {
-    if pairing.is_native() {
-        String::new()
-    } else {
-        format!(
-            " --gas {} --particles {}",
-            pairing.gas.name(),
-            pairing.particles.name()
-        )
-    }
 }
 
 /// Turns Ctrl-C, SIGTERM and `--stop-after` into interrupts.

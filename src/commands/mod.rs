@@ -5,6 +5,7 @@ mod check;
 mod compare;
 mod conform;
 mod console;
+mod continuation;
 pub mod doctor;
 mod execute;
 mod failure;
@@ -17,18 +18,20 @@ mod reference;
 mod report;
 mod run;
 mod schema;
+mod shell;
 mod sweep;
 
 use std::os::unix::process::CommandExt;
 use std::process::{self, ExitCode};
 use std::sync::Arc;
 
-use calcine_adapters::launch::find_program;
+use calcine_adapters::find::find_program;
 use calcine_wire::SolverNetwork;
 use clap::{Parser, Subcommand};
 
 use crate::exit;
 use console::say;
+use doctor::{MPI_PROGRAM, MPI_VARIABLE};
 pub use failure::Failure;
 use failure::chain;
 
@@ -91,8 +94,7 @@ pub fn run_line(network: Option<&Arc<dyn SolverNetwork>>) -> u8 {
 
 /// Replaces this process by `calcine-mpi` with the same words; returns only where that fails.
 fn become_mpi() -> Failure {
-    let remedy = "`cargo xtask setup` installs what it needs and builds it";
-    let program = match find_program("CALCINE_MPI", "calcine-mpi", remedy) {
+    let program = match find_program(MPI_VARIABLE, MPI_PROGRAM) {
         Ok(program) => program,
         Err(error) => return Failure::new(exit::PEER, chain(&error)),
     };

@@ -7,6 +7,7 @@ use calcine_wire::SolverNetwork;
 use clap::{Args, ValueEnum};
 
 use super::failure::Failure;
+use super::shell::word;
 use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStart, SolverStarts};
 use crate::exit;
 
@@ -148,7 +149,10 @@ pub(super) fn flags(starts: &SolverStarts) -> String {
             text.push_str(&format!(" --ranks-{name} {}", start.ranks));
         }
         if let Launcher::Own(words) = &start.launcher {
-            text.push_str(&format!(" --launch-{name} \"{}\"", words.join(" ")));
+            text.push_str(&format!(
+                " --launch-{name} {}",
+                word(words.join(" ").as_ref())
+            ));
         }
     }
     let both = [&starts.gas, &starts.particles];
@@ -187,7 +191,7 @@ mod tests {
         let words = ["--ranks-gas", "16", "--launch-gas", "srun -n 16"];
         let read = starts(&words, "openfoam+native").unwrap();
         assert_eq!(read.gas.ranks, 16);
-        assert_eq!(flags(&read), " --ranks-gas 16 --launch-gas \"srun -n 16\"");
+        assert_eq!(flags(&read), " --ranks-gas 16 --launch-gas 'srun -n 16'");
         assert_eq!(flags(&starts(&[], "native+native").unwrap()), "");
     }
 

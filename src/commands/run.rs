@@ -8,6 +8,7 @@ use calcine_wire::SolverNetwork;
 use clap::Args;
 
 use super::console::say;
+use super::continuation::Line;
 use super::execute::{self, Settings};
 use super::failure::Failure;
 use super::inputs::{read_and_prepare, results_folder};
@@ -75,11 +76,21 @@ pub(super) fn run(
         gas: arguments.gas,
         particles: arguments.particles,
     };
+    let of_case = SolverStarts::of(&case, pairing);
+    let starts = arguments.parallel.starts(pairing, &of_case, network)?;
+    let line = Line {
+        case: &arguments.case,
+        out: &out,
+        pairing,
+        starts: &starts,
+        set: &arguments.set,
+        threads: arguments.threads,
+        strict: arguments.strict,
+        quiet: arguments.quiet,
+    };
     let settings = Settings {
         pairing,
-        starts: &arguments
-            .parallel
-            .starts(pairing, &SolverStarts::of(&case, pairing), network)?,
+        starts: &starts,
         transport: arguments.parallel.transport(),
         out: &out,
         resume: arguments.resume,
@@ -87,6 +98,7 @@ pub(super) fn run(
         progress: !arguments.quiet,
         stop_after: arguments.stop_after,
         strict: arguments.strict,
+        go_on: &format!("continue with\n  {}", line.resume()),
     };
     let done = execute::execute(&case, &prepared, &settings)?;
     say(&done.text);

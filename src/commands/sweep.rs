@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::console::say;
+use super::continuation::begin_again;
 use super::execute::{self, Settings};
 use super::failure::Failure;
 use super::inputs::{read_and_prepare, read_case, results_folder};
@@ -88,11 +89,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         let free = unoccupied(&out.join(folder_name(settings)));
         free.map_err(|error| Failure::told(exit::CASE, &error))?;
     }
+    let go_on = begin_again("sweep", &out);
     let mut points = Vec::new();
     for settings in combinations {
         let folder = out.join(folder_name(&settings));
         say(settings.join("  "));
-        one(arguments, &settings, &folder)?;
+        one(arguments, &settings, &folder, &go_on)?;
         points.push(Point { settings, folder });
     }
     let table = table(&points, &axes, reference, arguments.span)?;
@@ -117,7 +119,12 @@ fn writable(path: &Path) -> std::io::Result<()> {
     }
 }
 
-fn one(arguments: &Arguments, settings: &[String], folder: &Path) -> Result<(), Failure> {
+fn one(
+    arguments: &Arguments,
+    settings: &[String],
+    folder: &Path,
+    go_on: &str,
+) -> Result<(), Failure> {
     let (case, prepared) = read_and_prepare(&arguments.case, settings)?;
     let pairing = Pairing {
         gas: arguments.gas,
@@ -133,6 +140,7 @@ fn one(arguments: &Arguments, settings: &[String], folder: &Path) -> Result<(), 
         progress: !arguments.quiet,
         stop_after: None,
         strict: false,
+        go_on,
     };
     let done = execute::execute(&case, &prepared, &settings)?;
     if done.code == exit::CHECKPOINTED {

@@ -181,6 +181,9 @@ impl SimulationBuilder {
         if again && !(folder::begun_before(&out) && results::may_start_again(&out, &case.hash)?) {
             return Err(SimulationError::NoCheckpoint { folder: out });
         }
+        if resume {
+            folder::same_solvers(&out, self.pairing)?;
+        }
         let begun_from = folder::begun_from(self.from.as_deref(), again, &out);
         let begun_from = begun_from.filter(|_| !resume);
         let continued = begun_from.map(|from| folder::origin(&from, self.pairing));

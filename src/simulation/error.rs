@@ -52,6 +52,21 @@ pub enum SimulationError {
         /// The results folder.
         folder: PathBuf,
     },
+    /// The checkpoint to resume from is of other solvers.
+    #[error(
+        "the run in {folder} has {found}, this command asks for {asked}, and the state of one solver is no start of \
+         another: resume with `{words}`"
+    )]
+    OtherSolvers {
+        /// The results folder.
+        folder: PathBuf,
+        /// Its solvers.
+        found: String,
+        /// Those asked for.
+        asked: String,
+        /// The words of the command line that ask for its solvers.
+        words: String,
+    },
     /// The results to continue from are of another gas solver.
     #[error(
         "--from {folder}: the results are of the gas backend `{found}`, this run has `{asked}`, and the state of \

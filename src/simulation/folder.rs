@@ -166,6 +166,25 @@ pub fn finished(folder: &Path) -> Option<Summary> {
     (!ended_early).then_some(summary)
 }
 
+/// Refuses to resume a run by other solvers than it had.
+pub(super) fn same_solvers(out: &Path, pairing: Pairing) -> Result<(), SimulationError> {
+    // Where there is no summary to ask, the solvers refuse what they cannot read.
+    let Ok(Summary { backend, .. }) = Summary::read(out) else {
+        return Ok(());
+    };
+    let asked = (pairing.gas.name(), pairing.particles.name());
+    if (backend.gas.as_str(), backend.particles.as_str()) == asked {
+        return Ok(());
+    }
+    let solvers = |gas: &str, particles: &str| format!("{gas} gas and {particles} particles");
+    Err(SimulationError::OtherSolvers {
+        folder: out.to_owned(),
+        found: solvers(&backend.gas, &backend.particles),
+        asked: solvers(asked.0, asked.1),
+        words: format!("--gas {} --particles {}", backend.gas, backend.particles),
+    })
+}
+
 /// The folder that a run continues from: the one that the user names, or where a run is to begin
 /// again the one that it began from.
 pub(super) fn begun_from(asked: Option<&Path>, again: bool, out: &Path) -> Option<PathBuf> {

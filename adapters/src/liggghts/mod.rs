@@ -13,7 +13,8 @@ use calcine_coupler::supervisor::Supervisor;
 use calcine_wire::hello::{NEW, hash_text, particles_hash};
 use calcine_wire::{Catalogue, Hello};
 
-use crate::launch::{Launcher, Program, find_program};
+use crate::find::find_program;
+use crate::launch::{Launcher, Program};
 use crate::liggghts::inputs::{Inputs, SCRIPT};
 use crate::particles::{self, LinkedParticles};
 use crate::solver::{ExternalSolver, Launch};
@@ -52,8 +53,7 @@ pub struct LiggghtsLaunch<'a> {
 
 /// The host's program.
 pub fn find() -> Result<PathBuf, PartError> {
-    let remedy = "`cargo xtask setup` installs LIGGGHTS and builds it";
-    find_program(HOST_VARIABLE, HOST, remedy)
+    find_program(HOST_VARIABLE, HOST)
 }
 
 impl LiggghtsLaunch<'_> {

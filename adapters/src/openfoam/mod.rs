@@ -24,8 +24,9 @@ use calcine_coupler::supervisor::Supervisor;
 use calcine_wire::Hello;
 use calcine_wire::hello::NEW;
 
+use crate::find::find_program;
 use crate::gas::LinkedGas;
-use crate::launch::{Launcher, Program, find_program};
+use crate::launch::{Launcher, Program};
 use crate::solver::{ExternalSolver, Launch};
 use case::OpenfoamCase;
 use names::NAME;
@@ -166,8 +167,7 @@ impl OpenfoamLaunch<'_> {
 
 /// The program of a solver, and calcineGasFoam, beside which the coupling's library lies.
 pub fn find(solver: StockSolver) -> Result<(PathBuf, PathBuf), PartError> {
-    let remedy = "`cargo xtask setup` installs OpenFOAM and builds it";
-    let own = find_program(SOLVER_VARIABLE, SOLVER, remedy)?;
+    let own = find_program(SOLVER_VARIABLE, SOLVER)?;
     let path = match solver.is_stock() {
         true => stock_program(solver.name())?,
         false => own.clone(),
