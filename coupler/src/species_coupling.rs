@@ -314,7 +314,7 @@ impl SpeciesCoupling {
             if slope == 0.0 && offset == 0.0 {
                 continue;
             }
-            let fraction = channel.key.map_or(0.0, |key| fractions[key]);
+            let fraction = fraction(&self.fractions, cell, species, channel);
             let rate = slope * fraction - offset;
             let taken = lines.implicit[cell];
             for (k, mass) in channel.mass.iter().enumerate().filter(|(_, m)| **m != 0.0) {

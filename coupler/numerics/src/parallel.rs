@@ -12,19 +12,7 @@ pub const ALONE: usize = 4 * CHUNK;
 /// Sets every element to a function of its index.
 #[inline]
 pub fn fill<T: Send>(values: &mut [T], value: impl Fn(usize) -> T + Sync) {
-    let chunk = |start: usize, values: &mut [T]| {
-        for (i, slot) in values.iter_mut().enumerate() {
-            *slot = value(start + i);
-        }
-    };
-    if values.len() <= ALONE {
-        chunk(0, values);
-    } else {
-        values
-            .par_chunks_mut(CHUNK)
-            .enumerate()
-            .for_each(|(k, values)| chunk(k * CHUNK, values));
-    }
+    update(values, |index, slot| *slot = value(index));
 }
 
 /// Changes every element, given its index.

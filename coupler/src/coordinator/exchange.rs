@@ -368,7 +368,7 @@ struct GasIterate {
     level: f64,
     sampled_temperature: Vec<f64>,
     acceleration: Anderson,
-    /// Temperature over [`KELVIN`] and mass fractions of an earlier attempt.
+    /// The gas of an earlier attempt, scaled.
     kept: Vec<f64>,
     /// Iterate and what came of it as one list, scaled.
     before: Vec<f64>,
@@ -401,12 +401,6 @@ impl GasIterate {
         let cells = gas.temperature.len();
         // The one level weighs as much as a field.
         let weight = (cells.max(1) as f64).sqrt();
-        let scaled = |temperature: &[f64], composition: &[f64], level: f64, out: &mut Vec<f64>| {
-            out.clear();
-            out.extend(temperature.iter().map(|kelvin| kelvin / KELVIN));
-            out.extend_from_slice(composition);
-            out.push(weight * level);
-        };
         let made = level(gas.pressure);
         scaled(
             &self.temperature,
@@ -448,19 +442,16 @@ impl GasIterate {
 
     /// Keeps the gas of an attempt.
     fn keep(&mut self, gas: &GasFields<'_>) {
-        self.kept.clear();
-        let kelvin = gas.temperature.iter().map(|kelvin| kelvin / KELVIN);
-        self.kept
-            .extend(kelvin.chain(gas.composition.iter().copied()));
+        let own = level(gas.pressure);
+        scaled(gas.temperature, gas.composition, own, &mut self.kept);
     }
 
-    /// How far a gas is from the one that was kept: root mean square over cells of the differences of temperature (over
-    /// [`KELVIN`]) and mass fractions.
-    fn moved(&self, gas: &GasFields<'_>) -> f64 {
-        let kelvin = gas.temperature.iter().map(|kelvin| kelvin / KELVIN);
-        let pairs = kelvin
-            .chain(gas.composition.iter().copied())
-            .zip(&self.kept);
+    /// How far a gas is from the one that was kept: the root of the sum over temperature (over [`KELVIN`]), mass fractions
+    /// and logarithm of the mean pressure of their mean square differences.
+    fn moved(&mut self, gas: &GasFields<'_>) -> f64 {
+        let own = level(gas.pressure);
+        scaled(gas.temperature, gas.composition, own, &mut self.made);
+        let pairs = self.made.iter().zip(&self.kept);
         let sum: f64 = pairs.map(|(now, before)| (now - before).powi(2)).sum();
         (sum / gas.temperature.len().max(1) as f64).sqrt()
     }
@@ -479,6 +470,15 @@ impl GasIterate {
             ..gas
         }
     }
+}
+
+/// A gas as one list: temperatures in K over [`KELVIN`], mass fractions, and the logarithm of its mean pressure, which weighs
+/// as much as a field.
+fn scaled(temperature: &[f64], composition: &[f64], level: f64, out: &mut Vec<f64>) {
+    out.clear();
+    out.extend(temperature.iter().map(|kelvin| kelvin / KELVIN));
+    out.extend_from_slice(composition);
+    out.push((temperature.len().max(1) as f64).sqrt() * level);
 }
 
 /// Logarithm of the mean pressure in Pa.
