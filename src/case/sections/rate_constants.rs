@@ -21,11 +21,11 @@ pub(super) fn possible(reaction: &TableReader<'_>, rate: &Rate) {
     };
     match rate {
         Rate::Core { rate_constant, .. } => {
-            let why = "molecules meet a surface at 1400 m/s at most";
+            let why = "above 1.4e5 m/s, where molecules meet a surface at 1400 m/s at most";
             within(&table, rate_constant, FASTEST_SURFACE, (" m/s", why));
         }
         Rate::Power(law) => {
-            let why = "molecules vibrate 1e14 times a second";
+            let why = "above 1e30, where molecules vibrate 1e14 times a second";
             let words = (" in mol, m and s", why);
             within(&table, &law.rate_constant, FASTEST_VOLUME, words);
             if let (Some(constant), Some(table)) = (&law.in_series, table.table("in_series")) {
@@ -40,7 +40,7 @@ fn within(table: &TableReader<'_>, constant: &Arrhenius, most: f64, words: (&str
     let beyond = |kelvin: &&f64| !(0.0..=most).contains(&constant.at(**kelvin));
     if let Some(kelvin) = LOOKED_AT.iter().find(beyond) {
         let rule = format!(
-            "makes the rate constant {:.3e}{unit} at {kelvin} K, above {most:e}{unit}, where {why}",
+            "makes the rate constant {:.3e}{unit} at {kelvin} K, {why}",
             constant.at(*kelvin)
         );
         let help = "correct the factor and its unit, `exponent` or `activation_energy`";
