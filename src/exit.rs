@@ -59,6 +59,7 @@ pub fn of(error: &RunError) -> u8 {
         | RunError::NoFollowingDrag { .. } => CASE,
         RunError::NoDragImpulse { .. } => PEER,
         RunError::Closure { .. }
+        | RunError::NotFinite(_)
         | RunError::Interior {
             cause: ParticleModelError::Particle { .. },
             ..

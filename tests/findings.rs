@@ -158,7 +158,7 @@ fn iterations_that_end_at_their_limits_are_counted_over_a_resume_and_told_of_onc
     let start = |resume| {
         let keys = [
             "gas.controls={ outer_iterations = 1 }",
-            "coupling.exchange={ attempts = 1, tolerance = 1e-12 }",
+            "coupling.exchange={ attempts = 1, tolerance = 1e-12, cuts = 0 }",
         ];
         let builder = Simulation::open(good("reactions")).out(&out);
         let builder = keys

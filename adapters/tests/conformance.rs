@@ -28,6 +28,7 @@ fn openfoam_obeys(ranks: u32) {
                 mesh: Arc::clone(mesh),
                 template: None,
                 start: None,
+                gas: None,
                 solver: StockSolver::default(),
                 case_hash: "conformance".into(),
                 folder: folder.path().join(format!("case-{launched}")),

@@ -12,6 +12,7 @@ pub mod excursion;
 pub mod extreme;
 pub mod feeds;
 pub mod findings;
+pub mod finite;
 pub mod gas_chemistry;
 pub mod held;
 pub mod hold;

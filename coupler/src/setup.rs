@@ -181,6 +181,19 @@ pub enum WallHeat {
     },
 }
 
+/// Fields of a gas that any gas solver can start from, one value a cell.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GasStart {
+    /// Temperature in K.
+    pub temperature: Vec<f64>,
+    /// Absolute pressure in Pa.
+    pub pressure: Vec<f64>,
+    /// Superficial velocity in m/s of motion time.
+    pub velocity: Vec<Vec3>,
+    /// Mass fractions, species by species within each cell; empty for a single gas.
+    pub composition: Vec<f64>,
+}
+
 /// The particles at the start of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParticleSetup {
@@ -206,5 +219,16 @@ impl ParticleSetup {
     /// Number of real particles that a row stands for.
     pub fn weight_of(&self, row: usize) -> f64 {
         self.weight.get(row).copied().unwrap_or(1.0)
+    }
+
+    /// Puts a row of other particles behind its own.
+    pub fn take(&mut self, others: &Self, row: usize) {
+        self.id.push(others.id[row]);
+        self.population.push(others.population[row]);
+        self.position.push(others.position[row]);
+        self.radius.push(others.radius[row]);
+        self.density.push(others.density[row]);
+        self.velocity.extend(others.velocity.get(row));
+        self.weight.extend(others.weight.get(row));
     }
 }

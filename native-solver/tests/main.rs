@@ -17,6 +17,7 @@ mod flame;
 mod grains;
 mod multigrid;
 mod numerics;
+mod planted;
 mod resume;
 mod species;
 mod stirred;

@@ -40,10 +40,14 @@ pub fn assemble_with(
     supervisor: &mut Supervisor,
     models: &ModelFactory<'_>,
 ) -> Result<CoupledRun, AssemblyError> {
-    if let Some(origin) = settings.from {
-        let species = case.gas.properties.species();
-        origin.check(&prepared.mesh, species, &prepared.particles)?;
-    }
+    let continued;
+    let prepared = match settings.from {
+        Some(origin) => {
+            continued = prepared.continued(case, origin)?;
+            &continued
+        }
+        None => prepared,
+    };
     let checkpoint = CheckpointPaths::new(settings.results);
     let from = settings.resume.then(|| checkpoint.committed());
     let assembly = solvers::Assembly {

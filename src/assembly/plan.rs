@@ -23,6 +23,7 @@ pub(super) fn plan(case: &Case, prepared: &PreparedCase, checkpoint: CheckpointP
         mapping: method(case),
         exchange_tolerance: case.coupling.exchange_tolerance,
         exchange_attempts: case.coupling.exchange_attempts,
+        cuts: case.coupling.exchange_cuts,
         repeats: true,
         window_drag: case.coupling.window_drag,
         case_hash: case.hash.clone(),

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use calcine_coupler::coordinator::RunError;
+use calcine_coupler::coordinator::{Origin, RunError};
 use calcine_coupler::mapping::{Mapper, Method};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::zone::Zone;
@@ -11,12 +11,12 @@ use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::smoother::{Smoother, SmootherSettings as Smoothing};
 
 use super::error::AssemblyError;
-use crate::case::model::{Case, MappingSpec};
+use crate::case::model::{Case, MappingSpec, Population};
 use crate::case::sizes;
 use crate::case::{InitialParticles, PlaceError, contacts, mesh, particles};
 
 /// What does not change during a run, made from a case: mesh and particles at the start.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct PreparedCase {
     /// The gas mesh.
     pub mesh: Arc<Mesh>,
@@ -24,6 +24,8 @@ pub struct PreparedCase {
     pub particles: ParticleSetup,
     /// Their temperatures in K.
     pub temperature: Vec<f64>,
+    /// Mean diameter in m of the case's particles.
+    mean_diameter: f64,
 }
 
 impl PreparedCase {
@@ -36,10 +38,27 @@ impl PreparedCase {
         } = particles(case)?;
         let mesh = Arc::new(mesh(&case.mesh)?);
         setup.motion = contacts::motion(case, &mesh, &setup).map_err(PlaceError::from)?;
+        let radii = &setup.radius;
         Ok(Self {
             mesh,
+            mean_diameter: 2.0 * radii.iter().sum::<f64>() / radii.len() as f64,
             particles: setup,
             temperature,
+        })
+    }
+
+    /// The same with the particles that another run left.
+    pub(super) fn continued(&self, case: &Case, origin: &Origin) -> Result<Self, AssemblyError> {
+        let species = case.gas.properties.species();
+        let material = |one: &Population| &case.materials[one.material];
+        let reacting = case
+            .particles
+            .iter()
+            .map(|one| !case.chemistry.reactions.is_empty() && material(one).composition.is_some());
+        let reacting: Vec<bool> = reacting.collect();
+        Ok(Self {
+            particles: origin.take_particles(&self.mesh, species, &self.particles, &reacting)?,
+            ..self.clone()
         })
     }
 
@@ -81,8 +100,7 @@ pub(super) fn smoother(case: &Case, prepared: &PreparedCase) -> Result<Smoother,
 /// mean diameter where particles are larger than a third of the cells about them (docs/theory.md, VFS-6): without
 /// it a particle that spans several cells would give heat to cells that have nothing to give.
 fn smoothing(case: &Case, prepared: &PreparedCase) -> Smoothing {
-    let radii = &prepared.particles.radius;
-    let diameter = 2.0 * radii.iter().sum::<f64>() / radii.len() as f64;
+    let diameter = prepared.mean_diameter;
     let large = diameter > cell_size(prepared) / 3.0;
     let length = case
         .coupling

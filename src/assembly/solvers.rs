@@ -9,11 +9,13 @@ use calcine_adapters::liggghts::template::ScriptTemplate;
 use calcine_adapters::liggghts::{self, FROZEN_STEP, LiggghtsLaunch};
 use calcine_adapters::openfoam::case::OpenfoamCase;
 use calcine_adapters::openfoam::{self, LIBRARY, OpenfoamLaunch};
+use calcine_coupler::coordinator::RunError;
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::held::HeldGas;
 use calcine_coupler::motion::Motion;
 use calcine_coupler::part::{Gas, Particles};
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::GasStart;
 use calcine_coupler::supervisor::Supervisor;
 use calcine_native::gas::NativeGas;
 use calcine_native::particles::NativeParticles;
@@ -41,6 +43,7 @@ pub fn write_inputs(
             mesh: &prepared.mesh,
             template: case.openfoam.template.as_deref(),
             start: case.openfoam.start.as_deref(),
+            gas: None,
             solver: case.openfoam.solver,
             library: Path::new(LIBRARY),
             case_hash: &case.hash,
@@ -164,22 +167,26 @@ impl Assembly<'_> {
                 let mut gas = NativeGas::new(Arc::clone(&self.prepared.mesh), &self.case.gas)?;
                 if let Some(folder) = from {
                     gas.restore(&folder)?;
-                } else if let Some(origin) = self.settings.from {
-                    gas.take_over(&origin.path.join("gas"))?;
+                } else if let Some(other) = self.other_gas()? {
+                    gas.start_from(&other);
+                } else if let Some(folder) = self.gas_of_origin() {
+                    gas.take_over(&folder)?;
                 }
                 Ok(Box::new(gas))
             }
             GasBackend::Openfoam => {
+                let other = self.other_gas()?;
                 let launch = OpenfoamLaunch {
                     setup: &self.case.gas,
                     mesh: Arc::clone(&self.prepared.mesh),
                     template: self.case.openfoam.template.as_deref(),
                     start: self.case.openfoam.start.as_deref(),
+                    gas: other.as_ref(),
                     solver: self.case.openfoam.solver,
                     case_hash: self.case.hash.clone(),
                     folder: self.absolute("solvers/openfoam")?,
                     log: self.absolute("log/openfoam.log")?,
-                    from: self.gas_of_origin(),
+                    from: self.gas_of_origin().filter(|_| other.is_none()),
                     ranks: self.settings.starts.gas.ranks,
                     launcher: self.settings.starts.gas.launcher.clone(),
                     resume: from,
@@ -259,6 +266,17 @@ impl Assembly<'_> {
             (None, Some(origin)) => Some(origin.path.join("gas")),
             _ => None,
         }
+    }
+
+    /// The gas of the run that this one continues from, where another solver computed it than this run's.
+    fn other_gas(&self) -> Result<Option<GasStart>, AssemblyError> {
+        let Some((origin, folder)) = self.settings.from.zip(self.gas_of_origin()) else {
+            return Ok(None);
+        };
+        let native = self.settings.pairing.gas == GasBackend::Native;
+        let other = NativeGas::left_state(&folder) != native;
+        let gas = other.then(|| origin.gas()).transpose();
+        gas.map_err(|cause| RunError::StateFile(cause).into())
     }
 
     /// A program of the case in a folder of that name, from a folder of a checkpoint.

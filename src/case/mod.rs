@@ -167,7 +167,7 @@ fn blamed(problem: &Problem, setting: &str) -> bool {
             .strip_prefix(outer)
             .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
     };
-    inside(place, key) || (rule == table::UNKNOWN && inside(key, place))
+    inside(place, key) || (rule.trim_start() == table::UNKNOWN && inside(key, place))
 }
 
 /// The text with `--set` applied; lines stay where they are unless a key is new.

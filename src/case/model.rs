@@ -194,6 +194,8 @@ pub struct Coupling {
     pub exchange_tolerance: f64,
     /// Attempts per window at most.
     pub exchange_attempts: u32,
+    /// How often a window whose exchange does not settle may be halved.
+    pub exchange_cuts: u32,
     /// How drag acts on particles that move within a window.
     pub window_drag: WindowDrag,
     /// The longest a solver may stay silent.

@@ -187,6 +187,7 @@ fn gases(arguments: &Arguments, program: &Path, out: &Path) -> Result<Vec<LawOut
                     mesh: Arc::clone(mesh),
                     template: None,
                     start: None,
+                    gas: None,
                     solver: StockSolver::default(),
                     case_hash: "conform".into(),
                     folder,

@@ -69,8 +69,8 @@ pub enum SimulationError {
     },
     /// The results to continue from are of another gas solver.
     #[error(
-        "--from {folder}: the results are of the gas backend `{found}`, this run has `{asked}`, and the state of \
-         one is no start of the other: run both with `--gas {found}`"
+        "--from {folder}: the results are of the gas backend `{found}`, this run has `{asked}`, and a gas of the \
+         user's own goes on from its own state only: run both with `--gas {found}`"
     )]
     OtherGas {
         /// The folder to continue from.

@@ -14,7 +14,7 @@ use tracing_subscriber::filter::{LevelFilter, Targets};
 use tracing_subscriber::layer::SubscriberExt;
 
 use super::error::SimulationError;
-use crate::assembly::Pairing;
+use crate::assembly::{GasBackend, Pairing};
 use crate::results::summary::{Provenance, Verdict};
 use crate::results::{SUMMARY, Summary};
 
@@ -200,7 +200,9 @@ pub(super) fn origin(
 ) -> Result<(Origin, Provenance), SimulationError> {
     let summary = Summary::read(folder)?;
     let (found, asked) = (summary.backend.gas.as_str(), pairing.gas.name());
-    if found != asked {
+    // Native gas and OpenFOAM take each other's fields; a gas of the user's own goes on from its own state only.
+    let own = GasBackend::External.name();
+    if found != asked && [found, asked].contains(&own) {
         return Err(SimulationError::OtherGas {
             folder: folder.to_owned(),
             found: found.to_owned(),

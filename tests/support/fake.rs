@@ -103,6 +103,7 @@ pub fn case() -> Case {
             smoother_tolerance: 1e-12,
             exchange_tolerance: 1e-10,
             exchange_attempts: 20,
+            exchange_cuts: 0,
             window_drag: Default::default(),
             deadline: Duration::from_secs(10),
         },

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::{Mesh, polymesh};
 use calcine_coupler::physics::gas_model::GasModel;
-use calcine_coupler::setup::{GasPatch, GasSetup};
+use calcine_coupler::setup::{GasPatch, GasSetup, GasStart};
 use calcine_wire::Catalogue;
 
 use super::names::NAME;
@@ -27,6 +27,8 @@ pub struct OpenfoamCase<'a> {
     pub template: Option<&'a Path>,
     /// A time directory that OpenFOAM wrote on the same mesh, whose fields the gas starts from.
     pub start: Option<&'a Path>,
+    /// Fields of a gas of another solver that the gas starts from, in place of the directory's.
+    pub gas: Option<&'a GasStart>,
     /// Which program computes the gas.
     pub solver: StockSolver,
     /// The library that a stock solver opens.
@@ -54,10 +56,11 @@ impl OpenfoamCase<'_> {
         }
         let setup = self.setup;
         let names = setup.properties.species();
-        let start = self
-            .start
-            .map(|folder| StartFields::read(folder, names, self.mesh.cells()));
-        let start = start.transpose()?.unwrap_or_default();
+        let start = match (self.gas, self.start) {
+            (Some(gas), _) => StartFields::of(gas, names),
+            (None, Some(folder)) => StartFields::read(folder, names, self.mesh.cells())?,
+            (None, None) => StartFields::default(),
+        };
         if self.solver.is_stock() {
             self.write_stock(folder, &start)?;
         } else {
@@ -383,6 +386,7 @@ mod tests {
             mesh: &mesh,
             template: Some(&template),
             start: None,
+            gas: None,
             solver: StockSolver::default(),
             library: Path::new("libcalcineFoam.so"),
             case_hash: "0a",
@@ -419,6 +423,7 @@ mod tests {
             mesh: &mesh,
             template: None,
             start: None,
+            gas: None,
             solver: StockSolver::default(),
             library: Path::new("libcalcineFoam.so"),
             case_hash: "0a",
@@ -453,6 +458,7 @@ mod tests {
                 mesh: &mesh,
                 template: None,
                 start: None,
+                gas: None,
                 solver: StockSolver::default(),
                 library: Path::new("libcalcineFoam.so"),
                 case_hash: "0a",

@@ -19,7 +19,7 @@ use std::time::Duration;
 
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::Mesh;
-use calcine_coupler::setup::GasSetup;
+use calcine_coupler::setup::{GasSetup, GasStart};
 use calcine_coupler::supervisor::Supervisor;
 use calcine_wire::Hello;
 use calcine_wire::hello::NEW;
@@ -54,6 +54,8 @@ pub struct OpenfoamLaunch<'a> {
     pub template: Option<&'a Path>,
     /// A time directory that OpenFOAM wrote, whose fields the gas starts from.
     pub start: Option<&'a Path>,
+    /// Fields of a gas of another solver that the gas starts from, in place of the directory's.
+    pub gas: Option<&'a GasStart>,
     /// Which program computes the gas.
     pub solver: StockSolver,
     /// Hash of the case.
@@ -94,6 +96,7 @@ impl OpenfoamLaunch<'_> {
             mesh: &launch.mesh,
             template: launch.template,
             start: launch.start,
+            gas: launch.gas,
             solver: launch.solver,
             library: &library,
             case_hash: &launch.case_hash,

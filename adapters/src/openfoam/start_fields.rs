@@ -6,6 +6,7 @@ use std::path::Path;
 
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::polymesh;
+use calcine_coupler::setup::GasStart;
 
 use super::names::NAME;
 
@@ -43,6 +44,21 @@ impl StartFields {
             return Err(PartError::new(NAME, FailureKind::NotStarted, message));
         }
         Ok(Self { fields })
+    }
+
+    /// The fields of a gas of another solver on the same mesh.
+    pub fn of(gas: &GasStart, species: &[String]) -> Self {
+        let flat = gas.velocity.iter().flatten().copied().collect();
+        let mut fields = vec![
+            ("T".to_owned(), 1, gas.temperature.clone()),
+            ("p".to_owned(), 1, gas.pressure.clone()),
+            ("U".to_owned(), 3, flat),
+        ];
+        for (k, name) in species.iter().enumerate() {
+            let own = gas.composition.iter().skip(k).step_by(species.len());
+            fields.push((name.clone(), 1, own.copied().collect()));
+        }
+        Self { fields }
     }
 
     /// The text of a field with these values, if there are any, in place of its uniform start.

@@ -161,6 +161,7 @@ impl Duct {
             mesh: Arc::new(mesh),
             template: None,
             start: None,
+            gas: None,
             solver: StockSolver::default(),
             case_hash: "test".into(),
             folder: folder.join("case"),

@@ -8,9 +8,11 @@ use calcine_physics::Vec3;
 use super::CoupledRun;
 use super::error::{CheckpointError, RunError};
 use super::meter::{Meter, Stage};
+use super::repeat::WindowCut;
 use crate::checkpoint::StateFile;
 use crate::ledger::{CarriedInventory, Ledger};
 use crate::observer::Observer;
+use crate::part::Part as _;
 use crate::time::{Clocks, Ticks};
 
 impl CoupledRun {
@@ -75,6 +77,7 @@ impl CoupledRun {
             .collect::<Vec<_>>();
         state.set_f64s("ledger", &ledger);
         state.set_u64s("windows_and_clocks", &clocks);
+        state.set_u64s("window_cut", &self.cut.numbers());
         state.set_u64s("held", &[self.motion.held.count().cast_unsigned()]);
         state.set_u64s("case_hash", &hash);
         self.interior.models.record(&mut state);
@@ -172,6 +175,9 @@ impl CoupledRun {
                 motion: Ticks::new(motion.cast_signed()),
                 process: Ticks::new(process.cast_signed()),
             };
+        }
+        if let Ok(numbers) = <[u64; 3]>::try_from(state.u64s("window_cut")?) {
+            self.cut = WindowCut::from_numbers(numbers);
         }
         if let [held] = *state.u64s("held")? {
             self.motion.held = Ticks::new(held.cast_signed());

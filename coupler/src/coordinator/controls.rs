@@ -4,6 +4,7 @@ use super::CoupledRun;
 use super::control::Control;
 use super::error::RunError;
 use crate::checkpoint::{StateFile, StateFileError};
+use crate::part::Gas as _;
 
 /// Name of the array of a checkpoint: the lines, byte by byte.
 const ARRAY: &str = "controls";

@@ -9,6 +9,7 @@ use thiserror::Error;
 use crate::checkpoint::StateFileError;
 use crate::closures::ClosureError;
 use crate::error::PartError;
+use crate::finite::NotFinite;
 use crate::mapping::MappingError;
 use crate::models::{ParticleModelError, RestoreError};
 use crate::observer::ObserverError;
@@ -90,6 +91,9 @@ pub enum RunError {
         /// Number of particles.
         count: usize,
     },
+    /// A number that is not finite.
+    #[error(transparent)]
+    NotFinite(#[from] NotFinite),
     /// A particle too light for the solver's time step.
     #[error(transparent)]
     TooLight(#[from] TooLight),

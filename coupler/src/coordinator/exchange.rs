@@ -8,6 +8,7 @@ use super::laws::LawStage;
 use super::meter::{Meter, Stage};
 use crate::exchange::{Exchange, ExchangeConvergence, ExchangeInputs};
 use crate::extreme::{larger, smaller};
+use crate::finite::check_told;
 use crate::part::{CellReceived, Convergence, Gas, GasFields, ParticleFields};
 use crate::smoother::Operator;
 use crate::species_coupling::{ChannelLines, SpeciesCoupling};
@@ -30,6 +31,8 @@ pub(super) struct ExchangeStage {
     pub agreement: ExchangeConvergence,
     /// The gas about which particles were last linearised.
     iterate: GasIterate,
+    /// Attempts at windows that were cut, since the last commit.
+    discarded: u32,
 }
 
 /// When the attempts of a window end.
@@ -50,6 +53,8 @@ pub(super) struct Participants<'a> {
     pub interior: &'a mut InteriorStage,
     pub laws: &'a mut LawStage,
     pub mapped: &'a MappedBed,
+    /// Centres of the cells in m.
+    pub centre: &'a [Vec3],
     pub particles: ParticleFields<'a>,
     /// Impulse of drag in N s that the gas of each cell owes from the window before; empty where it owes none.
     pub owed: &'a [Vec3],
@@ -126,7 +131,7 @@ impl ExchangeStage {
         }
         self.settle(with, window)?;
         self.agreement = ExchangeConvergence {
-            attempts: window.attempt,
+            attempts: self.discarded + window.attempt,
             misplaced: if settled {
                 smaller(misplaced, off)
             } else {
@@ -135,6 +140,16 @@ impl ExchangeStage {
             settled,
         };
         Ok(())
+    }
+
+    /// Begins to count attempts anew, after a commit.
+    pub fn commit(&mut self) {
+        self.discarded = 0;
+    }
+
+    /// Counts the attempts of a window that is given up with those of the next.
+    pub fn discard(&mut self) {
+        self.discarded = self.agreement.attempts;
     }
 
     /// Attempts until the exchange is where it belongs and what reacts is what the gas has for it, or the limit is
@@ -277,6 +292,9 @@ impl ExchangeStage {
         let inputs = with.inputs(window);
         let start = &with.interior.lines.temperature;
         self.exchange.linearise(&inputs, start);
+        let gas = &with.laws.closures.gas;
+        let named = (gas.species(), with.centre);
+        check_told(&self.exchange.cells, &with.gas.fields(), named, window)?;
         with.meter.stop(running);
         let Participants {
             gas,

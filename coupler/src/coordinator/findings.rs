@@ -3,6 +3,7 @@
 use super::CoupledRun;
 use crate::excursion::Excursion;
 use crate::findings::{Finding, FindingKind, FindingPlace};
+use crate::part::Gas as _;
 use calcine_interior::NetworkOutcome;
 
 /// Round-off of mass and void fractions.

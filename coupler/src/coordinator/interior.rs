@@ -190,15 +190,22 @@ impl InteriorStage {
         (self.models.changed(), heat)
     }
 
-    /// Takes the last attempt as the new start; the rows of particles that are used up.
-    pub fn commit(&mut self, particles: &ParticleFields<'_>) -> Vec<usize> {
-        self.reservoir_heat.clear();
+    /// Gives up the attempts since the last commit.
+    pub fn begin_again(&mut self) {
         if let Some(network) = &mut self.network {
-            self.reservoir_heat
-                .extend_from_slice(&network.reservoir_heat);
             network.begin();
         }
         self.heat.fill(0.0);
+    }
+
+    /// Takes the last attempt as the new start; the rows of particles that are used up.
+    pub fn commit(&mut self, particles: &ParticleFields<'_>) -> Vec<usize> {
+        self.reservoir_heat.clear();
+        if let Some(network) = &self.network {
+            self.reservoir_heat
+                .extend_from_slice(&network.reservoir_heat);
+        }
+        self.begin_again();
         let used_up = self.models.commit();
         self.weigh(particles);
         used_up

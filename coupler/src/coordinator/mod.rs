@@ -7,9 +7,11 @@ mod checkpoint;
 mod checkpoint_paths;
 mod control;
 mod controls;
+mod cut;
 mod error;
 mod exchange;
 mod findings;
+mod finite;
 mod hold;
 mod interior;
 mod laws;
@@ -18,6 +20,7 @@ mod origin;
 mod particles;
 mod plan;
 mod population;
+mod repeat;
 mod resize;
 mod span;
 mod step_limit;
@@ -42,7 +45,7 @@ use interior::InteriorStage;
 use laws::{LawInputs, LawStage};
 use meter::{Meter, Stage};
 use particles::{MotionInputs, MotionStage};
-use span::next_span;
+use repeat::{RepeatableGas, WindowCut};
 
 use crate::closures::Closures;
 use crate::error::PartError;
@@ -52,7 +55,7 @@ use crate::ledger::{BalanceLine, Ledger};
 use crate::mesh::Mesh;
 use crate::models::ParticleModels;
 use crate::observer::{CommittedState, Observer, ParticleGasExchange, Timing};
-use crate::part::{Gas, Particles};
+use crate::part::{Gas, Part as _, Particles};
 use crate::paths::Paths;
 use crate::smoother::Smoother;
 use crate::supervisor::Supervisor;
@@ -81,7 +84,7 @@ pub struct RunParts {
 
 /// The two solvers.
 struct Solvers {
-    gas: Box<dyn Gas>,
+    gas: RepeatableGas,
     particles: Box<dyn Particles>,
 }
 
@@ -99,6 +102,8 @@ pub struct CoupledRun {
     meter: Meter,
     clocks: Clocks,
     windows: u64,
+    /// Where a window was cut, how it goes on.
+    cut: WindowCut,
     /// What was set while the run goes on, each condition once.
     controls: Vec<Control>,
     /// What the last window left outside a law's range, or unconverged.
@@ -124,6 +129,7 @@ impl CoupledRun {
             models,
             network,
         } = parts;
+        let gas = RepeatableGas::new(gas);
         let parts = Solvers { gas, particles };
         let fields = parts.particles.fields();
         let bed = BedStage::new(
@@ -165,6 +171,7 @@ impl CoupledRun {
             meter,
             clocks: Clocks::default(),
             windows: 0,
+            cut: WindowCut::default(),
             controls: Vec::new(),
             findings: Vec::new(),
             last: None,
@@ -209,10 +216,16 @@ impl CoupledRun {
         if self.clocks.process >= self.plan.end {
             return self.finish(supervisor, observers).map(Some);
         }
-        let window = self.next_window()?;
+        let mut window = self.next_window()?;
         self.bring_to_rest(supervisor, &window)?;
         self.feed_and_discharge(supervisor, &window)?;
-        let used_up = self.advance(supervisor, &window)?;
+        let used_up = loop {
+            match self.advance(supervisor, &window)? {
+                Some(used_up) => break used_up,
+                None => window = self.cut_window(&window)?,
+            }
+        };
+        self.check_finite(&window)?;
         self.take_out_used_up(supervisor, used_up)?;
         self.resize(supervisor)?;
         self.last = Some(window);
@@ -267,38 +280,29 @@ impl CoupledRun {
         self.moment(None)
     }
 
-    fn next_window(&self) -> Result<Window, RunError> {
-        let plan = &self.plan;
-        let (_, change) = plan.holds.at(self.clocks.process);
-        let span = next_span(
-            &plan.acceleration,
-            self.clocks,
-            plan.motion_window,
-            change.map_or(plan.end, |time| time.min(plan.end)),
-        )?;
-        Ok(Window {
-            index: self.windows,
-            attempt: 0,
-            start: self.clocks,
-            span,
-        })
-    }
-
-    /// Bed, laws, attempts of gas and interior, particles last, ledger, commit. The rows of particles that are used up.
+    /// Bed, laws, attempts of gas and interior, particles last, ledger, commit. The rows of particles that are used up;
+    /// `None` where the exchange did not settle and the window may be cut: nothing is committed then.
     fn advance(
         &mut self,
         supervisor: &Supervisor,
         window: &Window,
-    ) -> Result<Vec<usize>, RunError> {
+    ) -> Result<Option<Vec<usize>>, RunError> {
         self.map()?;
+        let may_cut = self.may_cut();
+        if may_cut {
+            self.parts.gas.keep();
+        }
         let mut attempt = *window;
         for left in (0..self.evaluations()).rev() {
             self.evaluate_laws(window)?;
             self.exchange_with_gas(supervisor, &mut attempt, left == 0)?;
         }
+        if may_cut && !self.settled() {
+            return Ok(None);
+        }
         self.move_particles(supervisor, window)?;
         self.close_ledger(window);
-        self.commit(window)
+        self.commit(window).map(Some)
     }
 
     /// How often the laws are evaluated in the coming window: once, on the gas of the window
@@ -364,10 +368,11 @@ impl CoupledRun {
             last,
         };
         let mut with = Participants {
-            gas: &mut *self.parts.gas,
+            gas: &mut self.parts.gas,
             interior: &mut self.interior,
             laws: &mut self.laws,
             mapped: &self.bed.mapped,
+            centre: self.mesh.cell_centre(),
             particles: self.parts.particles.fields(),
             owed: self.motion.carry.owed(),
             supervisor,
@@ -404,6 +409,7 @@ impl CoupledRun {
 
     fn commit(&mut self, window: &Window) -> Result<Vec<usize>, RunError> {
         self.parts.gas.commit()?;
+        self.exchange.commit();
         self.parts.particles.commit()?;
         let particles = self.parts.particles.fields();
         if self.holds(window) {
@@ -416,6 +422,7 @@ impl CoupledRun {
         self.gather_findings();
         self.clocks = window.end()?;
         self.windows += 1;
+        self.lengthen(self.clocks);
         Ok(used_up)
     }
 

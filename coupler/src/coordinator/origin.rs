@@ -2,14 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use calcine_physics::Vec3;
+use calcine_physics::{Vec3, sphere};
 
 use super::CoupledRun;
 use super::checkpoint_paths::CheckpointPaths;
 use super::error::{OriginError, RunError};
 use crate::checkpoint::{StateFile, StateFileError};
 use crate::mesh::Mesh;
-use crate::setup::ParticleSetup;
+use crate::part::Gas as _;
+use crate::setup::{GasStart, ParticleSetup};
 use crate::time::{Clocks, Ticks};
 
 /// Centres and radii count as the same within this share of the radius: solvers that write
@@ -54,16 +55,41 @@ impl Origin {
         })
     }
 
-    /// Errors where this run's mesh, species or particles differ from the other run's.
-    pub fn check(
+    /// The gas as any solver may start from it.
+    pub fn gas(&self) -> Result<GasStart, StateFileError> {
+        let temperature = self.state.f64s("gas_temperature")?.to_vec();
+        let cells = temperature.len();
+        let velocity = self.state.f64s_of("gas_velocity", 3 * cells)?;
+        Ok(GasStart {
+            pressure: self.state.f64s_of("gas_pressure", cells)?.to_vec(),
+            velocity: velocity
+                .chunks_exact(3)
+                .map(Vec3::from_column_slice)
+                .collect(),
+            composition: self.state.f64s("gas_composition")?.to_vec(),
+            temperature,
+        })
+    }
+
+    /// The particles to go on with: those of this case that the other run still has, with the sizes and masses that
+    /// they had come to. Particles of the populations of which `reacts` is true may have changed their sizes and been used
+    /// up; all others, mesh and species must be the same, which is an error otherwise.
+    pub fn take_particles(
         &self,
         mesh: &Mesh,
         species: &[String],
-        particles: &ParticleSetup,
-    ) -> Result<(), RunError> {
+        here: &ParticleSetup,
+        reacts: &[bool],
+    ) -> Result<ParticleSetup, RunError> {
         self.check_mesh(mesh)?;
         self.check_species(species)?;
-        self.check_particles(particles)
+        let reacts = |row: usize| {
+            let population = here.population[row] as usize;
+            reacts.get(population).copied().unwrap_or(false)
+        };
+        let taken = self.rows_of(here, reacts)?;
+        self.check_weights(&taken)?;
+        Ok(taken)
     }
 
     fn check_mesh(&self, mesh: &Mesh) -> Result<(), RunError> {
@@ -93,36 +119,62 @@ impl Origin {
         .into())
     }
 
-    fn check_particles(&self, here: &ParticleSetup) -> Result<(), RunError> {
+    /// The rows of this case that the other run still has, with their sizes there.
+    fn rows_of(
+        &self,
+        here: &ParticleSetup,
+        reacts: impl Fn(usize) -> bool,
+    ) -> Result<ParticleSetup, RunError> {
         let id = self.state.u64s("particle_id")?;
-        if id.len() != here.id.len() {
-            return Err(OriginError::Count {
-                path: self.path.clone(),
-                found: id.len(),
-                expected: here.id.len(),
-            }
-            .into());
-        }
         let position = self.state.f64s_of("particle_position", 3 * id.len())?;
         let radius = self.state.f64s_of("particle_radius", id.len())?;
-        for (p, centre) in position.as_chunks::<3>().0.iter().enumerate() {
-            let found = (id[p], Vec3::from(*centre), radius[p]);
-            let expected = (here.id[p], here.position[p], here.radius[p]);
-            let near = SAME * radius[p];
+        let mass = self.state.f64s_of("particle_mass", id.len())?;
+        let count = || OriginError::Count {
+            path: self.path.clone(),
+            found: id.len(),
+            expected: here.id.len(),
+        };
+        let mut taken = ParticleSetup {
+            motion: here.motion.clone(),
+            ..ParticleSetup::default()
+        };
+        let mut there = 0;
+        for row in 0..here.id.len() {
+            if id.get(there) != Some(&here.id[row]) && reacts(row) {
+                // It was used up.
+                continue;
+            }
+            if there >= id.len() {
+                return Err(count().into());
+            }
+            let centre = Vec3::from_column_slice(&position[3 * there..3 * there + 3]);
+            let found = (id[there], centre, radius[there]);
+            let expected = (here.id[row], here.position[row], here.radius[row]);
+            let near = SAME * radius[there];
             let same = found.0 == expected.0
                 && (found.1 - expected.1).norm() <= near
-                && (found.2 - expected.2).abs() <= near;
+                && (reacts(row) || (found.2 - expected.2).abs() <= near);
             if !same {
                 return Err(OriginError::Particle {
                     path: self.path.clone(),
-                    number: p + 1,
+                    number: there + 1,
                     found,
                     expected,
                 }
                 .into());
             }
+            taken.take(here, row);
+            if reacts(row) {
+                let own = taken.radius.len() - 1;
+                taken.radius[own] = found.2;
+                taken.density[own] = mass[there] / sphere::volume(found.2);
+            }
+            there += 1;
         }
-        self.check_weights(here)
+        if there < id.len() {
+            return Err(count().into());
+        }
+        Ok(taken)
     }
 
     fn check_weights(&self, here: &ParticleSetup) -> Result<(), RunError> {
@@ -155,16 +207,24 @@ impl CoupledRun {
         let centres: Vec<f64> = centres.flat_map(|x| [x.x, x.y, x.z]).collect();
         let species = self.laws.closures.gas.species().join(", ");
         let species: Vec<u64> = species.bytes().map(u64::from).collect();
+        let (gas, voids) = (self.parts.gas.fields(), &self.bed.mapped.bed.void_fraction);
+        let superficial = gas.velocity.iter().zip(voids);
+        let velocity = superficial.flat_map(|(u, pores)| [u.x * pores, u.y * pores, u.z * pores]);
+        state.set_f64s("gas_temperature", gas.temperature);
+        state.set_f64s("gas_pressure", gas.pressure);
+        state.set_f64s("gas_velocity", &velocity.collect::<Vec<f64>>());
+        state.set_f64s("gas_composition", gas.composition);
         state.set_u64s("mesh", &identity(&self.mesh));
         state.set_u64s("species", &species);
         state.set_u64s("particle_id", particles.id);
         state.set_f64s("particle_position", &centres);
         state.set_f64s("particle_radius", particles.radius);
+        state.set_f64s("particle_mass", &self.interior.mass);
         state.set_f64s("particle_weight", particles.weight);
     }
 
     /// Takes over the inside of the particles of another run of the same mesh and particles. The
-    /// gas was built from it already (see [`Origin::check`]); clocks and ledger stay at zero.
+    /// gas was built from it already (see [`Origin::take_particles`]); clocks and ledger stay at zero.
     pub fn take_over(&mut self, origin: &Origin) -> Result<(), RunError> {
         self.restore_particles(&origin.state)
     }

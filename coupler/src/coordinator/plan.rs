@@ -34,6 +34,8 @@ pub struct Plan {
     pub exchange_tolerance: f64,
     /// Attempts per window at most.
     pub exchange_attempts: u32,
+    /// How often a window whose exchange does not settle may be halved, where no particle moves.
+    pub cuts: u32,
     /// False for a gas that cannot go back to the start of a window: then there is one attempt at each.
     pub repeats: bool,
     /// How drag acts on particles that move within a window.

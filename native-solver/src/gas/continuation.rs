@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use calcine_coupler::setup::GasStart;
+
 use super::boundary::FaceCondition;
 use super::state::GasState;
 use super::{NativeError, NativeGas, STATE, start, turbulence};
@@ -13,10 +15,50 @@ impl NativeGas {
     /// them (mass, enthalpy) is by the properties and the bed of this run, so that both may have
     /// changed. The base pressure is the setup's, in a closed domain the other run's.
     pub fn take_over(&mut self, directory: &Path) -> Result<(), NativeError> {
+        let species = self.setup.properties.species().len();
+        let (cells, faces) = (self.mesh.cells(), self.mesh.faces());
+        let state = GasState::read(&directory.join(STATE), cells, faces, species)?;
+        self.begin_with(state);
+        Ok(())
+    }
+
+    /// True where a native gas left its state in a checkpoint's folder.
+    pub fn left_state(directory: &Path) -> bool {
+        directory.join(STATE).is_file()
+    }
+
+    /// Starts from the fields of a gas of another solver on the same mesh. Mass fluxes are those of its velocity at
+    /// the faces; eddies begin as the setup says.
+    pub fn start_from(&mut self, other: &GasStart) {
         let gas = &self.setup.properties;
         let species = gas.species().len();
-        let (cells, faces) = (self.mesh.cells(), self.mesh.faces());
-        let mut state = GasState::read(&directory.join(STATE), cells, faces, species)?;
+        let mut state = start(&self.setup, self.mesh.cells(), self.mesh.faces());
+        state.temperature.clone_from(&other.temperature);
+        state.composition.clone_from(&other.composition);
+        state.velocity.clone_from(&other.velocity);
+        let base = state.base_pressure;
+        state.pressure = other.pressure.iter().map(|pascal| pascal - base).collect();
+        let mass_flux = |cell: usize| {
+            let composition = state.composition_of(cell, species);
+            let density = gas.density(base, state.temperature[cell], composition);
+            density * state.velocity[cell]
+        };
+        let (grid, mut flux) = (&self.grid, vec![0.0; self.mesh.faces()]);
+        fill(&mut flux, |index| {
+            let face = &grid.faces[index];
+            let through = match index < grid.internal {
+                true => 0.5 * (mass_flux(face.owner) + mass_flux(face.neighbour)),
+                false => mass_flux(face.owner),
+            };
+            face.area * through.dot(&face.normal)
+        });
+        state.flux = flux;
+        self.begin_with(state);
+    }
+
+    fn begin_with(&mut self, mut state: GasState) {
+        let gas = &self.setup.properties;
+        let (species, cells) = (gas.species().len(), self.mesh.cells());
         if !self.boundaries.closed() {
             let shift = state.base_pressure - self.setup.pressure;
             state.pressure.iter_mut().for_each(|value| *value += shift);
@@ -37,7 +79,6 @@ impl NativeGas {
         self.started = false;
         self.taken_over = Some(state);
         self.update_fields();
-        Ok(())
     }
 
     /// The state before anything is known of the bed; its velocity is superficial.

@@ -15,6 +15,13 @@ const SMOOTHER: &[Key] = &[
 const EXCHANGE: &[Key] = &[
     key("tolerance", Number(D::NONE, Within(0.0, 1.0)), Default("1e-3"), "A window is repeated while the relative mismatch of the exchange is above this.", "1e-3"),
     key("attempts", Whole(1, 1000), Default("10"), "Attempts per window at most.", "10"),
+    key(
+        "cuts",
+        Whole(0, 30),
+        Default("12"),
+        "How often a window over which particles that react do not settle with their gas is halved, where no particle moves.",
+        "0",
+    ),
 ];
 
 #[rustfmt::skip]

@@ -27,6 +27,7 @@ pub(super) fn read(root: &TableReader<'_>) -> Option<Coupling> {
     let exchange = section.table_or_empty("exchange")?;
     let exchange_tolerance = exchange.number("tolerance");
     let exchange_attempts = exchange.small_whole("attempts");
+    let exchange_cuts = exchange.small_whole("cuts");
     exchange.finish();
     let window_drag = section.choice("window_drag");
     let deadline = section.wall_time("deadline");
@@ -39,6 +40,7 @@ pub(super) fn read(root: &TableReader<'_>) -> Option<Coupling> {
         diffusion_length,
         exchange_tolerance: exchange_tolerance?,
         exchange_attempts: exchange_attempts?,
+        exchange_cuts: exchange_cuts?,
         window_drag: window_drag.unwrap_or_default(),
         deadline: deadline?,
     })

@@ -12,7 +12,7 @@ use calcine_coupler::setup::{GasPatch, GasSetup};
 
 use super::rate_constants;
 use crate::case::model::{Laws, ReactionSpec};
-use crate::case::table::TableReader;
+use crate::case::table::{NO_DRYING, TableReader, is_moisture};
 
 /// How far fractions may be from summing to 1, as of gases.
 const SLACK: f64 = 1e-3;
@@ -26,8 +26,12 @@ pub(super) fn composition(table: &TableReader<'_>, solids: &[SolidSpecies]) -> O
     let mut fractions = vec![0.0; solids.len()];
     for (name, value) in numbers? {
         let Some(k) = solids.iter().position(|one| one.name() == name) else {
-            let help = format!("the solids are {}; others go into [solids]", names(solids));
-            inner.fail(&name, "is no solid of the case", help);
+            if is_moisture(&name) {
+                inner.fail(&name, NO_DRYING[0], NO_DRYING[1]);
+            } else {
+                let help = format!("the solids are {}; others go into [solids]", names(solids));
+                inner.fail(&name, "is no solid of the case", help);
+            }
             return None;
         };
         if !(0.0..=1.0 + SLACK).contains(&value) {

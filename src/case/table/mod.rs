@@ -11,6 +11,7 @@ use super::keys::{Key, KeyPresence, KeyValue, ROOT};
 use super::problem::Problem;
 use crate::laws::LawCatalogue;
 
+mod absent;
 mod consequences;
 mod law;
 mod nearest;
@@ -18,14 +19,15 @@ mod nested;
 mod quantity;
 mod words;
 
+pub(super) use absent::{NO_DRYING, is_moisture};
 use consequences::{beside, follows, names, uses};
 pub(super) use nearest::instead_of_file;
 use nearest::nearest;
 
 /// What is said of a key that is not declared.
-pub(super) const UNKNOWN: &str = " is not a key of a case";
+pub(super) const UNKNOWN: &str = "is not a key of a case";
 /// What is said of a key that goes with another choice.
-const NO_EFFECT: &str = " has no effect here";
+const NO_EFFECT: &str = "has no effect here";
 
 /// Collects the problems of one file.
 #[derive(Debug, Default)]
@@ -370,13 +372,18 @@ impl<'a> TableReader<'a> {
                 None => (UNKNOWN, self.instead_of(key)),
             };
             let is_known = declared.is_some();
+            let drying = !is_known && self.pattern.starts_with("materials") && is_moisture(key);
+            let (rule, help) = match drying {
+                true => (NO_DRYING[0], NO_DRYING[1].into()),
+                false => (rule, help),
+            };
             let place = self.table.get_key_value(key);
             let span = place
                 .and_then(|(key, _)| key.span())
                 .or_else(|| item.span());
             let span = span.unwrap_or_else(|| self.span.clone());
             let place = self.place_of(key);
-            let message = format!("`{place}`{rule}");
+            let message = format!("`{place}` {rule}");
             let kind = match is_known {
                 true => ProblemKind::Idle(place),
                 false => ProblemKind::Value,
