@@ -1,4 +1,4 @@
-//! Particles of different populations must not overlap.
+//! Particles must not overlap by more than contacts press them together.
 
 use calcine_coupler::contacts::touching;
 use calcine_coupler::interior::NeighbourPair;
@@ -19,24 +19,22 @@ pub(super) struct Overlap {
 /// are pressed together (and conduct heat).
 pub(super) const PRESSED: f64 = 0.05;
 
-/// The first particle that overlaps one of another population before it.
-pub(super) fn between_populations(setup: &ParticleSetup) -> Option<Overlap> {
-    let first = setup.population.first()?;
-    if setup
-        .population
-        .iter()
-        .all(|population| population == first)
-    {
-        return None;
-    }
-    let foreign = |touch: &NeighbourPair| {
+/// An overlap of this share of the sum of radii is no contact of particles of one population either: softened contacts press
+/// settled beds together by some per cent.
+const CRUSHED: f64 = 0.2;
+
+/// The first particle that overlaps one before it: of another population by more than spheres that are pressed together, of
+/// its own by more than the softest contact does.
+pub(super) fn first(setup: &ParticleSetup) -> Option<Overlap> {
+    let too_near = |touch: &NeighbourPair| {
         let [a, b] = touch.particles;
         let radii = touch.radius[0] + touch.radius[1];
-        setup.population[a] != setup.population[b] && touch.overlap > radii * PRESSED
+        let one = setup.population[a] == setup.population[b];
+        touch.overlap > radii * if one { CRUSHED } else { PRESSED }
     };
     let touches = touching(&setup.radius, &setup.position, 0.0).into_iter();
     let found = touches
-        .filter(foreign)
+        .filter(too_near)
         .min_by_key(|touch| touch.particles[1])?;
     let radii = found.radius[0] + found.radius[1];
     Some(Overlap {
@@ -67,17 +65,20 @@ mod tests {
     #[test]
     fn spheres_of_two_populations_closer_than_their_radii_overlap() {
         let setup = bed(&[(0, [-0.001, 0.0, 0.0], 2.0), (1, [3.0, 4.0, 0.0], 3.5)]);
-        let found = between_populations(&setup).unwrap();
+        let found = first(&setup).unwrap();
         assert_eq!(found.pair, [0, 1]);
         assert!((found.distance - 5.0006).abs() < 1e-4);
         assert_eq!(found.radii, 5.5);
     }
 
     #[test]
-    fn touching_spheres_and_those_of_one_population_do_not() {
+    fn touching_spheres_and_pressed_ones_of_one_population_do_not() {
         let touching = bed(&[(0, [0.0; 3], 2.0), (1, [3.0, 4.0, 0.0], 3.0)]);
-        assert_eq!(between_populations(&touching), None);
-        let one = bed(&[(0, [0.0; 3], 2.0), (0, [1.0, 0.0, 0.0], 2.0)]);
-        assert_eq!(between_populations(&one), None);
+        assert_eq!(first(&touching), None);
+        let one = |apart: f64| bed(&[(0, [0.0; 3], 2.0), (0, [apart, 0.0, 0.0], 2.0)]);
+        assert_eq!(first(&one(3.4)), None);
+        assert_eq!(first(&one(3.0)).unwrap().pair, [0, 1]);
+        // In one place.
+        assert_eq!(first(&one(0.0)).unwrap().distance, 0.0);
     }
 }

@@ -67,7 +67,7 @@ pub fn particles(case: &Case) -> Result<InitialParticles, PlaceError> {
     if setup.weight.iter().all(|weight| *weight == 1.0) {
         setup.weight.clear();
     }
-    match overlap::between_populations(setup) {
+    match overlap::first(setup) {
         None => Ok(placed),
         Some(found) => Err(PlaceError::Overlap {
             ids: found.pair.map(|index| setup.id[index]),

@@ -28,11 +28,11 @@ pub enum PlaceError {
         /// What is wrong.
         what: String,
     },
-    /// Two particles of different populations in the same space.
+    /// Two particles in the same space.
     #[error(
         "particle {} of \"{}\" and particle {} of \"{}\" overlap: their centres are {} m apart, their \
-         radii add up to {} m; move one of the populations",
-        .ids[0], .names[0], .ids[1], .names[1], shown(*.distance), shown(*.radii)
+         radii add up to {} m; {}",
+        .ids[0], .names[0], .ids[1], .names[1], shown(*.distance), shown(*.radii), apart(.names)
     )]
     Overlap {
         /// Their ids.
@@ -71,6 +71,15 @@ pub enum PlaceError {
         /// The populations.
         names: Vec<String>,
     },
+}
+
+/// What to do about two particles of these populations in the same space.
+fn apart(names: &[String; 2]) -> &'static str {
+    if names[0] == names[1] {
+        "take one of them out of its file, or check its unit of length and its diameters"
+    } else {
+        "move one of the populations"
+    }
 }
 
 impl PlaceError {
