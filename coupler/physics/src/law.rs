@@ -287,6 +287,7 @@ mod tests {
     use crate::conduction::{CONDUCTION_LAWS, GAP_LAWS};
     use crate::drag::DRAG_LAWS;
     use crate::heat_transfer::HEAT_TRANSFER_LAWS;
+    use crate::turbulence::BED_EDDY_LAWS;
 
     fn sound<L: ?Sized>(laws: &[&'static LawEntry<L>], name_of: fn(&L) -> &'static str) {
         let mut names: Vec<&str> = laws.iter().map(|law| law.name).collect();
@@ -313,6 +314,7 @@ mod tests {
         sound(HEAT_TRANSFER_LAWS, |law| law.name());
         sound(CONDUCTION_LAWS, |law| law.name());
         sound(GAP_LAWS, |law| law.name());
+        sound(BED_EDDY_LAWS, |law| law.name());
     }
 
     #[test]
