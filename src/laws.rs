@@ -12,6 +12,7 @@ use calcine_coupler::physics::drag::{DRAG_LAWS, Drag};
 use calcine_coupler::physics::heat_transfer::{HEAT_TRANSFER_LAWS, HeatTransfer};
 use calcine_coupler::physics::law::{LawEntry, LawSummary};
 use calcine_coupler::physics::reaction::{RATE_LAWS, RateLaw};
+use calcine_coupler::physics::turbulence::{BED_EDDY_LAWS, BedEddies};
 use calcine_coupler::view_factors::{RADIATION_LAWS, RadiationLaw};
 
 use crate::case::model::{Case, ConductionArea};
@@ -23,6 +24,8 @@ pub struct LawCatalogue {
     pub drag: Vec<&'static LawEntry<dyn Drag>>,
     /// Heat transfer between gas and particle, and by analogy mass transfer.
     pub heat_transfer: Vec<&'static LawEntry<dyn HeatTransfer>>,
+    /// What the particles of a bed make of eddies of the gas.
+    pub bed_eddies: Vec<&'static LawEntry<dyn BedEddies>>,
     /// Conduction through contacts.
     pub conduction: Vec<&'static LawEntry<dyn Conduction>>,
     /// Conduction through the gas between surfaces.
@@ -46,6 +49,7 @@ impl Default for LawCatalogue {
         Self {
             drag: DRAG_LAWS.to_vec(),
             heat_transfer: HEAT_TRANSFER_LAWS.to_vec(),
+            bed_eddies: BED_EDDY_LAWS.to_vec(),
             conduction: CONDUCTION_LAWS.to_vec(),
             gap: GAP_LAWS.to_vec(),
             radiation: RADIATION_LAWS.to_vec(),
@@ -83,6 +87,7 @@ impl LawCatalogue {
             ("laws.drag", summaries(&self.drag)),
             ("laws.heat_transfer", summaries(&self.heat_transfer)),
             ("laws.mass_transfer", summaries(&self.heat_transfer)),
+            ("gas.turbulence.bed", summaries(&self.bed_eddies)),
             ("laws.conduction", summaries(&self.conduction)),
             ("laws.conduction.gap", summaries(&self.gap)),
             ("laws.radiation", summaries(&self.radiation)),
@@ -107,6 +112,7 @@ macro_rules! families {
 families!(
     drag,
     heat_transfer,
+    bed_eddies,
     conduction,
     gap,
     radiation,

@@ -178,6 +178,19 @@ fn turbulent_air_in_a_duct_and_through_a_bed_with_walls_of_each_kind() {
     }
 }
 
+/// Eddies in the bed: steady; what is measured is in docs/verification.md.
+#[test]
+fn eddies_in_a_bed_by_each_law() {
+    let bed = r#"first = "2.5 2.5 70 mm", spacing = "5 5 5 mm", counts = [4, 2, 10]"#;
+    let initial = r#"length_scale = "2 mm" } }"#;
+    for law in ["nakayama-kuwahara", "pedras-de-lemos"] {
+        let text = cases::turbulent_duct(bed, r#""adiabatic""#, "0.3 s");
+        assert!(text.contains(initial));
+        let chosen = format!(r#"length_scale = "2 mm" }}, bed = {{ law = "{law}" }} }}"#);
+        agree_on(&text.replacen(initial, &chosen, 1), &TURBULENT);
+    }
+}
+
 /// Bands of two gases that burn, as shares of a field's span, once they are steady; what is measured is in docs/verification.md.
 const BURNING: [(&str, f64); 9] = [
     ("gas.temperature", 0.01),

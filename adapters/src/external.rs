@@ -131,11 +131,15 @@ impl ExternalGasLaunch<'_> {
         self.write_folder()?;
         let species = self.setup.properties.species().len();
         let turbulent = !self.setup.turbulence.is_laminar();
+        let mut catalogue = Catalogue::gas(species, turbulent).with_geometry();
+        if self.setup.turbulence.is_in_bed() {
+            catalogue = catalogue.with_bed_eddies();
+        }
         let terms = Terms {
             name: NAME,
             role: "gas",
             count: self.mesh.cells() as u64,
-            catalogue: Catalogue::gas(species, turbulent).with_geometry(),
+            catalogue,
             optional: match turbulent {
                 true => Catalogue::turbulence_report(),
                 false => Vec::new(),

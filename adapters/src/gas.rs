@@ -189,6 +189,15 @@ impl Gas for LinkedGas {
                 return Err(self.solver.refuse(Some(window), message));
             }
         }
+        let eddies = &exchange.eddies;
+        for list in [&eddies.energy, &eddies.dissipation, &eddies.growth] {
+            let found = list.len();
+            if found != cells && found != 0 {
+                let message =
+                    format!("what particles make of eddies has {found} values for {cells} cells");
+                return Err(self.solver.refuse(Some(window), message));
+            }
+        }
         let mut request = header(MessageKind::Start, window);
         request.storage_span = match self.storage {
             GasStorage::Process => request.span_process,

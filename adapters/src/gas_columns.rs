@@ -147,6 +147,20 @@ pub fn write(
             }
         }
     }
+    let eddies = &exchange.eddies;
+    for (name, values) in [
+        ("eddy_energy", &eddies.energy),
+        ("eddy_dissipation", &eddies.dissipation),
+        ("eddy_growth", &eddies.growth),
+    ] {
+        if link.catalogue().has(ColumnSet::Start, name) {
+            let places = link.column_mut(name)?.iter_mut();
+            for (place, &cell) in places.zip(owned) {
+                // Nothing is told of a bed without particles.
+                *place = values.get(cell).copied().unwrap_or(0.0);
+            }
+        }
+    }
     for (name, values) in [
         ("void_fraction", &bed.void_fraction),
         ("drag_coefficient", &exchange.drag_coefficient),

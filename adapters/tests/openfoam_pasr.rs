@@ -58,6 +58,7 @@ fn stirred(combustion: Combustion) -> GasSetup {
         prandtl: 0.85,
         schmidt: 0.7,
         iterations: 1000,
+        in_bed: false,
     };
     gas.controls.outer_tolerance = 1e-9;
     gas.chemistry = GasChemistry::Reacting(Box::new(ReactingGas {
@@ -82,10 +83,14 @@ fn bed(cells: usize, void_fraction: f64) -> Bed {
     }
 }
 
-/// Methane in kg that reactions take in a first window of 1 ns.
-fn taken(combustion: Combustion, void_fraction: f64, folder: &Path) -> f64 {
+/// Methane in kg that reactions take in a first window of 1 ns at a void fraction, where eddies go on in a bed or end at it.
+fn taken(combustion: Combustion, (void_fraction, in_bed): (f64, bool), folder: &Path) -> f64 {
     let division = [1, 1, 4];
-    let mut duct = Duct::launch_on(mesh(division), &stirred(combustion), folder);
+    let mut setup = stirred(combustion);
+    if let Turbulence::KEpsilon { in_bed: on, .. } = &mut setup.turbulence {
+        *on = in_bed;
+    }
+    let mut duct = Duct::launch_on(mesh(division), &setup, folder);
     window(&mut duct, 1e-9, 1.0);
     duct.attempt(&bed(4, void_fraction), &exchange_of_nothing(4));
     let taken = -duct.received.species[0].source;
@@ -110,24 +115,27 @@ fn share() -> f64 {
 }
 
 #[test]
-fn eddies_hold_back_what_the_law_says_and_nothing_in_the_bed() {
+fn eddies_hold_back_what_the_law_says_and_in_a_bed_at_which_they_end_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let pasr = Combustion::Pasr {
         mixing_constant: MIXING,
     };
-    let run = |name: &str, combustion: &Combustion, void_fraction| {
-        taken(*combustion, void_fraction, &folder.path().join(name))
+    let run = |name: &str, combustion: &Combustion, bed| {
+        taken(*combustion, bed, &folder.path().join(name))
     };
-    let laminar = run("laminar", &Combustion::Laminar, 1.0);
+    let laminar = run("laminar", &Combustion::Laminar, (1.0, false));
     assert!(laminar > 0.0);
-    let ratio = run("pasr", &pasr, 1.0) / laminar;
+    let ratio = run("pasr", &pasr, (1.0, false)) / laminar;
     let share = share();
     println!("{ratio}, by the law {share}");
     assert!(share > 0.2 && share < 0.8, "{share}");
     // The viscosity of the gas is a rounded one: 5 % of it are 1e-4 of the share.
     assert!((ratio / share - 1.0).abs() < 3e-4, "{ratio} {share}");
-    let ratio = run("pasr-bed", &pasr, 0.5) / run("bed", &Combustion::Laminar, 0.5);
+    let still = run("bed", &Combustion::Laminar, (0.5, false));
+    let ratio = run("pasr-bed", &pasr, (0.5, false)) / still;
     assert!((ratio - 1.0).abs() < 1e-9, "{ratio}");
+    let ratio = run("pasr-in-bed", &pasr, (0.5, true)) / still;
+    assert!((ratio / share - 1.0).abs() < 3e-4, "{ratio} {share}");
 }
 
 /// Largest difference of a field over its largest value.

@@ -9,6 +9,7 @@ use calcine_physics::heat_transfer::HeatTransfer;
 use calcine_physics::local::LocalGas;
 use calcine_physics::mass_transfer;
 use calcine_physics::numbers::VoidFraction;
+use calcine_physics::turbulence::BedEddies;
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -34,6 +35,8 @@ pub struct Closures {
     /// Mass transfer between gas and particles that react, by the analogy with heat transfer; only asked for
     /// where some do.
     pub mass_transfer: Box<dyn HeatTransfer>,
+    /// What the particles of a bed make of eddies.
+    pub bed_eddies: Box<dyn BedEddies>,
 }
 
 /// A law that got a state it is not defined for.
@@ -369,6 +372,7 @@ mod tests {
     use calcine_physics::drag::ErgunWenYu;
     use calcine_physics::gas_model::ConstantGas;
     use calcine_physics::heat_transfer::Gunn;
+    use calcine_physics::turbulence::NoBedEddies;
 
     /// Coefficients on some threads of three chunks of particles, the last not full, that all differ.
     fn evaluated(
@@ -386,6 +390,7 @@ mod tests {
             momentum: MomentumModel::A,
             heat_transfer: Box::new(Gunn),
             mass_transfer: Box::new(Gunn),
+            bed_eddies: Box::new(NoBedEddies),
         };
         let count = 2 * CHUNK + 700;
         let of = |scale: f64| -> Vec<f64> {
@@ -466,6 +471,7 @@ mod tests {
             momentum: MomentumModel::A,
             heat_transfer: Box::new(Gunn),
             mass_transfer: Box::new(Gunn),
+            bed_eddies: Box::new(NoBedEddies),
         };
         let gas = SampledGas {
             temperature: vec![300.0; 2],

@@ -1,5 +1,6 @@
 //! The coordinator of Calcine: three parts, two clocks, one loop.
 
+pub mod bed_eddies;
 pub mod boundary_value;
 pub mod checkpoint;
 pub mod closures;

@@ -74,7 +74,7 @@ pub struct TurbulenceFields<'a> {
     pub energy: &'a [f64],
     /// Its dissipation in m²/s³.
     pub dissipation: &'a [f64],
-    /// Void fraction × eddy viscosity in Pa s; zero in the bed.
+    /// Void fraction × eddy viscosity in Pa s; zero in the bed where eddies end there.
     pub viscosity: &'a [f64],
 }
 
@@ -102,6 +102,22 @@ pub struct CellExchange {
     pub heat_source: Vec<f64>,
     /// Gas that particles set free and take up.
     pub species: SpeciesExchange,
+    /// What the particles make of eddies; empty where eddies end at the bed.
+    pub eddies: EddyExchange,
+}
+
+/// What the particles of a bed make of the eddies of the gas, per mass of gas, one value per cell and zero outside the bed;
+/// all lists are empty where eddies end at the bed.
+///
+/// Dk/Dt = … + `energy` + `growth` k,   Dε/Dt = … + `dissipation` + C₂ `growth` ε.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct EddyExchange {
+    /// Production of k in m²/s³.
+    pub energy: Vec<f64>,
+    /// Production of ε in m²/s⁴.
+    pub dissipation: Vec<f64>,
+    /// Rate in 1/s at which k, and C₂ times which ε, grow.
+    pub growth: Vec<f64>,
 }
 
 /// Gas that particles that react give and take, summed over each cell; all lists are empty where none

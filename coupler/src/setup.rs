@@ -52,7 +52,7 @@ pub struct GasSetup {
     pub gravity: Vec3,
     /// How gas and particles share their momentum.
     pub momentum: MomentumModel,
-    /// Eddies outside the bed.
+    /// Eddies.
     pub turbulence: Turbulence,
     /// Boundary condition of each patch, in the order of the file; every patch of the mesh has one.
     pub patches: Vec<(String, GasPatch)>,

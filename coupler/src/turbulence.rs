@@ -1,9 +1,9 @@
-//! Eddies of the gas outside the bed, as a case states them.
+//! Eddies of the gas, as a case states them.
 
 use calcine_physics::turbulence::{KEpsilon, energy_of_intensity};
 
-/// Solid fraction above which a cell belongs to the bed, where eddies are neither made nor carry anything
-/// (docs/theory.md, FLO-2).
+/// Solid fraction above which a cell belongs to the bed, where eddies are those of a law for porous media, or neither
+/// made nor carry anything (docs/theory.md, FLO-2).
 pub const BED: f64 = 0.1;
 
 /// True where a cell of this void fraction is free of the bed.
@@ -12,13 +12,13 @@ pub fn is_free(void_fraction: f64) -> bool {
     1.0 - void_fraction <= BED
 }
 
-/// Eddies outside the bed.
+/// Eddies of the gas.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Turbulence {
     /// None.
     #[default]
     Laminar,
-    /// The standard k-epsilon model with wall functions ([`KEpsilon::STANDARD`]).
+    /// The standard k-epsilon model ([`KEpsilon::STANDARD`]), with wall functions outside the bed.
     KEpsilon {
         /// k at the start in m²/s².
         energy: f64,
@@ -30,6 +30,8 @@ pub enum Turbulence {
         schmidt: f64,
         /// Iterations of the linear solver of k and of ε_t at most.
         iterations: u32,
+        /// True where eddies go on in the bed: the exchange then tells what its particles make of them.
+        in_bed: bool,
     },
 }
 
@@ -37,6 +39,20 @@ impl Turbulence {
     /// True where there are no eddies.
     pub fn is_laminar(&self) -> bool {
         matches!(self, Self::Laminar)
+    }
+
+    /// True where eddies go on in the bed.
+    pub fn is_in_bed(&self) -> bool {
+        matches!(self, Self::KEpsilon { in_bed: true, .. })
+    }
+
+    /// True where a cell of this void fraction has eddies that are made and carry something.
+    #[inline]
+    pub fn reaches(&self, void_fraction: f64) -> bool {
+        match self {
+            Self::Laminar => false,
+            Self::KEpsilon { in_bed, .. } => *in_bed || is_free(void_fraction),
+        }
     }
 }
 

@@ -22,6 +22,7 @@ mod resume;
 mod species;
 mod stirred;
 mod stirred_cells;
+mod verification_bed_eddies;
 mod verification_flow;
 mod verification_heat;
 mod verification_porous;

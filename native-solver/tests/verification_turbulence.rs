@@ -21,6 +21,7 @@ fn k_epsilon(energy: f64, length_scale: f64) -> Turbulence {
         prandtl: 0.85,
         schmidt: 0.7,
         iterations: 1000,
+        in_bed: false,
     }
 }
 

@@ -112,5 +112,6 @@ pub(super) fn closures(case: &Case) -> Closures {
         momentum: case.gas.momentum,
         heat_transfer: case.laws.heat_transfer.make(),
         mass_transfer: case.laws.mass_transfer.make(),
+        bed_eddies: case.laws.bed_eddies.make(),
     }
 }

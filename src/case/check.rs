@@ -59,11 +59,22 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
         text,
         "  bed            {particles} particles, void fraction {void_fraction:.3}"
     );
+    if !case.gas.turbulence.is_laminar() {
+        let bed = match case.gas.turbulence.is_in_bed() {
+            true => "and in the bed",
+            false => "outside the bed, none in it (`gas.turbulence.bed`)",
+        };
+        let _ = writeln!(text, "  eddies         k-epsilon {bed}");
+    }
     if let Some(gas) = case.gas.chemistry.reacting() {
         let how = match gas.combustion {
             Combustion::Laminar => "laminar".to_owned(),
             Combustion::Pasr { mixing_constant } => {
-                format!("partially stirred, C_mix {mixing_constant}")
+                let bed = match case.gas.turbulence.is_in_bed() {
+                    true => "in the bed as outside",
+                    false => "laminar in the bed, whose gas counts as mixed",
+                };
+                format!("partially stirred, C_mix {mixing_constant}; {bed}")
             }
         };
         let _ = writeln!(
@@ -108,6 +119,7 @@ fn laws(text: &mut String, case: &Case) {
         ("drag", laws.drag.entry().about()),
         ("heat transfer", laws.heat_transfer.entry().about()),
         ("mass transfer", laws.mass_transfer.entry().about()),
+        ("eddies of bed", laws.bed_eddies.entry().about()),
         ("conduction", laws.conduction.law.entry().about()),
         ("through gaps", laws.conduction.gap.entry().about()),
     ];

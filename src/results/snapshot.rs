@@ -157,7 +157,7 @@ pub(super) fn gas<'a>(
             (
                 "eddy_viscosity",
                 "Pa s",
-                "void fraction times the viscosity of eddies, zero in the bed",
+                "void fraction times the viscosity of eddies, zero in a bed at which they end",
                 eddies.viscosity,
             ),
         ] {

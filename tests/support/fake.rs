@@ -19,6 +19,7 @@ use calcine_coupler::physics::drag::DRAG_LAWS;
 use calcine_coupler::physics::gas::GasProperties;
 use calcine_coupler::physics::heat_transfer::HEAT_TRANSFER_LAWS;
 use calcine_coupler::physics::law::{LawChoice, NONE};
+use calcine_coupler::physics::turbulence::BED_EDDY_LAWS;
 use calcine_coupler::setup::{Convection, GasControls, GasSetup};
 use calcine_coupler::time::{Acceleration, Clocks, GasStorage, Ticks, Window};
 
@@ -94,6 +95,7 @@ pub fn case() -> Case {
             radiation: None,
             heat_transfer: LawChoice::named(HEAT_TRANSFER_LAWS, "gunn", Vec::new()).unwrap(),
             mass_transfer: LawChoice::named(HEAT_TRANSFER_LAWS, NONE, Vec::new()).unwrap(),
+            bed_eddies: LawChoice::named(BED_EDDY_LAWS, NONE, Vec::new()).unwrap(),
         },
         coupling: Coupling {
             mapping: MappingSpec::Overlap,

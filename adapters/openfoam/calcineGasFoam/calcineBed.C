@@ -1,4 +1,5 @@
 #include "calcineBed.H"
+#include "nutWallFunctionFvPatchScalarField.H"
 #include "turbulentFluidThermoModel.H"
 #include "addToRunTimeSelectionTable.H"
 #include "fvc.H"
@@ -24,7 +25,8 @@ Foam::fv::calcineBed::calcineBed
 )
 :
     option(name, modelType, dict, mesh),
-    maxSolidFraction_(dict.get<scalar>("maxSolidFraction"))
+    maxSolidFraction_(dict.get<scalar>("maxSolidFraction")),
+    eddies_(dict.getOrDefault<bool>("eddies", false))
 {
     fieldNames_ = wordList({"k", "epsilon", "nut"});
     // That nut has no equation is no reason for a warning.
@@ -39,7 +41,14 @@ void Foam::fv::calcineBed::addSup
     const label fieldi
 )
 {
-    if (fieldNames_[fieldi] == "k")
+    const bool energy = fieldNames_[fieldi] == "k";
+    if (eddies_)
+    {
+        const auto& model = mesh_.lookupObject<turbulenceModel>(turbulenceModel::propertiesName);
+        const scalar destruction = model.coeffDict().lookupOrDefault<scalar>("C2", 1.92);
+        addProduction(energy ? "eddyEnergy" : "eddyDissipation", energy ? 1 : destruction, rho, eqn);
+    }
+    else if (energy)
     {
         removeProductionOfEnergy(rho, eqn);
     }
@@ -47,6 +56,23 @@ void Foam::fv::calcineBed::addSup
     {
         removeProductionOfDissipation(rho, eqn);
     }
+}
+
+
+void Foam::fv::calcineBed::addProduction
+(
+    const word& made,
+    scalar times,
+    const volScalarField& rho,
+    fvMatrix<scalar>& eqn
+) const
+{
+    const auto& source = mesh_.lookupObject<volScalarField::Internal>(made);
+    const auto& growth = mesh_.lookupObject<volScalarField::Internal>("eddyGrowth");
+    const scalarField& field = eqn.psi().primitiveField();
+    // A matrix has what is made on its left side: minus.
+    eqn.source() -=
+        rho.primitiveField()*mesh_.V()*(source.field() + times*growth.field()*field);
 }
 
 
@@ -106,7 +132,7 @@ void Foam::fv::calcineBed::correct(volScalarField& nut)
     const auto& voidFraction = mesh_.lookupObject<volScalarField>("voidFraction");
     forAll(nut, celli)
     {
-        if (holds(voidFraction[celli]))
+        if (!eddies_ && holds(voidFraction[celli]))
         {
             nut[celli] = 0;
         }
@@ -115,7 +141,8 @@ void Foam::fv::calcineBed::correct(volScalarField& nut)
     {
         fvPatchScalarField& patch = nut.boundaryFieldRef()[patchi];
         const labelUList& cells = patch.patch().faceCells();
-        if (patch.coupled())
+        // With eddies in the bed walls alone have none: they have no wall function there.
+        if (patch.coupled() || (eddies_ && !isA<nutWallFunctionFvPatchScalarField>(patch)))
         {
             continue;
         }

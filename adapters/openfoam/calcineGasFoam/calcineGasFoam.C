@@ -51,6 +51,15 @@ calcine::window windowOf(const calcine_header& header)
     return when;
 }
 
+// What a link may have columns for.
+struct optionalColumns
+{
+    // How the equations of turbulence were solved, in answer to a commit.
+    bool answersCommits = false;
+    // What particles make of eddies.
+    bool bedEddies = false;
+};
+
 // A column of species by species within each cell.
 void receiveSpecies(const calcine::link& link, const char* name, List<scalarField>& fields)
 {
@@ -90,6 +99,27 @@ void receive
         receiveSpecies(link, "species_coefficient", given.speciesCoefficient);
         receiveSpecies(link, "species_taken", given.speciesTaken);
         link.get("species_heat", given.speciesHeat);
+    }
+    if (given.eddyEnergy.size())
+    {
+        link.get("eddy_energy", given.eddyEnergy);
+        link.get("eddy_dissipation", given.eddyDissipation);
+        link.get("eddy_growth", given.eddyGrowth);
+        forAll(given.eddyEnergy, celli)
+        {
+            const scalar energy = given.eddyEnergy[celli];
+            const scalar dissipation = given.eddyDissipation[celli];
+            const scalar growth = given.eddyGrowth[celli];
+            const bool allowed = energy >= 0 && energy < GREAT && dissipation >= 0
+             && dissipation < GREAT && growth >= 0 && growth < GREAT;
+            if (!allowed)
+            {
+                OStringStream text;
+                text<< "in cell " << numbers.cells[celli] << ": eddies of the bed of " << energy << " m2/s3, "
+                    << dissipation << " m2/s4, " << growth << " 1/s (must be finite and not negative)";
+                throw calcine::solverFailure(CALCINE_FAILURE_INPUT, text.str());
+            }
+        }
     }
     forAll(given.voidFraction, celli)
     {
@@ -191,7 +221,7 @@ void serve
     calcine::gas& gas,
     const calcine::addressing& numbers,
     calcine::windowLog& log,
-    bool answersCommits
+    const optionalColumns& columns
 )
 {
     const label cells = numbers.cells.size();
@@ -211,6 +241,10 @@ void serve
         }
     }
     given.speciesHeat.setSize(species ? cells : 0);
+    for (scalarField* list : {&given.eddyEnergy, &given.eddyDissipation, &given.eddyGrowth})
+    {
+        list->setSize(columns.bedEddies ? cells : 0);
+    }
     calcine::report result;
 
     for (;;)
@@ -229,7 +263,7 @@ void serve
             }
             case CALCINE_COMMIT:
                 gas.commit();
-                if (answersCommits)
+                if (columns.answersCommits)
                 {
                     link.loan(CALCINE_COMMITTED, 0);
                     link.put("turbulence_residual", scalarList{gas.eddies().unsolved()});
@@ -296,18 +330,18 @@ void run(const argList& args, calcine::link& link)
     own.meshHash = calcine::meshHash(mesh, numbers);
     own.cells = numbers.allCells;
     own.ranks = Pstream::nProcs();
-    // Where the link has columns for it.
-    bool answersCommits = false;
+    optionalColumns columns;
     for (const string& column : properties.get<stringList>("catalogue"))
     {
         own.catalogue += (own.catalogue.empty() ? "" : "\n") + column;
-        answersCommits = answersCommits || column.compare(0, 10, "committed ") == 0;
+        columns.answersCommits = columns.answersCommits || column.compare(0, 10, "committed ") == 0;
+        columns.bedEddies = columns.bedEddies || column.compare(0, 18, "start eddy_energy ") == 0;
     }
     link.greet(own);
     link.claim(numbers.cells);
     send(link, CALCINE_STATE, gas, emptyReport(mesh.nCells(), gas.speciesNames().size()));
     calcine::windowLog log(properties.lookupOrDefault<scalar>("logInterval", 1));
-    serve(link, gas, numbers, log, answersCommits);
+    serve(link, gas, numbers, log, columns);
     Info<< "End" << endl;
 }
 

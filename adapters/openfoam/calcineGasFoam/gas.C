@@ -466,7 +466,7 @@ void Foam::calcine::gas::commit()
     committed_.voidFraction = given_.voidFraction;
     models_->advance
     (
-        window_.motionSpan, committed_.voidFraction*density(), outflow()/mesh_.cellVolumes()
+        window_.motionSpan, committed_.voidFraction*density(), outflow()/mesh_.cellVolumes(), given_
     );
 }
 

@@ -3,6 +3,8 @@
 #include "OFstream.H"
 #include "OSspecific.H"
 
+#include <cmath>
+
 namespace
 {
 
@@ -12,6 +14,23 @@ bool given(const Foam::fvMesh& mesh, const Foam::word& name)
 {
     return Foam::isFile(mesh.time().path()/mesh.time().constant()/name)
         || Foam::isFile(mesh.time().globalPath()/mesh.time().constant()/name);
+}
+
+// A field of cells, zero at first, that fvOptions find by its name.
+Foam::volScalarField::Internal made
+(
+    const Foam::fvMesh& mesh,
+    const Foam::word& name,
+    const Foam::dimensionSet& dimensions
+)
+{
+    using namespace Foam;
+    return volScalarField::Internal
+    (
+        IOobject(name, mesh.time().timeName(), mesh, IOobject::NO_READ, IOobject::NO_WRITE),
+        mesh,
+        dimensionedScalar(name, dimensions, Zero)
+    );
 }
 
 } // End anonymous namespace
@@ -35,6 +54,9 @@ Foam::calcine::models::models
         ),
         1*thermo.rho()
     ),
+    eddyEnergy_(made(mesh, "eddyEnergy", sqr(dimVelocity)/dimTime)),
+    eddyDissipation_(made(mesh, "eddyDissipation", sqr(dimVelocity/dimTime))),
+    eddyGrowth_(made(mesh, "eddyGrowth", dimless/dimTime)),
     schmidt_(0.7)
 {
     if (given(mesh, turbulenceModel::propertiesName))
@@ -145,7 +167,7 @@ Foam::tmp<Foam::scalarField> Foam::calcine::models::mixingTime
     }
     const scalarField eddies(turbulence_->nut()().primitiveField());
     const scalarField dissipation(turbulence_->epsilon()().primitiveField());
-    // No eddies in the bed: what is there counts as mixed.
+    // No eddies in a bed at which they end: what is there counts as mixed.
     return pos(eddies - VSMALL)*sqrt((viscosity/density + eddies)/(dissipation + SMALL));
 }
 
@@ -240,22 +262,63 @@ void Foam::calcine::models::advance
 (
     scalar motionSpan,
     const scalarField& density,
-    const scalarField& outflow
+    const scalarField& outflow,
+    const exchange& given
 )
 {
     if (turbulent())
     {
+        if (given.eddyEnergy.size())
+        {
+            eddyEnergy_.field() = given.eddyEnergy;
+            eddyDissipation_.field() = given.eddyDissipation;
+            eddyGrowth_.field() = given.eddyGrowth;
+        }
         Time& time = const_cast<Time&>(mesh_.time());
-        time.setDeltaT(motionSpan, false);
-        ++time;
-        setDensity(density);
-        density_.oldTime().primitiveFieldRef() = density + motionSpan*outflow;
-        // What is recorded from here on is of turbulence alone.
-        const_cast<dictionary&>(mesh_.solverPerformanceDict()).clear();
-        turbulence_->correct();
-        unsolved_ = recorded();
+        const label count = parts(motionSpan);
+        const scalar span = motionSpan/count;
+        unsolved_ = 0;
+        // As natively: what changes by less is steady, and the rest of the step changes nothing.
+        scalar change = GREAT;
+        for (label left = count; left > 0 && change > 1e-8; --left)
+        {
+            time.setDeltaT(span, false);
+            ++time;
+            setDensity(density + (left - 1)*span*outflow);
+            density_.oldTime().primitiveFieldRef() = density + left*span*outflow;
+            // What is recorded from here on is of turbulence alone.
+            const_cast<dictionary&>(mesh_.solverPerformanceDict()).clear();
+            const scalarField k(energy()), epsilon(dissipation());
+            turbulence_->correct();
+            const scalar worst = recorded();
+            if (unsolved_ == unsolved_ && !(worst <= unsolved_))
+            {
+                unsolved_ = worst;
+            }
+            if (left > 1)
+            {
+                change = max(gMax(mag(energy()/k - 1)), gMax(mag(dissipation()/epsilon - 1)));
+            }
+        }
     }
     store();
+}
+
+
+Foam::label Foam::calcine::models::parts(scalar motionSpan) const
+{
+    const scalar destruction = turbulence_->coeffDict().lookupOrDefault<scalar>("C2", 1.92);
+    scalar fastest = 0;
+    forAll(eddyEnergy_, celli)
+    {
+        const scalar made = eddyEnergy_[celli];
+        fastest = max
+        (
+            fastest,
+            made > 0 ? eddyDissipation_[celli]/(destruction*made) : eddyGrowth_[celli]
+        );
+    }
+    return max(label(1), label(std::ceil(motionSpan*returnReduce(fastest, maxOp<scalar>())/0.5)));
 }
 
 

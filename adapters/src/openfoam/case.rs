@@ -99,7 +99,10 @@ impl OpenfoamCase<'_> {
     /// template's.
     pub(super) fn catalogue(&self) -> Catalogue {
         let turbulent = !self.setup.turbulence.is_laminar();
-        let catalogue = Catalogue::gas(self.setup.properties.species().len(), turbulent);
+        let mut catalogue = Catalogue::gas(self.setup.properties.species().len(), turbulent);
+        if self.setup.turbulence.is_in_bed() {
+            catalogue = catalogue.with_bed_eddies();
+        }
         let models = |folder: &Path| folder.join("constant/turbulenceProperties").is_file();
         match !self.solver.is_stock() && (turbulent || self.template.is_some_and(models)) {
             true => catalogue.with_turbulence_report(),

@@ -14,6 +14,7 @@ pub fn files(setup: &GasSetup, options: &str) -> Vec<(&'static str, String)> {
         length_scale,
         prandtl,
         schmidt,
+        in_bed,
         ..
     } = setup.turbulence
     else {
@@ -30,8 +31,9 @@ pub fn files(setup: &GasSetup, options: &str) -> Vec<(&'static str, String)> {
             header("dictionary", "fvOptions")
                 + options
                 + &format!(
-                    "// No eddies in the bed.\nbed\n{{\n    type             calcineBed;\n    \
-                     maxSolidFraction {BED:e};\n}}\n"
+                    "// Eddies in the bed.\nbed\n{{\n    type             calcineBed;\n    \
+                     maxSolidFraction {BED:e};\n    eddies           {};\n}}\n",
+                    if in_bed { "yes" } else { "no" }
                 ),
         ),
         ("0/k", self::energy(setup, energy)),
@@ -119,7 +121,13 @@ fn dissipation(setup: &GasSetup, start: f64) -> String {
             let more = format!("        mixingLength    {length_scale:e};\n");
             condition("turbulentMixingLengthDissipationRateInlet", &more, start)
         } else if sticks(patch) {
-            condition("epsilonWallFunction", &law(), start)
+            match setup.turbulence.is_in_bed() {
+                true => {
+                    let more = format!("        maxSolidFraction {BED:e};\n");
+                    condition("calcineEpsilonWallFunction", &(more + &law()), start)
+                }
+                false => condition("epsilonWallFunction", &law(), start),
+            }
         } else {
             zero_gradient()
         }

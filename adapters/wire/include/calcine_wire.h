@@ -125,6 +125,11 @@ typedef enum calcine_failure {
  *   species_taken N [kg/s]: mass of a species that leaves with the gas' own temperature. Of a gas of N species.
  *   species_heat 1 [W]: sensible enthalpy that comes with species: species_heat less the sum of species_taken times
  *     h(T). Of a gas of N species.
+ *   eddy_energy 1 [m^2/s^3]: a: the particles of the cell add a + b k to the production of k, per mass of gas; 0
+ *     outside the bed. Of a gas whose eddies go on in the bed.
+ *   eddy_dissipation 1 [m^2/s^4]: e: the particles of the cell add e + C2 b epsilon to the production of epsilon, per
+ *     mass of gas. Of a gas whose eddies go on in the bed.
+ *   eddy_growth 1 [1/s]: b. Of a gas whose eddies go on in the bed.
  *
  * "state", with STATE, FINISHED, CHECKPOINTED, CHANGED:
  *   heat 1 [W]: heat to the gas of the cell as the enthalpy equation took it, that of exchanged species included.
@@ -144,7 +149,7 @@ typedef enum calcine_failure {
  *   composition N [1]: mass fractions, species by species within each cell. Of a gas of N species.
  *   turbulent_energy 1 [m^2/s^2]: k. Of a turbulent gas.
  *   dissipation 1 [m^2/s^3]: epsilon. Of a turbulent gas.
- *   eddy_viscosity 1 [Pas]: void fraction times eddy viscosity; 0 in the bed. Of a turbulent gas.
+ *   eddy_viscosity 1 [Pas]: void fraction times eddy viscosity; 0 in a bed at which eddies end. Of a turbulent gas.
  *
  * "committed", with COMMITTED:
  *   turbulence_residual 1 [1], once a rank: largest relative residual of an equation of turbulence that its linear

@@ -121,6 +121,7 @@ impl Catalogue {
             ColumnPresence::Species => species > 0,
             ColumnPresence::Turbulent => turbulent,
             ColumnPresence::ForeignInputs
+            | ColumnPresence::BedEddies
             | ColumnPresence::TurbulenceReport
             | ColumnPresence::MovingDrag
             | ColumnPresence::Weights => false,
@@ -132,6 +133,14 @@ impl Catalogue {
         let own = |presence| presence == ColumnPresence::ForeignInputs;
         let geometry = Self::of_table(columns::GAS, 0, own);
         self.fields.extend(geometry.fields);
+        self
+    }
+
+    /// The same catalogue with what particles make of eddies of the gas.
+    pub fn with_bed_eddies(mut self) -> Self {
+        let own = |presence| presence == ColumnPresence::BedEddies;
+        self.fields
+            .extend(Self::of_table(columns::GAS, 0, own).fields);
         self
     }
 

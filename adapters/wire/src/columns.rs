@@ -25,6 +25,8 @@ pub enum ColumnPresence {
     Species,
     /// Those of a turbulent gas.
     Turbulent,
+    /// Those of a gas whose eddies go on in the bed.
+    BedEddies,
     /// Those of a gas that answers commits with how its equations of turbulence were solved.
     TurbulenceReport,
     /// Those of particles that feel drag as they move.
@@ -162,7 +164,14 @@ pub const GAS: &[ProtocolColumn] = &[
     column(State, "turbulent_energy", 1, "m^2/s^2", "k").only(ColumnPresence::Turbulent),
     column(State, "dissipation", 1, "m^2/s^3", "epsilon").only(ColumnPresence::Turbulent),
     column(State, "eddy_viscosity", 1, "Pas",
-        "void fraction times eddy viscosity; 0 in the bed").only(ColumnPresence::Turbulent),
+        "void fraction times eddy viscosity; 0 in a bed at which eddies end").only(ColumnPresence::Turbulent),
+    column(Start, "eddy_energy", 1, "m^2/s^3",
+        "a: the particles of the cell add a + b k to the production of k, per mass of gas; 0 outside the bed")
+        .only(ColumnPresence::BedEddies),
+    column(Start, "eddy_dissipation", 1, "m^2/s^4",
+        "e: the particles of the cell add e + C2 b epsilon to the production of epsilon, per mass of gas")
+        .only(ColumnPresence::BedEddies),
+    column(Start, "eddy_growth", 1, "1/s", "b").only(ColumnPresence::BedEddies),
     column(Committed, "turbulence_residual", 1, "1",
         "largest relative residual of an equation of turbulence that its linear solver left above its tolerance; 0 where \
          it left none").per_rank().only(ColumnPresence::TurbulenceReport),

@@ -203,6 +203,7 @@ fn one(text: &mut String, column: &ProtocolColumn) {
         ColumnPresence::ForeignInputs => " Where `mesh_hash` is NULL.",
         ColumnPresence::Species => " Of a gas of N species.",
         ColumnPresence::Turbulent => " Of a turbulent gas.",
+        ColumnPresence::BedEddies => " Of a gas whose eddies go on in the bed.",
         ColumnPresence::TurbulenceReport => " Of a gas that answers COMMIT.",
         ColumnPresence::MovingDrag => " Where drag is pushed as a coefficient.",
         ColumnPresence::Weights => " Where rows may stand for several particles.",

@@ -199,6 +199,10 @@ impl ExchangeStage {
         let running = Meter::start(Stage::Exchange);
         let inputs = with.inputs(window);
         self.exchange.begin(&inputs, &with.gas.fields());
+        self.exchange
+            .cells
+            .eddies
+            .clone_from(&with.laws.eddies.exchange);
         let span = window.span.motion.seconds();
         self.exchange.repay(with.owed, span);
         if with.interior.has_channels() {

@@ -2,6 +2,7 @@
 
 use super::bed::MappedBed;
 use super::error::RunError;
+use crate::bed_eddies::{BedEddyInputs, BedEddyStage};
 use crate::closures::{Closures, CouplingCoefficients, DragInertia, SampledGas};
 use crate::part::{GasFields, ParticleFields};
 use crate::time::Window;
@@ -11,6 +12,8 @@ pub(super) struct LawStage {
     pub closures: Closures,
     pub sampled_gas: SampledGas,
     pub coefficients: CouplingCoefficients,
+    /// What the particles make of eddies.
+    pub eddies: BedEddyStage,
     /// Pressure in Pa that each particle sees; empty where no mass passes between gas and particles.
     pub pressure: Vec<f64>,
 }
@@ -34,6 +37,7 @@ impl LawStage {
             closures,
             sampled_gas: SampledGas::default(),
             coefficients: CouplingCoefficients::default(),
+            eddies: BedEddyStage::default(),
             pressure: Vec::new(),
         };
         let count = mapped.operator.particles();
@@ -60,6 +64,13 @@ impl LawStage {
         };
         evaluated.map_err(refused)?;
         coefficients.relax(&inputs.inertia);
+        let bed = BedEddyInputs {
+            operator: &mapped.operator,
+            bed: &mapped.bed,
+            particles: *particles,
+            acceleration,
+        };
+        self.eddies.evaluate(&self.closures, &bed, &inputs.gas);
         if inputs.channels {
             self.sample_pressure(mapped, &inputs.gas);
             let evaluated = self.closures.evaluate_films(

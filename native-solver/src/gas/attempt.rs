@@ -24,7 +24,7 @@ pub struct AttemptFrame<'a> {
     pub schmidt: f64,
     /// Reactions of the gas with itself.
     pub chemistry: &'a GasChemistry,
-    /// Eddies outside the bed; those of the attempt are of its old state.
+    /// Eddies; those of the attempt are of its old state.
     pub turbulence: &'a Turbulence,
     /// How cell values are carried to faces.
     pub convection: Convection,

@@ -119,6 +119,6 @@ impl NativeGas {
         });
         state.void_fraction.clone_from(&self.void_fraction);
         state.turbulence.begin(&setup.turbulence, grid.cells());
-        turbulence::update_viscosity(grid, boundaries, gas, state);
+        turbulence::update_viscosity(grid, boundaries, gas, &setup.turbulence, state);
     }
 }

@@ -169,6 +169,8 @@ impl NativeGas {
             gas: &self.setup.properties,
             viscosity: &self.equations.material.viscosity,
             gradients: self.equations.momentum.gradients(),
+            turbulence: &self.setup.turbulence,
+            particles: &self.exchange.eddies,
             span: window.span.motion.seconds(),
             tolerance: self.setup.controls.linear_tolerance,
             iterations,
@@ -210,6 +212,25 @@ impl NativeGas {
                     found: list.len(),
                     wanted,
                     odd: odd.copied().unwrap_or_default(),
+                });
+            }
+        }
+        let eddies = &exchange.eddies;
+        let told = if eddies.energy.is_empty() { 0 } else { cells };
+        for (field, list) in [
+            ("production of k by particles", &eddies.energy),
+            (
+                "production of its dissipation by particles",
+                &eddies.dissipation,
+            ),
+            ("growth of eddies by particles", &eddies.growth),
+        ] {
+            let found = list.len();
+            if found != told {
+                return Err(GasFailure::Length {
+                    field,
+                    found,
+                    cells: told,
                 });
             }
         }

@@ -2,12 +2,11 @@
 
 use calcine_coupler::gas_chemistry::{Combustion, ReactingGas};
 use calcine_coupler::physics::kinetics::pasr;
-use calcine_coupler::turbulence::is_free;
 
 use super::attempt::AttemptFrame;
 
-/// Time in s in which the eddies of the window's start mix a cell's gas; 0 by laminar rates, and in the bed, which has
-/// no eddies and whose pores mix.
+/// Time in s in which the eddies of the window's start mix a cell's gas; 0 by laminar rates, and in a bed at which eddies
+/// end, whose pores count as mixed.
 pub fn mixing_time(frame: &AttemptFrame<'_>, gas: &ReactingGas, cell: usize) -> f64 {
     let Combustion::Pasr { mixing_constant } = gas.combustion else {
         return 0.0;
@@ -15,7 +14,7 @@ pub fn mixing_time(frame: &AttemptFrame<'_>, gas: &ReactingGas, cell: usize) -> 
     let void_fraction = frame.void_fraction[cell];
     let old = frame.old;
     let eddies = &old.turbulence;
-    if eddies.is_laminar() || !is_free(void_fraction) {
+    if eddies.is_laminar() || !frame.turbulence.reaches(void_fraction) {
         return 0.0;
     }
     let (pressure, temperature) = (old.base_pressure, old.temperature[cell]);

@@ -1,6 +1,7 @@
 //! Keys of `gas`.
 
 use super::prelude::*;
+use crate::laws;
 
 #[rustfmt::skip]
 const INITIAL_COMPOSITION: &[Key] = &[
@@ -89,10 +90,11 @@ const TURBULENCE_INITIAL: &[Key] = &[
 
 #[rustfmt::skip]
 const TURBULENCE: &[Key] = &[
-    key("model", Choice(words::<TurbulenceModel>), Required, "The standard k-epsilon model with wall functions (on walls with `no-slip` or `moving`), or none.", "\"k-epsilon\""),
+    key("model", Choice(words::<TurbulenceModel>), Required, "The standard k-epsilon model with wall functions (on walls with `no-slip` or `moving`, outside the bed), or none.", "\"k-epsilon\""),
     key("initial", Table(TURBULENCE_INITIAL), Without("none; `k-epsilon` needs it"), "Eddies at the start, everywhere.", "{ energy = \"0.01 m^2/s^2\", length_scale = \"5 mm\" }"),
     key("prandtl", Number(D::NONE, Positive), Default("0.85"), "Turbulent Prandtl number: eddies carry heat with c_p times their viscosity over this.", "0.9"),
     key("schmidt", Number(D::NONE, Positive), Default("0.7"), "Turbulent Schmidt number of all species.", "0.7"),
+    key("bed", Law(laws::bed_eddies, &[]), Without("none: they end at the bed"), "Eddies in the bed, that is, where the solid fraction is above 0.1: what the flow through its pores makes of them. With a law they carry momentum, heat and species there as outside, and mix what `gas.chemistry.model = \"pasr\"` lets react; there are no wall functions in the bed. Without one none are made, none carry anything, and gas that burns in the bed counts as mixed.", "{ law = \"nakayama-kuwahara\" }"),
     key("iterations", Whole(1, 1_000_000), Default("1000"), "Iterations of the linear solvers of k and epsilon at most. Windows in which they end above their tolerance are counted as `turbulence_solver`.", "200"),
 ];
 
@@ -170,7 +172,7 @@ pub(super) const GAS: &[Key] = &[
     key("chemistry", Table(CHEMISTRY), Without("the gas does not react with itself"), "Reactions of the gas with itself; of a mixture of `gas.species`.", "{ mechanism = \"jones-lindstedt\" }"),
     key("constant", Table(CONSTANT), Without("an ideal gas"), "A fluid of constant properties; not with `gas.properties`. Its enthalpy is c_p (T - 298.15 K).", "[gas.constant]"),
     key("properties", Table(PROPERTIES), Without("those of `gas.mixture`"), "An ideal gas by its properties.", "[gas.properties]"),
-    key("turbulence", Table(TURBULENCE), Without("a laminar gas"), "Eddies outside the bed, that is, where the solid fraction is 0.1 or less.", "[gas.turbulence]"),
+    key("turbulence", Table(TURBULENCE), Without("a laminar gas"), "Eddies, outside the bed (where the solid fraction is 0.1 or less), and in it by `bed`.", "[gas.turbulence]"),
     key("patch", Named(PATCH), Required, "Boundary condition of every patch by its name. Without an outlet the domain is closed: an ideal gas then takes the pressure at which it fills the pores.", "[gas.patch.bottom]"),
     key("controls", Table(CONTROLS), Without("see its keys"), "Accuracy of the gas solver.", "{ outer_tolerance = 1e-8 }"),
 ];

@@ -5,6 +5,7 @@ use calcine_coupler::physics::conduction::{Conduction, GasGap};
 use calcine_coupler::physics::drag::Drag;
 use calcine_coupler::physics::heat_transfer::HeatTransfer;
 use calcine_coupler::physics::law::LawChoice;
+use calcine_coupler::physics::turbulence::BedEddies;
 use calcine_coupler::setup::Schedule;
 use calcine_coupler::view_factors::ViewFactors;
 
@@ -21,6 +22,8 @@ pub struct Laws {
     pub conduction: ConductionSpec,
     /// Mass transfer between gas and particles that react.
     pub mass_transfer: LawChoice<dyn HeatTransfer>,
+    /// What the particles of a bed make of eddies, as `gas.turbulence.bed` states it.
+    pub bed_eddies: LawChoice<dyn BedEddies>,
     /// Radiation between particles; `None`: none.
     pub radiation: Option<RadiationSpec>,
 }

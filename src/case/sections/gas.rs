@@ -7,6 +7,8 @@ use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
 use calcine_coupler::physics::gas_model::{ConstantGas, GasModel};
+use calcine_coupler::physics::law::LawChoice;
+use calcine_coupler::physics::turbulence::BedEddies;
 use calcine_coupler::setup::{GasControls, GasSetup};
 use calcine_coupler::time::GasStorage;
 
@@ -24,6 +26,8 @@ pub(super) struct GasRead {
     pub held: bool,
     /// Files of its chemistry.
     pub files: Vec<PathBuf>,
+    /// What the particles of a bed make of its eddies.
+    pub bed_eddies: LawChoice<dyn BedEddies>,
 }
 
 pub(super) fn read(
@@ -43,7 +47,7 @@ pub(super) fn read(
     let gravity = section.vector("gravity").unwrap_or([0.0; 3]);
     let held = section.truth("held").unwrap_or(false);
     let turbulence = turbulence(&section);
-    let turbulent = turbulence.map(|model| !model.is_laminar());
+    let turbulent = turbulence.as_ref().map(|(model, _)| !model.is_laminar());
     let patches = boundary(&section, mesh, properties.as_ref(), turbulent);
     let controls = controls(&section);
     let around = Around {
@@ -69,6 +73,7 @@ pub(super) fn read(
         let rule = "reacts, but `gas.held` leaves the gas as it is at the start";
         section.fail("chemistry", rule, help);
     }
+    let (turbulence, bed_eddies) = turbulence?;
     let setup = GasSetup {
         mixture: mixture?.into(),
         properties: properties?,
@@ -80,12 +85,17 @@ pub(super) fn read(
         pressure,
         velocity,
         gravity: Vec3::from(gravity),
-        turbulence: turbulence?,
+        turbulence,
         momentum: MomentumModel::default(), // `laws.drag.model` says
         patches: patches?,
         controls: controls?,
     };
-    Some(GasRead { setup, held, files })
+    Some(GasRead {
+        setup,
+        held,
+        files,
+        bed_eddies,
+    })
 }
 
 /// A built-in mixture, or the properties of `[gas.properties]` or `[gas.constant]`.

@@ -1,10 +1,17 @@
 //! `[laws]`: each is stated, none has a default.
 
+use calcine_coupler::physics::law::LawChoice;
+use calcine_coupler::physics::turbulence::BedEddies;
+
 use super::heat;
 use crate::case::model::Laws;
 use crate::case::table::TableReader;
 
-pub(super) fn read(root: &TableReader<'_>) -> Option<Laws> {
+/// `bed_eddies` is what `[gas.turbulence]` chose.
+pub(super) fn read(
+    root: &TableReader<'_>,
+    bed_eddies: Option<LawChoice<dyn BedEddies>>,
+) -> Option<Laws> {
     let section = root.table("laws")?;
     let known = section.laws();
     let drag = section.law("drag", &known.drag).map(|(law, table)| {
@@ -25,5 +32,6 @@ pub(super) fn read(root: &TableReader<'_>) -> Option<Laws> {
         conduction: conduction?,
         radiation: radiation?,
         mass_transfer: mass_transfer?,
+        bed_eddies: bed_eddies?,
     })
 }

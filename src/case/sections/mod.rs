@@ -78,7 +78,8 @@ pub(super) fn case(
     }
     let feeds = feeds::feeds(root, particles.as_deref());
     let outlets = feeds::outlets(root);
-    let laws = laws::read(root);
+    let bed_eddies = gas.as_ref().map(|gas| gas.bed_eddies.clone());
+    let laws = laws::read(root, bed_eddies);
     let walls = walls::walls(root, &materials, mesh.as_ref(), folder);
     let motion = motion::motion(root, time.as_ref().map(|(time, _)| time));
     let coupling = coupling::read(root);
@@ -142,6 +143,7 @@ pub(super) fn case(
         setup: mut gas,
         held: gas_held,
         files: gas_files,
+        bed_eddies: _,
     } = gas?;
     let laws = laws?;
     gas.momentum = laws.momentum;

@@ -1,21 +1,28 @@
 //! `[gas.turbulence]`, and the eddies of gas that flows in.
 
+use calcine_coupler::physics::law::{LawChoice, NONE};
+use calcine_coupler::physics::turbulence::BedEddies;
 use calcine_coupler::setup::{InletTurbulence, Turbulence};
 
 use crate::case::model::Output;
 use crate::case::table::TableReader;
 use crate::case::words::TurbulenceModel;
 
-/// Laminar where the table is not there; `None` where it is wrong.
-pub(super) fn turbulence(section: &TableReader<'_>) -> Option<Turbulence> {
+/// The eddies and what the particles of a bed make of them; laminar where the table is not there, `None` where it is wrong.
+pub(super) fn turbulence(
+    section: &TableReader<'_>,
+) -> Option<(Turbulence, LawChoice<dyn BedEddies>)> {
+    let known = &section.laws().bed_eddies;
     let Some(table) = section.table("turbulence") else {
-        return (!section.has("turbulence")).then_some(Turbulence::Laminar);
+        let none = LawChoice::named(known, NONE, Vec::new())?;
+        return (!section.has("turbulence")).then_some((Turbulence::Laminar, none));
     };
     let model: Option<TurbulenceModel> = table.choice("model");
     let initial = table.table("initial");
     let prandtl = table.number("prandtl");
     let schmidt = table.number("schmidt");
     let iterations = table.small_whole("iterations");
+    let bed = table.optional_law("bed", known);
     let start = initial.and_then(|initial| {
         let energy = initial.number("energy");
         let length_scale = initial.number("length_scale");
@@ -24,17 +31,25 @@ pub(super) fn turbulence(section: &TableReader<'_>) -> Option<Turbulence> {
     });
     table.finish();
     if model? == TurbulenceModel::Laminar {
-        return Some(Turbulence::Laminar);
+        let bed = bed?;
+        if !bed.is_none() {
+            let help = "write model = \"k-epsilon\", or remove it";
+            table.fail("bed", "states eddies of the bed of a laminar gas", help);
+        }
+        return Some((Turbulence::Laminar, bed));
     }
     table.need("initial");
     let (energy, length_scale) = start?;
-    Some(Turbulence::KEpsilon {
+    let bed = bed?;
+    let eddies = Turbulence::KEpsilon {
         energy,
         length_scale,
         prandtl: prandtl?,
         schmidt: schmidt?,
         iterations: iterations?,
-    })
+        in_bed: !bed.is_none(),
+    };
+    Some((eddies, bed))
 }
 
 /// `turbulence` of an inlet: there where the gas is turbulent, and only there; nothing is asked where it is not

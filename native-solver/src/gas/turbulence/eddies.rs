@@ -12,7 +12,7 @@ pub struct Eddies {
     pub energy: Vec<f64>,
     /// ε_t of each cell in m²/s³.
     pub dissipation: Vec<f64>,
-    /// Void fraction × eddy viscosity μ_t of each cell in Pa s; zero in the bed.
+    /// Void fraction × eddy viscosity μ_t of each cell in Pa s; zero in a bed at which eddies end.
     pub viscosity: Vec<f64>,
     /// The same on each boundary face; on a wall such that the plain difference of velocities gives the wall
     /// function's stress.

@@ -1,6 +1,9 @@
 //! The equations of ε_t and k over a window, one after the other. Implicit Euler; convection upwind whatever that
 //! of the other fields is; what is destroyed is linear in the new value, what is made explicit.
 //!
+//! What particles make of eddies in a bed is stiff, and k and ε_t are solved one after the other: steps are then divided, so that
+//! none is longer than half of the time of the eddies that the particles drive to, and end where nothing changes any more.
+//!
 //! k and ε_t stay positive without being bounded: what is made, inflow and the old value are not negative, the
 //! matrices are M-matrices, and where skewed cells take more by diffusion along faces than they get, that is
 //! a sink in proportion to the new value (Patankar 1980, Numerical Heat Transfer and Fluid Flow, section 7.2-2). So
@@ -8,10 +11,11 @@
 //! is cut there, and only there.
 
 use calcine_coupler::extreme::larger;
+use calcine_coupler::part::EddyExchange;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::turbulence::KEpsilon;
-use calcine_coupler::turbulence::is_free;
+use calcine_coupler::turbulence::{Turbulence, is_free};
 use nalgebra::Matrix3;
 
 use super::super::failure::{GasFailure, Place};
@@ -27,6 +31,11 @@ use crate::numerics::operators::{conductance, displacement, face_values, gradien
 use crate::numerics::parallel::{fill, largest, update};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
+/// Longest part of a step over the time k/ε_t of the eddies that particles drive to.
+const PART: f64 = 0.5;
+/// Relative change of k and ε_t in a part of a step below which they are steady, and the rest of the step changes nothing.
+const STEADY: f64 = 1e-8;
+
 /// What a step of the eddies looks at, beside the state that it advances.
 #[derive(Clone, Copy, Debug)]
 pub struct TurbulenceStep<'a> {
@@ -40,6 +49,10 @@ pub struct TurbulenceStep<'a> {
     pub viscosity: &'a [f64],
     /// ∂u_i/∂x_j of each cell in 1/s.
     pub gradients: &'a [Matrix3<f64>],
+    /// Where they reach.
+    pub turbulence: &'a Turbulence,
+    /// What particles make of them; empty where they end at the bed.
+    pub particles: &'a EddyExchange,
     /// Motion span Δt in s.
     pub span: f64,
     /// Tolerance of the linear solver, relative to the terms of its equation.
@@ -59,9 +72,11 @@ pub struct KEpsilonEquations {
     /// Largest relative residual of a solve of the last step that ended above its tolerance.
     unsolved: Option<f64>,
     source: Vec<f64>,
+    /// Void fraction × viscosity of each cell in Pa s, that of the eddies at hand included.
+    viscosity: Vec<f64>,
     /// M/Δt of each cell in kg/s.
     inertia: Vec<f64>,
-    /// P of each cell in 1/s²; zero in the bed.
+    /// P of each cell in 1/s²; zero in a bed at which eddies end.
     strain: Vec<f64>,
     /// ∇·u of each cell in 1/s.
     divergence: Vec<f64>,
@@ -105,6 +120,7 @@ impl KEpsilonEquations {
             preconditioner: Incomplete::default(),
             unsolved: None,
             source: zeros(),
+            viscosity: zeros(),
             inertia: zeros(),
             strain: zeros(),
             divergence: zeros(),
@@ -130,25 +146,71 @@ impl KEpsilonEquations {
         now: &mut GasState,
     ) -> Result<(), GasFailure> {
         self.unsolved = None;
-        self.measure(step, now);
+        self.viscosity.clear();
+        self.viscosity.extend_from_slice(step.viscosity);
+        let parts = self.parts(step);
+        for left in (1..=parts).rev() {
+            let change = self.advance_part(step, (parts, left), krylov, now)?;
+            if change <= STEADY {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Into how many parts a step is divided.
+    fn parts(&self, step: &TurbulenceStep<'_>) -> u32 {
+        let made = step.particles;
+        // ε∞/k∞, or b.
+        let rate = |cell: usize| match made.energy[cell] > 0.0 {
+            true => made.dissipation[cell] / (self.model.destruction * made.energy[cell]),
+            false => made.growth[cell],
+        };
+        let fastest = (0..made.energy.len()).map(rate).fold(0.0, f64::max);
+        (step.span * fastest / PART).ceil().max(1.0) as u32
+    }
+
+    /// Advances them by a part of the step, so many of which are left with this one; the largest relative change of k or ε_t.
+    fn advance_part(
+        &mut self,
+        step: &TurbulenceStep<'_>,
+        (parts, left): (u32, u32),
+        krylov: &mut Krylov,
+        now: &mut GasState,
+    ) -> Result<f64, GasFailure> {
+        self.measure(step, (parts, left), now);
         let mut eddies = std::mem::take(&mut now.turbulence);
         let dissipation = self.dissipation(step, krylov, now, &eddies);
         let energy = self.energy(step, krylov, now, &eddies, &dissipation);
+        let change = |old: &[f64], new: &[f64]| {
+            largest(old.len(), |cell| (new[cell] / old[cell] - 1.0).abs()).1
+        };
+        let change = larger(
+            change(&eddies.energy, &energy),
+            change(&eddies.dissipation, &dissipation),
+        );
         (eddies.energy, eddies.dissipation) = (energy, dissipation);
+        let before = eddies.viscosity.clone();
         now.turbulence = eddies;
-        update_viscosity(step.grid, step.boundary, step.gas, now);
-        check(step.grid, &now.turbulence)
+        update_viscosity(step.grid, step.boundary, step.gas, step.turbulence, now);
+        let after = &now.turbulence.viscosity;
+        update(&mut self.viscosity, |cell, sum| {
+            *sum += after[cell] - before[cell];
+        });
+        check(step.grid, &now.turbulence)?;
+        Ok(change)
     }
 
     /// What velocity and walls do to both: P, ∇·u, and the values of cells at walls.
-    fn measure(&mut self, step: &TurbulenceStep<'_>, now: &GasState) {
+    fn measure(&mut self, step: &TurbulenceStep<'_>, (parts, left): (u32, u32), now: &GasState) {
         let grid = step.grid;
         let (mass, flux) = (&now.mass, &now.flux);
+        let span = step.span / f64::from(parts);
         fill(&mut self.inertia, |cell| {
-            mass[cell] / step.span + outflow(grid, flux, cell)
+            mass[cell] / span + f64::from(left) * outflow(grid, flux, cell)
         });
         fill(&mut self.strain, |cell| {
-            if is_free(now.void_fraction[cell]) {
+            if step.turbulence.reaches(now.void_fraction[cell]) {
                 strain(&step.gradients[cell])
             } else {
                 0.0
@@ -167,10 +229,16 @@ impl KEpsilonEquations {
         fill(&mut self.made, |cell| {
             viscosity[cell] * strain[cell] * grid.volume[cell]
         });
+        // The eddies in the pores of a bed are those of its particles, at walls too.
+        let by_wall =
+            |cell: usize| is_free(now.void_fraction[cell]) || !step.turbulence.is_in_bed();
         for wall in &self.walls {
-            (self.at_wall[wall.cell], self.made[wall.cell]) = (0.0, 0.0);
+            self.at_wall[wall.cell] = 0.0;
+            if by_wall(wall.cell) {
+                self.made[wall.cell] = 0.0;
+            }
         }
-        for wall in &self.walls {
+        for wall in self.walls.iter().filter(|wall| by_wall(wall.cell)) {
             let &WallFace { face, cell, share } = wall;
             let distance = grid.faces[face].distance();
             self.at_wall[cell] += share * self.law.dissipation(energy[cell], distance);
@@ -211,13 +279,17 @@ impl KEpsilonEquations {
             ..
         } = eddies;
         let expansion = 2.0 / 3.0 * model.production;
+        let particles = |cell: usize| match step.particles.dissipation.get(cell) {
+            Some(made) => made + model.destruction * step.particles.growth[cell] * old[cell],
+            None => 0.0,
+        };
         let rates = |cell: usize| {
             let mass = now.mass[cell];
             let made = model.production * model.viscosity * energy[cell] * strain[cell];
             let squeezed = expansion * (-divergence[cell]).max(0.0) * old[cell];
             let destroyed = model.destruction * old[cell] / energy[cell]
                 + expansion * divergence[cell].max(0.0);
-            [mass * (made + squeezed), mass * destroyed]
+            [mass * (made + squeezed + particles(cell)), mass * destroyed]
         };
         let scalar = Scalar {
             prandtl: model.dissipation_prandtl,
@@ -245,11 +317,18 @@ impl KEpsilonEquations {
             std::mem::take(&mut self.divergence),
         );
         let old = &eddies.energy;
+        let particles = |cell: usize| match step.particles.energy.get(cell) {
+            Some(made) => made + step.particles.growth[cell] * old[cell],
+            None => 0.0,
+        };
         let rates = |cell: usize| {
             let mass = now.mass[cell];
             let squeezed = 2.0 / 3.0 * (-divergence[cell]).max(0.0) * old[cell];
             let destroyed = dissipation[cell] / old[cell] + 2.0 / 3.0 * divergence[cell].max(0.0);
-            [made[cell] + mass * squeezed, mass * destroyed]
+            [
+                made[cell] + mass * (squeezed + particles(cell)),
+                mass * destroyed,
+            ]
         };
         let scalar = Scalar {
             prandtl: model.energy_prandtl,
@@ -357,7 +436,8 @@ impl KEpsilonEquations {
         let grid = step.grid;
         // The eddies' share of the viscosity counts with 1/σ.
         let less = 1.0 - 1.0 / prandtl;
-        let coefficient = |cell: usize| step.viscosity[cell] - less * eddies.viscosity[cell];
+        let viscosity = &self.viscosity;
+        let coefficient = |cell: usize| viscosity[cell] - less * eddies.viscosity[cell];
         fill(&mut self.diffusion, |index| {
             let face = &grid.faces[index];
             if index < grid.internal {

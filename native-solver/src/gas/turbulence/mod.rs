@@ -1,6 +1,6 @@
-//! Eddies of the gas outside the bed: the standard k-epsilon model with wall functions, per cell
+//! Eddies of the gas: the standard k-epsilon model, per cell
 //!
-//! M (k − k_old)/Δt + Σ φ_f (k_f − k) − Σ (μ_t/σ_k + εμ)_f ∇k·S = μ_t P V − m (ε_t/k + ⅔ ∇·u) k
+//! M (k − k_old)/Δt + Σ φ_f (k_f − k) − Σ (μ_t/σ_k + εμ)_f ∇k·S = μ_t P V + m (a + b k) − m (ε_t/k + ⅔ ∇·u) k
 //!
 //! and likewise ε_t ([`equations`]); ε the void fraction, m = ε ρ V the gas of the cell, M = m + Δt Σ φ_f, so that
 //! the form subtracts k times the continuity residual as momentum does. k and ε_t live on the motion clock under
@@ -8,9 +8,11 @@
 //! clock, and eddies of a few milliseconds have no place on a clock of hours. They advance once for each committed
 //! window, so that attempts may be repeated; in an attempt the eddy viscosity is that of its start.
 //!
-//! The bed (docs/theory.md, FLO-2) is every cell with a solid fraction above 0.1, whatever its neighbours are. There
-//! eddies carry nothing (μ_t = 0) and none are made (P = 0); those that flow in decay by the model's own law. At
-//! a face between bed and free gas the coefficients are the mean of both sides, as at any other face.
+//! The bed (docs/theory.md, FLO-2) is every cell with a solid fraction above 0.1, whatever its neighbours are. With a law
+//! of eddies in the bed (COR-17) the exchange tells what its particles make, a and b; its walls have no wall functions
+//! and friction of the laminar gas. Without one eddies carry nothing there (μ_t = 0) and none are made (P = a = b = 0);
+//! those that flow in decay by the model's own law. At a face between bed and free gas the coefficients are the mean
+//! of both sides, as at any other face.
 
 mod eddies;
 mod equations;
@@ -18,7 +20,7 @@ pub mod wall;
 
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::turbulence::KEpsilon;
-use calcine_coupler::turbulence::is_free;
+use calcine_coupler::turbulence::{Turbulence, is_free};
 
 pub use eddies::Eddies;
 pub use equations::{KEpsilonEquations, TurbulenceStep};
@@ -34,11 +36,12 @@ pub fn update_viscosity(
     grid: &MeshGraph,
     boundary: &Boundaries,
     gas: &GasModel,
+    turbulence: &Turbulence,
     state: &mut GasState,
 ) {
     let mut eddies = std::mem::take(&mut state.turbulence);
     if !eddies.is_laminar() {
-        fill_viscosity(grid, boundary, gas, state, &mut eddies);
+        fill_viscosity(grid, boundary, gas, turbulence, state, &mut eddies);
     }
     state.turbulence = eddies;
 }
@@ -47,6 +50,7 @@ fn fill_viscosity(
     grid: &MeshGraph,
     boundary: &Boundaries,
     gas: &GasModel,
+    turbulence: &Turbulence,
     state: &GasState,
     eddies: &mut Eddies,
 ) {
@@ -60,7 +64,7 @@ fn fill_viscosity(
     } = eddies;
     viscosity.resize(grid.cells(), 0.0);
     fill(viscosity, |cell| {
-        if is_free(state.void_fraction[cell]) {
+        if turbulence.reaches(state.void_fraction[cell]) {
             held(cell) * model.eddy_viscosity(energy[cell], dissipation[cell])
         } else {
             0.0
@@ -72,7 +76,7 @@ fn fill_viscosity(
         let face = &grid.faces[index];
         let cell = face.owner;
         let pores = state.void_fraction[cell];
-        if !is_free(pores) {
+        if !turbulence.reaches(pores) {
             return 0.0;
         }
         match boundary.at(index) {
@@ -88,6 +92,9 @@ fn fill_viscosity(
             FaceCondition::Wall {
                 sticks: Some(_), ..
             } => {
+                if !is_free(pores) {
+                    return 0.0;
+                }
                 let laminar = wall::viscosity(boundary, gas, state, index, cell);
                 laminar * law.eddy_ratio(energy[cell], face.distance(), laminar / held(cell))
             }
