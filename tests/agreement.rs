@@ -228,6 +228,25 @@ fn last(out: &Path, column: &str) -> f64 {
 }
 
 #[test]
+fn methane_burns_in_a_bed_as_far_as_its_eddies_mix_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let [none, nakayama, pedras] = ["none", "nakayama-kuwahara", "pedras-de-lemos"].map(|law| {
+        let folder = directory.path().join(law);
+        fs::create_dir(&folder).unwrap();
+        let case = folder.join("bed.toml");
+        fs::write(&case, cases::burner_in_a_bed(law)).unwrap();
+        burn_alike(&case, &folder);
+        let runs = ["native+native", "openfoam+native"];
+        let left = |name: &str| last(&folder.join("comparison").join(name), "quantities.methane");
+        let [native, foam] = runs.map(left);
+        println!("{law}: mean fraction of methane {native:.4e}, {foam:.4e}");
+        assert!((foam / native - 1.0).abs() < 1e-3, "{law}: {native} {foam}");
+        native
+    });
+    assert!(none < 1e-5 && nakayama > 1e-3 && pedras > 1e-3);
+}
+
+#[test]
 fn methane_burns_in_a_turbulent_duct_as_far_as_eddies_mix_it() {
     let directory = tempfile::tempdir().unwrap();
     let case = directory.path().join("pasr.toml");

@@ -237,6 +237,47 @@ measure = {{ gas = "mass_fraction", of = "CH4", statistic = "mean" }}
     )
 }
 
+/// Fresh methane and air of 300 K into a bed of 1900 K, where it lights and burns as far as the eddies of the bed, by a law, mix it.
+pub fn burner_in_a_bed(law: &str) -> String {
+    let beads = r#"first = "2.5 2.5 2.5 mm", spacing = "5 5 5 mm", counts = [4, 4, 10]"#;
+    format!(
+        r#"format = 1
+title = "A burner in a bed"
+[time]
+end = "20 ms"
+motion_window = "0.5 ms"
+[mesh]
+box = {{ size = "20 20 60 mm", cells = [2, 2, 12], patches = ["wall", "wall", "wall", "wall", "bottom", "top"] }}
+[gas]
+mixture = "methane and air"
+species = ["CH4", "O2", "CO", "H2", "CO2", "H2O", "N2"]
+schmidt = 0.7
+initial = {{ temperature = "1800 K", pressure = "1 atm", velocity = "0 0 2 m/s", composition = {{ mole = {{ O2 = 0.0998, CO2 = 0.0499, H2O = 0.0998, N2 = 0.7505 }} }} }}
+turbulence = {{ model = "k-epsilon", initial = {{ energy = "0.1 m^2/s^2", length_scale = "2 mm" }}, bed = {{ law = "{law}" }} }}
+controls = {{ outer_iterations = 60, outer_tolerance = 1e-7, convection = "upwind" }}
+chemistry = {{ mechanism = "jones-lindstedt", model = "pasr" }}
+[gas.patch.bottom]
+inlet = {{ superficial_velocity = "2 m/s", temperature = "300 K", composition = {{ mole = {{ CH4 = 0.08717, O2 = 0.19177, N2 = 0.72106 }} }}, turbulence = {{ intensity = 0.05, length_scale = "0.7 mm" }} }}
+[gas.patch.top]
+outlet = {{ pressure = "1 atm" }}
+[gas.patch.wall]
+wall = {{ velocity = "no-slip", heat = "adiabatic" }}
+{}{DROP}
+[[quantities]]
+name = "methane"
+measure = {{ gas = "mass_fraction", of = "CH4", statistic = "mean" }}
+"#,
+        rest(beads)
+            .replace(r#"temperature = "300 K""#, r#"temperature = "1900 K""#)
+            .replace(
+                r#""pressure"]"#,
+                r#""pressure", "mass_fractions", "turbulence"]"#
+            )
+            .replace(r#"every = "0.5 s""#, r#"every = "20 ms""#)
+            .replace(r#"series_every = "0.1 s""#, r#"series_every = "2 ms""#)
+    )
+}
+
 /// Fresh methane and air into a duct of what a leaner gas has burnt to, past one bead, in windows far longer than the gas takes through it.
 pub fn burner_duct() -> String {
     let bead = r#"first = "5 5 195 mm", spacing = "5 5 5 mm", counts = [1, 1, 1]"#;
