@@ -166,6 +166,12 @@ fn told(cells: &CellExchange) -> Option<(&'static str, usize, f64)> {
         ("the heat transfer coefficient", &cells.heat_coefficient),
         ("the drag coefficient", &cells.drag_coefficient),
         ("the heat of the gas from particles", &species.heat),
+        ("the energy of eddies from particles", &cells.eddies.energy),
+        (
+            "the dissipation of eddies from particles",
+            &cells.eddies.dissipation,
+        ),
+        ("the growth of eddies by particles", &cells.eddies.growth),
     ]);
     let drag = || first_of(&[("the drag of particles", &cells.drag_source[..])]);
     let of_species = || {
