@@ -22,6 +22,7 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::drag::{Drag, ErgunWenYu};
 use calcine_coupler::physics::heat_transfer::{Gunn, HeatTransfer, NoHeatTransfer};
 use calcine_coupler::physics::solid::HeatCapacity;
+use calcine_coupler::physics::turbulence::NoBedEddies;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::smoother::{Smoother, SmootherSettings};
 use calcine_coupler::supervisor::{Interrupts, Supervisor};
@@ -218,6 +219,7 @@ fn beads(planted: Planted, results: &Path) -> CoupledRun {
         momentum: Default::default(),
         heat_transfer: Box::new(Gunn) as Box<dyn HeatTransfer>,
         mass_transfer: Box::new(NoHeatTransfer),
+        bed_eddies: Box::new(NoBedEddies),
     };
     let bed = ParticleSetup {
         id: vec![1, 2, 3],
