@@ -156,6 +156,18 @@ fn gases_of_a_mixture_that_purge_and_diffuse_through_a_bed() {
 }
 
 #[test]
+fn a_plume_that_draws_air_in_through_openings() {
+    for convection in ["van-leer", "upwind"] {
+        agree_on(&cases::open_box(convection), &CLOSE);
+    }
+}
+
+#[test]
+fn a_mixture_that_comes_back_in_through_an_outlet() {
+    agree_on(&cases::backflow(), &CLOSE);
+}
+
+#[test]
 fn air_in_a_tube_of_skewed_cells_with_a_finer_zone() {
     agree_on(&cases::tube(), &SKEWED);
 }

@@ -14,7 +14,9 @@ fn run(out: &Path, settings: &[&str]) -> Output {
     command.arg("run").arg(case);
     command
         .args(["--gas", "openfoam", "--quiet", "--out"])
-        .arg(out);
+        .arg(out)
+        // Stock solvers hold the temperature at the face.
+        .args(["--set", "gas.patch.bottom.inlet.scalars=value"]);
     for setting in settings {
         command.args(["--set", setting]);
     }

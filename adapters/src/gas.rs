@@ -8,7 +8,7 @@ use calcine_coupler::boundary_value::BoundaryValue;
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::part::{
-    Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
+    Backflow, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
 };
 use calcine_coupler::setup::{GasPatch, GasSetup};
 use calcine_coupler::supervisor::Supervisor;
@@ -36,6 +36,8 @@ pub struct LinkedGas {
     state: ReceivedGas,
     /// What the last commit left unconverged of the equations of turbulence.
     turbulence_residual: Option<f64>,
+    /// Of the last attempt.
+    backflow: Option<Backflow>,
     window: Option<Window>,
 }
 
@@ -63,6 +65,7 @@ impl LinkedGas {
             patches: setup.patches.clone(),
             state: ReceivedGas::default(),
             turbulence_residual: None,
+            backflow: None,
             window: None,
         };
         gas.read_state(None)?;
@@ -166,6 +169,10 @@ impl Gas for LinkedGas {
         self.state.fields()
     }
 
+    fn backflow(&self) -> Option<Backflow> {
+        self.backflow
+    }
+
     fn turbulence_residual(&self) -> Option<f64> {
         self.turbulence_residual
     }
@@ -227,6 +234,8 @@ impl Gas for LinkedGas {
         self.read_state(Some(&window))?;
         let convergence = columns::read(ranks(&self.solver, &self.mesh), received);
         let convergence = convergence.map_err(|error| self.solver.failure(Some(&window), error))?;
+        let backflow = columns::backflow(self.solver.links());
+        self.backflow = backflow.map_err(|error| self.solver.failure(Some(&window), error))?;
         Ok(convergence)
     }
 }

@@ -2,11 +2,13 @@
 
 use calcine_coupler::extreme::larger;
 use calcine_coupler::part::{
-    Balance, Bed, CellExchange, CellReceived, Convergence, GasFields, TurbulenceFields,
+    Backflow, Balance, Bed, CellExchange, CellReceived, Convergence, GasFields, TurbulenceFields,
 };
 use calcine_coupler::physics::Vec3;
 use calcine_wire::{ColumnSet, Link, WireError};
 
+/// Column of what comes back in through outlets.
+const BACKFLOW: &str = "backflow";
 /// Column of a commit's answer.
 const TURBULENCE_RESIDUAL: &str = "turbulence_residual";
 
@@ -217,6 +219,35 @@ pub fn read(ranks: GasRanks<'_>, received: &mut CellReceived) -> Result<Converge
         volume_residual: volume,
         converged: converged != 0.0,
     })
+}
+
+/// What came back in through outlets, of all ranks; `None` where nothing did, or the gas does not say.
+pub fn backflow(links: &[Link]) -> Result<Option<Backflow>, WireError> {
+    let mut all: Option<Backflow> = None;
+    for link in links {
+        if !link.catalogue().has(ColumnSet::State, BACKFLOW) {
+            continue;
+        }
+        let &[faces, velocity, cell] = link.column(BACKFLOW)? else {
+            return Err(WireError::Order {
+                what: "the column `backflow` has not three numbers",
+            });
+        };
+        if faces > 0.0 {
+            // Counts and numbers of cells come as doubles, exact far beyond any of them.
+            let own = Backflow {
+                faces: faces as u64,
+                velocity,
+                cell: cell as usize,
+            };
+            let faces = own.faces + all.map_or(0, |other| other.faces);
+            let worst = all
+                .filter(|other| other.velocity >= velocity)
+                .unwrap_or(own);
+            all = Some(Backflow { faces, ..worst });
+        }
+    }
+    Ok(all)
 }
 
 /// The largest relative residual at which a rank's equations of turbulence ended above their tolerance, from the answers

@@ -59,6 +59,7 @@ fn burner() -> GasSetup {
                     mixture.mass_fractions(&FRESH),
                 )])),
                 turbulence: None,
+                scalars: Default::default(),
             }
         }
     }

@@ -10,7 +10,9 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::kinetics::{Mechanism, Tolerances};
 use calcine_coupler::physics::thermo::Mixture;
-use calcine_coupler::setup::{CompositionSchedule, GasPatch, GasSetup, InletFlow, Schedule};
+use calcine_coupler::setup::{
+    CompositionSchedule, GasPatch, GasSetup, InletFlow, InletScalars, Schedule,
+};
 use calcine_coupler::time::{Clocks, Ticks};
 
 use crate::openfoam_support::{Duct, exchange_of_nothing, setup};
@@ -45,13 +47,10 @@ fn burner() -> GasSetup {
                     temperature: Schedule::constant(300.0),
                     composition: Some(CompositionSchedule(vec![(0.0, fresh.clone())])),
                     turbulence: None,
+                    scalars: InletScalars::Value,
                 }
             }
-            "top" => {
-                *patch = GasPatch::Outlet {
-                    pressure: Schedule::constant(PRESSURE),
-                }
-            }
+            "top" => *patch = GasPatch::outlet(Schedule::constant(PRESSURE)),
             _ => {}
         }
     }

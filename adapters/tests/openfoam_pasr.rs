@@ -181,7 +181,7 @@ fn two_ranks_compute_the_turbulent_reacting_gas_of_one() {
         let mut setup = stirred(pasr);
         setup.pressure *= 0.1;
         for (_, patch) in &mut setup.patches {
-            if let GasPatch::Outlet { pressure } = patch {
+            if let GasPatch::Outlet { pressure, .. } = patch {
                 *pressure = Schedule::constant(setup.pressure);
             }
         }

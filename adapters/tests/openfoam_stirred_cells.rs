@@ -57,13 +57,10 @@ fn launch(
                     temperature: Schedule::constant(inlet.0),
                     composition: Some(CompositionSchedule(vec![(0.0, inlet.1.clone())])),
                     turbulence: None,
+                    scalars: Default::default(),
                 }
             }
-            "top" => {
-                *patch = GasPatch::Outlet {
-                    pressure: Schedule::constant(ATMOSPHERE),
-                }
-            }
+            "top" => *patch = GasPatch::outlet(Schedule::constant(ATMOSPHERE)),
             _ => {}
         }
     }

@@ -7,7 +7,7 @@ use std::fmt;
 
 use thiserror::Error;
 
-use crate::setup::{CompositionSchedule, GasPatch, InletFlow, Schedule, WallHeat};
+use crate::setup::{CompositionSchedule, GasPatch, InletFlow, PatchGas, Schedule, WallHeat};
 
 /// Mass fractions must sum to one within this.
 const SUM: f64 = 1e-9;
@@ -15,15 +15,16 @@ const SUM: f64 = 1e-9;
 /// A condition with its value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BoundaryQuantity {
-    /// Temperature in K of an inlet's gas, or of a wall whose temperature the case gives.
+    /// Temperature in K of an inlet's or an opening's gas or of what comes back in at an outlet, where the case gives it,
+    /// or of a wall whose temperature the case gives.
     Temperature(f64),
     /// Superficial velocity in m/s into the domain, of an inlet.
     SuperficialVelocity(f64),
     /// Mass flow in kg/s into the domain through the whole patch, of an inlet.
     MassFlow(f64),
-    /// Mass fractions of an inlet's gas, in the order of the mixture's species.
+    /// Mass fractions of an inlet's or an opening's gas or of what comes back in at an outlet, in the order of the mixture's species.
     Composition(Vec<f64>),
-    /// Absolute pressure in Pa of an outlet.
+    /// Absolute pressure in Pa of an outlet or an opening.
     Pressure(f64),
     /// Heat flux in W/m² into the gas, of a wall whose flux the case gives.
     HeatFlux(f64),
@@ -158,11 +159,14 @@ impl BoundaryQuantity {
     fn remedy(&self) -> &'static str {
         match self {
             Self::Temperature(_) => {
-                "inlets have one, and walls whose `heat` the case gives as a temperature"
+                "inlets and openings have one, outlets with `backflow`, and walls whose `heat` the case gives as a \
+                 temperature"
             }
             Self::SuperficialVelocity(_) | Self::MassFlow(_) => "inlets have one",
-            Self::Composition(_) => "inlets of a mixture have one",
-            Self::Pressure(_) => "outlets have one",
+            Self::Composition(_) => {
+                "inlets, openings and outlets with `backflow` of a mixture have one"
+            }
+            Self::Pressure(_) => "outlets and openings have one",
             Self::HeatFlux(_) => "walls have one whose `heat` the case gives as a flux",
             Self::HeatTransferCoefficient(_) | Self::Ambient(_) => {
                 "walls have one whose `heat` the case gives by coefficient and ambient"
@@ -218,7 +222,18 @@ impl BoundaryValue {
     fn replace(&self, patch: &mut GasPatch) -> Result<(), BoundaryValueError> {
         use BoundaryQuantity as Q;
         match (patch, &self.quantity) {
-            (GasPatch::Inlet { temperature, .. }, Q::Temperature(value)) => {
+            (
+                GasPatch::Inlet { temperature, .. }
+                | GasPatch::Opening {
+                    gas: PatchGas { temperature, .. },
+                    ..
+                }
+                | GasPatch::Outlet {
+                    backflow: Some(PatchGas { temperature, .. }),
+                    ..
+                },
+                Q::Temperature(value),
+            ) => {
                 *temperature = Schedule::constant(*value);
             }
             (GasPatch::Inlet { flow, .. }, Q::SuperficialVelocity(value)) => {
@@ -231,13 +246,32 @@ impl BoundaryValue {
                 GasPatch::Inlet {
                     composition: Some(composition),
                     ..
+                }
+                | GasPatch::Opening {
+                    gas:
+                        PatchGas {
+                            composition: Some(composition),
+                            ..
+                        },
+                    ..
+                }
+                | GasPatch::Outlet {
+                    backflow:
+                        Some(PatchGas {
+                            composition: Some(composition),
+                            ..
+                        }),
+                    ..
                 },
                 Q::Composition(fractions),
             ) => {
                 self.check_fractions(fractions, composition)?;
                 *composition = CompositionSchedule(vec![(0.0, fractions.clone())]);
             }
-            (GasPatch::Outlet { pressure }, Q::Pressure(value)) => {
+            (
+                GasPatch::Outlet { pressure, .. } | GasPatch::Opening { pressure, .. },
+                Q::Pressure(value),
+            ) => {
                 *pressure = Schedule::constant(*value);
             }
             (GasPatch::Wall { heat, .. }, quantity) => return self.replace_heat(heat, quantity),
@@ -339,14 +373,13 @@ mod tests {
             temperature: Schedule(vec![(0.0, 300.0), (10.0, 400.0)]),
             composition: Some(CompositionSchedule(vec![(0.0, vec![0.2, 0.8])])),
             turbulence: None,
+            scalars: Default::default(),
         };
         let wall = GasPatch::Wall {
             velocity: WallVelocity::NoSlip,
             heat: WallHeat::Flux(Schedule::constant(0.0)),
         };
-        let outlet = GasPatch::Outlet {
-            pressure: Schedule::constant(1e5),
-        };
+        let outlet = GasPatch::outlet(Schedule::constant(1e5));
         [("bottom", inlet), ("side", wall), ("top", outlet)]
             .map(|(name, patch)| (name.to_owned(), patch))
             .into()

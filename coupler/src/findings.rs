@@ -28,6 +28,8 @@ pub enum FindingKind {
     MassTransferVoidFraction,
     /// Reynolds number outside the range of the mass transfer law.
     MassTransferReynolds,
+    /// Gas comes back in through an outlet, in the state of the cell behind.
+    Backflow,
     /// The gas' outer loop ended at its limit.
     GasIterations,
     /// The equations of turbulence ended above their tolerance.
@@ -44,7 +46,7 @@ pub enum FindingKind {
 
 impl FindingKind {
     /// All kinds.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::GasTemperature,
         Self::MassFraction,
         Self::VoidFraction,
@@ -55,6 +57,7 @@ impl FindingKind {
         Self::HeatTransferReynolds,
         Self::MassTransferVoidFraction,
         Self::MassTransferReynolds,
+        Self::Backflow,
         Self::GasIterations,
         Self::TurbulenceSolver,
         Self::ExchangeAttempts,
@@ -107,6 +110,12 @@ impl FindingKind {
                 "mass_transfer.reynolds",
                 "Reynolds numbers outside the range that the mass transfer law's source states",
                 "1",
+            ],
+            Self::Backflow => [
+                "backflow",
+                "gas comes back in through an outlet in the state of the cell behind, as its `backflow` is not stated; \
+                 superficial velocity",
+                "m/s",
             ],
             Self::GasIterations => [
                 "gas_iterations",

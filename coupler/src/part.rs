@@ -226,10 +226,27 @@ pub struct Convergence {
     pub converged: bool,
 }
 
+/// Gas that comes back in through outlets for which no state of it is given, in that of the cell behind. It counts where it
+/// renews more of a cell's gas in a window than the share to which the gas is solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Backflow {
+    /// Faces with it.
+    pub faces: u64,
+    /// Largest superficial velocity inwards in m/s.
+    pub velocity: f64,
+    /// Cell behind that face.
+    pub cell: usize,
+}
+
 /// Flow, enthalpy and species on a finite-volume mesh.
 pub trait Gas: Part {
     /// Fields after the last finished attempt (initially: the start of the run).
     fn fields(&self) -> GasFields<'_>;
+
+    /// Gas that comes back in through outlets after the last attempt, where its state is not given.
+    fn backflow(&self) -> Option<Backflow> {
+        None
+    }
 
     /// Relative residual of the equations of turbulence where the last commit left them above their tolerance.
     fn turbulence_residual(&self) -> Option<f64> {

@@ -113,11 +113,25 @@ pub enum GasPatch {
         composition: Option<CompositionSchedule>,
         /// Eddies that come in; `None` where the gas is laminar.
         turbulence: Option<InletTurbulence>,
+        /// How temperature and composition are given.
+        scalars: InletScalars,
     },
-    /// Gas leaves (or enters in the state of the cell behind) at a pressure.
+    /// Gas leaves at a pressure.
     Outlet {
         /// Absolute pressure in Pa, over process time in s.
         pressure: Schedule,
+        /// Gas that comes back in; `None`: of the state of the cell behind.
+        backflow: Option<PatchGas>,
+    },
+    /// Gas flows out to surroundings at rest or in from them, as the pressures have it.
+    Opening {
+        /// Absolute pressure of the surroundings in Pa at the height of `at`, over process time in s.
+        pressure: Schedule,
+        /// Point in m at whose height the surroundings have the pressure; above and below they have that of their own
+        /// weight.
+        at: Vec3,
+        /// Gas of the surroundings.
+        gas: PatchGas,
     },
     /// A wall.
     Wall {
@@ -130,7 +144,57 @@ pub enum GasPatch {
     Symmetry,
 }
 
+/// Gas beyond a patch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatchGas {
+    /// Temperature in K, over process time in s.
+    pub temperature: Schedule,
+    /// Composition; `None` for a single gas.
+    pub composition: Option<CompositionSchedule>,
+}
+
 impl GasPatch {
+    /// An outlet at an absolute pressure in Pa, through which gas comes back in the state of the cell behind.
+    pub fn outlet(pressure: Schedule) -> Self {
+        Self::Outlet {
+            pressure,
+            backflow: None,
+        }
+    }
+
+    /// Temperature in K and composition of the gas that comes in, where they are stated.
+    pub fn entering(&self) -> Option<(&Schedule, Option<&CompositionSchedule>)> {
+        match self {
+            Self::Inlet {
+                temperature,
+                composition,
+                ..
+            }
+            | Self::Opening {
+                gas:
+                    PatchGas {
+                        temperature,
+                        composition,
+                    },
+                ..
+            }
+            | Self::Outlet {
+                backflow:
+                    Some(PatchGas {
+                        temperature,
+                        composition,
+                    }),
+                ..
+            } => Some((temperature, composition.as_ref())),
+            Self::Outlet { backflow: None, .. } | Self::Wall { .. } | Self::Symmetry => None,
+        }
+    }
+
+    /// True where gas passes as pressures drive it.
+    pub fn is_open(&self) -> bool {
+        matches!(self, Self::Outlet { .. } | Self::Opening { .. })
+    }
+
     /// An inlet of a single gas with a superficial velocity in m/s and a temperature in K.
     pub fn inlet(velocity: Schedule, temperature: Schedule) -> Self {
         Self::Inlet {
@@ -138,8 +202,20 @@ impl GasPatch {
             temperature,
             composition: None,
             turbulence: None,
+            scalars: InletScalars::default(),
         }
     }
+}
+
+/// How an inlet gives temperature and composition (docs/theory.md, BND-1).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum InletScalars {
+    /// By the whole flux of species and enthalpy, that of the stated gas at the stated flow (Danckwerts): nothing
+    /// diffuses or is conducted beside it.
+    #[default]
+    Flux,
+    /// By their values at the face, to which and from which species diffuse and heat is conducted.
+    Value,
 }
 
 /// How much gas flows through an inlet; zero or positive, into the domain.

@@ -39,6 +39,7 @@ fn burner() -> Driver {
         temperature: Schedule::constant(300.0),
         composition: Some(CompositionSchedule(vec![(0.0, fresh())])),
         turbulence: None,
+        scalars: Default::default(),
     };
     let mut setup = setup(&[("bottom", bottom), ("top", outlet()), ("side", slip())]);
     setup.temperature = 1800.0;

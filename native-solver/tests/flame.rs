@@ -7,7 +7,7 @@ use calcine_coupler::physics::gas::GAS_CONSTANT;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::kinetics::{Mechanism, Tolerances};
 use calcine_coupler::physics::thermo::Mixture;
-use calcine_coupler::setup::{CompositionSchedule, GasPatch, InletFlow, Schedule};
+use calcine_coupler::setup::{CompositionSchedule, GasPatch, InletFlow, InletScalars, Schedule};
 use calcine_coupler::time::GasStorage;
 
 use crate::common::*;
@@ -76,10 +76,9 @@ fn burner(storage: GasStorage, outer_iterations: u32) -> Driver {
         temperature: Schedule::constant(300.0),
         composition: Some(CompositionSchedule(vec![(0.0, fresh(&mixture))])),
         turbulence: None,
+        scalars: InletScalars::Value,
     };
-    let top = GasPatch::Outlet {
-        pressure: Schedule::constant(PRESSURE),
-    };
+    let top = GasPatch::outlet(Schedule::constant(PRESSURE));
     let mut setup = setup(&[("bottom", bottom), ("top", top), ("side", slip())]);
     setup.pressure = PRESSURE;
     setup.temperature = 1800.0;

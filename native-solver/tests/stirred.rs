@@ -95,6 +95,7 @@ fn carried(length_scale: f64, schmidt: f64) -> Vec<f64> {
             intensity: 1.0,
             length_scale,
         }),
+        scalars: Default::default(),
     };
     let mut setup = setup(&[("side", slip()), ("bottom", bottom), ("top", outlet())]);
     setup.turbulence = Turbulence::KEpsilon {

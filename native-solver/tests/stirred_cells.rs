@@ -71,6 +71,7 @@ impl Chain {
             temperature: Schedule::constant(self.inlet.0),
             composition: Some(CompositionSchedule(vec![(0.0, self.inlet.1.clone())])),
             turbulence: None,
+            scalars: Default::default(),
         };
         let mut setup = setup(&[("bottom", bottom), ("top", outlet()), ("side", slip())]);
         setup.temperature = self.start.0;

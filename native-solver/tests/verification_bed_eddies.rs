@@ -48,6 +48,7 @@ fn bed(side: GasPatch, energy: f64, length_scale: f64) -> GasSetup {
             intensity: (energy / 1.5).sqrt() * PORES / SUPERFICIAL,
             length_scale,
         }),
+        scalars: Default::default(),
     };
     let mut setup = setup(&[("side", side), ("bottom", inlet), ("top", outlet())]);
     setup.turbulence = Turbulence::KEpsilon {

@@ -44,6 +44,7 @@ fn turbulent_inlet(velocity: f64, intensity: f64, length_scale: f64) -> GasPatch
             intensity,
             length_scale,
         }),
+        scalars: Default::default(),
     }
 }
 

@@ -61,14 +61,15 @@ fn temperatures(case: &Case) -> (f64, f64) {
     );
     let mut add = |schedule: &Schedule| all.extend(schedule.0.iter().map(|entry| entry.1));
     for (_, patch) in &case.gas.patches {
-        match patch {
-            GasPatch::Inlet { temperature, .. } => add(temperature),
-            GasPatch::Wall { heat, .. } => match heat {
+        if let Some((temperature, _)) = patch.entering() {
+            add(temperature);
+        }
+        if let GasPatch::Wall { heat, .. } = patch {
+            match heat {
                 WallHeat::Temperature(temperature) => add(temperature),
                 WallHeat::Convective { ambient, .. } => add(ambient),
                 WallHeat::Adiabatic | WallHeat::Flux(_) => {}
-            },
-            GasPatch::Outlet { .. } | GasPatch::Symmetry => {}
+            }
         }
     }
     let low = all.iter().copied().fold(f64::MAX, f64::min);

@@ -5,7 +5,7 @@ pub(super) use calcine_adapters::openfoam::stock::StockSolver;
 pub(super) use calcine_coupler::momentum_model::MomentumModel;
 pub(super) use calcine_coupler::packing::Share;
 use calcine_coupler::packing::regular::Lattice;
-pub(super) use calcine_coupler::setup::{Convection, WallVelocity};
+pub(super) use calcine_coupler::setup::{Convection, InletScalars, WallVelocity};
 pub(super) use calcine_coupler::time::GasStorage;
 pub(super) use calcine_coupler::window_drag::WindowDrag;
 
@@ -99,6 +99,7 @@ case_words! {
     Adiabatic { "adiabatic" => Adiabatic }
     Closed { "closed" => Closed }
     Convection { "van-leer" => Convection::VanLeer, "upwind" => Convection::Upwind }
+    InletScalars { "flux" => InletScalars::Flux, "value" => InletScalars::Value }
     Share { "number" => Share::Number, "mass" => Share::Mass }
     MotionSpec { "frozen" => MotionSpec::Frozen, "free" => MotionSpec::Free }
     PackingName {

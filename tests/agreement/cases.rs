@@ -66,6 +66,75 @@ wall = {{ velocity = "no-slip", heat = {{ temperature = "310 K" }} }}
     )
 }
 
+/// Air over a heated floor between openings on both sides and above: a plume that draws air in.
+pub fn open_box(convection: &str) -> String {
+    let beads = r#"first = "50 10 30 mm", spacing = "5 5 5 mm", counts = [1, 1, 1]"#;
+    let opening = r#"opening = { pressure = "1 atm", temperature = "300 K" }"#;
+    format!(
+        r#"format = 1
+title = "A plume of air in an open box"
+[time]
+end = "1 s"
+motion_window = "5 ms"
+acceleration = 1
+[mesh]
+box = {{ size = "100 20 100 mm", cells = [10, 2, 10], patches = ["west", "east", "side", "side", "floor", "top"] }}
+[gas]
+mixture = "air"
+gravity = "0 0 -9.81 m/s^2"
+initial = {{ temperature = "300 K", pressure = "1 atm" }}
+controls = {{ outer_iterations = 100, outer_tolerance = 1e-9, convection = "{convection}" }}
+[gas.patch.west]
+{opening}
+[gas.patch.east]
+{opening}
+[gas.patch.top]
+{opening}
+[gas.patch.floor]
+wall = {{ velocity = "no-slip", heat = {{ flux = "500 W/m^2" }} }}
+[gas.patch.side]
+wall = {{ velocity = "slip", heat = "adiabatic" }}
+{}
+[[quantities]]
+name = "hottest"
+measure = {{ gas = "temperature", statistic = "max" }}
+[[quantities]]
+name = "fastest"
+measure = {{ gas = "speed", statistic = "max" }}
+"#,
+        rest(beads)
+    )
+}
+
+/// Hydrogen between two outlets of unlike pressures, of which the upper one lets another gas back in.
+pub fn backflow() -> String {
+    let beads = r#"first = "5 5 15 mm", spacing = "5 5 5 mm", counts = [3, 3, 5]"#;
+    format!(
+        r#"format = 1
+title = "Gas that comes back in through an outlet"
+[time]
+end = "1 s"
+motion_window = "5 ms"
+acceleration = 2
+[mesh]
+box = {{ size = "20 20 60 mm", cells = [4, 4, 12], patches = ["side", "side", "side", "side", "bottom", "top"] }}
+[gas]
+mixture = "purge"
+species = ["H2", "N2", "CO2"]
+schmidt = 0.7
+initial = {{ temperature = "300 K", pressure = "1 atm", composition = {{ mole = {{ H2 = 1 }} }} }}
+controls = {{ outer_iterations = 60, outer_tolerance = 1e-7 }}
+[gas.patch.bottom]
+outlet = {{ pressure = "1 atm" }}
+[gas.patch.top]
+outlet = {{ pressure = "1.00001 atm", backflow = {{ temperature = "350 K", composition = {{ mole = {{ CO2 = 0.5, N2 = 0.5 }} }} }} }}
+[gas.patch.side]
+wall = {{ velocity = "slip", heat = "adiabatic" }}
+{}{DROP}"#,
+        rest(beads)
+    )
+}
+
 /// Hot hydrogen and nitrogen drive carbon dioxide out of a bed: unlike molar masses, heat capacities and
 /// viscosities, slow enough for diffusion to matter at the inlet.
 pub fn purge(convection: &str) -> String {

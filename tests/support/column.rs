@@ -95,16 +95,12 @@ fn flows(state: &State) -> ([f64; CELLS + 1], [f64; PARTICLES]) {
     (flow, heat)
 }
 
-/// Heat conducted in the gas up through the lower face of a cell in W.
+/// Heat conducted in the gas up through the lower face of a cell in W; none at inlet and outlet (docs/theory.md, BND-1).
 fn conduction(state: &State, face: usize) -> f64 {
-    if face == CELLS {
+    if face == 0 || face == CELLS {
         return 0.0;
     }
     let above = state.gas[face];
-    if face == 0 {
-        let kappa = void_fraction(0) * conductivity(INLET_TEMPERATURE);
-        return kappa * AREA * (INLET_TEMPERATURE - above) / (0.5 * CELL);
-    }
     let below = state.gas[face - 1];
     let lower = void_fraction(face - 1) * conductivity(below);
     let upper = void_fraction(face) * conductivity(above);

@@ -61,6 +61,28 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
         }
     }
 
+    // Gas of the surroundings comes in straight through openings.
+    for (const fvPatch& patch : mesh_.boundary())
+    {
+        const statedGas* opening = inflow_.surroundings(patch.index());
+        if (!opening)
+        {
+            continue;
+        }
+        forAll(patch, i)
+        {
+            const label facei = patch.start() + i;
+            const scalar flux = flux_[facei];
+            if (flux < 0)
+            {
+                const scalar held = opening->density*given_.voidFraction[patch.faceCells()[i]];
+                const scalar speed = flux/(held*mag(mesh_.faceAreas()[facei]));
+                matrix.internalCoeffs()[patch.index()][i] = Zero;
+                matrix.boundaryCoeffs()[patch.index()][i] = -flux*speed*normal_[facei];
+            }
+        }
+    }
+
     momentumDiagonal_ = matrix.A()().primitiveField();
     const vectorField push(-share*pressureGradient_);
     const vectorField pull(matrix.H()().primitiveField()*volume);

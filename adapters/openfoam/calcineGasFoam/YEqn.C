@@ -42,7 +42,7 @@ Foam::tmp<Foam::surfaceScalarField> Foam::calcine::gas::speciesLimiter() const
 
 Foam::calcine::gas::speciesTransport::speciesTransport(const gas& of)
 :
-    diffusion("speciesDiffusion", fvc::interpolate(of.diffusivity())),
+    diffusion("speciesDiffusion", of.speciesDiffusion()),
     limitedFlux(of.phi_*of.speciesLimiter()),
     inertia(of.committed_.mass/of.window_.storageSpan),
     kept(inertia - (of.outflow() - of.massSource())),
@@ -82,6 +82,7 @@ Foam::tmp<Foam::fvScalarMatrix> Foam::calcine::gas::speciesEquation
     );
     tmp<fvScalarMatrix> equation(convection.fvmDiv(phi_, Y) - laplacian);
     fvScalarMatrix& matrix = equation.ref();
+    inflow_.carry(matrix, phi_, k);
     matrix.diag() += transport.kept + given_.speciesCoefficient[k];
     matrix.source() += transport.inertia*committed_.composition[k]
       - outOf(transport.beyond[k]) + given_.speciesSource[k];

@@ -62,6 +62,9 @@ Foam::calcine::boundary::boundary
                 d.composition.set(species.keyword(), new schedule(composition, species.keyword()));
             }
         }
+        d.opening = dict.found("pressureAt");
+        d.at = dict.lookupOrDefault<vector>("pressureAt", Zero);
+        d.byFlux = dict.lookupOrDefault<word>("scalars", "value") == "flux";
         readTable(dict, "heatFlux", d.heatFlux);
         readTable(dict, "coefficient", d.coefficient);
         readTable(dict, "ambient", d.ambient);
@@ -174,7 +177,7 @@ void Foam::calcine::boundary::updateState
 {
     for (const driven& d : driven_)
     {
-        if (d.temperature.valid())
+        if (d.temperature.valid() && !d.pressure.valid())
         {
             temperature.boundaryFieldRef()[d.patch] == d.temperature->at(time);
         }
@@ -196,7 +199,7 @@ void Foam::calcine::boundary::updateComposition
     {
         for (volScalarField& Y : fractions)
         {
-            if (d.composition.found(Y.name()))
+            if (d.composition.found(Y.name()) && !d.pressure.valid())
             {
                 Y.boundaryFieldRef()[d.patch] == d.composition[Y.name()]->at(time);
             }
@@ -234,6 +237,41 @@ void Foam::calcine::boundary::updateVelocity
         const scalarField pores(voidFraction, patch.faceCells());
         velocity.boundaryFieldRef()[d.patch] == -massFlux_[d.patch]/(rho*pores)*patch.nf();
     }
+}
+
+
+Foam::List<Foam::calcine::statedGas> Foam::calcine::boundary::stated
+(
+    scalar time,
+    scalar pRef,
+    const wordList& species
+) const
+{
+    DynamicList<statedGas> all;
+    for (const driven& d : driven_)
+    {
+        // Through a patch of a given pressure gas comes back in.
+        const bool open = d.pressure.valid();
+        if (!d.temperature.valid() || !(open || d.byFlux))
+        {
+            continue;
+        }
+        statedGas gas;
+        gas.patch = d.patch;
+        gas.open = open;
+        gas.massFlux = massFlux_[d.patch];
+        gas.opening = d.opening;
+        gas.pressure = open ? d.pressure->at(time) - pRef : 0;
+        gas.at = d.at;
+        gas.temperature = d.temperature->at(time);
+        gas.fractions.setSize(species.size());
+        forAll(species, k)
+        {
+            gas.fractions[k] = d.composition[species[k]]->at(time);
+        }
+        all.append(gas);
+    }
+    return List<statedGas>(all);
 }
 
 

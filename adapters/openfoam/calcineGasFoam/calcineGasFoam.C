@@ -182,6 +182,10 @@ void send
         link.put("dissipation", gas.eddies().dissipation());
         link.put("eddy_viscosity", gas.eddies().viscosity());
     }
+    if (gas.tellsBackflow())
+    {
+        link.put("backflow", gas.backflow());
+    }
     DynamicList<scalar> balances(35 + 7*gas.speciesNames().size());
     append(balances, result.mass);
     append(balances, result.energy);

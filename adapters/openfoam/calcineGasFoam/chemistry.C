@@ -140,7 +140,7 @@ Foam::scalar Foam::calcine::gas::solveScalars(scalar flow, report& result)
         sweepReactions();
         reactionTime_ += begun.elapsed();
         guard(true);
-        thermo_->correct();
+        updateProperties();
         const scalarField& T = thermo_->T().primitiveField();
         change = gMax(mag(T - before)/T);
         forAll(Y, k)
@@ -417,7 +417,7 @@ void Foam::calcine::gas::closeReactions(report& result)
     {
         solveSpecies(transport, result);
         solveEnthalpy(result);
-        thermo_->correct();
+        updateProperties();
         if (closing == closings || !keepPositive(transport))
         {
             break;

@@ -59,7 +59,7 @@ Foam::scalar Foam::calcine::gas::conserveElements(report& result)
     carryEnthalpy(transport.limitedFlux, diffused);
     residual = max(residual, solveEnthalpy(result));
     guard(true);
-    thermo_->correct();
+    updateProperties();
     return residual;
 }
 

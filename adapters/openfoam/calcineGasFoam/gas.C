@@ -121,6 +121,7 @@ Foam::calcine::gas::gas
     takesAllPressure_(properties.getOrDefault<word>("momentumModel", "a") == "b"),
     schmidt_(properties.lookupOrDefault<scalar>("schmidt", 1)),
     sendsEddies_(properties.lookupOrDefault<bool>("sendsEddies", false)),
+    tellsBackflow_(properties.lookupOrDefault<bool>("tellsBackflow", false)),
     startVelocity_(U_.primitiveField())
 {
     const dictionary& controls = properties.subDict("controls");
@@ -175,6 +176,7 @@ void Foam::calcine::gas::measureFaces()
     neighbourSkew_.setSize(faces, Zero);
     conductance_.setSize(faces, 0);
     drive_.setSize(faces, 0);
+    openingSlope_.setSize(faces, 0);
     transportPush_.setSize(faces, 0);
     recovery_ = tensorField(mesh_.nCells(), Zero);
     for (label facei = 0; facei < faces; ++facei)
@@ -319,7 +321,7 @@ void Foam::calcine::gas::updateBasePressure()
     const scalar held = gSum(committed_.mass)
       + window_.storageSpan*(gSum(massSource()) - boundaryOutflow());
     modelPressure_ == dimensionedScalar("p", dimPressure, held/atOnePascal);
-    thermo_->correct();
+    updateProperties();
 }
 
 
@@ -410,6 +412,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
         restore();
         models_->place(committed_.voidFraction*density());
     }
+    updateInflow();
     U_.correctBoundaryConditions();
 
     models_->begin();
@@ -423,7 +426,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
         const scalarField rho(density());
         setFlux();
         result.residual = predictVelocity(rho, result);
-        result.residual = max(result.residual, assemblePressure(rho));
+        result.residual = max(result.residual, assemblePressure(rho, outer == 1));
         for (label correction = 0; correction < max(corrections_, 1); ++correction)
         {
             correctPressure(rho, result);
@@ -433,7 +436,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
         result.residual = max(result.residual, solveScalars(result.residual, result));
         guard(true);
         result.outerIterations = outer;
-        thermo_->correct();
+        updateProperties();
         if (result.residual <= outerTolerance_)
         {
             result.converged = true;

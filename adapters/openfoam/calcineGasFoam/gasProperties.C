@@ -1,5 +1,6 @@
 // What the gas is made of and how it transports, eddies included.
 #include "gas.H"
+#include "fvc.H"
 
 Foam::wordList Foam::calcine::gas::speciesNames() const
 {
@@ -45,4 +46,12 @@ Foam::tmp<Foam::volScalarField> Foam::calcine::gas::diffusivity() const
     return models_->turbulent()
       ? laminar + models_->eddyViscosity()/models_->turbulentSchmidt()
       : laminar;
+}
+
+
+Foam::tmp<Foam::surfaceScalarField> Foam::calcine::gas::speciesDiffusion() const
+{
+    tmp<surfaceScalarField> faces(fvc::interpolate(diffusivity()));
+    inflow_.seal(faces.ref());
+    return faces;
 }

@@ -33,6 +33,7 @@ void Foam::calcine::gas::assembleEnthalpy()
     }
     fvScalarMatrix& matrix = *enthalpy_;
     addConduction(matrix);
+    inflow_.carry(matrix, phi_, -1);
     updateGivenHeat();
     matrix.diag() +=
         committed_.mass/span + heatSlope_/heatCapacity_ - outflow() + massSource();
@@ -130,7 +131,8 @@ void Foam::calcine::gas::updateGivenHeat()
 void Foam::calcine::gas::addConduction(fvScalarMatrix& enthalpy) const
 {
     const volScalarField& T = thermo_->T();
-    const surfaceScalarField conduction("conduction", fvc::interpolate(conductivity()));
+    surfaceScalarField conduction("conduction", fvc::interpolate(conductivity()));
+    inflow_.seal(conduction);
     const fvScalarMatrix heat(fvm::laplacian(conduction, T));
     const labelUList& owner = mesh_.owner();
     const labelUList& neighbour = mesh_.neighbour();

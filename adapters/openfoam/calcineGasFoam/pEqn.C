@@ -46,8 +46,9 @@ void Foam::calcine::gas::updateForce()
 }
 
 
-Foam::scalar Foam::calcine::gas::assemblePressure(const scalarField& density)
+Foam::scalar Foam::calcine::gas::assemblePressure(const scalarField& density, bool first)
 {
+    const scalar missed = updateOpenings();
     mobility_ = density*given_.voidFraction*pressureShare_/momentumDiagonal_;
     const labelUList& owner = mesh_.faceOwner();
     const scalarField mobilityBeyond(shared_.beyond(mobility_));
@@ -71,13 +72,19 @@ Foam::scalar Foam::calcine::gas::assemblePressure(const scalarField& density)
         }
         for (label facei = patch.start(); facei < patch.start() + patch.size(); ++facei)
         {
+            const scalar area = mag(mesh_.faceAreas()[facei]);
             conductance_[facei] = !open ? 0
-              : mag(mesh_.faceAreas()[facei])*mobility_[owner[facei]]/ownerDistance_[facei];
+              : area/(ownerDistance_[facei]/mobility_[owner[facei]] + area*openingSlope_[facei]);
         }
     }
 
-    // How far the flux at hand is from continuity, relative to what is held and what flows.
-    const scalar error = gSumMag(wantedOutflow(density) - outflow());
+    // How far the flux at hand is from continuity, relative to what is held and what flows. What openings missed is known after the
+    // first iteration.
+    if (first && inflow_.opens())
+    {
+        return 1;
+    }
+    const scalar error = gSumMag(wantedOutflow(density) - outflow()) + missed;
     scalar flowing = 0;
     forAll(flux_, facei)
     {

@@ -103,6 +103,9 @@ impl OpenfoamCase<'_> {
         if self.setup.turbulence.is_in_bed() {
             catalogue = catalogue.with_bed_eddies();
         }
+        if !self.solver.is_stock() && dictionaries::tells_backflow(self.setup) {
+            catalogue = catalogue.with_backflow_report();
+        }
         let models = |folder: &Path| folder.join("constant/turbulenceProperties").is_file();
         match !self.solver.is_stock() && (turbulent || self.template.is_some_and(models)) {
             true => catalogue.with_turbulence_report(),
@@ -344,9 +347,7 @@ mod tests {
             velocity: WallVelocity::Slip,
             heat: WallHeat::Adiabatic,
         };
-        let outlet = GasPatch::Outlet {
-            pressure: Schedule::constant(101_325.0),
-        };
+        let outlet = GasPatch::outlet(Schedule::constant(101_325.0));
         let patches = [("side", wall), ("bottom", inlet), ("top", outlet)];
         GasSetup {
             mixture: "air".into(),

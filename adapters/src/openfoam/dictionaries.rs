@@ -5,7 +5,8 @@ use std::fmt::Write;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::{
-    Convection, GasPatch, GasSetup, InletFlow, Schedule, Turbulence, WallHeat, WallVelocity,
+    Convection, GasPatch, GasSetup, InletFlow, InletScalars, PatchGas, Schedule, Turbulence,
+    WallHeat, WallVelocity,
 };
 use calcine_wire::Catalogue;
 
@@ -154,11 +155,20 @@ pub fn calcine(setup: &GasSetup, case_hash: &str, catalogue: &Catalogue) -> Stri
              epsilon at most.\nturbulenceIterations {iterations};\n\n"
         );
     }
+    if tells_backflow(setup) {
+        text += "// What comes back in through outlets goes to Calcine with the state.\ntellsBackflow   yes;\n\n";
+    }
     text += "// Columns of the link to Calcine.\ncatalogue\n(\n";
     for column in catalogue.fields() {
         let _ = writeln!(text, "    \"{column}\"");
     }
     text + ");\n"
+}
+
+/// Whether gas may come back in through an outlet whose case does not state it.
+pub fn tells_backflow(setup: &GasSetup) -> bool {
+    let unstated = |patch: &GasPatch| matches!(patch, GasPatch::Outlet { backflow: None, .. });
+    setup.patches.iter().any(|(_, patch)| unstated(patch))
 }
 
 /// What calcineGasFoam drives at a patch: keys and tables over process time.
@@ -170,18 +180,36 @@ fn entries(condition: &GasPatch, names: &[String]) -> Vec<(&'static str, String)
             composition,
             // OpenFOAM's own conditions: 0/k, 0/epsilon.
             turbulence: _,
+            scalars,
         } => {
             let flow = match flow {
                 InletFlow::SuperficialVelocity(flow) => ("superficialVelocity", table(flow)),
                 InletFlow::MassFlow(flow) => ("massFlow", table(flow)),
             };
-            let mut entries = vec![flow, ("temperature", table(temperature))];
+            let scalars = match scalars {
+                InletScalars::Flux => "flux",
+                InletScalars::Value => "value",
+            };
+            let mut entries = vec![
+                flow,
+                ("temperature", table(temperature)),
+                ("scalars", scalars.into()),
+            ];
             if let Some(composition) = composition {
                 entries.push(("composition", species::tables(composition, names)));
             }
             entries
         }
-        GasPatch::Outlet { pressure } => vec![("pressure", table(pressure))],
+        GasPatch::Outlet { pressure, backflow } => {
+            let mut entries = vec![("pressure", table(pressure))];
+            entries.extend(backflow.iter().flat_map(|gas| beyond(gas, names)));
+            entries
+        }
+        GasPatch::Opening { pressure, at, gas } => {
+            let mut entries = vec![("pressure", table(pressure)), ("pressureAt", vector(*at))];
+            entries.extend(beyond(gas, names));
+            entries
+        }
         GasPatch::Symmetry => vec![("closed", "true".into())],
         GasPatch::Wall { heat, .. } => {
             let mut entries = vec![("closed", "true".into())];
@@ -202,6 +230,15 @@ fn entries(condition: &GasPatch, names: &[String]) -> Vec<(&'static str, String)
             entries
         }
     }
+}
+
+/// Keys and tables of gas beyond a patch.
+fn beyond(gas: &PatchGas, names: &[String]) -> Vec<(&'static str, String)> {
+    let mut entries = vec![("temperature", table(&gas.temperature))];
+    if let Some(composition) = &gas.composition {
+        entries.push(("composition", species::tables(composition, names)));
+    }
+    entries
 }
 
 /// The convection schemes of the case in a text of `system/fvSchemes` that has upwind ones.
@@ -247,7 +284,7 @@ pub fn velocity(setup: &GasSetup) -> String {
     );
     field(about, setup, |patch| match patch {
         GasPatch::Inlet { .. } => fixed("(0 0 0)"),
-        GasPatch::Outlet { .. } => zero_gradient(),
+        GasPatch::Outlet { .. } | GasPatch::Opening { .. } => zero_gradient(),
         GasPatch::Symmetry => "type            slip;".into(),
         GasPatch::Wall { velocity, .. } => match velocity {
             WallVelocity::NoSlip => "type            noSlip;".into(),
@@ -264,7 +301,7 @@ pub fn temperature(setup: &GasSetup) -> String {
     let first = |schedule: &Schedule| fixed(&format!("{:e}", schedule.at(0.0)));
     field(about, setup, |patch| match patch {
         GasPatch::Inlet { temperature, .. } => first(temperature),
-        GasPatch::Outlet { .. } | GasPatch::Symmetry => zero_gradient(),
+        GasPatch::Outlet { .. } | GasPatch::Opening { .. } | GasPatch::Symmetry => zero_gradient(),
         // The solver adds heat fluxes and losses to its equation.
         GasPatch::Wall { heat, .. } => match heat {
             WallHeat::Temperature(temperature) => first(temperature),
@@ -280,7 +317,9 @@ pub fn pressure(setup: &GasSetup) -> String {
     let start = format!("{:e}", setup.pressure);
     let about = ("volScalarField", "p", "[1 -1 -2 0 0 0 0]", &*start);
     field(about, setup, |patch| match patch {
-        GasPatch::Outlet { pressure } => fixed(&format!("{:e}", pressure.at(0.0))),
+        GasPatch::Outlet { pressure, .. } | GasPatch::Opening { pressure, .. } => {
+            fixed(&format!("{:e}", pressure.at(0.0)))
+        }
         GasPatch::Inlet { .. } | GasPatch::Wall { .. } | GasPatch::Symmetry => zero_gradient(),
     })
 }

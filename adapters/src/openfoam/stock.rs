@@ -2,7 +2,9 @@
 
 use calcine_coupler::physics::gas::{GAS_CONSTANT, GasProperties};
 use calcine_coupler::physics::gas_model::GasModel;
-use calcine_coupler::setup::{GasPatch, GasSetup, InletFlow, Schedule, WallHeat, WallVelocity};
+use calcine_coupler::setup::{
+    GasPatch, GasSetup, InletFlow, InletScalars, Schedule, WallHeat, WallVelocity,
+};
 
 use super::foam_file::{field, fixed, header, vector, zero_gradient};
 
@@ -89,12 +91,32 @@ pub fn refusal(solver: StockSolver, setup: &GasSetup, moving_clock: bool) -> Opt
     for (name, patch) in &setup.patches {
         let schedules = match patch {
             GasPatch::Inlet {
+                scalars: InletScalars::Flux,
+                ..
+            } => {
+                return Some(format!(
+                    "it conducts heat through the inlet `{name}` beside the flow: write `scalars = \"value\"` there"
+                ));
+            }
+            GasPatch::Inlet {
                 flow, temperature, ..
             } => {
                 let (InletFlow::SuperficialVelocity(flow) | InletFlow::MassFlow(flow)) = flow;
                 vec![flow, temperature]
             }
-            GasPatch::Outlet { pressure } => {
+            GasPatch::Opening { .. } => {
+                return Some(format!(
+                    "it has no openings (`gas.patch.{name}`): write an outlet"
+                ));
+            }
+            GasPatch::Outlet {
+                backflow: Some(_), ..
+            } => {
+                return Some(format!(
+                    "gas that comes back in at the outlet `{name}` is that of the cell: leave out its `backflow`"
+                ));
+            }
+            GasPatch::Outlet { pressure, .. } => {
                 if pressure.0.len() > 1 {
                     return Some(format!(
                         "the pressure of the outlet `{name}` must be constant"
@@ -215,7 +237,7 @@ pub fn velocity(setup: &GasSetup) -> String {
                 function(flow, 1.0)
             ),
         },
-        GasPatch::Outlet { .. } => zero_gradient(),
+        GasPatch::Outlet { .. } | GasPatch::Opening { .. } => zero_gradient(),
         GasPatch::Symmetry => "type            slip;".into(),
         GasPatch::Wall { velocity, .. } => match velocity {
             WallVelocity::NoSlip => "type            noSlip;".into(),
@@ -253,7 +275,7 @@ pub fn pressures(solver: StockSolver, setup: &GasSetup) -> Vec<(&'static str, St
     let about = |name| ("volScalarField", name, "[1 -1 -2 0 0 0 0]", &*start);
     if !solver.has_gravity() {
         let absolute = field(about("p"), setup, |patch| match patch {
-            GasPatch::Outlet { pressure } => fixed(&format!("{:e}", pressure.at(0.0))),
+            GasPatch::Outlet { pressure, .. } => fixed(&format!("{:e}", pressure.at(0.0))),
             _ => zero_gradient(),
         });
         return vec![("p", absolute)];
@@ -263,7 +285,7 @@ pub fn pressures(solver: StockSolver, setup: &GasSetup) -> Vec<(&'static str, St
         format!("type            calculated;{given}")
     });
     let driving = field(about("p_rgh"), setup, |patch| match patch {
-        GasPatch::Outlet { pressure } => format!(
+        GasPatch::Outlet { pressure, .. } => format!(
             "type            prghPressure;\n        p               uniform {:e};{given}",
             pressure.at(0.0)
         ),

@@ -66,7 +66,10 @@ fn properties(prandtl: f64, schmidt: f64) -> String {
 fn sticks(patch: &GasPatch) -> bool {
     match patch {
         GasPatch::Wall { velocity, .. } => *velocity != WallVelocity::Slip,
-        GasPatch::Inlet { .. } | GasPatch::Outlet { .. } | GasPatch::Symmetry => false,
+        GasPatch::Inlet { .. }
+        | GasPatch::Outlet { .. }
+        | GasPatch::Opening { .. }
+        | GasPatch::Symmetry => false,
     }
 }
 
@@ -84,7 +87,10 @@ fn law() -> String {
 fn inlet(patch: &GasPatch) -> Option<InletTurbulence> {
     match patch {
         GasPatch::Inlet { turbulence, .. } => *turbulence,
-        GasPatch::Outlet { .. } | GasPatch::Wall { .. } | GasPatch::Symmetry => None,
+        GasPatch::Outlet { .. }
+        | GasPatch::Opening { .. }
+        | GasPatch::Wall { .. }
+        | GasPatch::Symmetry => None,
     }
 }
 

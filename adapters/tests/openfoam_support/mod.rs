@@ -56,9 +56,7 @@ pub fn setup() -> GasSetup {
     let patches = mesh.patches().iter().map(|patch| {
         let condition = match patch.name.as_str() {
             "bottom" => GasPatch::inlet(Schedule::constant(SPEED), Schedule::constant(TEMPERATURE)),
-            "top" => GasPatch::Outlet {
-                pressure: Schedule::constant(PRESSURE),
-            },
+            "top" => GasPatch::outlet(Schedule::constant(PRESSURE)),
             _ => wall(),
         };
         (patch.name.clone(), condition)

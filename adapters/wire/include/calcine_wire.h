@@ -147,6 +147,9 @@ typedef enum calcine_failure {
  *   convergence 5 [1], once a rank: outer_iterations, linear_iterations, residual, volume_residual (largest mismatch
  *     of the mass with the equation of state, relative), converged (1 or 0).
  *   composition N [1]: mass fractions, species by species within each cell. Of a gas of N species.
+ *   backflow 3 [1,m/s,1], once a rank: gas that comes in through outlets in the state of the cell behind: faces of
+ *     the rank with it, the largest superficial velocity inwards, the number of the cell there in the whole mesh; 0 0
+ *     0 where there is none. Of a gas whose catalogue has it.
  *   turbulent_energy 1 [m^2/s^2]: k. Of a turbulent gas.
  *   dissipation 1 [m^2/s^3]: epsilon. Of a turbulent gas.
  *   eddy_viscosity 1 [Pas]: void fraction times eddy viscosity; 0 in a bed at which eddies end. Of a turbulent gas.

@@ -123,6 +123,7 @@ impl Catalogue {
             ColumnPresence::ForeignInputs
             | ColumnPresence::BedEddies
             | ColumnPresence::TurbulenceReport
+            | ColumnPresence::BackflowReport
             | ColumnPresence::MovingDrag
             | ColumnPresence::Weights => false,
         })
@@ -153,6 +154,18 @@ impl Catalogue {
     /// The same catalogue with that column.
     pub fn with_turbulence_report(mut self) -> Self {
         self.fields.extend(Self::turbulence_report());
+        self
+    }
+
+    /// The column of a gas that says what comes back in through outlets.
+    pub fn backflow_report() -> Vec<Field> {
+        let own = |presence| presence == ColumnPresence::BackflowReport;
+        Self::of_table(columns::GAS, 0, own).fields
+    }
+
+    /// The same catalogue with that column.
+    pub fn with_backflow_report(mut self) -> Self {
+        self.fields.extend(Self::backflow_report());
         self
     }
 

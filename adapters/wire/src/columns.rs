@@ -27,6 +27,8 @@ pub enum ColumnPresence {
     Turbulent,
     /// Those of a gas whose eddies go on in the bed.
     BedEddies,
+    /// Those of a gas that says what comes back in through outlets.
+    BackflowReport,
     /// Those of a gas that answers commits with how its equations of turbulence were solved.
     TurbulenceReport,
     /// Those of particles that feel drag as they move.
@@ -152,6 +154,10 @@ pub const GAS: &[ProtocolColumn] = &[
          equation of state, relative), converged (1 or 0)").per_rank(),
     column(State, "composition", 1, "1",
         "mass fractions, species by species within each cell").of_species(),
+    column(State, "backflow", 3, "1,m/s,1",
+        "gas that comes in through outlets in the state of the cell behind: faces of the rank with it, the largest \
+         superficial velocity inwards, the number of the cell there in the whole mesh; 0 0 0 where there is none")
+        .per_rank().only(ColumnPresence::BackflowReport),
     column(Start, "species_source", 1, "kg/s",
         "S: mass of a species to the gas of the cell is S - C Y, with Y at the end of the window").of_species(),
     column(Start, "species_coefficient", 1, "kg/s",

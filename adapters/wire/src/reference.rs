@@ -204,6 +204,7 @@ fn one(text: &mut String, column: &ProtocolColumn) {
         ColumnPresence::Species => " Of a gas of N species.",
         ColumnPresence::Turbulent => " Of a turbulent gas.",
         ColumnPresence::BedEddies => " Of a gas whose eddies go on in the bed.",
+        ColumnPresence::BackflowReport => " Of a gas whose catalogue has it.",
         ColumnPresence::TurbulenceReport => " Of a gas that answers COMMIT.",
         ColumnPresence::MovingDrag => " Where drag is pushed as a coefficient.",
         ColumnPresence::Weights => " Where rows may stand for several particles.",

@@ -123,9 +123,7 @@ pub fn mesh() -> Result<Mesh, MeshError> {
 pub fn setup(mesh: &Mesh) -> GasSetup {
     let condition = |name: &str| match name {
         "bottom" => GasPatch::inlet(Schedule::constant(SPEED), Schedule::constant(WARM)),
-        "top" => GasPatch::Outlet {
-            pressure: Schedule::constant(PRESSURE),
-        },
+        "top" => GasPatch::outlet(Schedule::constant(PRESSURE)),
         _ => GasPatch::Wall {
             velocity: WallVelocity::Slip,
             heat: WallHeat::Adiabatic,

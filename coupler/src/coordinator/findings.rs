@@ -61,6 +61,13 @@ impl CoupledRun {
             found.push(Finding::outside(voids, &flow.void_fraction, particle));
             found.push(Finding::outside(reynolds, &flow.reynolds, particle));
         }
+        found.push(self.parts.gas.backflow().map(|back| Finding {
+            kind: FindingKind::Backflow,
+            count: back.faces,
+            value: back.velocity,
+            limit: Some(0.0),
+            place: cell(back.cell),
+        }));
         found.into_iter().flatten().collect()
     }
 

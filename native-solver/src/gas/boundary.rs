@@ -6,7 +6,8 @@ use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::{
-    GasPatch, GasSetup, InletFlow, InletTurbulence, Schedule, WallHeat, WallVelocity,
+    CompositionSchedule, GasPatch, GasSetup, InletFlow, InletScalars, InletTurbulence, PatchGas,
+    Schedule, WallHeat, WallVelocity,
 };
 
 use super::error::NativeError;
@@ -49,11 +50,17 @@ pub enum FaceCondition {
         gas: BoundaryGas,
         /// Its eddies; `None` where the gas is laminar.
         turbulence: Option<InletTurbulence>,
+        /// Whether species diffuse and heat is conducted through the face.
+        diffuses: bool,
     },
-    /// Gas leaves at a pressure.
+    /// Gas leaves at a pressure, or comes back in.
     Outlet {
-        /// Pressure above the setup's pressure in Pa.
+        /// Pressure above the setup's pressure in Pa; of an opening at the height of its point.
         pressure: f64,
+        /// Gas that comes back in; `None`: that of the cell.
+        backflow: Option<BoundaryGas>,
+        /// Surroundings at rest; of an opening.
+        surroundings: Option<AmbientGas>,
     },
     /// A wall or a plane of symmetry.
     Wall {
@@ -82,6 +89,15 @@ pub enum HeatCondition {
     },
 }
 
+/// Gas at rest beyond an opening.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AmbientGas {
+    /// Density in kg/m³.
+    pub density: f64,
+    /// Point in m whose height has the pressure.
+    pub at: Vec3,
+}
+
 /// The gas that flows in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundaryGas {
@@ -89,6 +105,8 @@ pub struct BoundaryGas {
     pub temperature: f64,
     /// Sensible enthalpy in J/kg.
     pub enthalpy: f64,
+    /// Specific heat capacity in J/kg/K.
+    pub heat_capacity: f64,
     /// Dynamic viscosity in Pa s.
     pub viscosity: f64,
     /// Thermal conductivity in W/m/K.
@@ -100,6 +118,7 @@ impl BoundaryGas {
         Self {
             temperature,
             enthalpy: gas.enthalpy(temperature, composition),
+            heat_capacity: gas.heat_capacity(temperature, composition),
             viscosity: gas.viscosity(temperature, composition),
             conductivity: gas.conductivity(temperature, composition),
         }
@@ -177,8 +196,10 @@ impl Boundaries {
 
     /// True where no patch lets gas out.
     pub fn closed(&self) -> bool {
-        let outlet = |boundary: &Boundary| matches!(boundary.condition, GasPatch::Outlet { .. });
-        !self.patches.iter().any(outlet)
+        !self
+            .patches
+            .iter()
+            .any(|boundary| boundary.condition.is_open())
     }
 
     /// Takes up conditions that were set since.
@@ -207,11 +228,11 @@ impl Boundaries {
         self.patches[self.patch_of[face - self.internal] as usize].value
     }
 
-    /// Mass fractions of the gas that flows in through a boundary face; `None` where none does.
+    /// Mass fractions of the gas that flows in through a boundary face; `None` where it is the cell's or none does.
     #[inline]
     pub fn composition(&self, face: usize) -> Option<&[f64]> {
         let boundary = &self.patches[self.patch_of[face - self.internal] as usize];
-        matches!(boundary.value, FaceCondition::Inlet { .. }).then_some(&boundary.composition)
+        boundary.value.entering().map(|_| &*boundary.composition)
     }
 
     /// k in m²/s² and its dissipation in m²/s³ of the gas that flows in through a boundary face into a cell of
@@ -229,19 +250,36 @@ impl Boundaries {
     }
 }
 
+impl FaceCondition {
+    /// Gas that flows in, where it is stated.
+    #[inline]
+    pub fn entering(&self) -> Option<BoundaryGas> {
+        match self {
+            Self::Inlet { gas, .. } => Some(*gas),
+            Self::Outlet { backflow, .. } => *backflow,
+            Self::Wall { .. } => None,
+        }
+    }
+}
+
 impl Boundary {
+    /// Takes up gas beyond the patch at a process time in s.
+    fn beyond(&mut self, model: &GasModel, gas: &PatchGas, time: f64) -> BoundaryGas {
+        self.composition = of_schedule(gas.composition.as_ref(), time);
+        BoundaryGas::at(model, gas.temperature.at(time), &self.composition)
+    }
+
     fn update(&mut self, setup: &GasSetup, time: f64) {
         let model = &setup.properties;
-        self.value = match &self.condition {
+        self.value = match &self.condition.clone() {
             GasPatch::Inlet {
                 flow,
                 temperature,
                 composition,
                 turbulence,
+                scalars,
             } => {
-                self.composition = composition
-                    .as_ref()
-                    .map_or_else(Vec::new, |schedule| schedule.at(time));
+                self.composition = of_schedule(composition.as_ref(), time);
                 let temperature = temperature.at(time);
                 let density = model.density(setup.pressure, temperature, &self.composition);
                 let (superficial_velocity, mass_flux) = match flow {
@@ -259,11 +297,23 @@ impl Boundary {
                     mass_flux,
                     gas: BoundaryGas::at(model, temperature, &self.composition),
                     turbulence: *turbulence,
+                    diffuses: *scalars == InletScalars::Value,
                 }
             }
-            GasPatch::Outlet { pressure } => FaceCondition::Outlet {
+            GasPatch::Outlet { pressure, backflow } => FaceCondition::Outlet {
                 pressure: pressure.at(time) - setup.pressure,
+                backflow: backflow.as_ref().map(|gas| self.beyond(model, gas, time)),
+                surroundings: None,
             },
+            GasPatch::Opening { pressure, at, gas } => {
+                let gas = self.beyond(model, gas, time);
+                let density = model.density(setup.pressure, gas.temperature, &self.composition);
+                FaceCondition::Outlet {
+                    pressure: pressure.at(time) - setup.pressure,
+                    backflow: Some(gas),
+                    surroundings: Some(AmbientGas { density, at: *at }),
+                }
+            }
             GasPatch::Symmetry => FaceCondition::Wall {
                 sticks: None,
                 heat: HeatCondition::Adiabatic,
@@ -291,6 +341,11 @@ impl Boundary {
             },
         };
     }
+}
+
+/// Mass fractions at a process time in s; none of a single gas.
+fn of_schedule(composition: Option<&CompositionSchedule>, time: f64) -> Vec<f64> {
+    composition.map_or_else(Vec::new, |schedule| schedule.at(time))
 }
 
 /// A moving wall must slide in its own plane.
@@ -346,7 +401,16 @@ fn check(name: &str, condition: &GasPatch) -> Result<(), NativeError> {
             all(flow, field, unit, rule, not_negative)?;
             temperature(schedule)
         }
-        GasPatch::Outlet { pressure } => all(pressure, "the pressure", "Pa", "positive", positive),
+        GasPatch::Outlet { pressure, backflow } => {
+            all(pressure, "the pressure", "Pa", "positive", positive)?;
+            backflow
+                .as_ref()
+                .map_or(Ok(()), |gas| temperature(&gas.temperature))
+        }
+        GasPatch::Opening { pressure, gas, .. } => {
+            all(pressure, "the pressure", "Pa", "positive", positive)?;
+            temperature(&gas.temperature)
+        }
         GasPatch::Symmetry => Ok(()),
         GasPatch::Wall { heat, .. } => match heat {
             WallHeat::Adiabatic => Ok(()),

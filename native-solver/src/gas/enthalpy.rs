@@ -17,6 +17,7 @@ use calcine_coupler::setup::{Convection, Turbulence};
 use super::attempt::{AttemptFrame, CellProperties};
 use super::boundary::{FaceCondition, HeatCondition};
 use super::chemistry::ReactionSource;
+use super::inflow;
 use super::state::GasState;
 use super::tolerance::ScalarTolerance;
 use crate::numerics::convection::beyond_upwind;
@@ -82,13 +83,11 @@ fn outer(frame: &AttemptFrame<'_>, index: usize) -> Option<f64> {
     }
 }
 
-/// Enthalpy of the gas that flows in through a boundary face in J/kg.
+/// Enthalpy of the gas that flows in through a boundary face in J/kg, where it is stated.
 #[inline]
 fn inlet(frame: &AttemptFrame<'_>, index: usize) -> Option<f64> {
-    match frame.boundary.at(index) {
-        FaceCondition::Inlet { gas, .. } => Some(gas.enthalpy),
-        FaceCondition::Wall { .. } | FaceCondition::Outlet { .. } => None,
-    }
+    let gas = frame.boundary.at(index).entering()?;
+    Some(gas.enthalpy)
 }
 
 /// Heat that flows in through a boundary face whatever the gas does, in W.
@@ -118,15 +117,7 @@ fn conduction(
     let pores = frame.void_fraction[face.owner];
     let eddies = frame.heat_eddies_at(index);
     match frame.boundary.at(index) {
-        FaceCondition::Inlet { gas, .. } => {
-            let carried = if eddies > 0.0 {
-                let composition = frame.boundary.composition(index).unwrap_or_default();
-                eddies * frame.properties.heat_capacity(gas.temperature, composition)
-            } else {
-                0.0
-            };
-            conductance(face, pores * gas.conductivity + carried)
-        }
+        FaceCondition::Inlet { gas, .. } => inflow::conduction(frame, index, &gas),
         FaceCondition::Wall { heat, .. } => match heat {
             HeatCondition::Temperature(temperature) => {
                 let composition = now.composition_of(face.owner, frame.species());
@@ -309,7 +300,6 @@ impl Enthalpy {
         let second = frame.convection == Convection::VanLeer && species.is_empty();
         if second {
             let boundary = |index: usize, inner: f64| match frame.boundary.at(index) {
-                FaceCondition::Inlet { gas, .. } => gas.enthalpy,
                 FaceCondition::Wall {
                     heat: HeatCondition::Temperature(temperature),
                     ..
@@ -317,7 +307,7 @@ impl Enthalpy {
                     temperature,
                     now.composition_of(grid.faces[index].owner, frame.species()),
                 ),
-                FaceCondition::Wall { .. } | FaceCondition::Outlet { .. } => inner,
+                _ => inflow::face_heat(frame, index, inner, |gas| gas.enthalpy).unwrap_or(inner),
             };
             let gradients = &mut self.gradients[0];
             face_values(grid, &now.enthalpy, gradients, boundary, &mut self.faces);
@@ -326,12 +316,11 @@ impl Enthalpy {
         }
         if !grid.orthogonal {
             let boundary = |index: usize, inner: f64| match frame.boundary.at(index) {
-                FaceCondition::Inlet { gas, .. } => gas.temperature,
                 FaceCondition::Wall {
                     heat: HeatCondition::Temperature(temperature),
                     ..
                 } => temperature,
-                FaceCondition::Wall { .. } | FaceCondition::Outlet { .. } => inner,
+                _ => inflow::face_heat(frame, index, inner, |gas| gas.temperature).unwrap_or(inner),
             };
             let gradients = &mut self.gradients[1];
             face_values(grid, &now.temperature, gradients, boundary, &mut self.faces);
@@ -418,7 +407,10 @@ impl Enthalpy {
         let boundary = sum(frame.grid.faces.len() - internal, |face| {
             let index = internal + face;
             let inner = now.enthalpy[frame.grid.faces[index].owner];
-            let carried = now.flux[index] * inlet(frame, index).unwrap_or(inner);
+            let carried = match inlet(frame, index) {
+                Some(stated) if now.flux[index] < 0.0 => now.flux[index] * stated,
+                _ => now.flux[index] * inner,
+            };
             carried.abs() + imposed(frame, index).abs()
         });
         let cells = sum(now.mass.len(), |cell| {

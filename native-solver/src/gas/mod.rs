@@ -2,6 +2,7 @@
 //! fraction in every term, one file per equation.
 
 mod attempt;
+mod backflow;
 mod balance;
 mod boundary;
 mod chemistry;
@@ -10,7 +11,9 @@ mod enthalpy;
 mod error;
 mod failure;
 mod guard;
+mod inflow;
 mod momentum;
+mod opening;
 mod outer;
 mod pressure;
 mod species;
@@ -27,7 +30,7 @@ use calcine_coupler::boundary_value::BoundaryValue;
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::part::{
-    Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
+    Backflow, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
 };
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::{GasSetup, Turbulence};
@@ -75,6 +78,8 @@ pub struct NativeGas {
     /// Share of −∇p and ρ g that the gas of each cell takes.
     pressure_share: Vec<f64>,
     exchange: CellExchange,
+    /// Of the last attempt.
+    backflow: Option<Backflow>,
     /// Absolute pressure in Pa, for the eyes of others.
     pressure: Vec<f64>,
     /// Density of the equation of state in kg/m³, for the eyes of others.
@@ -112,6 +117,7 @@ impl NativeGas {
             void_fraction: Vec::new(),
             pressure_share: Vec::new(),
             exchange: CellExchange::default(),
+            backflow: None,
             pressure: vec![0.0; cells],
             density: vec![0.0; cells],
         };
@@ -314,6 +320,10 @@ impl Gas for NativeGas {
         }
     }
 
+    fn backflow(&self) -> Option<Backflow> {
+        self.backflow
+    }
+
     fn turbulence_residual(&self) -> Option<f64> {
         self.eddies.as_ref().and_then(KEpsilonEquations::unsolved)
     }
@@ -404,6 +414,7 @@ impl Gas for NativeGas {
             &frame, material, momentum, taken, species, &self.now, received,
         );
         self.update_fields();
+        self.backflow = self.find_backflow(spans.1);
         Ok(convergence)
     }
 }

@@ -65,6 +65,23 @@ pub fn given_velocity(frame: &AttemptFrame<'_>, index: usize) -> Option<Vec3> {
     }
 }
 
+/// Interstitial velocity of the gas that passes a boundary face at a mass flux in kg/s, where it is not the cell's: the
+/// given one, and at an opening that of gas of the surroundings, straight in.
+#[inline]
+fn carried_velocity(frame: &AttemptFrame<'_>, index: usize, flux: f64) -> Option<Vec3> {
+    match frame.boundary.at(index) {
+        FaceCondition::Outlet {
+            surroundings: Some(surroundings),
+            ..
+        } if flux < 0.0 => {
+            let face = &frame.grid.faces[index];
+            let held = surroundings.density * frame.void_fraction[face.owner];
+            Some(flux / (held * face.area) * face.normal)
+        }
+        _ => given_velocity(frame, index),
+    }
+}
+
 /// Viscous conductance of a face in kg/s, eddies included, and on the boundary only where the velocity is given.
 #[inline]
 fn viscous(
@@ -143,7 +160,7 @@ impl Momentum {
                 if !link.is_boundary() {
                     neighbours[link.slot as usize] -= weight;
                     *diagonal += weight;
-                } else if given_velocity(frame, index).is_some() {
+                } else if carried_velocity(frame, index, now.flux[index]).is_some() {
                     *diagonal += weight;
                 }
             }
@@ -160,7 +177,7 @@ impl Momentum {
                     let inflow = (-link.sign * now.flux[index]).max(0.0);
                     let weight = viscous[index] + inflow;
                     if weight > 0.0
-                        && let Some(velocity) = given_velocity(frame, index)
+                        && let Some(velocity) = carried_velocity(frame, index, now.flux[index])
                     {
                         source += weight * velocity;
                     }
@@ -256,7 +273,7 @@ impl Momentum {
         if flux == 0.0 && self.viscous[index] == 0.0 {
             return Vec3::zeros();
         }
-        let Some(velocity) = given_velocity(frame, index) else {
+        let Some(velocity) = carried_velocity(frame, index, flux) else {
             return -flux * inner - self.explicit[index];
         };
         let carried = if flux < 0.0 { velocity } else { inner };

@@ -132,7 +132,7 @@ impl Equations {
         self.enthalpy
             .assemble(frame, material, carried, self.share, now);
         let momentum = self.momentum.residual(frame, now);
-        let continuity = pressure::residual(frame, material, now);
+        let continuity = self.pressure.residual(frame, material, now);
         let enthalpy = self.enthalpy.residual(now);
         let species = self.species.residual(frame, material, self.share, now);
         let change = self.chemistry.change;

@@ -22,6 +22,7 @@ use nalgebra::Matrix3;
 use super::attempt::{AttemptFrame, CellProperties};
 use super::boundary::FaceCondition;
 use super::momentum::Momentum;
+use super::opening::OuterPressure;
 use super::state::GasState;
 use super::transport::FaceTransport;
 use crate::numerics::amg::Multigrid;
@@ -84,6 +85,8 @@ pub struct Pressure {
     /// where it is given.
     drive: Vec<f64>,
     source: Vec<f64>,
+    /// Pressure at each face of the boundary, where gas passes freely.
+    outer: Vec<Option<OuterPressure>>,
     /// V (Σ A d n nᵀ)⁻¹ of each cell; empty where it is the identity.
     recovery: Vec<Matrix3<f64>>,
 }
@@ -103,6 +106,7 @@ impl Pressure {
             conductance: vec![0.0; faces],
             drive: vec![0.0; faces],
             source: vec![0.0; cells],
+            outer: Vec::new(),
             recovery,
         }
     }
@@ -146,14 +150,19 @@ impl Pressure {
             material.density[cell] * pores * frame.pressure_share[cell] * grid.volume[cell]
                 / momentum.matrix.diagonal()[cell]
         });
-        let mobility = &self.mobility;
+        self.outer.resize(grid.faces.len() - grid.internal, None);
+        fill(&mut self.outer, |face| {
+            let index = grid.internal + face;
+            OuterPressure::about(frame, index, now.flux[index])
+        });
+        let (mobility, outer) = (&self.mobility, &self.outer);
         fill(&mut self.conductance, |index| {
             let face = &grid.faces[index];
             let resistance = face.owner_distance / mobility[face.owner];
             if index < grid.internal {
                 face.area / (resistance + face.neighbour_distance / mobility[face.neighbour])
-            } else if let FaceCondition::Outlet { .. } = frame.boundary.at(index) {
-                face.area / resistance
+            } else if let Some(outer) = outer[index - grid.internal] {
+                face.area / (resistance + face.area * outer.slope)
             } else {
                 0.0
             }
@@ -196,13 +205,13 @@ impl Pressure {
         });
         self.update_drive(frame, &now.pressure_gradient);
 
-        let (drive, conductance) = (&self.drive, &self.conductance);
+        let (drive, conductance, outer) = (&self.drive, &self.conductance, &self.outer);
         fill(&mut self.source, |cell| {
             let mut source = target(frame, material, now, cell) - outflow(grid, drive, cell);
             for link in grid.links(cell).iter().filter(|link| link.is_boundary()) {
                 let index = link.face as usize;
-                if let FaceCondition::Outlet { pressure } = frame.boundary.at(index) {
-                    source += conductance[index] * pressure;
+                if let Some(outer) = outer[index - grid.internal] {
+                    source += conductance[index] * outer.pressure;
                 }
             }
             source
@@ -223,6 +232,41 @@ impl Pressure {
         self.update_flux(frame, now);
         self.update_velocity(frame, momentum, now);
         solved.iterations
+    }
+
+    /// Σ over openings of the flow in kg/s that the pressure there, linear in the flux, is off from that at the flux at
+    /// hand.
+    fn missed_at_openings(&self, frame: &AttemptFrame<'_>, now: &GasState) -> f64 {
+        let internal = frame.grid.internal;
+        let [missed] = sums(self.outer.len(), |face| {
+            let index = internal + face;
+            let miss =
+                self.outer[face].map_or(0.0, |outer| outer.miss(frame, index, now.flux[index]));
+            [self.conductance[index] * miss.abs()]
+        });
+        missed
+    }
+
+    /// Σ over cells of the mismatch of continuity, and what openings miss, relative to what the cells hold and what flows
+    /// through them.
+    pub fn residual(
+        &self,
+        frame: &AttemptFrame<'_>,
+        material: &CellProperties,
+        now: &GasState,
+    ) -> f64 {
+        let grid = frame.grid;
+        let [error, terms] = sums(grid.cells(), |cell| {
+            let (mut net, mut through) = (0.0, 0.0);
+            for link in grid.links(cell) {
+                let flux = now.flux[link.face as usize];
+                net += link.sign * flux;
+                through += 0.5 * flux.abs();
+            }
+            let error = (target(frame, material, now, cell) - net).abs();
+            [error, frame.old.mass[cell] / frame.storage_span + through]
+        });
+        (error + self.missed_at_openings(frame, now)) / terms
     }
 
     /// Force on the half cell of a face's owner along the face's normal, in N/m³.
@@ -265,10 +309,7 @@ impl Pressure {
             if index < grid.internal {
                 return pressure[face.neighbour];
             }
-            match frame.boundary.at(index) {
-                FaceCondition::Outlet { pressure } => pressure,
-                FaceCondition::Inlet { .. } | FaceCondition::Wall { .. } => 0.0,
-            }
+            self.outer[index - grid.internal].map_or(0.0, |outer| outer.pressure)
         };
         let pressure = &now.pressure;
         fill(&mut now.flux, |index| {
@@ -342,23 +383,6 @@ fn recovery(grid: &MeshGraph) -> Vec<Matrix3<f64>> {
 fn target(frame: &AttemptFrame<'_>, material: &CellProperties, now: &GasState, cell: usize) -> f64 {
     let mass = frame.void_fraction[cell] * material.density[cell] * frame.grid.volume[cell];
     (frame.old.mass[cell] - mass) / frame.storage_span + frame.mass_source(now, cell)
-}
-
-/// Σ over cells of the mismatch of continuity, relative to what the cells hold and what flows
-/// through them.
-pub fn residual(frame: &AttemptFrame<'_>, material: &CellProperties, now: &GasState) -> f64 {
-    let grid = frame.grid;
-    let [error, terms] = sums(grid.cells(), |cell| {
-        let (mut net, mut through) = (0.0, 0.0);
-        for link in grid.links(cell) {
-            let flux = now.flux[link.face as usize];
-            net += link.sign * flux;
-            through += 0.5 * flux.abs();
-        }
-        let error = (target(frame, material, now, cell) - net).abs();
-        [error, frame.old.mass[cell] / frame.storage_span + through]
-    });
-    error / terms
 }
 
 /// Continuity: what each cell holds after the window.

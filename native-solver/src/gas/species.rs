@@ -16,6 +16,7 @@ use calcine_coupler::setup::Convection;
 use super::attempt::{AttemptFrame, CellProperties};
 use super::boundary::{FaceCondition, HeatCondition};
 use super::chemistry::ReactionSource;
+use super::inflow;
 use super::state::GasState;
 use super::tolerance::ScalarTolerance;
 use crate::numerics::convection::{beyond_upwind, limited, limiter};
@@ -198,14 +199,7 @@ impl SpeciesEquations {
             if index < grid.internal {
                 return conductance(face, interpolate(face, &material.diffusivity));
             }
-            match frame.boundary.at(index) {
-                FaceCondition::Inlet { gas, .. } => {
-                    let pores = frame.void_fraction[face.owner];
-                    let laminar = pores * gas.viscosity / frame.schmidt;
-                    conductance(face, laminar + frame.species_eddies_at(index))
-                }
-                FaceCondition::Wall { .. } | FaceCondition::Outlet { .. } => 0.0,
-            }
+            inflow::diffusion(frame, index)
         });
     }
 
@@ -238,9 +232,8 @@ impl SpeciesEquations {
         let second = frame.convection == Convection::VanLeer;
         if second || !grid.orthogonal {
             for (k, fractions) in self.fractions.iter().enumerate() {
-                let boundary = |index: usize, inner: f64| {
-                    frame.boundary.composition(index).map_or(inner, |y| y[k])
-                };
+                let boundary =
+                    |index: usize, inner: f64| inflow::face_fraction(frame, index, k, inner);
                 let gradients = &mut self.gradients[k];
                 face_values(grid, fractions, gradients, boundary, &mut self.faces);
                 let faces = &self.faces;
@@ -356,7 +349,7 @@ impl SpeciesEquations {
                     heat: HeatCondition::Temperature(temperature),
                     ..
                 } => temperature,
-                _ => given(index).unwrap_or(inner),
+                _ => inflow::face_heat(frame, index, inner, |gas| gas.temperature).unwrap_or(inner),
             };
             let gradients = &mut self.temperature_gradients;
             face_values(grid, &now.temperature, gradients, boundary, &mut self.faces);

@@ -11,7 +11,9 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
 use calcine_coupler::physics::gas_model::{ConstantGas, GasModel};
 pub use calcine_coupler::setup::GasSetup;
-use calcine_coupler::setup::{Convection, GasControls, GasPatch, Schedule, WallHeat, WallVelocity};
+use calcine_coupler::setup::{
+    Convection, GasControls, GasPatch, InletScalars, Schedule, WallHeat, WallVelocity,
+};
 use calcine_coupler::supervisor::{Interrupts, Supervisor};
 use calcine_coupler::time::{Clocks, GasStorage, Ticks, Window};
 use calcine_native::gas::NativeGas;
@@ -110,10 +112,17 @@ pub fn inlet(velocity: f64, temperature: f64) -> GasPatch {
     )
 }
 
-pub fn outlet() -> GasPatch {
-    GasPatch::Outlet {
-        pressure: Schedule::constant(ATMOSPHERE),
+/// An inlet whose temperature holds at the face.
+pub fn holding_inlet(velocity: f64, temperature: f64) -> GasPatch {
+    let mut patch = inlet(velocity, temperature);
+    if let GasPatch::Inlet { scalars, .. } = &mut patch {
+        *scalars = InletScalars::Value;
     }
+    patch
+}
+
+pub fn outlet() -> GasPatch {
+    GasPatch::outlet(Schedule::constant(ATMOSPHERE))
 }
 
 pub fn slip() -> GasPatch {

@@ -116,12 +116,28 @@ const PATCH_INLET: &[Key] = &[
     key("mass_flow", Schedule(D::MASS_FLOW, NotNegative), OneOf, "Mass flow through the whole patch, zero or above, evenly spread. Either this or `superficial_velocity`.", "\"2 kg/h\""),
     key("composition", Dated(PATCH_INLET_COMPOSITION), Without("a single gas"), "Composition of the gas that enters, as `gas.initial.composition`.", "[[\"0 s\", { mole = { N2 = 1 } }], [\"10 s\", { mole = { CO2 = 1 } }]]"),
     key("temperature", Schedule(D::TEMPERATURE, Positive), Required, "Temperature of the gas that enters.", "[[\"0 s\", \"300 K\"], [\"10 s\", \"400 K\"]]"),
+    key("scalars", Choice(words::<InletScalars>), Default("flux"), "How temperature and composition are given: `flux`, exactly the flow of the stated gas enters, and nothing diffuses or is conducted beside it; `value`, the face has the stated values, and species diffuse and heat is conducted through it.", "\"value\""),
     key("turbulence", Table(PATCH_INLET_TURBULENCE), Without("none; a turbulent gas needs it"), "Eddies of the gas that enters.", "{ intensity = 0.05, length_scale = \"5 mm\" }"),
+];
+
+#[rustfmt::skip]
+const PATCH_BACKFLOW: &[Key] = &[
+    key("temperature", Schedule(D::TEMPERATURE, Positive), Required, "Temperature of the gas that comes back in.", "\"300 K\""),
+    key("composition", Dated(PATCH_INLET_COMPOSITION), Without("a single gas"), "Composition of the gas that comes back in, as `gas.initial.composition`.", "{ mole = { N2 = 0.79, O2 = 0.21 } }"),
 ];
 
 #[rustfmt::skip]
 const PATCH_OUTLET: &[Key] = &[
     key("pressure", Schedule(D::PRESSURE, Positive), Required, "Absolute pressure.", "\"1 atm\""),
+    key("backflow", Table(PATCH_BACKFLOW), Without("the gas of the cell behind the face"), "Gas that comes back in where the flow turns round, with the flow alone.", "{ temperature = \"300 K\" }"),
+];
+
+#[rustfmt::skip]
+const PATCH_OPENING: &[Key] = &[
+    key("pressure", Schedule(D::PRESSURE, Positive), Required, "Absolute pressure of the surroundings, at rest, at the height of `pressure_at`.", "\"1 atm\""),
+    key("pressure_at", Vector(D::LENGTH), Default("0 0 0 m"), "Point at whose height along gravity the surroundings have `pressure`; above and below it they have that of their own weight. Openings of one point, one pressure and one gas open to one atmosphere.", "\"0 0 1 m\""),
+    key("temperature", Schedule(D::TEMPERATURE, Positive), Required, "Temperature of the surroundings.", "\"300 K\""),
+    key("composition", Dated(PATCH_INLET_COMPOSITION), Without("a single gas"), "Composition of the surroundings, as `gas.initial.composition`.", "{ mole = { N2 = 0.79, O2 = 0.21 } }"),
 ];
 
 #[rustfmt::skip]
@@ -145,10 +161,11 @@ const PATCH_WALL: &[Key] = &[
 
 #[rustfmt::skip]
 const PATCH: &[Key] = &[
-    key("inlet", Table(PATCH_INLET), OneOf, "Gas flows in. One of `inlet`, `outlet`, `wall`, `symmetry`.", "{ superficial_velocity = \"0.5 m/s\", temperature = \"400 K\" }"),
-    key("outlet", Table(PATCH_OUTLET), OneOf, "Gas flows out. One of `inlet`, `outlet`, `wall`, `symmetry`.", "{ pressure = \"1 atm\" }"),
-    key("wall", Table(PATCH_WALL), OneOf, "A wall. One of `inlet`, `outlet`, `wall`, `symmetry`.", "{ velocity = \"slip\", heat = \"adiabatic\" }"),
-    key("symmetry", Table(&[]), OneOf, "A plane of symmetry. One of `inlet`, `outlet`, `wall`, `symmetry`.", "{}"),
+    key("inlet", Table(PATCH_INLET), OneOf, "Gas flows in. One of `inlet`, `outlet`, `opening`, `wall`, `symmetry`.", "{ superficial_velocity = \"0.5 m/s\", temperature = \"400 K\" }"),
+    key("outlet", Table(PATCH_OUTLET), OneOf, "Gas flows out. One of `inlet`, `outlet`, `opening`, `wall`, `symmetry`.", "{ pressure = \"1 atm\" }"),
+    key("opening", Table(PATCH_OPENING), OneOf, "Gas flows out to surroundings at rest, or in from them with their total pressure, as the pressures have it. One of `inlet`, `outlet`, `opening`, `wall`, `symmetry`.", "{ pressure = \"1 atm\", temperature = \"300 K\" }"),
+    key("wall", Table(PATCH_WALL), OneOf, "A wall. One of `inlet`, `outlet`, `opening`, `wall`, `symmetry`.", "{ velocity = \"slip\", heat = \"adiabatic\" }"),
+    key("symmetry", Table(&[]), OneOf, "A plane of symmetry. One of `inlet`, `outlet`, `opening`, `wall`, `symmetry`.", "{}"),
 ];
 
 #[rustfmt::skip]
@@ -173,6 +190,6 @@ pub(super) const GAS: &[Key] = &[
     key("constant", Table(CONSTANT), Without("an ideal gas"), "A fluid of constant properties; not with `gas.properties`. Its enthalpy is c_p (T - 298.15 K).", "[gas.constant]"),
     key("properties", Table(PROPERTIES), Without("those of `gas.mixture`"), "An ideal gas by its properties.", "[gas.properties]"),
     key("turbulence", Table(TURBULENCE), Without("a laminar gas"), "Eddies, outside the bed (where the solid fraction is 0.1 or less), and in it by `bed`.", "[gas.turbulence]"),
-    key("patch", Named(PATCH), Required, "Boundary condition of every patch by its name. Without an outlet the domain is closed: an ideal gas then takes the pressure at which it fills the pores.", "[gas.patch.bottom]"),
+    key("patch", Named(PATCH), Required, "Boundary condition of every patch by its name. Without an outlet or an opening the domain is closed: an ideal gas then takes the pressure at which it fills the pores.", "[gas.patch.bottom]"),
     key("controls", Table(CONTROLS), Without("see its keys"), "Accuracy of the gas solver.", "{ outer_tolerance = 1e-8 }"),
 ];

@@ -3,7 +3,9 @@
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::thermo::Mixture;
-use calcine_coupler::setup::{CompositionSchedule, GasPatch, InletFlow, WallHeat, WallVelocity};
+use calcine_coupler::setup::{
+    CompositionSchedule, GasPatch, InletFlow, PatchGas, WallHeat, WallVelocity,
+};
 
 use super::common::patches;
 use super::composition::fractions;
@@ -50,7 +52,7 @@ pub(super) fn boundary(
     let has = |kind: fn(&GasPatch) -> bool| made.iter().any(|(_, patch)| kind(patch));
     let (inlet, outlet) = (
         has(|patch| matches!(patch, GasPatch::Inlet { .. })),
-        has(|patch| matches!(patch, GasPatch::Outlet { .. })),
+        has(GasPatch::is_open),
     );
     let fixed = gas.is_some_and(|gas| !gas.compressible());
     if complete && inlet && !outlet && fixed {
@@ -72,9 +74,8 @@ fn patch(
     let table = reader.table(kind)?;
     let made = match kind {
         "inlet" => inlet(&table, gas, turbulent),
-        "outlet" => table
-            .schedule("pressure")
-            .map(|pressure| GasPatch::Outlet { pressure }),
+        "outlet" => outlet(&table, gas),
+        "opening" => opening(&table, gas),
         "symmetry" => Some(GasPatch::Symmetry),
         _ => wall(&table),
     };
@@ -88,20 +89,63 @@ fn inlet(
     turbulent: Option<bool>,
 ) -> Option<GasPatch> {
     let flow = flow(table);
-    let temperature = table.schedule("temperature");
+    let entering = entering(table, gas);
     let turbulence = of_inlet(table, turbulent);
+    let scalars = table.choice("scalars");
+    let PatchGas {
+        temperature,
+        composition,
+    } = entering?;
     Some(GasPatch::Inlet {
         flow: flow?,
-        temperature: temperature?,
-        composition: match gas {
-            Some(GasModel::Mixture(mixture)) => Some(composition(table, mixture)?),
-            Some(_) => None,
-            None => {
-                table.has("composition");
-                None
-            }
-        },
+        temperature,
+        composition,
         turbulence: turbulence?,
+        scalars: scalars?,
+    })
+}
+
+fn outlet(table: &TableReader<'_>, gas: Option<&GasModel>) -> Option<GasPatch> {
+    let pressure = table.schedule("pressure");
+    let backflow = match table.table("backflow") {
+        Some(inner) => {
+            let made = entering(&inner, gas);
+            inner.finish();
+            Some(made?)
+        }
+        None => None,
+    };
+    Some(GasPatch::Outlet {
+        pressure: pressure?,
+        backflow,
+    })
+}
+
+fn opening(table: &TableReader<'_>, gas: Option<&GasModel>) -> Option<GasPatch> {
+    let pressure = table.schedule("pressure");
+    let at = table.vector("pressure_at").unwrap_or([0.0; 3]);
+    let gas = entering(table, gas);
+    Some(GasPatch::Opening {
+        pressure: pressure?,
+        at: Vec3::from(at),
+        gas: gas?,
+    })
+}
+
+/// `temperature` and `composition` of gas that comes in.
+fn entering(table: &TableReader<'_>, gas: Option<&GasModel>) -> Option<PatchGas> {
+    let temperature = table.schedule("temperature");
+    let composition = match gas {
+        Some(GasModel::Mixture(mixture)) => Some(composition(table, mixture)?),
+        Some(_) => None,
+        None => {
+            table.has("composition");
+            None
+        }
+    };
+    Some(PatchGas {
+        temperature: temperature?,
+        composition,
     })
 }
 

@@ -323,15 +323,16 @@ pub(super) fn lacking(
     if initial.get(k).is_some_and(|y| *y <= 0.0) {
         return Some("is not in `gas.initial`");
     }
-    let lacks = |patch: &GasPatch| match patch {
-        GasPatch::Inlet {
-            composition: Some(composition),
-            ..
-        } => composition.0.iter().any(|(_, y)| y[k] <= 0.0),
+    let lacks = |patch: &GasPatch| match patch.entering() {
+        Some((_, Some(composition))) => composition.0.iter().any(|(_, y)| y[k] <= 0.0),
         _ => false,
     };
-    let somewhere = patches.iter().any(|(_, patch)| lacks(patch));
-    somewhere.then_some("is not in the gas of an inlet")
+    let (_, patch) = patches.iter().find(|(_, patch)| lacks(patch))?;
+    Some(match patch {
+        GasPatch::Opening { .. } => "is not in the gas of an opening",
+        GasPatch::Outlet { .. } => "is not in the gas that comes back in at an outlet",
+        _ => "is not in the gas of an inlet",
+    })
 }
 
 fn equilibrium(

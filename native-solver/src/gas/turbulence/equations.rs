@@ -582,10 +582,9 @@ mod tests {
                 intensity: 0.1,
                 length_scale: 0.01,
             }),
+            scalars: Default::default(),
         };
-        let outlet = GasPatch::Outlet {
-            pressure: Schedule::constant(101_325.0),
-        };
+        let outlet = GasPatch::outlet(Schedule::constant(101_325.0));
         let air = GasProperties {
             molar_mass: 0.028_96,
             heat_capacity: 1005.0,
