@@ -18,6 +18,7 @@ mod drag_ripple;
 mod external_gas;
 mod external_mistakes;
 mod external_particles;
+mod films;
 mod findings;
 mod frank_kamenetskii;
 mod heat_paths;

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use calcine_physics::Vec3;
 use calcine_physics::drag::Drag;
+use calcine_physics::film::{FILM_TEMPERATURES, FilmCoefficient, FilmTemperature, FilmTheory};
 use calcine_physics::gas_model::GasModel;
 use calcine_physics::heat_transfer::HeatTransfer;
 use calcine_physics::local::LocalGas;
@@ -32,11 +33,15 @@ pub struct Closures {
     pub momentum: MomentumModel,
     /// Heat transfer between gas and particle.
     pub heat_transfer: Box<dyn HeatTransfer>,
+    /// At which temperature the properties of the gas in it are taken.
+    pub heat_film: FilmTemperature,
     /// Mass transfer between gas and particles that react, by the analogy with heat transfer; only asked for
     /// where some do.
     pub mass_transfer: Box<dyn HeatTransfer>,
     /// What the particles of a bed make of eddies.
     pub bed_eddies: Box<dyn BedEddies>,
+    /// How it is computed.
+    pub film: FilmTheory,
 }
 
 /// A law that got a state it is not defined for.
@@ -123,9 +128,9 @@ impl SampledGas {
 /// Coefficients per particle, fixed over the window.
 #[derive(Clone, Debug, Default)]
 pub struct CouplingCoefficients {
-    /// Mass transfer coefficient of each species in m/s, species by species within each particle; empty where
-    /// none reacts.
-    pub film: Vec<f64>,
+    /// Mass transfer coefficient of each species over the temperature of the film, species by species within each
+    /// particle; empty where none reacts.
+    pub film: Vec<FilmCoefficient>,
     /// Drag coefficient in kg/s: K_A by model A, K_A/ε by model B (docs/theory.md, DRG-1).
     pub drag: Vec<f64>,
     /// Heat conductance h A in W/K.
@@ -198,12 +203,12 @@ impl CouplingCoefficients {
 }
 
 impl Closures {
-    /// Evaluates mass transfer at these pressures in Pa, for particles that react.
+    /// Evaluates mass transfer at these pressures in Pa about surfaces of these temperatures in K, for particles that react.
     pub fn evaluate_films(
         &self,
         sampled_gas: &SampledGas,
         particles: &ParticleFields<'_>,
-        pressure: &[f64],
+        [pressure, surface]: [&[f64]; 2],
         acceleration: f64,
         coefficients: &mut CouplingCoefficients,
     ) -> Result<(), ClosureError> {
@@ -213,31 +218,47 @@ impl Closures {
         };
         let range = self.mass_transfer.range();
         let species = mixture.names().len();
-        coefficients.film.resize(species * particles.len(), 0.0);
+        let none = FilmCoefficient::default();
+        coefficients.film.resize(species * particles.len(), none);
         let chunks = coefficients.film.par_chunks_mut((species * CHUNK).max(1));
         let each = chunks.enumerate().map(|(chunk, films)| {
             let mut diffusivities = vec![0.0; species];
+            let mut values = vec![[0.0; 3]; species];
             let mut outside = FlowExcursion::default();
-            for (row, film) in films.chunks_exact_mut(species).enumerate() {
+            for (row, films) in films.chunks_exact_mut(species).enumerate() {
                 let p = chunk * CHUNK + row;
                 let own = p * species..(p + 1) * species;
                 let composition = &sampled_gas.composition[own];
-                let temperature = sampled_gas.temperature[p];
-                let void_fraction = void_fraction(sampled_gas, particles, p)?;
-                let local = LocalGas {
-                    void_fraction,
-                    density: sampled_gas.density[p],
-                    viscosity: self.gas.viscosity(temperature, composition),
-                    conductivity: 0.0,
-                    heat_capacity: self.gas.heat_capacity(temperature, composition),
-                    slip: (sampled_gas.velocity[p] - particles.velocity[p] / acceleration).norm(),
-                };
-                mixture.diffusivities(pressure[p], temperature, composition, &mut diffusivities);
-                let diameter = 2.0 * particles.radius[p];
-                outside.look(&range, p, &local, diameter);
-                for (film, diffusivity) in film.iter_mut().zip(&diffusivities) {
-                    let law = &*self.mass_transfer;
-                    *film = mass_transfer::coefficient(law, &local, *diffusivity, diameter);
+                let (law, diameter) = (&*self.mass_transfer, 2.0 * particles.radius[p]);
+                let gas = sampled_gas.temperature[p];
+                let at = self.film.temperature.of(surface[p], gas);
+                for (place, factor) in FILM_TEMPERATURES.iter().enumerate() {
+                    let temperature = factor * at;
+                    let local = LocalGas {
+                        void_fraction: void_fraction(sampled_gas, particles, p)?,
+                        density: sampled_gas.density[p] * gas / temperature,
+                        viscosity: mixture.viscosity(temperature, composition),
+                        // Neither is part of a Schmidt number.
+                        conductivity: 0.0,
+                        heat_capacity: 1.0,
+                        slip: slip(sampled_gas, particles, p, acceleration),
+                    };
+                    mixture.diffusivities(
+                        pressure[p],
+                        temperature,
+                        composition,
+                        &mut diffusivities,
+                    );
+                    if *factor == 1.0 {
+                        outside.look(&range, p, &local, diameter);
+                    }
+                    for (values, diffusivity) in values.iter_mut().zip(&diffusivities) {
+                        values[place] =
+                            mass_transfer::coefficient(law, &local, *diffusivity, diameter);
+                    }
+                }
+                for (film, values) in films.iter_mut().zip(&values) {
+                    *film = FilmCoefficient::through(at, *values);
                 }
             }
             Ok(outside)
@@ -251,11 +272,12 @@ impl Closures {
         Ok(())
     }
 
-    /// Evaluates all laws. Slip is u − v/AF (docs/theory.md, TSM-7).
+    /// Evaluates all laws about surfaces of these temperatures in K. Slip is u − v/AF (docs/theory.md, TSM-7).
     pub fn evaluate(
         &self,
         sampled_gas: &SampledGas,
         particles: &ParticleFields<'_>,
+        surface: &[f64],
         acceleration: f64,
         coefficients: &mut CouplingCoefficients,
     ) -> Result<(), ClosureError> {
@@ -280,8 +302,9 @@ impl Closures {
                     for (found, range) in outside.iter_mut().zip(&ranges) {
                         found.look(range, p, &local, diameter);
                     }
+                    let film = self.film(p, sampled_gas, surface[p], &local);
                     [drag[row], conductance[row]] =
-                        self.of_particle(p, sampled_gas, particles, &local)?;
+                        self.of_particle(p, sampled_gas, particles, [&local, &film])?;
                     (slip[row], gas_conductivity[row]) = (local.slip, local.conductivity);
                 }
                 Ok(outside)
@@ -315,8 +338,30 @@ impl Closures {
             viscosity: self.gas.viscosity(temperature, composition),
             conductivity: self.gas.conductivity(temperature, composition),
             heat_capacity: self.gas.heat_capacity(temperature, composition),
-            slip: (sampled_gas.velocity[p] - particles.velocity[p] / acceleration).norm(),
+            slip: slip(sampled_gas, particles, p, acceleration),
         })
+    }
+
+    /// The same with the properties of the film by which heat passes to a surface of a temperature in K.
+    fn film(&self, p: usize, sampled_gas: &SampledGas, surface: f64, local: &LocalGas) -> LocalGas {
+        let gas = sampled_gas.temperature[p];
+        let temperature = self.heat_film.of(surface, gas);
+        if temperature == gas {
+            return *local;
+        }
+        let species = self.gas.species().len();
+        let composition = &sampled_gas.composition[p * species..(p + 1) * species];
+        let expansion = match self.gas.compressible() {
+            true => gas / temperature,
+            false => 1.0,
+        };
+        LocalGas {
+            density: local.density * expansion,
+            viscosity: self.gas.viscosity(temperature, composition),
+            conductivity: self.gas.conductivity(temperature, composition),
+            heat_capacity: self.gas.heat_capacity(temperature, composition),
+            ..*local
+        }
     }
 
     /// Coefficients of drag and heat of one particle.
@@ -325,14 +370,14 @@ impl Closures {
         p: usize,
         sampled_gas: &SampledGas,
         particles: &ParticleFields<'_>,
-        local: &LocalGas,
+        [local, film]: [&LocalGas; 2],
     ) -> Result<[f64; 2], ClosureError> {
         let (id, temperature) = (particles.id[p], sampled_gas.temperature[p]);
         let diameter = 2.0 * particles.radius[p];
         let drag = self.drag.coefficient(local, diameter);
         // h A = (Nu κ/d) π d²
         let conductance =
-            self.heat_transfer.nusselt(local, diameter) * local.conductivity * PI * diameter;
+            self.heat_transfer.nusselt(film, diameter) * film.conductivity * PI * diameter;
         let laws = [
             (self.drag.name(), drag, "kg/s"),
             (self.heat_transfer.name(), conductance, "W/K"),
@@ -355,6 +400,16 @@ impl Closures {
     }
 }
 
+/// Magnitude of the slip u − v/AF of a particle in m/s.
+fn slip(
+    sampled_gas: &SampledGas,
+    particles: &ParticleFields<'_>,
+    p: usize,
+    acceleration: f64,
+) -> f64 {
+    (sampled_gas.velocity[p] - particles.velocity[p] / acceleration).norm()
+}
+
 /// The void fraction that a particle sees.
 fn void_fraction(
     sampled_gas: &SampledGas,
@@ -370,6 +425,7 @@ fn void_fraction(
 mod tests {
     use super::*;
     use calcine_physics::drag::ErgunWenYu;
+    use calcine_physics::film::StefanFlow;
     use calcine_physics::gas_model::ConstantGas;
     use calcine_physics::heat_transfer::Gunn;
     use calcine_physics::turbulence::NoBedEddies;
@@ -389,8 +445,13 @@ mod tests {
             drag: Box::new(ErgunWenYu),
             momentum: MomentumModel::A,
             heat_transfer: Box::new(Gunn),
+            heat_film: FilmTemperature::Gas,
             mass_transfer: Box::new(Gunn),
             bed_eddies: Box::new(NoBedEddies),
+            film: FilmTheory {
+                temperature: FilmTemperature::TwoThirds,
+                stefan_flow: StefanFlow::Mass,
+            },
         };
         let count = 2 * CHUNK + 700;
         let of = |scale: f64| -> Vec<f64> {
@@ -419,9 +480,9 @@ mod tests {
         };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         let mut coefficients = CouplingCoefficients::default();
-        pool.build()
-            .unwrap()
-            .install(|| closures.evaluate(&gas, &particles, 1.0, &mut coefficients))?;
+        pool.build().unwrap().install(|| {
+            closures.evaluate(&gas, &particles, &gas.temperature, 1.0, &mut coefficients)
+        })?;
         Ok(coefficients)
     }
 
@@ -470,8 +531,13 @@ mod tests {
             drag: Box::new(ErgunWenYu),
             momentum: MomentumModel::A,
             heat_transfer: Box::new(Gunn),
+            heat_film: FilmTemperature::Gas,
             mass_transfer: Box::new(Gunn),
             bed_eddies: Box::new(NoBedEddies),
+            film: FilmTheory {
+                temperature: FilmTemperature::TwoThirds,
+                stefan_flow: StefanFlow::Mass,
+            },
         };
         let gas = SampledGas {
             temperature: vec![300.0; 2],
@@ -491,7 +557,15 @@ mod tests {
             weight: &[],
         };
         let mut coefficients = CouplingCoefficients::default();
-        let refused = closures.evaluate_films(&gas, &particles, &[1e5; 2], 1.0, &mut coefficients);
+        let about = [[1e5; 2], [300.0; 2]];
+        let [pressure, surface] = &about;
+        let refused = closures.evaluate_films(
+            &gas,
+            &particles,
+            [pressure, surface],
+            1.0,
+            &mut coefficients,
+        );
         let (id, value) = (9, 1.2);
         assert_eq!(refused, Err(ClosureError::VoidFraction { id, value }));
     }

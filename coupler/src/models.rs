@@ -11,6 +11,7 @@ use calcine_interior::{
     At, Channel, GasLines, Inventory, Newcomer, ParticleModel, SurfaceLine, Surroundings,
     TEMPERATURE, Transfer, without,
 };
+use calcine_physics::film::FilmCoefficient;
 use calcine_physics::thermo::Element;
 
 pub use columns::ParticleColumn;
@@ -56,6 +57,7 @@ struct Member {
 #[derive(Default)]
 struct Work {
     inputs: [Vec<f64>; 6],
+    films: Vec<FilmCoefficient>,
     rates: Vec<f64>,
     surface: Vec<SurfaceLine>,
     lines: GasLines,
@@ -227,10 +229,13 @@ impl ParticleModels {
         } in &mut self.members
         {
             let Work {
-                inputs, surface, ..
+                inputs,
+                films,
+                surface,
+                ..
             } = work;
             let [first, rest @ ..] = inputs;
-            let own = gathered(rows, count, around, rest);
+            let own = gathered(rows, count, around, (rest, films));
             let mut buffer = std::mem::take(first);
             let at = gather(rows, count, at, &mut buffer);
             surface.clear();
@@ -265,7 +270,7 @@ impl ParticleModels {
         } in &mut self.members
         {
             let [first, rest @ ..] = &mut work.inputs;
-            let own = gathered(rows, count, around, rest);
+            let own = gathered(rows, count, around, (rest, &mut work.films));
             let mut buffer = std::mem::take(first);
             let network = gather(rows, count, network, &mut buffer);
             let lines = &mut work.lines;
@@ -450,12 +455,12 @@ impl std::fmt::Debug for ParticleModels {
 
 /// The values of some of so many rows, of as many values each as the list holds of all; nothing is copied where all
 /// rows are meant.
-fn gather<'a>(
+fn gather<'a, T: Copy>(
     rows: &[usize],
     count: usize,
-    from: &'a [f64],
-    buffer: &'a mut Vec<f64>,
-) -> &'a [f64] {
+    from: &'a [T],
+    buffer: &'a mut Vec<T>,
+) -> &'a [T] {
     if rows.len() == count || from.is_empty() {
         return from;
     }
@@ -471,20 +476,17 @@ fn gathered<'a>(
     rows: &[usize],
     count: usize,
     around: &Surroundings<'a>,
-    buffers: &'a mut [Vec<f64>],
+    (buffers, films): (&'a mut [Vec<f64>; 5], &'a mut Vec<FilmCoefficient>),
 ) -> Surroundings<'a> {
-    let mut buffers = buffers.iter_mut();
-    let mut one = |from: &'a [f64]| match buffers.next() {
-        Some(buffer) => gather(rows, count, from, buffer),
-        None => from,
-    };
+    let [temperature, pressure, composition, conductance, radius] = buffers;
     Surroundings {
-        temperature: one(around.temperature),
-        pressure: one(around.pressure),
-        composition: one(around.composition),
-        conductance: one(around.conductance),
-        film: one(around.film),
-        radius: one(around.radius),
+        temperature: gather(rows, count, around.temperature, temperature),
+        pressure: gather(rows, count, around.pressure, pressure),
+        composition: gather(rows, count, around.composition, composition),
+        conductance: gather(rows, count, around.conductance, conductance),
+        film: gather(rows, count, around.film, films),
+        theory: around.theory,
+        radius: gather(rows, count, around.radius, radius),
     }
 }
 

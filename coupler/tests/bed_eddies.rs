@@ -99,6 +99,11 @@ fn told(law: Box<dyn BedEddies>, acceleration: f64) -> EddyExchange {
         heat_transfer: Box::new(NoHeatTransfer),
         mass_transfer: Box::new(NoHeatTransfer),
         bed_eddies: law,
+        heat_film: calcine_coupler::physics::film::FilmTemperature::Gas,
+        film: calcine_coupler::physics::film::FilmTheory {
+            temperature: calcine_coupler::physics::film::FilmTemperature::Gas,
+            stefan_flow: calcine_coupler::physics::film::StefanFlow::None,
+        },
     };
     let mut stage = BedEddyStage::default();
     let inputs = BedEddyInputs {

@@ -14,6 +14,7 @@ use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
 use calcine_coupler::part::{CellReceived, GasFields, ParticleFields};
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::film::{FilmTemperature, FilmTheory, StefanFlow};
 use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::smoother::{Operator, Smoother, SmootherSettings};
 
@@ -209,6 +210,10 @@ fn attempts_from(
             composition: &[],
             conductance: &coefficients.conductance,
             film: &[],
+            theory: FilmTheory {
+                temperature: FilmTemperature::Gas,
+                stefan_flow: StefanFlow::None,
+            },
             radius: &bench.radius,
         };
         lines.reset(2, 0);

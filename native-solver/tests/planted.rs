@@ -220,6 +220,11 @@ fn beads(planted: Planted, results: &Path) -> CoupledRun {
         heat_transfer: Box::new(Gunn) as Box<dyn HeatTransfer>,
         mass_transfer: Box::new(NoHeatTransfer),
         bed_eddies: Box::new(NoBedEddies),
+        heat_film: calcine_coupler::physics::film::FilmTemperature::Gas,
+        film: calcine_coupler::physics::film::FilmTheory {
+            temperature: calcine_coupler::physics::film::FilmTemperature::Gas,
+            stefan_flow: calcine_coupler::physics::film::StefanFlow::None,
+        },
     };
     let bed = ParticleSetup {
         id: vec![1, 2, 3],

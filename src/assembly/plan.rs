@@ -111,7 +111,9 @@ pub(super) fn closures(case: &Case) -> Closures {
         drag: case.laws.drag.make(),
         momentum: case.gas.momentum,
         heat_transfer: case.laws.heat_transfer.make(),
+        heat_film: case.laws.heat_film,
         mass_transfer: case.laws.mass_transfer.make(),
         bed_eddies: case.laws.bed_eddies.make(),
+        film: case.laws.film,
     }
 }

@@ -5,6 +5,7 @@ pub(super) use calcine_adapters::openfoam::stock::StockSolver;
 pub(super) use calcine_coupler::momentum_model::MomentumModel;
 pub(super) use calcine_coupler::packing::Share;
 use calcine_coupler::packing::regular::Lattice;
+pub(super) use calcine_coupler::physics::film::{FilmTemperature, StefanFlow};
 pub(super) use calcine_coupler::setup::{Convection, InletScalars, WallVelocity};
 pub(super) use calcine_coupler::time::GasStorage;
 pub(super) use calcine_coupler::window_drag::WindowDrag;
@@ -110,6 +111,16 @@ case_words! {
     }
     WindowDrag { "constant" => WindowDrag::Constant, "following" => WindowDrag::Following }
     MomentumModel { "a" => MomentumModel::A, "b" => MomentumModel::B }
+    FilmTemperature {
+        "two-thirds" => FilmTemperature::TwoThirds,
+        "mean" => FilmTemperature::Mean,
+        "gas" => FilmTemperature::Gas,
+    }
+    StefanFlow {
+        "mass" => StefanFlow::Mass,
+        "molar" => StefanFlow::Molar,
+        "none" => StefanFlow::None,
+    }
     AreaName {
         "overlap" => AreaName::Overlap,
         "force" => AreaName::Force,

@@ -16,6 +16,7 @@ use calcine_coupler::part::{Bed, Convergence, GasFields, ParticleFields, SolverI
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::conduction::{CONDUCTION_LAWS, GAP_LAWS};
 use calcine_coupler::physics::drag::DRAG_LAWS;
+use calcine_coupler::physics::film::{FilmTemperature, FilmTheory, StefanFlow};
 use calcine_coupler::physics::gas::GasProperties;
 use calcine_coupler::physics::heat_transfer::HEAT_TRANSFER_LAWS;
 use calcine_coupler::physics::law::{LawChoice, NONE};
@@ -94,8 +95,13 @@ pub fn case() -> Case {
             },
             radiation: None,
             heat_transfer: LawChoice::named(HEAT_TRANSFER_LAWS, "gunn", Vec::new()).unwrap(),
+            heat_film: FilmTemperature::Gas,
             mass_transfer: LawChoice::named(HEAT_TRANSFER_LAWS, NONE, Vec::new()).unwrap(),
             bed_eddies: LawChoice::named(BED_EDDY_LAWS, NONE, Vec::new()).unwrap(),
+            film: FilmTheory {
+                temperature: FilmTemperature::TwoThirds,
+                stefan_flow: StefanFlow::Mass,
+            },
         },
         coupling: Coupling {
             mapping: MappingSpec::Overlap,

@@ -8,9 +8,10 @@
 use std::time::{Duration, Instant};
 
 use calcine_interior::reacting::attempt::{ParticleAccuracy, ParticleStart, ParticleWorkspace};
-use calcine_interior::reacting::rates::ParticleSurroundings;
+use calcine_interior::reacting::passage::ParticleSurroundings;
 use calcine_interior::reacting::{LayerDiffusivity, Rate, Reaction, SizeChange, SolidChemistry};
 use calcine_numerics::batch::each_row;
+use calcine_physics::film::{FilmCoefficient, FilmTemperature, FilmTheory, StefanFlow};
 use calcine_physics::reaction::equilibrium::GibbsLine;
 use calcine_physics::reaction::{Arrhenius, Equilibrium, PowerLaw};
 use calcine_physics::solids::SolidSpecies;
@@ -32,6 +33,10 @@ struct Kind {
     windows: usize,
 }
 
+const THEORY: FilmTheory = FilmTheory {
+    temperature: FilmTemperature::TwoThirds,
+    stefan_flow: StefanFlow::Mass,
+};
 const SIZE: SizeChange = SizeChange::Constant;
 
 fn arrhenius(factor: f64, activation_energy: f64) -> Arrhenius {
@@ -196,7 +201,7 @@ fn advance(
     workspace: &mut ParticleWorkspace,
 ) -> [usize; 3] {
     let (amounts, temperature) = state.split_at(kind.chemistry.solids.len());
-    let film = vec![0.08; kind.gas.len()];
+    let film = vec![FilmCoefficient::constant(0.08); kind.gas.len()];
     let area = sphere::surface(radius);
     let start = ParticleStart {
         amounts,
@@ -206,6 +211,7 @@ fn advance(
             pressure: 1.5e5,
             fractions: &kind.gas,
             film: &film,
+            theory: THEORY,
             radius,
             size: &SIZE,
         },

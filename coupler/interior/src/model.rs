@@ -14,6 +14,7 @@
 //!    that once more as fixed sources.
 //! 5. [`ParticleModel::settle`]: what was exchanged is booked, whatever the lines were: mass, elements and energy close.
 
+use calcine_physics::film::{FilmCoefficient, FilmTheory};
 use calcine_physics::thermo::Element;
 
 use crate::column::{Ragged, StateColumn};
@@ -30,8 +31,11 @@ pub struct Surroundings<'a> {
     pub composition: &'a [f64],
     /// Conductance h A to it in W/K.
     pub conductance: &'a [f64],
-    /// Mass transfer coefficients in m/s, species by species within each row; empty where no model has channels.
-    pub film: &'a [f64],
+    /// Mass transfer coefficients over the temperature of the film, species by species within each row; empty where no
+    /// model has channels.
+    pub film: &'a [FilmCoefficient],
+    /// How transfer through films is computed.
+    pub theory: FilmTheory,
     /// Radii at the start of the window in m.
     pub radius: &'a [f64],
 }

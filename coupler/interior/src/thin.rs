@@ -216,6 +216,7 @@ mod tests {
         HeatLaws, HeatNetwork, NeighbourPair, Neighbours, NetworkSurroundings, plain,
     };
     use calcine_physics::conduction::BatchelorObrien;
+    use calcine_physics::film::{FilmTemperature, FilmTheory, StefanFlow};
 
     /// What the last attempt changed in all particles.
     fn all_changed(thin: &Thin) -> Inventory {
@@ -250,6 +251,10 @@ mod tests {
             composition: &[],
             conductance,
             film: &[],
+            theory: FilmTheory {
+                temperature: FilmTemperature::Gas,
+                stefan_flow: StefanFlow::None,
+            },
             radius: &[],
         }
     }

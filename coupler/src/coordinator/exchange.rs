@@ -255,6 +255,7 @@ impl ExchangeStage {
             composition: &laws.sampled_gas.composition,
             conductance: &laws.coefficients.conductance,
             film: &laws.coefficients.film,
+            theory: laws.closures.film,
             radius: particles.radius,
         };
         // Heat that reactions set free inside reaches the network of a first attempt by a second look.

@@ -23,6 +23,8 @@ pub(super) struct LawInputs<'a> {
     pub mapped: &'a MappedBed,
     pub gas: GasFields<'a>,
     pub particles: ParticleFields<'a>,
+    /// Temperatures of their surfaces in K.
+    pub surface: &'a [f64],
     pub window: &'a Window,
     /// How particles that move follow their drag.
     pub inertia: DragInertia<'a>,
@@ -55,9 +57,13 @@ impl LawStage {
         let mapped = inputs.mapped;
         sampled.sample(&mapped.operator, &inputs.gas, &mapped.bed);
         let acceleration = window.acceleration();
-        let evaluated = self
-            .closures
-            .evaluate(sampled, particles, acceleration, coefficients);
+        let evaluated = self.closures.evaluate(
+            sampled,
+            particles,
+            inputs.surface,
+            acceleration,
+            coefficients,
+        );
         let refused = |cause| RunError::Closure {
             window: window.index,
             cause,
@@ -76,7 +82,7 @@ impl LawStage {
             let evaluated = self.closures.evaluate_films(
                 &self.sampled_gas,
                 particles,
-                &self.pressure,
+                [&self.pressure, inputs.surface],
                 acceleration,
                 &mut self.coefficients,
             );

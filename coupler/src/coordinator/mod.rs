@@ -340,6 +340,7 @@ impl CoupledRun {
             mapped: &self.bed.mapped,
             gas: self.parts.gas.fields(),
             particles,
+            surface: self.interior.models.temperature(),
             window,
             inertia: self.motion.inertia(&particles, window, holds),
             channels: self.interior.has_channels(),

@@ -5,7 +5,7 @@ use crate::laws;
 
 #[rustfmt::skip]
 const INITIAL_COMPOSITION: &[Key] = &[
-    key("mole", ByName(D::NONE), OneOf, "Mole fractions by species, which sum to 1; what is not named is 0. Either this or `mass`.", "{ N2 = 0.79, O2 = 0.21 }"),
+    key("mole", ByName(D::NONE), OneOf, "Moles by species, in any ratio; what is not named is 0. Either this or `mass`.", "{ N2 = 0.79, O2 = 0.21 }"),
     key("mass", ByName(D::NONE), OneOf, "Mass fractions by species, which sum to 1. Either this or `mole`.", "{ N2 = 1 }"),
 ];
 
@@ -62,7 +62,7 @@ const CHEMISTRY: &[Key] = &[
     key("mixing_constant", Number(D::NONE, Positive), Default("1"), "C_mix of the partially stirred reactor.", "1"),
     key("tolerance", Number(D::NONE, Positive), Default("1e-6"), "Error of a step of the integration, relative to temperature and each mass fraction.", "1e-6"),
     key("fraction_tolerance", Number(D::NONE, Positive), Default("1e-10"), "Error of a step in a mass fraction that counts as none.", "1e-10"),
-    key("negligible", Number(D::NONE, Positive), Default("1e-12"), "Change of a mass fraction over a step of the gas below which reactions are not integrated.", "1e-12"),
+    key("negligible", Number(D::NONE, UpTo(0.0, 1e-3)), Default("1e-12"), "Change of a mass fraction, up to 1e-3, over a step of the gas below which reactions are not integrated.", "1e-12"),
 ];
 
 #[rustfmt::skip]

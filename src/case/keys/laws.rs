@@ -9,6 +9,17 @@ const DRAG: &[Key] = &[
 ];
 
 #[rustfmt::skip]
+const HEAT_TRANSFER: &[Key] = &[
+    key("film", Choice(words::<FilmTemperature>), Default("gas"), "Temperature at which the properties of the gas are taken: that of the gas, as the sources of most laws have it; `two-thirds`, T_p + (T_gas - T_p)/3, or `mean`, of particle and gas at the start of a window.", "\"two-thirds\""),
+];
+
+#[rustfmt::skip]
+const MASS_TRANSFER: &[Key] = &[
+    key("film", Choice(words::<FilmTemperature>), Default("two-thirds"), "Temperature of the film, at which its concentrations and the coefficient of mass transfer are taken: T_p + (T_gas - T_p)/3; `mean`, of particle and gas; or `gas`. Its composition is that of the gas.", "\"mean\""),
+    key("stefan_flow", Choice(words::<StefanFlow>), Default("mass"), "What the net flow through the film does to the transfer of each gas and of heat: by flows of mass with the density of the film, Spalding's ln(1 + B); by flows of moles; or nothing.", "\"molar\""),
+];
+
+#[rustfmt::skip]
 const CONDUCTION: &[Key] = &[
     key("area", Choice(words::<AreaName>), Default("overlap"), "By which overlap contacts conduct: the computed one; that of the real materials (`real_young`) under the computed elastic force; or that under `load`.", "\"force\""),
     key("load", Number(D::FORCE, Positive), Without("required with `load`"), "Force on every contact, where area is `load`.", "\"50 mN\""),
@@ -28,8 +39,8 @@ const RADIATION: &[Key] = &[
 #[rustfmt::skip]
 pub(super) const LAWS: &[Key] = &[
     key("drag", Law(laws::drag, DRAG), Required, "Drag on a particle.", "{ law = \"ergun-wen-yu\" }"),
-    key("heat_transfer", Law(laws::heat_transfer, &[]), Required, "Heat transfer between gas and particle.", "{ law = \"gunn\" }"),
-    key("mass_transfer", Law(laws::heat_transfer, &[]), Without("none"), "Mass transfer between gas and particles that react, by a law of heat transfer with the Schmidt number in place of the Prandtl number; required, and not `none`, where reactions exchange gas.", "{ law = \"gunn\" }"),
+    key("heat_transfer", Law(laws::heat_transfer, HEAT_TRANSFER), Required, "Heat transfer between gas and particle.", "{ law = \"gunn\" }"),
+    key("mass_transfer", Law(laws::heat_transfer, MASS_TRANSFER), Without("none"), "Mass transfer between gas and particles that react, by a law of heat transfer with the Schmidt number in place of the Prandtl number; required, and not `none`, where reactions exchange gas.", "{ law = \"gunn\" }"),
     key("conduction", Law(laws::conduction, CONDUCTION), Required, "Heat conduction between particles and to walls of a temperature.", "{ law = \"none\" }"),
     key("radiation", Law(laws::radiation, RADIATION), Required, "Radiation between particles, to walls and surroundings; the gas is transparent.", "{ law = \"none\" }"),
 ];

@@ -5,7 +5,7 @@ use crate::laws;
 
 #[rustfmt::skip]
 const COMPOSITION: &[Key] = &[
-    key("mole", ByName(D::NONE), OneOf, "Mole fractions by the names of solids. Either this or `mass`.", "{ Fe2O3 = 0.7, Fe3O4 = 0.3 }"),
+    key("mole", ByName(D::NONE), OneOf, "Moles by the names of solids, in any ratio. Either this or `mass`.", "{ Fe2O3 = 0.7, Fe3O4 = 0.3 }"),
     key("mass", ByName(D::NONE), OneOf, "Mass fractions by the names of solids. Either this or `mole`.", "{ CaCO3 = 1 }"),
 ];
 
@@ -26,7 +26,7 @@ const SIZE: &[Key] = &[
 #[rustfmt::skip]
 pub(super) const MATERIALS: &[Key] = &[
     key("density", Number(D::DENSITY, Positive), Required, "Density.", "\"2500 kg/m^3\""),
-    key("composition", Table(COMPOSITION), OneOf, "What the material is made of, where it reacts: mass or mole fractions of solids, which sum to 1. Either this or `heat_capacity`.", "{ mass = { Fe2O3 = 0.95, Al2O3 = 0.05 } }"),
+    key("composition", Table(COMPOSITION), OneOf, "What the material is made of, where it reacts: mass fractions of solids, which sum to 1, or moles in any ratio. Either this or `heat_capacity`.", "{ mass = { Fe2O3 = 0.95, Al2O3 = 0.05 } }"),
     key("heat_capacity", Either(&Curve(D::HEAT_CAPACITY, Positive), &Table(HEAT_CAPACITY)), OneOf, "Specific heat capacity; linear between points, constant outside them; or NASA's polynomials as a table.", "[[\"300 K\", \"780 J/kg/K\"], [\"800 K\", \"1150 J/kg/K\"]]"),
     key("size", Law(laws::size, SIZE), Without("diameters stay"), "How particles of the material take up room while they react; goes with `composition`.", "{ law = \"constant-density\", least_diameter = \"1 mm\" }"),
     key("used_up", Number(D::NONE, Between(0.0, 1.0)), Default("1e-6"), "Share of the mass with which a particle came below which it is used up by reactions and goes out of the run; goes with `composition`. Moving particles need one at which they are not yet too light for the time step of contacts.", "0.01"),

@@ -3,6 +3,7 @@
 use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::physics::conduction::{Conduction, GasGap};
 use calcine_coupler::physics::drag::Drag;
+use calcine_coupler::physics::film::{FilmTemperature, FilmTheory};
 use calcine_coupler::physics::heat_transfer::HeatTransfer;
 use calcine_coupler::physics::law::LawChoice;
 use calcine_coupler::physics::turbulence::BedEddies;
@@ -18,12 +19,16 @@ pub struct Laws {
     pub momentum: MomentumModel,
     /// Heat transfer between gas and particle.
     pub heat_transfer: LawChoice<dyn HeatTransfer>,
+    /// At which temperature the properties of its gas are taken.
+    pub heat_film: FilmTemperature,
     /// Heat conduction between particles.
     pub conduction: ConductionSpec,
     /// Mass transfer between gas and particles that react.
     pub mass_transfer: LawChoice<dyn HeatTransfer>,
     /// What the particles of a bed make of eddies, as `gas.turbulence.bed` states it.
     pub bed_eddies: LawChoice<dyn BedEddies>,
+    /// How it is computed.
+    pub film: FilmTheory,
     /// Radiation between particles; `None`: none.
     pub radiation: Option<RadiationSpec>,
 }

@@ -1,5 +1,7 @@
 //! `[laws]`: each is stated, none has a default.
 
+use calcine_coupler::physics::film::{FilmTemperature, FilmTheory, StefanFlow};
+use calcine_coupler::physics::heat_transfer::HeatTransfer;
 use calcine_coupler::physics::law::LawChoice;
 use calcine_coupler::physics::turbulence::BedEddies;
 
@@ -19,19 +21,48 @@ pub(super) fn read(
         table.finish();
         (law, momentum)
     });
-    let heat_transfer = section.plain_law("heat_transfer", &known.heat_transfer);
-    let mass_transfer = section.optional_law("mass_transfer", &known.heat_transfer);
+    let heat_transfer = section.law("heat_transfer", &known.heat_transfer);
+    let heat_transfer = heat_transfer.map(|(law, table)| {
+        let film = table.choice("film");
+        table.finish();
+        (law, film)
+    });
+    let mass_transfer = mass_transfer(&section);
     let conduction = heat::conduction(&section);
     let radiation = heat::radiation(&section);
     section.finish();
     let (drag, momentum) = drag?;
+    let (heat_transfer, heat_film) = heat_transfer?;
+    let (mass_transfer, film) = mass_transfer?;
     Some(Laws {
         drag: drag?,
         momentum,
         heat_transfer: heat_transfer?,
+        heat_film: heat_film?,
         conduction: conduction?,
         radiation: radiation?,
-        mass_transfer: mass_transfer?,
         bed_eddies: bed_eddies?,
+        mass_transfer,
+        film,
     })
+}
+
+/// `laws.mass_transfer`; without it none, and its film as by default.
+fn mass_transfer(section: &TableReader<'_>) -> Option<(LawChoice<dyn HeatTransfer>, FilmTheory)> {
+    let known = &section.laws().heat_transfer;
+    if !section.has("mass_transfer") {
+        let film = FilmTheory {
+            temperature: FilmTemperature::TwoThirds,
+            stefan_flow: StefanFlow::Mass,
+        };
+        return Some((section.optional_law("mass_transfer", known)?, film));
+    }
+    let (law, table) = section.law("mass_transfer", known)?;
+    let (temperature, stefan_flow) = (table.choice("film"), table.choice("stefan_flow"));
+    table.finish();
+    let film = FilmTheory {
+        temperature: temperature?,
+        stefan_flow: stefan_flow?,
+    };
+    Some((law?, film))
 }

@@ -10,12 +10,11 @@ use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{GasPatch, GasSetup};
 
+use super::composition::{SLACK, unfit};
 use super::rate_constants;
 use crate::case::model::{Laws, ReactionSpec};
 use crate::case::table::{NO_DRYING, TableReader, is_moisture};
 
-/// How far fractions may be from summing to 1, as of gases.
-const SLACK: f64 = 1e-3;
 /// How far a stated heat may be from that of the enthalpies.
 const HEAT: f64 = 0.02;
 
@@ -34,8 +33,13 @@ pub(super) fn composition(table: &TableReader<'_>, solids: &[SolidSpecies]) -> O
             }
             return None;
         };
-        if !(0.0..=1.0 + SLACK).contains(&value) {
-            let help = "fractions are between 0 and 1";
+        let most = if kind == "mole" {
+            f64::MAX
+        } else {
+            1.0 + SLACK
+        };
+        if !(0.0..=most).contains(&value) {
+            let help = "mass fractions are between 0 and 1, amounts (`mole`) zero or above";
             inner.fail(&name, format!("is {value}"), help);
             return None;
         }
@@ -43,8 +47,8 @@ pub(super) fn composition(table: &TableReader<'_>, solids: &[SolidSpecies]) -> O
     }
     table.finish();
     let sum: f64 = fractions.iter().sum();
-    if (sum - 1.0).abs() > SLACK {
-        table.fail(kind, format!("sums to {sum}"), "fractions sum to 1");
+    if let Some(help) = unfit(kind, sum) {
+        table.fail(kind, format!("sums to {sum}"), help);
         return None;
     }
     if kind == "mole" {
@@ -170,6 +174,11 @@ fn equation(table: &TableReader<'_>, text: &str, known: &Known<'_>) -> Option<(E
         solids: Vec::new(),
         gases: Vec::new(),
     };
+    if equation.net().iter().all(|(_, n)| *n == 0.0) {
+        let help = "write what is used on the left and what is made of it on the right";
+        table.fail("equation", "changes nothing", help);
+        return None;
+    }
     for (name, n) in equation.net() {
         let solid = known.solids.iter().position(|one| one.name() == name);
         let gas = known

@@ -23,6 +23,7 @@ pub(super) fn turbulence(
     let schmidt = table.number("schmidt");
     let iterations = table.small_whole("iterations");
     let bed = table.optional_law("bed", known);
+    let stated = table.has("iterations");
     let start = initial.and_then(|initial| {
         let energy = initial.number("energy");
         let length_scale = initial.number("length_scale");
@@ -35,6 +36,10 @@ pub(super) fn turbulence(
         if !bed.is_none() {
             let help = "write model = \"k-epsilon\", or remove it";
             table.fail("bed", "states eddies of the bed of a laminar gas", help);
+        }
+        if stated {
+            let help = "write model = \"k-epsilon\", or remove it";
+            table.fail("iterations", "stands beside the laminar model", help);
         }
         return Some((Turbulence::Laminar, bed));
     }

@@ -1,8 +1,9 @@
 //! One particle over one window, with the gas about it held.
 
+mod film_heat;
 mod system;
 
-use calcine_numerics::rosenbrock::{IntegrationAccuracy, MOST_STEPS};
+use calcine_numerics::rosenbrock::{IntegrationAccuracy, MOST_STEPS, StallCause};
 use calcine_numerics::{
     DenseMatrix, IntegrationStalled, IntegrationStatistics, Rosenbrock, RosenbrockTableau,
     StiffSystem,
@@ -75,6 +76,33 @@ impl Default for ParticleWorkspace {
     }
 }
 
+/// How sharply rates end, and in how many steps a particle is followed with that.
+#[derive(Clone, Copy, Debug)]
+struct RateEdges {
+    /// Share of a particle's solids that is a trace ([`TRACE`]).
+    trace: f64,
+    /// How fast interfaces are at most ([`super::rates::RateState::fastest`]).
+    fastest: f64,
+    /// Steps at most.
+    steps: usize,
+}
+
+/// A particle whose steps do not suffice is followed anew with blunter edges: interfaces whose constants are many powers of ten
+/// apart and that react forth by one gas and back by another hold traces that no step within the accuracy can follow.
+/// Its rates are then within a thousandth of those of infinitely fast interfaces, its solids within 1e-4 of all.
+const EDGES: [RateEdges; 2] = [
+    RateEdges {
+        trace: TRACE,
+        fastest: 1e5,
+        steps: 200,
+    },
+    RateEdges {
+        trace: 100.0 * TRACE,
+        fastest: 1e3,
+        steps: MOST_STEPS,
+    },
+];
+
 /// Share of its heat capacity at the start of a window that a particle has at least: what is used up has the
 /// temperature at which the heat of its reactions passes.
 const LEAST_CAPACITY: f64 = 1e-9;
@@ -109,6 +137,30 @@ impl SolidChemistry {
         guess: AttemptGuess,
         workspace: &mut ParticleWorkspace,
     ) -> Result<ParticleOutcome, IntegrationStalled> {
+        let [sharp, blunt] = EDGES;
+        let done = self.follow_with(start, span, accuracy, (guess, sharp), workspace);
+        match done {
+            Err(IntegrationStalled {
+                cause: StallCause::Steps(_) | StallCause::Step,
+                ..
+            }) => {
+                let mut done =
+                    self.follow_with(start, span, accuracy, (guess, blunt), workspace)?;
+                done.statistics.rejected += sharp.steps;
+                Ok(done)
+            }
+            done => done,
+        }
+    }
+
+    fn follow_with(
+        &self,
+        start: &ParticleStart<'_>,
+        span: f64,
+        accuracy: ParticleAccuracy,
+        (guess, edges): (AttemptGuess, RateEdges),
+        workspace: &mut ParticleWorkspace,
+    ) -> Result<ParticleOutcome, IntegrationStalled> {
         let ParticleWorkspace {
             method,
             unknowns,
@@ -132,7 +184,9 @@ impl SolidChemistry {
         let mut system = ParticleSystem {
             chemistry: self,
             start,
-            trace: TRACE * all,
+            trace: edges.trace * all,
+            fastest: edges.fastest,
+            round_off: f64::EPSILON * all,
             tolerance: accuracy.amount * all,
             least_capacity: LEAST_CAPACITY * self.heat_capacity(start.amounts, start.temperature),
             guess,
@@ -141,7 +195,7 @@ impl SolidChemistry {
         let accuracy = IntegrationAccuracy {
             relative: 0.0,
             absolute: tolerance,
-            steps: MOST_STEPS,
+            steps: edges.steps,
         };
         let statistics = method.integrate(&mut system, unknowns, span, accuracy)?;
         extents.clear();
@@ -212,5 +266,7 @@ impl SolidChemistry {
     }
 }
 
+#[cfg(test)]
+mod film_tests;
 #[cfg(test)]
 mod tests;

@@ -1,10 +1,12 @@
 //! The reactions of particles, and the thermodynamics of their solids.
 
+use calcine_physics::film::StefanFlow;
 use calcine_physics::reaction::PowerLaw;
 use calcine_physics::solids::SolidSpecies;
 use calcine_physics::thermo::{Element, Mixture};
 
 use super::layers::{Layers, LayersError, gases, layers};
+use super::passage::ParticleSurroundings;
 use super::reaction::{Rate, Reaction};
 
 /// Reactions with the solids and the gas that they are of.
@@ -28,6 +30,9 @@ pub struct SolidChemistry {
     /// Changes of the gas by which rates have slopes, and that of each reaction.
     directions: Vec<(usize, Option<usize>)>,
     direction: Vec<Option<usize>>,
+    /// True where reactions change the moles, and the mass, of the gas.
+    makes_moles: bool,
+    makes_mass: bool,
 }
 
 impl SolidChemistry {
@@ -54,6 +59,8 @@ impl SolidChemistry {
             effects: Vec::new(),
             directions: Vec::new(),
             direction: Vec::new(),
+            makes_moles: false,
+            makes_mass: false,
         };
         made.heat = made.reactions.iter().map(|one| made.heat_of(one)).collect();
         made.index();
@@ -62,6 +69,10 @@ impl SolidChemistry {
 
     /// Fills what follows from the reactions for their integration.
     fn index(&mut self) {
+        let net = |one: &Reaction| one.gases.iter().map(|gas| gas.1).sum::<f64>();
+        let changes = |one: &Reaction| net(one).abs() > EQUIMOLAR;
+        self.makes_moles = self.reactions.iter().any(changes);
+        self.makes_mass = self.reactions.iter().any(|one| !one.gases.is_empty());
         let used = |s: &usize| {
             let mut solids = self.reactions.iter().flat_map(|one| &one.solids);
             solids.any(|one| one.0 == *s && one.1 != 0.0)
@@ -113,6 +124,17 @@ impl SolidChemistry {
     /// That of a reaction.
     pub(super) fn direction(&self, reaction: usize) -> Option<usize> {
         self.direction[reaction]
+    }
+
+    /// True where reactions may make a net flow through the film of a particle in these surroundings that acts on their rates.
+    pub(super) fn makes_film_flow(&self, around: &ParticleSurroundings<'_>) -> bool {
+        let there = around.film.iter().all(|one| one.value > 0.0);
+        there
+            && match around.theory.stefan_flow {
+                StefanFlow::None => false,
+                StefanFlow::Molar => self.makes_moles,
+                StefanFlow::Mass => self.makes_mass,
+            }
     }
 
     /// The gas that diffuses back for a reaction's key gas, mole for mole.
@@ -238,6 +260,9 @@ impl SolidChemistry {
         parts.map(|(solid, n)| solid.molar_mass() * n).sum()
     }
 }
+
+/// Moles by which gases that are used and made may differ, a mole of the reaction, as none.
+const EQUIMOLAR: f64 = 1e-9;
 
 /// Bounds of the temperature of a particle in K.
 pub(super) const LOWEST: f64 = 1.0;

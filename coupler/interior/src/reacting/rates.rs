@@ -9,8 +9,8 @@ use calcine_physics::sphere;
 
 use super::chemistry::SolidChemistry;
 use super::layers::{GasPath, Layers};
+use super::passage::{FilmFlow, FilmPassage, ParticleSurroundings};
 use super::reaction::{LayerDiffusivity, Rate, Reaction};
-use super::size::SizeChange;
 
 /// A trace: the share of a particle's solids at the start of a window below which the rate of what uses a solid goes to
 /// zero with what is left of it. With x the amount in traces, the factor is
@@ -23,46 +23,6 @@ use super::size::SizeChange;
 /// So rates end where nothing is left, and have a slope there by which an implicit step finds that end.
 pub const TRACE: f64 = 1e-6;
 
-/// How much faster than film and a layer of the particle's size (β + D/R) an interface is at most: a resistance of this share
-/// of theirs is in series with its own. So amounts of what fast reactions use as it is made stay within what digits resolve.
-const FAST: f64 = 1e5;
-
-/// The surroundings of one particle, fixed over a window.
-#[derive(Clone, Copy, Debug)]
-pub struct ParticleSurroundings<'a> {
-    /// Temperature of the gas in K.
-    pub temperature: f64,
-    /// Its pressure in Pa.
-    pub pressure: f64,
-    /// Mole fractions.
-    pub fractions: &'a [f64],
-    /// Mass transfer coefficient of each species in m/s, in gas of its temperature about a particle of the radius.
-    pub film: &'a [f64],
-    /// Radius of the particle in m at the start, which stays where its diameter does.
-    pub radius: f64,
-    /// How it takes up room.
-    pub size: &'a SizeChange,
-}
-
-impl ParticleSurroundings<'_> {
-    /// How much smaller than at the start a particle of a radius in m is; one where its diameter stays.
-    pub fn shrinkage<N: Number>(&self, radius: N) -> Option<N> {
-        let changes = self.size.volumes().is_some() && self.radius > 0.0;
-        changes.then(|| radius.times(1.0 / self.radius))
-    }
-
-    /// Mass transfer coefficient of a species in m/s for concentrations at the temperature of the particle in K, which has
-    /// a radius in m. What passes the film is β (p/R T_gas) (X_gas − X_surface): both ends in the gas of the film, whose
-    /// coefficient it is (docs/theory.md, RXN-3). The Sherwood number is that of the start of the window.
-    fn film_of<N: Number>(&self, species: usize, radius: N, temperature: N) -> N {
-        let film = temperature.times(self.film[species] / self.temperature);
-        match self.shrinkage(radius) {
-            Some(shrinkage) => film / shrinkage,
-            None => film,
-        }
-    }
-}
-
 /// What the rates of a particle depend on within a window.
 #[derive(Clone, Copy, Debug)]
 pub struct RateState<'a, N> {
@@ -72,8 +32,13 @@ pub struct RateState<'a, N> {
     pub fractions: &'a [N],
     /// Temperature of the particle in K.
     pub temperature: N,
+    /// The net flow through its film.
+    pub film_flow: FilmFlow<N>,
     /// The amount in mol that is a trace ([`TRACE`]).
     pub trace: f64,
+    /// How much faster than film and a layer of the particle's size (β + D/R) an interface is at most: a resistance of this
+    /// share of theirs is in series with its own. So amounts of what fast reactions use as it is made stay within what digits resolve.
+    pub fastest: f64,
 }
 
 impl<N: Number> RateState<'_, N> {
@@ -170,8 +135,11 @@ impl SolidChemistry {
         let mut grown: Option<(&LayerDiffusivity, N)> = None;
         for path in &layers.paths {
             let mut interfaces = [Interface::<N>::none(); MOST_INTERFACES];
-            let bulk = all_gas * state.fractions[path.key];
-            let film = around.film_of(path.key, radius, state.temperature);
+            let FilmPassage {
+                coefficient: film,
+                gain,
+            } = around.passage(path.key, radius, state.temperature, state.film_flow);
+            let bulk = all_gas * gain * state.fractions[path.key];
             for (k, interface) in interfaces.iter_mut().enumerate().take(count) {
                 let (inner, outer) = (places[k], places.get(k + 1).copied());
                 let outer = outer.filter(|_| k + 1 < count).unwrap_or(N::constant(1.0));
@@ -190,11 +158,11 @@ impl SolidChemistry {
                     let passed = interface.diffusivity.times(1.0 / around.radius) + film;
                     (interface.rate_constant, interface.equilibrium) = interface_of(
                         &self.reactions[index],
-                        (path, passed.times(FAST)),
+                        (path, passed.times(state.fastest)),
                         solids,
                         around,
                         state,
-                        (bulk, all_gas),
+                        (bulk, gain, all_gas),
                     );
                 }
             }
@@ -218,7 +186,7 @@ fn interface_of<N: Number>(
     [inner, outer]: [usize; 2],
     around: &ParticleSurroundings<'_>,
     state: &RateState<'_, N>,
-    (bulk, all_gas): (N, N),
+    (bulk, gain, all_gas): (N, N, N),
 ) -> (N, N) {
     let Rate::Core { rate_constant, .. } = &reaction.rate else {
         return (N::constant(0.0), N::constant(0.0));
@@ -237,7 +205,7 @@ fn interface_of<N: Number>(
     );
     if let Some(product) = path.product {
         // k (s c − s' c'/K) with c + c' the same everywhere
-        let both = bulk + all_gas * state.fractions[product];
+        let both = bulk + all_gas * gain * state.fractions[product];
         let returning = layer * back;
         let together = own + returning;
         let at_rest = if together.value() > 0.0 {
@@ -312,11 +280,12 @@ fn power<N: Number>(
     } else if order == 0.0 && state.fractions[key].value() <= 0.0 {
         zero
     } else {
-        let film = around.film_of(key, radius, state.temperature);
-        let film = (area * film).times(-1.0 / moles);
-        let surface = power_law::at_surface(gas(key), film, rest, order);
+        let passage = around.passage(key, radius, state.temperature, state.film_flow);
+        let film = (area * passage.coefficient).times(-1.0 / moles);
+        let bulk = gas(key) * passage.gain;
+        let surface = power_law::at_surface(bulk, film, rest, order);
         let forward = if order == 0.0 && surface.value() <= 0.0 {
-            film * gas(key)
+            film * bulk
         } else {
             rest * power_law::power(surface, order)
         };

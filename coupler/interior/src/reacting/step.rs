@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use super::Reacting;
 use super::attempt::{AttemptGuess, ParticleStart, ParticleWorkspace};
-use super::rates::ParticleSurroundings;
+use super::passage::ParticleSurroundings;
 use crate::model::Surroundings;
 
 /// A particle whose reactions cannot be followed.
@@ -136,6 +136,7 @@ impl Reacting {
                     .film
                     .get(p * species..(p + 1) * species)
                     .unwrap_or_default(),
+                theory: around.theory,
                 radius: around.radius[p],
                 size: self.size(),
             },

@@ -1,5 +1,6 @@
 //! Shrinking cores against their closed forms, adiabatic calorimeters, elements.
 
+use calcine_physics::film::{FilmCoefficient, FilmTemperature, FilmTheory, StefanFlow};
 use calcine_physics::gas::GAS_CONSTANT;
 use calcine_physics::reaction::{Arrhenius, Equilibrium, PowerLaw};
 use calcine_physics::solids::SolidSpecies;
@@ -8,6 +9,11 @@ use calcine_physics::thermo::{Element, Mixture};
 use super::*;
 use crate::{At, GasLines, Newcomer, ParticleModel, Surroundings, TEMPERATURE, Transfer};
 
+/// Films of the temperature of the gas, without a net flow.
+const PLAIN: FilmTheory = FilmTheory {
+    temperature: FilmTemperature::Gas,
+    stefan_flow: StefanFlow::None,
+};
 const RADIUS: f64 = 6e-3;
 const PRESSURE: f64 = 101_325.0;
 const HOT: f64 = 1100.0;
@@ -75,7 +81,7 @@ fn follow(
     let mut sum = 0.0;
     (0..windows)
         .map(|_| {
-            let film = vec![film; species];
+            let film = vec![FilmCoefficient::constant(film); species];
             let measured = reacting.bodies(At::Commit).radius.first().copied();
             let radius = [measured.unwrap_or(RADIUS)];
             let around = Surroundings {
@@ -84,6 +90,7 @@ fn follow(
                 composition,
                 conductance: &[conductance],
                 film: &film,
+                theory: PLAIN,
                 radius: &radius,
             };
             let mut lines = GasLines::default();
@@ -512,7 +519,8 @@ fn a_reaction_of_order_zero_takes_from_a_cell_in_proportion_to_what_it_holds() {
         pressure: &[PRESSURE],
         composition: &composition,
         conductance: &[0.0],
-        film: &[1e3, 1e3],
+        film: &[FilmCoefficient::constant(1e3); 2],
+        theory: PLAIN,
         radius: &[RADIUS],
     };
     let mut lines = GasLines::default();
@@ -533,7 +541,8 @@ fn heat_that_would_take_a_particle_2_percent_from_its_integration_is_owed_to_it(
         pressure: &[PRESSURE],
         composition: &composition,
         conductance: &[0.01],
-        film: &[0.05; 3],
+        film: &[FilmCoefficient::constant(0.05); 3],
+        theory: PLAIN,
         radius: &[RADIUS],
     };
     for (share, is_owed) in [(0.0199, false), (0.0201, true), (-0.0201, true)] {

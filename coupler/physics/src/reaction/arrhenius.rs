@@ -13,7 +13,7 @@ pub(super) const EXPONENT: LawParameter = LawParameter {
     bound: Bound::Any,
     default: Some(0.0),
     needed_with: None,
-    meaning: "Exponent of the temperature in K.",
+    meaning: "Exponent b of the temperature over 1 K in k = factor (T/K)^b exp(-E/RT): the factor has the unit of k.",
     example: "0.5",
 };
 

@@ -3,8 +3,11 @@
 use calcine_numerics::rosenbrock::SystemDerivatives;
 use calcine_numerics::{Dual, StiffSystem};
 
+use super::film_heat::FilmHeat;
 use crate::reacting::chemistry::SolidChemistry;
-use crate::reacting::rates::{ParticleSurroundings, RateState, TRACE};
+use crate::reacting::film_balance::{self, FilmBalance};
+use crate::reacting::passage::{FilmFlow, ParticleSurroundings};
+use crate::reacting::rates::RateState;
 
 /// Rounds of taking back at most.
 const MOST_ROUNDS: usize = 100;
@@ -61,6 +64,10 @@ pub(super) struct Buffers {
     pub warmth: Vec<[f64; 3]>,
     /// Molar heat capacity of each solid in J/mol/K, and its slope.
     molar: Vec<[f64; 2]>,
+    /// The net flow through the film.
+    film: FilmBalance,
+    /// What exchanged gases do to the heat through the film.
+    film_heat: FilmHeat,
     /// Change of the radius over that at the start with the amount of each solid that reacts, in 1/mol.
     shrinkage_slopes: Vec<f64>,
 }
@@ -83,6 +90,9 @@ impl Buffers {
         self.molar.resize(start.amounts.len(), [0.0; 2]);
         self.shrinkage_slopes.clear();
         self.shrinkage_slopes.resize(chemistry.moving().len(), 0.0);
+        self.film.begin();
+        self.film_heat
+            .begin(chemistry, &start.around, start.temperature);
         // The heat of a reaction follows temperature so slowly that a line will do here; what is booked is exact.
         self.warmth.clear();
         self.warmth.extend((0..chemistry.reactions.len()).map(|j| {
@@ -105,6 +115,10 @@ pub(super) struct ParticleSystem<'a> {
     pub start: &'a ParticleStart<'a>,
     /// In mol.
     pub trace: f64,
+    /// How fast interfaces are at most ([`RateState`]).
+    pub fastest: f64,
+    /// Amounts in mol below which nothing is missing.
+    pub round_off: f64,
     /// What an amount may be below zero, in mol.
     pub tolerance: f64,
     /// In J/K.
@@ -119,7 +133,7 @@ struct ParticleHeat {
     capacity: [f64; 2],
     /// Change with temperature of the heat of reaction in W, at fixed rates.
     released: f64,
-    /// h A in W/K.
+    /// What passes of a difference of temperatures, in W/K: h A but for what exchanged gases do to it.
     conductance: f64,
     /// Change with the radius over that at the start of what comes from outside, in W.
     widened: f64,
@@ -191,15 +205,45 @@ impl ParticleSystem<'_> {
         }
         // The film conducts in proportion to the radius, contacts and radiation act on the surface.
         let shrinkage = self.shrinkage();
-        let conductance = shrinkage * self.start.conductance;
-        let difference = self.start.around.temperature - temperature;
+        let (conductance, wider) = self.film_conductance(shrinkage);
+        let difference = self.difference(temperature);
         let taken = conductance * difference + shrinkage * shrinkage * self.start.heat;
         out[moving] = (taken + released[0]) / capacity[0];
         ParticleHeat {
             capacity,
             released: released[1],
             conductance,
-            widened: self.start.conductance * difference + 2.0 * shrinkage * self.start.heat,
+            widened: wider * difference + 2.0 * shrinkage * self.start.heat,
+        }
+    }
+
+    /// What the film of a particle so much smaller than at the start conducts in W/K at the rates at hand, and its slope.
+    fn film_conductance(&self, shrinkage: f64) -> (f64, f64) {
+        let (own, rates) = (self.start.conductance, &self.buffers.rates);
+        self.buffers.film_heat.conductance(own, shrinkage, rates)
+    }
+
+    /// How much warmer the gas is, in K.
+    fn difference(&self, temperature: f64) -> f64 {
+        self.start.around.temperature - temperature
+    }
+
+    /// Rates at the amounts at hand, with the net flow through the film that they make.
+    fn find_rates(&mut self, temperature: f64) {
+        let (chemistry, around) = (self.chemistry, &self.start.around);
+        let state = RateState {
+            amounts: &self.buffers.amounts,
+            fractions: around.fractions,
+            temperature,
+            film_flow: FilmFlow::still(),
+            trace: self.trace,
+            fastest: self.fastest,
+        };
+        if chemistry.makes_film_flow(around) {
+            let (film, rates) = (&mut self.buffers.film, &mut self.buffers.rates);
+            film.solve(chemistry, around, &state, rates);
+        } else {
+            chemistry.rates(around, &state, &mut self.buffers.rates);
         }
     }
 }
@@ -227,14 +271,7 @@ impl StiffSystem for ParticleSystem<'_> {
 
     fn rates(&mut self, y: &[f64], out: &mut [f64]) {
         let temperature = self.place(y);
-        let state = RateState {
-            amounts: &self.buffers.amounts,
-            fractions: self.start.around.fractions,
-            temperature,
-            trace: self.trace,
-        };
-        let rates = &mut self.buffers.rates;
-        self.chemistry.rates(&self.start.around, &state, rates);
+        self.find_rates(temperature);
         self.fill(temperature, [self.capacity(temperature), 0.0], out);
     }
 
@@ -243,6 +280,10 @@ impl StiffSystem for ParticleSystem<'_> {
         let n = y.len();
         let (temperature, place_of_temperature) = (self.place(y), n - 1);
         let directions = n + chemistry.directions().len();
+        if chemistry.makes_film_flow(&self.start.around) {
+            self.find_rates(temperature);
+        }
+        let (shrinkage, difference) = (self.shrinkage(), self.difference(temperature));
         for first in (0..directions).step_by(WIDTH) {
             let last = (first + WIDTH).min(directions);
             self.differentiate_by(first..last, temperature);
@@ -253,7 +294,11 @@ impl StiffSystem for ParticleSystem<'_> {
             }
             for (j, rate) in self.buffers.rates_dual.iter().enumerate() {
                 let warmth = self.buffers.warmth[j];
-                let heat = warmth[0] + warmth[1] * (temperature - self.start.temperature);
+                let own = self.start.conductance;
+                let film = &self.buffers.film_heat;
+                let heat = warmth[0]
+                    + warmth[1] * (temperature - self.start.temperature)
+                    + difference * film.slope(own, shrinkage, &self.buffers.rates, j);
                 for (direction, slope) in (first..last).zip(rate.slope) {
                     if direction < n {
                         for &(k, moles) in chemistry.effects(j) {
@@ -320,7 +365,7 @@ impl StiffSystem for ParticleSystem<'_> {
         let (moving, count) = (chemistry.moving().len(), chemistry.reactions.len());
         let width = y.len() + extents.len();
         // What one solid gets back another may lack: the rounds end where only round-off is missing.
-        let round_off = -f64::EPSILON * self.trace / TRACE;
+        let round_off = -self.round_off;
         for _ in 0..MOST_ROUNDS {
             let uses_of = |solid: usize, j: usize, extent: f64| {
                 let effects = chemistry.effects(j).iter();
@@ -417,10 +462,17 @@ impl ParticleSystem<'_> {
             amounts: &buffers.amounts_dual,
             fractions: &buffers.fractions_dual,
             temperature: warm,
+            film_flow: buffers.film.point(),
             trace: self.trace,
+            fastest: self.fastest,
         };
         let around = &self.start.around;
         chemistry.rates(around, &state, &mut buffers.rates_dual);
+        if chemistry.makes_film_flow(around) {
+            let rates = &mut buffers.rates_dual;
+            let residual = film_balance::residual(chemistry, around, &state, rates);
+            buffers.film.follow(residual, rates);
+        }
         let radius = around.size.radius_of(state.amounts, around.radius);
         if let Some(shrinkage) = around.shrinkage(radius) {
             let slopes = buffers.shrinkage_slopes.iter_mut().skip(first);

@@ -1,12 +1,13 @@
 //! Attempts at particles whose reactions are stiff beyond measure, and the tangents of attempts.
 
+use calcine_physics::film::{FilmCoefficient, FilmTemperature, FilmTheory, StefanFlow};
 use calcine_physics::reaction::equilibrium::GibbsLine;
 use calcine_physics::reaction::{Arrhenius, Equilibrium, PowerLaw};
 use calcine_physics::solids::SolidSpecies;
 use calcine_physics::thermo::{Element, Mixture, Species};
 
 use super::*;
-use crate::reacting::rates::ParticleSurroundings;
+use crate::reacting::passage::ParticleSurroundings;
 use crate::reacting::{LayerDiffusivity, Rate, Reaction, SizeChange};
 
 const SOLIDS: [&str; 4] = ["Fe2O3", "Fe3O4", "Fe0.947O", "Fe"];
@@ -68,6 +69,12 @@ fn ore() -> SolidChemistry {
     chemistry(steps.to_vec())
 }
 
+/// Films of their own temperature, with the net flow of mass.
+const FULL: FilmTheory = FilmTheory {
+    temperature: FilmTemperature::TwoThirds,
+    stefan_flow: StefanFlow::Mass,
+};
+
 /// A particle of so many mol of each solid.
 struct Case {
     amounts: Vec<f64>,
@@ -76,7 +83,14 @@ struct Case {
     gas_temperature: f64,
     conductance: f64,
     film: f64,
+    theory: FilmTheory,
 }
+
+/// Films of the temperature of the gas, without a net flow.
+const PLAIN: FilmTheory = FilmTheory {
+    temperature: FilmTemperature::Gas,
+    stefan_flow: StefanFlow::None,
+};
 
 impl Case {
     fn ore() -> Self {
@@ -87,6 +101,7 @@ impl Case {
             gas_temperature: 1173.0,
             conductance: 0.03,
             film: 0.08,
+            theory: PLAIN,
         }
     }
 
@@ -96,7 +111,7 @@ impl Case {
         span: f64,
         accuracy: ParticleAccuracy,
     ) -> Result<(ParticleOutcome, Vec<f64>, Vec<f64>), IntegrationStalled> {
-        let film = vec![self.film; self.fractions.len()];
+        let film = vec![FilmCoefficient::constant(self.film); self.fractions.len()];
         let start = ParticleStart {
             amounts: &self.amounts,
             temperature: self.temperature,
@@ -105,6 +120,7 @@ impl Case {
                 pressure: 1.5e5,
                 fractions: &self.fractions,
                 film: &film,
+                theory: self.theory,
                 radius: RADIUS,
                 size: &SizeChange::Constant,
             },
@@ -163,6 +179,7 @@ fn particles_of_any_rate_constants_end_with_their_elements_and_most_about_equall
             gas_temperature: 300.0 + 2200.0 * number(4),
             conductance: 0.03,
             film: 0.08,
+            theory: if case % 2 == 0 { FULL } else { PLAIN },
         };
         let span = 10f64.powf(4.0 * number(5));
         let done = particle.follow(&chemistry, span, ParticleAccuracy::default());
@@ -183,9 +200,7 @@ fn particles_of_any_rate_constants_end_with_their_elements_and_most_about_equall
         counts.push(took.steps + took.rejected);
     }
     counts.sort_unstable();
-    // Known limit: reversible chains of interfaces whose constants differ by many powers of ten, one in eight of these,
-    // take more than ten times the median.
-    assert!(counts[52] <= 10 * counts[30], "{counts:?}");
+    assert!(counts[59] <= 10 * counts[30], "{counts:?}");
 }
 
 #[test]
@@ -264,11 +279,15 @@ fn the_tangent_of_mean_rates_is_their_difference_quotient() {
         amount: 1e-9,
         temperature: 1e-5,
     };
-    for span in [1.0, 20.0, 400.0] {
-        let base = Case::ore();
-        let (outcome, extents, slopes) = base.follow(&chemistry, span, accuracy).unwrap();
+    let windows = [1.0, 20.0, 400.0];
+    for (span, theory) in windows.into_iter().flat_map(|t| [(t, PLAIN), (t, FULL)]) {
+        let ore = || Case {
+            theory,
+            ..Case::ore()
+        };
+        let (outcome, extents, slopes) = ore().follow(&chemistry, span, accuracy).unwrap();
         for (key, reactions) in [(0, 0..3), (2, 3..6)] {
-            let mut varied = Case::ore();
+            let mut varied = ore();
             let h = 1e-3;
             varied.fractions[key] += h;
             varied.fractions[key + 1] -= h;
@@ -284,7 +303,10 @@ fn the_tangent_of_mean_rates_is_their_difference_quotient() {
                 );
             }
         }
-        let mut varied = Case::ore();
+        if theory != PLAIN {
+            continue;
+        }
+        let mut varied = ore();
         // The film's coefficient at the temperature of the particle stays.
         varied.film *= 1.0 + 0.5 / varied.gas_temperature;
         varied.gas_temperature += 0.5;
@@ -411,7 +433,7 @@ fn a_sphere_limited_by_its_film_follows_the_d_squared_law_at_any_temperature_and
     let amount = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * density / molar;
     let size = SizeChange::of_density(density, &chemistry.solids, 1e-6);
     let fractions = [0.21, 0.0, 0.79];
-    let films = [film; 3];
+    let films = [FilmCoefficient::constant(film); 3];
     for hot in [600.0, 1200.0, 2400.0] {
         // β p/(R T_gas) X_O2 mol/m²/s at the start, in proportion to 1/r.
         let flux = film * pressure / (8.314_462_618 * hot) * fractions[0];
@@ -426,6 +448,7 @@ fn a_sphere_limited_by_its_film_follows_the_d_squared_law_at_any_temperature_and
                     pressure,
                     fractions: &fractions,
                     film: &films,
+                    theory: PLAIN,
                     radius,
                     size: &size,
                 },
