@@ -203,21 +203,42 @@ fn eddies_in_a_bed_by_each_law() {
     }
 }
 
-/// Bands of two gases that burn, as shares of a field's span, once they are steady; what is measured is in docs/verification.md.
-const BURNING: [(&str, f64); 9] = [
-    ("gas.temperature", 0.01),
+/// Bands of two gases that burn, as shares of a field's span. Both stop their loops at 1e-7: that, a thousandfold for what a flame
+/// amplifies, for temperature, velocity and pressure. k and its dissipation differ by 0.8 % beside a wall where gas that burns
+/// expands, in windows of 0.2, 0.1 and 0.05 ms alike; not explained.
+const BURNING: [(&str, f64); 6] = [
+    ("gas.temperature", 1e-4),
+    ("gas.velocity", 1e-4),
+    ("gas.pressure", 1e-3),
+    ("gas.turbulent_energy", 0.01),
+    ("gas.dissipation", 0.01),
+    ("gas.eddy_viscosity", 0.01),
+];
+/// Of each mass fraction, those of short-lived CO and H2 too: integrations of the reactions, whose tolerance is 1e-6, over
+/// some hundred windows.
+const BURNT: f64 = 1e-3;
+/// A fraction that spans less than this share of the gas, such as that of nitrogen, is compared with it: ten times
+/// what the loops leave.
+const TRACE: f64 = 1e-6;
+/// In a bed, whose pores decide what eddies mix and in which rest of decaying eddies carries nothing.
+const BURNING_IN_BED: [(&str, f64); 6] = [
+    ("gas.temperature", 1e-3),
     ("gas.velocity", 0.01),
-    ("gas.CO", 0.4),
-    ("gas.H2", 0.4),
-    ("gas.N2", f64::INFINITY),
+    ("gas.pressure", 0.02),
     ("gas.turbulent_energy", 0.05),
     ("gas.dissipation", 0.05),
     ("gas.eddy_viscosity", 0.05),
-    ("gas.pressure", 0.02),
 ];
+/// Of each mass fraction there.
+const BURNT_IN_BED: f64 = 1e-2;
 
-/// Asserts that two gases that burn agree; of what is not named within 2 %. Gives the comparison.
+/// Asserts that two gases that burn agree. Gives the comparison.
 fn burn_alike(case: &Path, directory: &Path) -> Value {
+    burn_within(case, directory, &BURNING, BURNT)
+}
+
+/// The same within bands by the names of fields, and of what is not named.
+fn burn_within(case: &Path, directory: &Path, bands: &[(&str, f64)], burnt: f64) -> Value {
     let comparison = compare(case, directory);
     for run in comparison["runs"].as_array().unwrap() {
         assert!(run["ledger_error"].as_f64().unwrap() < 1e-10, "{run}");
@@ -227,9 +248,13 @@ fn burn_alike(case: &Path, directory: &Path) -> Value {
         let most = field["pairs"][0]["maximum"].as_f64().unwrap();
         let span = field["span"].as_f64().unwrap();
         println!("{name}: {most:.2e} of {span:.3e}");
-        let own = BURNING.iter().find(|one| one.0 == name);
-        let band = own.map_or(0.02, |one| one.1);
-        assert!(most <= band * span, "{name}: {most:.2e} of {span:.3e}");
+        let own = bands.iter().find(|one| one.0 == name);
+        let allowed = match own {
+            Some((_, band)) => band * span,
+            None if field["unit"] == "1" => burnt * span.max(TRACE / burnt),
+            None => burnt * span,
+        };
+        assert!(most <= allowed, "{name}: {most:.2e} of {span:.3e}");
     }
     comparison
 }
@@ -247,7 +272,7 @@ fn methane_burns_in_a_bed_as_far_as_its_eddies_mix_it() {
         fs::create_dir(&folder).unwrap();
         let case = folder.join("bed.toml");
         fs::write(&case, cases::burner_in_a_bed(law)).unwrap();
-        burn_alike(&case, &folder);
+        burn_within(&case, &folder, &BURNING_IN_BED, BURNT_IN_BED);
         let runs = ["native+native", "openfoam+native"];
         let left = |name: &str| last(&folder.join("comparison").join(name), "quantities.methane");
         let [native, foam] = runs.map(left);
@@ -271,8 +296,9 @@ fn methane_burns_in_a_turbulent_duct_as_far_as_eddies_mix_it() {
     let [native, foam] = ["native+native", "openfoam+native"].map(|name| left(&both.join(name)));
     let laminar = left(&laminar);
     println!("mean fraction of methane {native:.4e}, {foam:.4e}; all of it reacting {laminar:.4e}");
-    assert!((foam / native - 1.0).abs() < 0.02);
-    assert!(native > 2.0 * laminar);
+    assert!((foam / native - 1.0).abs() < BURNT);
+    // Four orders lie between them (docs/verification.md).
+    assert!(native > 1e3 * laminar);
 }
 
 #[test]

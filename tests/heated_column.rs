@@ -118,8 +118,9 @@ fn all_four_pairings_agree_with_each_other_and_with_the_independent_integration(
             error("mass"),
             error("energy")
         );
+        // The implicit steps are the same in all of them: 0.014 % of 100 K, as natively above.
         assert!(
-            kelvin < 0.5 && share < 0.01,
+            kelvin < 0.03 && share < 1e-3,
             "{pairing}: {kelvin} K, {share}"
         );
         assert!(

@@ -45,7 +45,9 @@ fn a_bed_settles_and_comes_to_rest() {
     let fraction = count * PI / 6.0 * 0.002f64.powi(3) / (0.016f64.powi(2) * 2.0 * height);
     println!("{count} beads, mean height {height} m, solid fraction {fraction}, {speed} m/s");
     assert!(speed < 1e-3, "{speed} m/s");
-    assert!((0.54..0.66).contains(&fraction), "{fraction}");
+    // Between loosest and closest random packing, 0.55 and 0.64 (Onoda and Liniger 1990, doi 10.1103/PhysRevLett.64.2727; Scott
+    // 1960, doi 10.1038/188908a0).
+    assert!((0.55..0.64).contains(&fraction), "{fraction}");
     closed(directory.path(), 1e-10);
 }
 

@@ -22,7 +22,9 @@ fn a_bead_settles_at_the_terminal_velocity_of_the_law_where_the_gas_is_held() {
     let speed = *series.column("quantities.speed").last().unwrap();
     let expected = bead().terminal();
     println!("terminal velocity {speed} m/s, by the law {expected} m/s");
-    assert!((speed / expected - 1.0).abs() < 0.01, "{speed} {expected}");
+    // After 0.4 s, seven of its own times of 57 ms, e^-7 = 9e-4 is left of the way to it.
+    let left = 1.0 - speed / expected;
+    assert!((0.0..2e-3).contains(&left), "{speed} {expected}");
     let summary = Summary::read(directory.path()).unwrap();
     assert!(summary.ledger.lines["momentum"].relative_error < 1e-12);
 }
@@ -62,11 +64,10 @@ fn a_bead_drags_the_air_of_its_cells_along_where_the_gas_is_solved() {
         "two-way: {speed} m/s against {} m/s of the law",
         bead().terminal()
     );
-    // The cells are 100 diameters wide: the disturbance is small, and always to the faster side.
-    assert!(
-        speed > 0.99 * bead().terminal() && speed < 1.1 * bead().terminal(),
-        "{speed}"
-    );
+    // The cells are 100 diameters wide, h: air pulled by 3πμdv within one moves by some 3πμdv/(2πμh) = 1.5 % of the speed at
+    // the most, and always to the faster side; below, what is left of the way to the terminal velocity.
+    let over = speed / bead().terminal() - 1.0;
+    assert!((-2e-3..0.015).contains(&over), "{speed}");
     let summary = Summary::read(directory.path()).unwrap();
     for line in ["mass", "energy", "momentum"] {
         let error = summary.ledger.lines[line].relative_error;

@@ -5,6 +5,7 @@ pub mod column;
 pub mod fake;
 #[cfg(feature = "hdf5")]
 pub mod fluidised;
+pub mod hopper;
 #[cfg(feature = "hdf5")]
 pub mod killed;
 pub mod lattice;

@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
+mod agreement;
 mod backward_step;
 mod elastic_box;
 mod flame;
@@ -13,6 +14,8 @@ mod fluidised;
 #[cfg(feature = "hdf5")]
 mod fluidised_bed;
 mod hopper;
+#[path = "../support/hopper.rs"]
+mod hopper_bed;
 mod moving_bed;
 #[path = "../support/program.rs"]
 mod program;
@@ -31,6 +34,7 @@ use calcine::results::read::Series;
 const MARK: &str = "--validate";
 /// Every validation by its name.
 const ALL: &[(&str, fn())] = &[
+    ("agreement", agreement::run),
     ("backward-step", backward_step::run),
     ("elastic-box", elastic_box::run),
     ("flame", flame::run),
