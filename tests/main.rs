@@ -46,6 +46,7 @@ mod resume_facets;
 mod resume_ranks;
 mod schema;
 mod second_model;
+mod self_heating;
 mod shipped_cases;
 mod simulation;
 mod stock_solver;

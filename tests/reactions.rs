@@ -5,7 +5,6 @@
 use std::path::{Path, PathBuf};
 
 use calcine::results::Summary;
-use calcine::results::read::Series;
 
 use crate::support::program;
 
@@ -143,30 +142,6 @@ fn a_window_over_which_the_gas_of_a_closed_box_does_not_settle_is_cut() {
     assert_eq!(whole.warnings["exchange_attempts"].windows, 1);
     let apart = value(&whole, "wustite") / value(&short, "wustite") - 1.0;
     assert!(apart.abs() > 0.1, "it has settled: {apart}");
-}
-
-#[test]
-fn iron_that_heats_itself_gains_the_mass_of_the_oxygen_it_takes() {
-    let folder = tempfile::tempdir().unwrap();
-    let settings = ["time.end=1000 s", "output.every=1000 s"];
-    let summary = run("cases/dri-self-heating.toml", folder.path(), &settings);
-    closes(&summary);
-    let series = Series::read(folder.path()).unwrap();
-    let of = |name: &str| series.column(&format!("quantities.{name}")).to_vec();
-    let (mass, oxide) = (of("pellet_mass"), of("oxide"));
-    let last = mass.len() - 1;
-    let gained = mass[last] - mass[0];
-    // 15.999 g of oxygen in 71.844 g of FeO.
-    let bound = (mass[last] * oxide[last] - mass[0] * oxide[0]) * 15.999 / 71.844;
-    assert!(gained > 0.0);
-    // All pellets are alike in size, so that means of products are near the product of means.
-    assert!((gained / bound - 1.0).abs() < 1e-4, "{gained} {bound}");
-    let oxygen = of("outlet_oxygen");
-    assert!(
-        oxygen[last] < oxygen[0],
-        "the bed takes oxygen from the air"
-    );
-    assert!(of("highest_temperature")[last] > 333.0);
 }
 
 #[test]

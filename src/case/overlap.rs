@@ -24,14 +24,19 @@ pub(super) const PRESSED: f64 = 0.05;
 const CRUSHED: f64 = 0.2;
 
 /// The first particle that overlaps one before it: of another population by more than spheres that are pressed together, of
-/// its own by more than the softest contact does.
-pub(super) fn first(setup: &ParticleSetup) -> Option<Overlap> {
+/// its own, where particles act on each other, by more than the softest contact does.
+pub(super) fn first(setup: &ParticleSetup, act_on_each_other: bool) -> Option<Overlap> {
     let too_near = |touch: &NeighbourPair| {
         let [a, b] = touch.particles;
         let radii = touch.radius[0] + touch.radius[1];
         let one = setup.population[a] == setup.population[b];
-        touch.overlap > radii * if one { CRUSHED } else { PRESSED }
+        let most = if one { CRUSHED } else { PRESSED };
+        (act_on_each_other || !one) && touch.overlap > radii * most
     };
+    let foreign = setup.population.windows(2).any(|pair| pair[0] != pair[1]);
+    if !act_on_each_other && !foreign {
+        return None;
+    }
     let touches = touching(&setup.radius, &setup.position, 0.0).into_iter();
     let found = touches
         .filter(too_near)
@@ -65,7 +70,7 @@ mod tests {
     #[test]
     fn spheres_of_two_populations_closer_than_their_radii_overlap() {
         let setup = bed(&[(0, [-0.001, 0.0, 0.0], 2.0), (1, [3.0, 4.0, 0.0], 3.5)]);
-        let found = first(&setup).unwrap();
+        let found = first(&setup, false).unwrap();
         assert_eq!(found.pair, [0, 1]);
         assert!((found.distance - 5.0006).abs() < 1e-4);
         assert_eq!(found.radii, 5.5);
@@ -74,11 +79,12 @@ mod tests {
     #[test]
     fn touching_spheres_and_pressed_ones_of_one_population_do_not() {
         let touching = bed(&[(0, [0.0; 3], 2.0), (1, [3.0, 4.0, 0.0], 3.0)]);
-        assert_eq!(first(&touching), None);
+        assert_eq!(first(&touching, true), None);
         let one = |apart: f64| bed(&[(0, [0.0; 3], 2.0), (0, [apart, 0.0, 0.0], 2.0)]);
-        assert_eq!(first(&one(3.4)), None);
-        assert_eq!(first(&one(3.0)).unwrap().pair, [0, 1]);
+        assert_eq!(first(&one(3.4), true), None);
+        assert_eq!(first(&one(3.0), true).unwrap().pair, [0, 1]);
         // In one place.
-        assert_eq!(first(&one(0.0)).unwrap().distance, 0.0);
+        assert_eq!(first(&one(0.0), true).unwrap().distance, 0.0);
+        assert_eq!(first(&one(0.0), false), None);
     }
 }

@@ -9,10 +9,11 @@ use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::time::Ticks;
 
 use super::bed::{self, Choice};
-use super::model::{Case, MeshSpec, PlacementSpec, Population};
+use super::model::{Case, MeshSpec, MotionSpec, PlacementSpec, Population};
 use super::overlap;
 use super::place_error::PlaceError;
 use super::units::shown;
+use crate::laws;
 
 /// Particles at the start of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -67,7 +68,9 @@ pub fn particles(case: &Case) -> Result<InitialParticles, PlaceError> {
     if setup.weight.iter().all(|weight| *weight == 1.0) {
         setup.weight.clear();
     }
-    match overlap::first(setup) {
+    let moves = |one: &Population| one.motion == MotionSpec::Free;
+    let act_on_each_other = case.particles.iter().any(moves) || laws::heat(case).is_some();
+    match overlap::first(setup, act_on_each_other) {
         None => Ok(placed),
         Some(found) => Err(PlaceError::Overlap {
             ids: found.pair.map(|index| setup.id[index]),
