@@ -1,7 +1,7 @@
 //! Direct-reduced iron in an open container: what heats, what cools, and what it takes from the air
 //! (docs/theory.md, DRI-1, DRI-2, DRI-V1, DRI-V2).
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::Path;
 
