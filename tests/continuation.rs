@@ -132,9 +132,9 @@ fn a_run_goes_on_from_particles_that_have_changed_their_size_or_are_gone() {
     let folder = |name: &str| directory.path().join(name);
     let (whole, first, second) = (folder("whole"), folder("first"), folder("second"));
     let end = |time: &'static str| ["--set", time, "--set", "time.process_step=0.25 s"];
-    done(&run(&case, &whole, &end("time.end=8 s")));
-    done(&run(&case, &first, &end("time.end=4 s")));
-    let mut from = end("time.end=4.000 s").to_vec();
+    done(&run(&case, &whole, &end("time.end=4 s")));
+    done(&run(&case, &first, &end("time.end=2 s")));
+    let mut from = end("time.end=2.000 s").to_vec();
     from.extend(["--from", first.to_str().unwrap()]);
     done(&run(&case, &second, &from));
     let [whole, first, second] = [whole, first, second].map(|out| Summary::read(&out).unwrap());

@@ -10,7 +10,7 @@ const DRAG: &[Key] = &[
 
 #[rustfmt::skip]
 const HEAT_TRANSFER: &[Key] = &[
-    key("film", Choice(words::<FilmTemperature>), Default("gas"), "Temperature at which the properties of the gas are taken: that of the gas, as the sources of most laws have it; `two-thirds`, T_p + (T_gas - T_p)/3, or `mean`, of particle and gas at the start of a window.", "\"two-thirds\""),
+    key("film", Choice(words::<FilmTemperature>), Without("that of `mass_transfer`, so that heat and gas pass one film; `gas` where nothing reacts"), "Temperature at which the properties of the gas are taken: that of the gas, as the sources of most laws have it; `two-thirds`, T_p + (T_gas - T_p)/3, or `mean`, of particle and gas at the start of a window.", "\"two-thirds\""),
 ];
 
 #[rustfmt::skip]

@@ -38,7 +38,11 @@ pub(super) fn read(
         drag: drag?,
         momentum,
         heat_transfer: heat_transfer?,
-        heat_film: heat_film?,
+        // Heat and gas pass one film where particles react.
+        heat_film: heat_film.unwrap_or(match mass_transfer.is_none() {
+            true => FilmTemperature::Gas,
+            false => film.temperature,
+        }),
         conduction: conduction?,
         radiation: radiation?,
         bed_eddies: bed_eddies?,
