@@ -78,7 +78,8 @@ fn the_square_of_their_diameter_falls_linearly_whatever_the_window_up_to_a_tenth
         let slope = (square(last) - square(first)) / (time[last] - time[first]);
         time[last] - square(last) / slope
     };
-    let [fine, coarse] = ["0.1 s", "1 s"].map(life);
+    // They live 7 s.
+    let [fine, coarse] = ["0.1 s", "0.5 s"].map(life);
     assert!((coarse / fine - 1.0).abs() < 0.01, "{coarse} {fine}");
 }
 
