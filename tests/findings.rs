@@ -188,6 +188,36 @@ fn iterations_that_end_at_their_limits_are_counted_over_a_resume_and_told_of_onc
     assert_eq!(exit::complete(summary, true), exit::WARNINGS);
 }
 
+#[test]
+fn gas_that_comes_back_in_through_an_outlet_without_a_stated_state_is_told_of() {
+    for gas in ["native", "openfoam"] {
+        for (backflow, told) in [
+            ("", true),
+            (
+                ", backflow = { temperature = \"300 K\", composition = { mass = { N2 = 1 } } }",
+                false,
+            ),
+        ] {
+            let directory = TempDir::new().unwrap();
+            let out = directory.path().join("out");
+            let outlet = |patch: &str| {
+                format!(
+                    "gas.patch.{patch}={{ outlet = {{ pressure = \"1.00001 atm\"{backflow} }} }}"
+                )
+            };
+            let set = [outlet("west"), outlet("east"), "time.end=0.05 s".into()];
+            program::run(&good("open-box"), &out, &["--gas", gas], &set);
+            let summary = Summary::read(&out).unwrap();
+            assert_eq!(
+                summary.warnings.contains_key("backflow"),
+                told,
+                "{gas}: {:?}",
+                summary.warnings
+            );
+        }
+    }
+}
+
 /// Thin particles whose surface lines are spoilt, by how often they have been asked for.
 struct Spoilt {
     thin: Thin,

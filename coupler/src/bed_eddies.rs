@@ -1,4 +1,4 @@
-//! Eddies that the flow through a bed makes in its pores, cell by cell (docs/theory.md, COR-17).
+//! Eddies that the flow through a bed makes in its pores, cell by cell (docs/theory.md, TRB-1).
 
 use calcine_numerics::parallel::fill;
 use calcine_physics::law::NONE;

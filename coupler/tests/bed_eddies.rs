@@ -1,4 +1,4 @@
-//! What the particles of a bed make of eddies (docs/theory.md, COR-17): which diameter, slip and void fraction the law
+//! What the particles of a bed make of eddies (docs/theory.md, TRB-1): which diameter, slip and void fraction the law
 //! sees in a cell, and where it is asked.
 
 use calcine_coupler::bed_eddies::{BedEddyInputs, BedEddyStage};

@@ -1,4 +1,4 @@
-//! Verification of eddies in the bed (docs/theory.md, COR-17): the equilibrium of a uniform bed, the way to it along a
+//! Verification of eddies in the bed (docs/theory.md, TRB-1): the equilibrium of a uniform bed, the way to it along a
 //! bed against an independent integration, walls, and what eddies of the bed mix.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 

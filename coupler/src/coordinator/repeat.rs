@@ -6,7 +6,7 @@ use std::time::Duration;
 use crate::boundary_value::BoundaryValue;
 use crate::error::PartError;
 use crate::part::{
-    Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
+    Backflow, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
     TurbulenceFields,
 };
 use crate::physics::Vec3;
@@ -168,6 +168,10 @@ impl Gas for RepeatableGas {
 
     fn turbulence_residual(&self) -> Option<f64> {
         self.gas.turbulence_residual()
+    }
+
+    fn backflow(&self) -> Option<Backflow> {
+        self.gas.backflow()
     }
 
     fn set_boundary(&mut self, value: &BoundaryValue) -> Result<(), PartError> {

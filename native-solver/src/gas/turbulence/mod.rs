@@ -9,7 +9,7 @@
 //! window, so that attempts may be repeated; in an attempt the eddy viscosity is that of its start.
 //!
 //! The bed (docs/theory.md, FLO-2) is every cell with a solid fraction above 0.1, whatever its neighbours are. With a law
-//! of eddies in the bed (COR-17) the exchange tells what its particles make, a and b; its walls have no wall functions
+//! of eddies in the bed (TRB-1) the exchange tells what its particles make, a and b; its walls have no wall functions
 //! and friction of the laminar gas. Without one eddies carry nothing there (μ_t = 0) and none are made (P = a = b = 0);
 //! those that flow in decay by the model's own law. At a face between bed and free gas the coefficients are the mean
 //! of both sides, as at any other face.
