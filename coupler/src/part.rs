@@ -248,6 +248,12 @@ pub trait Gas: Part {
         None
     }
 
+    /// True where the gas can begin a window again after an attempt that failed; a solver of its own process has ended by
+    /// then.
+    fn begins_again(&self) -> bool {
+        false
+    }
+
     /// Relative residual of the equations of turbulence where the last commit left them above their tolerance.
     fn turbulence_residual(&self) -> Option<f64> {
         None

@@ -3,7 +3,10 @@
 use calcine_interior::NetworkOutcome;
 
 use super::CoupledRun;
+use super::error::RunError;
 use super::span::next_span;
+use crate::error::FailureKind;
+use crate::part::Gas as _;
 use crate::time::{Clocks, Ticks, TimeError, Window};
 
 impl CoupledRun {
@@ -39,6 +42,19 @@ impl CoupledRun {
         let reacts = self.interior.has_channels();
         let exchange = !reacts || self.exchange.agreement.settled;
         exchange && !matches!(network, NetworkOutcome::Unsettled { .. })
+    }
+
+    /// True where an attempt failed as one does whose window is too long for what reacts, and the gas can begin it again.
+    pub(super) fn begins_again_after(&self, error: &RunError) -> bool {
+        let numerical = match error {
+            RunError::Part(part) => matches!(
+                part.kind,
+                FailureKind::Diverged | FailureKind::NotFinite | FailureKind::NotConverged
+            ),
+            RunError::NotFinite(_) | RunError::Interior { .. } | RunError::Closure { .. } => true,
+            _ => false,
+        };
+        numerical && self.interior.has_channels() && self.parts.gas.begins_again()
     }
 
     /// The window again, of half its length, from the gas of the last commit.

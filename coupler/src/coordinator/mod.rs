@@ -292,17 +292,24 @@ impl CoupledRun {
         if may_cut {
             self.parts.gas.keep();
         }
+        match self.exchange_over(supervisor, window) {
+            Ok(()) if may_cut && !self.settled() => return Ok(None),
+            Err(error) if may_cut && self.begins_again_after(&error) => return Ok(None),
+            exchanged => exchanged?,
+        }
+        self.move_particles(supervisor, window)?;
+        self.close_ledger(window);
+        self.commit(window).map(Some)
+    }
+
+    /// Laws, and attempts of gas and interior.
+    fn exchange_over(&mut self, supervisor: &Supervisor, window: &Window) -> Result<(), RunError> {
         let mut attempt = *window;
         for left in (0..self.evaluations()).rev() {
             self.evaluate_laws(window)?;
             self.exchange_with_gas(supervisor, &mut attempt, left == 0)?;
         }
-        if may_cut && !self.settled() {
-            return Ok(None);
-        }
-        self.move_particles(supervisor, window)?;
-        self.close_ledger(window);
-        self.commit(window).map(Some)
+        Ok(())
     }
 
     /// How often the laws are evaluated in the coming window: once, on the gas of the window

@@ -170,6 +170,10 @@ impl Gas for RepeatableGas {
         self.gas.turbulence_residual()
     }
 
+    fn begins_again(&self) -> bool {
+        self.gas.begins_again()
+    }
+
     fn backflow(&self) -> Option<Backflow> {
         self.gas.backflow()
     }

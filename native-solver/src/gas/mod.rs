@@ -320,6 +320,10 @@ impl Gas for NativeGas {
         }
     }
 
+    fn begins_again(&self) -> bool {
+        true
+    }
+
     fn backflow(&self) -> Option<Backflow> {
         self.backflow
     }
