@@ -54,7 +54,7 @@ pub fn run() {
     // A root of 0.4 has 0.4 of the scatter of the rate, largest for the smallest hole.
     let counted = constants.iter().map(|one| 0.4 * one.1).fold(0.0, f64::max);
     println!("  (W/ρ_b)^0.4 is straight within {off:.1e}: k = {empty:.2}, C = {constant:.3}");
-    assert!(off < 1.5 * counted, "{off} {counted}");
+    assert!(off < (1.5 * counted).min(0.02), "{off} {counted}");
     // A line through five points between 5 and 8 diameters that are off by 1 % each finds its zero within 0.3 diameters.
     assert!((1.1..1.7).contains(&empty), "{empty}");
     assert!(
