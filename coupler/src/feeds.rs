@@ -220,6 +220,21 @@ impl FeedsAndOutlets {
         state.set_f64s("traffic_outlets", &self.due[1]);
     }
 
+    /// Goes on from what feeds and outlets of another run came to: where there are as many of both, with the particles that
+    /// they drew and the masses that they owe; else with nothing owed. No batch comes again, and ids go on.
+    pub fn go_on(&mut self, state: &StateFile) -> Result<(), StateFileError> {
+        let alike = state.f64s("traffic_feeds")?.len() == self.feeds.len()
+            && state.f64s("traffic_outlets")?.len() == self.outlets.len();
+        if alike {
+            return self.restore(state);
+        }
+        self.due[0].fill(0.0);
+        if let [next] = *state.u64s("traffic_next_id")? {
+            self.next_id = self.next_id.max(next);
+        }
+        Ok(())
+    }
+
     /// Takes it up again.
     pub fn restore(&mut self, state: &StateFile) -> Result<(), StateFileError> {
         self.due = [

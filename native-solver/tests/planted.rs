@@ -210,6 +210,7 @@ fn beads(planted: Planted, results: &Path) -> CoupledRun {
         gravity: Vec3::zeros(),
         feeds_and_outlets: Default::default(),
         substance: vec![0],
+        populations: vec!["beads".into()],
         paths: Default::default(),
         step_limit: None,
     };

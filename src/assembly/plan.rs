@@ -28,6 +28,7 @@ pub(super) fn plan(case: &Case, prepared: &PreparedCase, checkpoint: CheckpointP
         window_drag: case.coupling.window_drag,
         case_hash: case.hash.clone(),
         checkpoint,
+        populations: case.particles.iter().map(|one| one.name.clone()).collect(),
         free: match &prepared.particles.motion {
             Motion::Frozen => Vec::new(),
             Motion::Free(contacts) => contacts.held.iter().map(|held| !held).collect(),

@@ -56,8 +56,12 @@ impl PreparedCase {
             .iter()
             .map(|one| !case.chemistry.reactions.is_empty() && material(one).composition.is_some());
         let reacting: Vec<bool> = reacting.collect();
+        let names: Vec<String> = case.particles.iter().map(|one| one.name.clone()).collect();
+        let mut taken =
+            origin.take_particles(&self.mesh, species, &names, &self.particles, &reacting)?;
+        taken.motion = contacts::motion(case, &self.mesh, &taken).map_err(PlaceError::from)?;
         Ok(Self {
-            particles: origin.take_particles(&self.mesh, species, &self.particles, &reacting)?,
+            particles: taken,
             ..self.clone()
         })
     }

@@ -38,7 +38,7 @@ pub(super) struct Arguments {
     /// Continues from the last checkpoint in the results folder; starts again if there is none yet.
     #[arg(long)]
     resume: bool,
-    /// Starts from the last checkpoint of another run of the same mesh and particles, with this
+    /// Starts from the last checkpoint of another run on the same mesh, with this
     /// case's settings and clocks at zero.
     #[arg(long, value_name = "DIR")]
     from: Option<PathBuf>,

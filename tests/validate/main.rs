@@ -6,6 +6,7 @@
 
 mod agreement;
 mod backward_step;
+mod counter_current;
 mod elastic_box;
 mod flame;
 #[cfg(feature = "hdf5")]
@@ -16,10 +17,12 @@ mod fluidised_bed;
 mod hopper;
 #[path = "../support/hopper.rs"]
 mod hopper_bed;
+mod kept;
 mod moving_bed;
 #[path = "../support/program.rs"]
 mod program;
 mod repose;
+mod shaft_choices;
 mod shaft_flames;
 mod shaft_furnace;
 mod voids;
@@ -43,6 +46,7 @@ const ALL: &[(&str, fn())] = &[
     ("hopper", hopper::run),
     ("moving-bed", moving_bed::run),
     ("repose", repose::run),
+    ("shaft-choices", shaft_choices::run),
     ("shaft-flames", shaft_flames::run),
     ("shaft-furnace", shaft_furnace::run),
     ("voids", voids::run),

@@ -12,8 +12,10 @@ use calcine::results::read::{self, Series};
 use calcine_coupler::ledger::STORAGE_CLOCK;
 use calcine_coupler::physics::thermo::Species;
 
+use crate::counter_current::Shaft;
+use crate::kept::{self, Kept};
 use crate::shaft_flames::{ABOVE, LEFT, MOMENTUM, fuel};
-use crate::{run as calcine, shipped};
+use crate::shipped;
 
 /// What the paper reports in K: gas, particles.
 const PAPER: [f64; 2] = [2243.0, 2209.0];
@@ -24,24 +26,40 @@ const FINE: f64 = 10e-3;
 const SMALLEST: f64 = 16e-3;
 /// Between feed and burners in K: 1 % of it is what the acceleration factor may change.
 const SPAN: f64 = 1900.0;
+/// Height in m of the slices over which particles are averaged.
+const SLICE: f64 = 0.05;
+/// By how much of the span a mixed section of points may be off.
+const ONE_DIMENSION: f64 = 0.12;
+/// The slower acceleration factor, and what it may change, in K.
+const SLOW: u32 = 339;
+const PACES: [(&str, f64); 4] = [
+    ("mean_temperature", 0.01 * SPAN),
+    ("off_gas", 0.02 * SPAN),
+    ("hottest_particle", 0.01 * SPAN),
+    ("hottest_gas", 0.02 * SPAN),
+];
 /// Process time in s from which on beds at two paces are compared: 0.9 s of motion at AF 678.
 const SETTLED: f64 = 600.0;
 /// Lower than this in K no burner's cell may be at its hottest: none is lit by half.
 const LIT: f64 = 1900.0;
 
 pub fn run() {
-    let folder = tempfile::tempdir().unwrap();
     let case = shipped("shaft-furnace");
-    let (out, series) = calcine(&case, folder.path(), "full", &[]);
-    let summary = Summary::read(&out).unwrap();
-    closes(&summary);
-    peaks(&series);
-    profile(&out);
-    let left = fuel(&out);
+    let base = kept::run("shaft-furnace", &case, &[], None);
+    closes(&base.summary);
+    peaks(&base);
+    profile(&base.out);
+    let left = fuel(&base.out);
     println!("  methane above {ABOVE} m: {left:.1e} of the gas at most");
     assert!(left < LEFT, "{left}");
-    nothing_is_lost(&case, &out);
-    paces(&case, folder.path());
+    nothing_is_lost(&case, &base.out);
+    let slow = kept::run(
+        "shaft-furnace-slow",
+        &case,
+        &[format!("time.acceleration={SLOW}")],
+        None,
+    );
+    paces(&base.series, &slow.series);
 }
 
 fn closes(summary: &Summary) {
@@ -67,10 +85,6 @@ fn closes(summary: &Summary) {
         // (GDR MiDi 2004, doi 10.1140/epje/i2003-10153-0).
         assert!(number < 0.1, "{number}");
     }
-}
-
-fn last(series: &Series, name: &str) -> f64 {
-    *series.column(name).last().unwrap()
 }
 
 /// Temperature in K behind an adiabatic flame of methane and air, both at a temperature in K, without dissociation:
@@ -105,50 +119,72 @@ fn adiabatic(lambda: f64, cold: f64) -> f64 {
     low
 }
 
-fn peaks(series: &Series) {
+fn peaks(base: &Kept) {
     let flame = adiabatic(1.1, 300.0);
-    let [gas, particle] =
-        ["hottest_gas", "hottest_particle"].map(|name| last(series, &format!("quantities.{name}")));
+    let [gas, particle] = ["hottest_gas", "hottest_particle"].map(|name| base.last(name));
     println!(
         "  hottest gas {gas:.0} K (paper {} K), hottest particle {particle:.0} K (paper {} K), adiabatic flame \
          {flame:.0} K, off-gas {:.0} K, pressure drop {:.0} Pa",
         PAPER[0],
         PAPER[1],
-        last(series, "quantities.off_gas"),
-        last(series, "quantities.pressure_drop"),
+        base.last("off_gas"),
+        base.last("pressure_drop"),
     );
-    assert!(LIT < gas && gas < flame, "{gas}");
-    // Tens of kelvin at the least: a particle spans cells that are colder than the hottest.
-    assert!(gas - particle > 30.0, "{gas} {particle}");
+    // Inert particles have their heat from the gas: none is hotter. How hot they are: `profile`.
+    assert!(
+        LIT < gas && gas < flame && particle < gas,
+        "{gas} {particle}"
+    );
     // Steady: over the last fifth of the run the mean moves by less than 1 % of the span.
-    let mean = series.column("quantities.mean_temperature");
+    let mean = base.series.column("quantities.mean_temperature");
     let moved = mean[mean.len() - 1] - mean[mean.len() * 4 / 5];
     println!("  the mean temperature moves by {moved:.1} K in the last fifth");
     assert!(moved.abs() < 0.01 * SPAN, "{moved}");
 }
 
-/// Mean temperatures in K of particles by height, in slices of a twentieth of a metre.
-fn by_height(out: &Path) -> Vec<(f64, f64)> {
+/// Mean temperatures in K of particles by height in m, in slices of a twentieth of a metre with more than 50 of them.
+pub fn by_height(out: &Path) -> Vec<(f64, f64)> {
     let files = read::collection(out, "particles.pvd").unwrap();
     let arrays = read::arrays(&files.last().unwrap().1).unwrap();
     let places = arrays["points"].values.as_chunks::<3>().0;
     let kelvin = &arrays["temperature"].values;
-    let mut slices = vec![(0.0, 0.0); 14];
+    let mut slices: Vec<(f64, f64)> = Vec::new();
     for (place, kelvin) in places.iter().zip(kelvin) {
-        let slice = &mut slices[((place[2] / 0.05) as usize).min(13)];
-        *slice = (slice.0 + 1.0, slice.1 + kelvin);
+        let slice = (place[2] / SLICE) as usize;
+        slices.resize(slices.len().max(slice + 1), (0.0, 0.0));
+        slices[slice] = (slices[slice].0 + 1.0, slices[slice].1 + kelvin);
     }
     let numbered = slices.iter().enumerate().filter(|(_, one)| one.0 > 50.0);
     numbered
-        .map(|(k, one)| (0.025 + 0.05 * k as f64, one.1 / one.0))
+        .map(|(k, one)| ((k as f64 + 0.5) * SLICE, one.1 / one.0))
         .collect()
 }
 
+/// Against the furnace in one dimension. A sphere takes heat where it is hot and gives it where it is cold, over its own size
+/// and that of the diffusion of its exchange: some h a (d²/20 + (d/2)²) = 3 W/m/K, as much as the bed conducts, which the
+/// points of that model do not have. So flames there are hotter, by a tenth of the span.
 fn profile(out: &Path) {
     let slices = by_height(out);
-    println!("  | height | particles |");
-    for (height, kelvin) in &slices {
-        println!("  | {height:.2} m | {kelvin:.0} K |");
+    let section = 0.12 * 0.12;
+    let shaft = Shaft {
+        height: 0.54,
+        burners: 0.295,
+        solids: 6.8e-3 / section,
+        air: 6.9e-3 / section,
+        fired: 3.3e-3 / section,
+        voids: 0.44,
+        diameter: 17.75e-3,
+        cell: 0.02,
+    };
+    let heights: Vec<f64> = slices.iter().map(|one| one.0).collect();
+    let expected = shaft.solids_at(&heights, SLICE);
+    println!("  | height | particles | in one dimension |");
+    for ((height, kelvin), expected) in slices.iter().zip(&expected) {
+        println!("  | {height:.3} m | {kelvin:.0} K | {expected:.0} K |");
+    }
+    for ((height, kelvin), expected) in slices.iter().zip(&expected) {
+        let off = (kelvin - expected) / SPAN;
+        assert!(off.abs() < ONE_DIMENSION, "{height} m: {kelvin} {expected}");
     }
     for pair in slices.windows(2) {
         let rises = pair[1].1 > pair[0].1;
@@ -197,39 +233,32 @@ fn nothing_is_lost(case: &Path, out: &Path) {
     assert!((cells / spheres - 1.0).abs() < 0.01, "{cells} {spheres}");
 }
 
-/// The same start at AF 678 and at a third of it, from when the first charge has come to rest: it falls in motion time, and
-/// so three times as fast in process time with the one as with the other.
-fn paces(case: &Path, folder: &Path) {
-    let at = |factor: u32| {
-        let set = [
-            "time.end=1500 s".to_owned(),
-            format!("time.acceleration={factor}"),
-        ];
-        calcine(case, folder, &format!("pace-{factor}"), &set).1
-    };
-    let (fast, slow) = (at(678), at(226));
-    for name in ["mean_temperature", "off_gas", "hottest_particle"] {
+/// The same start at AF 678 and at half of it. The first charge falls in motion time, twice as fast in process time with the one
+/// as with the other: what differs before it has come to rest is printed, not asserted.
+fn paces(fast: &Series, slow: &Series) {
+    let [of_fast, of_slow] = [fast, slow].map(|one| one.column("process_time").to_vec());
+    for (name, band) in PACES {
         let column = format!("quantities.{name}");
-        let times = |one: &Series| one.column("process_time").to_vec();
-        let (of_fast, of_slow) = (times(&fast), times(&slow));
-        let mut worst = 0.0_f64;
+        let (quick, slow) = (fast.column(&column), slow.column(&column));
+        let mut worst = [(0.0_f64, 0.0); 2];
         for (k, time) in of_fast.iter().enumerate() {
-            if *time < SETTLED {
-                continue;
-            }
             let next = of_slow
                 .partition_point(|other| other < time)
                 .clamp(1, of_slow.len() - 1);
             let (a, b) = (of_slow[next - 1], of_slow[next]);
-            let values = slow.column(&column);
             let share = ((time - a) / (b - a)).clamp(0.0, 1.0);
-            let there = values[next - 1] + share * (values[next] - values[next - 1]);
-            worst = worst.max((fast.column(&column)[k] - there).abs());
+            let there = slow[next - 1] + share * (slow[next] - slow[next - 1]);
+            let off = (quick[k] - there).abs();
+            let worst = &mut worst[usize::from(*time >= SETTLED)];
+            if off > worst.0 {
+                *worst = (off, *time);
+            }
         }
+        let [before, after] = worst;
         println!(
-            "  AF 678 against 226, {name}: {worst:.1} K ({:.2} %)",
-            100.0 * worst / SPAN
+            "  AF 678 against {SLOW}, {name}: {:.1} K at {:.0} s, before {SETTLED} s {:.1} K at {:.0} s",
+            after.0, after.1, before.0, before.1
         );
-        assert!(worst < 0.01 * SPAN, "{name}: {worst}");
+        assert!(after.0 < band, "{name}: {after:?}");
     }
 }

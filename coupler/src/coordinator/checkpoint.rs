@@ -137,10 +137,7 @@ impl CoupledRun {
             }
             .into());
         }
-        let other = state.f64s_of("particle_other_force", 3 * expected)?;
-        for (force, values) in self.motion.other.iter_mut().zip(other.chunks_exact(3)) {
-            force.copy_from_slice(values);
-        }
+        self.motion.restore_other(&state)?;
         if self.plan.window_drag.follows() {
             let owed = state.f64s("drag_carry")?.as_chunks::<3>().0.iter();
             let owed = owed.map(|impulse| Vec3::from(*impulse)).collect();

@@ -220,6 +220,19 @@ pub enum OriginError {
         /// Its weight in this case.
         expected: f64,
     },
+    /// Other populations of a bed that moves.
+    #[error(
+        "the checkpoint {path} has particles of the populations [{found}], this case has [{expected}]: a bed that moves \
+         continues with the same populations only, by name and in the same order"
+    )]
+    Populations {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Populations there.
+        found: String,
+        /// Populations of this case.
+        expected: String,
+    },
     /// Another gas mixture.
     #[error(
         "the gas of the checkpoint {path} has the species [{found}], this case has [{expected}]: a \

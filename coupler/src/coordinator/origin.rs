@@ -9,6 +9,7 @@ use super::checkpoint_paths::CheckpointPaths;
 use super::error::{OriginError, RunError};
 use crate::checkpoint::{StateFile, StateFileError};
 use crate::mesh::Mesh;
+use crate::motion::Motion;
 use crate::part::Gas as _;
 use crate::setup::{GasStart, ParticleSetup};
 use crate::time::{Clocks, Ticks};
@@ -71,18 +72,26 @@ impl Origin {
         })
     }
 
-    /// The particles to go on with: those of this case that the other run still has, with the sizes and masses that
-    /// they had come to. Particles of the populations of which `reacts` is true may have changed their sizes and been used
-    /// up; all others, mesh and species must be the same, which is an error otherwise.
+    /// The particles to go on with, and an error where mesh, species or what must be the same of the particles differ.
+    ///
+    /// Where particles of this case move, it goes on with all those that the other run left, of the same populations by
+    /// name: where they came to, as large, heavy and fast, without their spins and what contacts remember. Where
+    /// none moves, with those of this case that the other run still has; only particles of the populations of which `reacts`
+    /// is true may then have changed their sizes and masses and been used up.
     pub fn take_particles(
         &self,
         mesh: &Mesh,
         species: &[String],
+        populations: &[String],
         here: &ParticleSetup,
         reacts: &[bool],
     ) -> Result<ParticleSetup, RunError> {
         self.check_mesh(mesh)?;
         self.check_species(species)?;
+        if here.motion != Motion::Frozen {
+            self.check_populations(populations)?;
+            return self.all_rows(&here.motion);
+        }
         let reacts = |row: usize| {
             let population = here.population[row] as usize;
             reacts.get(population).copied().unwrap_or(false)
@@ -117,6 +126,47 @@ impl Origin {
             expected,
         }
         .into())
+    }
+
+    fn check_populations(&self, names: &[String]) -> Result<(), RunError> {
+        let found = text(self.state.u64s("populations")?);
+        let expected = names.join(", ");
+        if found == expected {
+            return Ok(());
+        }
+        let path = self.path.clone();
+        Err(OriginError::Populations {
+            path,
+            found,
+            expected,
+        }
+        .into())
+    }
+
+    /// All particles that the other run left.
+    fn all_rows(&self, motion: &Motion) -> Result<ParticleSetup, RunError> {
+        let id = self.state.u64s("particle_id")?.to_vec();
+        let count = id.len();
+        let vectors = |name| -> Result<Vec<Vec3>, StateFileError> {
+            let values = self.state.f64s_of(name, 3 * count)?.chunks_exact(3);
+            Ok(values.map(Vec3::from_column_slice).collect())
+        };
+        let radius = self.state.f64s_of("particle_radius", count)?.to_vec();
+        let mass = self.state.f64s_of("particle_mass", count)?;
+        let spheres = radius.iter().map(|radius| sphere::volume(*radius));
+        let population = self.state.u64s("particle_population")?.iter();
+        Ok(ParticleSetup {
+            population: population
+                .map(|&one| u32::try_from(one).unwrap_or(u32::MAX))
+                .collect(),
+            position: vectors("particle_position")?,
+            density: mass.iter().zip(spheres).map(|(m, v)| m / v).collect(),
+            radius,
+            velocity: vectors("particle_velocity")?,
+            weight: self.state.f64s("particle_weight")?.to_vec(),
+            motion: motion.clone(),
+            id,
+        })
     }
 
     /// The rows of this case that the other run still has, with their sizes there.
@@ -206,7 +256,15 @@ impl CoupledRun {
         let centres = particles.position.iter();
         let centres: Vec<f64> = centres.flat_map(|x| [x.x, x.y, x.z]).collect();
         let species = self.laws.closures.gas.species().join(", ");
-        let species: Vec<u64> = species.bytes().map(u64::from).collect();
+        let bytes = |text: &str| -> Vec<u64> { text.bytes().map(u64::from).collect() };
+        let velocities = particles.velocity.iter();
+        let velocities: Vec<f64> = velocities.flat_map(|v| [v.x, v.y, v.z]).collect();
+        let population: Vec<u64> = particles
+            .population
+            .iter()
+            .copied()
+            .map(u64::from)
+            .collect();
         let (gas, voids) = (self.parts.gas.fields(), &self.bed.mapped.bed.void_fraction);
         let superficial = gas.velocity.iter().zip(voids);
         let velocity = superficial.flat_map(|(u, pores)| [u.x * pores, u.y * pores, u.z * pores]);
@@ -215,7 +273,10 @@ impl CoupledRun {
         state.set_f64s("gas_velocity", &velocity.collect::<Vec<f64>>());
         state.set_f64s("gas_composition", gas.composition);
         state.set_u64s("mesh", &identity(&self.mesh));
-        state.set_u64s("species", &species);
+        state.set_u64s("species", &bytes(&species));
+        state.set_u64s("populations", &bytes(&self.plan.populations.join(", ")));
+        state.set_u64s("particle_population", &population);
+        state.set_f64s("particle_velocity", &velocities);
         state.set_u64s("particle_id", particles.id);
         state.set_f64s("particle_position", &centres);
         state.set_f64s("particle_radius", particles.radius);
@@ -223,10 +284,16 @@ impl CoupledRun {
         state.set_f64s("particle_weight", particles.weight);
     }
 
-    /// Takes over the inside of the particles of another run of the same mesh and particles. The
-    /// gas was built from it already (see [`Origin::take_particles`]); clocks and ledger stay at zero.
+    /// Takes over the inside of the particles of another run, and of those that move also what acted on them and what their
+    /// feeds have drawn and owe. Gas and particles were built from it already (see
+    /// [`Origin::take_particles`]); clocks and ledger stay at zero.
     pub fn take_over(&mut self, origin: &Origin) -> Result<(), RunError> {
-        self.restore_particles(&origin.state)
+        self.restore_particles(&origin.state)?;
+        if self.plan.free.is_empty() {
+            return Ok(());
+        }
+        self.motion.restore_other(&origin.state)?;
+        Ok(self.plan.feeds_and_outlets.go_on(&origin.state)?)
     }
 }
 

@@ -8,6 +8,7 @@ use calcine_physics::Vec3;
 use super::bed::MappedBed;
 use super::error::RunError;
 use super::meter::{Meter, Stage};
+use crate::checkpoint::{StateFile, StateFileError};
 use crate::closures::{CouplingCoefficients, DragInertia};
 use crate::exchange::Exchange;
 use crate::ledger::Ledger;
@@ -77,6 +78,15 @@ impl MotionStage {
         };
         stage.change(&[], particles, 0);
         stage
+    }
+
+    /// Takes up what acted on the particles beside drag when a state was recorded.
+    pub fn restore_other(&mut self, state: &StateFile) -> Result<(), StateFileError> {
+        let values = state.f64s_of("particle_other_force", 3 * self.other.len())?;
+        for (force, values) in self.other.iter_mut().zip(values.chunks_exact(3)) {
+            force.copy_from_slice(values);
+        }
+        Ok(())
     }
 
     /// How particles follow their drag in a window.

@@ -44,6 +44,8 @@ pub struct Plan {
     pub case_hash: String,
     /// Where checkpoints go.
     pub checkpoint: CheckpointPaths,
+    /// Names of the populations.
+    pub populations: Vec<String>,
     /// True for each population that moves; empty where none does.
     pub free: Vec<bool>,
     /// When those that move are held.

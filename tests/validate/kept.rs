@@ -1,0 +1,64 @@
+//! Runs that take long and are kept below the target directory: one that has ended is not repeated, one that was
+//! interrupted goes on.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use calcine::results::Summary;
+use calcine::results::read::Series;
+
+/// Exit code of a run that was interrupted and can go on.
+const INTERRUPTED: i32 = 75;
+
+/// A run that ended.
+pub struct Kept {
+    pub out: PathBuf,
+    pub summary: Summary,
+    pub series: Series,
+}
+
+impl Kept {
+    /// The last value of a quantity.
+    pub fn last(&self, quantity: &str) -> f64 {
+        let column = self.series.column(&format!("quantities.{quantity}"));
+        *column.last().unwrap()
+    }
+}
+
+/// The native run of a case with settings under a name, from the end of another run where one is given.
+pub fn run(name: &str, case: &Path, set: &[String], from: Option<&Path>) -> Kept {
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("kept")
+        .join(name);
+    let begun = out.join("checkpoint").exists();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
+    command
+        .arg("run")
+        .arg(case)
+        .args(["--quiet", "--out"])
+        .arg(&out);
+    match from {
+        Some(from) if !begun => command.arg("--from").arg(from),
+        _ => command.arg("--resume"),
+    };
+    for setting in set {
+        command.args(["--set", setting]);
+    }
+    println!(
+        "  {name}: in {}, which is kept; remove it to repeat the run",
+        out.display()
+    );
+    let output = command.output().unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        output.status.code() != Some(INTERRUPTED),
+        "{name} was interrupted: the same command goes on"
+    );
+    assert!(output.status.success(), "{name}: {told}");
+    let (summary, series) = (Summary::read(&out).unwrap(), Series::read(&out).unwrap());
+    Kept {
+        out,
+        summary,
+        series,
+    }
+}
