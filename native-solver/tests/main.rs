@@ -21,6 +21,7 @@ mod numerics;
 mod openings;
 mod planted;
 mod resume;
+mod skewed;
 mod species;
 mod stirred;
 mod stirred_cells;

@@ -112,6 +112,7 @@ Foam::calcine::gas::gas
         dimensionedScalar(dimMass/dimTime, Zero)
     ),
     pressureGradient_(mesh.nCells(), Zero),
+    pressureAlong_(mesh.nCells(), Zero),
     mass_(mesh.nCells(), Zero),
     flux_(mesh.nFaces(), Zero),
     boundary_(properties.subDict("patches"), U_, p_),
@@ -253,6 +254,7 @@ void Foam::calcine::gas::restore()
     p_.primitiveFieldRef() = committed_.pressure;
     modelPressure_ == dimensionedScalar("p", dimPressure, committed_.basePressure);
     pressureGradient_ = committed_.pressureGradient;
+    pressureAlong_ = committed_.pressureGradient;
     mass_ = committed_.mass;
     flux_ = committed_.flux;
 }

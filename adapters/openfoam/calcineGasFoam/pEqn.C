@@ -7,7 +7,8 @@
 // so G = (d_P F_P.n + d_N F_N.n + p_P - p_N)/(d_P/b_P + d_N/b_N): Rhie-Chow with a distance-weighted
 // harmonic mean. The slopes F.n - G/b of a cell's halves make its gradient, which the momentum equation
 // takes and which is reported: sum A d n (n.grad p) = sum A d n (F.n - G/b), Gauss' theorem with what lies
-// along the faces on the left side, so that skewed cells need no iteration. Gas at rest stays at rest
+// along the faces on the left side. Where centres are displaced along a face, pressures are carried there by another gradient
+// (updatePressureAlong), a correction later. Gas at rest stays at rest
 // whatever the void fraction does, and a bed's resistance is exact to its last half cell. The inertia at a face is that of the face's own old flux, so that a steady
 // flow does not depend on the time step; what friction and convection owe to the cell's own velocity in
 // transport.C. Rhie and Chow 1983, doi 10.2514/3.8284.
@@ -36,7 +37,7 @@ Foam::scalar Foam::calcine::gas::ownerPush(label facei) const
     const label celli = mesh_.faceOwner()[facei];
     return
         ownerDistance_[facei]*halfCellForce(facei, celli)
-      + (ownerSkew_[facei] & pressureGradient_[celli]);
+      + (ownerSkew_[facei] & pressureAlong_[celli]);
 }
 
 
@@ -115,7 +116,7 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
            *(
                 ownerPush(facei)
               + neighbourDistance_[facei]*halfCellForce(facei, N)
-              + (neighbourSkew_[facei] & pressureGradient_[N])
+              + (neighbourSkew_[facei] & pressureAlong_[N])
               + transportPush_[facei]
             );
     }
@@ -215,6 +216,7 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
         }
     }
     shared_.agree(flux_);
+    updatePressureAlong();
     updatePressureGradient();
 
     U_.primitiveFieldRef() =
@@ -243,4 +245,28 @@ void Foam::calcine::gas::updatePressureGradient()
         }
     }
     pressureGradient_ = force_ + (recovery_ & (pressureGradient_/mesh_.cellVolumes()));
+}
+
+
+void Foam::calcine::gas::updatePressureAlong()
+{
+    // sum p_f S/V from the values that a cell's own half gives on its faces: to the face's plane along the normal by the half's
+    // slope, and along the face. It does not take up its own last value where cells repeat, and so settles at any skewness: the
+    // gradient that the velocities leave does, and grows from one correction to the next beyond 30 degrees of shear.
+    vectorField next(mesh_.nCells(), Zero);
+    const auto add = [this, &next](label facei, label celli, scalar distance, const vector& skew)
+    {
+        const scalar area = mag(mesh_.faceAreas()[facei]);
+        const scalar slope = halfCellForce(facei, celli) - flux_[facei]/(area*mobility_[celli]);
+        next[celli] += area*(distance*slope + (skew & pressureAlong_[celli]))*normal_[facei];
+    };
+    forAll(flux_, facei)
+    {
+        add(facei, mesh_.faceOwner()[facei], ownerDistance_[facei], ownerSkew_[facei]);
+        if (facei < mesh_.nInternalFaces())
+        {
+            add(facei, mesh_.faceNeighbour()[facei], neighbourDistance_[facei], neighbourSkew_[facei]);
+        }
+    }
+    pressureAlong_ = next/mesh_.cellVolumes();
 }

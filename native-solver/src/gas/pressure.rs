@@ -8,8 +8,8 @@
 //! so G = (d_P F_P·n + d_N F_N·n + p_P − p_N)/(d_P/b_P + d_N/b_N): Rhie–Chow with a
 //! distance-weighted harmonic mean. The slopes F·n − G/b of a cell's halves give its gradient, which the
 //! momentum equation takes: Σ A d n (n·∇p) = Σ A d n (F·n − G/b), the sum over faces of Gauss' theorem with what
-//! lies along the faces on the left side, so that skewed cells need no iteration. Gas at rest stays at
-//! rest whatever the void fraction does, and a bed's resistance is exact to its last half cell. The force of inertia at a face is taken from the
+//! lies along the faces on the left side. Where centres are displaced along a face, pressures are carried there by another
+//! gradient (`update_along`), a correction later. Gas at rest stays at rest whatever the void fraction does, and a bed's resistance is exact to its last half cell. The force of inertia at a face is taken from the
 //! face's own old flux, so that a steady flow does not depend on the time step; what friction and
 //! convection owe to the cell's own velocity in [`super::transport`]. Rhie and Chow 1983,
 //! doi 10.2514/3.8284.
@@ -89,6 +89,10 @@ pub struct Pressure {
     outer: Vec<Option<OuterPressure>>,
     /// V (Σ A d n nᵀ)⁻¹ of each cell; empty where it is the identity.
     recovery: Vec<Matrix3<f64>>,
+    /// Σ p_f S/V of each cell in Pa/m, p_f from the cell's own half; empty where no centre is displaced along a face.
+    along: Vec<Vec3>,
+    /// Memory for the next.
+    scratch: Vec<Vec3>,
 }
 
 impl Pressure {
@@ -108,6 +112,8 @@ impl Pressure {
             source: vec![0.0; cells],
             outer: Vec::new(),
             recovery,
+            along: Vec::new(),
+            scratch: Vec::new(),
         }
     }
 
@@ -118,6 +124,9 @@ impl Pressure {
             multigrid.forget();
         }
         let (grid, old) = (frame.grid, frame.old);
+        if !grid.orthogonal {
+            self.along.clone_from(&old.pressure_gradient);
+        }
         fill(&mut self.inertia, |index| {
             let face = &grid.faces[index];
             let half = |cell: usize| {
@@ -203,7 +212,7 @@ impl Pressure {
             momentum.without_pressure(cell, velocity)
                 / (frame.pressure_share[cell] * grid.volume[cell])
         });
-        self.update_drive(frame, &now.pressure_gradient);
+        self.update_drive(frame);
 
         let (drive, conductance, outer) = (&self.drive, &self.conductance, &self.outer);
         fill(&mut self.source, |cell| {
@@ -230,6 +239,7 @@ impl Pressure {
             target,
         );
         self.update_flux(frame, now);
+        self.update_along(frame, now);
         self.update_velocity(frame, momentum, now);
         solved.iterations
     }
@@ -282,7 +292,7 @@ impl Pressure {
         face.owner_distance * own + face.neighbour_distance * other
     }
 
-    fn update_drive(&mut self, frame: &AttemptFrame<'_>, gradients: &[Vec3]) {
+    fn update_drive(&mut self, frame: &AttemptFrame<'_>) {
         let mut drive = std::mem::take(&mut self.drive);
         fill(&mut drive, |index| {
             let face = &frame.grid.faces[index];
@@ -298,7 +308,7 @@ impl Pressure {
                 let force = self.force[face.neighbour].dot(&face.normal) + self.inertia[index][1];
                 push += face.neighbour_distance * force + self.transport_push(face, index);
             }
-            self.conductance[index] * (push + displacement(frame.grid, face, gradients))
+            self.conductance[index] * (push + displacement(frame.grid, face, &self.along))
         });
         self.drive = drive;
     }
@@ -317,6 +327,43 @@ impl Pressure {
             let fall = pressure[face.owner] - outer(index, face, pressure);
             self.drive[index] + self.conductance[index] * fall
         });
+    }
+
+    /// The gradient by which pressures are carried along faces, from the values that each cell's half gives on its faces. It does not
+    /// take up its own last value where cells repeat, and so settles at any skewness: the gradient that the velocities leave
+    /// does, and grows from one correction to the next beyond 30° of shear.
+    fn update_along(&mut self, frame: &AttemptFrame<'_>, now: &GasState) {
+        let grid = frame.grid;
+        if grid.orthogonal {
+            return;
+        }
+        let last = std::mem::take(&mut self.along);
+        let mut next = std::mem::take(&mut self.scratch);
+        next.resize(grid.cells(), Vec3::zeros());
+        fill(&mut next, |cell| {
+            let mut sum = Vec3::zeros();
+            for link in grid.links(cell) {
+                let index = link.face as usize;
+                let face = &grid.faces[index];
+                // To the face's plane along its normal by the half's slope, and along the face.
+                let (out, inertia, miss) = if link.sign > 0.0 {
+                    (face.owner_distance, self.inertia[index][0], face.owner_skew)
+                } else {
+                    (
+                        -face.neighbour_distance,
+                        self.inertia[index][1],
+                        -face.neighbour_skew,
+                    )
+                };
+                let slope = self.force[cell].dot(&face.normal) + inertia
+                    - now.flux[index] / (face.area * self.mobility[cell]);
+                let beyond = out * slope + miss.dot(&last[cell]);
+                sum += (link.sign * face.area * beyond) * face.normal;
+            }
+            sum / grid.volume[cell]
+        });
+        self.along = next;
+        self.scratch = last;
     }
 
     /// The gradient that leaves each cell the mean of its fluxes as its velocity: without what transport
