@@ -143,7 +143,6 @@ fn air_passes_a_duct_that_leans_by_up_to_65_degrees() {
         }
         let speeds = duct.gas.fields().velocity.iter().map(|u| u.norm());
         let fastest = speeds.fold(0.0, f64::max);
-        println!("{degrees} degrees: {fastest}");
         assert!(
             (fastest / expected - 1.0).abs() < 1e-3,
             "{degrees} degrees: {fastest}"
