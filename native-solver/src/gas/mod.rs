@@ -443,6 +443,7 @@ fn start(setup: &GasSetup, cells: usize, faces: usize) -> GasState {
         enthalpy: vec![gas.enthalpy(setup.temperature, &setup.composition); cells],
         temperature: vec![setup.temperature; cells],
         composition: setup.composition.repeat(cells),
+        remainder: vec![0.0; setup.composition.len() * cells],
         base_pressure: setup.pressure,
         velocity: vec![setup.velocity; cells],
         pressure: vec![0.0; cells],

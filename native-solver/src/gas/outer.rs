@@ -258,6 +258,7 @@ impl Equations {
             self.react(frame);
             iterations += self.scalars(frame, tolerance, 0.0, now);
         }
+        self.species.carry_remainder(frame, now);
         iterations
     }
 

@@ -5,11 +5,12 @@
 //! with what particles give and take, S − C Y (continuity has their sum), and what reactions make (chemistry.rs),
 //! (docs/theory.md, SPC-1; all species diffuse alike, so that Fick's fluxes sum to zero). Implicit Euler,
 //! Y_f upwind, what a second-order value has beyond it explicitly from the last iterate, with one limiter
-//! for all species, so that the fractions go on summing to one. The last species is what the others leave.
+//! for all species, so that the fractions go on summing to one. The last species is what the others leave. What the linear solver
+//! leaves of an equation the next window begins with (balances.rs).
 
+mod balances;
 mod conserved;
 
-use calcine_coupler::part::Balance;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::Convection;
 
@@ -274,8 +275,7 @@ impl SpeciesEquations {
         let (diffusion, explicit) = (&self.diffusion, &self.explicit[k]);
         let reactions = &self.reactions;
         fill(&mut self.source, |cell| {
-            let old = frame.old.composition[cell * species + k];
-            let mut source = frame.old.mass[cell] * old / frame.storage_span
+            let mut source = frame.old.content(cell, cell * species + k) / frame.storage_span
                 + reactions.gain(cell * species + k);
             if let Some(given) = frame.exchange.species.source.get(cell * species + k) {
                 source += given;
@@ -302,37 +302,12 @@ impl SpeciesEquations {
         })[0];
         let species = frame.species();
         let stored = sums(now.mass.len(), |cell| {
-            let old = frame.old.mass[cell] * frame.old.composition[cell * species + k];
+            let old = frame.old.content(cell, cell * species + k);
             [(now.mass[cell] * self.fractions[k][cell] - old).abs()]
         })[0];
         let given = &frame.exchange.species.source;
         let exchanged = given.iter().skip(k).step_by(species);
         boundary + stored / frame.storage_span + exchanged.map(|flow| flow.abs()).sum::<f64>()
-    }
-
-    /// Flow of a species into the domain through a boundary face in kg/s.
-    fn inflow(&self, frame: &AttemptFrame<'_>, now: &GasState, k: usize, index: usize) -> f64 {
-        let inner = self.fractions[k][frame.grid.faces[index].owner];
-        let flux = now.flux[index];
-        match frame.boundary.composition(index) {
-            Some(composition) => {
-                let carried = if flux < 0.0 { composition[k] } else { inner };
-                self.diffusion[index] * (composition[k] - inner)
-                    - flux * carried
-                    - self.explicit[k][index]
-            }
-            None => -flux * inner,
-        }
-    }
-
-    fn record(&mut self, frame: &AttemptFrame<'_>, now: &GasState) {
-        let internal = frame.grid.internal;
-        for k in 0..frame.species() {
-            self.boundary[k] = sums(frame.grid.faces.len() - internal, |face| {
-                let inflow = self.inflow(frame, now, k, internal + face);
-                [inflow, inflow.abs()]
-            });
-        }
     }
 
     /// Sets `carried`, h_k at the face's temperature.
@@ -412,43 +387,5 @@ impl SpeciesEquations {
                 - fraction * frame.properties.species_enthalpy(k, before)
         };
         flux * (0..self.fractions.len()).map(one).sum::<f64>()
-    }
-
-    /// The balance of each species over the window, in kg.
-    pub fn balances(&self, frame: &AttemptFrame<'_>, now: &GasState, balances: &mut Vec<Balance>) {
-        let species = frame.species();
-        balances.clear();
-        for k in 0..species {
-            let [stored, stored_magnitude] = sums(now.mass.len(), |cell| {
-                let old = frame.old.mass[cell] * frame.old.composition[cell * species + k];
-                let stored = now.mass[cell] * now.composition[cell * species + k] - old;
-                [stored, stored.abs()]
-            });
-            let [inflow, magnitude] = self.boundary[k];
-            let given = &frame.exchange.species;
-            let exchanged = match given.is_none() {
-                true => 0.0,
-                false => sums(now.mass.len(), |cell| {
-                    let at = cell * species + k;
-                    [given.source[at] - given.coefficient[at] * now.composition[at]]
-                })[0],
-            };
-            let [made, made_magnitude] = match self.reactions.is_none() {
-                true => [0.0; 2],
-                false => sums(now.mass.len(), |cell| {
-                    let made = self.reactions.gain(cell * species + k);
-                    [made, made.abs()]
-                }),
-            };
-            balances.push(Balance {
-                source: made * frame.storage_span,
-                source_magnitude: made_magnitude * frame.storage_span,
-                exchange: exchanged * frame.storage_span,
-                stored,
-                stored_magnitude,
-                boundary: inflow * frame.storage_span,
-                boundary_magnitude: magnitude * frame.storage_span,
-            });
-        }
     }
 }

@@ -19,6 +19,9 @@ pub struct GasState {
     pub temperature: Vec<f64>,
     /// Mass fractions, species by species within each cell; empty for a single gas.
     pub composition: Vec<f64>,
+    /// What flows brought a cell of each species in kg beyond m Y: what the linear solver left of its equation,
+    /// which the next window begins with. In the order of the mass fractions.
+    pub remainder: Vec<f64>,
     /// Base pressure of the low-Mach gas in Pa; it changes in a closed domain alone.
     pub base_pressure: f64,
     /// Interstitial velocity in m/s.
@@ -42,12 +45,19 @@ impl GasState {
         &self.composition[cell * species..(cell + 1) * species]
     }
 
+    /// Mass in kg of a species in a cell, by its place among the mass fractions.
+    #[inline]
+    pub fn content(&self, cell: usize, place: usize) -> f64 {
+        self.mass[cell] * self.composition[place] + self.remainder[place]
+    }
+
     /// Takes the values of another state into the memory that is there.
     pub fn take(&mut self, other: &GasState) {
         self.mass.clone_from(&other.mass);
         self.enthalpy.clone_from(&other.enthalpy);
         self.temperature.clone_from(&other.temperature);
         self.composition.clone_from(&other.composition);
+        self.remainder.clone_from(&other.remainder);
         self.base_pressure = other.base_pressure;
         self.velocity.clone_from(&other.velocity);
         self.pressure.clone_from(&other.pressure);
@@ -64,6 +74,7 @@ impl GasState {
         file.set_f64s("enthalpy", &self.enthalpy);
         file.set_f64s("temperature", &self.temperature);
         file.set_f64s("composition", &self.composition);
+        file.set_f64s("remainder", &self.remainder);
         file.set_f64s("base_pressure", &[self.base_pressure]);
         file.set_f64s("velocity", &flat(&self.velocity));
         file.set_f64s("pressure", &self.pressure);
@@ -89,6 +100,7 @@ impl GasState {
             enthalpy: file.f64s_of("enthalpy", cells)?.to_vec(),
             temperature: file.f64s_of("temperature", cells)?.to_vec(),
             composition: file.f64s_of("composition", species * cells)?.to_vec(),
+            remainder: file.f64s_of("remainder", species * cells)?.to_vec(),
             base_pressure: file.f64s_of("base_pressure", 1)?.iter().sum(),
             velocity: vectors(file.f64s_of("velocity", 3 * cells)?),
             pressure: file.f64s_of("pressure", cells)?.to_vec(),
