@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use calcine_coupler::boundary_value::BoundaryValue;
 use calcine_coupler::error::{FailureKind, PartError};
+use calcine_coupler::gas_columns::GasColumns;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::part::{
     Backflow, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
@@ -16,7 +17,7 @@ use calcine_coupler::time::{GasStorage, Window};
 use calcine_wire::{Link, MessageKind, WireError};
 
 use crate::answer::{self, WrongAnswer};
-use crate::gas_columns::{self as columns, GasRanks, ReceivedGas};
+use crate::gas_columns::{self as columns, GasRanks};
 use crate::solver::{ExternalSolver, header};
 
 /// The gas of a running solver.
@@ -33,7 +34,7 @@ pub struct LinkedGas {
     takes_conditions: bool,
     /// Conditions of the patches as they were set last.
     patches: Vec<(String, GasPatch)>,
-    state: ReceivedGas,
+    state: GasColumns,
     /// What the last commit left unconverged of the equations of turbulence.
     turbulence_residual: Option<f64>,
     /// Of the last attempt.
@@ -63,7 +64,7 @@ impl LinkedGas {
             turbulent: !setup.turbulence.is_laminar(),
             takes_conditions,
             patches: setup.patches.clone(),
-            state: ReceivedGas::default(),
+            state: GasColumns::default(),
             turbulence_residual: None,
             backflow: None,
             window: None,
@@ -92,7 +93,7 @@ impl LinkedGas {
             }
         }
         let ranks = ranks(&self.solver, &self.mesh);
-        let read = self.state.read(ranks, self.species, self.turbulent);
+        let read = columns::read_state(ranks, self.species, self.turbulent, &mut self.state);
         read.map_err(|error| self.solver.failure(window, error))
     }
 }
@@ -171,6 +172,11 @@ impl Gas for LinkedGas {
 
     fn backflow(&self) -> Option<Backflow> {
         self.backflow
+    }
+
+    fn begins_again(&self) -> bool {
+        // A solver of its own process has ended by then.
+        false
     }
 
     fn turbulence_residual(&self) -> Option<f64> {

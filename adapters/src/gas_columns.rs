@@ -1,9 +1,8 @@
 //! What the columns of a gas' link mean.
 
 use calcine_coupler::extreme::larger;
-use calcine_coupler::part::{
-    Backflow, Balance, Bed, CellExchange, CellReceived, Convergence, GasFields, TurbulenceFields,
-};
+use calcine_coupler::gas_columns::GasColumns;
+use calcine_coupler::part::{Backflow, Balance, Bed, CellExchange, CellReceived, Convergence};
 use calcine_coupler::physics::Vec3;
 use calcine_wire::{ColumnSet, Link, WireError};
 
@@ -11,20 +10,6 @@ use calcine_wire::{ColumnSet, Link, WireError};
 const BACKFLOW: &str = "backflow";
 /// Column of a commit's answer.
 const TURBULENCE_RESIDUAL: &str = "turbulence_residual";
-
-/// The gas as the solver sent it last, one value per cell.
-#[derive(Clone, Debug, Default)]
-pub struct ReceivedGas {
-    temperature: Vec<f64>,
-    pressure: Vec<f64>,
-    density: Vec<f64>,
-    /// Mass fractions, species by species within each cell; empty for a single gas.
-    composition: Vec<f64>,
-    velocity: Vec<Vec3>,
-    pressure_gradient: Vec<Vec3>,
-    /// Turbulent energy, its dissipation, eddy viscosity; empty for a laminar gas.
-    eddies: [Vec<f64>; 3],
-}
 
 /// The links of all ranks, and the cells of the whole mesh that each has.
 #[derive(Clone, Copy)]
@@ -81,46 +66,26 @@ impl GasRanks<'_> {
     }
 }
 
-impl ReceivedGas {
-    /// Takes the state, of so many species, of a turbulent gas or not, out of the messages that the links hold.
-    pub fn read(
-        &mut self,
-        ranks: GasRanks<'_>,
-        species: usize,
-        turbulent: bool,
-    ) -> Result<(), WireError> {
-        ranks.copy("temperature", &mut self.temperature)?;
-        ranks.copy("pressure", &mut self.pressure)?;
-        ranks.copy("density", &mut self.density)?;
-        if species > 0 {
-            ranks.copy_items("composition", species, &mut self.composition)?;
-        }
-        if turbulent {
-            let [energy, dissipation, viscosity] = &mut self.eddies;
-            ranks.copy("turbulent_energy", energy)?;
-            ranks.copy("dissipation", dissipation)?;
-            ranks.copy("eddy_viscosity", viscosity)?;
-        }
-        ranks.copy_vectors("velocity", &mut self.velocity)?;
-        ranks.copy_vectors("pressure_gradient", &mut self.pressure_gradient)
+/// Takes the state, of so many species, of a turbulent gas or not, out of the messages that the links hold.
+pub fn read_state(
+    ranks: GasRanks<'_>,
+    species: usize,
+    turbulent: bool,
+    to: &mut GasColumns,
+) -> Result<(), WireError> {
+    ranks.copy("temperature", &mut to.temperature)?;
+    ranks.copy("pressure", &mut to.pressure)?;
+    ranks.copy("density", &mut to.density)?;
+    if species > 0 {
+        ranks.copy_items("composition", species, &mut to.composition)?;
     }
-
-    /// As the coordinator sees it.
-    pub fn fields(&self) -> GasFields<'_> {
-        GasFields {
-            temperature: &self.temperature,
-            pressure: &self.pressure,
-            density: &self.density,
-            composition: &self.composition,
-            velocity: &self.velocity,
-            pressure_gradient: &self.pressure_gradient,
-            turbulence: TurbulenceFields {
-                energy: &self.eddies[0],
-                dissipation: &self.eddies[1],
-                viscosity: &self.eddies[2],
-            },
-        }
+    if turbulent {
+        ranks.copy("turbulent_energy", &mut to.turbulent_energy)?;
+        ranks.copy("dissipation", &mut to.dissipation)?;
+        ranks.copy("eddy_viscosity", &mut to.eddy_viscosity)?;
     }
+    ranks.copy_vectors("velocity", &mut to.velocity)?;
+    ranks.copy_vectors("pressure_gradient", &mut to.pressure_gradient)
 }
 
 /// Fills the columns of a start for a rank that has these cells.

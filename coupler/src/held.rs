@@ -1,15 +1,18 @@
 //! A gas that stays as it is, whatever the particles give it: to see what a given flow does to them.
 
 use std::path::Path;
+use std::time::Duration;
 
 use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
 
-use crate::error::PartError;
+use crate::boundary_value::BoundaryValue;
+use crate::error::{FailureKind, PartError};
+use crate::gas_columns::GasColumns;
 use crate::mesh::Mesh;
 use crate::part::{
-    Balance, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
-    TurbulenceFields,
+    Backflow, Balance, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part,
+    SolverInfo,
 };
 use crate::setup::GasSetup;
 use crate::supervisor::Supervisor;
@@ -23,12 +26,7 @@ pub struct HeldGas {
     about: SolverInfo,
     superficial: Vec3,
     properties: GasModel,
-    temperature: Vec<f64>,
-    pressure: Vec<f64>,
-    density: Vec<f64>,
-    composition: Vec<f64>,
-    velocity: Vec<Vec3>,
-    pressure_gradient: Vec<Vec3>,
+    columns: GasColumns,
     exchange: CellExchange,
     window: Window,
     storage: crate::time::GasStorage,
@@ -51,14 +49,17 @@ impl HeldGas {
             },
             superficial: setup.velocity,
             properties: gas.clone(),
-            temperature: vec![setup.temperature; cells],
-            pressure: centres
-                .map(|centre| setup.pressure + weight.dot(&(centre - origin)))
-                .collect(),
-            density: vec![density; cells],
-            composition: setup.composition.repeat(cells),
-            velocity: vec![setup.velocity; cells],
-            pressure_gradient: vec![weight; cells],
+            columns: GasColumns {
+                temperature: vec![setup.temperature; cells],
+                pressure: centres
+                    .map(|centre| setup.pressure + weight.dot(&(centre - origin)))
+                    .collect(),
+                density: vec![density; cells],
+                composition: setup.composition.repeat(cells),
+                velocity: vec![setup.velocity; cells],
+                pressure_gradient: vec![weight; cells],
+                ..GasColumns::default()
+            },
             exchange: CellExchange::default(),
             window: Window::default(),
             storage: setup.storage,
@@ -79,6 +80,10 @@ impl Part for HeldGas {
         Ok(())
     }
 
+    fn processor_time(&self) -> Duration {
+        Duration::ZERO
+    }
+
     fn finish_run(&mut self, _supervisor: &Supervisor) -> Result<(), PartError> {
         Ok(())
     }
@@ -86,15 +91,32 @@ impl Part for HeldGas {
 
 impl Gas for HeldGas {
     fn fields(&self) -> GasFields<'_> {
-        GasFields {
-            temperature: &self.temperature,
-            pressure: &self.pressure,
-            density: &self.density,
-            composition: &self.composition,
-            velocity: &self.velocity,
-            pressure_gradient: &self.pressure_gradient,
-            turbulence: TurbulenceFields::default(),
-        }
+        self.columns.fields()
+    }
+
+    fn backflow(&self) -> Option<Backflow> {
+        None
+    }
+
+    fn begins_again(&self) -> bool {
+        true
+    }
+
+    fn turbulence_residual(&self) -> Option<f64> {
+        None
+    }
+
+    fn set_boundary(&mut self, value: &BoundaryValue) -> Result<(), PartError> {
+        let message = format!(
+            "the condition `{}` at patch `{}` cannot be set: a gas that is held has no patches; write gas.held = false",
+            value.quantity.name(),
+            value.patch
+        );
+        Err(PartError::new(
+            self.about.name.clone(),
+            FailureKind::Refused,
+            message,
+        ))
     }
 
     fn start(
@@ -103,7 +125,7 @@ impl Gas for HeldGas {
         bed: &Bed,
         exchange: &CellExchange,
     ) -> Result<(), PartError> {
-        for (velocity, pores) in self.velocity.iter_mut().zip(&bed.void_fraction) {
+        for (velocity, pores) in self.columns.velocity.iter_mut().zip(&bed.void_fraction) {
             *velocity = self.superficial / *pores;
         }
         self.exchange.clone_from(exchange);
@@ -117,24 +139,30 @@ impl Gas for HeldGas {
         received: &mut CellReceived,
     ) -> Result<Convergence, PartError> {
         let told = &self.exchange;
+        let GasColumns {
+            temperature,
+            composition,
+            velocity,
+            ..
+        } = &self.columns;
         let heats = told.heat_source.iter().zip(&told.heat_coefficient);
         received.heat.clear();
         received.heat.extend(
             heats
-                .zip(&self.temperature)
+                .zip(temperature)
                 .map(|((source, coefficient), kelvin)| source - coefficient * kelvin),
         );
-        let species = self.composition.len() / self.temperature.len().max(1);
+        let species = composition.len() / temperature.len().max(1);
         let mut moved = vec![0.0; species];
         if !told.species.is_none() {
             for (cell, heat) in received.heat.iter_mut().enumerate() {
                 *heat += told.species.heat[cell];
                 for (k, moved) in moved.iter_mut().enumerate() {
                     let at = cell * species + k;
-                    let enthalpy = self.properties.species_enthalpy(k, self.temperature[cell]);
+                    let enthalpy = self.properties.species_enthalpy(k, temperature[cell]);
                     *heat -= told.species.taken[at] * enthalpy;
-                    *moved += told.species.source[at]
-                        - told.species.coefficient[at] * self.composition[at];
+                    *moved +=
+                        told.species.source[at] - told.species.coefficient[at] * composition[at];
                 }
             }
         }
@@ -142,7 +170,7 @@ impl Gas for HeldGas {
         received.drag.clear();
         received.drag.extend(
             drags
-                .zip(&self.velocity)
+                .zip(velocity)
                 .map(|((source, coefficient), velocity)| source - *coefficient * velocity),
         );
         let span = self.storage.span(&self.window);

@@ -15,6 +15,7 @@ pub mod feeds;
 pub mod findings;
 pub mod finite;
 pub mod gas_chemistry;
+pub mod gas_columns;
 pub mod held;
 pub mod hold;
 pub mod ledger;

@@ -9,7 +9,7 @@ use std::time::Duration;
 use calcine_physics::{Vec3, sphere};
 
 use crate::boundary_value::BoundaryValue;
-use crate::error::{FailureKind, PartError};
+use crate::error::PartError;
 use crate::motion::ParticleChanges;
 use crate::named_columns::NamedColumns;
 use crate::supervisor::Supervisor;
@@ -26,7 +26,8 @@ pub struct SolverInfo {
     pub ranks: usize,
 }
 
-/// What every participant can do.
+/// What every participant can do. No method of a part's traits has a default, so that a part that wraps another one
+/// cannot leave any out.
 pub trait Part: Send {
     /// Name, version, ranks.
     fn about(&self) -> &SolverInfo;
@@ -40,9 +41,7 @@ pub trait Part: Send {
 
     /// Processor time that processes of its own have used since they were ready; zero for a part that works in
     /// the coordinator's.
-    fn processor_time(&self) -> Duration {
-        Duration::ZERO
-    }
+    fn processor_time(&self) -> Duration;
 
     /// Ends the part in an orderly way; what it started is gone afterwards.
     fn finish_run(&mut self, supervisor: &Supervisor) -> Result<(), PartError>;
@@ -244,36 +243,18 @@ pub trait Gas: Part {
     fn fields(&self) -> GasFields<'_>;
 
     /// Gas that comes back in through outlets after the last attempt, where its state is not given.
-    fn backflow(&self) -> Option<Backflow> {
-        None
-    }
+    fn backflow(&self) -> Option<Backflow>;
 
     /// True where the gas can begin a window again after an attempt that failed; a solver of its own process has ended by
     /// then.
-    fn begins_again(&self) -> bool {
-        false
-    }
+    fn begins_again(&self) -> bool;
 
     /// Relative residual of the equations of turbulence where the last commit left them above their tolerance.
-    fn turbulence_residual(&self) -> Option<f64> {
-        None
-    }
+    fn turbulence_residual(&self) -> Option<f64>;
 
     /// Sets a condition of a patch from the start of the next window on; between two windows, after a commit. What
-    /// was set is no part of the gas' checkpoint: the coordinator sets it again after a resume.
-    fn set_boundary(&mut self, value: &BoundaryValue) -> Result<(), PartError> {
-        let message = format!(
-            "the condition `{}` at patch `{}` cannot be set while this solver runs; native gas and calcineGasFoam \
-             can",
-            value.quantity.name(),
-            value.patch
-        );
-        Err(PartError::new(
-            self.about().name.clone(),
-            FailureKind::Refused,
-            message,
-        ))
-    }
+    /// was set is no part of the gas' checkpoint: the coordinator sets it again after a resume. A gas that cannot refuses.
+    fn set_boundary(&mut self, value: &BoundaryValue) -> Result<(), PartError>;
 
     /// Starts an attempt from the last commit; does not wait. Attempts of one window above 0 may take what the
     /// attempt before found as their first guess, never as the old state.
@@ -392,9 +373,7 @@ pub trait Particles: Part {
     ) -> Result<(), PartError>;
 
     /// True where the solver takes a column of this name with a push, beside the forces.
-    fn takes(&self, _column: &str) -> bool {
-        false
-    }
+    fn takes(&self, column: &str) -> bool;
 
     /// Starts the window in the bed as the gas had it, one value a cell of the gas' mesh; does not wait.
     fn start(&mut self, window: &Window, bed: &Bed, push: &ParticlePush) -> Result<(), PartError>;

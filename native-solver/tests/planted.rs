@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
+use calcine_coupler::boundary_value::BoundaryValue;
 use calcine_coupler::closures::Closures;
 use calcine_coupler::coordinator::{CheckpointPaths, CoupledRun, Ending, Plan, RunError, RunParts};
 use calcine_coupler::error::PartError;
@@ -15,7 +16,7 @@ use calcine_coupler::mesh::Mesh;
 use calcine_coupler::models::ParticleModels;
 use calcine_coupler::motion::ParticleChanges;
 use calcine_coupler::part::{
-    Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, ParticleFields,
+    Backflow, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, ParticleFields,
     ParticlePush, ParticleReceived, Particles, SolverInfo,
 };
 use calcine_coupler::physics::Vec3;
@@ -69,6 +70,10 @@ impl Part for FalseGas {
         self.gas.checkpoint(directory)
     }
 
+    fn processor_time(&self) -> Duration {
+        self.gas.processor_time()
+    }
+
     fn finish_run(&mut self, supervisor: &Supervisor) -> Result<(), PartError> {
         self.gas.finish_run(supervisor)
     }
@@ -86,6 +91,22 @@ impl Gas for FalseGas {
             }
         }
         fields
+    }
+
+    fn backflow(&self) -> Option<Backflow> {
+        self.gas.backflow()
+    }
+
+    fn begins_again(&self) -> bool {
+        self.gas.begins_again()
+    }
+
+    fn turbulence_residual(&self) -> Option<f64> {
+        self.gas.turbulence_residual()
+    }
+
+    fn set_boundary(&mut self, value: &BoundaryValue) -> Result<(), PartError> {
+        self.gas.set_boundary(value)
     }
 
     fn start(
@@ -137,6 +158,10 @@ impl Part for FalseParticles {
         self.particles.checkpoint(directory)
     }
 
+    fn processor_time(&self) -> Duration {
+        self.particles.processor_time()
+    }
+
     fn finish_run(&mut self, supervisor: &Supervisor) -> Result<(), PartError> {
         self.particles.finish_run(supervisor)
     }
@@ -161,6 +186,10 @@ impl Particles for FalseParticles {
         change: &ParticleChanges,
     ) -> Result<(), PartError> {
         self.particles.change(supervisor, change)
+    }
+
+    fn takes(&self, column: &str) -> bool {
+        self.particles.takes(column)
     }
 
     fn start(&mut self, window: &Window, bed: &Bed, push: &ParticlePush) -> Result<(), PartError> {

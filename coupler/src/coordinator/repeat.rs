@@ -5,11 +5,10 @@ use std::time::Duration;
 
 use crate::boundary_value::BoundaryValue;
 use crate::error::PartError;
+use crate::gas_columns::GasColumns;
 use crate::part::{
     Backflow, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
-    TurbulenceFields,
 };
-use crate::physics::Vec3;
 use crate::supervisor::Supervisor;
 use crate::time::{Ticks, Window};
 
@@ -63,54 +62,9 @@ impl WindowCut {
 /// A gas that shows its fields of the last commit after an attempt that is given up.
 pub(super) struct RepeatableGas {
     gas: Box<dyn Gas>,
-    committed: Option<CommittedGas>,
+    committed: Option<GasColumns>,
     /// True from [`RepeatableGas::go_back`] to the next attempt.
     back: bool,
-}
-
-/// A copy of the fields of a gas.
-#[derive(Default)]
-struct CommittedGas {
-    temperature: Vec<f64>,
-    pressure: Vec<f64>,
-    density: Vec<f64>,
-    composition: Vec<f64>,
-    velocity: Vec<Vec3>,
-    pressure_gradient: Vec<Vec3>,
-    energy: Vec<f64>,
-    dissipation: Vec<f64>,
-    viscosity: Vec<f64>,
-}
-
-impl CommittedGas {
-    fn take(&mut self, gas: &GasFields<'_>) {
-        gas.temperature.clone_into(&mut self.temperature);
-        gas.pressure.clone_into(&mut self.pressure);
-        gas.density.clone_into(&mut self.density);
-        gas.composition.clone_into(&mut self.composition);
-        gas.velocity.clone_into(&mut self.velocity);
-        gas.pressure_gradient
-            .clone_into(&mut self.pressure_gradient);
-        gas.turbulence.energy.clone_into(&mut self.energy);
-        gas.turbulence.dissipation.clone_into(&mut self.dissipation);
-        gas.turbulence.viscosity.clone_into(&mut self.viscosity);
-    }
-
-    fn fields(&self) -> GasFields<'_> {
-        GasFields {
-            temperature: &self.temperature,
-            pressure: &self.pressure,
-            density: &self.density,
-            composition: &self.composition,
-            velocity: &self.velocity,
-            pressure_gradient: &self.pressure_gradient,
-            turbulence: TurbulenceFields {
-                energy: &self.energy,
-                dissipation: &self.dissipation,
-                viscosity: &self.viscosity,
-            },
-        }
-    }
 }
 
 impl RepeatableGas {

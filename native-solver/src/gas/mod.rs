@@ -25,6 +25,7 @@ mod turbulence;
 
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 
 use calcine_coupler::boundary_value::BoundaryValue;
 use calcine_coupler::error::{FailureKind, PartError};
@@ -300,6 +301,10 @@ impl Part for NativeGas {
             .write(&directory.join(STATE))
             .map_err(|error| failed(self, error.into()))?;
         self.restore(directory).map_err(|error| failed(self, error))
+    }
+
+    fn processor_time(&self) -> Duration {
+        Duration::ZERO
     }
 
     fn finish_run(&mut self, _supervisor: &Supervisor) -> Result<(), PartError> {

@@ -5,6 +5,7 @@ pub mod dem;
 mod state;
 
 use std::path::Path;
+use std::time::Duration;
 
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::motion::{Contacts, Motion, ParticleChanges};
@@ -412,6 +413,10 @@ impl Part for NativeParticles {
         };
         self.write(directory).map_err(|error| failed(self, error))?;
         self.restore(directory).map_err(|error| failed(self, error))
+    }
+
+    fn processor_time(&self) -> Duration {
+        Duration::ZERO
     }
 
     fn finish_run(&mut self, _supervisor: &Supervisor) -> Result<(), PartError> {
