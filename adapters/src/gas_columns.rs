@@ -253,5 +253,6 @@ fn balance(numbers: [f64; 7]) -> Balance {
         exchange,
         source,
         source_magnitude,
+        ..Balance::default()
     }
 }

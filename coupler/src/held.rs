@@ -19,8 +19,7 @@ use crate::supervisor::Supervisor;
 use crate::time::Window;
 
 /// The gas of a setup at its start: its superficial velocity everywhere, its temperature, and a
-/// pressure gradient of its own weight. What it receives goes to a reservoir, as a source of its
-/// balances.
+/// pressure gradient of its own weight. What it receives goes to a reservoir, which its balances name.
 #[derive(Debug)]
 pub struct HeldGas {
     about: SolverInfo,
@@ -191,8 +190,7 @@ impl Gas for HeldGas {
 fn reservoir(received: f64) -> Balance {
     Balance {
         exchange: received,
-        source: -received,
-        source_magnitude: received.abs(),
+        reservoir: -received,
         ..Balance::default()
     }
 }

@@ -169,7 +169,7 @@ impl SpeciesExchange {
 
 /// One conserved quantity of the gas over a window, in kg, J or N s of the gas' storage span
 /// (momentum: of the motion span). Signs: + is into the gas.
-/// In exact arithmetic and with exact linear solves `stored − boundary − exchange − source = 0`.
+/// In exact arithmetic and with exact linear solves `stored − boundary − reservoir − exchange − source = 0`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Balance {
     /// Sum over cells of (end − start).
@@ -186,6 +186,25 @@ pub struct Balance {
     pub source: f64,
     /// Sum of the magnitudes of the other sources.
     pub source_magnitude: f64,
+    /// Net inflow from the reservoir of a gas that is held as it is; zero for a gas that is solved. It carries mass, species
+    /// and their energy as a boundary does.
+    pub reservoir: f64,
+}
+
+impl Balance {
+    /// What the balance leaves open: zero in exact arithmetic with exact linear solves.
+    pub fn open(&self) -> f64 {
+        self.stored - self.boundary - self.reservoir - self.exchange - self.source
+    }
+
+    /// The sum of the magnitudes of its terms.
+    pub fn magnitude(&self) -> f64 {
+        self.stored_magnitude
+            + self.boundary_magnitude
+            + self.reservoir.abs()
+            + self.exchange.abs()
+            + self.source_magnitude
+    }
 }
 
 /// What the gas reports of an attempt.

@@ -327,11 +327,7 @@ fn received_as_told(column: &mut Column<'_, '_>) -> Result<(), LawError> {
 
 /// What a balance leaves open, relative to its terms.
 fn left(balance: &Balance) -> f64 {
-    let open = balance.stored - balance.boundary - balance.exchange - balance.source;
-    let terms = balance.stored_magnitude
-        + balance.boundary_magnitude
-        + balance.exchange.abs()
-        + balance.source_magnitude;
+    let (open, terms) = (balance.open(), balance.magnitude());
     if terms == 0.0 {
         open.abs()
     } else {

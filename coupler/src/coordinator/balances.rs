@@ -8,7 +8,7 @@ use calcine_physics::thermo::Element;
 use super::exchange::ExchangeStage;
 use super::particles::MotionStage;
 use crate::ledger::Ledger;
-use crate::part::{Balance, CellReceived, ParticleFields};
+use crate::part::{CellReceived, ParticleFields};
 use crate::time::{GasStorage, Window};
 
 /// What a window comes to.
@@ -29,8 +29,10 @@ impl WindowBalances<'_> {
     pub fn book(&self, ledger: &mut Ledger, window: &Window, storage: GasStorage) {
         let process = window.span.process.seconds();
         let scale = process / storage.span(window);
-        let (sum, magnitude) = open(&self.exchange.received.mass);
-        ledger.mass.book(scale * sum, scale * magnitude);
+        let gas = &self.exchange.received.mass;
+        ledger
+            .mass
+            .book(scale * gas.open(), scale * gas.magnitude());
         self.book_elements(ledger, scale);
         self.book_energy(ledger, scale, process);
         self.book_momentum(ledger, window.span.motion.seconds());
@@ -49,7 +51,7 @@ impl WindowBalances<'_> {
                 .flat_map(|own| own.1.iter().zip(&received.species))
             {
                 // Reactions of the gas make no element, so that what they make of the species is left in.
-                let (open, terms) = open(balance);
+                let (open, terms) = (balance.open(), balance.magnitude());
                 let other = balance.exchange.abs() + balance.source_magnitude;
                 sum += scale * share * (open + balance.exchange + balance.source);
                 magnitude += scale * share * (terms - other);
@@ -100,8 +102,8 @@ impl WindowBalances<'_> {
             0.0
         };
         ledger.energy.book(
-            scale * (gas.stored - gas.boundary - gas.source + formed) + changes.sum - walls,
-            scale * (gas.stored_magnitude + gas.boundary_magnitude + gas.source_magnitude)
+            scale * (gas.open() + gas.exchange + formed) + changes.sum - walls,
+            scale * (gas.magnitude() - gas.exchange.abs())
                 + changes.magnitude
                 + walls_magnitude
                 + exchanged,
@@ -139,7 +141,7 @@ impl WindowBalances<'_> {
             line.throughput += 2.0 * moved;
         }
         for (balance, clock) in received.momentum.iter().zip(&received.storage_clock) {
-            let (sum, magnitude) = open(balance);
+            let (sum, magnitude) = (balance.open(), balance.magnitude());
             ledger.gas_momentum.book(sum, magnitude);
             ledger.storage_clock.book(*clock, magnitude);
         }
@@ -160,15 +162,4 @@ fn formation(gas: &GasModel, received: &CellReceived) -> f64 {
 /// Place of an element among all, by its symbol.
 pub(super) fn place(name: &str) -> Option<usize> {
     Element::ALL.iter().position(|one| one.symbol() == name)
-}
-
-/// What a balance leaves open, and the sum of the magnitudes of its terms.
-fn open(balance: &Balance) -> (f64, f64) {
-    (
-        balance.stored - balance.boundary - balance.exchange - balance.source,
-        balance.stored_magnitude
-            + balance.boundary_magnitude
-            + balance.exchange.abs()
-            + balance.source_magnitude,
-    )
 }

@@ -99,6 +99,7 @@ fn energy(
         exchange: exchange * frame.storage_span,
         source: compression + reacted,
         source_magnitude: compression.abs() + reacted.abs(),
+        ..Balance::default()
     }
 }
 
@@ -135,6 +136,7 @@ fn momenta(
         source_magnitude: cells[12 + axis],
         boundary: faces[axis] * span,
         boundary_magnitude: faces[3 + axis] * span,
+        ..Balance::default()
     })
 }
 

@@ -101,6 +101,7 @@ impl SpeciesEquations {
                 stored_magnitude,
                 boundary: inflow * frame.storage_span,
                 boundary_magnitude: magnitude * frame.storage_span,
+                ..Balance::default()
             });
         }
     }
