@@ -13,7 +13,7 @@ use calcine_coupler::setup::{GasControls, GasSetup};
 use calcine_coupler::time::GasStorage;
 
 use super::chemistry::{Around, chemistry};
-use super::composition::fractions;
+use super::composition::of_gas;
 use super::gas_patch::boundary;
 use super::species_data;
 use super::turbulence::turbulence;
@@ -199,7 +199,7 @@ fn initial(
         Some(GasModel::Mixture(mixture)) => {
             initial.need("composition");
             let table = initial.table("composition");
-            table.and_then(|table| fractions(&table, mixture))
+            table.and_then(|table| of_gas(&table, mixture))
         }
         Some(_) => Some(Vec::new()),
         None => {

@@ -8,7 +8,7 @@ use calcine_coupler::setup::{
 };
 
 use super::common::patches;
-use super::composition::fractions;
+use super::composition::of_gas;
 use super::turbulence::of_inlet;
 use crate::case::model::MeshSpec;
 use crate::case::table::TableReader;
@@ -157,7 +157,7 @@ fn composition(table: &TableReader<'_>, mixture: &Mixture) -> Option<Composition
     };
     let mut entries = Vec::new();
     for (time, entry) in &dated {
-        entries.push((*time, fractions(entry, mixture)?));
+        entries.push((*time, of_gas(entry, mixture)?));
     }
     Some(CompositionSchedule(entries))
 }

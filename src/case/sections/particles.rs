@@ -8,9 +8,10 @@ use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::physics::thermo::Nasa7;
 
+use super::composition::of_solids;
 use super::conversion;
 use super::place::place;
-use super::reactions::{composition, mixed};
+use super::reactions::mixed;
 use super::sizes::sizes;
 use crate::case::model::{ContactSpec, Laws, MaterialSpec, MeshSpec, MotionSpec, Population};
 use crate::case::table::TableReader;
@@ -29,7 +30,7 @@ pub(super) fn materials(root: &TableReader<'_>, solids: &[SolidSpecies]) -> Vec<
 fn material(name: String, table: &TableReader<'_>, solids: &[SolidSpecies]) -> MaterialSpec {
     // A value that could not be read is recorded as an error; its stand-in is never used.
     let composed = table.table("composition");
-    let composition = composed.and_then(|table| composition(&table, solids));
+    let composition = composed.and_then(|table| of_solids(&table, solids));
     let heat_capacity = match &composition {
         Some(_) if table.has("heat_capacity") => {
             let help = "remove it: the heat capacity is that of the solids";

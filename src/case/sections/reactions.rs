@@ -10,55 +10,12 @@ use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::{GasPatch, GasSetup};
 
-use super::composition::{SLACK, unfit};
 use super::rate_constants;
 use crate::case::model::{Laws, ReactionSpec};
-use crate::case::table::{NO_DRYING, TableReader, is_moisture};
+use crate::case::table::TableReader;
 
 /// How far a stated heat may be from that of the enthalpies.
 const HEAT: f64 = 0.02;
-
-/// Mass fractions of the solids that `{ mass = { … } }` or `{ mole = { … } }` states.
-pub(super) fn composition(table: &TableReader<'_>, solids: &[SolidSpecies]) -> Option<Vec<f64>> {
-    let kind = table.exactly_one()?;
-    let (inner, numbers) = table.by_name(kind)?;
-    let mut fractions = vec![0.0; solids.len()];
-    for (name, value) in numbers? {
-        let Some(k) = solids.iter().position(|one| one.name() == name) else {
-            if is_moisture(&name) {
-                inner.fail(&name, NO_DRYING[0], NO_DRYING[1]);
-            } else {
-                let help = format!("the solids are {}; others go into [solids]", names(solids));
-                inner.fail(&name, "is no solid of the case", help);
-            }
-            return None;
-        };
-        let most = if kind == "mole" {
-            f64::MAX
-        } else {
-            1.0 + SLACK
-        };
-        if !(0.0..=most).contains(&value) {
-            let help = "mass fractions are between 0 and 1, amounts (`mole`) zero or above";
-            inner.fail(&name, format!("is {value}"), help);
-            return None;
-        }
-        fractions[k] = value;
-    }
-    table.finish();
-    let sum: f64 = fractions.iter().sum();
-    if let Some(help) = unfit(kind, sum) {
-        table.fail(kind, format!("sums to {sum}"), help);
-        return None;
-    }
-    if kind == "mole" {
-        for (fraction, solid) in fractions.iter_mut().zip(solids) {
-            *fraction *= solid.molar_mass();
-        }
-    }
-    let sum: f64 = fractions.iter().sum();
-    Some(fractions.iter().map(|fraction| fraction / sum).collect())
-}
 
 /// The heat capacity of a mixture of solids, at points 50 K apart.
 pub(super) fn mixed(fractions: &[f64], solids: &[SolidSpecies]) -> HeatCapacity {
