@@ -41,8 +41,10 @@ use crate::smoother::Operator;
 /// How well the attempts of a window placed what they exchanged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ExchangeConvergence {
-    /// Attempts of the window.
+    /// Attempts of the window, those included after which it was cut.
     pub attempts: u32,
+    /// How often the window was cut before it was committed.
+    pub cuts: u32,
     /// Share of the heat that the last attempt left in the wrong cells of a particle.
     pub misplaced: f64,
     /// False where the attempts ended at their limit with more misplaced than tolerated.

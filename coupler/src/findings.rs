@@ -119,7 +119,8 @@ impl FindingKind {
             ],
             Self::GasIterations => [
                 "gas_iterations",
-                "the gas' outer loop ended at its limit (gas.controls.outer_iterations); residual",
+                "the gas' outer loop ended at its limit (gas.controls.outer_iterations) above gas.controls.outer_tolerance: \
+                 raise the one, or shorten the windows (time.process_step); residual",
                 "1",
             ],
             Self::TurbulenceSolver => [

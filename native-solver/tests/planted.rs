@@ -228,6 +228,7 @@ fn beads(planted: Planted, results: &Path) -> CoupledRun {
         checkpoint_wall: None,
         mapping: Method::Overlap,
         exchange_tolerance: 1e-3,
+        gas_tolerance: 1e-8,
         exchange_attempts: 4,
         cuts: 2,
         repeats: true,

@@ -22,6 +22,7 @@ pub(super) fn plan(case: &Case, prepared: &PreparedCase, checkpoint: CheckpointP
         checkpoint_wall: case.time.checkpoint_wall,
         mapping: method(case),
         exchange_tolerance: case.coupling.exchange_tolerance,
+        gas_tolerance: case.gas.controls.outer_tolerance,
         exchange_attempts: case.coupling.exchange_attempts,
         cuts: case.coupling.exchange_cuts,
         repeats: true,

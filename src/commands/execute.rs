@@ -148,14 +148,20 @@ fn closing(summary: &Summary) -> String {
         summary.case.name, summary.windows, summary.process_time_s, summary.wall_time_s.total
     );
     for (name, quantity) in &summary.quantities {
-        let value = quantity
-            .value
-            .map_or("unknown".into(), |value| format!("{value:.6}"));
+        let late = quantity
+            .expected_at_s
+            .is_some_and(|time| time > summary.process_time_s);
+        let (value, unit) = match quantity.value {
+            Some(value) => (format!("{value:.6}"), quantity.unit.as_str()),
+            None if late => ("unknown".to_owned(), ""),
+            // There is nothing to measure, as for the mean of no particles.
+            None => ("none".to_owned(), ""),
+        };
         let reason = quantity.reason(summary.process_time_s);
         let _ = writeln!(
             text,
             "  {name:24} {value:>16} {:8} {}{}",
-            quantity.unit,
+            unit,
             quantity.verdict.word(),
             reason.map(|words| format!(": {words}")).unwrap_or_default()
         );
@@ -176,6 +182,13 @@ fn closing(summary: &Summary) -> String {
             text,
             "  ledger {name:17} {:>16.3e} {what}",
             line.relative_error
+        );
+    }
+    let cuts = summary.convergence.cuts;
+    if cuts > 0 {
+        let _ = writeln!(
+            text,
+            "  windows were cut {cuts} times (coupling.exchange.cuts)"
         );
     }
     for (name, warning) in &summary.warnings {

@@ -326,7 +326,7 @@ fn converged(summary: &Summary) -> String {
     format!(
         "{} of {} windows ended at the limit of outer iterations; {} outer and {} linear \
          iterations a window; largest residual {}, largest volume residual {}. The exchange took {} \
-         attempts a window; {} windows ended at their limit, the largest misplaced share is {}.",
+         attempts a window; {} windows ended at their limit, the largest misplaced share is {}; windows were cut {} times.",
         sums.unconverged_windows,
         summary.windows,
         per_window(sums.outer_iterations),
@@ -336,6 +336,7 @@ fn converged(summary: &Summary) -> String {
         per_window(sums.attempts),
         sums.unsettled_windows,
         figure(sums.largest_misplaced, 2),
+        sums.cuts,
     )
 }
 

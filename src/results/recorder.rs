@@ -233,6 +233,7 @@ impl Recorder {
         sums.unconverged_windows += u64::from(!window.converged);
         sums.unsettled_windows += u64::from(!moment.exchange_convergence.settled);
         sums.attempts += u64::from(moment.exchange_convergence.attempts);
+        sums.cuts += u64::from(moment.exchange_convergence.cuts);
         sums.largest_misplaced = sums
             .largest_misplaced
             .max(moment.exchange_convergence.misplaced);

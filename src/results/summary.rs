@@ -352,6 +352,9 @@ pub struct ConvergenceSummary {
     /// Attempts of all windows.
     #[serde(default)]
     pub attempts: u64,
+    /// How often windows were cut (`coupling.exchange.cuts`).
+    #[serde(default)]
+    pub cuts: u64,
     /// Largest scaled residual at the end of a window.
     #[serde(deserialize_with = "number")]
     pub largest_residual: f64,

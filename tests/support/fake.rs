@@ -33,6 +33,7 @@ fn seconds(time: f64) -> Ticks {
 /// An exchange that the first attempt settled.
 const SETTLED: ExchangeConvergence = ExchangeConvergence {
     attempts: 1,
+    cuts: 0,
     misplaced: 1e-7,
     settled: true,
 };

@@ -31,8 +31,9 @@ pub(super) struct ExchangeStage {
     pub agreement: ExchangeConvergence,
     /// The gas about which particles were last linearised.
     iterate: GasIterate,
-    /// Attempts at windows that were cut, since the last commit.
+    /// Attempts at windows that were cut, and cuts, since the last commit.
     discarded: u32,
+    cuts: u32,
 }
 
 /// When the attempts of a window end.
@@ -132,6 +133,7 @@ impl ExchangeStage {
         self.settle(with, window)?;
         self.agreement = ExchangeConvergence {
             attempts: self.discarded + window.attempt,
+            cuts: self.cuts,
             misplaced: if settled {
                 smaller(misplaced, off)
             } else {
@@ -144,12 +146,13 @@ impl ExchangeStage {
 
     /// Begins to count attempts anew, after a commit.
     pub fn commit(&mut self) {
-        self.discarded = 0;
+        (self.discarded, self.cuts) = (0, 0);
     }
 
     /// Counts the attempts of a window that is given up with those of the next.
     pub fn discard(&mut self) {
         self.discarded = self.agreement.attempts;
+        self.cuts += 1;
     }
 
     /// Attempts until the exchange is where it belongs and what reacts is what the gas has for it, or the limit is

@@ -77,8 +77,10 @@ impl CoupledRun {
         let id = self.parts.particles.fields().id;
         let (gas, agreement) = (&self.exchange.convergence, &self.exchange.agreement);
         if !gas.converged {
-            let kind = FindingKind::GasIterations;
-            found.push(Finding::unconverged(kind, gas.residual, None));
+            // A solver of the user's own may measure its residual otherwise.
+            let (kind, tolerance) = (FindingKind::GasIterations, self.plan.gas_tolerance);
+            let limit = (gas.residual > tolerance).then_some(tolerance);
+            found.push(Finding::unconverged(kind, gas.residual, limit));
         }
         if let Some(residual) = self.parts.gas.turbulence_residual() {
             let kind = FindingKind::TurbulenceSolver;

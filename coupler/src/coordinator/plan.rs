@@ -32,6 +32,8 @@ pub struct Plan {
     pub mapping: Method,
     /// A window is repeated while more than this share of the exchange is misplaced.
     pub exchange_tolerance: f64,
+    /// Residual above which the gas' outer loop goes on.
+    pub gas_tolerance: f64,
     /// Attempts per window at most.
     pub exchange_attempts: u32,
     /// How often a window whose exchange does not settle may be halved, where no particle moves.
