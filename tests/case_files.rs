@@ -303,6 +303,7 @@ fn places(
                     "solids",
                     "gas.patch",
                     "gas.species_data.transport",
+                    "laws.mass_transfer.diffusivity.species",
                 ]
                 .contains(&key);
                 let below = match (key, chosen) {

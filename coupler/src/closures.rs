@@ -4,7 +4,9 @@ use std::f64::consts::PI;
 
 use calcine_physics::Vec3;
 use calcine_physics::drag::Drag;
-use calcine_physics::film::{FILM_TEMPERATURES, FilmCoefficient, FilmTemperature, FilmTheory};
+use calcine_physics::film::{
+    FILM_TEMPERATURES, FilmCoefficient, FilmDiffusivity, FilmState, FilmTemperature, FilmTheory,
+};
 use calcine_physics::gas_model::GasModel;
 use calcine_physics::heat_transfer::HeatTransfer;
 use calcine_physics::local::LocalGas;
@@ -38,6 +40,8 @@ pub struct Closures {
     /// Mass transfer between gas and particles that react, by the analogy with heat transfer; only asked for
     /// where some do.
     pub mass_transfer: Box<dyn HeatTransfer>,
+    /// By which diffusivities.
+    pub film_diffusivity: FilmDiffusivity,
     /// What the particles of a bed make of eddies.
     pub bed_eddies: Box<dyn BedEddies>,
     /// How it is computed.
@@ -243,12 +247,15 @@ impl Closures {
                         heat_capacity: 1.0,
                         slip: slip(sampled_gas, particles, p, acceleration),
                     };
-                    mixture.diffusivities(
-                        pressure[p],
+                    let state = FilmState {
+                        pressure: pressure[p],
                         temperature,
+                        density: local.density,
+                        viscosity: local.viscosity,
                         composition,
-                        &mut diffusivities,
-                    );
+                    };
+                    let law_of_diffusion = &self.film_diffusivity;
+                    law_of_diffusion.fill(mixture, &state, &mut diffusivities);
                     if *factor == 1.0 {
                         outside.look(&range, p, &local, diameter);
                     }
@@ -447,6 +454,7 @@ mod tests {
             heat_transfer: Box::new(Gunn),
             heat_film: FilmTemperature::Gas,
             mass_transfer: Box::new(Gunn),
+            film_diffusivity: FilmDiffusivity::Fuller,
             bed_eddies: Box::new(NoBedEddies),
             film: FilmTheory {
                 temperature: FilmTemperature::TwoThirds,
@@ -533,6 +541,7 @@ mod tests {
             heat_transfer: Box::new(Gunn),
             heat_film: FilmTemperature::Gas,
             mass_transfer: Box::new(Gunn),
+            film_diffusivity: FilmDiffusivity::Fuller,
             bed_eddies: Box::new(NoBedEddies),
             film: FilmTheory {
                 temperature: FilmTemperature::TwoThirds,

@@ -98,6 +98,7 @@ fn told(law: Box<dyn BedEddies>, acceleration: f64) -> EddyExchange {
         momentum: MomentumModel::A,
         heat_transfer: Box::new(NoHeatTransfer),
         mass_transfer: Box::new(NoHeatTransfer),
+        film_diffusivity: Default::default(),
         bed_eddies: law,
         heat_film: calcine_coupler::physics::film::FilmTemperature::Gas,
         film: calcine_coupler::physics::film::FilmTheory {

@@ -250,6 +250,7 @@ fn beads(planted: Planted, results: &Path) -> CoupledRun {
         momentum: Default::default(),
         heat_transfer: Box::new(Gunn) as Box<dyn HeatTransfer>,
         mass_transfer: Box::new(NoHeatTransfer),
+        film_diffusivity: Default::default(),
         bed_eddies: Box::new(NoBedEddies),
         heat_film: calcine_coupler::physics::film::FilmTemperature::Gas,
         film: calcine_coupler::physics::film::FilmTheory {

@@ -115,6 +115,7 @@ pub(super) fn closures(case: &Case) -> Closures {
         heat_transfer: case.laws.heat_transfer.make(),
         heat_film: case.laws.heat_film,
         mass_transfer: case.laws.mass_transfer.make(),
+        film_diffusivity: case.laws.film_diffusivity.clone(),
         bed_eddies: case.laws.bed_eddies.make(),
         film: case.laws.film,
     }

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use calcine_adapters::openfoam::{chemistry, turbulence};
 use calcine_coupler::gas_chemistry::Combustion;
 use calcine_coupler::mesh::Mesh;
+use calcine_coupler::physics::film::{FilmDiffusivity, ReferenceDiffusivity};
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::law::NONE;
 use calcine_coupler::physics::local::LocalGas;
@@ -140,6 +141,36 @@ fn laws(text: &mut String, case: &Case) {
     }
     for (what, law) in chosen.iter().filter(|(_, law)| law.name != NONE) {
         let _ = writeln!(text, "  {what:<14} {} ({})", law.name, law.source);
+    }
+    if !laws.mass_transfer.is_none() && !case.chemistry.reactions.is_empty() {
+        let how = diffusivity(case);
+        let _ = writeln!(text, "  {:<14} {how}", "of films");
+    }
+}
+
+/// By which diffusivities gases pass films.
+fn diffusivity(case: &Case) -> String {
+    let fuller = "mixture-averaged, of pairs by Fuller, Schettler and Giddings";
+    match &case.laws.film_diffusivity {
+        FilmDiffusivity::Fuller => format!("diffusivities {fuller}"),
+        FilmDiffusivity::Schmidt(schmidt) => {
+            format!("diffusivity of all gases mu/(rho Sc) with Sc {schmidt}")
+        }
+        FilmDiffusivity::Stated(values) => {
+            let names = case.gas.properties.species().iter().zip(values);
+            let of = |one: &ReferenceDiffusivity| {
+                format!(
+                    "{:e} m^2/s (T/{} K)^{} ({} Pa/p)",
+                    one.value, one.at, one.exponent, one.pressure
+                )
+            };
+            let each = names.map(|(name, value)| match value {
+                Some(value) => format!("{name} {}", of(value)),
+                None => format!("{name} {fuller}"),
+            });
+            let each: Vec<String> = each.collect();
+            format!("diffusivities: {}", each.join("; "))
+        }
     }
 }
 

@@ -55,6 +55,15 @@ pub(super) enum AreaName {
     Load,
 }
 
+/// `laws.mass_transfer.diffusivity`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FilmDiffusivityName {
+    /// Mixture-averaged.
+    Fuller,
+    /// By `gas.schmidt`.
+    Schmidt,
+}
+
 /// `laws.radiation.inside`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum InsideName {
@@ -125,6 +134,10 @@ case_words! {
         "overlap" => AreaName::Overlap,
         "force" => AreaName::Force,
         "load" => AreaName::Load,
+    }
+    FilmDiffusivityName {
+        "fuller" => FilmDiffusivityName::Fuller,
+        "schmidt" => FilmDiffusivityName::Schmidt,
     }
     InsideName {
         "isothermal" => InsideName::Isothermal,

@@ -98,6 +98,7 @@ pub fn case() -> Case {
             heat_transfer: LawChoice::named(HEAT_TRANSFER_LAWS, "gunn", Vec::new()).unwrap(),
             heat_film: FilmTemperature::Gas,
             mass_transfer: LawChoice::named(HEAT_TRANSFER_LAWS, NONE, Vec::new()).unwrap(),
+            film_diffusivity: Default::default(),
             bed_eddies: LawChoice::named(BED_EDDY_LAWS, NONE, Vec::new()).unwrap(),
             film: FilmTheory {
                 temperature: FilmTemperature::TwoThirds,

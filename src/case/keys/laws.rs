@@ -14,9 +14,27 @@ const HEAT_TRANSFER: &[Key] = &[
 ];
 
 #[rustfmt::skip]
+const SPECIES_DIFFUSIVITY: &[Key] = &[
+    key("value", Number(D::DIFFUSIVITY, Positive), Required, "Its value.", "\"7.8e-5 m^2/s\""),
+    key("at", Number(D::TEMPERATURE, Positive), Required, "The temperature of the value.", "\"300 K\""),
+    key("pressure", Number(D::PRESSURE, Positive), Default("1 atm"), "The pressure of the value.", "\"1 bar\""),
+    key("exponent", Number(D::NONE, Any), Default("1.75"), "Exponent of the temperature.", "1.5"),
+];
+
+#[rustfmt::skip]
+const FILM_DIFFUSIVITY: &[Key] = &[
+    key("value", Number(D::DIFFUSIVITY, Positive), Without("by Fuller, Schettler and Giddings"), "The value of all species that are not in `species`.", "\"2.1e-5 m^2/s\""),
+    key("at", Number(D::TEMPERATURE, Positive), Without("required with `value`"), "The temperature of the value.", "\"300 K\""),
+    key("pressure", Number(D::PRESSURE, Positive), Default("1 atm"), "The pressure of the value.", "\"1 bar\""),
+    key("exponent", Number(D::NONE, Any), Default("1.75"), "Exponent of the temperature.", "1.5"),
+    key("species", Named(SPECIES_DIFFUSIVITY), Without("none has a value of its own"), "Values of single species of the gas.", "{ H2 = { value = \"7.8e-5 m^2/s\", at = \"300 K\" } }"),
+];
+
+#[rustfmt::skip]
 const MASS_TRANSFER: &[Key] = &[
     key("film", Choice(words::<FilmTemperature>), Default("two-thirds"), "Temperature of the film, at which its concentrations and the coefficient of mass transfer are taken: T_p + (T_gas - T_p)/3; `mean`, of particle and gas; or `gas`. Its composition is that of the gas.", "\"mean\""),
     key("stefan_flow", Choice(words::<StefanFlow>), Default("mass"), "What the net flow through the film does to the transfer of each gas and of heat: by flows of mass with the density of the film, Spalding's ln(1 + B); by flows of moles; or nothing.", "\"molar\""),
+    key("diffusivity", Either(&Choice(words::<FilmDiffusivityName>), &Table(FILM_DIFFUSIVITY)), Default("fuller"), "Diffusivities D of the gases in the film: mixture-averaged, with those of pairs by Fuller, Schettler and Giddings; `schmidt`, viscosity over density over `gas.schmidt` of all gases, as in the gas itself; or stated, value (T/at)^exponent (pressure/p).", "\"schmidt\""),
 ];
 
 #[rustfmt::skip]

@@ -3,7 +3,7 @@
 use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::physics::conduction::{Conduction, GasGap};
 use calcine_coupler::physics::drag::Drag;
-use calcine_coupler::physics::film::{FilmTemperature, FilmTheory};
+use calcine_coupler::physics::film::{FilmDiffusivity, FilmTemperature, FilmTheory};
 use calcine_coupler::physics::heat_transfer::HeatTransfer;
 use calcine_coupler::physics::law::LawChoice;
 use calcine_coupler::physics::turbulence::BedEddies;
@@ -29,6 +29,8 @@ pub struct Laws {
     pub bed_eddies: LawChoice<dyn BedEddies>,
     /// How it is computed.
     pub film: FilmTheory,
+    /// By which diffusivities.
+    pub film_diffusivity: FilmDiffusivity,
     /// Radiation between particles; `None`: none.
     pub radiation: Option<RadiationSpec>,
 }

@@ -1,10 +1,11 @@
 //! `[laws]`: each is stated, none has a default.
 
-use calcine_coupler::physics::film::{FilmTemperature, FilmTheory, StefanFlow};
+use calcine_coupler::physics::film::{FilmDiffusivity, FilmTemperature, FilmTheory, StefanFlow};
 use calcine_coupler::physics::heat_transfer::HeatTransfer;
 use calcine_coupler::physics::law::LawChoice;
 use calcine_coupler::physics::turbulence::BedEddies;
 
+use super::film_diffusivity::{self, FilmGas};
 use super::heat;
 use crate::case::model::Laws;
 use crate::case::table::TableReader;
@@ -13,6 +14,7 @@ use crate::case::table::TableReader;
 pub(super) fn read(
     root: &TableReader<'_>,
     bed_eddies: Option<LawChoice<dyn BedEddies>>,
+    gas: Option<FilmGas<'_>>,
 ) -> Option<Laws> {
     let section = root.table("laws")?;
     let known = section.laws();
@@ -27,13 +29,17 @@ pub(super) fn read(
         table.finish();
         (law, film)
     });
-    let mass_transfer = mass_transfer(&section);
+    let mass_transfer = mass_transfer(&section, gas);
     let conduction = heat::conduction(&section);
     let radiation = heat::radiation(&section);
     section.finish();
     let (drag, momentum) = drag?;
     let (heat_transfer, heat_film) = heat_transfer?;
-    let (mass_transfer, film) = mass_transfer?;
+    let MassTransfer {
+        law: mass_transfer,
+        film,
+        diffusivity: film_diffusivity,
+    } = mass_transfer?;
     Some(Laws {
         drag: drag?,
         momentum,
@@ -48,25 +54,42 @@ pub(super) fn read(
         bed_eddies: bed_eddies?,
         mass_transfer,
         film,
+        film_diffusivity,
     })
 }
 
+/// `laws.mass_transfer`.
+struct MassTransfer {
+    law: LawChoice<dyn HeatTransfer>,
+    film: FilmTheory,
+    diffusivity: FilmDiffusivity,
+}
+
 /// `laws.mass_transfer`; without it none, and its film as by default.
-fn mass_transfer(section: &TableReader<'_>) -> Option<(LawChoice<dyn HeatTransfer>, FilmTheory)> {
+fn mass_transfer(section: &TableReader<'_>, gas: Option<FilmGas<'_>>) -> Option<MassTransfer> {
     let known = &section.laws().heat_transfer;
     if !section.has("mass_transfer") {
         let film = FilmTheory {
             temperature: FilmTemperature::TwoThirds,
             stefan_flow: StefanFlow::Mass,
         };
-        return Some((section.optional_law("mass_transfer", known)?, film));
+        return Some(MassTransfer {
+            law: section.optional_law("mass_transfer", known)?,
+            film,
+            diffusivity: FilmDiffusivity::default(),
+        });
     }
     let (law, table) = section.law("mass_transfer", known)?;
     let (temperature, stefan_flow) = (table.choice("film"), table.choice("stefan_flow"));
+    let diffusivity = film_diffusivity::read(&table, gas);
     table.finish();
     let film = FilmTheory {
         temperature: temperature?,
         stefan_flow: stefan_flow?,
     };
-    Some((law?, film))
+    Some(MassTransfer {
+        law: law?,
+        film,
+        diffusivity: diffusivity?,
+    })
 }

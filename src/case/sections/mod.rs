@@ -6,6 +6,7 @@ mod composition;
 mod conversion;
 mod coupling;
 mod feeds;
+mod film_diffusivity;
 mod gas;
 mod gas_patch;
 mod heat;
@@ -79,7 +80,11 @@ pub(super) fn case(
     let feeds = feeds::feeds(root, particles.as_deref());
     let outlets = feeds::outlets(root);
     let bed_eddies = gas.as_ref().map(|gas| gas.bed_eddies.clone());
-    let laws = laws::read(root, bed_eddies);
+    let film_gas = gas.as_ref().map(|gas| film_diffusivity::FilmGas {
+        species: gas.setup.properties.species(),
+        schmidt: gas.setup.schmidt,
+    });
+    let laws = laws::read(root, bed_eddies, film_gas);
     let walls = walls::walls(root, &materials, mesh.as_ref(), folder);
     let motion = motion::motion(root, time.as_ref().map(|(time, _)| time));
     let coupling = coupling::read(root);

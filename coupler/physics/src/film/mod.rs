@@ -1,10 +1,12 @@
 //! The film of gas about a particle: at which state its properties are taken, and the net flow through it.
 
 mod coefficient;
+mod diffusivity;
 mod stefan;
 mod temperature;
 
 pub use coefficient::{FILM_TEMPERATURES, FilmCoefficient};
+pub use diffusivity::{FilmDiffusivity, FilmState, ReferenceDiffusivity};
 pub use stefan::{StefanFlow, bernoulli};
 pub use temperature::FilmTemperature;
 
