@@ -133,7 +133,12 @@ fn carbon_follows_the_d_squared_law_by_every_choice_of_diffusivities() {
     let folder = tempfile::tempdir().unwrap();
     for (name, diffusivity, expected, tolerance) in [
         ("fuller", "fuller", law("two-thirds", 600.0), 0.01),
-        ("schmidt", "schmidt", slope(kelvin, viscosity / density / 0.7), 0.01),
+        (
+            "schmidt",
+            "schmidt",
+            slope(kelvin, viscosity / density / 0.7),
+            0.01,
+        ),
         ("stated", value, slope(kelvin, stated), 0.01),
         ("of-oxygen", &own, slope(kelvin, stated), 0.01),
         ("of-two", &other, slope(kelvin, stated), 0.01),

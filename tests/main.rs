@@ -37,6 +37,7 @@ mod moving_pairings;
 mod moving_reactions;
 mod moving_single;
 mod openfoam_models;
+mod prescribed_temperature;
 mod reactions;
 mod readers;
 mod results;

@@ -8,6 +8,9 @@ pub const STORAGE_CLOCK: &str = "storage_clock";
 /// Name of the line that is no error either: see [`Ledger::drag_carry`].
 pub const DRAG_CARRY: &str = "drag_carry";
 
+/// Name of the line that is no error either: see [`Ledger::prescribed_heat`].
+pub const PRESCRIBED_HEAT: &str = "prescribed_heat";
+
 /// Of what all elements move, the share below which an element does not take part: what the balances may leave open.
 const TAKES_PART: f64 = 1e-10;
 
@@ -103,6 +106,9 @@ pub struct Ledger {
     /// The impulse in N s of drag that followed the particles (docs/theory.md, DRG-3) and that the gas gives a window late:
     /// no error. `drift` is what it owes at the end of the last window. `None` where drag is constant over windows.
     pub drag_carry: Option<BalanceLine>,
+    /// The heat in J that something outside gave particles of a prescribed temperature (docs/theory.md, BND-1): no error, but
+    /// a term of `energy`, of whose throughput it is a share. `drift` is its sum. `None` where no temperature is prescribed.
+    pub prescribed_heat: Option<BalanceLine>,
     /// The gas' own momentum balance (residual of pressure and momentum solves), in N s.
     pub gas_momentum: BalanceLine,
     /// The momentum of that balance that two clocks make, Σ u (1 − 1/AF) Δ(ε ρ V) (docs/theory.md, TSM-8), in N s: no
@@ -135,6 +141,10 @@ impl Ledger {
             ("particle_momentum", "N s", self.particle_momentum),
         ];
         lines.extend(self.drag_carry.map(|line| (DRAG_CARRY, "N s", line)));
+        lines.extend(
+            self.prescribed_heat
+                .map(|line| (PRESCRIBED_HEAT, "J", line)),
+        );
         lines
     }
 
@@ -163,6 +173,7 @@ impl Ledger {
         ];
         lines.extend(self.elements.iter_mut().map(|(_, line)| line));
         lines.extend(self.drag_carry.as_mut());
+        lines.extend(self.prescribed_heat.as_mut());
         lines
     }
 

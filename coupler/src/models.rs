@@ -9,7 +9,7 @@ mod merged_column;
 
 use calcine_interior::{
     At, Channel, GasLines, Inventory, Newcomer, ParticleModel, SurfaceLine, Surroundings,
-    TEMPERATURE, Transfer, without,
+    TEMPERATURE, Tally, Transfer, without,
 };
 use calcine_physics::film::FilmCoefficient;
 use calcine_physics::thermo::Element;
@@ -344,6 +344,22 @@ impl ParticleModels {
         all
     }
 
+    /// True where something outside may give particles heat, as where their temperature is prescribed.
+    pub fn prescribe(&self) -> bool {
+        self.members.iter().any(|member| member.model.prescribes())
+    }
+
+    /// Heat in J that something outside of the computation gave all particles in the last attempt.
+    pub fn supplied(&self) -> Tally {
+        let mut all = Tally::default();
+        for member in &self.members {
+            for (weight, rows) in &member.alike {
+                all += member.model.supplied(rows) * *weight;
+            }
+        }
+        all
+    }
+
     /// What the particles of these rows hold, those of a row as many times as it stands for.
     pub fn held(&self, rows: impl IntoIterator<Item = usize>) -> Inventory {
         let mut own = vec![Vec::new(); self.members.len()];
@@ -487,6 +503,7 @@ fn gathered<'a>(
         film: gather(rows, count, around.film, films),
         theory: around.theory,
         radius: gather(rows, count, around.radius, radius),
+        end: around.end,
     }
 }
 

@@ -215,6 +215,7 @@ fn attempts_from(
                 stefan_flow: StefanFlow::None,
             },
             radius: &bench.radius,
+            end: 0.0,
         };
         lines.reset(2, 0);
         thin.respond(&around, span, &[0.0; 2], &mut lines).unwrap();

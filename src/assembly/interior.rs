@@ -1,8 +1,10 @@
-//! The inside of the particles of a case: a model for each material, and the network between them.
+//! The inside of the particles of a case: a model for each material and each prescribed temperature, and the network between them.
 
 use calcine_coupler::coordinator::RunError;
 use calcine_coupler::interior::reacting::SolidChemistry;
-use calcine_coupler::interior::{HeatNetwork, ParticleModel, Reacting, Thin};
+use calcine_coupler::interior::{
+    HeatNetwork, ParticleModel, PrescribedTemperature, Reacting, Thin,
+};
 use calcine_coupler::models::ParticleModels;
 use calcine_coupler::part::ParticleFields;
 use calcine_coupler::physics::gas_model::GasModel;
@@ -30,6 +32,15 @@ pub(super) fn models(
     let mut model_of = Vec::new();
     for population in &case.particles {
         let material = population.material;
+        if let Some(schedule) = &population.prescribed_temperature {
+            let law = case.materials[material].heat_capacity.clone();
+            made.push(Box::new(PrescribedTemperature::new(
+                law,
+                schedule.0.clone(),
+            )));
+            model_of.push(made.len() - 1);
+            continue;
+        }
         let index = match place[material] {
             Some(index) => index,
             None => {

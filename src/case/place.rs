@@ -166,7 +166,10 @@ fn spheres(case: &Case, population: &Population) -> Result<Vec<Sphere>, PlaceErr
                 made.push(Sphere {
                     centre: entry.centre,
                     diameter: entry.diameter.unwrap_or(drawn),
-                    temperature: entry.temperature.unwrap_or(population.temperature),
+                    temperature: entry
+                        .temperature
+                        .filter(|_| population.prescribed_temperature.is_none())
+                        .unwrap_or(population.temperature),
                 });
             }
             Ok(made)

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Duration;
 
-use calcine_coupler::ledger::{DRAG_CARRY, STORAGE_CLOCK};
+use calcine_coupler::ledger::{DRAG_CARRY, PRESCRIBED_HEAT, STORAGE_CLOCK};
 use calcine_coupler::supervisor::Interrupts;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
@@ -175,6 +175,7 @@ fn closing(summary: &Summary) -> String {
     {
         let what = match name.as_str() {
             STORAGE_CLOCK => "of all that moved (time splitting; not an error)",
+            PRESCRIBED_HEAT => "of all energy that moved (from outside; not an error)",
             DRAG_CARRY => "of all that moved (a window late; not an error)",
             _ => "relative error",
         };

@@ -14,7 +14,7 @@ mod warnings;
 
 use std::path::{Path, PathBuf};
 
-use calcine_coupler::ledger::{DRAG_CARRY, STORAGE_CLOCK};
+use calcine_coupler::ledger::{DRAG_CARRY, PRESCRIBED_HEAT, STORAGE_CLOCK};
 
 use self::number::{figure, span, with_unit};
 use self::page::{Page, badge, bars, escape, table, tiles};
@@ -288,6 +288,7 @@ fn ledger(summary: &Summary) -> String {
             vec![
                 escape(&match name.as_str() {
                     STORAGE_CLOCK => "storage clock (not an error)".to_owned(),
+                    PRESCRIBED_HEAT => "prescribed heat (not an error)".to_owned(),
                     DRAG_CARRY => "drag carried over (not an error)".to_owned(),
                     _ => name.replace('_', " "),
                 }),

@@ -4,6 +4,7 @@ mod column;
 mod error;
 mod model;
 mod network;
+mod prescribed;
 pub mod reacting;
 mod thin;
 
@@ -17,6 +18,7 @@ pub use network::{
     ExchangeAreas, HeatLaws, HeatNetwork, NeighbourPair, NeighbourWall, Neighbours, NetworkOutcome,
     NetworkSurroundings, RowImbalance, ThermalProperties,
 };
+pub use prescribed::PrescribedTemperature;
 pub use reacting::Reacting;
 pub use thin::{TEMPERATURE, Thin};
 

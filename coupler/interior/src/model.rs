@@ -38,19 +38,29 @@ pub struct Surroundings<'a> {
     pub theory: FilmTheory,
     /// Radii at the start of the window in m.
     pub radius: &'a [f64],
+    /// Process time at the end of the span in s.
+    pub end: f64,
 }
 
 /// What a particle takes from the network over its surface temperature T: Q = k (T − T_free), the gas beside it and all
 /// that happens inside over the span eliminated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SurfaceLine {
-    /// k in W/K, positive.
+    /// k in W/K, positive; infinite where heat does not move the temperature.
     pub conductance: f64,
     /// T_free in K: the surface temperature at the end of the span without a network.
     pub temperature: f64,
 }
 
 impl SurfaceLine {
+    /// That of a surface whose temperature in K heat does not move.
+    pub fn prescribed(temperature: f64) -> Self {
+        Self {
+            conductance: f64::INFINITY,
+            temperature,
+        }
+    }
+
     /// That of a particle of one temperature, with an implicit step: it stores `stored` = C/Δτ in W/K from the temperature
     /// `from` in K, and exchanges `conductance` in W/K with gas of the temperature `gas` in K.
     pub fn of_one_temperature(stored: f64, from: f64, conductance: f64, gas: f64) -> Self {
@@ -328,6 +338,18 @@ pub trait ParticleModel: Send + Sync {
 
     /// What the last attempt changed since the last commit in these rows, as differences row by row.
     fn changed(&self, rows: &[usize]) -> Inventory;
+
+    /// True where something outside of the computation may give its particles heat; the same over the whole run.
+    fn prescribes(&self) -> bool {
+        false
+    }
+
+    /// Heat in J that something outside of the computation gave these rows in the last attempt, as where their temperature
+    /// is prescribed, row by row.
+    fn supplied(&self, rows: &[usize]) -> Tally {
+        let _ = rows;
+        Tally::default()
+    }
 
     /// What these rows hold at the last commit.
     fn held(&self, rows: &[usize]) -> Inventory;

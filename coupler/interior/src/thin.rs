@@ -75,6 +75,13 @@ impl Thin {
     }
 }
 
+impl Thin {
+    /// Gives all particles a temperature in K, as an attempt does.
+    pub(crate) fn set_attempt(&mut self, kelvin: f64) {
+        self.temperature.fill(kelvin);
+    }
+}
+
 impl ParticleModel for Thin {
     fn columns(&self) -> &[StateColumn] {
         &self.columns
@@ -256,6 +263,7 @@ mod tests {
                 stefan_flow: StefanFlow::None,
             },
             radius: &[],
+            end: 0.0,
         }
     }
 

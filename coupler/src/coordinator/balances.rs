@@ -1,6 +1,6 @@
 //! Stage: the ledger of a window (docs/theory.md, CON-2). Gas amounts count in process time.
 
-use calcine_interior::Inventory;
+use calcine_interior::{Inventory, Tally};
 use calcine_physics::Vec3;
 use calcine_physics::gas_model::GasModel;
 use calcine_physics::thermo::Element;
@@ -19,6 +19,8 @@ pub(super) struct WindowBalances<'a> {
     pub motion: &'a MotionStage,
     /// What changed inside particles, and the heat in W from walls and surroundings into them.
     pub interior: (Inventory, &'a [f64]),
+    /// Heat in J that something outside gave particles.
+    pub supplied: Tally,
     pub gas: &'a GasModel,
     /// True where mass passes between gas and particles.
     pub channels: bool,
@@ -91,23 +93,28 @@ impl WindowBalances<'_> {
             let rows = values.iter().copied().enumerate();
             rows.map(weighted).sum::<f64>()
         };
-        let magnitude = exchange.heat.iter().map(|q| q.abs()).enumerate();
+        let each = exchange.heat.iter().map(|q| q.abs()).enumerate();
         let to_particles = (total(&exchange.heat) + total(&species.carried)) * process;
         let exchanged = process
             * (received.heat.iter().map(|q| q.abs()).sum::<f64>()
-                + magnitude.map(weighted).sum::<f64>());
+                + each.map(weighted).sum::<f64>());
         let formed = if self.channels {
             formation(self.gas, received)
         } else {
             0.0
         };
+        let magnitude = scale * (gas.magnitude() - gas.exchange.abs())
+            + changes.magnitude
+            + walls_magnitude
+            + self.supplied.magnitude
+            + exchanged;
         ledger.energy.book(
-            scale * (gas.open() + gas.exchange + formed) + changes.sum - walls,
-            scale * (gas.magnitude() - gas.exchange.abs())
-                + changes.magnitude
-                + walls_magnitude
-                + exchanged,
+            scale * (gas.open() + gas.exchange + formed) + changes.sum - walls - self.supplied.sum,
+            magnitude,
         );
+        if let Some(line) = &mut ledger.prescribed_heat {
+            line.book(self.supplied.sum, magnitude);
+        }
         ledger
             .energy_exchange
             .book(to_gas + to_particles, exchanged);

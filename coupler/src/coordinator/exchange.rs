@@ -260,6 +260,7 @@ impl ExchangeStage {
             film: &laws.coefficients.film,
             theory: laws.closures.film,
             radius: particles.radius,
+            end: window.start.process.seconds() + window.span.process.seconds(),
         };
         // Heat that reactions set free inside reaches the network of a first attempt by a second look.
         let first = window.attempt == 0 && interior.has_reactions() && interior.has_network();

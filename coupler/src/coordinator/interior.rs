@@ -3,7 +3,7 @@
 
 use calcine_interior::{
     GasLines, HeatNetwork, Inventory, NetworkOutcome, NetworkSurroundings, RowImbalance,
-    Surroundings, Transfer,
+    Surroundings, Tally, Transfer,
 };
 
 use super::error::RunError;
@@ -188,6 +188,11 @@ impl InteriorStage {
         let reservoirs = self.network.as_ref();
         let heat = reservoirs.map_or(&[][..], |network| &network.reservoir_heat);
         (self.models.changed(), heat)
+    }
+
+    /// Heat in J that something outside gave the particles in the last attempt.
+    pub fn supplied(&self) -> Tally {
+        self.models.supplied()
     }
 
     /// Gives up the attempts since the last commit.

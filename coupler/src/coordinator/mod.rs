@@ -144,6 +144,7 @@ impl CoupledRun {
         let ledger = Ledger {
             elements: names.map(|name| (name, BalanceLine::default())).collect(),
             drag_carry: plan.window_drag.follows().then(BalanceLine::default),
+            prescribed_heat: models.prescribe().then(BalanceLine::default),
             ..Ledger::default()
         };
         let motion = MotionStage::new(plan.free.clone(), plan.gravity, plan.window_drag, &fields);
@@ -409,6 +410,7 @@ impl CoupledRun {
             exchange: &self.exchange,
             motion: &self.motion,
             interior: self.interior.changed(),
+            supplied: self.interior.supplied(),
             gas: &self.laws.closures.gas,
             channels: self.interior.has_channels(),
         };

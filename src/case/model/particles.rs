@@ -6,6 +6,7 @@ use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::packing::Sizes;
 use calcine_coupler::packing::regular::Lattice;
 use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::Schedule;
 
 /// Particles of one kind.
 #[derive(Clone, Debug)]
@@ -24,8 +25,10 @@ pub struct Population {
     pub velocity: Vec3,
     /// Where they are at the start.
     pub place: PlacementSpec,
-    /// Start temperature in K; a file of particles may state its own.
+    /// Start temperature in K; a file of particles may state its own where none is prescribed.
     pub temperature: f64,
+    /// Temperature in K over process time that they have whatever heat they take; `None`: they follow their heat.
+    pub prescribed_temperature: Option<Schedule>,
     /// Statistical weight: number of real particles that each stands for.
     pub weight: f64,
 }

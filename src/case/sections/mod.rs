@@ -100,6 +100,8 @@ pub(super) fn case(
     let chemistry = inventory::inventory(solids, reactions, &materials, populations);
     if let Some(particles) = &particles {
         conversion::fits(root, &chemistry, &materials, particles);
+        let reactions = chemistry.reactions.len();
+        particles::prescribed_fit(root, particles, &materials, reactions);
     }
     if let Some(laws) = &laws {
         reactions::fits(root, &chemistry, laws, openfoam.solver);

@@ -7,6 +7,7 @@ use calcine_coupler::physics::conduction::Conductivity;
 use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::physics::thermo::Nasa7;
+use calcine_coupler::setup::Schedule;
 
 use super::composition::of_solids;
 use super::conversion;
@@ -234,7 +235,7 @@ fn population(
         let help = "remove it, or write motion = \"free\"";
         table.fail("velocity", "does not go with motion = \"frozen\"", help);
     }
-    let temperature = table.number("temperature");
+    let (temperature, prescribed_temperature) = temperature(table);
     let weight = weight(table, motion);
     let placed = table.table("place").and_then(|reader| {
         let sizes = sizes.as_ref().map(|(sizes, _)| sizes);
@@ -253,8 +254,42 @@ fn population(
         velocity: velocity.map_or(Vec3::zeros(), Vec3::from),
         place: placed?,
         temperature: temperature?,
+        prescribed_temperature,
         weight: weight?,
     })
+}
+
+/// The temperature at the start, and that of all times where it is prescribed.
+fn temperature(table: &TableReader<'_>) -> (Option<f64>, Option<Schedule>) {
+    match table.exactly_one() {
+        Some("prescribed_temperature") => {
+            let schedule = table.schedule("prescribed_temperature");
+            (schedule.as_ref().map(|one| one.at(0.0)), schedule)
+        }
+        Some(_) => (table.number("temperature"), None),
+        None => (None, None),
+    }
+}
+
+/// Particles of a prescribed temperature do not react: what is set free in them would be nobody's.
+pub(super) fn prescribed_fit(
+    root: &TableReader<'_>,
+    particles: &[Population],
+    materials: &[MaterialSpec],
+    reactions: usize,
+) {
+    for (table, population) in root.tables("particles").iter().zip(particles) {
+        let material = &materials[population.material];
+        let reacts = reactions > 0 && material.composition.is_some();
+        if reacts && population.prescribed_temperature.is_some() {
+            let rule = format!(
+                "is of particles of \"{}\", which has a composition and may react",
+                material.name
+            );
+            let help = "write `temperature`, or give them a material with `heat_capacity` in place of `composition`";
+            table.fail("prescribed_temperature", rule, help);
+        }
+    }
 }
 
 /// The statistical weight; particles that move touch each other one by one.

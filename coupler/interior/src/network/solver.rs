@@ -7,7 +7,7 @@ use calcine_numerics::parallel::{fill, sum, update, update_both};
 const TOLERANCE: f64 = 1e-12;
 
 /// A symmetric network: node i holds C_i (T_i − T_i,old) = h_i (S_i − T_i) + Σ_j G_ij (T_j − T_i); for a particle
-/// C and T_old are its surface line.
+/// C and T_old are its surface line. Where C is infinite T_i is T_old.
 #[derive(Clone, Copy, Debug)]
 pub struct NetworkSystem<'a> {
     /// Pairs of nodes and their conductance G in W/K.
@@ -111,18 +111,30 @@ impl NetworkSolver {
         for scratch in [&mut *diagonal, r, p, q] {
             scratch.resize(count, 0.0);
         }
+        let fixed = |i: usize| capacity[i].is_infinite();
         fill(diagonal, |i| {
             let own = capacity[i] + sink_conductance[i];
             let sum = graph.around(i).fold(own, |sum, (_, g)| sum + g);
             // A node to which nothing leads has no equation.
             if sum == 0.0 { 1.0 } else { sum }
         });
+        update(x, |i, x| {
+            if fixed(i) {
+                *x = old[i];
+            }
+        });
         // Residuals at the old temperatures, which set the scale, and at those to start from.
         fill(p, |i| {
+            if fixed(i) {
+                return 0.0;
+            }
             let flows = graph.around(i).map(|(j, g)| g * (old[j] - old[i]));
             flows.fold(drive[i], |sum, flow| sum + flow)
         });
         fill(r, |i| {
+            if fixed(i) {
+                return 0.0;
+            }
             let own = drive[i] - (capacity[i] + sink_conductance[i]) * (x[i] - old[i]);
             let flows = graph.around(i).map(|(j, g)| g * (x[j] - x[i]));
             flows.fold(own, |sum, flow| sum + flow)
@@ -145,6 +157,9 @@ impl NetworkSolver {
             update(p, |i, p| *p = r[i] / diagonal[i] + share * *p);
             let direction = &*p;
             fill(q, |i| {
+                if fixed(i) {
+                    return 0.0;
+                }
                 let own = diagonal[i] * direction[i];
                 graph
                     .around(i)

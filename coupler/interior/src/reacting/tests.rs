@@ -92,6 +92,7 @@ fn follow(
                 film: &film,
                 theory: PLAIN,
                 radius: &radius,
+                end: 0.0,
             };
             let mut lines = GasLines::default();
             lines.reset(1, reacting.channels().len());
@@ -522,6 +523,7 @@ fn a_reaction_of_order_zero_takes_from_a_cell_in_proportion_to_what_it_holds() {
         film: &[FilmCoefficient::constant(1e3); 2],
         theory: PLAIN,
         radius: &[RADIUS],
+        end: 0.0,
     };
     let mut lines = GasLines::default();
     lines.reset(1, 1);
@@ -544,6 +546,7 @@ fn heat_that_would_take_a_particle_2_percent_from_its_integration_is_owed_to_it(
         film: &[FilmCoefficient::constant(0.05); 3],
         theory: PLAIN,
         radius: &[RADIUS],
+        end: 0.0,
     };
     for (share, is_owed) in [(0.0199, false), (0.0201, true), (-0.0201, true)] {
         let mut reacting = particle(reduction(0.01, 1e-4));
