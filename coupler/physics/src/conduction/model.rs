@@ -1,5 +1,6 @@
 //! What a law of conduction through contacts is told, and gives.
 
+use std::f64::consts::PI;
 use std::fmt::Debug;
 
 /// Two spheres that overlap; a flat wall is one of endless radius.
@@ -18,6 +19,20 @@ impl SphereContact {
     pub fn conductivity(&self) -> f64 {
         let [own, other] = self.conductivity;
         2.0 * own * other / (own + other)
+    }
+
+    /// Area in m² of the circle in which the spheres cut each other; zero where they do not.
+    pub fn intersection(&self) -> f64 {
+        let [own, other] = self.radius;
+        if other.is_infinite() {
+            // A plane cuts the sphere: r² = R² − (R − δ)².
+            let area = PI * self.overlap * (2.0 * own - self.overlap);
+            return area.max(0.0);
+        }
+        let d = own + other - self.overlap;
+        // Heron: 16 times the square of the triangle of both radii and the distance is 4 d² r².
+        let product = (own + other - d) * (d + own - other) * (d - own + other) * (d + own + other);
+        PI * product.max(0.0) / (4.0 * d * d)
     }
 
     /// Reduced radius R* in m, 1/R* = 1/R₁ + 1/R₂.
