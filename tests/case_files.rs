@@ -107,10 +107,17 @@ fn set_changes_values_and_refuses_what_it_does_not_know() {
     let changed = set("particles[0].diameter=9 mm").unwrap();
     assert!((changed.particles[0].sizes.largest() - 9e-3).abs() < 1e-17);
     assert_ne!(case.hash, read(path, &[]).unwrap().hash);
+    let named = set("particles.beads.diameter=9 mm").unwrap();
+    assert_eq!(named.hash, changed.hash);
+    let stranger = set("particles.strangers.diameter=1 mm").unwrap_err();
+    let help = &stranger.problems()[0].help;
+    assert!(help.contains("write particles[0]"), "{help}");
     for wrong in [
         "time.ent=3 s",
         "time.end",
         "particles[7].diameter=1 mm",
+        "particles.beads.diameter=-1 mm",
+        "particles.strangers.diameter=1 mm",
         "time.end.x=1",
         "tme.end=1 s",
         "time.end=-1 s",

@@ -14,8 +14,9 @@ use calcine_coupler::physics::numbers::VoidFraction;
 use calcine_coupler::physics::sphere;
 use calcine_coupler::setup::{GasPatch, InletFlow};
 
+use super::cautions::cautions;
 use super::model::{Case, MotionSpec, Population};
-use super::{buoyancy, expectations, ranges, sizes};
+use super::{buoyancy, ranges, sizes};
 
 /// Above this, a number of the time splitting gets a warning (docs/theory.md, TSM-6, TSM-8).
 const WARNING: f64 = 0.1;
@@ -103,7 +104,7 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
     if let Some(warning) = buoyancy::warning(number) {
         let _ = writeln!(text, "  warning: {warning}");
     }
-    for warning in expectations::beyond_the_end(case) {
+    for warning in cautions(case) {
         let _ = writeln!(text, "  warning: {warning}");
     }
     for population in &case.particles {

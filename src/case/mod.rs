@@ -2,6 +2,7 @@
 
 mod bed;
 pub mod buoyancy;
+pub mod cautions;
 mod check;
 pub mod contacts;
 pub mod expectations;
@@ -93,7 +94,7 @@ pub fn parse_with(
     set: &[String],
     laws: &LawCatalogue,
 ) -> Result<Case, CaseErrors> {
-    let effective = apply(path, text, set)?;
+    let (effective, keys) = apply(path, text, set)?;
     let document = syntax(path, &effective)?;
     let problems = Problems::default();
     problems.not_finite("", document.as_table());
@@ -102,7 +103,8 @@ pub fn parse_with(
     root.finish();
     let mut problems = problems.take();
     for problem in &mut problems {
-        if let Some(setting) = set.iter().rev().find(|setting| blamed(problem, setting)) {
+        let mut given = set.iter().zip(&keys).rev();
+        if let Some((setting, _)) = given.find(|(_, key)| blamed(problem, key)) {
             problem.message = format!("`--set {setting}`: {}", problem.message);
         }
     }
@@ -150,11 +152,7 @@ fn syntax<'t>(path: &Path, text: &'t str) -> Result<Document<&'t str>, CaseError
 }
 
 /// True where a problem is about the key of a `--set`, or about a table that it made.
-fn blamed(problem: &Problem, setting: &str) -> bool {
-    let key = setting
-        .split_once('=')
-        .map_or(setting, |(key, _)| key)
-        .trim();
+fn blamed(problem: &Problem, key: &str) -> bool {
     let Some((place, rule)) = problem
         .message
         .strip_prefix('`')
@@ -170,44 +168,52 @@ fn blamed(problem: &Problem, setting: &str) -> bool {
     inside(place, key) || (rule.trim_start() == table::UNKNOWN && inside(key, place))
 }
 
-/// The text with `--set` applied; lines stay where they are unless a key is new.
-fn apply(path: &Path, text: &str, set: &[String]) -> Result<String, CaseErrors> {
+/// The text with `--set` applied, in which lines stay where they are unless a key is new; and the key that each changed,
+/// entries of lists by their numbers.
+fn apply(path: &Path, text: &str, set: &[String]) -> Result<(String, Vec<String>), CaseErrors> {
     if set.is_empty() {
-        return Ok(text.to_owned());
+        return Ok((text.to_owned(), Vec::new()));
     }
+    let mut keys = Vec::new();
     syntax(path, text)?;
     let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| {
         one(path, text, 0..0, error.to_string(), "see toml.io")
     })?;
     for setting in set {
-        let wrong = |why: &str| {
+        let wrong = |why: &str, help: &str| {
             let message = format!("`--set {setting}`: {why}");
-            one(
-                path,
-                text,
-                0..0,
-                message,
-                "write it as --set time.acceleration=200",
-            )
+            one(path, text, 0..0, message, help)
         };
-        let (key, value) = setting
-            .split_once('=')
-            .ok_or_else(|| wrong("there is no `=`"))?;
+        let (key, value) = setting.split_once('=').ok_or_else(|| {
+            let help = "write it as --set time.acceleration=200";
+            wrong("there is no `=`", help)
+        })?;
         let value = value.trim();
         // A bare text such as 10 s or native needs no quotes on the command line.
         let value: Value = value.parse().unwrap_or_else(|_| value.into());
         let mut item: &mut Item = document.as_item_mut();
+        let mut place = String::new();
         for part in key.trim().split('.') {
+            let help = entries(item, &place);
+            if let Some(index) = entry(item, part) {
+                place.push_str(&format!("[{index}]"));
+            } else {
+                place = table::dotted(&place, part);
+            }
             item = step(item, part)
-                .ok_or_else(|| wrong(&format!("there is no `{part}` to change")))?;
+                .ok_or_else(|| wrong(&format!("there is no `{part}` to change"), &help))?;
         }
         *item = Item::Value(value);
+        keys.push(place);
     }
-    Ok(document.to_string())
+    Ok((document.to_string(), keys))
 }
 
-/// One step down a dotted key; `name[2]` or a number steps into a list.
+/// One step down a dotted key; `name[2]` steps into a list, and so does the name of one of its entries.
 fn step<'i>(item: &'i mut Item, part: &str) -> Option<&'i mut Item> {
+    if let Some(index) = entry(item, part) {
+        return item.get_mut(index);
+    }
     let (name, index) = match part.strip_suffix(']').and_then(|part| part.split_once('[')) {
         Some((name, index)) => (name, Some(index.parse::<usize>().ok()?)),
         None => (part, None),
@@ -228,6 +234,35 @@ fn step<'i>(item: &'i mut Item, part: &str) -> Option<&'i mut Item> {
         None => Some(below),
         Some(index) => below.get_mut(index),
     }
+}
+
+/// The entry of a list that has this name.
+fn entry(list: &Item, name: &str) -> Option<usize> {
+    let named = |own: Option<&str>| own == Some(name);
+    if let Some(tables) = list.as_array_of_tables() {
+        let mut tables = tables.iter();
+        return tables.position(|one| named(one.get("name").and_then(Item::as_str)));
+    }
+    let mut values = list.as_array()?.iter();
+    values.position(|one| {
+        let table = one.as_inline_table();
+        named(
+            table
+                .and_then(|table| table.get("name"))
+                .and_then(Value::as_str),
+        )
+    })
+}
+
+/// What a key may be in place of one that is not there: the entries of a list.
+fn entries(item: &Item, key: &str) -> String {
+    let count = match (item.as_array_of_tables(), item.as_array()) {
+        (Some(tables), _) => tables.len(),
+        (None, Some(values)) => values.len(),
+        (None, None) => return "write it as --set time.acceleration=200".into(),
+    };
+    let last = count.saturating_sub(1);
+    format!("`{key}` is a list: name one of its entries, or write {key}[0] to {key}[{last}]")
 }
 
 /// SHA-256 (hex) of the values, whatever their order, spacing and comments.

@@ -12,8 +12,9 @@ use signal_hook::iterator::Signals;
 use super::failure::{Failure, chain};
 use super::parallel::Transport;
 use crate::assembly::{Pairing, PreparedCase, SolverStarts};
+use crate::case::buoyancy;
+use crate::case::cautions::cautions;
 use crate::case::model::Case;
-use crate::case::{buoyancy, expectations};
 use crate::exit;
 use crate::progress::Progress;
 use crate::results::Summary;
@@ -67,7 +68,7 @@ pub(super) fn execute(
     let interrupts = Interrupts::default();
     let _signals = SignalThread::start(&interrupts, settings.stop_after)?;
     tell_buoyancy(case, prepared, settings.progress);
-    for warning in expectations::beyond_the_end(case) {
+    for warning in cautions(case) {
         eprintln!("warning: {warning}");
     }
     let mut builder = Simulation::open(&case.path)

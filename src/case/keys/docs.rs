@@ -12,7 +12,8 @@ pub const BEGIN: &str = "## All keys\n";
 
 const HEAD: &str = "
 Made from the declarations that the reader works with. A required key is so where its table is there; `NAME` is a
-name that you choose; entries of lists count from 0: `--set \"particles[0].diameter=9 mm\"`.
+name that you choose; entries of lists count from 0, `--set \"particles[0].diameter=9 mm\"`, or go by their `name`,
+`--set \"feeds.charge.mass_rate=2 kg/h\"`.
 ";
 
 const TABLE: &str =

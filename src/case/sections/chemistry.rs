@@ -13,6 +13,7 @@ use calcine_coupler::physics::thermo::Mixture;
 use calcine_coupler::setup::GasPatch;
 
 use super::common::existing;
+use super::rate_constants::{impossible, possible_in_gas};
 use super::reactions::{heat_agrees, lacking};
 use crate::case::table::TableReader;
 use crate::case::words::CombustionModel;
@@ -60,6 +61,17 @@ pub(super) fn chemistry(
     let key = if named { "mechanism" } else { "reactions" };
     if !last_rests(&table, key, &mechanism) {
         return None;
+    }
+    for step in mechanism.steps().iter().filter(|_| named) {
+        let constants = match &step.rate {
+            RateConstant::Arrhenius(constant) => vec![constant],
+            RateConstant::Falloff { high, low, .. } => vec![high, low],
+        };
+        if let Some(what) = constants.into_iter().find_map(impossible) {
+            let rule = format!("has {} with {what}", step.name);
+            table.fail(key, rule, "correct the file, or the units that it states");
+            return None;
+        }
     }
     for step in mechanism.steps() {
         // Those of the case's own reactions are told at their orders.
@@ -213,6 +225,9 @@ fn reaction(
     let (mut constant, mut orders) = (None, None);
     if let Some(rate) = &rate {
         constant = arrhenius(rate);
+        if let Some(constant) = &constant {
+            possible_in_gas(rate, constant);
+        }
         orders = rate.by_name("orders");
         rate.finish();
     }

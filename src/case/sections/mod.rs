@@ -96,6 +96,7 @@ pub(super) fn case(
         particles::weights_fit(root, particles, laws);
     }
     let reactions = reactions::reactions(root, &solids, gas.as_ref().map(|gas| &gas.setup));
+    solids::no_drying(root, &solids, &materials, &reactions);
     let populations = particles.as_deref().unwrap_or_default();
     let chemistry = inventory::inventory(solids, reactions, &materials, populations);
     if let Some(particles) = &particles {

@@ -1,4 +1,4 @@
-//! Which rate constants of particles' reactions a case may state.
+//! Which rate constants a case may state.
 
 use calcine_coupler::interior::reacting::Rate;
 use calcine_coupler::physics::reaction::Arrhenius;
@@ -13,6 +13,11 @@ const FASTEST_SURFACE: f64 = 1e30;
 /// Largest rate constant in mol, m and s: molecules vibrate 1e14 times a second, and what orders do to the unit is within
 /// a factor of 1e16, three orders of the concentration of a solid.
 const FASTEST_VOLUME: f64 = 1e30;
+/// Its unit, and what is said of it.
+const WORDS: (&str, &str) = (
+    " in mol, m and s",
+    "above 1e30, where molecules vibrate 1e14 times a second",
+);
 
 /// Refuses rate constants that no reaction has: with them fields and particles would overflow.
 pub(super) fn possible(reaction: &TableReader<'_>, rate: &Rate) {
@@ -25,14 +30,29 @@ pub(super) fn possible(reaction: &TableReader<'_>, rate: &Rate) {
             within(&table, rate_constant, FASTEST_SURFACE, (" m/s", why));
         }
         Rate::Power(law) => {
-            let why = "above 1e30, where molecules vibrate 1e14 times a second";
-            let words = (" in mol, m and s", why);
-            within(&table, &law.rate_constant, FASTEST_VOLUME, words);
+            within(&table, &law.rate_constant, FASTEST_VOLUME, WORDS);
             if let (Some(constant), Some(table)) = (&law.in_series, table.table("in_series")) {
-                within(&table, constant, FASTEST_VOLUME, words);
+                within(&table, constant, FASTEST_VOLUME, WORDS);
             }
         }
     }
+}
+
+/// Refuses rate constants of the gas' own reactions that none has.
+pub(super) fn possible_in_gas(rate: &TableReader<'_>, constant: &Arrhenius) {
+    within(rate, constant, FASTEST_VOLUME, WORDS);
+}
+
+/// What is wrong with a rate constant of a mechanism; `None` where it is one that a reaction may have.
+pub(super) fn impossible(constant: &Arrhenius) -> Option<String> {
+    let kelvin = LOOKED_AT
+        .iter()
+        .find(|kelvin| !(0.0..=FASTEST_VOLUME).contains(&constant.at(**kelvin).abs()))?;
+    let (unit, why) = WORDS;
+    let value = constant.at(*kelvin);
+    Some(format!(
+        "a rate constant of {value:.3e}{unit} at {kelvin} K, {why}"
+    ))
 }
 
 fn within(table: &TableReader<'_>, constant: &Arrhenius, most: f64, words: (&str, &str)) {

@@ -406,7 +406,7 @@ impl<'a> TableReader<'a> {
     }
 }
 
-fn dotted(place: &str, key: &str) -> String {
+pub(in crate::case) fn dotted(place: &str, key: &str) -> String {
     if place.is_empty() {
         key.into()
     } else {

@@ -1,0 +1,305 @@
+//! What of a case that is in order is likely not meant.
+
+use std::collections::BTreeSet;
+
+use calcine_coupler::interior::reacting::Rate;
+use calcine_coupler::physics::kinetics::RateConstant;
+use calcine_coupler::physics::reaction::Arrhenius;
+use calcine_coupler::setup::GasPatch;
+
+use super::expectations;
+use super::model::Case;
+use super::units::shown;
+
+/// Share of a pressure by which another differs that is no longer a head of flow: between 1 bar and 1 atm it is 0.013.
+const UNIT_SLIP: f64 = 5e-3;
+/// Ratio of two pressures of one gas above which one of them is likely wrong.
+const FAR: f64 = 1.5;
+/// Most names in one warning.
+const MOST_NAMES: usize = 3;
+
+/// Warnings about a case, in a fixed order.
+pub fn cautions(case: &Case) -> Vec<String> {
+    let mut all = expectations::beyond_the_end(case);
+    all.extend(energies(case));
+    all.extend(idle(case));
+    all.extend(intensities(case));
+    all.extend(far_pressures(case));
+    all.extend(driving_pressures(case));
+    all
+}
+
+/// Reactions that slow down as they get hotter.
+fn energies(case: &Case) -> Option<String> {
+    let falls = |constant: &Arrhenius| constant.activation_energy < 0.0;
+    let solid = |rate: &Rate| match rate {
+        Rate::Power(law) => falls(&law.rate_constant) || law.in_series.as_ref().is_some_and(falls),
+        Rate::Core { rate_constant, .. } => falls(rate_constant),
+    };
+    let gas = |rate: &RateConstant| match rate {
+        RateConstant::Arrhenius(constant) => falls(constant),
+        RateConstant::Falloff { high, low, .. } => falls(high) || falls(low),
+    };
+    let of_particles = case.chemistry.reactions.iter();
+    let of_particles = of_particles.filter(|one| solid(&one.rate));
+    let of_gas = case.gas.chemistry.reacting().into_iter();
+    let of_gas = of_gas.flat_map(|reacting| reacting.mechanism.steps());
+    let of_gas = of_gas.filter(|one| gas(&one.rate));
+    let names: Vec<&str> = of_particles
+        .map(|one| one.name.as_str())
+        .chain(of_gas.map(|one| one.name.as_str()))
+        .collect();
+    let list = listed(&names)?;
+    Some(format!(
+        "negative activation energy of {list}: the rate falls as it gets hotter, which fits of recombinations and of adsorption \
+         do; write it positive if that is not meant"
+    ))
+}
+
+/// The first of some names, and how many follow.
+fn listed(names: &[&str]) -> Option<String> {
+    let shown: Vec<String> = names
+        .iter()
+        .take(MOST_NAMES)
+        .map(|name| format!("`{name}`"))
+        .collect();
+    let more = names.len().saturating_sub(MOST_NAMES);
+    match more {
+        0 => (!shown.is_empty()).then(|| shown.join(", ")),
+        _ => Some(format!("{} and {more} more", shown.join(", "))),
+    }
+}
+
+/// Reactions of particles whose solids are in none and are made by none.
+fn idle(case: &Case) -> Vec<String> {
+    let chemistry = &case.chemistry;
+    let held = case.particles.iter().flat_map(|population| {
+        let own = chemistry.compositions.get(population.material);
+        own.into_iter().flatten().enumerate()
+    });
+    let mut there: BTreeSet<usize> = held.filter(|(_, y)| **y > 0.0).map(|(s, _)| s).collect();
+    let lacking = |there: &BTreeSet<usize>, solids: &[(usize, f64)]| {
+        let taken = solids.iter().filter(|(_, moles)| *moles < 0.0);
+        let mut missing = taken.filter(|(s, _)| !there.contains(s));
+        missing.next().map(|(s, _)| *s)
+    };
+    loop {
+        let before = there.len();
+        for one in &chemistry.reactions {
+            if lacking(&there, &one.solids).is_none() {
+                there.extend(one.solids.iter().map(|part| part.0));
+            }
+        }
+        if there.len() == before {
+            break;
+        }
+    }
+    let reactions = chemistry.reactions.iter();
+    let idle = reactions.filter_map(|one| Some((one, lacking(&there, &one.solids)?)));
+    idle.map(|(one, solid)| {
+        format!(
+            "`{}` never happens: it takes {}, which no particles are made of and no reaction that happens makes; state it in \
+             the `composition` of their material, or remove the reaction",
+            one.name,
+            chemistry.solids[solid].name()
+        )
+    })
+    .collect()
+}
+
+/// Fluctuations larger than the mean flow.
+fn intensities(case: &Case) -> Vec<String> {
+    let patches = case.gas.patches.iter();
+    let eddies = patches.filter_map(|(name, patch)| match patch {
+        GasPatch::Inlet {
+            turbulence: Some(eddies),
+            ..
+        } => Some((name, eddies.intensity)),
+        _ => None,
+    });
+    let wild = eddies.filter(|(_, intensity)| *intensity > 1.0);
+    wild.map(|(name, intensity)| {
+        format!(
+            "the intensity of turbulence at `{name}` is {}: its fluctuations are larger than its mean flow; it is a fraction, so \
+             that {} percent is {}",
+            shown(intensity),
+            shown(intensity),
+            shown(intensity / 100.0)
+        )
+    })
+    .collect()
+}
+
+/// Patches through which pressure drives gas: name, pressure in Pa at the start, and height along gravity in m where it
+/// holds, of those that say.
+fn open(case: &Case) -> Vec<(&str, f64, Option<f64>)> {
+    let gravity = case.gas.gravity;
+    let up = |at: calcine_coupler::physics::Vec3| match gravity.norm() {
+        0.0 => 0.0,
+        norm => -at.dot(&gravity) / norm,
+    };
+    let patches = case.gas.patches.iter();
+    let open = patches.filter_map(|(name, patch)| match patch {
+        GasPatch::Outlet { pressure, .. } => Some((name.as_str(), pressure.at(0.0), None)),
+        GasPatch::Opening { pressure, at, .. } => {
+            Some((name.as_str(), pressure.at(0.0), Some(up(*at))))
+        }
+        _ => None,
+    });
+    open.collect()
+}
+
+/// Pressures of patches that have little to do with that of the gas at the start.
+fn far_pressures(case: &Case) -> Vec<String> {
+    let start = case.gas.pressure;
+    let far = |pressure: f64| pressure > FAR * start || start > FAR * pressure;
+    let patches = open(case)
+        .into_iter()
+        .filter(|(_, pressure, _)| far(*pressure));
+    patches
+        .map(|(name, pressure, _)| {
+            format!(
+                "`{name}` has a pressure of {} Pa, but `gas.initial.pressure` is {} Pa: the gas starts with a blast; write the \
+                 same where that is not meant",
+                shown(pressure),
+                shown(start)
+            )
+        })
+        .collect()
+}
+
+/// Pairs of open patches whose pressures differ as units do.
+fn driving_pressures(case: &Case) -> Vec<String> {
+    let gas = &case.gas;
+    let density = gas
+        .properties
+        .density(gas.pressure, gas.temperature, &gas.composition);
+    let open = open(case);
+    let pairs = open.iter().enumerate();
+    let pairs = pairs.flat_map(|(k, one)| open[k + 1..].iter().map(move |other| (one, other)));
+    let driven = pairs.filter_map(|(one, other)| {
+        // Gas at rest has its own weight between heights.
+        let weight = match (one.2, other.2) {
+            (Some(low), Some(high)) => density * gas.gravity.norm() * (high - low),
+            _ => 0.0,
+        };
+        let head = (one.1 - other.1 - weight).abs();
+        (head > UNIT_SLIP * one.1.min(other.1)).then_some((one, other, head))
+    });
+    driven
+        .map(|(one, other, head)| {
+            format!(
+                "`{}` and `{}` have pressures of {} and {} Pa: where nothing resists, the difference drives {:.0} m/s; 1 atm is \
+                 101325 Pa, 1 bar 100000 Pa",
+                one.0,
+                other.0,
+                shown(one.1),
+                shown(other.1),
+                (2.0 * head / density).sqrt()
+            )
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The warnings about a good case with keys set.
+    fn said(name: &str, set: &[&str]) -> Vec<String> {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let path = folder.join(format!("tests/inputs/good/{name}.toml"));
+        let set: Vec<String> = set.iter().map(|one| (*one).to_owned()).collect();
+        cautions(&crate::case::read(&path, &set).unwrap())
+    }
+
+    fn one(name: &str, set: &[&str]) -> String {
+        let all = said(name, set);
+        assert_eq!(all.len(), 1, "{all:?}");
+        all.concat()
+    }
+
+    #[test]
+    fn cases_that_say_what_they_mean_are_not_warned_of() {
+        for name in [
+            "reactions",
+            "gas-reactions",
+            "turbulent-duct",
+            "open-box",
+            "held-bed",
+        ] {
+            assert_eq!(said(name, &[]), Vec::<String>::new(), "{name}");
+        }
+    }
+
+    #[test]
+    fn negative_activation_energies_of_particles_and_gas_are_told_by_name() {
+        let text = one(
+            "reactions",
+            &["reactions.rust.rate.activation_energy=-3 kJ/mol"],
+        );
+        assert!(text.contains("of `rust`: the rate falls"), "{text}");
+        let text = one(
+            "reactions",
+            &["reactions.rust.rate.in_series.activation_energy=-3 kJ/mol"],
+        );
+        assert!(text.contains("of `rust`:"), "{text}");
+        let set = "gas.chemistry.reactions.fuel.rate.activation_energy=-3 kJ/mol";
+        let text = one("gas-reactions", &[set]);
+        assert!(text.contains("of `fuel`:"), "{text}");
+    }
+
+    #[test]
+    fn a_reaction_whose_solids_are_nowhere_never_happens() {
+        let text = one(
+            "reactions",
+            &["materials.ore.composition={ mole = { Fe3O4 = 1 } }"],
+        );
+        assert!(
+            text.starts_with("`magnetite` never happens: it takes Fe2O3"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn intensities_above_one_are_told_as_percent() {
+        let text = one(
+            "turbulent-duct",
+            &["gas.patch.bottom.inlet.turbulence.intensity=5"],
+        );
+        assert!(
+            text.contains("at `bottom` is 5") && text.contains("5 percent is 0.05"),
+            "{text}"
+        );
+        let key = "gas.patch.bottom.inlet.turbulence.intensity=1";
+        assert!(said("turbulent-duct", &[key]).is_empty());
+    }
+
+    #[test]
+    fn pressures_that_drive_a_gale_or_start_with_a_blast_are_told() {
+        let text = one("turbulent-duct", &["gas.patch.top.outlet.pressure=2 atm"]);
+        assert!(text.contains("`top` has a pressure of 202650 Pa"), "{text}");
+        assert!(said("turbulent-duct", &["gas.patch.top.outlet.pressure=1.4 atm"]).is_empty());
+        // √(2 · 1325 Pa/(1.17 kg/m³)) of either opening against the third patch.
+        let west = "gas.patch.west.opening.pressure=1 bar";
+        let told = said("open-box", &[west]);
+        assert_eq!(told.len(), 2, "{told:?}");
+        assert!(told[0].contains("drives 48 m/s"), "{told:?}");
+        let named = |name: &str| told.iter().all(|one| one.contains(name));
+        assert!(named("`west`") && named("1 bar 100000 Pa"), "{told:?}");
+    }
+
+    #[test]
+    fn surroundings_of_one_column_of_air_drive_nothing_at_any_height() {
+        // 100 m of air of 300 K weigh 1154 Pa, more than a slip of units of half a percent.
+        let set = [
+            "gas.patch.east.opening.pressure=100171 Pa",
+            "gas.patch.east.opening.pressure_at=0 0 100 m",
+        ];
+        assert!(
+            said("open-box", &set)
+                .iter()
+                .all(|one| !one.contains("`west`"))
+        );
+    }
+}
