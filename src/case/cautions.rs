@@ -159,8 +159,8 @@ fn far_pressures(case: &Case) -> Vec<String> {
     patches
         .map(|(name, pressure, _)| {
             format!(
-                "`{name}` has a pressure of {} Pa, but `gas.initial.pressure` is {} Pa: the gas starts with a blast; write the \
-                 same where that is not meant",
+                "`{name}` has a pressure of {} Pa, but `gas.initial.pressure` is {} Pa, which its density follows: the patch \
+                 sets the level of the pressures alone; write the same in both",
                 shown(pressure),
                 shown(start)
             )
@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn pressures_that_drive_a_gale_or_start_with_a_blast_are_told() {
+    fn pressures_that_drive_a_gale_or_are_not_those_of_the_density_are_told() {
         let text = one("turbulent-duct", &["gas.patch.top.outlet.pressure=2 atm"]);
         assert!(text.contains("`top` has a pressure of 202650 Pa"), "{text}");
         assert!(said("turbulent-duct", &["gas.patch.top.outlet.pressure=1.4 atm"]).is_empty());

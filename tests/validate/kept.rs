@@ -39,7 +39,9 @@ pub fn run(name: &str, case: &Path, set: &[String], from: Option<&Path>) -> Kept
         .arg(&out);
     match from {
         Some(from) if !begun => command.arg("--from").arg(from),
-        _ => command.arg("--resume"),
+        // Resumed before its first checkpoint it starts again.
+        _ if out.exists() => command.arg("--resume"),
+        _ => &mut command,
     };
     for setting in set {
         command.args(["--set", setting]);

@@ -3,6 +3,7 @@
 use calcine_coupler::interior::reacting::Reaction;
 use calcine_coupler::physics::solid::HeatCapacity;
 use calcine_coupler::physics::solids::SolidSpecies;
+use calcine_coupler::physics::thermo::Element;
 
 use crate::case::model::MaterialSpec;
 use crate::case::table::{NO_DRYING, TableReader, is_moisture};
@@ -39,11 +40,18 @@ pub(super) fn no_drying(
         let mut held = held.filter(|own| own.get(s).is_some_and(|y| *y > 0.0));
         let mut parts = reactions.iter().flat_map(|one| &one.solids);
         let leaves = parts.any(|&(k, moles)| k == s && moles < 0.0);
-        if is_moisture(solid.name()) && held.next().is_some() && !leaves {
+        if (is_moisture(solid.name()) || is_water(solid)) && held.next().is_some() && !leaves {
             let help = format!("{}, or state a reaction that takes it up", NO_DRYING[1]);
             section.fail(solid.name(), NO_DRYING[0], help);
         }
     }
+}
+
+/// Whether a solid is water whatever its name.
+fn is_water(solid: &SolidSpecies) -> bool {
+    let of = |element: Element| solid.atoms()[element as usize];
+    let others: f64 = solid.atoms().iter().sum::<f64>() - of(Element::H) - of(Element::O);
+    others == 0.0 && of(Element::O) > 0.0 && of(Element::H) == 2.0 * of(Element::O)
 }
 
 fn solid(name: &str, table: &TableReader<'_>) -> Option<SolidSpecies> {
