@@ -19,7 +19,7 @@ pub struct RunSettings<'a> {
     pub results: &'a Path,
     /// True where every part starts from the committed checkpoint.
     pub resume: bool,
-    /// Another run of the same mesh and particles to continue from; not with `resume`.
+    /// Another run on the same mesh to continue from; not with `resume`.
     pub from: Option<&'a Origin>,
 }
 

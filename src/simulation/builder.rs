@@ -128,7 +128,7 @@ impl SimulationBuilder {
         self
     }
 
-    /// Continues from the last checkpoint of another run of the same mesh and particles, with clocks that start at
+    /// Continues from the last checkpoint of another run on the same mesh, with clocks that start at
     /// zero.
     #[must_use]
     pub fn from(mut self, folder: impl Into<PathBuf>) -> Self {

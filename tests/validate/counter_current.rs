@@ -8,6 +8,7 @@
 //! diffusion of upwind convection in the cells of the case. Each section is mixed, and spheres are points: what a sphere, and the width over
 //! which it exchanges, carries along the shaft is not in it.
 
+use calcine_coupler::physics::points::linear;
 use calcine_coupler::physics::thermo::Species;
 
 /// Slices over the height.
@@ -86,7 +87,7 @@ fn solid_heat_capacity(kelvin: f64) -> f64 {
         (1500.0, 1318.0),
         (2000.0, 1364.0),
     ];
-    between(&table, kelvin)
+    linear(&table, kelvin)
 }
 
 /// Above the cold, in J/kg, by the midpoints of parts.
@@ -97,18 +98,10 @@ fn solid_enthalpy(kelvin: f64) -> f64 {
 }
 
 fn solid_conductivity(kelvin: f64) -> f64 {
-    between(&[(300.0, 20.0), (1000.0, 6.0), (1500.0, 5.0)], kelvin)
+    linear(&[(300.0, 20.0), (1000.0, 6.0), (1500.0, 5.0)], kelvin)
 }
 
 const EMISSIVITY: f64 = 0.4;
-
-fn between(table: &[(f64, f64)], at: f64) -> f64 {
-    let next = table
-        .partition_point(|one| one.0 < at)
-        .clamp(1, table.len() - 1);
-    let ((x, y), (to, end)) = (table[next - 1], table[next]);
-    y + (end - y) * ((at - x) / (to - x)).clamp(0.0, 1.0)
-}
 
 /// Air's viscosity in Pa s and conductivity in W/m/K, power laws through 300 and 1500 K.
 fn viscosity(kelvin: f64) -> f64 {

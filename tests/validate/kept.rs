@@ -1,12 +1,16 @@
 //! Runs that take long and are kept below the target directory: one that has ended is not repeated, one that was
-//! interrupted goes on.
+//! interrupted goes on, by the same program; another one begins anew.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use calcine::results::Summary;
 use calcine::results::read::Series;
+use sha2::{Digest, Sha256};
 
+/// Part at the end of a run in which it is asked whether it is steady.
+const LAST: f64 = 0.2;
 /// Exit code of a run that was interrupted and can go on.
 const INTERRUPTED: i32 = 75;
 
@@ -23,13 +27,27 @@ impl Kept {
         let column = self.series.column(&format!("quantities.{quantity}"));
         *column.last().unwrap()
     }
+
+    /// By how much in K the mean temperature of the particles moves over the last part of the run.
+    pub fn moved(&self) -> f64 {
+        let mean = self.series.column("quantities.mean_temperature");
+        let last = mean.len() - 1;
+        mean[last] - mean[last - (LAST * last as f64) as usize]
+    }
+}
+
+/// Where the runs of this program are: its SHA-256 names the folder.
+fn folder() -> PathBuf {
+    let program = fs::read(env!("CARGO_BIN_EXE_calcine")).unwrap();
+    let hash = Sha256::digest(program);
+    let name: String = hash[..8].iter().map(|byte| format!("{byte:02x}")).collect();
+    let kept = Path::new(env!("CARGO_TARGET_TMPDIR")).join("kept");
+    kept.join(name)
 }
 
 /// The native run of a case with settings under a name, from the end of another run where one is given.
 pub fn run(name: &str, case: &Path, set: &[String], from: Option<&Path>) -> Kept {
-    let out = Path::new(env!("CARGO_TARGET_TMPDIR"))
-        .join("kept")
-        .join(name);
+    let out = folder().join(name);
     let begun = out.join("checkpoint").exists();
     let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
     command

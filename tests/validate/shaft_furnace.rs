@@ -10,6 +10,7 @@ use std::path::Path;
 use calcine::results::Summary;
 use calcine::results::read::{self, Series};
 use calcine_coupler::ledger::STORAGE_CLOCK;
+use calcine_coupler::physics::points::linear;
 use calcine_coupler::physics::thermo::Species;
 
 use crate::counter_current::Shaft;
@@ -18,7 +19,7 @@ use crate::shaft_flames::{ABOVE, LEFT, MOMENTUM, fuel};
 use crate::shipped;
 
 /// What the paper reports in K: gas, particles.
-const PAPER: [f64; 2] = [2243.0, 2209.0];
+pub const PAPER: [f64; 2] = [2243.0, 2209.0];
 /// Height of the burners in m.
 const BURNERS: f64 = 0.30;
 /// Side of the burners' cells in m, and the smallest particle's diameter.
@@ -136,8 +137,7 @@ fn peaks(base: &Kept) {
         "{gas} {particle}"
     );
     // Steady: over the last fifth of the run the mean moves by less than 1 % of the span.
-    let mean = base.series.column("quantities.mean_temperature");
-    let moved = mean[mean.len() - 1] - mean[mean.len() * 4 / 5];
+    let moved = base.moved();
     println!("  the mean temperature moves by {moved:.1} K in the last fifth");
     assert!(moved.abs() < 0.01 * SPAN, "{moved}");
 }
@@ -236,22 +236,22 @@ fn nothing_is_lost(case: &Path, out: &Path) {
 /// The same start at AF 678 and at half of it. The first charge falls in motion time, twice as fast in process time with the one
 /// as with the other: what differs while particles of the start are there is printed, not asserted.
 fn paces(fast: &Series, slow: &Series) {
-    let [of_fast, of_slow] = [fast, slow].map(|one| one.column("process_time").to_vec());
     for (name, band) in PACES {
-        let column = format!("quantities.{name}");
-        let (quick, slow) = (fast.column(&column), slow.column(&column));
+        let points = |one: &Series| -> Vec<(f64, f64)> {
+            let values = one.column(&format!("quantities.{name}")).iter();
+            one.column("process_time")
+                .iter()
+                .copied()
+                .zip(values.copied())
+                .collect()
+        };
+        let slow = points(slow);
         let mut worst = [(0.0_f64, 0.0); 2];
-        for (k, time) in of_fast.iter().enumerate() {
-            let next = of_slow
-                .partition_point(|other| other < time)
-                .clamp(1, of_slow.len() - 1);
-            let (a, b) = (of_slow[next - 1], of_slow[next]);
-            let share = ((time - a) / (b - a)).clamp(0.0, 1.0);
-            let there = slow[next - 1] + share * (slow[next] - slow[next - 1]);
-            let off = (quick[k] - there).abs();
-            let worst = &mut worst[usize::from(*time >= SETTLED)];
+        for (time, kelvin) in points(fast) {
+            let off = (kelvin - linear(&slow, time)).abs();
+            let worst = &mut worst[usize::from(time >= SETTLED)];
             if off > worst.0 {
-                *worst = (off, *time);
+                *worst = (off, time);
             }
         }
         let [before, after] = worst;

@@ -73,9 +73,7 @@ impl Thin {
                 .temperature(self.law.enthalpy(start) + energy / self.mass[row])
         }
     }
-}
 
-impl Thin {
     /// Gives all particles a temperature in K, as an attempt does.
     pub(crate) fn set_attempt(&mut self, kelvin: f64) {
         self.temperature.fill(kelvin);

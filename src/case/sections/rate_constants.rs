@@ -43,13 +43,11 @@ pub(super) fn possible_in_gas(rate: &TableReader<'_>, constant: &Arrhenius) {
     within(rate, constant, FASTEST_VOLUME, WORDS);
 }
 
-/// What is wrong with a rate constant of a mechanism; `None` where it is one that a reaction may have.
+/// What is wrong with a rate constant of a mechanism, which may be negative beside another one of the same reaction; `None`
+/// where it is one that a reaction may have.
 pub(super) fn impossible(constant: &Arrhenius) -> Option<String> {
-    let kelvin = LOOKED_AT
-        .iter()
-        .find(|kelvin| !(0.0..=FASTEST_VOLUME).contains(&constant.at(**kelvin).abs()))?;
+    let (kelvin, value) = beyond(|kelvin| constant.at(kelvin).abs(), FASTEST_VOLUME)?;
     let (unit, why) = WORDS;
-    let value = constant.at(*kelvin);
     Some(format!(
         "a rate constant of {value:.3e}{unit} at {kelvin} K, {why}"
     ))
@@ -57,13 +55,17 @@ pub(super) fn impossible(constant: &Arrhenius) -> Option<String> {
 
 fn within(table: &TableReader<'_>, constant: &Arrhenius, most: f64, words: (&str, &str)) {
     let (unit, why) = words;
-    let beyond = |kelvin: &&f64| !(0.0..=most).contains(&constant.at(**kelvin));
-    if let Some(kelvin) = LOOKED_AT.iter().find(beyond) {
-        let rule = format!(
-            "makes the rate constant {:.3e}{unit} at {kelvin} K, {why}",
-            constant.at(*kelvin)
-        );
+    if let Some((kelvin, value)) = beyond(|kelvin| constant.at(kelvin), most) {
+        let rule = format!("makes the rate constant {value:.3e}{unit} at {kelvin} K, {why}");
         let help = "correct the factor and its unit, `exponent` or `activation_energy`";
         table.fail("factor", rule, help);
     }
+}
+
+/// The first temperature in K at which a rate constant is below zero, above the most, or no number, and what it is there.
+fn beyond(at: impl Fn(f64) -> f64, most: f64) -> Option<(f64, f64)> {
+    let values = LOOKED_AT.iter().map(|&kelvin| (kelvin, at(kelvin)));
+    values
+        .into_iter()
+        .find(|(_, value)| !(0.0..=most).contains(value))
 }
