@@ -137,6 +137,67 @@ fn set_changes_values_and_refuses_what_it_does_not_know() {
 }
 
 #[test]
+fn set_replaces_an_entry_of_a_list_and_refuses_what_is_no_table() {
+    let path = &Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/settled-bed.toml");
+    let set = |text: &str| read(path, &[text.to_owned()]);
+    let (plain, place) = (read(path, &[]).unwrap(), plain_entries(path));
+    for (list, count, index) in place {
+        // An entry in its own place changes nothing, wherever its list is.
+        let text = format!("{list}[{index}]={}", entry(path, &list, index));
+        let again = set(&text).unwrap_or_else(|error| panic!("{text}: {error}"));
+        assert_eq!(again.hash, plain.hash, "{text}");
+        for wrong in ["3", "\"text\"", "[]"] {
+            let text = format!("{list}[{index}]={wrong}");
+            let error = set(&text).unwrap_err();
+            let message = &error.problems()[0].message;
+            let told = format!("`--set {text}`: `{list}[{index}]` is a table, and ");
+            assert!(message.starts_with(&told), "{message}");
+        }
+        let beyond = format!("{list}[{count}]={{}}");
+        let error = set(&beyond).unwrap_err();
+        let help = &error.problems()[0].help;
+        assert!(
+            help.starts_with(&format!("`{list}` is a list")),
+            "{beyond}: {help}"
+        );
+    }
+    let changed = set("time.end=0.2 s").unwrap().changes;
+    assert_eq!(changed, ["time.end = \"0.2 s\" in place of \"0.4 s\""]);
+    let new = set("time.acceleration=1").unwrap().changes;
+    assert_eq!(
+        new,
+        ["time.acceleration = 1, which the file does not state"]
+    );
+    // Less than an entry needs is told of the entry, which is not dropped.
+    let error = set("walls[0]={ name = \"floor\" }").unwrap_err();
+    let message = &error.problems()[0].message;
+    assert!(message.contains("`walls[0]"), "{message}");
+}
+
+/// Each entry of the lists at the top of a case: the list, its length and the entry's place.
+fn plain_entries(path: &Path) -> Vec<(String, usize, usize)> {
+    let text = std::fs::read_to_string(path).unwrap();
+    let document: toml_edit::DocumentMut = text.parse().unwrap();
+    let lists = document.iter().filter_map(|(name, item)| {
+        let count = item.as_array_of_tables()?.len();
+        Some((name.to_owned(), count))
+    });
+    lists
+        .flat_map(|(name, count)| (0..count).map(move |index| (name.clone(), count, index)))
+        .collect()
+}
+
+/// An entry as it is written on one line.
+fn entry(path: &Path, list: &str, index: usize) -> String {
+    let text = std::fs::read_to_string(path).unwrap();
+    let document: toml_edit::DocumentMut = text.parse().unwrap();
+    let table = document[list].as_array_of_tables().unwrap().get(index);
+    let mut inline = table.unwrap().clone().into_inline_table();
+    inline.fmt();
+    inline.to_string()
+}
+
+#[test]
 fn eddies_and_the_stirred_reactor_have_their_documented_numbers_where_a_case_has_none() {
     use calcine_coupler::gas_chemistry::Combustion;
     use calcine_coupler::setup::Turbulence;

@@ -135,6 +135,28 @@ fn openfoam_s_gas_of_7000_kelvin_is_computed_and_told_of() {
 }
 
 #[test]
+fn gas_too_fast_for_low_mach_flow_is_told_of() {
+    let directory = TempDir::new().unwrap();
+    let set = [
+        "gas.initial.temperature=300 K",
+        "gas.initial.velocity=0 0 150 m/s",
+        "gas.patch.bottom.inlet.temperature=300 K",
+        "gas.patch.bottom.inlet.superficial_velocity=150 m/s",
+    ];
+    let words: Vec<&str> = set.iter().flat_map(|one| ["--set", *one]).collect();
+    let (output, out) = hot(directory.path(), &words);
+    let warning = shown(&output, &out, "mach_number");
+    assert_eq!((warning.windows, warning.count), (20, 160));
+    assert_eq!(warning.limit, Some(0.3));
+    // √(γ R T/M) of four parts of nitrogen and one of oxygen is 348.0 m/s.
+    assert!(
+        (warning.worst - 150.0 / 348.0).abs() < 1e-3,
+        "{}",
+        warning.worst
+    );
+}
+
+#[test]
 fn particles_above_the_polynomials_of_their_material_are_told_of_by_their_id() {
     let directory = TempDir::new().unwrap();
     let mut simulation = Simulation::open(good("two-in-contact"))

@@ -112,7 +112,7 @@ fn the_summary_has_the_stable_names_of_the_design() {
     let status = fs::read_to_string(out.join("status.json")).unwrap();
     let status: serde_json::Value = serde_json::from_str(&status).unwrap();
     assert_eq!(status["fraction_done"], 1.0);
-    assert_eq!(status["state"], "fail");
+    assert_eq!(status["state"], "complete");
 }
 
 #[test]

@@ -12,6 +12,8 @@ pub enum FindingKind {
     GasTemperature,
     /// Mass fraction of gas below 0 or above 1.
     MassFraction,
+    /// Gas so fast that its density follows its velocity.
+    MachNumber,
     /// Void fraction of a cell that is not in (0, 1].
     VoidFraction,
     /// Temperature of particles for which the properties of their material are not given.
@@ -46,9 +48,10 @@ pub enum FindingKind {
 
 impl FindingKind {
     /// All kinds.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::GasTemperature,
         Self::MassFraction,
+        Self::MachNumber,
         Self::VoidFraction,
         Self::ParticleTemperature,
         Self::DragVoidFraction,
@@ -75,6 +78,11 @@ impl FindingKind {
                 "K",
             ],
             Self::MassFraction => ["mass_fraction", "mass fractions outside 0 to 1", "1"],
+            Self::MachNumber => [
+                "mach_number",
+                "gas so fast that its density follows its velocity, which low-Mach flow leaves out; Mach number",
+                "1",
+            ],
             Self::VoidFraction => ["void_fraction", "void fractions outside 0 to 1", "1"],
             Self::ParticleTemperature => [
                 "particle_temperature",

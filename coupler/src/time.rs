@@ -12,7 +12,7 @@ pub struct Ticks(i64);
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum TimeError {
     /// Not a number, or beyond the range of the clock.
-    #[error("a time of {seconds} s does not fit the clock, which ends at 9.2e6 s (106 days)")]
+    #[error("a time of {seconds:e} s does not fit the clock, which ends at 9.2e6 s (106 days)")]
     OutOfRange {
         /// The offending time in s.
         seconds: f64,

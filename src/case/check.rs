@@ -26,6 +26,9 @@ const WARNING: f64 = 0.1;
 pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f64) -> String {
     let cells = mesh.cells();
     let mut text = format!("{} ({})\n", case.title, case.path.display());
+    for change in &case.changes {
+        let _ = writeln!(text, "  set            {change}");
+    }
     let time = &case.time;
     let (mut motion, mut windows, mut from) = (0.0, 0.0, 0.0);
     for (index, &(start, factor)) in time.acceleration.steps().iter().enumerate() {
@@ -109,6 +112,9 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
     }
     for population in &case.particles {
         splitting(&mut text, case, population, void_fraction);
+        if let Some(line) = prescribed(population) {
+            let _ = writeln!(text, "    {line}");
+        }
     }
     honoured(&mut text, case);
     text
@@ -341,6 +347,22 @@ fn splitting(text: &mut String, case: &Case, population: &Population, eps: f64) 
     }
 }
 
+/// Of particles whose temperature is prescribed, between what values.
+fn prescribed(population: &Population) -> Option<String> {
+    let values = population.prescribed_temperature.as_ref()?.0.iter();
+    let values = values.map(|(_, value)| *value);
+    let (low, high) = values.fold((f64::MAX, f64::MIN), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    let range = match low == high {
+        true => format!("{low} K"),
+        false => format!("{low} to {high} K"),
+    };
+    Some(format!(
+        "temperature prescribed, {range}; the heat that it takes is `prescribed_heat` of the ledger"
+    ))
+}
+
 /// The gas at the start, at the fastest inlet's superficial velocity.
 fn local(case: &Case, eps: f64, density: f64) -> Option<LocalGas> {
     let fastest = case
@@ -402,6 +424,19 @@ mod tests {
         assert_eq!(
             added("two-populations"),
             "0/G, 0/alphat, 0/k, constant/fvOptions, constant/turbulenceProperties, system/fvSchemes"
+        );
+    }
+
+    #[test]
+    fn prescribed_temperatures_are_told_with_their_range() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let path = folder.join("tests/inputs/good/prescribed-temperature.toml");
+        let case = crate::case::read(&path, &[]).unwrap();
+        assert_eq!(prescribed(&case.particles[0]), None);
+        let told = prescribed(&case.particles[1]).unwrap();
+        assert!(
+            told.starts_with("temperature prescribed, 1200 to 1300 K;"),
+            "{told}"
         );
     }
 

@@ -17,9 +17,11 @@ mod problem;
 mod ranges;
 pub mod schema;
 mod sections;
+mod set;
 pub mod sizes;
 mod step;
 mod stl;
+mod syntax;
 mod table;
 pub mod units;
 mod words;
@@ -27,7 +29,7 @@ mod words;
 use std::path::Path;
 
 use sha2::{Digest, Sha256};
-use toml_edit::{Document, DocumentMut, Item, Value};
+use toml_edit::{Item, Value};
 
 pub use check::check_report;
 pub use located::located;
@@ -39,6 +41,7 @@ pub use step::settle;
 
 use calcine_coupler::motion::WallShape;
 use model::Case;
+use syntax::{one, syntax};
 use table::{Problems, TableReader};
 
 use crate::laws::LawCatalogue;
@@ -94,7 +97,7 @@ pub fn parse_with(
     set: &[String],
     laws: &LawCatalogue,
 ) -> Result<Case, CaseErrors> {
-    let (effective, keys) = apply(path, text, set)?;
+    let (effective, changes) = set::apply(path, text, set)?;
     let document = syntax(path, &effective)?;
     let problems = Problems::default();
     problems.not_finite("", document.as_table());
@@ -103,14 +106,15 @@ pub fn parse_with(
     root.finish();
     let mut problems = problems.take();
     for problem in &mut problems {
-        let mut given = set.iter().zip(&keys).rev();
-        if let Some((setting, _)) = given.find(|(_, key)| blamed(problem, key)) {
+        let mut given = set.iter().zip(&changes).rev();
+        if let Some((setting, _)) = given.find(|(_, change)| blamed(problem, &change.key)) {
             problem.message = format!("`--set {setting}`: {}", problem.message);
         }
     }
     match case {
         Some(mut case) if problems.is_empty() => {
             case.hash = with_files(&case);
+            case.changes = changes.iter().map(set::Change::line).collect();
             Ok(case)
         }
         _ if problems.is_empty() => {
@@ -120,35 +124,6 @@ pub fn parse_with(
         }
         _ => Err(CaseErrors::new(path, &effective, problems)),
     }
-}
-
-fn one(
-    path: &Path,
-    text: &str,
-    span: std::ops::Range<usize>,
-    message: String,
-    help: &str,
-) -> CaseErrors {
-    let problem = Problem {
-        message,
-        help: help.into(),
-        span,
-        line: 0,
-    };
-    CaseErrors::new(path, text, vec![problem])
-}
-
-fn syntax<'t>(path: &Path, text: &'t str) -> Result<Document<&'t str>, CaseErrors> {
-    Document::parse(text).map_err(|error| {
-        let message = format!("not TOML: {}", error.message().replace('\n', ", "));
-        one(
-            path,
-            text,
-            error.span().unwrap_or(0..0),
-            message,
-            "see toml.io for the syntax",
-        )
-    })
 }
 
 /// True where a problem is about the key of a `--set`, or about a table that it made.
@@ -166,103 +141,6 @@ fn blamed(problem: &Problem, key: &str) -> bool {
             .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
     };
     inside(place, key) || (rule.trim_start() == table::UNKNOWN && inside(key, place))
-}
-
-/// The text with `--set` applied, in which lines stay where they are unless a key is new; and the key that each changed,
-/// entries of lists by their numbers.
-fn apply(path: &Path, text: &str, set: &[String]) -> Result<(String, Vec<String>), CaseErrors> {
-    if set.is_empty() {
-        return Ok((text.to_owned(), Vec::new()));
-    }
-    let mut keys = Vec::new();
-    syntax(path, text)?;
-    let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| {
-        one(path, text, 0..0, error.to_string(), "see toml.io")
-    })?;
-    for setting in set {
-        let wrong = |why: &str, help: &str| {
-            let message = format!("`--set {setting}`: {why}");
-            one(path, text, 0..0, message, help)
-        };
-        let (key, value) = setting.split_once('=').ok_or_else(|| {
-            let help = "write it as --set time.acceleration=200";
-            wrong("there is no `=`", help)
-        })?;
-        let value = value.trim();
-        // A bare text such as 10 s or native needs no quotes on the command line.
-        let value: Value = value.parse().unwrap_or_else(|_| value.into());
-        let mut item: &mut Item = document.as_item_mut();
-        let mut place = String::new();
-        for part in key.trim().split('.') {
-            let help = entries(item, &place);
-            if let Some(index) = entry(item, part) {
-                place.push_str(&format!("[{index}]"));
-            } else {
-                place = table::dotted(&place, part);
-            }
-            item = step(item, part)
-                .ok_or_else(|| wrong(&format!("there is no `{part}` to change"), &help))?;
-        }
-        *item = Item::Value(value);
-        keys.push(place);
-    }
-    Ok((document.to_string(), keys))
-}
-
-/// One step down a dotted key; `name[2]` steps into a list, and so does the name of one of its entries.
-fn step<'i>(item: &'i mut Item, part: &str) -> Option<&'i mut Item> {
-    if let Some(index) = entry(item, part) {
-        return item.get_mut(index);
-    }
-    let (name, index) = match part.strip_suffix(']').and_then(|part| part.split_once('[')) {
-        Some((name, index)) => (name, Some(index.parse::<usize>().ok()?)),
-        None => (part, None),
-    };
-    if name.is_empty() {
-        return None;
-    }
-    let table = item.as_table_like_mut()?;
-    if index.is_some() && !table.contains_key(name) {
-        return None;
-    }
-    let below = table.entry(name).or_insert(Item::None);
-    match index {
-        None if below.is_none() => {
-            *below = Item::Value(Value::InlineTable(toml_edit::InlineTable::new()));
-            Some(below)
-        }
-        None => Some(below),
-        Some(index) => below.get_mut(index),
-    }
-}
-
-/// The entry of a list that has this name.
-fn entry(list: &Item, name: &str) -> Option<usize> {
-    let named = |own: Option<&str>| own == Some(name);
-    if let Some(tables) = list.as_array_of_tables() {
-        let mut tables = tables.iter();
-        return tables.position(|one| named(one.get("name").and_then(Item::as_str)));
-    }
-    let mut values = list.as_array()?.iter();
-    values.position(|one| {
-        let table = one.as_inline_table();
-        named(
-            table
-                .and_then(|table| table.get("name"))
-                .and_then(Value::as_str),
-        )
-    })
-}
-
-/// What a key may be in place of one that is not there: the entries of a list.
-fn entries(item: &Item, key: &str) -> String {
-    let count = match (item.as_array_of_tables(), item.as_array()) {
-        (Some(tables), _) => tables.len(),
-        (None, Some(values)) => values.len(),
-        (None, None) => return "write it as --set time.acceleration=200".into(),
-    };
-    let last = count.saturating_sub(1);
-    format!("`{key}` is a list: name one of its entries, or write {key}[0] to {key}[{last}]")
 }
 
 /// SHA-256 (hex) of the values, whatever their order, spacing and comments.

@@ -42,6 +42,8 @@ pub struct Case {
     pub hash: String,
     /// Effective TOML text, `--set` applied, as written next to the results.
     pub effective: String,
+    /// What `--set` changed: key, new and old value.
+    pub changes: Vec<String>,
     /// Clocks.
     pub time: TimeSpec,
     /// The gas mesh.

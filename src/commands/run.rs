@@ -71,6 +71,9 @@ pub(super) fn run(
 ) -> Result<u8, Failure> {
     use_threads(arguments.threads.map(usize::from))?;
     let (case, prepared) = read_and_prepare(&arguments.case, &arguments.set)?;
+    for change in &case.changes {
+        say(format_args!("set {change}"));
+    }
     let out = results_folder(&case, arguments.out.as_deref());
     let pairing = Pairing {
         gas: arguments.gas,

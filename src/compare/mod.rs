@@ -15,6 +15,7 @@ mod table;
 use std::path::{Path, PathBuf};
 
 use crate::case::model::Case;
+pub use crate::results::files::COMPARISON;
 use crate::results::read::Series;
 use crate::results::{Summary, files};
 use source::Source;
@@ -25,8 +26,6 @@ pub use self::error::CompareError;
 pub use self::fields::{FieldDifference, Norms};
 pub use self::quantities::{Extreme, QuantityDifference};
 
-/// Name of the comparison as data.
-pub const COMPARISON: &str = "compare.json";
 /// Name of the comparison as a page.
 pub const PAGE: &str = "compare.html";
 

@@ -11,7 +11,7 @@ use thiserror::Error;
 pub enum ResultsError {
     /// The directory belongs to another run.
     #[error(
-        "{} holds the results of another run of `{case}` ({verdict}, process time {time} s)",
+        "{} holds the results of another run of `{case}` ({state}, process time {time} s)",
         path.display()
     )]
     #[diagnostic(help(
@@ -23,8 +23,8 @@ pub enum ResultsError {
         path: PathBuf,
         /// Name of the case whose results it holds.
         case: String,
-        /// That run's verdict.
-        verdict: String,
+        /// Whether that run is complete.
+        state: &'static str,
         /// How far that run came, in s of process time.
         time: f64,
     },

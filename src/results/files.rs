@@ -10,6 +10,8 @@ use super::ResultsError;
 
 /// Name of the summary in a result directory.
 pub const SUMMARY: &str = "summary.json";
+/// Name of the file with what a comparison of runs found.
+pub const COMPARISON: &str = "compare.json";
 /// Name of the file to watch while a run goes on.
 pub const STATUS: &str = "status.json";
 /// Name of the time series.

@@ -351,7 +351,7 @@ impl Recorder {
     fn status(&self, moment: &CommittedState<'_>, verdict: Verdict) -> Status {
         let (now, end) = (moment.clocks.process, self.case.time.end);
         Status {
-            state: verdict.word().into(),
+            state: verdict.state().into(),
             process_time_s: now.seconds(),
             process_end_s: end.seconds(),
             motion_time_s: moment.clocks.motion.seconds(),
@@ -472,7 +472,7 @@ pub fn unoccupied(out: &Path) -> Result<(), ResultsError> {
     Err(ResultsError::Occupied {
         path: out.to_owned(),
         case: summary.case.name,
-        verdict: summary.verdict.word().into(),
+        state: summary.verdict.state(),
         time: summary.process_time_s,
     })
 }
@@ -481,7 +481,7 @@ fn status_of(summary: &Summary) -> Status {
     let begun = |step: &&(f64, f64)| step.0 <= summary.process_time_s;
     let factor = summary.acceleration.iter().rfind(begun);
     Status {
-        state: summary.verdict.word().into(),
+        state: summary.verdict.state().into(),
         process_time_s: summary.process_time_s,
         process_end_s: summary.process_end_s,
         motion_time_s: summary.motion_time_s,

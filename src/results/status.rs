@@ -14,7 +14,7 @@ const PAUSE: Duration = Duration::from_secs(1);
 /// What the file holds.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Status {
-    /// `running`, or how the run ended.
+    /// `running`, `stopped` before its end, or `complete`; the verdict is in the summary.
     pub state: String,
     /// Process time in s.
     pub process_time_s: f64,

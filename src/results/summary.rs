@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use calcine_coupler::ledger::{CarriedInventory, Ledger};
 use serde::{Deserialize, Serialize};
 
-use super::files::{self, number};
+use super::files::{self, COMPARISON, number};
 use super::inertial_number::InertialNumberStatistics;
 use super::warnings::Warnings;
 use super::{ResultsError, SUMMARY};
@@ -37,6 +37,14 @@ impl Verdict {
             Verdict::Pass => "pass",
             Verdict::Fail => "fail",
             Verdict::None => "none",
+        }
+    }
+
+    /// The state of the run in `status.json`: `running`, `stopped` or `complete`.
+    pub(super) fn state(self) -> &'static str {
+        match self {
+            Verdict::Running | Verdict::Stopped => self.word(),
+            Verdict::Pass | Verdict::Fail | Verdict::None => "complete",
         }
     }
 }
@@ -370,9 +378,12 @@ impl Summary {
         if !path.exists() {
             return Err(ResultsError::NoResults {
                 path: directory.to_owned(),
-                fact: match directory.is_dir() {
-                    true => "it holds no summary.json",
-                    false => "there is no such folder",
+                fact: match directory {
+                    one if !one.is_dir() => "there is no such folder",
+                    one if one.join(COMPARISON).exists() => {
+                        "it is that of a comparison, whose page is compare.html; its runs are in the folders below it"
+                    }
+                    _ => "it holds no summary.json",
                 },
             });
         }

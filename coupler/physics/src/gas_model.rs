@@ -127,6 +127,19 @@ impl GasModel {
         }
     }
 
+    /// Speed of sound √(γ R T/M) in m/s at a temperature in K; none of a fluid of constant density.
+    pub fn sound_speed(&self, temperature: f64, composition: &[f64]) -> Option<f64> {
+        if !self.compressible() {
+            return None;
+        }
+        // p/ρ of an ideal gas is R T/M at any pressure.
+        let pressure = 1e5;
+        let squared = pressure / self.density(pressure, temperature, composition);
+        let capacity = self.heat_capacity(temperature, composition);
+        let ratio = capacity / (capacity - squared / temperature);
+        Some((ratio * squared).sqrt())
+    }
+
     /// Dynamic viscosity in Pa s.
     pub fn viscosity(&self, temperature: f64, composition: &[f64]) -> f64 {
         match self {
@@ -143,5 +156,30 @@ impl GasModel {
             Self::Constant(gas) => gas.conductivity,
             Self::Mixture(mixture) => mixture.conductivity(temperature, composition),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    #[test]
+    fn sound_has_its_speed_in_gases_and_none_where_density_is_constant() {
+        // Lemmon, Jacobsen, Penoncello and Friend (2000): 347.2 m/s in dry air of 300 K at 1 bar; argon, √(5/3 · 8.314462618 · 300/0.039948).
+        let air = GasModel::Mixture(Mixture::new(["O2", "N2", "Ar"]).unwrap());
+        let dry = [0.2314, 0.7557, 0.0129];
+        let speed = air.sound_speed(300.0, &dry).unwrap();
+        assert!((speed / 347.2 - 1.0).abs() < 1e-3, "{speed}");
+        let argon = air.sound_speed(300.0, &[0.0, 0.0, 1.0]).unwrap();
+        assert!((argon / 322.60 - 1.0).abs() < 1e-3, "{argon}");
+        let water = ConstantGas {
+            density: 998.0,
+            heat_capacity: 4182.0,
+            viscosity: 1e-3,
+            conductivity: 0.6,
+        };
+        assert_eq!(GasModel::Constant(water).sound_speed(300.0, &[]), None);
     }
 }

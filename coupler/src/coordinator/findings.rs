@@ -8,6 +8,8 @@ use calcine_interior::NetworkOutcome;
 
 /// Round-off of mass and void fractions.
 const ROUND_OFF: f64 = 1e-9;
+/// Mach number up to which density differs by less than 5 % from that of gas at rest, (1 + (γ − 1)/2 Ma²)^(−1/(γ − 1)).
+const LOW_MACH: f64 = 0.3;
 
 impl CoupledRun {
     /// Gathers all findings of the window, in the order of their kinds.
@@ -34,6 +36,7 @@ impl CoupledRun {
         let mut found = vec![
             Finding::outside(FindingKind::GasTemperature, &hot, cell),
             Finding::outside(FindingKind::MassFraction, &shares, |k| cell(k / species)),
+            Finding::outside(FindingKind::MachNumber, &self.mach_numbers(), cell),
             Finding::outside(FindingKind::VoidFraction, &voids, cell),
             Finding::outside(FindingKind::ParticleTemperature, &solids, particle),
         ];
@@ -69,6 +72,22 @@ impl CoupledRun {
             place: cell(back.cell),
         }));
         found.into_iter().flatten().collect()
+    }
+
+    /// Cells whose gas is faster than the low-Mach form holds.
+    fn mach_numbers(&self) -> Excursion {
+        let (gas, model) = (self.parts.gas.fields(), &self.laws.closures.gas);
+        let species = gas.composition.len() / gas.temperature.len().max(1);
+        let mut found = Excursion::default();
+        for (cell, (velocity, temperature)) in gas.velocity.iter().zip(gas.temperature).enumerate()
+        {
+            let composition = &gas.composition[cell * species..][..species];
+            let Some(sound) = model.sound_speed(*temperature, composition) else {
+                break;
+            };
+            found.look(cell, velocity.norm() / sound, (0.0, LOW_MACH));
+        }
+        found
     }
 
     /// Iterations that ended at their limits.

@@ -18,7 +18,7 @@ const SPECIES_DIFFUSIVITY: &[Key] = &[
     key("value", Number(D::DIFFUSIVITY, Positive), Required, "Its value.", "\"7.8e-5 m^2/s\""),
     key("at", Number(D::TEMPERATURE, Positive), Required, "The temperature of the value.", "\"300 K\""),
     key("pressure", Number(D::PRESSURE, Positive), Default("1 atm"), "The pressure of the value.", "\"1 bar\""),
-    key("exponent", Number(D::NONE, Any), Default("1.75"), "Exponent of the temperature.", "1.5"),
+    key("exponent", Number(D::NONE, Between(0.0, 4.0)), Default("1.75"), "Exponent of the temperature, 0 to 4: kinetic theory has 1.5 to 2.", "1.5"),
 ];
 
 #[rustfmt::skip]
@@ -26,7 +26,7 @@ const FILM_DIFFUSIVITY: &[Key] = &[
     key("value", Number(D::DIFFUSIVITY, Positive), Without("by Fuller, Schettler and Giddings"), "The value of all species that are not in `species`.", "\"2.1e-5 m^2/s\""),
     key("at", Number(D::TEMPERATURE, Positive), Without("required with `value`"), "The temperature of the value.", "\"300 K\""),
     key("pressure", Number(D::PRESSURE, Positive), Default("1 atm"), "The pressure of the value.", "\"1 bar\""),
-    key("exponent", Number(D::NONE, Any), Default("1.75"), "Exponent of the temperature.", "1.5"),
+    key("exponent", Number(D::NONE, Between(0.0, 4.0)), Default("1.75"), "Exponent of the temperature, 0 to 4: kinetic theory has 1.5 to 2.", "1.5"),
     key("species", Named(SPECIES_DIFFUSIVITY), Without("none has a value of its own"), "Values of single species of the gas.", "{ H2 = { value = \"7.8e-5 m^2/s\", at = \"300 K\" } }"),
 ];
 

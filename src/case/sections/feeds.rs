@@ -49,6 +49,10 @@ fn feed(table: &TableReader<'_>, particles: Option<&[Population]>) -> Option<Fee
         let rule = format!("is \"{population}\", whose particles are frozen");
         table.fail("population", rule, "write motion = \"free\" for it");
     }
+    if particles[index].prescribed_temperature.is_some() && table.has("temperature") {
+        let rule = format!("has no effect: `{population}` has a prescribed temperature");
+        table.fail("temperature", rule, "remove it");
+    }
     Some(FeedSpec {
         name: name?.into(),
         population: index,

@@ -162,6 +162,7 @@ pub(super) fn case(
         title: title?.into(),
         path: path.to_owned(),
         hash,
+        changes: Vec::new(),
         effective: effective.into(),
         time,
         mesh: mesh?,

@@ -1,0 +1,185 @@
+//! `--set KEY=VALUE`: changes of a case file on the command line.
+
+use std::path::Path;
+
+use toml_edit::{DocumentMut, Item, Value};
+
+use super::problem::CaseErrors;
+use super::syntax::{one, syntax};
+use super::table;
+
+/// What one `--set` changed.
+pub(super) struct Change {
+    /// The key, entries of lists by their numbers.
+    pub key: String,
+    /// Its value.
+    new: String,
+    /// The value that it had, if it had one.
+    old: Option<String>,
+}
+
+impl Change {
+    fn of(key: String, old: &Item, new: &Value) -> Self {
+        let old = match old {
+            // A step down to a key that is not there makes an empty one.
+            Item::None => None,
+            Item::Value(Value::InlineTable(table)) if table.is_empty() => None,
+            Item::Value(value) => Some(written(value)),
+            Item::Table(_) | Item::ArrayOfTables(_) => Some("what the file says".into()),
+        };
+        Self {
+            key,
+            new: written(new),
+            old,
+        }
+    }
+
+    /// The change in words.
+    pub fn line(&self) -> String {
+        let Self { key, new, old } = self;
+        match old {
+            Some(old) => format!("{key} = {new} in place of {old}"),
+            None => format!("{key} = {new}, which the file does not state"),
+        }
+    }
+}
+
+/// The text with `--set` applied, in which lines stay where they are unless a key is new, and what each changed.
+pub(super) fn apply(
+    path: &Path,
+    text: &str,
+    set: &[String],
+) -> Result<(String, Vec<Change>), CaseErrors> {
+    if set.is_empty() {
+        return Ok((text.to_owned(), Vec::new()));
+    }
+    let mut changes = Vec::new();
+    syntax(path, text)?;
+    let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| {
+        one(path, text, 0..0, error.to_string(), "see toml.io")
+    })?;
+    for setting in set {
+        let wrong = |why: &str, help: &str| {
+            let message = format!("`--set {setting}`: {why}");
+            one(path, text, 0..0, message, help)
+        };
+        let (key, value) = setting.split_once('=').ok_or_else(|| {
+            let help = "write it as --set time.acceleration=200";
+            wrong("there is no `=`", help)
+        })?;
+        let value = value.trim();
+        // A bare text such as 10 s or native needs no quotes on the command line.
+        let value: Value = value.parse().unwrap_or_else(|_| value.into());
+        let mut item: &mut Item = document.as_item_mut();
+        let mut place = String::new();
+        for part in key.trim().split('.') {
+            let help = remedy(item, &place, part);
+            if let Some(index) = entry(item, part) {
+                place.push_str(&format!("[{index}]"));
+            } else {
+                place = table::dotted(&place, part);
+            }
+            item = step(item, part)
+                .ok_or_else(|| wrong(&format!("there is no `{part}` to change"), &help))?;
+        }
+        let is_entry = place.ends_with(']');
+        if is_entry && item.is_table_like() && !value.is_inline_table() {
+            let why = format!(
+                "`{place}` is a table, and {} cannot take its place",
+                value.type_name()
+            );
+            let help = format!("write {key}={{ … }}, or change one of its keys: {key}.KEY=VALUE");
+            return Err(wrong(&why, &help));
+        }
+        changes.push(Change::of(place, item, &value));
+        replace(item, value);
+    }
+    Ok((document.to_string(), changes))
+}
+
+/// A value without the space and the comments about it.
+fn written(value: &Value) -> String {
+    let mut bare = value.clone();
+    bare.decor_mut().clear();
+    bare.to_string()
+}
+
+/// One step down a dotted key; `name[2]` steps into a list, and so does the name of one of its entries.
+fn step<'i>(item: &'i mut Item, part: &str) -> Option<&'i mut Item> {
+    if let Some(index) = entry(item, part) {
+        return item.get_mut(index);
+    }
+    let (name, index) = match part.strip_suffix(']').and_then(|part| part.split_once('[')) {
+        Some((name, index)) => (name, Some(index.parse::<usize>().ok()?)),
+        None => (part, None),
+    };
+    if name.is_empty() {
+        return None;
+    }
+    let table = item.as_table_like_mut()?;
+    if index.is_some() && !table.contains_key(name) {
+        return None;
+    }
+    let below = table.entry(name).or_insert(Item::None);
+    match index {
+        None if below.is_none() => {
+            *below = Item::Value(Value::InlineTable(toml_edit::InlineTable::new()));
+            Some(below)
+        }
+        None => Some(below),
+        Some(index) => below.get_mut(index),
+    }
+}
+
+/// The entry of a list that has this name.
+fn entry(list: &Item, name: &str) -> Option<usize> {
+    let named = |own: Option<&str>| own == Some(name);
+    if let Some(tables) = list.as_array_of_tables() {
+        let mut tables = tables.iter();
+        return tables.position(|one| named(one.get("name").and_then(Item::as_str)));
+    }
+    let mut values = list.as_array()?.iter();
+    values.position(|one| {
+        let table = one.as_inline_table();
+        named(
+            table
+                .and_then(|table| table.get("name"))
+                .and_then(Value::as_str),
+        )
+    })
+}
+
+/// What a part of a key may be in place of one that is not there: the entries of a list.
+fn remedy(item: &Item, place: &str, part: &str) -> String {
+    let list = part.split_once('[').map(|(name, _)| name);
+    let list = list.and_then(|name| Some((name, item.get(name)?)));
+    let (key, list) = match list {
+        Some((name, list)) => (table::dotted(place, name), list),
+        None => (place.to_owned(), item),
+    };
+    let count = match (list.as_array_of_tables(), list.as_array()) {
+        (Some(tables), _) => tables.len(),
+        (None, Some(values)) => values.len(),
+        (None, None) => return "write it as --set time.acceleration=200".into(),
+    };
+    match count {
+        0 => format!("`{key}` is an empty list"),
+        1 => format!("`{key}` is a list of one: name it, or write {key}[0]"),
+        _ => format!(
+            "`{key}` is a list: name one of its entries, or write {key}[0] to {key}[{}]",
+            count - 1
+        ),
+    }
+}
+
+/// Puts a value in the place of an item. A table stays one, where it is in the file, so that an entry of a list stays in its list.
+fn replace(item: &mut Item, value: Value) {
+    *item = match (item.as_table(), value) {
+        (Some(old), Value::InlineTable(new)) => {
+            let mut table = new.into_table();
+            table.set_position(old.position());
+            Item::Table(table)
+        }
+        (_, value) => Item::Value(value),
+    };
+}
