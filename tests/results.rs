@@ -128,7 +128,7 @@ fn results_of_another_run_are_never_written_over() {
     assert!(
         error
             .to_string()
-            .contains("another run of `heated-column` (fail, process time 20 s)")
+            .contains("another run of `heated-column` (complete, process time 20 s)")
     );
     let help = miette::Diagnostic::help(&error).unwrap().to_string();
     assert!(
