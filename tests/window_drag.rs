@@ -164,7 +164,8 @@ fn check_says_where_windows_are_long_for_constant_drag() {
         let output = command.arg("check").arg(&case).args(["--set", key]);
         let output = output.output().unwrap();
         assert!(output.status.success());
-        String::from_utf8_lossy(&output.stdout).contains("coupling.window_drag = \"following\"")
+        let remedy = "write coupling.window_drag = \"following\"";
+        String::from_utf8_lossy(&output.stdout).contains(remedy)
     };
     assert!(told("coupling.window_drag=constant"));
     assert!(!told(FOLLOWING));
