@@ -51,6 +51,7 @@ mod self_heating;
 mod shipped_cases;
 mod simulation;
 mod stock_solver;
+mod stopped;
 mod support;
 mod test_programs;
 mod time_splitting;

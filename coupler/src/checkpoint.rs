@@ -14,7 +14,8 @@ use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 const MAGIC: &[u8; 8] = b"CALCSTAT";
-const VERSION: u32 = 1;
+/// Raised with every change of what participants keep, too: a state that lacks something is refused as a whole.
+const VERSION: u32 = 2;
 const CHECKSUM: usize = 32;
 const REALS: u32 = 0;
 const COUNTS: u32 = 1;
@@ -34,7 +35,7 @@ pub enum StateFileError {
         cause: io::Error,
     },
     /// The file is of another kind, of another version, cut short or changed.
-    #[error("state file {path} is {what}; resume from an older checkpoint or start again")]
+    #[error("state file {path} is {what}; {}", what.remedy())]
     Damaged {
         /// The file.
         path: PathBuf,
@@ -74,7 +75,9 @@ pub enum StateDamage {
     #[error("damaged: its checksum does not fit its content")]
     Checksum,
     /// Another version of the layout.
-    #[error("of version {0}, not {VERSION}")]
+    #[error(
+        "of version {0}, which another release of Calcine wrote; this one reads version {VERSION}"
+    )]
     Version(u32),
     /// A name that is not UTF-8.
     #[error("damaged: an array's name is not text")]
@@ -90,6 +93,16 @@ pub enum StateDamage {
     /// An array longer than this machine can address.
     #[error("too large")]
     TooLarge,
+}
+
+impl StateDamage {
+    /// What helps.
+    fn remedy(&self) -> &'static str {
+        match self {
+            Self::Version(_) => "resume with the release that wrote it, or start again",
+            _ => "resume from an older checkpoint or start again",
+        }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -338,6 +351,22 @@ mod tests {
             };
             assert_eq!(what, why);
         }
+    }
+
+    #[test]
+    fn a_state_of_another_release_says_so() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("gas.state");
+        let mut bytes = example().encode();
+        bytes.truncate(bytes.len() - CHECKSUM);
+        bytes[MAGIC.len()] = 1;
+        let checksum = Sha256::digest(&bytes);
+        bytes.extend(checksum);
+        fs::write(&path, bytes).unwrap();
+        let text = StateFile::read(&path).unwrap_err().to_string();
+        let told = "gas.state is of version 1, which another release of Calcine wrote; this one reads version 2; resume \
+                    with the release that wrote it, or start again";
+        assert!(text.ends_with(told), "{text}");
     }
 
     #[test]

@@ -35,8 +35,9 @@ pub trait Part: Send {
     /// Takes the last attempt as the new start of attempts.
     fn commit(&mut self) -> Result<(), PartError>;
 
-    /// Writes the committed state into `directory`, then re-initialises from what it wrote, so
-    /// that an uninterrupted run takes the same path as a resumed one.
+    /// Writes the committed state into `directory`, with all that decides the next window, and goes on as a resumed run
+    /// does. A part that keeps everything to the bit changes nothing; one that cannot re-initialises from what it wrote, so
+    /// that at least a run with this checkpoint takes the path of one that is resumed from it.
     fn checkpoint(&mut self, directory: &Path) -> Result<(), PartError>;
 
     /// Processor time that processes of its own have used since they were ready; zero for a part that works in

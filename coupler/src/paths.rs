@@ -86,9 +86,20 @@ impl Paths {
         &self.names
     }
 
-    /// Forgets the views: the next call of [`Paths::meet`] finds them anew.
-    pub fn forget(&mut self) {
-        self.seen_at = None;
+    /// Process time in s at which the views that hold were found; `None` before.
+    pub fn seen_at(&self) -> Option<f64> {
+        self.seen_at
+    }
+
+    /// Takes up when the views that hold were found.
+    pub fn restore_seen_at(&mut self, time: Option<f64>) {
+        self.seen_at = time;
+    }
+
+    /// True where views are found anew if what particles meet is found at a process time in s.
+    pub fn due(&self, time: f64) -> bool {
+        self.seen_at
+            .is_none_or(|at| time - at >= self.setup.refresh * (1.0 - 1e-9))
     }
 
     /// Temperatures of the reservoirs in K at a process time in s.
@@ -119,9 +130,7 @@ impl Paths {
             Some((reservoir, &mirror.surface))
         });
         let walls = touching_walls(radii, centres, absorbing, gap);
-        let due = self
-            .seen_at
-            .is_none_or(|at| time - at >= self.setup.refresh * (1.0 - 1e-9));
+        let due = self.due(time);
         let found: Option<ExchangeAreas> =
             self.setup.view_factors.filter(|_| due).map(|view_factors| {
                 let reservoirs = self.mirrors.iter().filter(|m| m.absorbs.is_some()).count();

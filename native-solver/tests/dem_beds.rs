@@ -1,4 +1,4 @@
-//! Many spheres: conservation, packing, resumption, threads, coming and going.
+//! Many spheres: conservation, packing, threads, coming and going.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::f64::consts::PI;
@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use calcine_coupler::motion::{
     Cohesion, ContactForce, Contacts, ParticleChanges, Resized, Rolling, WallMotion, WallShape,
 };
-use calcine_coupler::part::{Part, Particles};
+use calcine_coupler::part::Particles;
 use calcine_coupler::physics::Vec3;
 
 use crate::grains::*;
@@ -181,7 +181,7 @@ fn the_energy_budget_closes_with_the_order_of_the_step() {
 }
 
 /// A few thousand spheres of all sizes in a turning drum, with every law's memory.
-fn drum(rolling: Rolling, force: ContactForce) -> Bed {
+pub fn drum(rolling: Rolling, force: ContactForce) -> Bed {
     let mut contacts = cylinder(2e-5, 0.02);
     contacts.law.rolling = rolling;
     contacts.law.force = force;
@@ -228,54 +228,6 @@ fn windows_of_any_length_give_the_same_bits() {
         short.run(3);
     }
     assert_eq!(long.bits(), short.bits());
-}
-
-#[test]
-fn a_resumed_bed_takes_the_same_path_with_every_law() {
-    let folder = tempfile::tempdir().unwrap();
-    let linear = ContactForce::Linear {
-        characteristic_speed: 1.0,
-    };
-    for (rolling, force) in [
-        (Rolling::ElasticPlastic, ContactForce::HertzMindlin),
-        (Rolling::ConstantTorque, ContactForce::SpringSliderDashpot),
-        (Rolling::None, linear),
-    ] {
-        let mut through = drum(rolling, force);
-        through.run(1000);
-        through.particles.checkpoint(folder.path()).unwrap();
-        let mut resumed = drum(rolling, force);
-        resumed.particles.restore(folder.path()).unwrap();
-        resumed.clocks = through.clocks;
-        assert_eq!(resumed.bits(), through.bits());
-        for _ in 0..3 {
-            through.run(100);
-            resumed.run(100);
-            assert_eq!(resumed.bits(), through.bits());
-        }
-    }
-}
-
-#[test]
-fn a_checkpoint_keeps_the_springs_of_resting_contacts() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut contacts = contacts(1e-6);
-    contacts.walls = vec![plane(Vec3::zeros(), Vec3::z())];
-    // On an incline that friction holds.
-    contacts.gravity = Vec3::new(0.2 * 9.81, 0.0, -9.81);
-    let mut bed = Bed::new(
-        contacts,
-        &[sphere(1, Vec3::z() * 1e-3, Vec3::zeros(), 1e-3)],
-    );
-    bed.run(200);
-    let before = bed.velocity(0);
-    bed.run(1);
-    let step = bed.velocity(0) - before;
-    bed.particles.checkpoint(folder.path()).unwrap();
-    let before = bed.velocity(0);
-    bed.run(1);
-    // Without its spring it would feel the full slope.
-    assert!(((bed.velocity(0) - before) - step).norm() < 0.1 * step.norm());
 }
 
 #[test]

@@ -15,3 +15,5 @@ pub mod program;
 pub mod results_equal;
 pub mod schiller_naumann;
 pub mod schumann;
+#[cfg(feature = "hdf5")]
+pub mod stopped;

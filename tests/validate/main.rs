@@ -21,10 +21,23 @@ mod kept;
 mod moving_bed;
 #[path = "../support/program.rs"]
 mod program;
+#[cfg(feature = "hdf5")]
+#[path = "../fuzz/random.rs"]
+#[allow(dead_code)]
+mod random;
 mod repose;
+#[cfg(feature = "hdf5")]
+mod restarts;
+#[cfg(feature = "hdf5")]
+#[path = "../support/results_equal.rs"]
+mod results_equal;
 mod shaft_choices;
 mod shaft_flames;
 mod shaft_furnace;
+#[cfg(feature = "hdf5")]
+#[path = "../support/stopped.rs"]
+#[allow(dead_code)]
+mod stopped;
 mod voids;
 
 use std::path::{Path, PathBuf};
@@ -46,6 +59,8 @@ const ALL: &[(&str, fn())] = &[
     ("hopper", hopper::run),
     ("moving-bed", moving_bed::run),
     ("repose", repose::run),
+    #[cfg(feature = "hdf5")]
+    ("restarts", restarts::run),
     ("shaft-choices", shaft_choices::run),
     ("shaft-flames", shaft_flames::run),
     ("shaft-furnace", shaft_furnace::run),

@@ -98,6 +98,19 @@ pub fn impulses(liggghts: &mut Liggghts, place: &[usize]) -> Result<Vec<f64>, Ho
     Ok(here.copied().collect())
 }
 
+/// Takes the drag out of the forces, as the next window would at its begin.
+pub fn take_off(liggghts: &mut Liggghts) {
+    let Some(rows) = liggghts.forces_with(DRAG, NUMBERS) else {
+        return;
+    };
+    let forces = rows.force.chunks_exact_mut(3);
+    for (own, force) in rows.fix.chunks_exact_mut(NUMBERS).zip(forces) {
+        for (force, drag) in force.iter_mut().zip(&mut own[ACTING..IMPULSE]) {
+            *force -= std::mem::take(drag);
+        }
+    }
+}
+
 /// LIGGGHTS' setup has found all forces anew, without drag.
 pub fn forget(liggghts: &mut Liggghts) {
     if let Some(rows) = liggghts.forces_with(DRAG, NUMBERS) {

@@ -1,6 +1,7 @@
 //! The host's loop: hello, state, then windows, commits and checkpoints until the coordinator says
 //! goodbye.
 
+mod kept;
 mod window;
 
 use std::collections::HashMap;
@@ -184,6 +185,7 @@ impl Host {
 
     /// Writes a checkpoint and goes on from what it wrote.
     fn checkpoint(&mut self, directory: &Path) -> Result<(), HostError> {
+        self.keep_forces()?;
         // LIGGGHTS splits its commands at blanks: it writes here, then the file is copied.
         self.liggghts.command(&format!("write_restart {RESTART}"));
         let copy = directory.join(RESTART);
@@ -233,11 +235,17 @@ impl Host {
         if uncounted {
             self.walls.clear(); // of a script of the user's: a part of the walls is no balance
         }
+        if restart.is_some() {
+            self.make_kept();
+        }
         self.liggghts.command("run 0");
         self.moving_drag = self.has_fix(DRAG)?;
         self.frozen = !self.has_fix(PUSH)?;
         self.held = held(&self.script()?);
         drag::forget(&mut self.liggghts);
+        if restart.is_some() {
+            self.take_kept()?;
+        }
         self.weights = self.has_fix(WEIGHT)?;
         if self.weights && restart.is_none() {
             self.weigh()?;

@@ -345,7 +345,7 @@ impl Liggghts {
 
     /// Rows of so many numbers of a `fix property/atom`, one for each of this rank's particles, to be written; `None`
     /// where there is no such fix.
-    fn fix_rows_mut(&mut self, fix: &str, numbers: usize) -> Option<&mut [f64]> {
+    pub fn fix_rows_mut(&mut self, fix: &str, numbers: usize) -> Option<&mut [f64]> {
         let count = self.local();
         let name = c_text(fix);
         // SAFETY: the handle is open; style 1 and kind 2 ask for per-atom vectors, a table of row

@@ -48,14 +48,19 @@ impl BedStage {
         })
     }
 
+    /// True where particles have moved or changed their radii since they were mapped.
+    pub fn is_of_other_places(&self, particles: &ParticleFields<'_>) -> bool {
+        let before = &self.mapped;
+        particles.position != before.position || particles.radius != before.radius
+    }
+
     /// Maps the particles anew where any has moved or changed its radius; true where one has.
     pub fn update(
         &mut self,
         particles: &ParticleFields<'_>,
         meter: &mut Meter,
     ) -> Result<bool, RunError> {
-        let before = &self.mapped;
-        if particles.position == before.position && particles.radius == before.radius {
+        if !self.is_of_other_places(particles) {
             return Ok(false);
         }
         self.mapped = map(&self.mapper, self.method, &self.smoother, particles, meter)?;

@@ -1,4 +1,5 @@
-//! Checkpoints: one folder, replaced atomically, from which every participant re-initialises.
+//! Checkpoints: one folder, replaced atomically, with all that decides the next window. Writing one changes nothing in the
+//! coordinator and in native participants.
 
 use std::fs;
 use std::time::Instant;
@@ -8,6 +9,7 @@ use calcine_physics::Vec3;
 use super::CoupledRun;
 use super::error::{CheckpointError, RunError};
 use super::meter::{Meter, Stage};
+use super::neighbours::NeighbourStanding;
 use super::repeat::WindowCut;
 use crate::checkpoint::StateFile;
 use crate::ledger::{CarriedInventory, Ledger};
@@ -16,7 +18,7 @@ use crate::part::Part as _;
 use crate::time::{Clocks, Ticks};
 
 impl CoupledRun {
-    /// Writes a checkpoint of all participants; each goes on from what it wrote.
+    /// Writes a checkpoint of all participants.
     pub fn checkpoint(&mut self, observers: &mut [&mut dyn Observer]) -> Result<(), RunError> {
         let running = Meter::start(Stage::Output);
         let fresh = self.plan.checkpoint.fresh();
@@ -40,10 +42,6 @@ impl CoupledRun {
             observer.checkpoint(&self.moment(None), &fresh)?;
         }
         self.plan.checkpoint.publish()?;
-        // A resumed run finds exchange areas at the checkpoint's places and sizes; else they are the same.
-        let (particles, time) = (self.parts.particles.fields(), self.clocks.process.seconds());
-        let moves = !self.plan.free.is_empty();
-        self.interior.find_neighbours_anew(&particles, time, moves);
         self.last_checkpoint = Instant::now();
         self.meter.stop(running);
         Ok(())
@@ -81,6 +79,13 @@ impl CoupledRun {
         state.set_u64s("held", &[self.motion.held.count().cast_unsigned()]);
         state.set_u64s("case_hash", &hash);
         self.interior.models.record(&mut state);
+        let particles = self.parts.particles.fields();
+        let standing = NeighbourStanding {
+            time: self.clocks.process.seconds(),
+            moves: !self.plan.free.is_empty(),
+            moved: self.neighbours_due || self.bed.is_of_other_places(&particles),
+        };
+        self.interior.record_neighbours(&standing, &mut state);
         state.set_f64s("particle_heat", &self.exchange.exchange.heat);
         let other: Vec<f64> = self
             .motion
@@ -180,8 +185,7 @@ impl CoupledRun {
             self.motion.held = Ticks::new(held.cast_signed());
         }
         self.restore_controls(&state)?;
-        self.interior.forget_neighbours();
-        self.find_neighbours();
+        self.neighbours_due = self.interior.restore_neighbours(&state)?;
         Ok(())
     }
 }

@@ -15,10 +15,10 @@ use crate::time::Window;
 /// The models of all particles, and the network between them.
 pub(super) struct InteriorStage {
     pub models: ParticleModels,
-    network: Option<HeatNetwork>,
+    pub(super) network: Option<HeatNetwork>,
     /// Material of each population, for the network.
     substance: Vec<usize>,
-    paths: Paths,
+    pub(super) paths: Paths,
     /// Heat from the network into each particle in W, of the attempt.
     heat: Vec<f64>,
     /// What particles exchange with the gas.
@@ -32,7 +32,7 @@ pub(super) struct InteriorStage {
     /// What view factors found since the last commit leave open.
     imbalance: RowImbalance,
     /// Particles came, went or changed their size since the exchange areas of radiation were found.
-    changed: bool,
+    pub(super) changed: bool,
 }
 
 impl InteriorStage {
@@ -85,11 +85,11 @@ impl InteriorStage {
     /// Finds what particles touch and see, at a process time in s.
     pub fn find_neighbours(&mut self, particles: &ParticleFields<'_>, time: f64) {
         if let Some(network) = &mut self.network {
-            let imbalance = &mut self.imbalance;
+            let (imbalance, changed) = (&mut self.imbalance, &mut self.changed);
             self.paths.find_neighbours(particles, time, |neighbours| {
                 network.set_neighbours(neighbours);
                 if let Some(views) = neighbours.views {
-                    *imbalance = views.imbalance;
+                    (*imbalance, *changed) = (views.imbalance, false);
                 }
             });
         }
@@ -98,20 +98,6 @@ impl InteriorStage {
     /// What view factors found since this was last asked leave open.
     pub fn take_imbalance(&mut self) -> RowImbalance {
         std::mem::take(&mut self.imbalance)
-    }
-
-    /// Finds them as a run does that resumes here: exchange areas of radiation anew, unless they are the same.
-    pub fn find_neighbours_anew(&mut self, particles: &ParticleFields<'_>, time: f64, moves: bool) {
-        if moves || self.changed || self.models.change_sizes() {
-            self.forget_neighbours();
-            self.find_neighbours(particles, time);
-        }
-    }
-
-    /// The exchange areas of radiation are found anew next time.
-    pub fn forget_neighbours(&mut self) {
-        self.paths.forget();
-        self.changed = false;
     }
 
     /// An attempt with the gas as it is: surface, network, respond. The network takes the heat that reactions set free

@@ -16,6 +16,7 @@ mod hold;
 mod interior;
 mod laws;
 mod meter;
+mod neighbours;
 mod origin;
 mod particles;
 mod plan;
@@ -104,6 +105,8 @@ pub struct CoupledRun {
     windows: u64,
     /// Where a window was cut, how it goes on.
     cut: WindowCut,
+    /// True where a run resumed after particles had moved: what they meet is found before the next window.
+    neighbours_due: bool,
     /// What was set while the run goes on, each condition once.
     controls: Vec<Control>,
     /// What the last window left outside a law's range, or unconverged.
@@ -173,6 +176,7 @@ impl CoupledRun {
             clocks: Clocks::default(),
             windows: 0,
             cut: WindowCut::default(),
+            neighbours_due: false,
             controls: Vec::new(),
             findings: Vec::new(),
             last: None,
@@ -327,7 +331,8 @@ impl CoupledRun {
 
     fn map(&mut self) -> Result<(), RunError> {
         let particles = self.parts.particles.fields();
-        if self.bed.update(&particles, &mut self.meter)? {
+        let moved = self.bed.update(&particles, &mut self.meter)?;
+        if std::mem::take(&mut self.neighbours_due) || moved {
             self.find_neighbours();
         }
         Ok(())

@@ -289,18 +289,13 @@ impl Part for NativeGas {
     }
 
     fn checkpoint(&mut self, directory: &Path) -> Result<(), PartError> {
-        let failed = |gas: &Self, error: NativeError| {
-            gas.failure(FailureKind::Io, error.to_string())
+        // What an attempt without a commit placed is no state of the run.
+        let origin = (!self.started).then(|| self.origin());
+        let state = origin.as_ref().unwrap_or(&self.committed);
+        state.write(&directory.join(STATE)).map_err(|error| {
+            self.failure(FailureKind::Io, error.to_string())
                 .caused_by(error)
-        };
-        if !self.started {
-            // What an attempt without a commit placed is no state of the run.
-            self.committed = self.origin();
-        }
-        self.committed
-            .write(&directory.join(STATE))
-            .map_err(|error| failed(self, error.into()))?;
-        self.restore(directory).map_err(|error| failed(self, error))
+        })
     }
 
     fn processor_time(&self) -> Duration {

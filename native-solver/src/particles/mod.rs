@@ -115,13 +115,10 @@ impl NativeParticles {
             .unwrap_or_default()
     }
 
-    /// Gives all particles to the solver, with the memories of their contacts.
-    fn hand_over(
-        &mut self,
-        memories: (Vec<StoredContact>, Vec<StoredWallContact>),
-    ) -> Result<(), EscapedParticle> {
-        let Some(engine) = &mut self.engine else {
-            return Ok(());
+    /// All particles as the solver takes them.
+    fn spheres(&self) -> Vec<InsertedSphere> {
+        let Some(engine) = &self.engine else {
+            return Vec::new();
         };
         let contacts = engine.contacts();
         let particle = |row: usize| {
@@ -136,7 +133,18 @@ impl NativeParticles {
                 held: contacts.held[population],
             }
         };
-        let particles: Vec<InsertedSphere> = (0..self.id.len()).map(particle).collect();
+        (0..self.id.len()).map(particle).collect()
+    }
+
+    /// Gives all particles to the solver, with the memories of their contacts; it evaluates their forces.
+    fn hand_over(
+        &mut self,
+        memories: (Vec<StoredContact>, Vec<StoredWallContact>),
+    ) -> Result<(), EscapedParticle> {
+        let particles = self.spheres();
+        let Some(engine) = &mut self.engine else {
+            return Ok(());
+        };
         engine.load(&particles, memories, self.steps)?;
         self.read();
         Ok(())
@@ -407,12 +415,10 @@ impl Part for NativeParticles {
     }
 
     fn checkpoint(&mut self, directory: &Path) -> Result<(), PartError> {
-        let failed = |part: &Self, error: NativeError| {
-            part.failure(FailureKind::Io, error.to_string())
+        self.write(directory).map_err(|error| {
+            self.failure(FailureKind::Io, error.to_string())
                 .caused_by(error)
-        };
-        self.write(directory).map_err(|error| failed(self, error))?;
-        self.restore(directory).map_err(|error| failed(self, error))
+        })
     }
 
     fn processor_time(&self) -> Duration {

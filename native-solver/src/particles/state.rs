@@ -1,4 +1,4 @@
-//! Checkpoints of the native particles.
+//! Checkpoints of the native particles: all that decides the next step, so that writing one changes nothing.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use calcine_coupler::checkpoint::StateFile;
 use calcine_coupler::physics::Vec3;
 
 use super::check::length;
-use super::dem::{StoredContact, StoredWallContact};
+use super::dem::{EngineState, StoredContact, StoredWallContact};
 use super::{NativeError, NativeParticles};
 use crate::gas::{flat, vectors};
 
@@ -14,7 +14,7 @@ use crate::gas::{flat, vectors};
 const STATE: &str = "particles.state";
 
 impl NativeParticles {
-    /// Writes the state, with the memories of contacts.
+    /// Writes the state, with the memories of contacts, loads and the last search for neighbours.
     pub(super) fn write(&mut self, directory: &Path) -> Result<(), NativeError> {
         let population: Vec<u64> = self.population.iter().map(|&p| u64::from(p)).collect();
         let mut file = StateFile::new();
@@ -27,24 +27,8 @@ impl NativeParticles {
         file.set_f64s("mass", &self.mass);
         file.set_f64s("weight", &self.weight);
         if let Some(engine) = &mut self.engine {
-            let (pairs, walls) = engine.memories();
-            let rows: Vec<u64> = pairs
-                .iter()
-                .flat_map(|one| one.rows)
-                .map(u64::from)
-                .collect();
-            let near = walls.iter().flat_map(|one| [one.row, one.wall]);
-            let near: Vec<u64> = near.map(u64::from).collect();
-            let values: Vec<Vec3> = pairs
-                .iter()
-                .flat_map(|one| [one.shift, one.rolling])
-                .collect();
-            let memory = |one: &StoredWallContact| [one.point, one.shift, one.rolling];
-            let wall_values: Vec<Vec3> = walls.iter().flat_map(memory).collect();
-            file.set_u64s("contact_rows", &rows);
-            file.set_f64s("contact_memory", &flat(&values));
-            file.set_u64s("wall_rows", &near);
-            file.set_f64s("wall_memory", &flat(&wall_values));
+            record_memories(engine.memories(), &mut file);
+            record_engine(&engine.state(), &mut file);
             file.set_u64s("steps", &[self.steps as u64]);
         }
         Ok(file.write(&directory.join(STATE))?)
@@ -100,9 +84,78 @@ impl NativeParticles {
         }
         let memories = memories(&file, count, walls)?;
         self.steps = file.u64s("steps")?.first().copied().unwrap_or(0) as i64;
-        self.hand_over(memories)
-            .map_err(|stray| self.outside(stray))
+        let state = engine_state(&file, count)?;
+        let particles = self.spheres();
+        let Some(engine) = &mut self.engine else {
+            return Ok(());
+        };
+        engine
+            .resume(&particles, memories, self.steps, &state)
+            .map_err(|stray| self.outside(stray))?;
+        self.read();
+        Ok(())
     }
+}
+
+/// Writes the memories of contacts; rolling springs only where some contact has one.
+fn record_memories(
+    (pairs, walls): (Vec<StoredContact>, Vec<StoredWallContact>),
+    file: &mut StateFile,
+) {
+    let rows: Vec<u64> = pairs
+        .iter()
+        .flat_map(|one| one.rows.map(u64::from))
+        .collect();
+    let near = walls.iter().flat_map(|one| [one.row, one.wall, one.slot]);
+    let near: Vec<u64> = near.map(u64::from).collect();
+    let shift: Vec<Vec3> = pairs.iter().map(|one| one.shift).collect();
+    let at_wall = |one: &StoredWallContact| [one.point, one.shift];
+    let wall_shift: Vec<Vec3> = walls.iter().flat_map(at_wall).collect();
+    let of_walls = walls.iter().map(|one| one.rolling);
+    let mut rolling: Vec<Vec3> = pairs
+        .iter()
+        .map(|one| one.rolling)
+        .chain(of_walls)
+        .collect();
+    if rolling.iter().all(|torque| *torque == Vec3::zeros()) {
+        rolling.clear();
+    }
+    file.set_u64s("contact_rows", &rows);
+    file.set_f64s("contact_shift", &flat(&shift));
+    file.set_u64s("wall_rows", &near);
+    file.set_f64s("wall_shift", &flat(&wall_shift));
+    file.set_f64s("contact_rolling", &flat(&rolling));
+}
+
+/// Writes loads and the last search for neighbours.
+fn record_engine(state: &EngineState, file: &mut StateFile) {
+    let loads: Vec<Vec3> = state.load.iter().flatten().copied().collect();
+    let [gone, wall_gone] = state.gone;
+    let counts = [state.searched_after as u64, state.age];
+    file.set_f64s("load", &flat(&loads));
+    file.set_f64s("wall_force", &flat(&state.wall_force));
+    file.set_f64s("searched_position", &flat(&state.searched));
+    file.set_f64s("search", &[state.skin, gone, wall_gone]);
+    file.set_u64s("search_steps", &counts);
+}
+
+fn engine_state(file: &StateFile, count: usize) -> Result<EngineState, NativeError> {
+    let blocks = EngineState::blocks(count);
+    let loads = vectors(file.f64s_of("load", 6 * count)?);
+    let search = file.f64s_of("search", 3)?;
+    let steps = file.u64s("search_steps")?;
+    let &[searched_after, age] = steps else {
+        return Err(length("the state's list of steps", steps.len(), 2));
+    };
+    Ok(EngineState {
+        load: loads.as_chunks::<2>().0.to_vec(),
+        wall_force: vectors(file.f64s_of("wall_force", 3 * blocks)?),
+        searched: vectors(file.f64s_of("searched_position", 3 * count)?),
+        searched_after: searched_after as i64,
+        skin: search[0],
+        gone: [search[1], search[2]],
+        age,
+    })
 }
 
 fn memories(
@@ -111,34 +164,42 @@ fn memories(
     walls: usize,
 ) -> Result<(Vec<StoredContact>, Vec<StoredWallContact>), NativeError> {
     let rows = file.u64s("contact_rows")?.as_chunks::<2>().0;
-    let values = vectors(file.f64s_of("contact_memory", 6 * rows.len())?);
-    let near = file.u64s("wall_rows")?.as_chunks::<2>().0;
-    let wall_values = vectors(file.f64s_of("wall_memory", 9 * near.len())?);
+    let shift = vectors(file.f64s_of("contact_shift", 3 * rows.len())?);
+    let near = file.u64s("wall_rows")?.as_chunks::<3>().0;
+    let wall_shift = vectors(file.f64s_of("wall_shift", 6 * near.len())?);
+    let contacts = rows.len() + near.len();
+    let rolling = match file.f64s("contact_rolling")? {
+        [] => vec![Vec3::zeros(); contacts],
+        _ => vectors(file.f64s_of("contact_rolling", 3 * contacts)?),
+    };
+    let (rolling, wall_rolling) = rolling.split_at(rows.len());
     let strange = rows.iter().flatten().any(|&row| row >= count as u64)
         || near
             .iter()
-            .any(|&[row, wall]| row >= count as u64 || wall >= walls as u64);
+            .any(|&[row, wall, _]| row >= count as u64 || wall >= walls as u64);
     if strange {
-        return Err(length(
-            "the state's list of contacts",
-            rows.len() + near.len(),
-            count,
-        ));
+        return Err(length("the state's list of contacts", contacts, count));
     }
-    let pair = |(rows, values): (&[u64; 2], &[Vec3])| StoredContact {
+    let pair = |((rows, shift), rolling): ((&[u64; 2], &Vec3), &Vec3)| StoredContact {
         rows: rows.map(|row| row as u32),
-        shift: values[0],
-        rolling: values[1],
+        shift: *shift,
+        rolling: *rolling,
     };
-    let wall = |(near, values): (&[u64; 2], &[Vec3])| StoredWallContact {
+    let wall = |((near, values), rolling): ((&[u64; 3], &[Vec3; 2]), &Vec3)| StoredWallContact {
         row: near[0] as u32,
         wall: near[1] as u32,
+        slot: near[2] as u32,
         point: values[0],
         shift: values[1],
-        rolling: values[2],
+        rolling: *rolling,
     };
+    let wall_shift = wall_shift.as_chunks::<2>().0;
     Ok((
-        rows.iter().zip(values.chunks(2)).map(pair).collect(),
-        near.iter().zip(wall_values.chunks(3)).map(wall).collect(),
+        rows.iter().zip(&shift).zip(rolling).map(pair).collect(),
+        near.iter()
+            .zip(wall_shift)
+            .zip(wall_rolling)
+            .map(wall)
+            .collect(),
     ))
 }

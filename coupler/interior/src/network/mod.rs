@@ -192,10 +192,22 @@ impl HeatNetwork {
         self.pairs.extend_from_slice(neighbours.pairs);
         self.wall_touches.clear();
         self.wall_touches.extend_from_slice(neighbours.walls);
-        if let Some(views) = neighbours.views.filter(|_| self.laws.radiates) {
+        if let Some(views) = neighbours.views {
+            self.set_views(views);
+        }
+    }
+
+    /// Takes up whom the particles see.
+    pub fn set_views(&mut self, views: &ExchangeAreas) {
+        if self.laws.radiates {
             let emissivity = |&k: &usize| self.materials[k].emissivity;
             self.radiation = Radiation::new(views, self.material.iter().map(emissivity).collect());
         }
+    }
+
+    /// The views that hold: as they were taken up, of the particles that are there.
+    pub fn views(&self) -> &ExchangeAreas {
+        self.radiation.views()
     }
 
     /// True where no heat can flow.

@@ -31,6 +31,11 @@ impl Radiation {
         }
     }
 
+    /// The views.
+    pub fn views(&self) -> &ExchangeAreas {
+        &self.views
+    }
+
     /// Takes up the share that each particle, of a diameter in m, can pass on.
     pub fn limit(&mut self, share: impl Fn(usize, f64) -> f64) {
         let views = &self.views;

@@ -2,6 +2,7 @@
 
 mod drag;
 mod pass;
+mod state;
 
 use std::iter::repeat;
 
@@ -18,6 +19,8 @@ use super::rules::ContactRules;
 use super::sphere::{SphereLoad, SphereMotion, SpherePosition, Spheres};
 use super::stored_contacts::{StoredContact, StoredContacts, StoredWallContact};
 use super::walls::WallBody;
+
+pub use state::EngineState;
 
 /// Skin at the start, in radii of the smallest sphere.
 const SKIN: f64 = 0.2;
@@ -113,6 +116,10 @@ pub struct Engine {
     wall_gone: f64,
     /// Steps since the last search.
     age: u64,
+    /// Steps of the run after which the walls are where they are.
+    posed: i64,
+    /// Centres in m at the last search, in the order of the particles, and the steps of the run before it.
+    searched: (Vec<Vec3>, i64),
     /// Evaluations of all forces so far.
     stamp: u64,
     searches: u64,
@@ -139,6 +146,8 @@ impl Engine {
             gone: 0.0,
             wall_gone: 0.0,
             age: 0,
+            posed: 0,
+            searched: (Vec::new(), 0),
             stamp: 1,
             searches: 0,
             counting: false,
@@ -159,44 +168,8 @@ impl Engine {
         memories: (Vec<StoredContact>, Vec<StoredWallContact>),
         steps: i64,
     ) -> Result<(), EscapedParticle> {
-        let spheres = &mut self.spheres;
-        *spheres = Spheres::default();
-        for (row, particle) in particles.iter().enumerate() {
-            let inverse = if particle.held {
-                0.0
-            } else {
-                1.0 / particle.mass
-            };
-            spheres.place.push(SpherePosition {
-                centre: particle.centre,
-                radius: particle.radius,
-            });
-            spheres.moves.push(SphereMotion {
-                velocity: if particle.held {
-                    Vec3::zeros()
-                } else {
-                    particle.velocity
-                },
-                inverse_mass: inverse,
-                spin: if particle.held {
-                    Vec3::zeros()
-                } else {
-                    particle.spin
-                },
-                inverse_inertia: 2.5 * inverse / (particle.radius * particle.radius),
-            });
-            spheres.material.push(particle.material);
-            spheres.push.push(Vec3::zeros());
-            spheres.row.push(row as u32);
-        }
-        let radii = particles.iter().map(|particle| particle.radius);
-        self.smallest = radii.fold(f64::INFINITY, f64::min);
+        self.take(particles);
         self.skin = SKIN * self.smallest;
-        self.stamp = 1;
-        for block in &mut self.blocks {
-            block.budget = ContactEnergy::default();
-            block.support = Vec3::zeros();
-        }
         if particles.is_empty() {
             self.blocks.clear();
             return Ok(());
@@ -343,6 +316,7 @@ impl Engine {
     }
 
     fn pose(&mut self, steps: i64) {
+        self.posed = steps;
         let time = steps as f64 * self.contacts.step;
         for wall in &mut self.walls {
             wall.pose(time);
@@ -471,6 +445,10 @@ impl Engine {
             parallel,
         );
         (self.gone, self.wall_gone, self.age) = (0.0, 0.0, 0);
+        let places = self.spheres.place.iter();
+        self.searched.0.clear();
+        self.searched.0.extend(places.map(|place| place.centre));
+        self.searched.1 = self.posed;
         self.searches += 1;
     }
 }

@@ -20,5 +20,5 @@ mod sphere;
 mod stored_contacts;
 mod walls;
 
-pub use engine::{Engine, EscapedParticle, InsertedSphere};
+pub use engine::{Engine, EngineState, EscapedParticle, InsertedSphere};
 pub use stored_contacts::{StoredContact, StoredWallContact};

@@ -25,6 +25,8 @@ pub struct StoredWallContact {
     pub row: u32,
     /// Index of the wall.
     pub wall: u32,
+    /// Its place among the memories of this particle and wall.
+    pub slot: u32,
     /// Where it touched, in the wall's own frame.
     pub point: Vec3,
     /// Elongation of the tangential spring in m.
@@ -40,6 +42,8 @@ pub struct StoredContacts {
     pub pairs: Vec<StoredContact>,
     /// Of walls.
     pub walls: Vec<StoredWallContact>,
+    /// True where memories of walls go back to their slots; else these are counted anew.
+    keeps_slots: bool,
     pair_of: Vec<u32>,
     wall_of: Vec<u32>,
 }
@@ -54,10 +58,19 @@ impl StoredContacts {
         }
     }
 
+    /// Memories given, of the search that is done again: those of walls go back to their slots.
+    pub fn in_slots(pairs: Vec<StoredContact>, walls: Vec<StoredWallContact>) -> Self {
+        Self {
+            keeps_slots: true,
+            ..Self::of(pairs, walls)
+        }
+    }
+
     /// Takes the memories of all contacts that touched in the last evaluation, `stamp`.
     pub fn collect(&mut self, blocks: &[Block], spheres: &Spheres, stamp: u64) {
         self.pairs.clear();
         self.walls.clear();
+        self.keeps_slots = false;
         for block in blocks {
             for candidates in [&block.inner, &block.cross] {
                 for (k, shift) in candidates.shift.iter().enumerate() {
@@ -76,10 +89,12 @@ impl StoredContacts {
             for group in &block.walls.groups {
                 let slots =
                     &block.walls.slots[group.slots.start as usize..group.slots.end as usize];
-                for slot in slots.iter().filter(|slot| slot.stamp == stamp) {
+                let touched = (0..).zip(slots).filter(|(_, slot)| slot.stamp == stamp);
+                for (number, slot) in touched {
                     self.walls.push(StoredWallContact {
                         row: spheres.row[block.begin + group.particle as usize],
                         wall: group.wall,
+                        slot: number,
                         point: slot.point,
                         shift: slot.shift,
                         rolling: slot.rolling,
@@ -121,13 +136,19 @@ impl StoredContacts {
     pub fn fill(&self, row: u32, wall: u32, slots: &mut [WallContactMemory], stamp: u64) {
         let of = self.wall_of[row as usize] as usize..self.wall_of[row as usize + 1] as usize;
         let found = self.walls[of].iter().filter(|one| one.wall == wall);
-        for (slot, one) in slots.iter_mut().zip(found) {
-            *slot = WallContactMemory {
-                point: one.point,
-                shift: one.shift,
-                rolling: one.rolling,
-                stamp,
+        for (count, one) in found.enumerate() {
+            let place = match self.keeps_slots {
+                true => one.slot as usize,
+                false => count,
             };
+            if let Some(slot) = slots.get_mut(place) {
+                *slot = WallContactMemory {
+                    point: one.point,
+                    shift: one.shift,
+                    rolling: one.rolling,
+                    stamp,
+                };
+            }
         }
     }
 }

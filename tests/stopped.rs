@@ -1,0 +1,95 @@
+//! SIGTERM, or Ctrl-C, and `--resume`: natively the same bits as without, whether checkpoints are scheduled or not.
+
+#![cfg(feature = "hdf5")]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::path::{Path, PathBuf};
+
+use crate::support::program::{self, shipped};
+use crate::support::{results_equal, stopped};
+
+/// Runs a case without interruption and without checkpoints, then stops it after each number of rows of its series, with and
+/// without scheduled checkpoints, and compares every value.
+fn goes_on_alike(case: &Path, set: &[&str], every: &str, rows: [usize; 3]) {
+    let directory = tempfile::tempdir().unwrap();
+    let command = |out: &Path, set: &[&str]| program::command(case, out, &[], set);
+    let whole = directory.path().join("whole");
+    stopped::finish(command(&whole, set));
+    let schedule = format!("time.checkpoint.every={every}");
+    let scheduled = [set, &[schedule.as_str()]].concat();
+    for (set, at) in [(set, rows[0]), (set, rows[1]), (&scheduled[..], rows[2])] {
+        let out = directory.path().join(format!("stopped-{at}"));
+        stopped::stop_and_resume(|| command(&out, set), &out, at);
+        let differing = results_equal::values_that_differ(&whole, &out);
+        assert!(differing.is_empty(), "after {at} rows: {differing:?}");
+    }
+}
+
+#[test]
+fn a_bed_that_settles_goes_on_alike() {
+    let set = [
+        "time.end=0.2 s",
+        "output.every=0.04 s",
+        "particles[0].place.region.from=2 mm",
+        "particles[0].place.region.to=40 mm",
+    ];
+    goes_on_alike(&shipped("settled-bed"), &set, "30 ms", [20, 75, 50]);
+}
+
+#[test]
+fn a_fluidised_bed_goes_on_alike() {
+    let set = [
+        "time.end=0.3 s",
+        "output.every=0.1 s",
+        "output.series_every=2 ms",
+        "particles[0].place.height=30 mm",
+    ];
+    goes_on_alike(&shipped("fluidised-bed"), &set, "50 ms", [20, 75, 50]);
+}
+
+#[test]
+fn a_rotating_drum_goes_on_alike() {
+    let set = [
+        "time.end=0.5 s",
+        "output.every=0.1 s",
+        "output.series_every=5 ms",
+    ];
+    goes_on_alike(&shipped("rotating-drum"), &set, "70 ms", [20, 75, 50]);
+}
+
+#[test]
+fn a_bed_with_feed_and_outlet_goes_on_alike() {
+    let set = [
+        "time.end=30 s",
+        "output.every=5 s",
+        "output.series_every=0.5 s",
+        "feeds[0].mass_rate=4 g/s",
+        "outlets[0].mass_rate=4 g/s",
+    ];
+    goes_on_alike(&shipped("moving-bed"), &set, "7 s", [11, 40, 25]);
+}
+
+#[test]
+fn a_bed_that_reacts_goes_on_alike() {
+    let set = [
+        "time.end=20 min",
+        "output.every=4 min",
+        "output.series_every=20 s",
+        "mesh.box.size=24 24 132 mm",
+        "mesh.box.cells=[2, 2, 11]",
+        "particles[0].place.grid.counts=[2, 2, 8]",
+    ];
+    goes_on_alike(&shipped("ore-reduction"), &set, "3 min", [8, 40, 25]);
+}
+
+/// Views hold for 3 s, while particles come and go.
+#[test]
+fn a_moving_bed_that_radiates_goes_on_alike() {
+    let set = [
+        "time.end=30 s",
+        "output.every=10 s",
+        "output.series_every=0.5 s",
+    ];
+    let case = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/moving-heat.toml");
+    goes_on_alike(&case, &set, "5 s", [10, 43, 25]);
+}
