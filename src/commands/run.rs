@@ -35,7 +35,7 @@ pub(super) struct Arguments {
     /// Changes a key of the case, for example `--set time.acceleration=200`.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Continues from the last checkpoint in the results folder; starts again if there is none in it yet.
+    /// Continues from the last checkpoint in the results folder; a run that was stopped before its first one starts again.
     #[arg(long)]
     resume: bool,
     /// Starts from the last checkpoint of another run on the same mesh, with this

@@ -9,8 +9,8 @@ use calcine::results::Summary;
 use calcine::results::read::Series;
 use sha2::{Digest, Sha256};
 
-/// Part at the end of a run in which it is asked whether it is steady.
-const LAST: f64 = 0.2;
+/// Turnovers of the bed at the end of a run in which it is asked whether it is steady.
+const LAST: f64 = 0.4;
 /// Exit code of a run that was interrupted and can go on.
 const INTERRUPTED: i32 = 75;
 
@@ -28,11 +28,13 @@ impl Kept {
         *column.last().unwrap()
     }
 
-    /// By how much in K the mean temperature of the particles moves over the last part of the run.
-    pub fn moved(&self) -> f64 {
-        let mean = self.series.column("quantities.mean_temperature");
+    /// By how much in K the mean temperature of the particles moves over the last 0.4 turnovers, each of so many s.
+    pub fn moved(&self, turnover: f64) -> f64 {
+        let [time, mean] = ["process_time", "quantities.mean_temperature"];
+        let (time, mean) = (self.series.column(time), self.series.column(mean));
         let last = mean.len() - 1;
-        mean[last] - mean[last - (LAST * last as f64) as usize]
+        let before = time.partition_point(|&at| at < time[last] - LAST * turnover);
+        mean[last] - mean[before]
     }
 }
 
