@@ -289,10 +289,16 @@ impl Part for NativeGas {
     }
 
     fn checkpoint(&mut self, directory: &Path) -> Result<(), PartError> {
-        // What an attempt without a commit placed is no state of the run.
-        let origin = (!self.started).then(|| self.origin());
-        let state = origin.as_ref().unwrap_or(&self.committed);
-        state.write(&directory.join(STATE)).map_err(|error| {
+        // What an attempt without a commit placed or found is no state of the run.
+        if !self.started {
+            self.committed = self.origin();
+        }
+        if self.attempted.take().is_some() {
+            self.now.take(&self.committed);
+            self.update_fields();
+        }
+        let path = directory.join(STATE);
+        self.committed.write(&path).map_err(|error| {
             self.failure(FailureKind::Io, error.to_string())
                 .caused_by(error)
         })
