@@ -143,6 +143,7 @@ fn air_in_a_closed_box_heated_by_its_floor_rises_in_pressure() {
         ("slip", "van-leer"),
         ("slip", "upwind"),
         ("no-slip", "van-leer"),
+        ("no-slip", "central"),
     ] {
         agree_on(&cases::heated_box(side, convection), &CLOSE);
     }

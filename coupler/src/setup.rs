@@ -76,7 +76,7 @@ pub struct GasControls {
 }
 
 /// How cell values of velocity, enthalpy and composition are carried to faces.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Convection {
     /// First-order upwind.
     Upwind,
@@ -84,6 +84,9 @@ pub enum Convection {
     /// doi 10.1016/0021-9991(74)90019-9.
     #[default]
     VanLeer,
+    /// Velocity and enthalpy by linear interpolation to this share, by upwind for the rest: second order at a share of one,
+    /// not bounded. Mass fractions by van Leer's limiter, which bounds them.
+    Central(f64),
 }
 
 /// A composition over process time: (time in s, mass fractions in the order of the mixture's

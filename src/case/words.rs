@@ -108,7 +108,11 @@ case_words! {
     WallVelocity { "no-slip" => WallVelocity::NoSlip, "slip" => WallVelocity::Slip }
     Adiabatic { "adiabatic" => Adiabatic }
     Closed { "closed" => Closed }
-    Convection { "van-leer" => Convection::VanLeer, "upwind" => Convection::Upwind }
+    Convection {
+        "van-leer" => Convection::VanLeer,
+        "upwind" => Convection::Upwind,
+        "central" => Convection::Central(1.0),
+    }
     InletScalars { "flux" => InletScalars::Flux, "value" => InletScalars::Value }
     Share { "number" => Share::Number, "mass" => Share::Mass }
     MotionSpec { "frozen" => MotionSpec::Frozen, "free" => MotionSpec::Free }

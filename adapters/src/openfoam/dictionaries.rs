@@ -243,22 +243,26 @@ fn beyond(gas: &PatchGas, names: &[String]) -> Vec<(&'static str, String)> {
 
 /// The convection schemes of the case in a text of `system/fvSchemes` that has upwind ones.
 pub fn schemes(text: &str, convection: Convection) -> String {
-    match convection {
-        Convection::Upwind => text.to_owned(),
-        Convection::VanLeer => text
-            .replace(
-                "div(phi,U)      Gauss upwind;",
-                "div(phi,U)      Gauss vanLeerV;",
-            )
-            .replace(
-                "div(phi,h)      Gauss upwind;",
-                "div(phi,h)      Gauss vanLeer;",
-            )
-            .replace(
-                "div(phi,Yi)     Gauss upwind;",
-                "div(phi,Yi)     Gauss vanLeer;",
-            ),
-    }
+    let [velocity, enthalpy, fractions] = match convection {
+        Convection::Upwind => return text.to_owned(),
+        Convection::VanLeer => ["vanLeerV", "vanLeer", "vanLeer"].map(str::to_owned),
+        Convection::Central(share) => {
+            let central = format!("fixedBlended {share} skewCorrected linear upwind");
+            [central.clone(), central, "vanLeer".into()]
+        }
+    };
+    [
+        ("div(phi,U)     ", velocity),
+        ("div(phi,h)     ", enthalpy),
+        ("div(phi,Yi)    ", fractions),
+    ]
+    .iter()
+    .fold(text.to_owned(), |text, (term, scheme)| {
+        text.replace(
+            &format!("{term} Gauss upwind;"),
+            &format!("{term} Gauss {scheme};"),
+        )
+    })
 }
 
 /// `constant/calcineCells`: volumes and centres, which the solver compares with OpenFOAM's.

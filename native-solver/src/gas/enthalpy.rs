@@ -297,7 +297,7 @@ impl Enthalpy {
         now: &GasState,
     ) {
         let grid = frame.grid;
-        let second = frame.convection == Convection::VanLeer && species.is_empty();
+        let second = frame.convection != Convection::Upwind && species.is_empty();
         if second {
             let boundary = |index: usize, inner: f64| match frame.boundary.at(index) {
                 FaceCondition::Wall {
@@ -333,7 +333,8 @@ impl Enthalpy {
             let mut out = species.get(index).copied().unwrap_or(0.0);
             let flux = now.flux[index];
             if second && index < grid.internal && flux != 0.0 {
-                out += flux * beyond_upwind(grid, index, flux, &now.enthalpy, carried);
+                let scheme = frame.convection;
+                out += flux * beyond_upwind(scheme, grid, index, flux, &now.enthalpy, carried);
             }
             if !grid.orthogonal && conduction[index] != 0.0 {
                 out += conduction[index] * displacement(grid, &grid.faces[index], conducted);

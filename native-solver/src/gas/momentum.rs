@@ -321,7 +321,7 @@ impl Momentum {
     ) {
         let grid = frame.grid;
         let (gradients, viscous) = (&self.gradients, &self.viscous);
-        let second = frame.convection == Convection::VanLeer;
+        let second = frame.convection != Convection::Upwind;
         let explicit = |index: usize| {
             let face = &grid.faces[index];
             if index >= grid.internal {
@@ -337,7 +337,8 @@ impl Momentum {
             let flux = now.flux[index];
             let mut out = Vec3::zeros();
             if second && flux != 0.0 {
-                let beyond = vector_beyond_upwind(grid, index, flux, &now.velocity, gradients);
+                let (scheme, values) = (frame.convection, &now.velocity);
+                let beyond = vector_beyond_upwind(scheme, grid, index, flux, values, gradients);
                 out += flux * beyond;
             }
             let (own, other) = (&gradients[face.owner], &gradients[face.neighbour]);

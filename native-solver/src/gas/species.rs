@@ -230,7 +230,7 @@ impl SpeciesEquations {
 
     fn update_explicit(&mut self, frame: &AttemptFrame<'_>, share: f64, now: &GasState) {
         let grid = frame.grid;
-        let second = frame.convection == Convection::VanLeer;
+        let second = frame.convection != Convection::Upwind;
         if second || !grid.orthogonal {
             for (k, fractions) in self.fractions.iter().enumerate() {
                 let boundary =
@@ -313,7 +313,7 @@ impl SpeciesEquations {
     /// Sets `carried`, h_k at the face's temperature.
     fn update_carried(&mut self, frame: &AttemptFrame<'_>, now: &GasState) {
         let grid = frame.grid;
-        let second = frame.convection == Convection::VanLeer;
+        let second = frame.convection != Convection::Upwind;
         let given = |index: usize| match frame.boundary.at(index) {
             FaceCondition::Inlet { gas, .. } => Some(gas.temperature),
             FaceCondition::Wall { .. } | FaceCondition::Outlet { .. } => None,
@@ -379,7 +379,8 @@ impl SpeciesEquations {
         };
         let before = now.temperature[up];
         let gradients = &self.temperature_gradients;
-        let temperature = before + beyond_upwind(grid, index, flux, &now.temperature, gradients);
+        let (scheme, values) = (frame.convection, &now.temperature);
+        let temperature = before + beyond_upwind(scheme, grid, index, flux, values, gradients);
         let one = |k: usize| {
             let fraction = self.fractions[k][up];
             let more = limited(grid, index, flux, &self.fractions[k], self.limiters[index]);

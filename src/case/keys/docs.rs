@@ -94,7 +94,10 @@ pub(in crate::case) fn presence(placed: &PlacedKey) -> String {
     match (key.presence, key.value) {
         (KeyPresence::Required, _) => "required".into(),
         (KeyPresence::OneOf, _) => "one of".into(),
-        (KeyPresence::Default(word), KeyValue::Choice(_) | KeyValue::Choices(_)) => {
+        (
+            KeyPresence::Default(word),
+            KeyValue::Choice(_) | KeyValue::Choices(_) | KeyValue::Either(KeyValue::Choice(_), _),
+        ) => {
             format!("`{word}`")
         }
         (KeyPresence::Default(text) | KeyPresence::Without(text), _) => text.into(),

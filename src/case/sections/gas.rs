@@ -9,7 +9,7 @@ use calcine_coupler::physics::gas::GasProperties;
 use calcine_coupler::physics::gas_model::{ConstantGas, GasModel};
 use calcine_coupler::physics::law::LawChoice;
 use calcine_coupler::physics::turbulence::BedEddies;
-use calcine_coupler::setup::{GasControls, GasSetup};
+use calcine_coupler::setup::{Convection, GasControls, GasSetup};
 use calcine_coupler::time::GasStorage;
 
 use super::chemistry::{Around, chemistry};
@@ -211,11 +211,22 @@ fn initial(
     Some((temperature?, pressure?, Vec3::from(velocity), composition?))
 }
 
+/// A scheme by its name, or central differences with a share of upwind.
+fn convection(table: &TableReader<'_>) -> Option<Convection> {
+    if !table.is_table("convection") {
+        return table.choice("convection");
+    }
+    let blended = table.table("convection")?;
+    let share = blended.number("central");
+    blended.finish();
+    share.map(Convection::Central)
+}
+
 /// Accuracy, with its defaults where the case says nothing.
 fn controls(section: &TableReader<'_>) -> Option<GasControls> {
     let table = section.table_or_empty("controls")?;
     let outer_iterations = table.small_whole("outer_iterations");
-    let convection = table.choice("convection");
+    let convection = convection(&table);
     let pressure_corrections = table.small_whole("pressure_corrections");
     let outer_tolerance = table.number("outer_tolerance");
     let linear_tolerance = table.number("linear_tolerance");
