@@ -150,6 +150,7 @@ pub fn setup(mesh: &Mesh) -> GasSetup {
             outer_iterations: 100,
             convection: Convection::Upwind,
             pressure_corrections: 2,
+            most_pressure_corrections: 16,
             outer_tolerance: 1e-11,
             linear_tolerance: 1e-13,
         },
@@ -325,9 +326,9 @@ fn received_as_told(column: &mut Column<'_, '_>) -> Result<(), LawError> {
     Ok(())
 }
 
-/// What a balance leaves open, relative to its terms.
-fn left(balance: &Balance) -> f64 {
-    let (open, terms) = (balance.open(), balance.magnitude());
+/// What a balance leaves open, relative to terms.
+fn left(balance: &Balance, terms: f64) -> f64 {
+    let open = balance.open();
     if terms == 0.0 {
         open.abs()
     } else {
@@ -340,15 +341,18 @@ fn balances_close(column: &mut Column<'_, '_>) -> Result<(), LawError> {
     for index in 0..3 {
         column.advance(&mut *gas, index..index + 1)?;
         let received = &column.received;
+        // Momentum is a vector: where one component is all round-off, its size is that of the others.
+        let [x, y, z] = &received.momentum;
+        let momentum = [x, y, z].map(Balance::magnitude).iter().sum();
         let balances = [
-            ("mass", &received.mass),
-            ("energy", &received.energy),
-            ("momentum x", &received.momentum[0]),
-            ("momentum y", &received.momentum[1]),
-            ("momentum z", &received.momentum[2]),
+            ("mass", &received.mass, received.mass.magnitude()),
+            ("energy", &received.energy, received.energy.magnitude()),
+            ("momentum x", x, momentum),
+            ("momentum y", y, momentum),
+            ("momentum z", z, momentum),
         ];
-        for (name, balance) in balances {
-            let left = left(balance);
+        for (name, balance, terms) in balances {
+            let left = left(balance, terms);
             holds(left <= column.under_test.closure, || {
                 format!("window {index}: {name} leaves {left:.1e} of its terms: {balance:?}")
             })?;

@@ -225,6 +225,12 @@ impl Momentum {
         self.matrix.diagonal()[cell] - inertia - frame.exchange.drag_coefficient[cell]
     }
 
+    /// Friction between a face of the boundary and the cell behind it, in kg/s; zero where no velocity is given.
+    #[inline]
+    pub fn friction(&self, index: usize) -> f64 {
+        self.viscous[index]
+    }
+
     /// Solves for the velocity with the pressure gradient at hand; returns the iterations.
     pub fn predict(
         &mut self,

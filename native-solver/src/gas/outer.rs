@@ -12,6 +12,7 @@ use super::enthalpy::Enthalpy;
 use super::failure::GasFailure;
 use super::guard;
 use super::momentum::Momentum;
+use super::pace::Pace;
 use super::pressure::{self, Pressure};
 use super::species::SpeciesEquations;
 use super::state::GasState;
@@ -97,8 +98,10 @@ impl Equations {
         self.chemistry.begin(frame, continues);
         self.share = 1.0;
         self.assess(frame, now)?;
+        let mut pace = Pace::new(controls, self.flow);
         for outer in 1..=controls.outer_iterations.max(1) {
-            convergence.linear_iterations += self.iterate(frame, controls, now)?;
+            convergence.linear_iterations +=
+                self.iterate(frame, controls, pace.corrections, now)?;
             convergence.outer_iterations = outer;
             if outer >= FOLLOWED {
                 self.share = 0.5;
@@ -111,6 +114,7 @@ impl Equations {
                 convergence.converged = true;
                 break;
             }
+            pace.judge(controls, outer, self.flow);
         }
         convergence.linear_iterations += self.close(frame, controls.linear_tolerance, now);
         guard::complaint(now, &frame.grid.centre)?;
@@ -149,6 +153,7 @@ impl Equations {
         &mut self,
         frame: &AttemptFrame<'_>,
         controls: &GasControls,
+        corrections: u32,
         now: &mut GasState,
     ) -> Result<u32, GasFailure> {
         let tolerance = controls.linear_tolerance;
@@ -156,7 +161,7 @@ impl Equations {
         let mut iterations = self.momentum.predict(frame, krylov, tolerance, now);
 
         self.pressure.assemble(frame, material, &self.momentum, now);
-        for _ in 0..controls.pressure_corrections.max(1) {
+        for _ in 0..corrections {
             iterations +=
                 self.pressure
                     .correct(frame, material, &self.momentum, krylov, tolerance, now);

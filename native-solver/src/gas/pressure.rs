@@ -21,6 +21,7 @@ use nalgebra::Matrix3;
 
 use super::attempt::{AttemptFrame, CellProperties};
 use super::boundary::FaceCondition;
+use super::friction::{self, WallFriction};
 use super::momentum::Momentum;
 use super::opening::OuterPressure;
 use super::state::GasState;
@@ -79,6 +80,7 @@ pub struct Pressure {
     /// the face's normal, in N/m³: the face's own old flux in place of the cell's.
     inertia: Vec<[f64; 2]>,
     transport: FaceTransport,
+    friction: WallFriction,
     /// Area/(d_P/b_P + d_N/b_N) of each face in m s; zero where the flux is given.
     conductance: Vec<f64>,
     /// The flux that the forces alone would drive through each face in kg/s; the flux itself
@@ -91,6 +93,8 @@ pub struct Pressure {
     recovery: Vec<Matrix3<f64>>,
     /// Σ p_f S/V of each cell in Pa/m, p_f from the cell's own half; empty where no centre is displaced along a face.
     along: Vec<Vec3>,
+    /// Corrections since the matrix was assembled.
+    corrections: u32,
     /// Memory for the next.
     scratch: Vec<Vec3>,
 }
@@ -107,12 +111,14 @@ impl Pressure {
             force: vec![Vec3::zeros(); cells],
             inertia: vec![[0.0; 2]; faces],
             transport: FaceTransport::new(cells, faces),
+            friction: WallFriction::default(),
             conductance: vec![0.0; faces],
             drive: vec![0.0; faces],
             source: vec![0.0; cells],
             outer: Vec::new(),
             recovery,
             along: Vec::new(),
+            corrections: 0,
             scratch: Vec::new(),
         }
     }
@@ -153,6 +159,8 @@ impl Pressure {
         now: &GasState,
     ) {
         self.transport.update(frame, material, momentum, now);
+        self.corrections = 0;
+        self.friction.begin(frame, momentum, &now.velocity);
         let grid = frame.grid;
         fill(&mut self.mobility, |cell| {
             let pores = frame.void_fraction[cell];
@@ -207,9 +215,13 @@ impl Pressure {
         now: &mut GasState,
     ) -> u32 {
         let grid = frame.grid;
-        let velocity = &now.velocity;
+        if grid.orthogonal && self.corrections > 0 {
+            self.transport.update(frame, material, momentum, now);
+        }
+        let (velocity, friction) = (&now.velocity, &self.friction);
         fill(&mut self.force, |cell| {
-            momentum.without_pressure(cell, velocity)
+            let back = friction.given_back(grid, cell, &velocity[cell]);
+            (momentum.without_pressure(cell, velocity) + back)
                 / (frame.pressure_share[cell] * grid.volume[cell])
         });
         self.update_drive(frame);
@@ -239,7 +251,8 @@ impl Pressure {
             target,
         );
         self.update_flux(frame, now);
-        self.update_along(frame, now);
+        self.corrections += 1;
+        self.update_along(frame, momentum, now);
         self.update_velocity(frame, momentum, now);
         solved.iterations
     }
@@ -332,7 +345,7 @@ impl Pressure {
     /// The gradient by which pressures are carried along faces, from the values that each cell's half gives on its faces. It does not
     /// take up its own last value where cells repeat, and so settles at any skewness: the gradient that the velocities leave
     /// does, and grows from one correction to the next beyond 30° of shear.
-    fn update_along(&mut self, frame: &AttemptFrame<'_>, now: &GasState) {
+    fn update_along(&mut self, frame: &AttemptFrame<'_>, momentum: &Momentum, now: &GasState) {
         let grid = frame.grid;
         if grid.orthogonal {
             return;
@@ -360,7 +373,12 @@ impl Pressure {
                 let beyond = out * slope + miss.dot(&last[cell]);
                 sum += (link.sign * face.area * beyond) * face.normal;
             }
-            sum / grid.volume[cell]
+            let new = sum / grid.volume[cell];
+            if self.corrections > 1 {
+                return new;
+            }
+            let share = friction::share_without(grid, momentum, cell);
+            last[cell] + share * (new - last[cell])
         });
         self.along = next;
         self.scratch = last;

@@ -228,6 +228,7 @@ fn controls(section: &TableReader<'_>) -> Option<GasControls> {
     let outer_iterations = table.small_whole("outer_iterations");
     let convection = convection(&table);
     let pressure_corrections = table.small_whole("pressure_corrections");
+    let most_pressure_corrections = table.small_whole("most_pressure_corrections");
     let outer_tolerance = table.number("outer_tolerance");
     let linear_tolerance = table.number("linear_tolerance");
     table.finish();
@@ -235,6 +236,7 @@ fn controls(section: &TableReader<'_>) -> Option<GasControls> {
         outer_iterations: outer_iterations?,
         convection: convection?,
         pressure_corrections: pressure_corrections?,
+        most_pressure_corrections: most_pressure_corrections?,
         outer_tolerance: outer_tolerance?,
         linear_tolerance: linear_tolerance?,
     })

@@ -1,0 +1,84 @@
+//! How many pressure corrections an outer iteration takes: the case's, and twice as many, and again, where at the pace of
+//! momentum and continuity the outer loop would not reach its tolerance within its iterations.
+
+use std::collections::VecDeque;
+
+use calcine_coupler::setup::GasControls;
+
+/// Outer iterations over which a pace is judged: the first after a change still has what was there before.
+const JUDGED: usize = 3;
+
+/// The number of corrections, and the pace at which they take the residual down.
+#[derive(Clone, Debug)]
+pub struct Pace {
+    /// Pressure corrections of an outer iteration.
+    pub corrections: u32,
+    most: u32,
+    /// The last residuals with this number of corrections, oldest first.
+    residuals: VecDeque<f64>,
+}
+
+impl Pace {
+    /// The case's number of corrections, at the residual before the first outer iteration.
+    pub fn new(controls: &GasControls, residual: f64) -> Self {
+        let corrections = controls.pressure_corrections.max(1);
+        Self {
+            corrections,
+            most: controls.most_pressure_corrections.max(corrections),
+            residuals: VecDeque::from([residual]),
+        }
+    }
+
+    /// Takes up the residual after an outer iteration.
+    pub fn judge(&mut self, controls: &GasControls, outer: u32, residual: f64) {
+        self.residuals.push_back(residual);
+        if self.residuals.len() <= JUDGED || self.corrections == self.most {
+            return;
+        }
+        let before = self.residuals.pop_front().unwrap_or(residual);
+        let left = controls.outer_iterations.saturating_sub(outer);
+        let pace = (residual / before).powf(1.0 / JUDGED as f64);
+        let expected = residual * pace.powf(f64::from(left));
+        if expected > controls.outer_tolerance {
+            self.corrections = (2 * self.corrections).min(self.most);
+            self.residuals = VecDeque::from([residual]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn controls() -> GasControls {
+        GasControls {
+            outer_iterations: 20,
+            convection: Default::default(),
+            pressure_corrections: 2,
+            most_pressure_corrections: 7,
+            outer_tolerance: 1e-8,
+            linear_tolerance: 1e-13,
+        }
+    }
+
+    /// Corrections after outer iterations that multiply the residual by a factor each.
+    fn after(factor: f64, iterations: u32) -> u32 {
+        let mut pace = Pace::new(&controls(), 1.0);
+        for outer in 1..=iterations {
+            pace.judge(&controls(), outer, factor.powi(outer as i32));
+        }
+        pace.corrections
+    }
+
+    #[test]
+    fn corrections_stay_where_the_pace_suffices() {
+        // 20 iterations of 0.39 make 7e-9.
+        assert_eq!(after(0.39, 19), 2);
+    }
+
+    #[test]
+    fn corrections_double_up_to_the_most_where_it_does_not() {
+        assert_eq!([2, 3, 6, 9].map(|done| after(0.5, done)), [2, 4, 7, 7]);
+        assert_eq!(after(1.5, 6), 7);
+    }
+}
