@@ -3,7 +3,7 @@
 
 use std::fs::{self, DirBuilder, File, OpenOptions};
 use std::io::ErrorKind;
-use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
+use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
@@ -151,6 +151,17 @@ impl LinkAddress {
                 Err(WireError::File { path, source })
             }
             _ => Ok(path),
+        }
+    }
+
+    /// Takes the access of other users from the run's shared memory: iceoryx2 opens its management segment to all.
+    pub(crate) fn make_private(&self) {
+        for file in in_memory(&self.name) {
+            let open = |about: fs::Metadata| about.is_file() && about.mode() & 0o077 != 0;
+            if file.metadata().is_ok_and(open) {
+                // One that is gone meanwhile needs nothing.
+                let _ = fs::set_permissions(file.path(), fs::Permissions::from_mode(0o600));
+            }
         }
     }
 
@@ -320,24 +331,28 @@ fn names_below(scratch: &Path) -> Vec<String> {
     names
 }
 
+/// What a run has in shared memory.
+fn in_memory(name: &str) -> impl Iterator<Item = fs::DirEntry> {
+    let prefix = format!("{name}_");
+    let entries = fs::read_dir(MEMORY).into_iter().flatten().flatten();
+    entries.filter(move |entry| {
+        let name = entry.file_name();
+        name.to_str().is_some_and(|name| name.starts_with(&prefix))
+    })
+}
+
 /// Removes a run's shared memory and its root; what cannot be removed is told on stderr.
 fn remove_files(name: &str, root: &Path) {
-    let prefix = format!("{name}_");
     let tell = |path: &Path, error: std::io::Error| {
         if error.kind() != ErrorKind::NotFound {
             eprintln!("{} could not be removed: {error}", path.display());
         }
     };
-    for entry in fs::read_dir(MEMORY).into_iter().flatten().flatten() {
-        let own = entry
-            .file_name()
-            .to_str()
-            .is_some_and(|name| name.starts_with(&prefix));
+    for entry in in_memory(name) {
         let folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
-        let removed = match (own, folder) {
-            (false, _) => Ok(()),
-            (true, false) => fs::remove_file(entry.path()),
-            (true, true) => fs::remove_dir_all(entry.path()),
+        let removed = match folder {
+            false => fs::remove_file(entry.path()),
+            true => fs::remove_dir_all(entry.path()),
         };
         if let Err(error) = removed {
             tell(&entry.path(), error);
@@ -351,6 +366,7 @@ fn remove_files(name: &str, root: &Path) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shared_memory::{LinkEnd, SharedMemory};
 
     fn files_of(name: &str) -> usize {
         fs::read_dir(MEMORY)
@@ -358,6 +374,19 @@ mod tests {
             .flatten()
             .filter(|entry| entry.file_name().to_str().unwrap().starts_with(name))
             .count()
+    }
+
+    #[test]
+    fn other_users_have_no_access_to_what_a_run_keeps() {
+        let run = RunDirectory::create().unwrap();
+        let end = LinkEnd::Coordinator;
+        let _link = SharedMemory::open(&run.address("gas"), 0, end).unwrap();
+        let modes: Vec<u32> = in_memory(&run.name)
+            .map(|file| file.metadata().unwrap().mode() & 0o077)
+            .collect();
+        assert!(modes.len() > 2, "{modes:?}");
+        assert!(modes.iter().all(|mode| *mode == 0), "{modes:?}");
+        assert_eq!(fs::metadata(&run.root).unwrap().mode() & 0o077, 0);
     }
 
     #[test]

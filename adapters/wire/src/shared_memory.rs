@@ -91,6 +91,7 @@ impl SharedMemory {
             .signal_handling_mode(SignalHandlingMode::Disabled)
             .create::<Ipc>()
             .map_err(failed("joining the run"))?;
+        address.make_private();
         let ports = Ports::open(node, address, rank, end)?;
         Ok(Self {
             ports: Some(ports),
