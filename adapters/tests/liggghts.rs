@@ -176,6 +176,33 @@ fn a_held_bed_stays_bit_for_bit_and_its_support_takes_force_times_span() {
     assert_eq!(leftovers(), Vec::<String>::new());
 }
 
+/// Nothing moves in it: no step of LIGGGHTS is needed.
+#[test]
+fn a_held_bed_passes_a_window_of_days_at_once() {
+    let mut bench = Bench::new();
+    let mut particles = bench.launch(1, None).unwrap();
+    let span = Ticks::from_seconds(1e6).unwrap();
+    let days = Window {
+        span: Clocks {
+            motion: span,
+            process: span,
+        },
+        ..window(0)
+    };
+    let mut received = ParticleReceived::default();
+    particles
+        .start(&days, &VoidFractions::default(), &push())
+        .unwrap();
+    let begun = Instant::now();
+    particles.finish(&bench.supervisor, &mut received).unwrap();
+    particles.commit().unwrap();
+    // By steps it would be minutes, and more of them than LIGGGHTS counts.
+    assert!(begun.elapsed() < Duration::from_secs(20));
+    assert_eq!(received.impulse[4], Vec3::new(0.0, 0.5, 4.0) * 1e6);
+    assert_column(&particles, &bench.setup);
+    particles.finish_run(&bench.supervisor).unwrap();
+}
+
 #[test]
 fn a_run_goes_on_from_its_checkpoint_here_and_in_another_process() {
     let mut bench = Bench::new();
