@@ -180,6 +180,7 @@ void Foam::calcine::gas::measureFaces()
     openingSlope_.setSize(faces, 0);
     transportPush_.setSize(faces, 0);
     recovery_ = tensorField(mesh_.nCells(), Zero);
+    warp_ = tensorField(mesh_.nCells(), Zero);
     for (label facei = 0; facei < faces; ++facei)
     {
         const vector& centre = mesh_.faceCentres()[facei];
@@ -193,8 +194,12 @@ void Foam::calcine::gas::measureFaces()
             neighbourDistance_[facei] = n & toNeighbour;
             neighbourSkew_[facei] = toNeighbour - neighbourDistance_[facei]*n;
         }
+        const vector& area = mesh_.faceAreas()[facei];
+        warp_[mesh_.faceOwner()[facei]] -= area*fromOwner;
         if (facei < mesh_.nInternalFaces())
         {
+            const label N = mesh_.faceNeighbour()[facei];
+            warp_[N] += area*(centre - mesh_.cellCentres()[N]);
             recovery_[mesh_.faceNeighbour()[facei]] +=
                 neighbourDistance_[facei]*mag(mesh_.faceAreas()[facei])*n*n;
         }
@@ -204,6 +209,7 @@ void Foam::calcine::gas::measureFaces()
     forAll(recovery_, celli)
     {
         recovery_[celli] = inv(recovery_[celli]/mesh_.cellVolumes()[celli]);
+        warp_[celli] = tensor(I) + warp_[celli]/mesh_.cellVolumes()[celli];
     }
 }
 

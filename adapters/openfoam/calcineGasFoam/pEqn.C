@@ -198,8 +198,12 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
         }
     }
     reduce(terms, sumOp<scalar>());
-    result.linearIterations +=
-        pressureSolver_.solve(matrix, source, linearTolerance_*terms, p_).iterations;
+    // A single closed cell has no equation: its pressure is the model's.
+    if (!(boundary_.closed() && returnReduce(mesh_.nCells(), sumOp<label>()) == 1))
+    {
+        result.linearIterations +=
+            pressureSolver_.solve(matrix, source, linearTolerance_*terms, p_).iterations;
+    }
 
     for (label facei = 0; facei < internal; ++facei)
     {
@@ -268,5 +272,6 @@ void Foam::calcine::gas::updatePressureAlong()
             add(facei, mesh_.faceNeighbour()[facei], neighbourDistance_[facei], neighbourSkew_[facei]);
         }
     }
-    pressureAlong_ = next/mesh_.cellVolumes();
+    // The sum over warped faces of a pressure of this gradient is not the gradient.
+    pressureAlong_ = next/mesh_.cellVolumes() + (warp_ & pressureAlong_);
 }

@@ -26,6 +26,7 @@ Foam::calcine::stirredCell::stirredCell
     own_(own),
     species_(own.size()),
     concentrations_(own.size()),
+    below_(own.size()),
     rates_(own.size()),
     hotter_(own.size()),
     colder_(own.size()),
@@ -66,10 +67,29 @@ void Foam::calcine::stirredCell::setConcentrations
     // An integration may try what is no gas, and takes it back.
     moles = max(moles, VSMALL);
     density = pressure_/(constant::physicoChemical::R.value()*kilo*T*moles);
+    isBelow_ = false;
     for (label k = 0; k < species_; ++k)
     {
-        concentrations_[own_[k]] = max(y[k], scalar(0))*density/(kilo*mixture_[k].molarMass());
+        const scalar c = y[k]*density/(kilo*mixture_[k].molarMass());
+        concentrations_[own_[k]] = max(c, scalar(0));
+        below_[own_[k]] = min(c, scalar(0));
+        isBelow_ = isBelow_ || c < 0;
     }
+}
+
+
+Foam::scalar Foam::calcine::stirredCell::extended(scalar gained) const
+{
+    for (label l = 0; l < species_; ++l)
+    {
+        const label j = own_[l];
+        gained += gainedSlopes_[j]*below_[j];
+        for (label k = 0; k < species_; ++k)
+        {
+            rates_[own_[k]] += slopes_(own_[k], j)*below_[j];
+        }
+    }
+    return gained;
 }
 
 
@@ -116,7 +136,12 @@ void Foam::calcine::stirredCell::derivatives
     const scalar T = gasChemistry::bounded(y[species_]);
     scalar density, moles;
     setConcentrations(y, T, density, moles);
-    const scalar gained = chemistry_.rates(concentrations_, T, pressure_, rates_);
+    scalar gained = chemistry_.rates(concentrations_, T, pressure_, rates_);
+    if (isBelow_)
+    {
+        chemistry_.slopes(concentrations_, T, pressure_, slopes_, gainedSlopes_);
+        gained = extended(gained);
+    }
     const scalar perMass = share(gained, density, moles);
     for (label k = 0; k < species_; ++k)
     {
@@ -144,8 +169,13 @@ void Foam::calcine::stirredCell::jacobian
     const scalar hotter = chemistry_.rates(concentrations_, T + apart, pressure_, hotter_);
     const scalar colder = chemistry_.rates(concentrations_, T - apart, pressure_, colder_);
     // By concentrations.
-    const scalar gained = chemistry_.rates(concentrations_, T, pressure_, rates_);
+    scalar gained = chemistry_.rates(concentrations_, T, pressure_, rates_);
     chemistry_.slopes(concentrations_, T, pressure_, slopes_, gainedSlopes_);
+    if (isBelow_)
+    {
+        gained = extended(gained);
+        concentrations_ += below_;
+    }
 
     const scalar perMass = share(gained, density, moles);
     // kappa/rho = 1/(rho + mixing gained/(n sum Y/M)): its slope is -(kappa/rho)^2 times that of the divisor.
