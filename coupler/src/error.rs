@@ -70,6 +70,8 @@ pub struct PartError {
     pub kind: FailureKind,
     /// What happened, one sentence with figures.
     pub message: String,
+    /// What of mesh and flow may be behind it, in sentences of their own; empty where nothing is known.
+    pub circumstances: Vec<String>,
     /// The last lines of the part's log; empty for native parts.
     pub log_end: Vec<String>,
     /// The cause, if another error lies below.
@@ -85,6 +87,7 @@ impl PartError {
             window: None,
             kind,
             message: message.into(),
+            circumstances: Vec::new(),
             log_end: Vec::new(),
             cause: None,
         }
@@ -93,6 +96,12 @@ impl PartError {
     /// The same, in a window.
     pub fn in_window(mut self, window: &Window) -> Self {
         self.window = Some(*window);
+        self
+    }
+
+    /// The same, with what of mesh and flow may be behind it.
+    pub fn under(mut self, circumstances: Vec<String>) -> Self {
+        self.circumstances = circumstances;
         self
     }
 
@@ -118,6 +127,9 @@ impl fmt::Display for PartError {
                 " (window {}, attempt {}, process time {}, motion time {})",
                 window.index, window.attempt, window.start.process, window.start.motion
             )?;
+        }
+        for line in &self.circumstances {
+            write!(f, "\n  {line}")?;
         }
         if !self.log_end.is_empty() {
             write!(f, "\nthe end of its log:")?;

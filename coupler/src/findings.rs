@@ -128,7 +128,8 @@ impl FindingKind {
             Self::GasIterations => [
                 "gas_iterations",
                 "the gas' outer loop ended at its limit (gas.controls.outer_iterations) above gas.controls.outer_tolerance: \
-                 raise the one, or shorten the windows (time.process_step); residual",
+                 raise the one, or shorten the windows (time.motion_window, or time.process_step where the case has it); \
+                 residual",
                 "1",
             ],
             Self::TurbulenceSolver => [

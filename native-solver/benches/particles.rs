@@ -191,8 +191,10 @@ fn settled(count: usize, width: f64) -> Vec<NewParticle> {
     }
     let spec = RandomSpec {
         sizes: Sizes::Equal(2.0 * RADIUS),
-        fill: Fill::Number(count),
-        solid_fraction: 0.58,
+        fill: Fill::Number {
+            number: count,
+            solid_fraction: 0.58,
+        },
         seed: 1,
         size_seed: 1,
     };

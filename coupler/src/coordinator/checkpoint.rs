@@ -21,6 +21,16 @@ impl CoupledRun {
     /// Writes a checkpoint of all participants.
     pub fn checkpoint(&mut self, observers: &mut [&mut dyn Observer]) -> Result<(), RunError> {
         let running = Meter::start(Stage::Output);
+        let written = self.write_checkpoint(observers);
+        if written.is_err() {
+            // What could not be written fills the disk no longer; the last one stays.
+            let _ = fs::remove_dir_all(self.plan.checkpoint.fresh());
+        }
+        self.meter.stop(running);
+        written
+    }
+
+    fn write_checkpoint(&mut self, observers: &mut [&mut dyn Observer]) -> Result<(), RunError> {
         let fresh = self.plan.checkpoint.fresh();
         let failed = |doing, cause| CheckpointError::Io {
             path: fresh.clone(),
@@ -43,7 +53,6 @@ impl CoupledRun {
         }
         self.plan.checkpoint.publish()?;
         self.last_checkpoint = Instant::now();
-        self.meter.stop(running);
         Ok(())
     }
 

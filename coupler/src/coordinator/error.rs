@@ -133,6 +133,17 @@ pub enum CheckpointError {
         /// Why it failed.
         cause: io::Error,
     },
+    /// No checkpoint is as it was written.
+    #[error(
+        "the checkpoint {what}, and no older one is whole; start again, or continue by `--from` from the results of \
+         another run"
+    )]
+    Damaged {
+        /// The folder of the last one.
+        path: PathBuf,
+        /// Which, and what is wrong with it.
+        what: String,
+    },
     /// The checkpoint is of another case.
     #[error(
         "the checkpoint in {path} is of another case (its hash is {found}, this case's {expected}); \

@@ -1,5 +1,7 @@
 //! Stage: from the gas about the particles to the coefficients of the exchange.
 
+use calcine_interior::without;
+
 use super::bed::MappedBed;
 use super::error::RunError;
 use crate::bed_eddies::{BedEddyInputs, BedEddyStage};
@@ -89,6 +91,18 @@ impl LawStage {
             evaluated.map_err(refused)?;
         }
         Ok(())
+    }
+
+    /// Rows went, and others came up to a number of particles: what results show of the laws stays with its particle. One
+    /// that came has no gas around it before its first window.
+    pub fn change(&mut self, gone: &[usize], particles: usize) {
+        for (shown, of_new) in [
+            (&mut self.sampled_gas.void_fraction, 1.0),
+            (&mut self.coefficients.slip, 0.0),
+        ] {
+            without(shown, gone);
+            shown.resize(particles, of_new);
+        }
     }
 
     /// Looks at the gas of the last attempt, with the coefficients as they are.

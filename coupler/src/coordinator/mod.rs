@@ -5,6 +5,8 @@ mod balances;
 mod bed;
 mod checkpoint;
 mod checkpoint_paths;
+mod checkpoint_sums;
+mod circumstances;
 mod control;
 mod controls;
 mod cut;
@@ -32,7 +34,7 @@ use std::time::{Duration, Instant};
 
 use calcine_interior::HeatNetwork;
 
-pub use checkpoint_paths::CheckpointPaths;
+pub use checkpoint_paths::{CheckpointPaths, WholeCheckpoint};
 pub use control::Control;
 pub use error::{CheckpointError, ControlError, OriginError, RunError, TooLight};
 pub use origin::Origin;
@@ -300,7 +302,7 @@ impl CoupledRun {
         match self.exchange_over(supervisor, window) {
             Ok(()) if may_cut && !self.settled() => return Ok(None),
             Err(error) if may_cut && self.begins_again_after(&error) => return Ok(None),
-            exchanged => exchanged?,
+            exchanged => exchanged.map_err(|error| self.told_with_circumstances(error, window))?,
         }
         self.move_particles(supervisor, window)?;
         self.close_ledger(window);

@@ -24,6 +24,8 @@ const SAME: f64 = 1e-9;
 pub struct Origin {
     /// The checkpoint's folder.
     pub path: PathBuf,
+    /// What is wrong with a newer one, where there is one.
+    pub damage: Option<String>,
     /// Hash of the other run's case.
     pub case_hash: String,
     /// Windows that the other run had committed.
@@ -34,9 +36,13 @@ pub struct Origin {
 }
 
 impl Origin {
-    /// Reads what a run left in its results folder.
-    pub fn read(results: &Path) -> Result<Self, StateFileError> {
-        let path = CheckpointPaths::new(results).committed();
+    /// Reads the newest whole checkpoint that a run left in its results folder; that folder stays as it is.
+    pub fn read(results: &Path) -> Result<Self, RunError> {
+        let paths = CheckpointPaths::new(results);
+        let (path, damage) = match paths.newest_whole()? {
+            Some(whole) => (whole.path, whole.damage),
+            None => (paths.committed(), None),
+        };
         let state = StateFile::read(&path.join("coordinator.state"))?;
         let case_hash = text(state.u64s("case_hash")?);
         let [windows, motion, process] = match *state.u64s("windows_and_clocks")? {
@@ -49,6 +55,7 @@ impl Origin {
         };
         Ok(Self {
             path,
+            damage,
             case_hash,
             windows,
             clocks,

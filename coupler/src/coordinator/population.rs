@@ -159,6 +159,7 @@ impl CoupledRun {
         let heat = &mut self.exchange.exchange.heat;
         without(heat, &step.rows);
         heat.resize(fields.len(), 0.0);
+        self.laws.change(&step.rows, fields.len());
         self.motion.change(&step.rows, &fields, first);
         Ok(moved)
     }

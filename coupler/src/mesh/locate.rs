@@ -6,7 +6,7 @@ use std::ops::Deref;
 
 use calcine_physics::Vec3;
 
-use super::Mesh;
+use super::{Mesh, bounds};
 
 /// Finds the cells of a mesh by position: a regular grid of bins, finer where cells are, lists the
 /// cells whose bounding boxes reach into each bin; among those the faces decide. The mesh is borrowed or shared.
@@ -190,13 +190,6 @@ fn warp(mesh: &Mesh, face: usize) -> f64 {
     } else {
         0.0
     }
-}
-
-fn bounds(points: impl Iterator<Item = Vec3>) -> [Vec3; 2] {
-    let infinity = Vec3::repeat(f64::INFINITY);
-    points.fold([infinity, -infinity], |[lower, upper], point| {
-        [lower.inf(&point), upper.sup(&point)]
-    })
 }
 
 /// A regular grid over a box, about as many bins as cells; crowded bins hold a finer grid.

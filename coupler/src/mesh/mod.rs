@@ -8,6 +8,7 @@ pub mod grading;
 pub mod locate;
 pub mod openings;
 pub mod polymesh;
+pub mod quality;
 pub mod refine;
 pub mod zone;
 
@@ -213,6 +214,11 @@ impl Mesh {
         &self.cell_volume
     }
 
+    /// Lowest and highest corner of the box about the mesh, in m.
+    pub fn bounds(&self) -> [Vec3; 2] {
+        bounds(self.topology.points.iter().copied())
+    }
+
     /// Cell centres in m.
     pub fn cell_centre(&self) -> &[Vec3] {
         &self.cell_centre
@@ -271,17 +277,25 @@ fn points_of(topology: &Topology, face: usize) -> &[u32] {
     &topology.face_points[range]
 }
 
-/// Area vector and centre of a face from triangles about the mean of its points.
+/// Lowest and highest corner of the box about points.
+fn bounds(points: impl Iterator<Item = Vec3>) -> [Vec3; 2] {
+    let infinity = Vec3::repeat(f64::INFINITY);
+    points.fold([infinity, -infinity], |[lower, upper], point| {
+        [lower.inf(&point), upper.sup(&point)]
+    })
+}
+
+/// Area vector and centre of a face from triangles about the mean of its points, each with the magnitude of its area as its weight:
+/// as OpenFOAM has them of warped faces, too.
 fn face_geometry(topology: &Topology, face: usize) -> (Vec3, Vec3) {
     let indices = points_of(topology, face);
     let point = |i: usize| topology.points[indices[i % indices.len()] as usize];
     let middle = (0..indices.len()).map(point).sum::<Vec3>() / indices.len() as f64;
     let triangle_area = |i: usize| 0.5 * (point(i) - middle).cross(&(point(i + 1) - middle));
     let area = (0..indices.len()).map(triangle_area).sum::<Vec3>();
-    let normal = area / area.norm();
     let (mut weight, mut moment) = (0.0, Vec3::zeros());
     for i in 0..indices.len() {
-        let share = triangle_area(i).dot(&normal);
+        let share = triangle_area(i).norm();
         weight += share;
         moment += share * (point(i) + point(i + 1) + middle) / 3.0;
     }

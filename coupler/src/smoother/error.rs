@@ -24,7 +24,10 @@ pub enum SmootherError {
     #[error("the diffusion length is {0} m; it must be finite and not negative")]
     NoLength(f64),
     /// A diffusion length that is far longer than cells.
-    #[error("a diffusion length of {length} m needs {steps} steps on this mesh; at most {most}")]
+    #[error(
+        "the smoother's diffusion length of {length} m spans too many cells of this mesh: {steps} steps, at most {most}; shorten \
+         `coupling.smoother.diffusion_length`, half the mean diameter where it is not stated, or check the unit of the diameters"
+    )]
     DiffusionLength {
         /// The length in m.
         length: f64,
@@ -53,9 +56,10 @@ pub enum SmootherError {
     },
     /// A bed that does not fit below α_max (docs/theory.md, VFS-5).
     #[error(
-        "the bed does not fit: {left_over} m^3 of solid are left over above a solid fraction of \
+        "the bed does not fit: {left_over:.4e} m^3 of solid are left over above a solid fraction of \
          {max_solid_fraction} in a region of {cells} cells with centres between \
-         ({}, {}, {}) and ({}, {}, {}) m; its mean solid fraction is {mean}{}",
+         ({:.4}, {:.4}, {:.4}) and ({:.4}, {:.4}, {:.4}) m, whose mean solid fraction is {mean:.4}{}; place fewer or smaller \
+         particles there, or check `coupling.smoother.max_solid_fraction`",
         lower.x, lower.y, lower.z, upper.x, upper.y, upper.z,
         if *unsettled { ", and the active cells did not settle" } else { "" }
     )]

@@ -154,8 +154,10 @@ fn bed() -> (Vec<Vec3>, Vec<RadiationWall>) {
     let size = Vec3::new(0.07, 0.07, 0.1);
     let spec = RandomSpec {
         sizes: Sizes::Equal(0.01),
-        fill: Fill::Height(size.z),
-        solid_fraction: 0.56,
+        fill: Fill::Height {
+            height: size.z,
+            solid_fraction: 0.56,
+        },
         seed: 3,
         size_seed: 1,
     };

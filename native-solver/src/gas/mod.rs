@@ -413,7 +413,15 @@ impl Gas for NativeGas {
         let solved = self
             .equations
             .solve(&frame, &self.setup.controls, continues, &mut self.now);
-        let convergence = solved.map_err(|cause| self.failed(cause).in_window(&window))?;
+        let convergence = match solved {
+            Ok(convergence) => convergence,
+            Err(cause) => {
+                // What a failed attempt leaves is no gas.
+                self.now.take(&self.committed);
+                self.attempted = None;
+                return Err(self.failed(cause).in_window(&window));
+            }
+        };
         let Equations {
             momentum,
             enthalpy,

@@ -91,6 +91,8 @@ pub struct Pressure {
     outer: Vec<Option<OuterPressure>>,
     /// V (Σ A d n nᵀ)⁻¹ of each cell; empty where it is the identity.
     recovery: Vec<Matrix3<f64>>,
+    /// What Σ S (x_f − x_P)ᵀ/V of each cell lacks of the identity, as its faces are warped; empty where it lacks nothing.
+    warp: Vec<Matrix3<f64>>,
     /// Σ p_f S/V of each cell in Pa/m, p_f from the cell's own half; empty where no centre is displaced along a face.
     along: Vec<Vec3>,
     /// Corrections since the matrix was assembled.
@@ -104,6 +106,7 @@ impl Pressure {
     pub fn new(matrix: Matrix) -> Self {
         let (cells, faces) = (matrix.grid().cells(), matrix.grid().faces.len());
         let recovery = recovery(matrix.grid());
+        let warp = warp(matrix.grid());
         Self {
             matrix,
             preconditioner: Approximation::new(cells),
@@ -117,6 +120,7 @@ impl Pressure {
             source: vec![0.0; cells],
             outer: Vec::new(),
             recovery,
+            warp,
             along: Vec::new(),
             corrections: 0,
             scratch: Vec::new(),
@@ -373,7 +377,9 @@ impl Pressure {
                 let beyond = out * slope + miss.dot(&last[cell]);
                 sum += (link.sign * face.area * beyond) * face.normal;
             }
-            let new = sum / grid.volume[cell];
+            // The sum over warped faces of a pressure of this gradient is not the gradient.
+            let warped = self.warp.get(cell).map(|warp| warp * last[cell]);
+            let new = sum / grid.volume[cell] + warped.unwrap_or_default();
             if self.corrections > 1 {
                 return new;
             }
@@ -441,6 +447,32 @@ fn recovery(grid: &MeshGraph) -> Vec<Matrix3<f64>> {
             .unwrap_or_else(Matrix3::identity)
     });
     inverse
+}
+
+/// What Σ S (x_f − x_P)ᵀ/V of each cell lacks of the identity, which it is where faces are flat; nothing where all are.
+fn warp(grid: &MeshGraph) -> Vec<Matrix3<f64>> {
+    const FLAT: f64 = 1e-12;
+    if grid.orthogonal {
+        return Vec::new();
+    }
+    let mut lack = vec![Matrix3::zeros(); grid.cells()];
+    fill(&mut lack, |cell| {
+        let mut sum = Matrix3::zeros();
+        for link in grid.links(cell) {
+            let face = &grid.faces[link.face as usize];
+            let to_face = if link.sign > 0.0 {
+                face.owner_distance * face.normal + face.owner_skew
+            } else {
+                -face.neighbour_distance * face.normal - face.neighbour_skew
+            };
+            sum += (link.sign * face.area) * face.normal * to_face.transpose();
+        }
+        Matrix3::identity() - sum / grid.volume[cell]
+    });
+    if lack.iter().all(|one| one.norm() < FLAT) {
+        lack.clear();
+    }
+    lack
 }
 
 /// The outflow that continuity asks of a cell in kg/s.

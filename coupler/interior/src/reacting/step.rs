@@ -13,7 +13,8 @@ use crate::model::Surroundings;
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error(
     "the reactions of a particle at {temperature} K in gas of {gas_temperature} K: {cause}; the largest error is \
-     that of {reaction}: check its rate constant and its equilibrium there, or shorten the windows (time.process_step)"
+     that of {reaction}: check its rate constant and its equilibrium there, or shorten the windows (time.motion_window, or \
+     time.process_step where the case has it)"
 )]
 pub struct ReactError {
     /// Its row.
@@ -32,8 +33,8 @@ pub struct ReactError {
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[error(
     "the particle comes to its bound of {bound} K from {from} K within one window, with {exchanged:.4e} J from gas, \
-     contacts and radiation and {released:.4e} J from its reactions: shorten the windows (time.process_step), or check \
-     the heats of reaction"
+     contacts and radiation and {released:.4e} J from its reactions: shorten the windows (time.motion_window, or \
+     time.process_step where the case has it), or check the heats of reaction"
 )]
 pub struct TemperatureBeyond {
     /// The bound in K that it would pass.

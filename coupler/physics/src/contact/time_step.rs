@@ -26,6 +26,16 @@ pub fn hertz_collision(radius: f64, mass: f64, young: f64, speed: f64) -> f64 {
     COLLISION * (mass * mass / (radius * young * young * speed)).powf(0.2)
 }
 
+/// Largest overlap in m of the elastic collision of two spheres by Hertz' law: effective radius in m, effective mass in kg,
+/// effective Young's modulus in Pa, speed of approach in m/s.
+///
+/// δ = (15 m* V²/(16 E* √R*))^(2/5)
+///
+/// Source: Landau and Lifshitz, Theory of Elasticity, § 9, problem 1.
+pub fn hertz_overlap(radius: f64, mass: f64, young: f64, speed: f64) -> f64 {
+    (15.0 * mass * speed * speed / (16.0 * young * radius.sqrt())).powf(0.4)
+}
+
 /// 2 ∫₀¹ dx/√(1 − x^2.5) (15/16)^(2/5) = 2.943 275 18 · (15/16)^(2/5).
 const COLLISION: f64 = 2.868_265_70;
 
@@ -50,6 +60,10 @@ mod tests {
             })
             .sum();
         let quadrature = 2.0 * deepest * sum / f64::from(count);
+        assert!((hertz_overlap(1.0, 1.0, 1.0, 1.0) / deepest - 1.0).abs() < 1e-14);
+        // R* = 0.5 mm, m* = 5.2359878 mg, E* = 2.6666667 GPa, 1 m/s: (15 m*/(16 E* √R*))^0.4
+        let glass = hertz_overlap(5e-4, 5.235_987_8e-6, 2.666_666_7e9, 1.0);
+        assert!((glass / 5.837_225_4e-6 - 1.0).abs() < 1e-7, "{glass}");
         assert!(
             (unit / quadrature - 1.0).abs() < 1e-6,
             "{unit} {quadrature}"

@@ -63,11 +63,26 @@ fn header(object: &str, class: &str, note: Option<&String>) -> String {
 
 // Writing into a String cannot fail, so the results of write! below carry nothing.
 
+/// A number that OpenFOAM reads as the same bits. It rounds what it reads to an extended double first and to a double then: the
+/// shortest digits of a double may become its neighbour so.
+fn digits(value: f64) -> String {
+    match value == 0.0 {
+        true => "0".to_owned(),
+        false => format!("{value:.19e}"),
+    }
+}
+
 fn points(mesh: &Mesh) -> String {
     let points = &mesh.topology().points;
     let mut text = format!("{}\n(\n", points.len());
     for point in points {
-        let _ = writeln!(text, "({:e} {:e} {:e})", point.x, point.y, point.z);
+        let _ = writeln!(
+            text,
+            "({} {} {})",
+            digits(point.x),
+            digits(point.y),
+            digits(point.z)
+        );
     }
     text + ")\n"
 }

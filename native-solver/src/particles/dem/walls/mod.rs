@@ -8,6 +8,16 @@ use calcine_coupler::motion::{Wall, WallMotion, WallShape};
 use calcine_coupler::physics::Vec3;
 use nalgebra::{Matrix3, Rotation3};
 
+/// Distance in m from a place to a plane, cylinder or cone; negative behind a plane or cylinder. Nothing for a mesh.
+pub fn distance_to_shape(shape: &WallShape, place: Vec3) -> Option<f64> {
+    shape::nearest(shape, place).map(|near| near.distance)
+}
+
+/// Distance in m from a place to a triangle.
+pub fn distance_to_triangle(corners: &[Vec3; 3], place: Vec3) -> f64 {
+    (triangle::nearest(place, corners).0 - place).norm()
+}
+
 /// A wall in its own frame, which is that of the start of the run, and the frame's pose now.
 #[derive(Clone, Debug)]
 pub struct WallBody {

@@ -1,0 +1,71 @@
+//! What of mesh and flow may be behind a gas that diverged.
+
+use super::CoupledRun;
+use super::error::RunError;
+use crate::error::FailureKind;
+use crate::mesh::quality::InCell;
+use crate::part::Gas as _;
+use crate::time::Window;
+
+/// Courant number up to which both gases were tried on cells that lean by up to 65 degrees (docs/verification.md).
+const TRIED_COURANT: f64 = 5.0;
+/// Angle in degrees from which a mesh is told of.
+const LEANS: f64 = 30.0;
+
+impl CoupledRun {
+    /// The error, with the largest Courant number of the gas as the window began and the cells of the mesh that lean most, where
+    /// a gas diverged.
+    pub(super) fn told_with_circumstances(&self, error: RunError, window: &Window) -> RunError {
+        match error {
+            RunError::Part(part)
+                if matches!(part.kind, FailureKind::Diverged | FailureKind::NotFinite) =>
+            {
+                let lines = [self.courant(window), self.leaning()];
+                RunError::Part(part.under(lines.into_iter().flatten().collect()))
+            }
+            other => other,
+        }
+    }
+
+    fn courant(&self, window: &Window) -> Option<String> {
+        let span = window.span.motion.seconds();
+        let largest = self
+            .mesh
+            .courant(self.parts.gas.fields().velocity, span)
+            .filter(|largest| largest.value > 0.0)?;
+        let found = format!(
+            "the gas the window began with has its largest Courant number, {:.3}, {}",
+            largest.value,
+            place(&largest)
+        );
+        Some(match largest.value > TRIED_COURANT {
+            true => format!(
+                "{found}; windows of {:.3e} s of motion time would have {TRIED_COURANT}",
+                span * TRIED_COURANT / largest.value
+            ),
+            false => found,
+        })
+    }
+
+    fn leaning(&self) -> Option<String> {
+        let quality = self.mesh.quality()?;
+        (quality.angle.value > LEANS).then(|| {
+            format!(
+                "the mesh leans most, by {:.1} degrees, {}; its largest skewness is {:.2}, {}; shorter windows and more \
+                 `gas.controls.pressure_corrections` help on such cells",
+                quality.angle.value,
+                place(&quality.angle),
+                quality.skewness.value,
+                place(&quality.skewness)
+            )
+        })
+    }
+}
+
+fn place(one: &InCell) -> String {
+    let at = one.centre;
+    format!(
+        "in cell {} at ({:.6}, {:.6}, {:.6}) m",
+        one.cell, at.x, at.y, at.z
+    )
+}
