@@ -2,62 +2,128 @@
 
 use calcine_interior::{NeighbourPair, NeighbourWall};
 use calcine_physics::Vec3;
+use rayon::prelude::*;
 
 use crate::view_factors::WallSurface;
 
-/// All pairs of spheres whose surfaces are nearer than `gap` in m, found by cells over a box (its lowest
-/// corner and its size in m; what lies outside counts to the nearest cell). The first of a pair is the
-/// smaller index; pairs come in the order of the first, then of the cells.
-pub fn pairs(
-    (corner, size): (Vec3, Vec3),
-    radii: &[f64],
-    centres: &[Vec3],
-    gap: f64,
-) -> Vec<[u32; 2]> {
-    let reach = 2.0 * radii.iter().copied().fold(0.0, f64::max) + gap;
-    // No more cells than spheres along an axis: a wide, thin bed needs no more memory.
-    let most = centres.len() as f64;
-    let count = [0, 1, 2].map(|axis| (size[axis] / reach).clamp(1.0, most.cbrt().ceil()) as usize);
-    let cell = |place: &Vec3| {
+/// Spheres that one thread looks about at a time.
+const CHUNK: usize = 4096;
+/// Octaves of sizes that are told apart; what is smaller counts to the last.
+const OCTAVES: usize = 16;
+
+/// Spheres in the cells of a grid over a box (its lowest corner and its size in m; what lies outside counts to the
+/// nearest cell).
+struct Grid {
+    corner: Vec3,
+    size: Vec3,
+    count: [usize; 3],
+    /// Where the spheres of each cell begin in `sorted`, and the end.
+    start: Vec<usize>,
+    sorted: Vec<u32>,
+}
+
+impl Grid {
+    /// With cells that are `reach` in m wide at least.
+    fn new((corner, size): (Vec3, Vec3), centres: &[Vec3], members: &[u32], reach: f64) -> Self {
+        // No more cells than spheres along an axis: a wide, thin bed needs no more memory.
+        let most = (members.len() as f64).cbrt().ceil();
+        let count = [0, 1, 2].map(|axis| (size[axis] / reach).clamp(1.0, most) as usize);
+        let mut grid = Self {
+            corner,
+            size,
+            count,
+            start: vec![0; count[0] * count[1] * count[2] + 1],
+            sorted: vec![0; members.len()],
+        };
+        let cell = |&member: &u32| grid.index(grid.cell(&centres[member as usize]));
+        let cells: Vec<usize> = members.iter().map(cell).collect();
+        for &cell in &cells {
+            grid.start[cell + 1] += 1;
+        }
+        for i in 1..grid.start.len() {
+            grid.start[i] += grid.start[i - 1];
+        }
+        let mut next = grid.start.clone();
+        for (&member, cell) in members.iter().zip(cells) {
+            grid.sorted[next[cell]] = member;
+            next[cell] += 1;
+        }
+        grid
+    }
+
+    fn cell(&self, place: &Vec3) -> [usize; 3] {
         [0, 1, 2].map(|axis| {
-            let part = (place[axis] - corner[axis]) / size[axis];
-            ((part * count[axis] as f64).max(0.0) as usize).min(count[axis] - 1)
+            let part = (place[axis] - self.corner[axis]) / self.size[axis];
+            ((part * self.count[axis] as f64).max(0.0) as usize).min(self.count[axis] - 1)
         })
-    };
-    let index = |[i, j, k]: [usize; 3]| i + count[0] * (j + count[1] * k);
-    let mut start = vec![0usize; count[0] * count[1] * count[2] + 1];
-    for place in centres {
-        start[index(cell(place)) + 1] += 1;
     }
-    for i in 1..start.len() {
-        start[i] += start[i - 1];
+
+    fn index(&self, [i, j, k]: [usize; 3]) -> usize {
+        i + self.count[0] * (j + self.count[1] * k)
     }
-    let (mut next, mut sorted) = (start.clone(), vec![0u32; centres.len()]);
-    for (sphere, place) in centres.iter().enumerate() {
-        let slot = &mut next[index(cell(place))];
-        sorted[*slot] = sphere as u32;
-        *slot += 1;
-    }
-    let mut pairs = Vec::new();
-    for (a, place) in centres.iter().enumerate() {
-        let at = cell(place);
-        let range = |axis: usize| at[axis].saturating_sub(1)..=(at[axis] + 1).min(count[axis] - 1);
+
+    /// The spheres of the cell at a place and of the cells around it.
+    fn around(&self, place: &Vec3, mut found: impl FnMut(u32)) {
+        let at = self.cell(place);
+        let range =
+            |axis: usize| at[axis].saturating_sub(1)..=(at[axis] + 1).min(self.count[axis] - 1);
         for k in range(2) {
             for j in range(1) {
                 for i in range(0) {
-                    let here = index([i, j, k]);
-                    for &b in &sorted[start[here]..start[here + 1]] {
-                        let other = b as usize;
-                        let cut = radii[a] + radii[other] + gap;
-                        if other > a && (centres[other] - place).norm_squared() < cut * cut {
-                            pairs.push([a as u32, b]);
-                        }
+                    let here = self.index([i, j, k]);
+                    for &sphere in &self.sorted[self.start[here]..self.start[here + 1]] {
+                        found(sphere);
                     }
                 }
             }
         }
     }
-    pairs
+}
+
+/// All pairs of spheres whose surfaces are nearer than `gap` in m, the smaller index first. Spheres of each octave of
+/// sizes have a grid of their own over the box (its lowest corner and its size in m), in which smaller ones look for them:
+/// the work grows with the number of spheres and not with the ratio of their sizes. Pairs come in the order of the sphere
+/// that looks, then of the octaves, then of the cells.
+pub fn pairs(bounds: (Vec3, Vec3), radii: &[f64], centres: &[Vec3], gap: f64) -> Vec<[u32; 2]> {
+    let largest = radii.iter().copied().fold(0.0, f64::max);
+    let octave = |radius: f64| ((largest / radius).log2().max(0.0) as usize).min(OCTAVES - 1);
+    let mut members = vec![Vec::new(); OCTAVES];
+    for (sphere, &radius) in (0u32..).zip(radii) {
+        members[octave(radius)].push(sphere);
+    }
+    let grid = |members: &Vec<u32>| {
+        let radii = members.iter().map(|&member| radii[member as usize]);
+        let reach = 2.0 * radii.fold(0.0, f64::max) + gap;
+        (!members.is_empty()).then(|| Grid::new(bounds, centres, members, reach))
+    };
+    let grids: Vec<Option<Grid>> = members.iter().map(grid).collect();
+    let search = |first: usize, part: &[Vec3]| {
+        let mut pairs = Vec::new();
+        for (a, place) in (first..).zip(part) {
+            let radius = radii[a];
+            let own = octave(radius);
+            for (octave, grid) in grids[..=own].iter().enumerate() {
+                let Some(grid) = grid else { continue };
+                grid.around(place, |b| {
+                    let other = b as usize;
+                    let cut = radius + radii[other] + gap;
+                    // Of an octave of their own, each pair is found by its first.
+                    if (octave < own || other > a)
+                        && (centres[other] - place).norm_squared() < cut * cut
+                    {
+                        let a = a as u32;
+                        pairs.push([a.min(b), a.max(b)]);
+                    }
+                });
+            }
+        }
+        pairs
+    };
+    let parts = centres.par_chunks(CHUNK).enumerate();
+    let found: Vec<Vec<[u32; 2]>> = parts
+        .map(|(chunk, part)| search(chunk * CHUNK, part))
+        .collect();
+    found.concat()
 }
 
 /// Pairs of spheres whose surfaces are nearer than `gap` in m, in the order of their indices.
@@ -155,7 +221,9 @@ mod tests {
             let centres: Vec<Vec3> = (0..count)
                 .map(|_| Vec3::new(next() - 0.5, 3.0 * next(), 0.1 * next()))
                 .collect();
-            let radii: Vec<f64> = (0..count).map(|_| 0.01 + 0.05 * next()).collect();
+            // Of one octave of sizes, and of ten.
+            let smallest: f64 = if round % 2 == 0 { 0.4 } else { 1e-3 };
+            let radii: Vec<f64> = (0..count).map(|_| 0.06 * smallest.powf(next())).collect();
             let mut slow = Vec::new();
             for a in 0..count {
                 for b in a + 1..count {

@@ -4,6 +4,7 @@
 
 use std::f64::consts::{FRAC_PI_4, PI, SQRT_2};
 
+use calcine_coupler::contacts::touching;
 use calcine_coupler::packing::regular::{
     Lattice, hexagonal_close, regular_in_box, regular_in_cylinder, simple_cubic,
 };
@@ -18,8 +19,10 @@ const GRAIN: f64 = 0.08 * TUBE;
 fn spec(seed: u64) -> RandomSpec {
     RandomSpec {
         sizes: Sizes::Equal(GRAIN),
-        fill: Fill::Number(3000),
-        solid_fraction: 0.58,
+        fill: Fill::Number {
+            number: 3000,
+            solid_fraction: 0.58,
+        },
         seed,
         size_seed: seed,
     }
@@ -158,13 +161,16 @@ fn contacts_point_in_all_directions_alike() {
 fn mixed_sizes_fill_a_box_to_a_height() {
     let mut spec = spec(5);
     spec.sizes = mixture(vec![(1.0, 1.0), (2.0, 1.0)], Share::Number);
-    spec.fill = Fill::Height(16.0);
+    spec.fill = Fill::Height {
+        height: 16.0,
+        solid_fraction: 0.57,
+    };
     let origin = Vec3::new(5.0, -3.0, 2.0);
     let bed = random_in_box(origin, [12.0, 14.0], &spec).unwrap();
     assert!(smallest_gap(&bed) > -1e-12);
     let space = 12.0 * 14.0 * 16.0;
     // The number is whole: half the largest sphere at most is missing or over.
-    assert!((bed.volume() - 0.58 * space).abs() <= 0.5 * PI / 6.0 * 8.0 + 1e-9);
+    assert!((bed.volume() - 0.57 * space).abs() <= 0.5 * PI / 6.0 * 8.0 + 1e-9);
     for (c, d) in bed.centres.iter().zip(&bed.diameters) {
         let from = c - origin;
         for (axis, size) in [12.0, 14.0, 16.0].into_iter().enumerate() {
@@ -178,14 +184,59 @@ fn mixed_sizes_fill_a_box_to_a_height() {
 #[test]
 fn a_fraction_out_of_reach_is_refused_with_the_one_reached() {
     let mut spec = spec(1);
-    spec.fill = Fill::Number(500);
-    spec.solid_fraction = 0.70;
+    spec.fill = Fill::Number {
+        number: 500,
+        solid_fraction: 0.70,
+    };
     let error = random_in_cylinder(Vec3::zeros(), TUBE, &spec).unwrap_err();
     let PackingError::Fraction { reached, .. } = error else {
         unreachable!("{error}");
     };
     assert!(reached > 0.2 && reached < 0.70, "{error}");
     assert!(error.to_string().contains("lower the solid fraction"));
+    // 40 000 of them fill the tube's 50 mm by more than is there.
+    spec.fill = Fill::NumberToHeight {
+        number: 40_000,
+        height: 0.05,
+    };
+    let error = random_in_cylinder(Vec3::zeros(), TUBE, &spec).unwrap_err();
+    let error = error.to_string();
+    // π/6 · 0.08³ · 40 000 over π/4.
+    assert!(error.contains("solid fraction is 13.65"), "{error}");
+    assert!(error.contains("by fewer or smaller spheres"), "{error}");
+}
+
+#[test]
+fn an_exact_number_fills_a_height() {
+    let mut spec = spec(1);
+    spec.fill = Fill::NumberToHeight {
+        number: 1500,
+        height: 0.05,
+    };
+    let bed = random_in_cylinder(Vec3::zeros(), TUBE, &spec).unwrap();
+    assert_eq!((bed.centres.len(), bed.height), (1500, 0.05));
+    assert!(smallest_gap(&bed) > -1e-12);
+    let top = bed.centres.iter().map(|c| c.z + 0.5 * GRAIN);
+    assert!(top.fold(0.0, f64::max) <= 0.05 + 1e-12);
+}
+
+#[test]
+fn beds_of_many_spheres_are_the_same_bits_on_any_number_of_threads() {
+    let mut spec = spec(3);
+    spec.sizes = range(Shape::Uniform, 0.2 * GRAIN, GRAIN);
+    spec.fill = Fill::Number {
+        number: 25_000,
+        solid_fraction: 0.5,
+    };
+    let bed = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let pool = pool.build().unwrap();
+        pool.install(|| random_in_cylinder(Vec3::zeros(), TUBE, &spec).unwrap())
+    };
+    let one = bed(1);
+    assert!(one == bed(3));
+    let radii: Vec<f64> = one.diameters.iter().map(|d| 0.5 * d).collect();
+    assert!(touching(&radii, &one.centres, 0.0).is_empty());
 }
 
 #[test]
@@ -196,10 +247,26 @@ fn numbers_without_meaning_are_refused() {
         let error = random_in_cylinder(Vec3::zeros(), TUBE, &spec);
         error.unwrap_err().to_string()
     };
-    assert!(said(|s| s.solid_fraction = f64::NAN).contains("solid fraction is NaN"));
+    assert!(
+        said(|s| {
+            s.fill = Fill::Number {
+                number: 10,
+                solid_fraction: f64::NAN,
+            }
+        })
+        .contains("solid fraction is NaN")
+    );
     assert!(said(|s| s.sizes = Sizes::Equal(0.0)).contains("diameter is 0"));
     assert!(said(|s| s.sizes = Sizes::Equal(0.06)).contains("do not fit between walls"));
-    assert!(said(|s| s.fill = Fill::Number(0)).contains("number of spheres is 0"));
+    assert!(
+        said(|s| {
+            s.fill = Fill::NumberToHeight {
+                number: 0,
+                height: 1.0,
+            }
+        })
+        .contains("number of spheres is 0")
+    );
     assert!(
         said(|s| s.sizes = mixture(vec![], Share::Number)).contains("number of diameters is 0")
     );
@@ -287,8 +354,10 @@ fn shares_by_mass_are_of_mass() {
 fn spheres_of_very_different_sizes_pack_without_overlap() {
     let mut spec = spec(2);
     spec.sizes = mixture(vec![(1.0, 0.5), (5.0, 0.5)], Share::Mass);
-    spec.fill = Fill::Height(20.0);
-    spec.solid_fraction = 0.62;
+    spec.fill = Fill::Height {
+        height: 20.0,
+        solid_fraction: 0.62,
+    };
     let bed = random_in_cylinder(Vec3::zeros(), 20.0, &spec).unwrap();
     assert!(smallest_gap(&bed) > -1e-12);
     let fraction = bed.volume() / (FRAC_PI_4 * 20.0 * 20.0 * 20.0);

@@ -21,14 +21,17 @@ pub(super) struct Container {
     pub height: f64,
 }
 
-impl Container {
+impl Section {
+    /// In m².
     pub fn area(&self) -> f64 {
-        match self.section {
-            Section::Disc { diameter } => FRAC_PI_4 * diameter * diameter,
-            Section::Rectangle { size } => size[0] * size[1],
+        match self {
+            Self::Disc { diameter } => FRAC_PI_4 * diameter * diameter,
+            Self::Rectangle { size } => size[0] * size[1],
         }
     }
+}
 
+impl Container {
     /// Width of the narrowest extent in m.
     pub fn width(&self) -> f64 {
         let across = match self.section {

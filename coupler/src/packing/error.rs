@@ -28,8 +28,8 @@ pub enum PackingError {
     },
     /// Spheres that overlap still.
     #[error(
-        "{count} spheres cannot be packed at a solid fraction of {target}: {reached:.4} was reached \
-         without overlap; lower the solid fraction"
+        "{count} spheres cannot be packed at a solid fraction of {target:.4}: {reached:.4} was reached \
+         without overlap; lower the solid fraction, or the number of spheres"
     )]
     Fraction {
         /// Number of spheres.

@@ -41,13 +41,59 @@ impl Packing {
     }
 }
 
-/// How far a container is filled.
+/// How far a container is filled. Solid fractions are the volume of spheres over the filled space, layers at the walls
+/// included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fill {
     /// Up to a height in m; the number follows from the solid fraction.
-    Height(f64),
+    Height {
+        /// The height in m.
+        height: f64,
+        /// The solid fraction.
+        solid_fraction: f64,
+    },
     /// With a number of spheres; the height follows from the solid fraction.
-    Number(usize),
+    Number {
+        /// Number of spheres.
+        number: usize,
+        /// The solid fraction.
+        solid_fraction: f64,
+    },
+    /// With a number of spheres up to a height in m; the solid fraction follows.
+    NumberToHeight {
+        /// Number of spheres.
+        number: usize,
+        /// The height in m.
+        height: f64,
+    },
+}
+
+impl Fill {
+    fn check(&self) -> Result<(), PackingError> {
+        if let Self::Height { height, .. } | Self::NumberToHeight { height, .. } = *self {
+            positive("height", height)?;
+        }
+        if let Self::Number { number, .. } | Self::NumberToHeight { number, .. } = *self {
+            positive("number of spheres", number as f64)?;
+        }
+        match *self {
+            Self::Height { solid_fraction, .. } | Self::Number { solid_fraction, .. } => {
+                check_solid_fraction(solid_fraction)
+            }
+            Self::NumberToHeight { .. } => Ok(()),
+        }
+    }
+}
+
+fn check_solid_fraction(value: f64) -> Result<(), PackingError> {
+    if value > 0.0 && value < 0.75 {
+        return Ok(());
+    }
+    Err(PackingError::Value {
+        what: "solid fraction",
+        value,
+        need: "a number between 0 and 0.75, by fewer or smaller spheres where their number is given",
+    })
 }
 
 /// A random packing. The filled space has a flat bottom and top, which spheres touch from inside.
@@ -57,8 +103,6 @@ pub struct RandomSpec {
     pub sizes: Sizes,
     /// Extent of the filled space.
     pub fill: Fill,
-    /// Volume of spheres over the filled space, layers at the walls included.
-    pub solid_fraction: f64,
     /// Of the places; equal seeds give equal packings, bit for bit.
     pub seed: u64,
     /// Of the diameters, where they differ.
@@ -88,25 +132,28 @@ pub fn random_in_box(
 
 fn fill(origin: Vec3, section: Section, spec: &RandomSpec) -> Result<Packing, PackingError> {
     let mut random = SplitMix64(spec.seed);
-    check(spec)?;
-    let height = match spec.fill {
-        Fill::Height(height) => height,
-        Fill::Number(_) => f64::INFINITY,
-    };
-    let mut container = Container {
-        origin,
-        section,
-        height,
-    };
-    let diameters = draw(spec, container.area() * height)?;
+    spec.fill.check()?;
+    let area = section.area();
+    let diameters = draw(spec, area)?;
     let volume: f64 = diameters
         .iter()
         .copied()
         .map(sphere::volume_of_diameter)
         .sum();
-    if let Fill::Number(_) = spec.fill {
-        container.height = volume / (spec.solid_fraction * container.area());
-    }
+    let (height, target) = match spec.fill {
+        Fill::Height {
+            height,
+            solid_fraction,
+        } => (height, solid_fraction),
+        Fill::Number { solid_fraction, .. } => (volume / (solid_fraction * area), solid_fraction),
+        Fill::NumberToHeight { height, .. } => (height, volume / (area * height)),
+    };
+    check_solid_fraction(target)?;
+    let container = Container {
+        origin,
+        section,
+        height,
+    };
     let diameter = diameters.iter().copied().fold(0.0, f64::max);
     if diameter > container.width() {
         let width = container.width();
@@ -121,43 +168,35 @@ fn fill(origin: Vec3, section: Section, spec: &RandomSpec) -> Result<Packing, Pa
     if overlap > 0.0 {
         return Err(PackingError::Fraction {
             count: centres.len(),
-            target: spec.solid_fraction,
-            reached: volume / (container.area() * container.height) * (1.0 - overlap).powi(3),
+            target,
+            reached: volume / (area * height) * (1.0 - overlap).powi(3),
         });
     }
     Ok(Packing {
         centres,
         diameters,
-        height: container.height,
+        height,
     })
 }
 
-fn check(spec: &RandomSpec) -> Result<(), PackingError> {
-    if !(spec.solid_fraction > 0.0 && spec.solid_fraction < 0.75) {
-        return Err(PackingError::Value {
-            what: "solid fraction",
-            value: spec.solid_fraction,
-            need: "a number between 0 and 0.75",
-        });
-    }
-    match spec.fill {
-        Fill::Height(height) => positive("height", height),
-        Fill::Number(count) => positive("number of spheres", count as f64),
-    }
-}
-
-/// Diameters in m of all spheres: as many as asked for, or as come nearest to the solid volume.
-fn draw(spec: &RandomSpec, space: f64) -> Result<Vec<f64>, PackingError> {
-    let (mut sampler, wanted) = (
-        spec.sizes.sampler(spec.size_seed)?,
-        spec.solid_fraction * space,
-    );
+/// Diameters in m of all spheres: as many as asked for, or as come nearest to the solid volume over a section of this
+/// area in m².
+fn draw(spec: &RandomSpec, area: f64) -> Result<Vec<f64>, PackingError> {
+    let mut sampler = spec.sizes.sampler(spec.size_seed)?;
     let (mut diameters, mut volume) = (Vec::new(), 0.0);
     loop {
         let diameter = sampler.draw();
         let done = match spec.fill {
-            Fill::Number(count) => diameters.len() == count,
-            Fill::Height(_) => volume + 0.5 * sphere::volume_of_diameter(diameter) > wanted,
+            Fill::Number { number, .. } | Fill::NumberToHeight { number, .. } => {
+                diameters.len() == number
+            }
+            Fill::Height {
+                height,
+                solid_fraction,
+            } => {
+                let wanted = solid_fraction * (area * height);
+                volume + 0.5 * sphere::volume_of_diameter(diameter) > wanted
+            }
         };
         if done {
             break;

@@ -89,7 +89,7 @@ fn filled(container: &Container, diameter: f64, lattice: Lattice) -> Result<Pack
         return Err(PackingError::TooNarrow { diameter, width });
     }
     // 0.74 is the densest, and the sites around the space come on top.
-    let sites = container.area() * container.height / diameter.powi(3) * 2f64.sqrt();
+    let sites = container.section.area() * container.height / diameter.powi(3) * 2f64.sqrt();
     if sites > MOST as f64 {
         return Err(too_many(sites));
     }
