@@ -208,7 +208,7 @@ fn files_that_cannot_be_used_are_refused_with_their_line() {
         (
             "a.csv",
             "x,y,z\n0.005,0.005\n",
-            "a.csv, line 2: there are 2 values, but 3 columns",
+            "a.csv, line 2: there are 2 values, but 3 columns; separate them by commas, with a point in decimals",
         ),
         (
             "a.csv",

@@ -86,6 +86,25 @@ fn the_square_of_their_diameter_falls_linearly_whatever_the_window_up_to_a_tenth
 }
 
 #[test]
+fn what_the_laws_saw_is_written_in_the_window_of_a_burn_out_too() {
+    let folder = tempfile::tempdir().unwrap();
+    // A snapshot after each window.
+    let held: &[&str] = &["time.process_step=0.5 s", "output.every=0.5 s"];
+    let free: &[&str] = &["output.every=0.2 s"];
+    for (case, particles, windows) in [
+        (BEADS, "native", held),
+        ("burning-moving", "native", free),
+        (BEADS, "liggghts", held),
+    ] {
+        let out = folder.path().join(format!("{case}-{particles}"));
+        let fields = r#"output.particles=["slip", "void_fraction"]"#;
+        let settings = [windows, &[fields]].concat();
+        let summary = run(case, &out, &["--particles", particles], &settings);
+        assert_eq!(summary.passed.used_up.rows, 4);
+    }
+}
+
+#[test]
 fn so_they_do_in_liggghts() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = ["--particles", "liggghts"];

@@ -138,14 +138,14 @@ fn a_place_that_cannot_be_written_is_named_with_the_option_that_names_another() 
 #[test]
 fn a_report_of_what_is_no_results_folder_says_so() {
     let folder = tempfile::tempdir().unwrap();
-    let text = refused(folder.path(), 1, &["report", "nosuch"]);
+    let text = refused(folder.path(), 2, &["report", "nosuch"]);
     assert!(text.contains("there is no such folder"), "{text}");
     assert!(
         text.contains("help: name the folder that a run wrote"),
         "{text}"
     );
     fs::create_dir(folder.path().join("empty")).unwrap();
-    let text = refused(folder.path(), 1, &["report", "empty"]);
+    let text = refused(folder.path(), 2, &["report", "empty"]);
     assert!(text.contains("it holds no summary.json"), "{text}");
 }
 
@@ -456,4 +456,67 @@ fn a_case_that_is_not_utf_8_is_refused_with_the_place_of_the_byte() {
     ] {
         assert!(text.contains(words), "{text}");
     }
+}
+
+#[test]
+fn what_cannot_be_printed_fails_and_what_nobody_reads_does_not() {
+    let case = column();
+    let words = ["check", case.to_str().unwrap()];
+    let to = |out: Stdio| {
+        let command = Command::new(env!("CARGO_BIN_EXE_calcine"))
+            .args(words)
+            .stdout(out)
+            .output();
+        command.unwrap()
+    };
+    let full = fs::OpenOptions::new().write(true).open("/dev/full");
+    let output = to(full.unwrap().into());
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(
+        text.contains("standard output cannot be written: No space left"),
+        "{text}"
+    );
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    assert_eq!(to(writer.into()).status.code(), Some(0));
+}
+
+#[test]
+fn particles_far_wider_than_the_mesh_are_refused_at_their_diameter() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = shipped("heated-bed");
+    // A file of particles in mm where m is meant.
+    fs::write(
+        folder.path().join("bed.csv"),
+        "x,y,z,diameter\n0,0,0.01,4\n",
+    )
+    .unwrap();
+    let place = format!(
+        "particles.beads.place={{ file = \"{}\" }}",
+        folder.path().join("bed.csv").display()
+    );
+    let words = ["check", case.to_str().unwrap(), "--set", &*place];
+    let text = refused(folder.path(), 2, &words);
+    assert!(
+        text.contains("particle 1 of \"beads\" has a diameter of 4 m, but the mesh is 0.0"),
+        "{text}"
+    );
+    assert!(text.contains("check the unit of the diameter"), "{text}");
+}
+
+#[test]
+fn a_particle_that_no_tube_has_room_for_is_refused_with_what_to_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = shipped("heated-bed");
+    let bed = folder.path().join("bed.csv");
+    fs::write(&bed, "x,y,z,diameter\n0,0,0.05,0.08\n").unwrap();
+    let place = format!("particles.beads.place={{ file = \"{}\" }}", bed.display());
+    let words = ["check", case.to_str().unwrap(), "--set", &*place];
+    let text = refused(folder.path(), 2, &words);
+    assert!(text.contains("the bed does not fit"), "{text}");
+    assert!(
+        text.contains("help: place fewer or smaller particles there"),
+        "{text}"
+    );
 }

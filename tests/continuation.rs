@@ -273,7 +273,9 @@ fn what_does_not_fit_is_refused_with_its_reason() {
     assert!(text.contains("particle 1 in the order of ids"), "{text}");
     let text = refused(&[], directory.path());
     assert!(text.contains("summary.json"), "{text}");
-    std::fs::remove_dir_all(first.join("checkpoint")).unwrap();
+    for name in ["checkpoint", "checkpoint.before"] {
+        let _ = std::fs::remove_dir_all(first.join(name));
+    }
     let text = refused(&[], &first);
     assert!(text.contains("there is no checkpoint in it"), "{text}");
 }

@@ -73,7 +73,9 @@ fn a_run_killed_before_its_first_checkpoint_starts_again_and_a_finished_one_does
     assert_ne!(verdict, summary);
     fs::write(out.join("summary.json"), &verdict).unwrap();
     // A finished run leaves a checkpoint at its end, a killed one does not.
-    fs::remove_dir_all(out.join("checkpoint")).unwrap();
+    for name in ["checkpoint", "checkpoint.before"] {
+        let _ = fs::remove_dir_all(out.join(name));
+    }
     let other = native(&out, "1.8 s").arg("--resume").output().unwrap();
     let text = String::from_utf8_lossy(&other.stderr).into_owned();
     assert_eq!(other.status.code(), Some(2), "{text}");

@@ -3,6 +3,7 @@
 use calcine_coupler::coordinator::RunError;
 use calcine_coupler::error::PartError;
 use calcine_coupler::interior::reacting::LayersError;
+use calcine_coupler::smoother::SmootherError;
 use calcine_native::gas::NativeError;
 use thiserror::Error;
 
@@ -62,6 +63,12 @@ impl AssemblyError {
             Self::Particles(error) => Some(error.key(case)),
             Self::Layers(_) => Some("reactions".into()),
             Self::NoExternalGas | Self::NoExternalParticles => None,
+            Self::Run(RunError::Smoother(SmootherError::DoesNotFit { .. })) => {
+                Some("particles".into())
+            }
+            Self::Run(RunError::Smoother(SmootherError::DiffusionLength { .. })) => {
+                Some("coupling.smoother".into())
+            }
             Self::TooLarge(_) | Self::Native(_) | Self::Part(_) | Self::Run(_) => None,
         }
     }

@@ -13,7 +13,11 @@ use calcine_coupler::smoother::{Smoother, SmootherSettings as Smoothing};
 use super::error::AssemblyError;
 use crate::case::model::{Case, MappingSpec, Population};
 use crate::case::sizes;
-use crate::case::{InitialParticles, PlaceError, contacts, mesh, particles};
+use crate::case::{InitialParticles, PlaceError, contacts, in_wall, mesh, particles};
+
+/// Diameter over the narrowest width of a mesh that only a slip of units gives: slices of a bed may be thinner than its
+/// particles, which are pressed together.
+const FAR: f64 = 2.0;
 
 /// What does not change during a run, made from a case: mesh and particles at the start.
 #[derive(Clone, Debug)]
@@ -37,7 +41,9 @@ impl PreparedCase {
             temperature,
         } = particles(case)?;
         let mesh = Arc::new(mesh(&case.mesh)?);
+        fit_between_walls(case, &mesh, &setup)?;
         setup.motion = contacts::motion(case, &mesh, &setup).map_err(PlaceError::from)?;
+        in_wall::check(case, &setup)?;
         let radii = &setup.radius;
         Ok(Self {
             mesh,
@@ -85,6 +91,22 @@ impl PreparedCase {
         operator.sample(operator.solid_fraction(), &mut seen);
         Ok(1.0 - seen.iter().sum::<f64>() / seen.len() as f64)
     }
+}
+
+/// Refuses the first particle that is far wider than the box about the mesh.
+fn fit_between_walls(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Result<(), PlaceError> {
+    let [low, high] = mesh.bounds();
+    let width = (high - low).min();
+    let mut radii = setup.radius.iter();
+    let Some(row) = radii.position(|radius| 2.0 * radius > FAR * width) else {
+        return Ok(());
+    };
+    Err(PlaceError::TooWide {
+        id: setup.id[row],
+        name: case.particles[setup.population[row] as usize].name.clone(),
+        diameter: 2.0 * setup.radius[row],
+        width,
+    })
 }
 
 /// The smoother, which leaves the case's excluded zones alone.

@@ -5,16 +5,10 @@ use std::collections::BTreeSet;
 use calcine_coupler::interior::reacting::Rate;
 use calcine_coupler::physics::kinetics::RateConstant;
 use calcine_coupler::physics::reaction::Arrhenius;
-use calcine_coupler::setup::GasPatch;
 
-use super::expectations;
 use super::model::Case;
-use super::units::shown;
+use super::{expectations, patch_cautions, wall_cautions};
 
-/// Share of a pressure by which another differs that is no longer a head of flow: between 1 bar and 1 atm it is 0.013.
-const UNIT_SLIP: f64 = 5e-3;
-/// Ratio of two pressures of one gas above which one of them is likely wrong.
-const FAR: f64 = 1.5;
 /// Energies in J/mol that bonds have, no activation energy is above: that of carbon monoxide is 1072 kJ/mol.
 const STRONGEST_BOND: f64 = 1.1e6;
 /// Energy in J/mol below which a rate of particles hardly changes with temperature: at 300 K by 0.1 % a kelvin.
@@ -29,9 +23,8 @@ pub fn cautions(case: &Case) -> Vec<String> {
     all.extend(wrong_units(case));
     all.extend(orders_left_out(case));
     all.extend(idle(case));
-    all.extend(intensities(case));
-    all.extend(far_pressures(case));
-    all.extend(driving_pressures(case));
+    all.extend(patch_cautions::all(case));
+    all.extend(wall_cautions::all(case));
     all
 }
 
@@ -169,113 +162,20 @@ fn idle(case: &Case) -> Vec<String> {
     .collect()
 }
 
-/// Fluctuations larger than the mean flow.
-fn intensities(case: &Case) -> Vec<String> {
-    let patches = case.gas.patches.iter();
-    let eddies = patches.filter_map(|(name, patch)| match patch {
-        GasPatch::Inlet {
-            turbulence: Some(eddies),
-            ..
-        } => Some((name, eddies.intensity)),
-        _ => None,
-    });
-    let wild = eddies.filter(|(_, intensity)| *intensity > 1.0);
-    wild.map(|(name, intensity)| {
-        format!(
-            "the intensity of turbulence at `{name}` is {}: its fluctuations are larger than its mean flow; it is a fraction, so \
-             that {} percent is {}",
-            shown(intensity),
-            shown(intensity),
-            shown(intensity / 100.0)
-        )
-    })
-    .collect()
-}
-
-/// Patches through which pressure drives gas: name, pressure in Pa at the start, and height along gravity in m where it
-/// holds, of those that say.
-fn open(case: &Case) -> Vec<(&str, f64, Option<f64>)> {
-    let gravity = case.gas.gravity;
-    let up = |at: calcine_coupler::physics::Vec3| match gravity.norm() {
-        0.0 => 0.0,
-        norm => -at.dot(&gravity) / norm,
-    };
-    let patches = case.gas.patches.iter();
-    let open = patches.filter_map(|(name, patch)| match patch {
-        GasPatch::Outlet { pressure, .. } => Some((name.as_str(), pressure.at(0.0), None)),
-        GasPatch::Opening { pressure, at, .. } => {
-            Some((name.as_str(), pressure.at(0.0), Some(up(*at))))
-        }
-        _ => None,
-    });
-    open.collect()
-}
-
-/// Pressures of patches that have little to do with that of the gas at the start.
-fn far_pressures(case: &Case) -> Vec<String> {
-    let start = case.gas.pressure;
-    let far = |pressure: f64| pressure > FAR * start || start > FAR * pressure;
-    let patches = open(case)
-        .into_iter()
-        .filter(|(_, pressure, _)| far(*pressure));
-    patches
-        .map(|(name, pressure, _)| {
-            format!(
-                "`{name}` has a pressure of {} Pa, but `gas.initial.pressure` is {} Pa, which its density follows: the patch \
-                 sets the level of the pressures alone; write the same in both",
-                shown(pressure),
-                shown(start)
-            )
-        })
-        .collect()
-}
-
-/// Pairs of open patches whose pressures differ as units do.
-fn driving_pressures(case: &Case) -> Vec<String> {
-    let gas = &case.gas;
-    let density = gas
-        .properties
-        .density(gas.pressure, gas.temperature, &gas.composition);
-    let open = open(case);
-    let pairs = open.iter().enumerate();
-    let pairs = pairs.flat_map(|(k, one)| open[k + 1..].iter().map(move |other| (one, other)));
-    let driven = pairs.filter_map(|(one, other)| {
-        // Gas at rest has its own weight between heights.
-        let weight = match (one.2, other.2) {
-            (Some(low), Some(high)) => density * gas.gravity.norm() * (high - low),
-            _ => 0.0,
-        };
-        let head = (one.1 - other.1 - weight).abs();
-        (head > UNIT_SLIP * one.1.min(other.1)).then_some((one, other, head))
-    });
-    driven
-        .map(|(one, other, head)| {
-            format!(
-                "`{}` and `{}` have pressures of {} and {} Pa: where nothing resists, the difference drives {:.0} m/s; 1 atm is \
-                 101325 Pa, 1 bar 100000 Pa",
-                one.0,
-                other.0,
-                shown(one.1),
-                shown(other.1),
-                (2.0 * head / density).sqrt()
-            )
-        })
-        .collect()
-}
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     /// The warnings about a good case with keys set.
-    fn said(name: &str, set: &[&str]) -> Vec<String> {
+    pub(in crate::case) fn said(name: &str, set: &[&str]) -> Vec<String> {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
         let path = folder.join(format!("tests/inputs/good/{name}.toml"));
         let set: Vec<String> = set.iter().map(|one| (*one).to_owned()).collect();
         cautions(&crate::case::read(&path, &set).unwrap())
     }
 
-    fn one(name: &str, set: &[&str]) -> String {
+    /// The only one of them.
+    pub(in crate::case) fn one(name: &str, set: &[&str]) -> String {
         let all = said(name, set);
         assert_eq!(all.len(), 1, "{all:?}");
         all.concat()
@@ -343,48 +243,6 @@ mod tests {
         assert!(
             text.starts_with("`magnetite` never happens: it takes Fe2O3"),
             "{text}"
-        );
-    }
-
-    #[test]
-    fn intensities_above_one_are_told_as_percent() {
-        let text = one(
-            "turbulent-duct",
-            &["gas.patch.bottom.inlet.turbulence.intensity=5"],
-        );
-        assert!(
-            text.contains("at `bottom` is 5") && text.contains("5 percent is 0.05"),
-            "{text}"
-        );
-        let key = "gas.patch.bottom.inlet.turbulence.intensity=1";
-        assert!(said("turbulent-duct", &[key]).is_empty());
-    }
-
-    #[test]
-    fn pressures_that_drive_a_gale_or_are_not_those_of_the_density_are_told() {
-        let text = one("turbulent-duct", &["gas.patch.top.outlet.pressure=2 atm"]);
-        assert!(text.contains("`top` has a pressure of 202650 Pa"), "{text}");
-        assert!(said("turbulent-duct", &["gas.patch.top.outlet.pressure=1.4 atm"]).is_empty());
-        // √(2 · 1325 Pa/(1.17 kg/m³)) of either opening against the third patch.
-        let west = "gas.patch.west.opening.pressure=1 bar";
-        let told = said("open-box", &[west]);
-        assert_eq!(told.len(), 2, "{told:?}");
-        assert!(told[0].contains("drives 48 m/s"), "{told:?}");
-        let named = |name: &str| told.iter().all(|one| one.contains(name));
-        assert!(named("`west`") && named("1 bar 100000 Pa"), "{told:?}");
-    }
-
-    #[test]
-    fn surroundings_of_one_column_of_air_drive_nothing_at_any_height() {
-        // 100 m of air of 300 K weigh 1154 Pa, more than a slip of units of half a percent.
-        let set = [
-            "gas.patch.east.opening.pressure=100171 Pa",
-            "gas.patch.east.opening.pressure_at=0 0 100 m",
-        ];
-        assert!(
-            said("open-box", &set)
-                .iter()
-                .all(|one| !one.contains("`west`"))
         );
     }
 }

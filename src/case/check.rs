@@ -16,7 +16,7 @@ use calcine_coupler::setup::{GasPatch, InletFlow};
 
 use super::cautions::cautions;
 use super::model::{Case, MotionSpec, Population};
-use super::{buoyancy, ranges, sizes};
+use super::{buoyancy, mesh_shape, ranges, sizes};
 
 /// Above this, a number of the time splitting gets a warning (docs/theory.md, TSM-6, TSM-8).
 const WARNING: f64 = 0.1;
@@ -60,6 +60,10 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
     );
     let _ = writeln!(text, "  gas storage    {}", time.storage.name());
     let _ = writeln!(text, "  mesh           {cells} cells");
+    let (shape, badly_shaped) = mesh_shape::report(mesh);
+    for line in shape {
+        let _ = writeln!(text, "                 {line}");
+    }
     let _ = writeln!(
         text,
         "  bed            {particles} particles, void fraction {void_fraction:.3}"
@@ -107,7 +111,7 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
     if let Some(warning) = buoyancy::warning(number) {
         let _ = writeln!(text, "  warning: {warning}");
     }
-    for warning in cautions(case) {
+    for warning in cautions(case).into_iter().chain(badly_shaped) {
         let _ = writeln!(text, "  warning: {warning}");
     }
     for population in &case.particles {

@@ -7,12 +7,14 @@ use calcine_coupler::motion::{
     ContactForce, Contacts, Elastic, Motion as Told, Pair, Wall, WallMotion,
 };
 use calcine_coupler::physics::contact::time_step;
-use calcine_coupler::physics::{Vec3, sphere};
+use calcine_coupler::physics::sphere;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::time::Ticks;
 use thiserror::Error;
 
+use super::impact;
 use super::model::{Case, FreeMotion, MaterialSpec, MotionKind, MotionSpec};
+use super::moving::moving_spheres;
 use super::units::shown;
 
 /// A step above this share of Rayleigh's time gets a warning, above the second it is refused.
@@ -153,7 +155,7 @@ pub fn motion(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Result<Told, C
     Ok(Told::Free(Box::new(Contacts {
         step,
         gravity: case.gas.gravity,
-        bounds: bounds(mesh),
+        bounds: mesh.bounds().into(),
         materials: case.materials.iter().map(elastic).collect(),
         material_of: case.particles.iter().map(|one| one.material).collect(),
         held: case
@@ -219,17 +221,9 @@ fn walls(case: &Case, mut factors: impl Iterator<Item = f64>) -> Result<Vec<Wall
     case.walls.iter().map(quicker).collect()
 }
 
-/// Lower and upper corner of a mesh in m.
-fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {
-    mesh.topology().points.iter().fold(
-        (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)),
-        |(low, high), point| (low.inf(point), high.sup(point)),
-    )
-}
-
-/// What limits the time step, over all particles that are free.
-pub fn limits(case: &Case, motion: &FreeMotion, mesh: &Mesh, setup: &ParticleSetup) -> Limits {
-    let (low, high) = bounds(mesh);
+/// Speed in m/s of the start, of walls, or of a fall through the mesh, whichever is largest.
+fn fastest(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> f64 {
+    let [low, high] = mesh.bounds();
     let gravity = case.gas.gravity.norm();
     let fall = match gravity > 0.0 {
         true => (2.0 * gravity * (high - low).dot(&case.gas.gravity.abs()) / gravity).sqrt(),
@@ -240,6 +234,11 @@ pub fn limits(case: &Case, motion: &FreeMotion, mesh: &Mesh, setup: &ParticleSet
         WallMotion::Translating(velocity) => Some(velocity.norm()),
         _ => None,
     });
+    start.chain(moving).fold(fall, f64::max)
+}
+
+/// What limits the time step, over all particles that are free.
+pub fn limits(case: &Case, motion: &FreeMotion, mesh: &Mesh, setup: &ParticleSetup) -> Limits {
     let mut limits = Limits {
         rayleigh: f64::INFINITY,
         hertz: f64::INFINITY,
@@ -247,29 +246,15 @@ pub fn limits(case: &Case, motion: &FreeMotion, mesh: &Mesh, setup: &ParticleSet
             ContactForce::Linear {
                 characteristic_speed,
             } => characteristic_speed,
-            _ => start.chain(moving).fold(fall, f64::max),
+            _ => fastest(case, mesh, setup),
         },
     };
-    for (index, population) in case.particles.iter().enumerate() {
-        let material = &case.materials[population.material];
-        let (Some(young), Some(poisson)) = (material.young, material.poisson) else {
-            continue;
-        };
-        if population.motion == MotionSpec::Frozen {
-            continue;
-        }
-        let own = setup.population.iter().zip(&setup.radius);
-        let smallest = own
-            .filter(|(of, _)| **of as usize == index)
-            .map(|(_, radius)| *radius)
-            .fold(f64::INFINITY, f64::min);
-        let radius = match smallest.is_finite() {
-            true => smallest,
-            false => 0.5 * population.sizes.largest(),
-        };
-        let rayleigh = time_step::rayleigh(radius, material.density, young, poisson);
+    for one in moving_spheres(case, setup) {
+        let (radius, density) = (one.radius[0], one.density);
+        let Elastic { young, poisson } = one.elastic;
+        let rayleigh = time_step::rayleigh(radius, density, young, poisson);
         // Two equal spheres: m* = m/2, R* = R/2, E* = E/(2(1 − ν²)).
-        let mass = 0.5 * sphere::mass(radius, material.density);
+        let mass = 0.5 * sphere::mass(radius, density);
         let stiff = young / (2.0 * (1.0 - poisson * poisson));
         let hertz = time_step::hertz_collision(0.5 * radius, mass, stiff, limits.speed);
         limits.rayleigh = limits.rayleigh.min(rayleigh);
@@ -312,6 +297,10 @@ pub fn report(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Option<String>
             shown(moves)
         ));
     }
+    let speed = fastest(case, mesh, setup);
+    if let Some(impacts) = impact::hardest(case, motion, setup, speed) {
+        text.push_str(&impacts.lines());
+    }
     if let Some(warning) = limits.warning(step) {
         text.push_str(&format!("    warning: {warning}\n"));
     }
@@ -350,5 +339,26 @@ mod tests {
             "{}",
             limits.hertz
         );
+    }
+
+    #[test]
+    fn what_only_a_feed_brings_limits_the_step_by_its_smallest_size() {
+        let path =
+            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/moving.toml");
+        let sizes = r#"{ uniform = { min = "1 mm", max = "2 mm" }, share = "number", seed = 1 }"#;
+        let case = crate::case::read(&path, &[format!("particles[0].diameter={sizes}")]).unwrap();
+        let mesh = crate::case::mesh(&case.mesh).unwrap();
+        let limits = |setup: &ParticleSetup| {
+            let motion = case.motion.clone().unwrap();
+            super::limits(&case, &motion, &mesh, setup)
+        };
+        let placed = |radius| ParticleSetup {
+            population: vec![0],
+            radius: vec![radius],
+            ..ParticleSetup::default()
+        };
+        let fed = limits(&ParticleSetup::default());
+        assert_eq!(fed.rayleigh, limits(&placed(0.5e-3)).rayleigh);
+        assert!(fed.rayleigh < 0.6 * limits(&placed(1e-3)).rayleigh);
     }
 }

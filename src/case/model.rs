@@ -24,7 +24,7 @@ use calcine_coupler::window_drag::WindowDrag;
 pub use laws::{ConductionArea, ConductionSpec, Laws, RadiationSpec};
 pub use material::{MaterialSpec, SizeLaw};
 pub use mesh::MeshSpec;
-pub use particles::{FeedSpec, MotionSpec, PlacementSpec, Population};
+pub use particles::{FeedSpec, MotionSpec, PlacementSpec, Population, RandomAmount};
 pub use quantity::{
     Expect, GasPlace, Measure, ParticlePlace, Probe, Quantity, Statistic, ToleranceBand,
 };
@@ -58,6 +58,8 @@ pub struct Case {
     pub walls: Vec<Wall>,
     /// Temperature in K of each wall that particles exchange heat with; `None`: adiabatic.
     pub wall_temperatures: Vec<Option<Schedule>>,
+    /// What of the files of walls is left out, in words.
+    pub left_out_of_walls: Vec<String>,
     /// How particles that are free move.
     pub motion: Option<FreeMotion>,
     /// The gas.

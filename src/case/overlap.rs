@@ -21,7 +21,7 @@ pub(super) const PRESSED: f64 = 0.05;
 
 /// An overlap of this share of the sum of radii is no contact of particles of one population either: softened contacts press
 /// settled beds together by some per cent.
-const CRUSHED: f64 = 0.2;
+pub(super) const CRUSHED: f64 = 0.2;
 
 /// The first particle that overlaps one before it: of another population by more than spheres that are pressed together, of
 /// its own, where particles act on each other, by more than the softest contact does.

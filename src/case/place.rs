@@ -9,7 +9,7 @@ use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::time::Ticks;
 
 use super::bed::{self, Choice};
-use super::model::{Case, MeshSpec, MotionSpec, PlacementSpec, Population};
+use super::model::{Case, MeshSpec, MotionSpec, PlacementSpec, Population, RandomAmount};
 use super::overlap;
 use super::place_error::PlaceError;
 use super::units::shown;
@@ -128,13 +128,19 @@ fn spheres(case: &Case, population: &Population) -> Result<Vec<Sphere>, PlaceErr
         }
         PlacementSpec::Random {
             layer,
-            solid_fraction,
+            amount,
             seed,
         } => {
+            let height = layer[1] - layer[0];
             let spec = RandomSpec {
                 sizes: population.sizes.clone(),
-                fill: Fill::Height(layer[1] - layer[0]),
-                solid_fraction: *solid_fraction,
+                fill: match *amount {
+                    RandomAmount::SolidFraction(solid_fraction) => Fill::Height {
+                        height,
+                        solid_fraction,
+                    },
+                    RandomAmount::Number(number) => Fill::NumberToHeight { number, height },
+                },
                 seed: *seed,
                 size_seed: population.size_seed,
             };

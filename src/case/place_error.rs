@@ -44,6 +44,40 @@ pub enum PlaceError {
         /// Sum of their radii in m.
         radii: f64,
     },
+    /// A particle in a wall.
+    #[error(
+        "particle {id} of \"{name}\" is in the wall \"{wall}\": {}, its radius is {} m; contacts would shoot it out. Move the \
+         population, or check its unit of length, and that of the wall (`scale` of an STL file)",
+        reach(*.distance), shown(*.radius)
+    )]
+    InWall {
+        /// Its id.
+        id: u64,
+        /// Its population.
+        name: String,
+        /// The wall.
+        wall: String,
+        /// Distance of its centre from the wall in m, negative beyond it.
+        distance: f64,
+        /// Its radius in m.
+        radius: f64,
+    },
+    /// A particle that is far wider than the mesh.
+    #[error(
+        "particle {id} of \"{name}\" has a diameter of {} m, but the mesh is {} m wide at its narrowest; check the unit of the \
+         diameter, and that of the mesh",
+        shown(*.diameter), shown(*.width)
+    )]
+    TooWide {
+        /// Its id.
+        id: u64,
+        /// Its population.
+        name: String,
+        /// Its diameter in m.
+        diameter: f64,
+        /// The narrowest extent of the mesh in m.
+        width: f64,
+    },
     /// A packing or a distribution of sizes that cannot be made.
     #[error("population \"{name}\": {cause}")]
     Packing {
@@ -73,6 +107,12 @@ pub enum PlaceError {
     },
 }
 
+/// How far a centre is from a wall.
+fn reach(distance: f64) -> String {
+    let side = if distance < 0.0 { "beyond" } else { "from" };
+    format!("its centre lies {} m {side} it", shown(distance.abs()))
+}
+
 /// What to do about two particles of these populations in the same space.
 fn apart(names: &[String; 2]) -> &'static str {
     if names[0] == names[1] {
@@ -93,16 +133,21 @@ impl PlaceError {
                 } => format!("particles[{index}].diameter"),
                 _ => format!("particles[{index}].place"),
             },
-            Self::Overlap { names, .. } => {
-                let second = case.particles.iter().position(|one| one.name == names[1]);
-                second.map_or("particles".into(), |index| {
-                    format!("particles[{index}].place")
-                })
-            }
+            Self::Overlap { names, .. } => of_population(case, &names[1], "place"),
+            Self::InWall { name, .. } => of_population(case, name, "place"),
+            Self::TooWide { name, .. } => of_population(case, name, "diameter"),
             Self::Contacts(ContactsError::Step { .. }) => "motion.motion_step".into(),
             Self::Contacts(ContactsError::Short { .. }) => "motion.held".into(),
             Self::Contacts(_) => "motion".into(),
             _ => "particles".into(),
         }
     }
+}
+
+/// A key of the population of this name.
+fn of_population(case: &Case, name: &str, key: &str) -> String {
+    let index = case.particles.iter().position(|one| one.name == name);
+    index.map_or("particles".into(), |index| {
+        format!("particles[{index}].{key}")
+    })
 }

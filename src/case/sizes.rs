@@ -7,7 +7,7 @@ use calcine_coupler::setup::Turbulence;
 use calcine_coupler::view_factors::ViewFactors;
 use thiserror::Error;
 
-use super::model::{Case, MeshSpec, PlacementSpec};
+use super::model::{Case, MeshSpec, PlacementSpec, Population, RandomAmount};
 use calcine_coupler::physics::sphere;
 
 /// Bytes that coordinator and native gas hold per cell, and per frozen particle, about; measured as the growth of
@@ -65,10 +65,8 @@ fn views(case: &Case) -> f64 {
     };
     let (ViewFactors::Rays { range, .. } | ViewFactors::Distance { range }) =
         radiation.view_factors;
-    let solid = case.particles.iter().filter_map(|one| match one.place {
-        PlacementSpec::Random { solid_fraction, .. } => Some(solid_fraction),
-        _ => None,
-    });
+    let solid = case.particles.iter();
+    let solid = solid.filter_map(|one| Some(random(case, one)?.solid_fraction));
     let solid = solid.reduce(f64::max);
     let diameters = case.particles.iter();
     let largest = diameters
@@ -118,29 +116,44 @@ fn cells(mesh: &MeshSpec) -> f64 {
 
 /// Particles of stackings and random packings; files are not opened.
 fn particles(case: &Case) -> f64 {
-    let section = match &case.mesh {
-        MeshSpec::Box { size, .. } => size.x * size.y,
-        MeshSpec::Cylinder { diameter, .. } => PI / 4.0 * diameter * diameter,
-        MeshSpec::PolyMesh(_) => 0.0,
-    };
-    let populations = case.particles.iter().map(|population| {
-        let diameter = population.sizes.mean().unwrap_or(f64::INFINITY);
-        match &population.place {
+    let populations = case
+        .particles
+        .iter()
+        .map(|population| match &population.place {
             PlacementSpec::Grid { counts, .. } => {
                 counts.iter().map(|&count| count as f64).product()
             }
-            PlacementSpec::Random {
-                layer,
-                solid_fraction,
-                ..
-            } => {
-                let sphere = sphere::volume_of_diameter(diameter);
-                section * (layer[1] - layer[0]) * solid_fraction / sphere
-            }
+            PlacementSpec::Random { .. } => random(case, population).map_or(0.0, |one| one.number),
             PlacementSpec::Regular { .. } | PlacementSpec::File { .. } => 0.0,
-        }
-    });
+        });
     populations.sum()
+}
+
+/// What a random packing holds, by spheres of the mean diameter.
+struct RandomPacking {
+    number: f64,
+    solid_fraction: f64,
+}
+
+fn random(case: &Case, population: &Population) -> Option<RandomPacking> {
+    let PlacementSpec::Random { layer, amount, .. } = population.place else {
+        return None;
+    };
+    let section = match &case.mesh {
+        MeshSpec::Box { size, .. } => size.x * size.y,
+        MeshSpec::Cylinder { diameter, .. } => PI / 4.0 * diameter * diameter,
+        MeshSpec::PolyMesh(_) => return None,
+    };
+    let mean = population.sizes.mean().unwrap_or(f64::INFINITY);
+    let most = section * (layer[1] - layer[0]) / sphere::volume_of_diameter(mean);
+    let (number, solid_fraction) = match amount {
+        RandomAmount::SolidFraction(solid_fraction) => (most * solid_fraction, solid_fraction),
+        RandomAmount::Number(number) => (number as f64, number as f64 / most),
+    };
+    Some(RandomPacking {
+        number,
+        solid_fraction,
+    })
 }
 
 /// Memory of this machine in bytes; `None` where the system does not say.

@@ -10,6 +10,18 @@ const HEAD: usize = 84;
 /// Bytes of a triangle: a normal, three corners, an unused number.
 const TRIANGLE: usize = 50;
 
+/// The largest height of a triangle, over its longest edge, that is no area: corners of a file are single precision.
+const FLAT: f64 = 1e-7;
+
+/// What a file holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stl {
+    /// Corners of the triangles in m.
+    pub triangles: Vec<[Vec3; 3]>,
+    /// Numbers, from 1, of triangles of the file that have no area, which are left out.
+    pub flat: Vec<usize>,
+}
+
 /// A file that is no STL file.
 #[derive(Debug, Error)]
 pub enum StlError {
@@ -19,6 +31,17 @@ pub enum StlError {
     /// It holds no triangle.
     #[error("holds no triangle")]
     Empty,
+    /// No triangle has an area.
+    #[error("holds {0} triangles, none of which has an area")]
+    Flat(usize),
+    /// A binary file of another length than its number of triangles takes.
+    #[error("states {stated} triangles, and has {there}: it was cut short, or is damaged")]
+    CutShort {
+        /// Triangles that it states.
+        stated: usize,
+        /// Whole ones that it holds.
+        there: usize,
+    },
     /// A line that is not as it should be.
     #[error("has in line {line} no three finite coordinates")]
     Line {
@@ -39,20 +62,35 @@ pub enum StlError {
     },
 }
 
-/// Corners of the triangles in m; lengths of the file times `scale`.
-pub fn read(path: &Path, scale: f64) -> Result<Vec<[Vec3; 3]>, StlError> {
+/// The triangles of a file, its lengths times `scale`.
+pub fn read(path: &Path, scale: f64) -> Result<Stl, StlError> {
     let bytes = std::fs::read(path)?;
-    let mut triangles = match binary(&bytes)? {
+    let all = match binary(&bytes)? {
         Some(triangles) => triangles,
         None => ascii(&String::from_utf8_lossy(&bytes))?,
     };
-    if triangles.is_empty() {
+    if all.is_empty() {
         return Err(StlError::Empty);
     }
-    for corner in triangles.iter_mut().flatten() {
-        *corner *= scale;
+    let count = all.len();
+    let (mut triangles, mut flat) = (Vec::with_capacity(count), Vec::new());
+    for (number, corners) in (1..).zip(all) {
+        match is_flat(&corners) {
+            true => flat.push(number),
+            false => triangles.push(corners.map(|corner| scale * corner)),
+        }
     }
-    Ok(triangles)
+    if triangles.is_empty() {
+        return Err(StlError::Flat(count));
+    }
+    Ok(Stl { triangles, flat })
+}
+
+/// True of a triangle without area: two corners are one, or all on a line.
+fn is_flat([a, b, c]: &[Vec3; 3]) -> bool {
+    let (ab, ac, bc) = (b - a, c - a, c - b);
+    let longest = ab.norm().max(ac.norm()).max(bc.norm());
+    ab.cross(&ac).norm() <= FLAT * longest * longest
 }
 
 /// The triangles of a binary file: one whose length fits the number of triangles that it states.
@@ -65,7 +103,14 @@ fn binary(bytes: &[u8]) -> Result<Option<Vec<[Vec3; 3]>>, StlError> {
     };
     let count = u32::from_le_bytes(count) as usize;
     if bytes.len() != HEAD + TRIANGLE * count {
-        return Ok(None);
+        // Text has no zero bytes; the head of a binary file is filled with them.
+        return match bytes.contains(&0) {
+            true => Err(StlError::CutShort {
+                stated: count,
+                there: (bytes.len() - HEAD) / TRIANGLE,
+            }),
+            false => Ok(None),
+        };
     }
     let number = |bytes: &[u8]| {
         let four = <[u8; 4]>::try_from(bytes).unwrap_or_default();
@@ -133,7 +178,7 @@ mod tests {
         std::fs::write(&b, raw).unwrap();
         let found = read(&a, 1e-3).unwrap();
         assert_eq!(found, read(&b, 1e-3).unwrap());
-        assert_eq!(found[0][2], Vec3::new(0.0, 2.5e-3, 0.0));
+        assert_eq!(found.triangles[0][2], Vec3::new(0.0, 2.5e-3, 0.0));
         std::fs::write(&a, text.replace("2.5", "nan")).unwrap();
         assert_eq!(
             read(&a, 1.0).unwrap_err().to_string(),
@@ -141,5 +186,52 @@ mod tests {
         );
         std::fs::write(&a, "solid\nendsolid\n").unwrap();
         assert!(read(&a, 1.0).is_err());
+    }
+
+    /// A binary file of these triangles.
+    fn binary_of(triangles: &[[f32; 9]]) -> Vec<u8> {
+        let mut raw = vec![0u8; 80];
+        raw.extend((triangles.len() as u32).to_le_bytes());
+        for corners in triangles {
+            let normal = [0.0; 3];
+            for value in normal.iter().chain(corners) {
+                raw.extend(value.to_le_bytes());
+            }
+            raw.extend([0, 0]);
+        }
+        raw
+    }
+
+    #[test]
+    fn triangles_without_area_are_left_out_and_counted() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.stl");
+        let good = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+        let point = [0.5; 9];
+        let line = [0.0, 0.0, 0.0, 0.1, 0.2, 0.3, 0.2, 0.4, 0.6];
+        let sliver = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.5, 1e-3, 0.0];
+        let all = [good, point, sliver, line];
+        std::fs::write(&path, binary_of(&all)).unwrap();
+        let found = read(&path, 1.0).unwrap();
+        assert_eq!((found.triangles.len(), found.flat), (2, vec![2, 4]));
+        std::fs::write(&path, binary_of(&[point, line])).unwrap();
+        assert_eq!(
+            read(&path, 1.0).unwrap_err().to_string(),
+            "holds 2 triangles, none of which has an area"
+        );
+    }
+
+    #[test]
+    fn a_binary_file_that_was_cut_short_says_so() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.stl");
+        let good = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+        let mut bytes = binary_of(&[good; 5]);
+        bytes.truncate(HEAD + 3 * TRIANGLE + 7);
+        std::fs::write(&path, bytes).unwrap();
+        assert_eq!(
+            read(&path, 1.0).unwrap_err().to_string(),
+            "states 5 triangles, and has 3: it was cut short, or is damaged"
+        );
     }
 }

@@ -44,12 +44,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         &prepared.mesh,
         particles,
         *void_fraction,
-    ));
+    ))?;
     if let Some(text) = contacts::report(case, &prepared.mesh, &prepared.particles) {
-        say(text);
+        say(text)?;
     }
     if let Err(error) = check_own_script(case, prepared) {
-        say(format_args!("    not with LIGGGHTS: {}", chain(&error)));
+        say(format_args!("    not with LIGGGHTS: {}", chain(&error)))?;
     }
     Ok(exit::OK)
 }

@@ -116,7 +116,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let mut runs = Vec::new();
     for pairing in pairings {
         let folder = out.join(pairing.name());
-        say(format_args!("{}:", pairing.name()));
+        say(format_args!("{}:", pairing.name()))?;
         let settings = Settings {
             pairing,
             starts: &SolverStarts::of(&case, pairing),
@@ -130,7 +130,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
             go_on: &go_on,
         };
         let done = execute::execute(&case, &prepared, &settings)?;
-        say(&done.text);
+        say(&done.text)?;
         if done.code == exit::CHECKPOINTED {
             return Ok(done.code);
         }
@@ -141,8 +141,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let page = comparison
         .write(&out)
         .map_err(|error| Failure::told(exit::OTHER, &error))?;
-    say(comparison.table());
-    say(format_args!("page: {}", page.display()));
+    say(comparison.table())?;
+    say(format_args!("page: {}", page.display()))?;
     Ok(if comparison.agrees {
         exit::OK
     } else {

@@ -148,7 +148,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         (None, None) => Vec::new(),
     };
     for outcome in &outcomes {
-        say(outcome);
+        say(outcome)?;
     }
     let broken = outcomes.iter().filter(|outcome| !outcome.holds()).count();
     say(format_args!(
@@ -156,7 +156,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         outcomes.len() - broken,
         outcomes.len(),
         out.join("log").display()
-    ));
+    ))?;
     Ok(match broken {
         0 => exit::OK,
         _ => exit::OUTSIDE_BANDS,

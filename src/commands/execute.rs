@@ -9,6 +9,7 @@ use calcine_coupler::supervisor::Interrupts;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
+use super::console::printed;
 use super::failure::{Failure, chain};
 use super::parallel::Transport;
 use crate::assembly::{Pairing, PreparedCase, SolverStarts};
@@ -83,6 +84,9 @@ pub(super) fn execute(
     }
     let progress = Box::new(Progress::new(case, settings.progress));
     let mut simulation = builder.start_prepared(case, prepared, vec![progress])?;
+    for note in simulation.notes() {
+        eprintln!("warning: {note}");
+    }
     let ending = simulation.finish();
     let summary = simulation.summary().cloned();
     // Takes the progress bar off the screen before anything is printed.
@@ -153,7 +157,7 @@ fn closing(summary: &Summary) -> String {
             .expected_at_s
             .is_some_and(|time| time > summary.process_time_s);
         let (value, unit) = match quantity.value {
-            Some(value) => (format!("{value:.6}"), quantity.unit.as_str()),
+            Some(value) => (printed(value), quantity.unit.as_str()),
             None if late => ("unknown".to_owned(), ""),
             // There is nothing to measure, as for the mean of no particles.
             None => ("none".to_owned(), ""),

@@ -78,10 +78,7 @@ pub fn run_line(network: Option<&Arc<dyn SolverNetwork>>) -> u8 {
         Command::Prepare(arguments) => prepare::run(arguments),
         Command::New(arguments) => new::run(arguments),
         Command::Schema(arguments) => schema::run(arguments),
-        Command::Doctor => {
-            say(doctor::run());
-            Ok(exit::OK)
-        }
+        Command::Doctor => say(doctor::run()).map(|()| exit::OK),
     };
     match outcome {
         Ok(code) => code,

@@ -67,7 +67,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     say(format_args!(
         "{}: change it, then\n  calcine check {0}\n  calcine run {0}",
         file.display()
-    ));
+    ))?;
     Ok(exit::OK)
 }
 

@@ -53,10 +53,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     }
     let written = assembly::write_inputs(&case, &prepared, pairing, &out)?;
     if written.is_empty() {
-        say("native parts have no input files; name --gas openfoam or --particles liggghts");
+        say("native parts have no input files; name --gas openfoam or --particles liggghts")?;
     }
     for folder in written {
-        say(folder.display());
+        say(folder.display())?;
     }
     Ok(exit::OK)
 }

@@ -7,6 +7,7 @@ use clap::Args;
 use super::console::say;
 use super::failure::Failure;
 use crate::exit;
+use crate::results::ResultsError;
 
 /// Writes a self-contained HTML report of a results folder.
 #[derive(Debug, Args)]
@@ -16,8 +17,13 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
-    let page =
-        crate::report::write(&arguments.dir).map_err(|error| Failure::told(exit::OTHER, &error))?;
-    say(page.display());
+    let page = crate::report::write(&arguments.dir).map_err(|error| {
+        let code = match error {
+            ResultsError::NoResults { .. } => exit::CASE,
+            _ => exit::OTHER,
+        };
+        Failure::told(code, &error)
+    })?;
+    say(page.display())?;
     Ok(exit::OK)
 }

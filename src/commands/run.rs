@@ -72,7 +72,7 @@ pub(super) fn run(
     use_threads(arguments.threads.map(usize::from))?;
     let (case, prepared) = read_and_prepare(&arguments.case, &arguments.set)?;
     for change in &case.changes {
-        say(format_args!("set {change}"));
+        say(format_args!("set {change}"))?;
     }
     let out = results_folder(&case, arguments.out.as_deref());
     let pairing = Pairing {
@@ -104,12 +104,13 @@ pub(super) fn run(
         go_on: &format!("continue with\n  {}", line.resume()),
     };
     let done = execute::execute(&case, &prepared, &settings)?;
-    say(&done.text);
-    if [exit::OK, exit::OUTSIDE_BANDS, exit::WARNINGS].contains(&done.code) {
-        match crate::report::write(&out) {
-            Ok(page) => say(format_args!("report: {}", page.display())),
-            Err(error) => return Err(Failure::told(exit::OTHER, &error)),
-        }
+    // Written before anything is printed: standard output may be lost.
+    let complete = [exit::OK, exit::OUTSIDE_BANDS, exit::WARNINGS].contains(&done.code);
+    let page = complete.then(|| crate::report::write(&out));
+    say(&done.text)?;
+    if let Some(page) = page {
+        let page = page.map_err(|error| Failure::told(exit::OTHER, &error))?;
+        say(format_args!("report: {}", page.display()))?;
     }
     Ok(done.code)
 }

@@ -21,14 +21,14 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let text = text();
     let Some(file) = &arguments.out else {
-        say(text.trim_end());
+        say(text.trim_end())?;
         return Ok(exit::OK);
     };
     std::fs::write(file, text).map_err(|cause| Failure::unwritable(file, "--out", &cause))?;
     say(format_args!(
         "{}: name it in the first line of a case file, as\n  #:schema {0}",
         file.display()
-    ));
+    ))?;
     Ok(exit::OK)
 }
 

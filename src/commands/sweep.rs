@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::console::say;
+use super::console::{printed, say};
 use super::continuation::begin_again;
 use super::execute::{self, Settings};
 use super::failure::Failure;
@@ -93,16 +93,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let mut points = Vec::new();
     for settings in combinations {
         let folder = out.join(folder_name(&settings));
-        say(settings.join("  "));
+        say(settings.join("  "))?;
         one(arguments, &settings, &folder, &go_on)?;
         points.push(Point { settings, folder });
     }
     let table = table(&points, &axes, reference, arguments.span)?;
-    say(&table);
-    if let Some(path) = &arguments.table {
-        std::fs::write(path, &table)
-            .map_err(|cause| Failure::unwritable(path, "--table", &cause))?;
-    }
+    // Written before anything is printed: standard output may be lost.
+    let written = arguments.table.as_ref().map(|path| {
+        std::fs::write(path, &table).map_err(|cause| Failure::unwritable(path, "--table", &cause))
+    });
+    say(&table)?;
+    written.transpose()?;
     Ok(exit::OK)
 }
 
@@ -259,7 +260,7 @@ fn table(
                         header.push(column);
                     }
                     let value = quantity.value.unwrap_or(f64::NAN);
-                    row.push(format!("{value:.6}"));
+                    row.push(printed(value));
                 }
             }
         }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use calcine_coupler::coordinator::Ending;
+use calcine_coupler::coordinator::{CheckpointPaths, Ending};
 use calcine_coupler::interior::ParticleModel;
 use calcine_coupler::observer::Observer;
 use calcine_coupler::supervisor::{Interrupts, Supervisor};
@@ -175,7 +175,6 @@ impl SimulationBuilder {
         if self.resume && folder::finished(&out).is_some() {
             return Err(SimulationError::Over(Ending::Finished));
         }
-        let checkpoint = out.join("checkpoint");
         let resume = self.resume && folder::has_checkpoint(&out);
         let again = self.resume && !resume;
         if again && !(folder::begun_before(&out) && results::may_start_again(&out, &case.hash)?) {
@@ -192,6 +191,15 @@ impl SimulationBuilder {
         if again {
             results::clear_start(&out)?;
         }
+        let recovered = match resume {
+            true => folder::recover(&out)?,
+            false => None,
+        };
+        let damage = origin.as_ref().and_then(|origin| origin.damage.as_ref());
+        let older =
+            damage.map(|what| format!("{what}; this run begins from the checkpoint before it"));
+        let notes: Vec<String> = recovered.into_iter().chain(older).collect();
+        let checkpoint = CheckpointPaths::new(&out).committed();
         let info = RunInfo {
             gas: self.pairing.gas.name().into(),
             particles: self.pairing.particles.name().into(),
@@ -217,6 +225,9 @@ impl SimulationBuilder {
         let mut supervisor = Supervisor::new(case.coupling.deadline, self.interrupts);
         let begun = with_default(&log, || {
             info!(case = %case.name, pairing = %self.pairing.name(), resume, "start");
+            for note in &notes {
+                warn!("{note}");
+            }
             let own = |material: &str| {
                 let given = self.models.iter().rev();
                 let found = given.into_iter().find(|one| one.material == material);
@@ -248,6 +259,7 @@ impl SimulationBuilder {
             case: case.clone(),
             out,
             log,
+            notes,
             ending: None,
             failed: false,
             _lock: claimed.keep(),

@@ -3,7 +3,6 @@
 use std::io;
 use std::path::PathBuf;
 
-use calcine_coupler::checkpoint::StateFileError;
 use calcine_coupler::coordinator::{Ending, RunError};
 use miette::Diagnostic;
 use thiserror::Error;
@@ -96,7 +95,7 @@ pub enum SimulationError {
         folder: PathBuf,
         /// Why.
         #[source]
-        cause: StateFileError,
+        cause: RunError,
     },
     /// A file or folder of the run.
     #[error("{path}: {cause}")]

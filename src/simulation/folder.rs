@@ -7,7 +7,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use calcine_coupler::coordinator::Origin;
+use calcine_coupler::coordinator::{CheckpointPaths, Origin, RunError};
 use rustix::fs::{FlockOperation, flock};
 use tracing::dispatcher::Dispatch;
 use tracing_subscriber::filter::{LevelFilter, Targets};
@@ -48,6 +48,9 @@ pub(super) fn claim(out: &Path) -> Result<ClaimedFolder, SimulationError> {
         folder: out.to_owned(),
         cause,
     };
+    if out.exists() && !out.is_dir() {
+        return Err(unusable(io::Error::from(io::ErrorKind::NotADirectory)));
+    }
     let absent = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
     let mut made = out.ancestors().take_while(absent).map(Path::to_owned);
     let own = made.next().is_some();
@@ -152,10 +155,22 @@ pub(super) fn log(out: &Path) -> Result<Dispatch, SimulationError> {
     Ok(Dispatch::new(subscriber))
 }
 
-/// True where a complete checkpoint of the coordinator is there.
+/// True where a run left a checkpoint.
 pub(crate) fn has_checkpoint(folder: &Path) -> bool {
-    let state = folder.join("checkpoint").join("coordinator.state");
-    state.is_file()
+    CheckpointPaths::new(folder).exists()
+}
+
+/// Makes the newest whole checkpoint of a folder the one that a run goes on from: what to tell where it is not the last.
+pub(super) fn recover(folder: &Path) -> Result<Option<String>, RunError> {
+    let paths = CheckpointPaths::new(folder);
+    let Some(damage) = paths.recover()? else {
+        return Ok(None);
+    };
+    let from = Origin::read(folder)?.clocks.process;
+    Ok(Some(format!(
+        "{damage}; the run goes on from the checkpoint before it, of {from} of process time, and the damaged one is kept as {}",
+        paths.damaged().display()
+    )))
 }
 
 /// The summary of the run in a folder, if that came to its end.

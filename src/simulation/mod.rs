@@ -66,6 +66,7 @@ pub struct Simulation {
     case: Case,
     out: PathBuf,
     log: Dispatch,
+    notes: Vec<String>,
     ending: Option<Ending>,
     /// True after a failure: the parts may stand in the middle of a window.
     failed: bool,
@@ -94,6 +95,11 @@ impl Simulation {
             }
         }
         Ok(None)
+    }
+
+    /// What is to be told of the start: a checkpoint that was damaged, and the older one that the run goes on from in its place.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     /// Steps to the end of the case, or to an interrupt's checkpoint.

@@ -80,6 +80,7 @@ pub fn case() -> Case {
         contacts: vec![],
         walls: vec![],
         wall_temperatures: vec![],
+        left_out_of_walls: Vec::new(),
         motion: None,
         feeds: vec![],
         outlets: vec![],

@@ -1,6 +1,8 @@
 //! What several files of tests share. Test programs of their own take single files of it by their path.
 
 pub mod c_solver;
+#[cfg(feature = "hdf5")]
+pub mod checkpoint_harm;
 pub mod column;
 pub mod fake;
 #[cfg(feature = "hdf5")]

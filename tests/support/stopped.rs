@@ -1,8 +1,9 @@
 //! Runs that are stopped by SIGTERM, which leaves a checkpoint, and resumed.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 use std::fs;
+use std::os::unix::process::ExitStatusExt as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -21,8 +22,19 @@ pub fn finish(mut command: Command) {
     assert!(output.status.success(), "{told}");
 }
 
-/// Starts a run and stops it as soon as `due` says so, told how long it runs; false where it came to its end before.
-pub fn stop(mut command: Command, due: impl Fn(Duration) -> bool) -> bool {
+/// How a run that was to be stopped came to rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stopped {
+    /// It was at its end before.
+    AtItsEnd,
+    /// It left a checkpoint.
+    Checkpointed,
+    /// It had not begun to listen to signals: SIGTERM ended it, and what was there before is what there is.
+    BeforeItBegan,
+}
+
+/// Starts a run and stops it as soon as `due` says so, told how long it runs.
+pub fn stop(mut command: Command, due: impl Fn(Duration) -> bool) -> Stopped {
     command.stdin(Stdio::null()).stdout(Stdio::null());
     let mut run = command.stderr(Stdio::piped()).spawn().unwrap();
     let begun = Instant::now();
@@ -36,13 +48,13 @@ pub fn stop(mut command: Command, due: impl Fn(Duration) -> bool) -> bool {
     }
     let output = run.wait_with_output().unwrap();
     let told = String::from_utf8_lossy(&output.stderr);
-    let code = output.status.code();
-    assert!(
-        matches!(code, Some(0 | CHECKPOINTED)),
-        "{}: {told}",
-        output.status
-    );
-    code == Some(CHECKPOINTED)
+    let status = output.status;
+    match (status.code(), status.signal()) {
+        (Some(0), _) => Stopped::AtItsEnd,
+        (Some(CHECKPOINTED), _) => Stopped::Checkpointed,
+        (None, Some(signal)) if signal == Signal::TERM.as_raw() => Stopped::BeforeItBegan,
+        _ => panic!("{status}: {told}"),
+    }
 }
 
 /// Number of rows of the series of a run so far.
@@ -54,7 +66,7 @@ pub fn rows(out: &Path) -> usize {
 /// Stops a run when its series has so many rows, and resumes it to its end.
 pub fn stop_and_resume(command: impl Fn() -> Command, out: &Path, at: usize) {
     let stopped = stop(command(), |_| rows(out) >= at);
-    assert!(stopped, "it came to its end before it was stopped");
+    assert_eq!(stopped, Stopped::Checkpointed);
     println!("stopped after {} rows", rows(out));
     let mut resumed = command();
     resumed.arg("--resume");

@@ -6,6 +6,11 @@
 
 mod agreement;
 mod backward_step;
+#[cfg(feature = "hdf5")]
+mod checkpoint_faults;
+#[cfg(feature = "hdf5")]
+#[path = "../support/checkpoint_harm.rs"]
+mod checkpoint_harm;
 mod counter_current;
 mod elastic_box;
 mod flame;
@@ -52,6 +57,8 @@ const MARK: &str = "--validate";
 const ALL: &[(&str, fn())] = &[
     ("agreement", agreement::run),
     ("backward-step", backward_step::run),
+    #[cfg(feature = "hdf5")]
+    ("checkpoint-faults", checkpoint_faults::run),
     ("elastic-box", elastic_box::run),
     ("flame", flame::run),
     #[cfg(feature = "hdf5")]

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use crate::random::Random;
 use crate::results_equal::values_that_differ;
-use crate::stopped::{finish, rows, stop};
+use crate::stopped::{Stopped, finish, rows, stop};
 use crate::{program, shipped};
 
 /// The seed of the moments.
@@ -110,14 +110,22 @@ fn interrupt(
             next.arg("--resume");
         }
         // Not before the run has begun: without a folder there is nothing to stop.
-        if !stop(next, |elapsed| {
+        let stopped = stop(next, |elapsed| {
             elapsed >= moment && out.join("series.csv").is_file()
-        }) {
-            found.push("end".to_owned());
-            return found.join("+");
-        }
+        });
+        found.push(match stopped {
+            Stopped::AtItsEnd => {
+                found.push("end".to_owned());
+                return found.join("+");
+            }
+            Stopped::Checkpointed => rows(out).to_string(),
+            // Only a run that resumes has a series before it listens to signals.
+            Stopped::BeforeItBegan => {
+                assert!(resumes, "{}: no checkpoint", out.display());
+                "0".to_owned()
+            }
+        });
         resumes = true;
-        found.push(rows(out).to_string());
     }
     let mut last = command();
     last.arg("--resume");

@@ -47,9 +47,10 @@ usage: cargo xtask TASK
   faults [--kills N]      random fault injection: kill or stop a process of a coupled run at a
         [--seed S]        random moment and check that it is named, that everything ends and
         [--from K]        that nothing is left (default: 500 trials)
-  validate [NAME …]       long validations, all by default: agreement, backward-step, elastic-box,
-                          flame, fluidised-bed, hopper, moving-bed, repose, restarts,
-                          shaft-choices, shaft-flames, shaft-furnace, voids";
+  validate [NAME …]       long validations, all by default: agreement, backward-step,
+                          checkpoint-faults, elastic-box, flame, fluidised-bed, hopper,
+                          moving-bed, repose, restarts, shaft-choices, shaft-flames,
+                          shaft-furnace, voids";
 
 /// Exit code of a wrong command line, as `calcine` has it.
 const USAGE_CODE: u8 = 2;

@@ -45,7 +45,9 @@ fn line_of(record: &StringRecord, text: &str) -> usize {
 fn row(sheet: &mut Sheet, record: &StringRecord, line: usize) -> Result<(), Fault> {
     let (found, needed) = (record.len(), sheet.columns.len());
     if found != needed {
-        let what = format!("there are {found} values, but {needed} columns");
+        let what = format!(
+            "there are {found} values, but {needed} columns; separate them by commas, with a point in decimals"
+        );
         return Err((Some(Row::Line(line)), what));
     }
     for ((_, column), word) in sheet.columns.iter_mut().zip(record) {

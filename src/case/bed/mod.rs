@@ -15,6 +15,12 @@ use super::place_error::PlaceError;
 
 /// The particles of a file, in the order of their ids where it has ids.
 pub(super) fn read(path: &Path, choice: Choice) -> Result<Vec<Entry>, PlaceError> {
+    if path.is_dir() {
+        return Err(PlaceError::File {
+            place: path.display().to_string(),
+            what: "it is a folder; name a file of particles in it".into(),
+        });
+    }
     let bytes = std::fs::read(path).map_err(|cause| PlaceError::Io {
         path: path.to_owned(),
         cause,

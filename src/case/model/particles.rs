@@ -63,6 +63,15 @@ pub enum MotionSpec {
     Free,
 }
 
+/// How many spheres a random packing has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RandomAmount {
+    /// As many as come nearest to this volume of spheres over the filled space, layers at the walls included.
+    SolidFraction(f64),
+    /// So many.
+    Number(usize),
+}
+
 /// Where particles are at the start.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PlacementSpec {
@@ -79,8 +88,8 @@ pub enum PlacementSpec {
     Random {
         /// Lowest and highest z of the layer in m.
         layer: [f64; 2],
-        /// Volume of spheres over the filled space, layers at the walls included.
-        solid_fraction: f64,
+        /// How many.
+        amount: RandomAmount,
         /// Equal seeds give equal packings.
         seed: u64,
     },

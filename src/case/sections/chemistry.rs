@@ -245,6 +245,11 @@ fn reaction(
             return None;
         }
     };
+    if equation.net().iter().all(|(_, n)| *n == 0.0) {
+        let help = "write what is used on the left and what is made of it on the right";
+        table.fail("equation", "changes nothing", help);
+        return None;
+    }
     let mut statement = ReactionStatement {
         name: name?.into(),
         equation,

@@ -85,7 +85,7 @@ pub(super) fn case(
         schmidt: gas.setup.schmidt,
     });
     let laws = laws::read(root, bed_eddies, film_gas);
-    let walls = walls::walls(root, &materials, mesh.as_ref(), folder);
+    let (walls, left_out) = walls::walls(root, &materials, mesh.as_ref(), folder);
     let motion = motion::motion(root, time.as_ref().map(|(time, _)| time));
     let coupling = coupling::read(root);
     let openfoam = coupling::external(root, "openfoam", folder);
@@ -171,6 +171,7 @@ pub(super) fn case(
         contacts,
         walls,
         wall_temperatures,
+        left_out_of_walls: left_out,
         motion,
         gas,
         gas_held,

@@ -6,7 +6,7 @@ use calcine_coupler::packing::Sizes;
 use calcine_coupler::physics::Vec3;
 
 use super::common::existing;
-use crate::case::model::{MeshSpec, PlacementSpec};
+use crate::case::model::{MeshSpec, PlacementSpec, RandomAmount};
 use crate::case::overlap::PRESSED;
 use crate::case::table::TableReader;
 use crate::case::units::shown;
@@ -69,14 +69,24 @@ fn packing(
 }
 
 fn random(place: &TableReader<'_>, layer: Option<[f64; 2]>) -> Option<PlacementSpec> {
-    place.need("solid_fraction");
+    let given = [place.has("solid_fraction"), place.has("number")];
+    if given[0] == given[1] {
+        let rule = "needs exactly one of solid_fraction and number with a random packing";
+        place.fail_whole(rule, "for example solid_fraction = 0.58, or number = 2000");
+    }
     let solid_fraction = place.number("solid_fraction");
+    let number = place.whole("number");
     place.need("seed");
     let seed = place.whole("seed");
-    let (layer, solid_fraction, seed) = (layer?, solid_fraction?, seed?);
+    let amount = match given {
+        [true, false] => RandomAmount::SolidFraction(solid_fraction?),
+        [false, true] => RandomAmount::Number(usize::try_from(number?).ok()?),
+        _ => return None,
+    };
+    let (layer, seed) = (layer?, seed?);
     Some(PlacementSpec::Random {
         layer,
-        solid_fraction,
+        amount,
         seed,
     })
 }

@@ -13,13 +13,18 @@ use crate::case::place::inner_diameter;
 use crate::case::stl;
 use crate::case::table::TableReader;
 
+/// Most numbers of triangles that are named.
+const MOST: usize = 5;
+
+/// All walls with their temperatures, and what of their files is left out.
 pub(super) fn walls(
     root: &TableReader<'_>,
     materials: &[MaterialSpec],
     mesh: Option<&MeshSpec>,
     folder: &Path,
-) -> Vec<(Wall, Option<Schedule>)> {
+) -> (Vec<(Wall, Option<Schedule>)>, Vec<String>) {
     let mut all: Vec<(Wall, Option<Schedule>)> = Vec::new();
+    let mut left_out = Vec::new();
     for table in root.tables("walls") {
         let name = table.text("name");
         let material = table.text("material").and_then(|name| {
@@ -31,7 +36,7 @@ pub(super) fn walls(
             }
             found
         });
-        let shapes = shapes(&table, mesh, folder);
+        let shapes = shapes(&table, mesh, folder, &mut left_out);
         let motion = motion(&table);
         let temperature = table.schedule("temperature");
         table.finish();
@@ -60,7 +65,26 @@ pub(super) fn walls(
             all.push((wall, temperature.clone()));
         }
     }
-    all
+    (all, left_out)
+}
+
+/// What is left out of a file: the first numbers of its triangles without area.
+fn without_area(path: &Path, flat: &[usize]) -> String {
+    let first: Vec<String> = flat.iter().take(MOST).map(usize::to_string).collect();
+    let more = match flat.len().saturating_sub(MOST) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let triangles = if flat.len() == 1 {
+        "triangle"
+    } else {
+        "triangles"
+    };
+    format!(
+        "{}: {triangles} {}{more} without area, left out; mend the surface if particles could pass there",
+        path.display(),
+        first.join(", ")
+    )
 }
 
 /// The shapes of one entry, with the part of the mesh that each is.
@@ -68,6 +92,7 @@ fn shapes(
     table: &TableReader<'_>,
     mesh: Option<&MeshSpec>,
     folder: &Path,
+    left_out: &mut Vec<String>,
 ) -> Option<Vec<(&'static str, WallShape)>> {
     let scale = table.number("scale");
     let kind = table.exactly_one()?;
@@ -81,7 +106,13 @@ fn shapes(
         "stl" => {
             let path = existing(table, "stl", folder)?;
             match stl::read(&path, scale?) {
-                Ok(triangles) => Some(vec![("", WallShape::Mesh { triangles })]),
+                Ok(stl) => {
+                    if !stl.flat.is_empty() {
+                        left_out.push(without_area(&path, &stl.flat));
+                    }
+                    let triangles = stl.triangles;
+                    Some(vec![("", WallShape::Mesh { triangles })])
+                }
                 Err(error) => {
                     table.fail(
                         "stl",

@@ -1,0 +1,138 @@
+//! What `calcine check` says of the cells of a mesh.
+
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::mesh::quality::InCell;
+
+/// Largest angle in degrees between a face's normal and the line of centres at which gas was tried (docs/verification.md).
+const MOST_ANGLE: f64 = 70.0;
+/// Largest skewness of faces at which gas was tried.
+const MOST_SKEWNESS: f64 = 1.0;
+/// Angle in degrees and skewness that nobody needs to be told of.
+const SLIGHT: [f64; 2] = [0.1, 1e-3];
+
+/// The lines that follow the number of cells, and warnings.
+pub(super) fn report(mesh: &Mesh) -> (Vec<String>, Vec<String>) {
+    let Some(quality) = mesh.quality() else {
+        return Default::default();
+    };
+    let (angle, skewness) = (quality.angle, quality.skewness);
+    let skewest = match quality.boundary_skewness.value > skewness.value {
+        true => quality.boundary_skewness,
+        false => skewness,
+    };
+    let (mut lines, mut warnings) = (Vec::new(), Vec::new());
+    if angle.value > SLIGHT[0] {
+        lines.push(format!(
+            "non-orthogonality up to {:.1} degrees, average {:.1}; largest {}",
+            angle.value,
+            quality.average_angle,
+            place(&angle)
+        ));
+    }
+    if skewest.value > SLIGHT[1] {
+        let between = match skewest == skewness {
+            true => String::new(),
+            false => format!(", {:.2} between cells", skewness.value),
+        };
+        lines.push(format!(
+            "skewness up to {:.2}{between}; largest {}",
+            skewest.value,
+            place(&skewest)
+        ));
+    }
+    if angle.value > MOST_ANGLE {
+        warnings.push(format!(
+            "non-orthogonality of {:.1} degrees {}, above the {MOST_ANGLE} at which the gases were tried: pressure corrections converge \
+             slowly or not at all; mesh anew with cells that lean less, or shorten the windows",
+            angle.value,
+            place(&angle)
+        ));
+    }
+    if skewness.value > MOST_SKEWNESS {
+        warnings.push(format!(
+            "skewness between cells of {:.2} {}, above the {MOST_SKEWNESS} at which the gases were tried: values at such faces are of first order",
+            skewness.value,
+            place(&skewness)
+        ));
+    }
+    (lines, warnings)
+}
+
+fn place(one: &InCell) -> String {
+    let at = one.centre;
+    format!(
+        "in cell {} at ({:.4}, {:.4}, {:.4}) m",
+        one.cell, at.x, at.y, at.z
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::case::meshing::mesh;
+    use crate::case::read;
+
+    fn mesh_of(case: &str) -> Mesh {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(case);
+        mesh(&read(&path, &[]).unwrap().mesh).unwrap()
+    }
+
+    /// What `checkMesh` of OpenFOAM 1912 prints for the meshes that an OpenFOAM gas of these cases is given.
+    #[test]
+    fn refined_meshes_have_the_shape_that_openfoam_finds() {
+        for (case, angle, average, skewness) in [
+            (
+                "cases/heated-bed.toml",
+                32.224_234_837_247_13,
+                7.835_193_462_160_19,
+                0.505_369_187_764_537_6,
+            ),
+            (
+                "cases/shaft-furnace.toml",
+                25.239_401_820_679_39,
+                6.924_654_143_888_745,
+                0.333_333_333_333_344_8,
+            ),
+        ] {
+            let quality = mesh_of(case).quality().unwrap();
+            for (found, expected) in [
+                (quality.angle.value, angle),
+                (quality.average_angle, average),
+                (
+                    quality.skewness.value.max(quality.boundary_skewness.value),
+                    skewness,
+                ),
+            ] {
+                assert!((found / expected - 1.0).abs() < 1e-6, "{case}: {quality:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_mesh_of_boxes_is_not_told_of_and_one_that_leans_too_far_is_warned_of() {
+        let plain = mesh_of("cases/ore-reduction.toml");
+        assert_eq!(report(&plain), (Vec::new(), Vec::new()));
+        let mut topology = plain.topology().clone();
+        let tangent = 75_f64.to_radians().tan();
+        for point in &mut topology.points {
+            point.x += tangent * point.z;
+        }
+        let (lines, warnings) = report(&Mesh::new(topology).unwrap());
+        assert!(
+            lines[0].starts_with("non-orthogonality up to 75.0 degrees, average "),
+            "{lines:?}"
+        );
+        assert!(
+            warnings[0].starts_with("non-orthogonality of 75.0 degrees in cell "),
+            "{warnings:?}"
+        );
+        // That of the leaning walls is no matter.
+        assert!(
+            lines[1].contains(", 0.00 between cells; largest in cell "),
+            "{lines:?}"
+        );
+        assert_eq!((lines.len(), warnings.len()), (2, 1));
+    }
+}

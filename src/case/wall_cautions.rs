@@ -1,0 +1,95 @@
+//! What of the walls of a case is likely not meant.
+
+use calcine_coupler::motion::WallShape;
+use calcine_coupler::physics::Vec3;
+
+use super::model::{Case, MeshSpec};
+use super::units::shown;
+
+/// Ratio of the sizes of a wall and of the mesh beyond which a unit of length is likely wrong: between m and mm it is 1000.
+const FAR: f64 = 100.0;
+
+/// Warnings, in the order of the walls.
+pub(super) fn all(case: &Case) -> Vec<String> {
+    let mut all = case.left_out_of_walls.clone();
+    let Some(mesh) = size(&case.mesh) else {
+        return all;
+    };
+    for wall in &case.walls {
+        let WallShape::Mesh { triangles } = &wall.shape else {
+            continue;
+        };
+        let size = largest_extent(triangles);
+        if size > FAR * mesh || size * FAR < mesh {
+            all.push(format!(
+                "the triangles of the wall `{}` reach over {} m, the mesh over {} m: check `scale`, 1e-3 for a file in mm",
+                wall.name,
+                shown(size),
+                shown(mesh)
+            ));
+        }
+    }
+    all
+}
+
+fn largest_extent(triangles: &[[Vec3; 3]]) -> f64 {
+    let corners = || triangles.iter().flatten();
+    let low = corners().fold(Vec3::repeat(f64::MAX), |low, one| low.inf(one));
+    let high = corners().fold(Vec3::repeat(f64::MIN), |high, one| high.sup(one));
+    (high - low).max()
+}
+
+/// Largest extent in m of a mesh that the case states; `None` for one of a file.
+fn size(mesh: &MeshSpec) -> Option<f64> {
+    match mesh {
+        MeshSpec::Box { size, .. } => Some(size.max()),
+        MeshSpec::Cylinder {
+            diameter, length, ..
+        } => Some(diameter.max(*length)),
+        MeshSpec::PolyMesh(_) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::Path;
+
+    use super::*;
+    use crate::case::read;
+
+    fn folder() -> std::path::PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good")
+    }
+
+    #[test]
+    fn a_file_in_mm_without_scale_is_warned_of() {
+        let path = folder().join("moving.toml");
+        assert_eq!(all(&read(&path, &[]).unwrap()), [""; 0]);
+        let told = all(&read(&path, &["walls.plate.scale=10".to_owned()]).unwrap());
+        assert_eq!(
+            told,
+            [
+                "the triangles of the wall `plate` reach over 100 m, the mesh over 0.3 m: check `scale`, 1e-3 for a file in mm"
+            ]
+        );
+    }
+
+    #[test]
+    fn triangles_without_area_are_told_with_their_numbers() {
+        let copy = tempfile::tempdir().unwrap();
+        let (case, plate) = (
+            copy.path().join("moving.toml"),
+            copy.path().join("plate.stl"),
+        );
+        fs::copy(folder().join("moving.toml"), &case).unwrap();
+        let text = fs::read_to_string(folder().join("plate.stl")).unwrap();
+        let facet = "facet\nvertex 1 1 1\nvertex 2 2 2\nvertex 3 3 3\nendfacet\n";
+        fs::write(&plate, format!("{text}{}", facet.repeat(7))).unwrap();
+        let told = all(&read(&case, &[]).unwrap());
+        assert!(
+            told[0].ends_with("plate.stl: triangles 2, 3, 4, 5, 6 and 2 more without area, left out; mend the surface if particles could pass there"),
+            "{told:?}"
+        );
+    }
+}

@@ -1,0 +1,183 @@
+//! A gas that becomes its isomer, or falls apart, at a constant rate, in cells without a flow through them and in cells that it leaves
+//! hardly at all, by both gases (CHM-2): a closed cell, one with an outlet alone, and a chain in which next to nothing is left of it.
+
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use std::path::Path;
+
+use calcine::results::read;
+
+use crate::support::program;
+
+/// Gases of constant heat capacity: B is an isomer of A, D half of it, X inert.
+const SPECIES: &str = "
+units: {length: m, quantity: mol, activation-energy: J/mol, energy: J, time: s}
+phases:
+- name: gas
+  thermo: ideal-gas
+  elements: [N]
+  species: [A, B, D, X]
+  state: {T: 300.0, P: 1 atm}
+species:
+- name: A
+  composition: {N: 2}
+  thermo: {model: NASA7, temperature-ranges: [200.0, 1000.0, 6000.0], data: [[3.5,0,0,0,0,0,4],[3.5,0,0,0,0,0,4]]}
+  transport: {model: gas, geometry: linear, diameter: 3.6, well-depth: 97.5}
+- name: B
+  composition: {N: 2}
+  thermo: {model: NASA7, temperature-ranges: [200.0, 1000.0, 6000.0], data: [[3.5,0,0,0,0,0,5],[3.5,0,0,0,0,0,5]]}
+  transport: {model: gas, geometry: linear, diameter: 3.6, well-depth: 97.5}
+- name: X
+  composition: {N: 2}
+  thermo: {model: NASA7, temperature-ranges: [200.0, 1000.0, 6000.0], data: [[3.5,0,0,0,0,0,4],[3.5,0,0,0,0,0,4]]}
+  transport: {model: gas, geometry: linear, diameter: 3.6, well-depth: 97.5}
+- name: D
+  composition: {N: 1}
+  thermo: {model: NASA7, temperature-ranges: [200.0, 1000.0, 6000.0], data: [[1.75,0,0,0,0,0,2],[1.75,0,0,0,0,0,2]]}
+  transport: {model: gas, geometry: linear, diameter: 3.6, well-depth: 97.5}
+";
+
+/// What is left of A in each cell of 10 mm at the end.
+struct Decay {
+    /// `A => B` or `A => 2 D`.
+    equation: &'static str,
+    /// In 1/s.
+    rate: f64,
+    /// Keys of `[time]`.
+    time: String,
+    /// Cells one above the other.
+    cells: usize,
+    /// Conditions of bottom and top.
+    ends: [&'static str; 2],
+}
+
+const WALL: &str = "wall = { velocity = \"slip\", heat = \"adiabatic\" }";
+const OUTLET: &str = "outlet = { pressure = \"1 atm\" }";
+const INLET: &str = "inlet = { superficial_velocity = \"0.1 m/s\", temperature = \"500 K\", composition = { mass = { A = 1 } } }";
+
+impl Decay {
+    fn left(&self, gas: &str, directory: &Path) -> Vec<f64> {
+        let Self {
+            equation,
+            rate,
+            time,
+            cells,
+            ends: [bottom, top],
+        } = self;
+        let length = 10 * cells;
+        let text = format!(
+            r#"
+format = 1
+title = "Isomers"
+[time]
+{time}
+[mesh]
+box = {{ size = "10 10 {length} mm", cells = [1, 1, {cells}] }}
+[materials.glass]
+density = "2500 kg/m^3"
+heat_capacity = "840 J/kg/K"
+[gas]
+mixture = "isomers"
+species = ["A", "B", "D", "X"]
+schmidt = 1e6
+controls = {{ convection = "upwind" }}
+initial = {{ temperature = "500 K", pressure = "1 atm", composition = {{ mass = {{ A = 1 }} }} }}
+[gas.species_data]
+thermo = "isomers.yaml"
+[gas.chemistry]
+reactions = [{{ name = "decay", equation = "{equation}", rate = {{ factor = {rate:e} }} }}]
+[gas.patch.bottom]
+{bottom}
+[gas.patch.top]
+{top}
+[gas.patch.side]
+symmetry = {{}}
+[[particles]]
+name = "speck"
+material = "glass"
+diameter = "1 um"
+motion = "frozen"
+place = {{ grid = {{ first = "5 5 3 mm", spacing = "1 1 1 mm", counts = [1, 1, 1] }} }}
+temperature = "500 K"
+[laws]
+drag = {{ law = "none" }}
+heat_transfer = {{ law = "none" }}
+conduction = {{ law = "none" }}
+radiation = {{ law = "none" }}
+[coupling]
+mapping = "overlap"
+smoother = {{ max_solid_fraction = 0.64 }}
+[output]
+every = "1e6 s"
+gas = ["temperature", "mass_fractions"]
+"#
+        );
+        fs::write(directory.join("isomers.yaml"), SPECIES).unwrap();
+        let number = fs::read_dir(directory).unwrap().count();
+        let name = format!("{gas}-{number}");
+        let out = program::run_text(directory, &name, &text, &["--gas", gas]);
+        let files = read::collection(&out, "gas.pvd").unwrap();
+        let arrays = read::arrays(&files.last().unwrap().1).unwrap();
+        arrays["A"].values.clone()
+    }
+
+    /// Asserts what is left in the first cells, within a share of it.
+    fn assert(&self, expected: &[f64], within: f64) {
+        let directory = tempfile::tempdir().unwrap();
+        for gas in ["native", "openfoam"] {
+            let left = self.left(gas, directory.path());
+            for (cell, (found, expected)) in left.iter().zip(expected).enumerate() {
+                assert!(
+                    (found / expected - 1.0).abs() < within,
+                    "{gas}, {}, cell {cell}: {found:e}, expected {expected:e}",
+                    self.time
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_closed_cell_is_a_closed_reactor_in_windows_of_any_length() {
+    for window in ["0.1 ms", "1 ms", "10 ms", "50 ms"] {
+        let decay = Decay {
+            equation: "A => B",
+            rate: 10.0,
+            time: format!("motion_window = \"{window}\"\nend = \"100 ms\""),
+            cells: 1,
+            ends: [WALL, WALL],
+        };
+        decay.assert(&[(-1.0_f64).exp()], 1e-5);
+    }
+}
+
+#[test]
+fn a_cell_that_gas_only_leaves_keeps_its_share() {
+    for window in ["1 ms", "100 ms"] {
+        let decay = Decay {
+            equation: "A => 2 D",
+            rate: 1.0,
+            time: format!("motion_window = \"{window}\"\nend = \"1 s\""),
+            cells: 1,
+            ends: [WALL, OUTLET],
+        };
+        decay.assert(&[(-1.0_f64).exp()], 1e-5);
+    }
+}
+
+#[test]
+fn gas_that_decays_at_once_leaves_next_to_nothing_in_any_window() {
+    for (rate, step, end) in [(1e5, 1000.0, 1e4), (1e6, 10.6, 53.0), (1e12, 10.0, 50.0)] {
+        let decay = Decay {
+            equation: "A => B",
+            rate,
+            time: format!("process_step = \"{step} s\"\nend = \"{end} s\""),
+            cells: 4,
+            ends: [INLET, OUTLET],
+        };
+        // 0.1 s pass a cell.
+        let cell = 1.0 / (1.0 + 0.1 * rate);
+        decay.assert(&[cell], 1e-2);
+    }
+}
