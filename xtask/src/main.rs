@@ -3,6 +3,7 @@
 
 mod adapters;
 mod bench;
+mod gas_error;
 mod headers;
 mod json;
 mod packages;
@@ -39,6 +40,9 @@ usage: cargo xtask TASK
         [--native]        without OpenFOAM, LIGGGHTS and MPI
         [--runs]          whole runs only
         [--table]         print the table of the last measurement only
+  bench gas-error         error against processor time of the native gas, calcineGasFoam and
+        [CASE …]          OpenFOAM's own solvers: cavity
+        [--no-build]      with the programs that were built last
   fuzz [--minutes N]      fuzz the readers of users' files, ten minutes each by default
         [--seed S] [case|polymesh]
   torture [--kills N]     kill runs at random moments, resume, compare every bit (default: 50)
@@ -89,6 +93,7 @@ enum Task {
         words: Vec<OsString>,
     },
     Bench(bench::Choice),
+    GasError(gas_error::Choice),
     /// A test program of its own, with its words.
     Program {
         name: &'static str,
@@ -113,6 +118,10 @@ fn read(words: &[OsString]) -> Option<Task> {
                 native,
                 words: rest[usize::from(native)..].to_vec(),
             })
+        }
+        "bench" if rest.first().is_some_and(|word| word == "gas-error") => {
+            let words = rest[1..].iter().map(|word| word.to_str());
+            gas_error::Choice::read(words).map(Task::GasError)
         }
         "bench" => {
             let first = |name: &str| rest.first().is_some_and(|word| word == name);
@@ -198,6 +207,7 @@ fn perform(task: Task) -> TaskResult<()> {
         Task::Calcine(words) => tasks::run(&workspace, &words),
         Task::Test { native, words } => tasks::test(&workspace, native, &words),
         Task::Bench(choice) => bench::run(&workspace, &choice),
+        Task::GasError(choice) => gas_error::run(&workspace, &choice),
         Task::Program { name, needs, words } => tasks::program(&workspace, name, needs, &words),
         Task::Install { prefix, needs } => tasks::install(&workspace, &prefix, needs),
     }

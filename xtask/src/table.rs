@@ -14,6 +14,16 @@ impl Table {
         }
     }
 
+    /// A table with as many columns as its head has words.
+    pub fn of(head: Vec<String>) -> Self {
+        Self { rows: vec![head] }
+    }
+
+    /// Adds a row to such a table; it has as many cells as the head.
+    pub fn add_row(&mut self, row: Vec<String>) {
+        self.rows.push(row);
+    }
+
     /// Adds a row, of as many cells as the head.
     pub fn add<const N: usize>(&mut self, row: [String; N]) {
         self.rows.push(row.to_vec());

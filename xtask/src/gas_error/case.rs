@@ -1,0 +1,73 @@
+//! The cases: what is solved, on which meshes and steps, and what the errors are measured against.
+
+use super::cavity;
+use super::field::Field;
+
+/// A flow that every solver computes. Its files are below `of-cases/gas-error`: `case.toml` for Calcine, `stock` for
+/// the solver of OpenFOAM, on the same box, boundaries and properties.
+pub struct Case {
+    pub name: &'static str,
+    /// Name of OpenFOAM's solver.
+    pub stock: &'static str,
+    /// Cells along x and y of the coarsest mesh. All fields are averaged to these cells before they are compared.
+    pub coarsest: [usize; 2],
+    /// End in s.
+    pub end: f64,
+    pub quantities: &'static [Quantity],
+    /// The runs of all solvers.
+    pub runs: &'static [Resolution],
+    /// The same with `CALCINE_BENCH_LARGE`.
+    pub large: &'static [Resolution],
+    pub reference: Reference,
+}
+
+/// A field whose error is measured.
+pub struct Quantity {
+    pub name: &'static str,
+    /// Its name in Calcine's files and in OpenFOAM's.
+    pub calcine: &'static str,
+    pub openfoam: &'static str,
+    /// Errors are relative to the reference's distance to this value.
+    pub level: f64,
+}
+
+/// A mesh and a time step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resolution {
+    /// How many times finer than the coarsest mesh along x and y.
+    pub factor: usize,
+    /// Time step in s.
+    pub step: f64,
+}
+
+/// What errors are measured against.
+pub enum Reference {
+    /// OpenFOAM's solver with a time scheme of second order (`backward`), extrapolated from this resolution and one
+    /// of twice its cell and step, as errors of second order in both.
+    Extrapolated(Resolution),
+}
+
+pub const ALL: [&Case; 1] = [&cavity::CASE];
+
+pub const fn at(factor: usize, milliseconds: f64) -> Resolution {
+    Resolution {
+        factor,
+        step: 1e-3 * milliseconds,
+    }
+}
+
+impl Case {
+    /// Cells along x and y.
+    pub fn cells(&self, resolution: Resolution) -> [usize; 2] {
+        self.coarsest.map(|count| count * resolution.factor)
+    }
+
+    /// Errors of fields on the coarsest mesh relative to the sizes of the reference.
+    pub fn errors(&self, fields: &[Field], reference: &[Field]) -> Vec<f64> {
+        let each = fields.iter().zip(reference).zip(self.quantities);
+        let errors = each.map(|((field, reference), quantity)| {
+            field.distance(reference) / reference.size(quantity.level)
+        });
+        errors.collect()
+    }
+}

@@ -1,0 +1,93 @@
+//! Runs of Calcine: with its native gas and with calcineGasFoam.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use super::case::{Case, Quantity, Resolution};
+use super::field::{self, Field};
+use super::measure::{Cost, measured};
+use crate::json::Json;
+use crate::steps::{Stop, TaskResult};
+
+/// A gas of Calcine with its settings.
+#[derive(Clone, Copy, Debug)]
+pub struct Gas {
+    /// `native` or `openfoam`.
+    pub gas: &'static str,
+    /// The finest mesh, as a multiple of the coarsest, that it runs on unless large runs are asked for.
+    pub finest: usize,
+    /// Words of `--set`.
+    pub set: &'static [&'static str],
+}
+
+/// What a run gave.
+pub struct Done {
+    pub cost: Cost,
+    /// Processor time of the gas' phases in s, by the summary.
+    pub gas: Option<f64>,
+    /// Its fields, where it came to its end.
+    pub fields: Option<Vec<Field>>,
+}
+
+/// Runs a case file into `folder` on so many threads or ranks.
+pub fn run(
+    case: &Case,
+    (program, file): (&Path, &Path),
+    folder: &Path,
+    (gas, resolution, cores): (Gas, Resolution, usize),
+) -> TaskResult<Done> {
+    let _ = fs::remove_dir_all(folder);
+    let [nx, ny] = case.cells(resolution);
+    let cores = cores.to_string();
+    let native = gas.gas == "native";
+    let mut command = Command::new(program);
+    command
+        .arg("run")
+        .arg(file)
+        .args(["--quiet", "--out"])
+        .arg(folder);
+    command.args([
+        "--gas",
+        gas.gas,
+        "--threads",
+        if native { &cores } else { "1" },
+    ]);
+    if !native {
+        command.args(["--ranks-gas", &cores]);
+    }
+    let cells = format!("mesh.box.cells=[{nx}, {ny}, 1]");
+    let window = format!("time.motion_window={:?} s", resolution.step);
+    for setting in [cells.as_str(), &window].iter().chain(gas.set) {
+        command.args(["--set", setting]);
+    }
+    let log = folder.with_extension("log");
+    let (cost, success) = measured(&command, &log)?;
+    let text = fs::read_to_string(folder.join("summary.json")).unwrap_or_default();
+    let time = Json::read(&text).and_then(|read| read.number(&["processor_time_s", "gas"]));
+    if !success {
+        return Ok(Done {
+            cost,
+            gas: time,
+            fields: None,
+        });
+    }
+    let last = last_snapshot(&folder.join("gas"))?;
+    let read =
+        |quantity: &Quantity| field::of_calcine(&last, quantity.calcine, case.cells(resolution));
+    let fields: TaskResult<Vec<Field>> = case.quantities.iter().map(read).collect();
+    Ok(Done {
+        cost,
+        gas: time,
+        fields: Some(fields?),
+    })
+}
+
+fn last_snapshot(folder: &Path) -> TaskResult<std::path::PathBuf> {
+    let entries = fs::read_dir(folder).map_err(|cause| Stop::io(folder, &cause))?;
+    let paths = entries.flatten().map(|entry| entry.path());
+    let last = paths
+        .filter(|path| path.extension().is_some_and(|ending| ending == "vtu"))
+        .max();
+    last.ok_or_else(|| Stop(format!("{}: no snapshots", folder.display())))
+}

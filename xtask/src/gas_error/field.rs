@@ -1,0 +1,193 @@
+//! Fields on blocks of equal cells, as OpenFOAM and Calcine write them, and their differences.
+
+use std::fs;
+use std::path::Path;
+
+use crate::steps::{Stop, TaskResult};
+
+/// Values of the cells of a block of `counts` cells along x and y, x fastest, all components of a cell together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    pub counts: [usize; 2],
+    pub components: usize,
+    pub values: Vec<f64>,
+}
+
+impl Field {
+    /// A field of one component or three by its values; nothing where their number is that of neither.
+    pub fn new(counts: [usize; 2], values: Vec<f64>) -> Option<Self> {
+        let cells = counts[0] * counts[1];
+        let components = [1, 3].into_iter().find(|n| n * cells == values.len())?;
+        Some(Self {
+            counts,
+            components,
+            values,
+        })
+    }
+
+    /// Means over blocks of cells, so many along x and y; nothing where cells do not fill them.
+    pub fn restricted(&self, counts: [usize; 2]) -> Option<Self> {
+        let whole = (0..2).all(|axis| self.counts[axis].is_multiple_of(counts[axis]));
+        let each = [0, 1].map(|axis| self.counts[axis] / counts[axis]);
+        let mut values = vec![0.0; counts[0] * counts[1] * self.components];
+        let share = 1.0 / (each[0] * each[1]) as f64;
+        for (cell, tuple) in self.values.chunks_exact(self.components).enumerate() {
+            let place = [
+                cell % self.counts[0] / each[0],
+                cell / self.counts[0] / each[1],
+            ];
+            let to = (place[1] * counts[0] + place[0]) * self.components;
+            for (component, value) in tuple.iter().enumerate() {
+                *values.get_mut(to + component)? += share * value;
+            }
+        }
+        whole.then_some(Self {
+            counts,
+            values,
+            ..*self
+        })
+    }
+
+    /// This and others on the same cells, each times its weight.
+    pub fn sum(terms: &[(f64, &Field)]) -> Self {
+        let mut sum = terms[0].1.clone();
+        sum.values.fill(0.0);
+        for (weight, field) in terms {
+            for (value, other) in sum.values.iter_mut().zip(&field.values) {
+                *value += weight * other;
+            }
+        }
+        sum
+    }
+
+    /// Root mean square of the distance to a constant, over cells.
+    pub fn size(&self, level: f64) -> f64 {
+        let squares: f64 = self
+            .values
+            .iter()
+            .map(|value| (value - level).powi(2))
+            .sum();
+        (squares / (self.counts[0] * self.counts[1]) as f64).sqrt()
+    }
+
+    /// Root mean square of the difference to another field on the same cells.
+    pub fn distance(&self, other: &Field) -> f64 {
+        Self::sum(&[(1.0, self), (-1.0, other)]).size(0.0)
+    }
+}
+
+/// The internal field of a file of OpenFOAM in ASCII.
+pub fn of_openfoam(path: &Path, counts: [usize; 2]) -> TaskResult<Field> {
+    let text = fs::read_to_string(path).map_err(|cause| Stop::io(path, &cause))?;
+    let values = internal_field(&text, counts[0] * counts[1]);
+    let field = values.and_then(|values| Field::new(counts, values));
+    field.ok_or_else(|| {
+        Stop(format!(
+            "{}: not a field of {counts:?} cells",
+            path.display()
+        ))
+    })
+}
+
+fn internal_field(text: &str, cells: usize) -> Option<Vec<f64>> {
+    let (_, after) = text.split_once("internalField")?;
+    let numbers = |text: &str| -> Option<Vec<f64>> {
+        let words = text.split(|c: char| c.is_whitespace() || "()".contains(c));
+        let words = words.filter(|word| !word.is_empty());
+        words.map(|word| word.parse().ok()).collect()
+    };
+    if let Some(uniform) = after.trim_start().strip_prefix("uniform") {
+        let one = numbers(uniform.split_once(';')?.0)?;
+        return Some(one.repeat(cells));
+    }
+    let (_, list) = after.split_once('(')?;
+    numbers(list.split_once(';')?.0)
+}
+
+/// An array of cells of a VTU file of Calcine.
+pub fn of_calcine(path: &Path, name: &str, counts: [usize; 2]) -> TaskResult<Field> {
+    let bytes = fs::read(path).map_err(|cause| Stop::io(path, &cause))?;
+    let field = appended(&bytes, name).and_then(|values| Field::new(counts, values));
+    field.ok_or_else(|| {
+        Stop(format!(
+            "{}: no `{name}` of {counts:?} cells",
+            path.display()
+        ))
+    })
+}
+
+/// A raw appended array of 64-bit numbers by its name.
+fn appended(bytes: &[u8], name: &str) -> Option<Vec<f64>> {
+    let mark: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
+    let begin = bytes
+        .windows(mark.len())
+        .position(|window| window == mark)?;
+    let head = std::str::from_utf8(&bytes[..begin]).ok()?;
+    let named = format!("type=\"Float64\" Name=\"{name}\"");
+    let element = head.split('<').find(|element| element.contains(&named))?;
+    let offset: usize = element
+        .split_once("offset=\"")?
+        .1
+        .split_once('"')?
+        .0
+        .parse()
+        .ok()?;
+    let data = bytes.get(begin + mark.len() + offset..)?;
+    let (length, data) = data.split_first_chunk::<8>()?;
+    let length = usize::try_from(u64::from_le_bytes(*length)).ok()?;
+    let numbers = data.get(..length)?.as_chunks::<8>().0;
+    Some(
+        numbers
+            .iter()
+            .map(|number| f64::from_le_bytes(*number))
+            .collect(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_of_cells_are_averaged_and_sums_keep_what_they_should() {
+        let values: Vec<f64> = (0..16).map(f64::from).collect();
+        let fine = Field::new([4, 4], values).unwrap();
+        let coarse = fine.restricted([2, 2]).unwrap();
+        assert_eq!(coarse.values, [2.5, 4.5, 10.5, 12.5]);
+        assert_eq!(fine.restricted([3, 2]), None);
+        let difference = Field::sum(&[(2.0, &coarse), (-1.0, &coarse)]);
+        assert_eq!(difference, coarse);
+        assert_eq!(coarse.distance(&difference), 0.0);
+        let lengths = Field::new([1, 1], vec![3.0, 0.0, 4.0]).unwrap();
+        assert_eq!(lengths.size(0.0), 5.0);
+    }
+
+    #[test]
+    fn fields_of_openfoam_are_read_uniform_or_not() {
+        let list = "FoamFile { object U; }\ndimensions [0 1 -1 0 0 0 0];\n\
+            internalField   nonuniform List<vector> \n2\n(\n(1 2e-1 0)\n(-3 0 0)\n)\n;\n\nboundaryField\n{ lid { } }";
+        assert_eq!(
+            internal_field(list, 2),
+            Some(vec![1.0, 0.2, 0.0, -3.0, 0.0, 0.0])
+        );
+        let uniform = "internalField   uniform 300;\nboundaryField { }";
+        assert_eq!(internal_field(uniform, 2), Some(vec![300.0, 300.0]));
+        assert_eq!(internal_field("boundaryField { }", 2), None);
+    }
+
+    #[test]
+    fn appended_arrays_of_calcine_are_found_by_their_names() {
+        let mut bytes = b"<VTKFile><DataArray type=\"Float64\" Name=\"points\" offset=\"0\"/>\n\
+            <DataArray type=\"Float64\" Name=\"temperature\" NumberOfComponents=\"1\" format=\"appended\" offset=\"16\"/>\n\
+            <AppendedData encoding=\"raw\">\n_"
+            .to_vec();
+        for number in [8u64.to_le_bytes(), 1f64.to_le_bytes(), 16u64.to_le_bytes()] {
+            bytes.extend(number);
+        }
+        bytes.extend(300.5f64.to_le_bytes());
+        bytes.extend(301f64.to_le_bytes());
+        assert_eq!(appended(&bytes, "temperature"), Some(vec![300.5, 301.0]));
+        assert_eq!(appended(&bytes, "pressure"), None);
+        assert_eq!(appended(&bytes[..bytes.len() - 1], "temperature"), None);
+    }
+}

@@ -1,0 +1,278 @@
+//! `cargo xtask bench gas-error`: error against processor time of the native gas, calcineGasFoam and OpenFOAM's own
+//! solvers, in one run and against one reference.
+
+mod case;
+mod cavity;
+mod coupled;
+mod field;
+mod front;
+mod measure;
+mod report;
+mod stock;
+
+use std::env;
+use std::fs;
+use std::path::PathBuf;
+
+use case::{Case, Reference, Resolution};
+use coupled::{Done, Gas};
+use field::Field;
+use measure::Cost;
+use report::Row;
+
+use crate::packages::{self, Needs};
+use crate::steps::{Stop, TaskResult, loud_step, say, step};
+use crate::tasks::{self, BuildScope};
+use crate::workspace::{CargoProfile, Workspace};
+
+/// What is asked for.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Choice {
+    /// Names of cases; all of them if there are none.
+    pub names: Vec<String>,
+    /// Measures the programs that were built last.
+    pub built: bool,
+}
+
+impl Choice {
+    /// From the words behind `gas-error`; nothing where one is neither a case nor an option.
+    pub fn read<'w>(words: impl Iterator<Item = Option<&'w str>>) -> Option<Self> {
+        let mut choice = Self::default();
+        for word in words {
+            match word? {
+                "--no-build" => choice.built = true,
+                name if case::ALL.iter().any(|case| case.name == name) => {
+                    choice.names.push(name.to_owned());
+                }
+                _ => return None,
+            }
+        }
+        Some(choice)
+    }
+}
+
+/// Gases of Calcine: as cases have them unless they say otherwise, and with tolerances near those of OpenFOAM's
+/// tutorials.
+const GASES: [(&str, Gas); 4] = [
+    (
+        "native",
+        Gas {
+            gas: "native",
+            finest: usize::MAX,
+            set: &[],
+        },
+    ),
+    (
+        "native, loose",
+        Gas {
+            gas: "native",
+            finest: usize::MAX,
+            set: LOOSE,
+        },
+    ),
+    (
+        "calcineGasFoam",
+        Gas {
+            gas: "openfoam",
+            finest: 2,
+            set: &[],
+        },
+    ),
+    (
+        "calcineGasFoam, loose",
+        Gas {
+            gas: "openfoam",
+            finest: 2,
+            set: LOOSE,
+        },
+    ),
+];
+const LOOSE: &[&str] = &[
+    "gas.controls.outer_tolerance=1e-4",
+    "gas.controls.linear_tolerance=1e-8",
+];
+
+/// Builds, measures, prints the tables and writes them below the target folder.
+pub fn run(workspace: &Workspace, choice: &Choice) -> TaskResult<()> {
+    let needs = Needs {
+        openfoam: true,
+        ..Needs::NATIVE
+    };
+    packages::install(needs, &workspace.logs)?;
+    if !choice.built {
+        let _lock = workspace.lock()?;
+        tasks::build_parts(workspace, needs, BuildScope::Runs)?;
+    }
+    let chosen =
+        |case: &&Case| choice.names.is_empty() || choice.names.iter().any(|name| name == case.name);
+    let mut text = report::head();
+    for case in case::ALL.into_iter().filter(chosen) {
+        let bench = Bench::new(workspace, case);
+        text += &loud_step(case.name, || bench.run())?;
+    }
+    let path = workspace.target.join("xtask/gas-error.md");
+    fs::write(&path, &text).map_err(|cause| Stop::io(&path, &cause))?;
+    print(&text)?;
+    say(&format!("written to {}", path.display()));
+    Ok(())
+}
+
+fn print(text: &str) -> TaskResult<()> {
+    use std::io::Write;
+    let written = writeln!(std::io::stdout(), "\n{text}");
+    written.map_err(|cause| Stop(format!("the tables cannot be printed: {cause}")))
+}
+
+/// The runs of one case.
+struct Bench<'a> {
+    case: &'a Case,
+    /// Its files.
+    from: PathBuf,
+    /// Where it runs.
+    folder: PathBuf,
+    program: PathBuf,
+}
+
+impl<'a> Bench<'a> {
+    fn new(workspace: &Workspace, case: &'a Case) -> Self {
+        let release = workspace.target.join(CargoProfile::Release.folder());
+        Self {
+            case,
+            from: workspace.root.join("of-cases/gas-error").join(case.name),
+            folder: workspace.target.join("xtask/gas-error").join(case.name),
+            program: release.join("calcine"),
+        }
+    }
+
+    /// Measures all solvers; the tables as text.
+    fn run(&self) -> TaskResult<String> {
+        let _ = fs::remove_dir_all(&self.folder);
+        fs::create_dir_all(&self.folder).map_err(|cause| Stop::io(&self.folder, &cause))?;
+        let reference = self.reference()?;
+        let large = env::var_os("CALCINE_BENCH_LARGE").is_some();
+        let runs = if large {
+            self.case.large
+        } else {
+            self.case.runs
+        };
+        let mut rows = Vec::new();
+        for &resolution in runs {
+            rows.push(self.stock(&reference, resolution, 1)?);
+            for (name, gas) in GASES {
+                if !large && resolution.factor > gas.finest {
+                    continue;
+                }
+                rows.push(self.coupled(&reference, (name, gas), resolution, 1)?);
+            }
+        }
+        Ok(report::tables(self.case, &reference, &rows))
+    }
+
+    /// A row of OpenFOAM's own solver.
+    fn stock(&self, reference: &[Field], resolution: Resolution, cores: usize) -> TaskResult<Row> {
+        let (cost, fields) = self.stock_run((resolution, "Euler", cores))?;
+        let solver = self.case.stock.to_owned();
+        let done = Done {
+            cost,
+            gas: None,
+            fields,
+        };
+        self.row(reference, (solver, resolution, cores), done)
+    }
+
+    /// A row of a gas of Calcine.
+    fn coupled(
+        &self,
+        reference: &[Field],
+        (name, gas): (&str, Gas),
+        resolution: Resolution,
+        cores: usize,
+    ) -> TaskResult<Row> {
+        let what = self.what(name, resolution, cores);
+        let file = self.from.join("case.toml");
+        let folder = self.folder.join(what.replace([' ', ','], "-"));
+        let place = (self.program.as_path(), file.as_path());
+        let settings = (gas, resolution, cores);
+        let done = step(&what, || coupled::run(self.case, place, &folder, settings))?;
+        let _ = fs::remove_dir_all(&folder);
+        self.row(reference, (name.to_owned(), resolution, cores), done)
+    }
+
+    fn stock_run(
+        &self,
+        settings: (Resolution, &str, usize),
+    ) -> TaskResult<(Cost, Option<Vec<Field>>)> {
+        let (resolution, scheme, ranks) = settings;
+        let what = self.what(&format!("{} {scheme}", self.case.stock), resolution, ranks);
+        let folder = self.folder.join(what.replace(' ', "-"));
+        let from = self.from.join("stock");
+        let done = step(&what, || stock::run(self.case, &from, &folder, settings))?;
+        let _ = fs::remove_dir_all(&folder);
+        Ok(done)
+    }
+
+    fn what(&self, solver: &str, resolution: Resolution, cores: usize) -> String {
+        let [nx, ny] = self.case.cells(resolution);
+        format!("{solver} {nx}x{ny} {:?} s on {cores}", resolution.step)
+    }
+
+    /// The fields that all others are compared with, on the cells of the coarsest mesh.
+    fn reference(&self) -> TaskResult<Vec<Field>> {
+        match self.case.reference {
+            Reference::Extrapolated(finest) => {
+                let coarser = Resolution {
+                    factor: finest.factor / 2,
+                    step: 2.0 * finest.step,
+                };
+                let get = |resolution| {
+                    let (_, fields) = self.stock_run((resolution, "backward", 1))?;
+                    let fields = fields.ok_or_else(|| Stop::new("the reference diverged"))?;
+                    self.restricted(&fields)
+                };
+                let (finest, coarser) = (get(finest)?, get(coarser)?);
+                let pairs = finest.iter().zip(&coarser);
+                // Errors of second order in cell and step fall to a quarter.
+                let third = 1.0 / 3.0;
+                let each = pairs.map(|(finest, coarser)| {
+                    Field::sum(&[(1.0 + third, finest), (-third, coarser)])
+                });
+                Ok(each.collect())
+            }
+        }
+    }
+
+    fn restricted(&self, fields: &[Field]) -> TaskResult<Vec<Field>> {
+        let each = fields
+            .iter()
+            .map(|field| field.restricted(self.case.coarsest));
+        let all: Option<Vec<Field>> = each.collect();
+        all.ok_or_else(|| Stop::new("cells do not fill those of the coarsest mesh"))
+    }
+
+    /// What a run gave, its fields on the coarsest mesh and their errors.
+    fn row(
+        &self,
+        reference: &[Field],
+        (solver, resolution, cores): (String, Resolution, usize),
+        done: Done,
+    ) -> TaskResult<Row> {
+        let fields = done
+            .fields
+            .map(|fields| self.restricted(&fields))
+            .transpose()?;
+        let errors = fields.as_deref().map_or_else(
+            || vec![f64::NAN; self.case.quantities.len()],
+            |fields| self.case.errors(fields, reference),
+        );
+        let (cost, gas) = (done.cost, done.gas);
+        Ok(Row {
+            solver,
+            resolution,
+            cores,
+            cost,
+            gas,
+            fields,
+            errors,
+        })
+    }
+}

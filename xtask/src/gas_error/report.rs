@@ -1,0 +1,189 @@
+//! The tables: all runs, and the processor time of each solver at equal error.
+
+use super::case::{Case, Resolution};
+use super::field::Field;
+use super::front::{Front, Point, TimeAt, levels};
+use super::measure::Cost;
+use crate::table::{Table, short};
+
+/// What one run gave.
+#[derive(Clone, Debug)]
+pub struct Row {
+    pub solver: String,
+    pub resolution: Resolution,
+    /// Threads or ranks.
+    pub cores: usize,
+    pub cost: Cost,
+    /// Processor time in s of the gas' phases, where Calcine tells it.
+    pub gas: Option<f64>,
+    /// Fields on the coarsest mesh, where it came to its end.
+    pub fields: Option<Vec<Field>>,
+    /// Relative errors, one a quantity.
+    pub errors: Vec<f64>,
+}
+
+/// What stands above the tables.
+pub fn head() -> String {
+    "# Error against processor time of gases\n".to_owned()
+}
+
+/// The tables of a case.
+pub fn tables(case: &Case, reference: &[Field], rows: &[Row]) -> String {
+    let mut text = format!("\n## {}\n\n{}", case.name, runs(case, rows));
+    for at in 0..case.quantities.len() {
+        let table = equal_errors(case, rows, at);
+        text += &format!("\n{table}");
+    }
+    let distances: Vec<String> = solvers(rows)
+        .into_iter()
+        .filter_map(|solver| {
+            let own = own_limit(rows, solver)?;
+            let errors = case.errors(&own, reference).into_iter().map(percent);
+            Some(format!(
+                "{solver} {}",
+                errors.collect::<Vec<_>>().join(", ")
+            ))
+        })
+        .collect();
+    if !distances.is_empty() {
+        text += "\nExtrapolated from its own two finest meshes, each at its shortest step, as errors of second order, \
+                 a solver differs from the reference by: ";
+        text += &distances.join("; ");
+        text += ".\n";
+    }
+    text
+}
+
+/// Names of the solvers in the order of their first rows.
+fn solvers(rows: &[Row]) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for row in rows {
+        if !names.contains(&row.solver.as_str()) {
+            names.push(&row.solver);
+        }
+    }
+    names
+}
+
+/// What the runs of a solver on its two finest meshes converge to: where it differs from the reference, so much of
+/// the errors is not known.
+fn own_limit(rows: &[Row], solver: &str) -> Option<Vec<Field>> {
+    let best = |below: usize| {
+        let of = rows
+            .iter()
+            .filter(|row| row.solver == solver && row.fields.is_some());
+        of.filter(|row| row.resolution.factor < below)
+            .max_by(|one, other| {
+                let (one, other) = (one.resolution, other.resolution);
+                one.factor
+                    .cmp(&other.factor)
+                    .then(other.step.total_cmp(&one.step))
+            })
+    };
+    let fine = best(usize::MAX)?;
+    let coarse = best(fine.resolution.factor)?;
+    let ratio = fine.resolution.factor as f64 / coarse.resolution.factor as f64;
+    let weight = 1.0 / (ratio * ratio - 1.0);
+    let pairs = fine
+        .fields
+        .iter()
+        .flatten()
+        .zip(coarse.fields.iter().flatten());
+    let each = pairs.map(|(fine, coarse)| Field::sum(&[(1.0 + weight, fine), (-weight, coarse)]));
+    Some(each.collect())
+}
+
+/// All runs.
+fn runs(case: &Case, rows: &[Row]) -> Table {
+    let errors: Vec<String> = case
+        .quantities
+        .iter()
+        .map(|quantity| format!("error of {}", quantity.name))
+        .collect();
+    let mut head = [
+        "solver",
+        "cells",
+        "step",
+        "threads or ranks",
+        "processor time",
+        "of the gas",
+    ]
+    .map(str::to_owned)
+    .to_vec();
+    head.extend(errors);
+    head.push("peak memory per cell".to_owned());
+    let mut table = Table::of(head);
+    for row in rows {
+        let [nx, ny] = case.cells(row.resolution);
+        let mut cells = vec![
+            row.solver.clone(),
+            format!("{nx} × {ny}"),
+            format!("{}s", short(row.resolution.step)),
+            row.cores.to_string(),
+            format!("{}s", short(row.cost.processor)),
+            row.gas
+                .map_or_else(String::new, |time| format!("{}s", short(time))),
+        ];
+        cells.extend(row.errors.iter().map(|error| percent(*error)));
+        cells.push(format!("{}B", short(row.cost.memory / (nx * ny) as f64)));
+        table.add_row(cells);
+    }
+    table
+}
+
+fn percent(error: f64) -> String {
+    if error.is_nan() {
+        return "diverged".to_owned();
+    }
+    let digits = (1.0 - (100.0 * error).log10().floor()).clamp(0.0, 6.0) as usize;
+    format!("{:.digits$} %", 100.0 * error)
+}
+
+/// Processor times at equal errors of a quantity on one core, in s and as multiples of the stock solver's.
+fn equal_errors(case: &Case, rows: &[Row], quantity: usize) -> Table {
+    let solvers = solvers(rows);
+    let front = |solver: &&str| {
+        let of = rows
+            .iter()
+            .filter(|row| row.solver == *solver && row.cores == 1);
+        let points = of.map(|row| Point {
+            error: row.errors[quantity],
+            time: row.cost.processor,
+        });
+        Front::new(&points.collect::<Vec<_>>())
+    };
+    let fronts: Vec<Front> = solvers.iter().map(front).collect();
+    let stock = solvers.iter().position(|solver| *solver == case.stock);
+    let name = case.quantities[quantity].name;
+    let mut head = vec![format!("time at an error of {name}")];
+    head.extend(solvers.iter().map(|solver| (*solver).to_owned()));
+    let mut table = Table::of(head);
+    let ends = fronts.iter().filter_map(Front::errors);
+    let range = ends.reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)));
+    let Some((smallest, largest)) = range else {
+        return table;
+    };
+    for level in levels(smallest, largest) {
+        let times: Vec<Option<TimeAt>> = fronts.iter().map(|front| front.time(level)).collect();
+        let of_stock = stock.and_then(|stock| times[stock]);
+        let mut cells = vec![percent(level)];
+        cells.extend(times.iter().map(|time| shown(*time, of_stock)));
+        table.add_row(cells);
+    }
+    table
+}
+
+/// A time, and how many times that of the stock solver it is where both are interpolated.
+fn shown(time: Option<TimeAt>, stock: Option<TimeAt>) -> String {
+    match (time, stock) {
+        (None, _) => "–".to_owned(),
+        (Some(TimeAt::AtMost(time)), _) => format!("≤ {}s", short(time)),
+        (Some(TimeAt::Equal(time)), Some(TimeAt::Equal(stock))) => {
+            format!("{}s ({:.2})", short(time), time / stock)
+        }
+        (Some(TimeAt::Equal(time)), Some(TimeAt::AtMost(stock))) => {
+            format!("{}s (≥ {:.2})", short(time), time / stock)
+        }
+        (Some(TimeAt::Equal(time)), None) => format!("{}s", short(time)),
+    }
+}

@@ -1,0 +1,110 @@
+//! Runs of OpenFOAM's own solvers.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::case::{Case, Quantity, Resolution};
+use super::field::{self, Field};
+use super::measure::{Cost, measured};
+use crate::steps::{Stop, TaskResult, quietly};
+
+/// Where Debian's OpenFOAM finds its own dictionaries.
+const PROJECT: (&str, &str) = ("WM_PROJECT_DIR", "/usr/share/openfoam");
+
+/// Runs a case of `from` in `folder` with a time scheme of OpenFOAM on so many ranks; its cost, and its fields where it
+/// came to its end.
+pub fn run(
+    case: &Case,
+    from: &Path,
+    folder: &Path,
+    (resolution, scheme, ranks): (Resolution, &str, usize),
+) -> TaskResult<(Cost, Option<Vec<Field>>)> {
+    let _ = fs::remove_dir_all(folder);
+    copy(from, folder)?;
+    let [nx, ny] = case.cells(resolution);
+    let (step, end) = (resolution.step, case.end);
+    let text = format!("nx {nx};\nny {ny};\ndeltaT {step:?};\nendTime {end:?};\nddt {scheme};\n");
+    write(&folder.join("parameters"), &text)?;
+    let log = folder.join("log.preparation");
+    let tool = |words: &[&str]| {
+        let mut command = Command::new(words[0]);
+        command
+            .args(&words[1..])
+            .current_dir(folder)
+            .env(PROJECT.0, PROJECT.1);
+        command
+    };
+    quietly(&mut tool(&["blockMesh"]), &log)?;
+    let solver = case.stock;
+    let words = if ranks == 1 {
+        vec![solver]
+    } else {
+        write(
+            &folder.join("system/decomposeParDict"),
+            &decomposition(ranks),
+        )?;
+        quietly(&mut tool(&["decomposePar"]), &log)?;
+        vec![
+            "mpirun",
+            "--allow-run-as-root",
+            "-n",
+            "2",
+            solver,
+            "-parallel",
+        ]
+    };
+    let (cost, success) = measured(&tool(&words), &folder.join("log"))?;
+    if !success {
+        return Ok((cost, None));
+    }
+    if ranks > 1 {
+        quietly(&mut tool(&["reconstructPar", "-latestTime"]), &log)?;
+    }
+    let last = last_time(folder)?;
+    let read = |quantity: &Quantity| {
+        field::of_openfoam(&last.join(quantity.openfoam), case.cells(resolution))
+    };
+    let fields: TaskResult<Vec<Field>> = case.quantities.iter().map(read).collect();
+    Ok((cost, Some(fields?)))
+}
+
+fn decomposition(ranks: usize) -> String {
+    format!(
+        "FoamFile {{ version 2.0; format ascii; class dictionary; object decomposeParDict; }}\n\
+         numberOfSubdomains {ranks};\nmethod simple;\nsimpleCoeffs {{ n ({ranks} 1 1); delta 0.001; }}\n"
+    )
+}
+
+/// The folder of the latest time.
+fn last_time(folder: &Path) -> TaskResult<PathBuf> {
+    let entries = fs::read_dir(folder).map_err(|cause| Stop::io(folder, &cause))?;
+    let times = entries.flatten().filter_map(|entry| {
+        let time: f64 = entry.file_name().to_str()?.parse().ok()?;
+        Some((time, entry.path()))
+    });
+    let last = times.max_by(|one, other| one.0.total_cmp(&other.0));
+    let last = last.filter(|(time, _)| *time > 0.0);
+    last.map(|(_, path)| path)
+        .ok_or_else(|| Stop(format!("{}: no results", folder.display())))
+}
+
+fn write(path: &Path, text: &str) -> TaskResult<()> {
+    fs::write(path, text).map_err(|cause| Stop::io(path, &cause))
+}
+
+fn copy(from: &Path, to: &Path) -> TaskResult<()> {
+    fs::create_dir_all(to).map_err(|cause| Stop::io(to, &cause))?;
+    for entry in fs::read_dir(from)
+        .map_err(|cause| Stop::io(from, &cause))?
+        .flatten()
+    {
+        let (path, to) = (entry.path(), to.join(entry.file_name()));
+        if path.is_dir() {
+            copy(&path, &to)?;
+        } else {
+            fs::copy(&path, &to).map_err(|cause| Stop::io(&path, &cause))?;
+        }
+    }
+    Ok(())
+}
