@@ -1,7 +1,8 @@
 //! The cases: what is solved, on which meshes and steps, and what the errors are measured against.
 
-use super::cavity;
 use super::field::Field;
+use super::start::Start;
+use super::{cavity, taylor_green};
 
 /// A flow that every solver computes. Its files are below `of-cases/gas-error`: `case.toml` for Calcine, `stock` for
 /// the solver of OpenFOAM, on the same box, boundaries and properties.
@@ -19,6 +20,8 @@ pub struct Case {
     /// The same with `CALCINE_BENCH_LARGE`.
     pub large: &'static [Resolution],
     pub reference: Reference,
+    /// The flow at the start; at rest without it.
+    pub start: Option<Start>,
 }
 
 /// A field whose error is measured.
@@ -45,9 +48,11 @@ pub enum Reference {
     /// OpenFOAM's solver with a time scheme of second order (`backward`), extrapolated from this resolution and one
     /// of twice its cell and step, as errors of second order in both.
     Extrapolated(Resolution),
+    /// The exact values of the only quantity at a place (x, y) in m, and the edge of the square in m.
+    Exact(fn(f64, f64) -> Vec<f64>, f64),
 }
 
-pub const ALL: [&Case; 1] = [&cavity::CASE];
+pub const ALL: [&Case; 2] = [&cavity::CASE, &taylor_green::CASE];
 
 pub const fn at(factor: usize, milliseconds: f64) -> Resolution {
     Resolution {

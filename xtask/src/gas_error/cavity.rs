@@ -34,4 +34,5 @@ pub const CASE: Case = Case {
         at(8, 1.25),
     ],
     reference: Reference::Extrapolated(at(4, 2.5)),
+    start: None,
 };

@@ -7,8 +7,9 @@ use std::process::Command;
 use super::case::{Case, Quantity, Resolution};
 use super::field::{self, Field};
 use super::measure::{Cost, measured};
+use super::start;
 use crate::json::Json;
-use crate::steps::{Stop, TaskResult};
+use crate::steps::{Stop, TaskResult, quietly};
 
 /// A gas of Calcine with its settings.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +39,8 @@ pub fn run(
     (gas, resolution, cores): (Gas, Resolution, usize),
 ) -> TaskResult<Done> {
     let _ = fs::remove_dir_all(folder);
-    let [nx, ny] = case.cells(resolution);
+    let counts = case.cells(resolution);
+    let [nx, ny] = counts;
     let cores = cores.to_string();
     let native = gas.gas == "native";
     let mut command = Command::new(program);
@@ -62,6 +64,31 @@ pub fn run(
         command.args(["--set", setting]);
     }
     let log = folder.with_extension("log");
+    if let Some(start) = &case.start {
+        let from = start::beside(folder);
+        let _ = fs::remove_dir_all(&from);
+        if native {
+            // One window from rest makes a checkpoint of this mesh.
+            let mut rest = Command::new(program);
+            rest.args(command.get_args().map(|word| {
+                if word == folder.as_os_str() {
+                    from.as_os_str()
+                } else {
+                    word
+                }
+            }));
+            rest.args(["--set", &window.replace("motion_window", "end")]);
+            quietly(&mut rest, &log)?;
+            start.write_native(&from, counts)?;
+            command.arg("--from").arg(&from);
+        } else {
+            start.write_openfoam(&from, counts, ("slip", false))?;
+            command.args([
+                "--set",
+                &format!("openfoam.start={:?}", from.display().to_string()),
+            ]);
+        }
+    }
     let (cost, success) = measured(&command, &log)?;
     let text = fs::read_to_string(folder.join("summary.json")).unwrap_or_default();
     let time = Json::read(&text).and_then(|read| read.number(&["processor_time_s", "gas"]));

@@ -48,7 +48,17 @@ impl Field {
         })
     }
 
-    /// This and others on the same cells, each times its weight.
+    /// Means over the cells of a square of values at places, of many points in each.
+    pub fn means(counts: [usize; 2], edge: f64, values: fn(f64, f64) -> Vec<f64>) -> Option<Self> {
+        const POINTS: usize = 16;
+        let fine = counts.map(|count| POINTS * count);
+        let place = |at: usize, axis: usize| edge * (at as f64 + 0.5) / fine[axis] as f64;
+        let points = (0..fine[0] * fine[1]).map(|point| (point % fine[0], point / fine[0]));
+        let all = points.flat_map(|(x, y)| values(place(x, 0), place(y, 1)));
+        Self::new(fine, all.collect())?.restricted(counts)
+    }
+
+    /// The sum of fields on the same cells, each times its weight.
     pub fn sum(terms: &[(f64, &Field)]) -> Self {
         let mut sum = terms[0].1.clone();
         sum.values.fill(0.0);

@@ -8,7 +8,9 @@ mod field;
 mod front;
 mod measure;
 mod report;
+mod start;
 mod stock;
+mod taylor_green;
 
 use std::env;
 use std::fs;
@@ -237,6 +239,12 @@ impl<'a> Bench<'a> {
                     Field::sum(&[(1.0 + third, finest), (-third, coarser)])
                 });
                 Ok(each.collect())
+            }
+            Reference::Exact(values, edge) => {
+                let field = Field::means(self.case.coarsest, edge, values);
+                Ok(vec![field.ok_or_else(|| {
+                    Stop::new("the exact solution is not a field")
+                })?])
             }
         }
     }

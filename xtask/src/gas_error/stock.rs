@@ -26,6 +26,9 @@ pub fn run(
     let (step, end) = (resolution.step, case.end);
     let text = format!("nx {nx};\nny {ny};\ndeltaT {step:?};\nendTime {end:?};\nddt {scheme};\n");
     write(&folder.join("parameters"), &text)?;
+    if let Some(start) = &case.start {
+        start.write_openfoam(&folder.join("0"), [nx, ny], ("empty", true))?;
+    }
     let log = folder.join("log.preparation");
     let tool = |words: &[&str]| {
         let mut command = Command::new(words[0]);
