@@ -2,7 +2,7 @@
 
 use super::field::Field;
 use super::start::Start;
-use super::{cavity, taylor_green};
+use super::{cavity, heated_cavity, taylor_green};
 
 /// A flow that every solver computes. Its files are below `of-cases/gas-error`: `case.toml` for Calcine, `stock` for
 /// the solver of OpenFOAM, on the same box, boundaries and properties.
@@ -52,7 +52,7 @@ pub enum Reference {
     Exact(fn(f64, f64) -> Vec<f64>, f64),
 }
 
-pub const ALL: [&Case; 2] = [&cavity::CASE, &taylor_green::CASE];
+pub const ALL: [&Case; 3] = [&cavity::CASE, &taylor_green::CASE, &heated_cavity::CASE];
 
 pub const fn at(factor: usize, milliseconds: f64) -> Resolution {
     Resolution {

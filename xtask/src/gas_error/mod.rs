@@ -6,6 +6,7 @@ mod cavity;
 mod coupled;
 mod field;
 mod front;
+mod heated_cavity;
 mod measure;
 mod report;
 mod start;
@@ -172,7 +173,7 @@ impl<'a> Bench<'a> {
 
     /// A row of OpenFOAM's own solver.
     fn stock(&self, reference: &[Field], resolution: Resolution, cores: usize) -> TaskResult<Row> {
-        let (cost, fields) = self.stock_run((resolution, "Euler", cores))?;
+        let (cost, fields) = self.stock_run((resolution, stock::USUAL, cores))?;
         let solver = self.case.stock.to_owned();
         let done = Done {
             cost,
@@ -202,10 +203,14 @@ impl<'a> Bench<'a> {
 
     fn stock_run(
         &self,
-        settings: (Resolution, &str, usize),
+        settings: (Resolution, stock::Time, usize),
     ) -> TaskResult<(Cost, Option<Vec<Field>>)> {
-        let (resolution, scheme, ranks) = settings;
-        let what = self.what(&format!("{} {scheme}", self.case.stock), resolution, ranks);
+        let (resolution, time, ranks) = settings;
+        let what = self.what(
+            &format!("{} {}", self.case.stock, time.scheme),
+            resolution,
+            ranks,
+        );
         let folder = self.folder.join(what.replace(' ', "-"));
         let from = self.from.join("stock");
         let done = step(&what, || stock::run(self.case, &from, &folder, settings))?;
@@ -227,7 +232,7 @@ impl<'a> Bench<'a> {
                     step: 2.0 * finest.step,
                 };
                 let get = |resolution| {
-                    let (_, fields) = self.stock_run((resolution, "backward", 1))?;
+                    let (_, fields) = self.stock_run((resolution, stock::ACCURATE, 1))?;
                     let fields = fields.ok_or_else(|| Stop::new("the reference diverged"))?;
                     self.restricted(&fields)
                 };

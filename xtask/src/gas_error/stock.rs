@@ -12,19 +12,42 @@ use crate::steps::{Stop, TaskResult, quietly};
 /// Where Debian's OpenFOAM finds its own dictionaries.
 const PROJECT: (&str, &str) = ("WM_PROJECT_DIR", "/usr/share/openfoam");
 
-/// Runs a case of `from` in `folder` with a time scheme of OpenFOAM on so many ranks; its cost, and its fields where it
+/// How a solver steps in time.
+#[derive(Clone, Copy, Debug)]
+pub struct Time {
+    /// OpenFOAM's name of the scheme.
+    pub scheme: &'static str,
+    /// Outer corrections of a step, where the solver has them.
+    pub outer: u32,
+}
+
+/// As tutorials have it.
+pub const USUAL: Time = Time {
+    scheme: "Euler",
+    outer: 1,
+};
+/// Of second order, with what is needed so that all equations of a step hold.
+pub const ACCURATE: Time = Time {
+    scheme: "backward",
+    outer: 2,
+};
+
+/// Runs a case of `from` in `folder` on so many ranks; its cost, and its fields where it
 /// came to its end.
 pub fn run(
     case: &Case,
     from: &Path,
     folder: &Path,
-    (resolution, scheme, ranks): (Resolution, &str, usize),
+    (resolution, time, ranks): (Resolution, Time, usize),
 ) -> TaskResult<(Cost, Option<Vec<Field>>)> {
     let _ = fs::remove_dir_all(folder);
     copy(from, folder)?;
     let [nx, ny] = case.cells(resolution);
     let (step, end) = (resolution.step, case.end);
-    let text = format!("nx {nx};\nny {ny};\ndeltaT {step:?};\nendTime {end:?};\nddt {scheme};\n");
+    let Time { scheme, outer } = time;
+    let text = format!(
+        "nx {nx};\nny {ny};\ndeltaT {step:?};\nendTime {end:?};\nddt {scheme};\nouter {outer};\n"
+    );
     write(&folder.join("parameters"), &text)?;
     if let Some(start) = &case.start {
         start.write_openfoam(&folder.join("0"), [nx, ny], ("empty", true))?;
