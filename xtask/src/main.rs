@@ -41,7 +41,7 @@ usage: cargo xtask TASK
         [--runs]          whole runs only
         [--table]         print the table of the last measurement only
   bench gas-error         error against processor time of the native gas, calcineGasFoam and
-        [CASE …]          OpenFOAM's own solvers: cavity
+        [CASE …]          OpenFOAM's own solvers: cavity, taylor-green, heated-cavity, five-species
         [--no-build]      with the programs that were built last
   fuzz [--minutes N]      fuzz the readers of users' files, ten minutes each by default
         [--seed S] [case|polymesh]

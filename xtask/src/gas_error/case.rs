@@ -1,8 +1,9 @@
 //! The cases: what is solved, on which meshes and steps, and what the errors are measured against.
 
+use super::coupled::Gas;
 use super::field::Field;
 use super::start::Start;
-use super::{cavity, heated_cavity, taylor_green};
+use super::{cavity, five_species, heated_cavity, taylor_green};
 
 /// A flow that every solver computes. Its files are below `of-cases/gas-error`: `case.toml` for Calcine, `stock` for
 /// the solver of OpenFOAM, on the same box, boundaries and properties.
@@ -15,6 +16,9 @@ pub struct Case {
     /// End in s.
     pub end: f64,
     pub quantities: &'static [Quantity],
+    /// The finest mesh, as a multiple of the coarsest, that gases with the default tolerances of Calcine run on unless large
+    /// runs are asked for.
+    pub finest_strict: usize,
     /// The runs of all solvers.
     pub runs: &'static [Resolution],
     /// The same with `CALCINE_BENCH_LARGE`.
@@ -52,7 +56,12 @@ pub enum Reference {
     Exact(fn(f64, f64) -> Vec<f64>, f64),
 }
 
-pub const ALL: [&Case; 3] = [&cavity::CASE, &taylor_green::CASE, &heated_cavity::CASE];
+pub const ALL: [&Case; 4] = [
+    &cavity::CASE,
+    &taylor_green::CASE,
+    &heated_cavity::CASE,
+    &five_species::CASE,
+];
 
 pub const fn at(factor: usize, milliseconds: f64) -> Resolution {
     Resolution {
@@ -65,6 +74,17 @@ impl Case {
     /// Cells along x and y.
     pub fn cells(&self, resolution: Resolution) -> [usize; 2] {
         self.coarsest.map(|count| count * resolution.factor)
+    }
+
+    /// The finest mesh, as a multiple of the coarsest, that a gas runs on unless large runs are asked for: a default benchmark
+    /// takes minutes.
+    pub fn finest(&self, gas: &Gas) -> usize {
+        match (gas.gas, gas.set.is_empty()) {
+            ("native", true) => self.finest_strict,
+            ("native", false) => usize::MAX,
+            (_, true) => 1,
+            (_, false) => 2,
+        }
     }
 
     /// Errors of fields on the coarsest mesh relative to the sizes of the reference.

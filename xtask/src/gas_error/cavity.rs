@@ -13,6 +13,7 @@ pub const CASE: Case = Case {
         openfoam: "U",
         level: 0.0,
     }],
+    finest_strict: 3,
     runs: &[
         at(1, 20.0),
         at(2, 20.0),

@@ -16,8 +16,6 @@ use crate::steps::{Stop, TaskResult, quietly};
 pub struct Gas {
     /// `native` or `openfoam`.
     pub gas: &'static str,
-    /// The finest mesh, as a multiple of the coarsest, that it runs on unless large runs are asked for.
-    pub finest: usize,
     /// Words of `--set`.
     pub set: &'static [&'static str],
 }

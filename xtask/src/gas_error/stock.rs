@@ -44,9 +44,9 @@ pub fn run(
     copy(from, folder)?;
     let [nx, ny] = case.cells(resolution);
     let (step, end) = (resolution.step, case.end);
-    let Time { scheme, outer } = time;
+    let (Time { scheme, outer }, half) = (time, ny / 2);
     let text = format!(
-        "nx {nx};\nny {ny};\ndeltaT {step:?};\nendTime {end:?};\nddt {scheme};\nouter {outer};\n"
+        "nx {nx};\nny {ny};\nhalf {half};\ndeltaT {step:?};\nendTime {end:?};\nddt {scheme};\nouter {outer};\n"
     );
     write(&folder.join("parameters"), &text)?;
     if let Some(start) = &case.start {

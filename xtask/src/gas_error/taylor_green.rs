@@ -25,14 +25,8 @@ pub const CASE: Case = Case {
         openfoam: "U",
         level: 0.0,
     }],
-    runs: &[
-        at(1, 10.0),
-        at(1, 5.0),
-        at(1, 2.5),
-        at(2, 2.5),
-        at(2, 1.25),
-        at(3, 1.25),
-    ],
+    finest_strict: 3,
+    runs: &[at(1, 5.0), at(1, 2.5), at(2, 5.0), at(2, 2.5), at(3, 2.5)],
     large: &[
         at(1, 10.0),
         at(1, 5.0),
