@@ -41,7 +41,8 @@ usage: cargo xtask TASK
         [--runs]          whole runs only
         [--table]         print the table of the last measurement only
   bench gas-error         error against processor time of the native gas, calcineGasFoam and
-        [CASE …]          OpenFOAM's own solvers: cavity, taylor-green, heated-cavity, five-species
+        [CASE …]          OpenFOAM's own solvers: cavity, taylor-green, heated-cavity,
+                          hot-duct, five-species
         [--no-build]      with the programs that were built last
   fuzz [--minutes N]      fuzz the readers of users' files, ten minutes each by default
         [--seed S] [case|polymesh]
@@ -271,6 +272,17 @@ mod tests {
         }
         let validate = task("validate", Needs::ALL, "--validate hopper");
         assert_eq!(read(&words("validate hopper")), validate);
+    }
+
+    #[test]
+    fn the_benchmark_of_errors_takes_names_of_its_cases() {
+        let choice = gas_error::Choice {
+            names: vec!["cavity".into()],
+            built: true,
+        };
+        let task = read(&words("bench gas-error cavity --no-build"));
+        assert_eq!(task, Some(Task::GasError(choice)));
+        assert_eq!(read(&words("bench gas-error cavities")), None);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::coupled::Gas;
 use super::field::Field;
 use super::start::Start;
-use super::{cavity, five_species, heated_cavity, taylor_green};
+use super::{cavity, five_species, heated_cavity, hot_duct, taylor_green};
 
 /// A flow that every solver computes. Its files are below `of-cases/gas-error`: `case.toml` for Calcine, `stock` for
 /// the solver of OpenFOAM, on the same box, boundaries and properties.
@@ -16,7 +16,7 @@ pub struct Case {
     /// End in s.
     pub end: f64,
     pub quantities: &'static [Quantity],
-    /// The finest mesh, as a multiple of the coarsest, that gases with the default tolerances of Calcine run on unless large
+    /// The finest mesh, as a multiple of the coarsest, that the native gas runs on with its default tolerances unless large
     /// runs are asked for.
     pub finest_strict: usize,
     /// The runs of all solvers.
@@ -56,10 +56,11 @@ pub enum Reference {
     Exact(fn(f64, f64) -> Vec<f64>, f64),
 }
 
-pub const ALL: [&Case; 4] = [
+pub const ALL: [&Case; 5] = [
     &cavity::CASE,
     &taylor_green::CASE,
     &heated_cavity::CASE,
+    &hot_duct::CASE,
     &five_species::CASE,
 ];
 
@@ -76,14 +77,17 @@ impl Case {
         self.coarsest.map(|count| count * resolution.factor)
     }
 
-    /// The finest mesh, as a multiple of the coarsest, that a gas runs on unless large runs are asked for: a default benchmark
-    /// takes minutes.
-    pub fn finest(&self, gas: &Gas) -> usize {
-        match (gas.gas, gas.set.is_empty()) {
-            ("native", true) => self.finest_strict,
-            ("native", false) => usize::MAX,
-            (_, true) => 1,
-            (_, false) => 2,
+    /// The finest mesh, as a multiple of the coarsest, that a gas of Calcine runs on: slower ones would take most of the time of
+    /// a benchmark. Nothing where it takes no part.
+    pub fn finest(&self, gas: &Gas, large: bool) -> Option<usize> {
+        match (gas.gas, gas.set.is_empty(), large) {
+            ("native", true, false) => Some(self.finest_strict),
+            ("native", true, true) => Some(4),
+            ("native", false, _) => Some(usize::MAX),
+            (_, true, false) => None,
+            (_, true, true) => Some(2),
+            (_, false, false) => Some(2),
+            (_, false, true) => Some(8),
         }
     }
 
@@ -94,5 +98,44 @@ impl Case {
             field.distance(reference) / reference.size(quantity.level)
         });
         errors.collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    #[test]
+    fn every_case_has_its_files_and_steps_that_end_at_its_end() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../of-cases/gas-error");
+        for case in ALL {
+            let folder = root.join(case.name);
+            assert!(folder.join("case.toml").is_file(), "{}", case.name);
+            let control = std::fs::read_to_string(folder.join("stock/system/controlDict")).unwrap();
+            assert!(
+                control.contains(&format!("application     {};", case.stock)),
+                "{control}"
+            );
+            for run in case.runs.iter().chain(case.large) {
+                let steps = case.end / run.step;
+                assert!(
+                    (steps - steps.round()).abs() < 1e-9,
+                    "{} {run:?}",
+                    case.name
+                );
+            }
+            if let Reference::Extrapolated(finest) = case.reference {
+                assert_eq!(finest.factor % 2, 0);
+                let finer = |run: &&Resolution| run.factor < finest.factor;
+                assert_eq!(
+                    case.runs.iter().filter(finer).count(),
+                    case.runs.len(),
+                    "{}",
+                    case.name
+                );
+            }
+        }
     }
 }

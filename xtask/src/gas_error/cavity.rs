@@ -13,7 +13,7 @@ pub const CASE: Case = Case {
         openfoam: "U",
         level: 0.0,
     }],
-    finest_strict: 3,
+    finest_strict: 2,
     runs: &[
         at(1, 20.0),
         at(2, 20.0),
@@ -33,6 +33,7 @@ pub const CASE: Case = Case {
         at(8, 5.0),
         at(8, 2.5),
         at(8, 1.25),
+        at(16, 1.25),
     ],
     reference: Reference::Extrapolated(at(4, 2.5)),
     start: None,

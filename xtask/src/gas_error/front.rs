@@ -62,12 +62,12 @@ impl Front {
     }
 }
 
-/// Errors 1, 2, 5, 10, … from the smallest to the largest.
+/// Errors 1, 1.5, 2, 3, 5, 7, 10, … from the smallest to the largest.
 pub fn levels(smallest: f64, largest: f64) -> Vec<f64> {
     let mut levels = Vec::new();
     let mut power = smallest.log10().floor() as i32;
     while 10f64.powi(power) <= largest {
-        let decade = [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(power));
+        let decade = [1.0, 1.5, 2.0, 3.0, 5.0, 7.0].map(|digit| digit * 10f64.powi(power));
         // A level at an end of the range counts in spite of rounding.
         let inside =
             |level: &f64| *level >= smallest * (1.0 - 1e-12) && *level <= largest * (1.0 + 1e-12);
@@ -130,7 +130,7 @@ mod tests {
                 assert!((level / wanted - 1.0).abs() < 1e-12, "{levels:?}");
             }
         };
-        near(levels(1.5e-3, 0.02), &[2e-3, 5e-3, 1e-2, 2e-2]);
-        near(levels(3e-3, 4e-3), &[]);
+        near(levels(2.5e-3, 0.015), &[3e-3, 5e-3, 7e-3, 1e-2, 1.5e-2]);
+        near(levels(3.5e-3, 4e-3), &[]);
     }
 }

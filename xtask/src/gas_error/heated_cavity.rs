@@ -21,7 +21,7 @@ pub const CASE: Case = Case {
             level: 300.0,
         },
     ],
-    finest_strict: 3,
+    finest_strict: 2,
     runs: &[
         at(1, 40.0),
         at(1, 20.0),

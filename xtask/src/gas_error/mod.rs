@@ -8,6 +8,7 @@ mod field;
 mod five_species;
 mod front;
 mod heated_cavity;
+mod hot_duct;
 mod measure;
 mod report;
 mod start;
@@ -168,7 +169,11 @@ impl<'a> Bench<'a> {
         for (resolution, cores) in settings {
             rows.push(self.stock(&reference, resolution, cores)?);
             for (name, gas) in GASES {
-                if !large && resolution.factor > self.case.finest(&gas) {
+                if self
+                    .case
+                    .finest(&gas, large)
+                    .is_none_or(|finest| resolution.factor > finest)
+                {
                     continue;
                 }
                 rows.push(self.coupled(&reference, (name, gas), resolution, cores)?);

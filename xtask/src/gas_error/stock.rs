@@ -62,6 +62,9 @@ pub fn run(
         command
     };
     quietly(&mut tool(&["blockMesh"]), &log)?;
+    if folder.join("system/topoSetDict").exists() {
+        quietly(&mut tool(&["topoSet"]), &log)?;
+    }
     let solver = case.stock;
     let words = if ranks == 1 {
         vec![solver]

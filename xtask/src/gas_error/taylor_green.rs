@@ -25,7 +25,7 @@ pub const CASE: Case = Case {
         openfoam: "U",
         level: 0.0,
     }],
-    finest_strict: 3,
+    finest_strict: 2,
     runs: &[at(1, 5.0), at(1, 2.5), at(2, 5.0), at(2, 2.5), at(3, 2.5)],
     large: &[
         at(1, 10.0),
@@ -37,6 +37,7 @@ pub const CASE: Case = Case {
         at(4, 1.25),
         at(4, 0.625),
         at(8, 0.3125),
+        at(32, 0.3125),
     ],
     reference: Reference::Exact(decayed, EDGE),
     start: Some(Start {
