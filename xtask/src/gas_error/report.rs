@@ -209,3 +209,50 @@ fn shown(time: Option<TimeAt>, stock: Option<TimeAt>) -> String {
         (Some(TimeAt::Equal(time)), None) => format!("{}s", short(time)),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::case::at;
+    use super::*;
+
+    fn row(solver: &str, factor: usize, milliseconds: f64, value: f64) -> Row {
+        Row {
+            solver: solver.to_owned(),
+            resolution: at(factor, milliseconds),
+            cores: 1,
+            cost: Cost::default(),
+            gas: None,
+            fields: Field::new([1, 1], vec![value]).map(|field| vec![field]),
+            errors: vec![0.0],
+        }
+    }
+
+    #[test]
+    fn errors_of_second_order_in_the_cell_and_first_in_the_step_are_extrapolated() {
+        let value = |factor: usize, step: f64| 1.0 + 2.0 / (factor * factor) as f64 + 0.3 * step;
+        let runs = [(1, 4.0), (2, 4.0), (2, 2.0), (3, 2.0)];
+        let rows = runs.map(|(factor, step)| row("native", factor, step, value(factor, step)));
+        let limit = own_limit(&rows, "native").unwrap();
+        assert!((limit[0].values[0] - 1.0).abs() < 1e-12, "{limit:?}");
+        assert!(own_limit(&rows[..2], "native").is_none());
+        assert!(own_limit(&rows, "icoFoam").is_none());
+    }
+
+    #[test]
+    fn times_are_shown_as_multiples_of_the_stock_solver_s() {
+        let (equal, most) = (Some(TimeAt::Equal(2.0)), Some(TimeAt::AtMost(4.0)));
+        assert_eq!(shown(equal, Some(TimeAt::Equal(4.0))), "2.00 s (0.50)");
+        assert_eq!(shown(equal, most), "2.00 s (≥ 0.50)");
+        assert_eq!(shown(most, equal), "≤ 4.00 s");
+        assert_eq!(shown(equal, None), "2.00 s");
+        assert_eq!(shown(None, equal), "–");
+    }
+
+    #[test]
+    fn errors_have_two_digits_and_runs_without_end_none() {
+        assert_eq!(percent(0.0123), "1.2 %");
+        assert_eq!(percent(0.33), "33 %");
+        assert_eq!(percent(0.00058), "0.058 %");
+        assert_eq!(percent(f64::NAN), "diverged");
+    }
+}

@@ -66,6 +66,7 @@ pub fn run(
         quietly(&mut tool(&["topoSet"]), &log)?;
     }
     let solver = case.stock;
+    let number = ranks.to_string();
     let words = if ranks == 1 {
         vec![solver]
     } else {
@@ -78,7 +79,7 @@ pub fn run(
             "mpirun",
             "--allow-run-as-root",
             "-n",
-            "2",
+            &number,
             solver,
             "-parallel",
         ]
@@ -136,4 +137,25 @@ fn copy(from: &Path, to: &Path) -> TaskResult<()> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_latest_time_is_found_by_its_number() {
+        let folder = std::env::temp_dir().join(format!("xtask times {}", std::process::id()));
+        for name in ["0", "9.5", "10", "constant"] {
+            fs::create_dir_all(folder.join(name)).unwrap();
+        }
+        let last = last_time(&folder).unwrap();
+        for name in ["9.5", "10"] {
+            fs::remove_dir(folder.join(name)).unwrap();
+        }
+        let none = last_time(&folder);
+        fs::remove_dir_all(&folder).unwrap();
+        assert_eq!(last, folder.join("10"));
+        assert!(none.is_err());
+    }
 }

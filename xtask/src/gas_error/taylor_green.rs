@@ -89,10 +89,10 @@ mod tests {
         near(stream[1], u);
         near(-stream[0], v);
         let pressure = slope(&|x, y| vortex(x, y).pressure);
-        for axis in 0..2 {
-            near(pressure[axis], here.pressure_gradient[axis]);
+        for (axis, gradient) in here.pressure_gradient.into_iter().enumerate() {
+            near(pressure[axis], gradient);
             let velocity = slope(&|x, y| vortex(x, y).velocity[axis]);
-            near(u * velocity[0] + v * velocity[1], -pressure[axis]);
+            near(u * velocity[0] + v * velocity[1], -gradient);
         }
     }
 }
