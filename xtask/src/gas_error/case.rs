@@ -50,7 +50,7 @@ pub struct Resolution {
 /// What errors are measured against.
 pub enum Reference {
     /// OpenFOAM's solver with a time scheme of second order (`backward`), extrapolated from this resolution and one
-    /// of twice its cell and step, as errors of second order in both.
+    /// of twice its cell and step, as errors of second order in both. Of half its cell and step for large runs.
     Extrapolated(Resolution),
     /// The exact values of the only quantity at a place (x, y) in m, and the edge of the square in m.
     Exact(fn(f64, f64) -> Vec<f64>, f64),

@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crate::steps::{Stop, TaskResult, shown};
 
@@ -17,6 +17,8 @@ const LOOK_EVERY: Duration = Duration::from_millis(10);
 pub struct Cost {
     /// Processor time in s, user's and system's.
     pub processor: f64,
+    /// Wall time in s.
+    pub wall: f64,
     /// Peak of the resident memory in bytes, summed over processes.
     pub memory: f64,
 }
@@ -44,6 +46,7 @@ pub fn measured(command: &Command, log: &Path) -> TaskResult<(Cost, bool)> {
     }
     outer.stdin(Stdio::null()).stdout(file).stderr(copy);
     let not_run = |cause| Stop(format!("`{}` cannot be run: {cause}", shown(command)));
+    let begun = Instant::now();
     let mut child = outer.spawn().map_err(not_run)?;
     let mut peaks = Peaks::default();
     let status = loop {
@@ -53,11 +56,19 @@ pub fn measured(command: &Command, log: &Path) -> TaskResult<(Cost, bool)> {
         peaks.look(child.id());
         thread::sleep(LOOK_EVERY);
     };
+    let wall = begun.elapsed().as_secs_f64();
     let text = fs::read_to_string(&told).map_err(|cause| Stop::io(&told, &cause))?;
     let processor = sum(&text).ok_or_else(|| Stop(format!("{}: no times", told.display())))?;
     let _ = fs::remove_file(&told);
     let memory = peaks.sum();
-    Ok((Cost { processor, memory }, status.success()))
+    Ok((
+        Cost {
+            processor,
+            wall,
+            memory,
+        },
+        status.success(),
+    ))
 }
 
 /// The sum of the numbers of the last line.

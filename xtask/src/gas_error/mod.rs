@@ -150,8 +150,8 @@ impl<'a> Bench<'a> {
     fn run(&self) -> TaskResult<String> {
         let _ = fs::remove_dir_all(&self.folder);
         fs::create_dir_all(&self.folder).map_err(|cause| Stop::io(&self.folder, &cause))?;
-        let reference = self.reference()?;
         let large = env::var_os("CALCINE_BENCH_LARGE").is_some();
+        let reference = self.reference(large)?;
         let runs = if large {
             self.case.large
         } else {
@@ -235,9 +235,14 @@ impl<'a> Bench<'a> {
     }
 
     /// The fields that all others are compared with, on the cells of the coarsest mesh.
-    fn reference(&self) -> TaskResult<Vec<Field>> {
+    fn reference(&self, large: bool) -> TaskResult<Vec<Field>> {
         match self.case.reference {
-            Reference::Extrapolated(finest) => {
+            Reference::Extrapolated(usual) => {
+                let times = if large { 2 } else { 1 };
+                let finest = Resolution {
+                    factor: times * usual.factor,
+                    step: usual.step / times as f64,
+                };
                 let coarser = Resolution {
                     factor: finest.factor / 2,
                     step: 2.0 * finest.step,

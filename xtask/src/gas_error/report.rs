@@ -129,6 +129,7 @@ fn runs(case: &Case, rows: &[Row]) -> Table {
         "threads or ranks",
         "processor time",
         "of the gas",
+        "wall time",
     ]
     .map(str::to_owned)
     .to_vec();
@@ -145,6 +146,7 @@ fn runs(case: &Case, rows: &[Row]) -> Table {
             format!("{}s", short(row.cost.processor)),
             row.gas
                 .map_or_else(String::new, |time| format!("{}s", short(time))),
+            format!("{}s", short(row.cost.wall)),
         ];
         cells.extend(row.errors.iter().map(|error| percent(*error)));
         cells.push(format!("{}B", short(row.cost.memory / (nx * ny) as f64)));
