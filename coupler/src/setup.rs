@@ -67,6 +67,8 @@ pub struct GasControls {
     pub outer_iterations: u32,
     /// How cell values are carried to faces.
     pub convection: Convection,
+    /// How a window is stepped where its clocks are one.
+    pub time_scheme: TimeScheme,
     /// Pressure corrections per outer iteration.
     pub pressure_corrections: u32,
     /// Pressure corrections per outer iteration at most, where the pace of the outer loop asks for more than
@@ -76,6 +78,17 @@ pub struct GasControls {
     pub outer_tolerance: f64,
     /// Tolerance of the linear solvers, relative to the throughput.
     pub linear_tolerance: f64,
+}
+
+/// How the gas is stepped over a window in which motion and process clock are one (AF 1); under time splitting it is implicit Euler
+/// (docs/theory.md, TSM-5, TSM-8).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TimeScheme {
+    /// Implicit Euler: first order, positive.
+    #[default]
+    ImplicitEuler,
+    /// Two diagonally implicit stages: second order, L-stable.
+    Sdirk2,
 }
 
 /// How cell values of velocity, enthalpy and composition are carried to faces.

@@ -26,6 +26,7 @@ mod skewed;
 mod species;
 mod stirred;
 mod stirred_cells;
+mod time_order;
 mod verification_bed_eddies;
 mod verification_flow;
 mod verification_heat;

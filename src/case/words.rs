@@ -6,7 +6,7 @@ pub(super) use calcine_coupler::momentum_model::MomentumModel;
 pub(super) use calcine_coupler::packing::Share;
 use calcine_coupler::packing::regular::Lattice;
 pub(super) use calcine_coupler::physics::film::{FilmTemperature, StefanFlow};
-pub(super) use calcine_coupler::setup::{Convection, InletScalars, WallVelocity};
+pub(super) use calcine_coupler::setup::{Convection, InletScalars, TimeScheme, WallVelocity};
 pub(super) use calcine_coupler::time::GasStorage;
 pub(super) use calcine_coupler::window_drag::WindowDrag;
 
@@ -113,6 +113,7 @@ case_words! {
         "upwind" => Convection::Upwind,
         "central" => Convection::Central(1.0),
     }
+    TimeScheme { "euler" => TimeScheme::ImplicitEuler, "sdirk2" => TimeScheme::Sdirk2 }
     InletScalars { "flux" => InletScalars::Flux, "value" => InletScalars::Value }
     Share { "number" => Share::Number, "mass" => Share::Mass }
     MotionSpec { "frozen" => MotionSpec::Frozen, "free" => MotionSpec::Free }

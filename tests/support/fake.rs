@@ -205,6 +205,7 @@ fn gas_setup() -> GasSetup {
             convection: Convection::Upwind,
             outer_iterations: 50,
             pressure_corrections: 2,
+            time_scheme: Default::default(),
             most_pressure_corrections: 16,
             outer_tolerance: 1e-10,
             linear_tolerance: 1e-12,

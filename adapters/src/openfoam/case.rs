@@ -367,6 +367,7 @@ mod tests {
                 outer_iterations: 3,
                 convection: Convection::Upwind,
                 pressure_corrections: 2,
+                time_scheme: Default::default(),
                 most_pressure_corrections: 16,
                 outer_tolerance: 1e-6,
                 linear_tolerance: 1e-10,

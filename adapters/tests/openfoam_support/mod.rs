@@ -79,6 +79,7 @@ pub fn setup() -> GasSetup {
             outer_iterations: 50,
             convection: Convection::Upwind,
             pressure_corrections: 2,
+            time_scheme: Default::default(),
             most_pressure_corrections: 16,
             outer_tolerance: 1e-11,
             linear_tolerance: 1e-13,

@@ -150,6 +150,7 @@ pub fn setup(mesh: &Mesh) -> GasSetup {
             outer_iterations: 100,
             convection: Convection::Upwind,
             pressure_corrections: 2,
+            time_scheme: Default::default(),
             most_pressure_corrections: 16,
             outer_tolerance: 1e-11,
             linear_tolerance: 1e-13,

@@ -19,11 +19,13 @@ mod outer;
 mod pace;
 mod pressure;
 mod species;
+mod stages;
 mod state;
 mod stirring;
 mod tolerance;
 mod transport;
 mod turbulence;
+mod window;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -40,7 +42,6 @@ use calcine_coupler::setup::{GasSetup, Turbulence};
 use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::Window;
 
-use attempt::AttemptFrame;
 use boundary::Boundaries;
 pub use error::NativeError;
 pub use failure::GasFailure;
@@ -49,6 +50,7 @@ use outer::Equations;
 use state::GasState;
 pub(crate) use state::{flat, vectors};
 use turbulence::{Eddies, KEpsilonEquations, TurbulenceStep};
+use window::StageStates;
 
 use crate::numerics::grid::MeshGraph;
 use crate::numerics::matrix::Matrix;
@@ -74,6 +76,8 @@ pub struct NativeGas {
     /// Fields of another run to start from, their velocity superficial.
     taken_over: Option<GasState>,
     now: GasState,
+    /// What a scheme of several stages keeps.
+    steps: StageStates,
     /// The attempt that `now` is of, as long as it is not committed.
     attempted: Option<Window>,
     window: Option<Window>,
@@ -112,6 +116,7 @@ impl NativeGas {
             setup: setup.clone(),
             boundaries,
             now: committed.clone(),
+            steps: StageStates::default(),
             attempted: None,
             committed,
             started: false,
@@ -360,10 +365,6 @@ impl Gas for NativeGas {
             .map_err(|cause| self.failed(cause).in_window(window))?;
         self.window = Some(*window);
         self.void_fraction.clone_from(&bed.void_fraction);
-        let share = |&pores: &f64| self.setup.momentum.pressure_share(pores);
-        self.pressure_share.clear();
-        self.pressure_share
-            .extend(bed.void_fraction.iter().map(share));
         self.exchange.clone_from(exchange);
         Ok(())
     }
@@ -376,44 +377,12 @@ impl Gas for NativeGas {
         let Some(window) = self.window.take() else {
             return Err(self.failure(FailureKind::Protocol, "finished without a start"));
         };
-        let spans = (
-            window.span.motion.seconds(),
-            self.setup.storage.span(&window),
-        );
-        let end = window.start.process.seconds() + window.span.process.seconds();
-        self.boundaries.update(&self.setup, end);
-        if !self.started {
-            self.place();
-        }
         // A repeated attempt takes what the one before found as its first guess; old is what is committed.
         let continues = self
             .attempted
             .is_some_and(|last| last.index == window.index && last.attempt + 1 == window.attempt);
-        if !continues {
-            self.now.take(&self.committed);
-        }
         self.attempted = Some(window);
-        self.now.void_fraction.clone_from(&self.void_fraction);
-        let frame = AttemptFrame {
-            grid: &self.grid,
-            boundary: &self.boundaries,
-            properties: &self.setup.properties,
-            schmidt: self.setup.schmidt,
-            chemistry: &self.setup.chemistry,
-            turbulence: &self.setup.turbulence,
-            convection: self.setup.controls.convection,
-            gravity: self.setup.gravity,
-            void_fraction: &self.void_fraction,
-            pressure_share: &self.pressure_share,
-            exchange: &self.exchange,
-            old: &self.committed,
-            motion_span: spans.0,
-            storage_span: spans.1,
-        };
-        let solved = self
-            .equations
-            .solve(&frame, &self.setup.controls, continues, &mut self.now);
-        let convergence = match solved {
+        let convergence = match self.advance(&window, continues, received) {
             Ok(convergence) => convergence,
             Err(cause) => {
                 // What a failed attempt leaves is no gas.
@@ -422,19 +391,8 @@ impl Gas for NativeGas {
                 return Err(self.failed(cause).in_window(&window));
             }
         };
-        let Equations {
-            momentum,
-            enthalpy,
-            species,
-            material,
-            ..
-        } = &self.equations;
-        let taken = &enthalpy.taken;
-        balance::receive(
-            &frame, material, momentum, taken, species, &self.now, received,
-        );
         self.update_fields();
-        self.backflow = self.find_backflow(spans.1);
+        self.backflow = self.find_backflow(self.setup.storage.span(&window));
         Ok(convergence)
     }
 }

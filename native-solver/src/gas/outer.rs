@@ -39,6 +39,17 @@ const CLOSINGS: u32 = 3;
 /// They need not change a value by less than this share of the residual of momentum and continuity, whose fluxes they take.
 const CLOSER: f64 = 0.1;
 
+/// What an attempt begins with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Begin {
+    /// A window: what earlier ones left in the equations is dropped, so that a resumed one takes the same path.
+    Window,
+    /// Another state to step from, within a window.
+    Stage,
+    /// The same once more, from what the attempt before found.
+    Again,
+}
+
 /// The equations and their scratch memory, reused from window to window.
 #[derive(Debug)]
 pub struct Equations {
@@ -79,23 +90,25 @@ impl Equations {
         }
     }
 
-    /// Advances `now` to the end of the window; what diverged otherwise. `now` holds the
-    /// old state, or, where the attempt `continues` the one before, what that one found.
+    /// Advances `now` to the end of the frame's span; what diverged otherwise. `now` holds the first guess.
     pub fn solve(
         &mut self,
         frame: &AttemptFrame<'_>,
         controls: &GasControls,
-        continues: bool,
+        begin: Begin,
         now: &mut GasState,
     ) -> Result<Convergence, GasFailure> {
         let mut convergence = Convergence::default();
-        if !continues {
-            self.pressure.begin(frame);
+        if begin == Begin::Window {
+            self.pressure.forget(frame);
             self.momentum.begin();
             self.enthalpy.begin();
             self.species.begin(frame);
         }
-        self.chemistry.begin(frame, continues);
+        if begin != Begin::Again {
+            self.pressure.begin(frame);
+        }
+        self.chemistry.begin(frame, begin != Begin::Window);
         self.share = 1.0;
         self.assess(frame, now)?;
         let mut pace = Pace::new(controls, self.flow);

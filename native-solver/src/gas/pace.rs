@@ -55,6 +55,7 @@ mod tests {
             outer_iterations: 20,
             convection: Default::default(),
             pressure_corrections: 2,
+            time_scheme: Default::default(),
             most_pressure_corrections: 7,
             outer_tolerance: 1e-8,
             linear_tolerance: 1e-13,

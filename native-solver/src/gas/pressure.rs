@@ -127,16 +127,19 @@ impl Pressure {
         }
     }
 
-    /// Takes up the old state of an attempt. What earlier attempts left in the preconditioner is
-    /// dropped, so that a repeated or resumed window takes the same path.
-    pub fn begin(&mut self, frame: &AttemptFrame<'_>) {
+    /// Drops what earlier attempts left, so that a repeated or resumed window takes the same path.
+    pub fn forget(&mut self, frame: &AttemptFrame<'_>) {
         if let Approximation::Large(multigrid) = &mut self.preconditioner {
             multigrid.forget();
         }
-        let (grid, old) = (frame.grid, frame.old);
-        if !grid.orthogonal {
-            self.along.clone_from(&old.pressure_gradient);
+        if !frame.grid.orthogonal {
+            self.along.clone_from(&frame.old.pressure_gradient);
         }
+    }
+
+    /// Takes up the state from which the frame steps.
+    pub fn begin(&mut self, frame: &AttemptFrame<'_>) {
+        let (grid, old) = (frame.grid, frame.old);
         fill(&mut self.inertia, |index| {
             let face = &grid.faces[index];
             let half = |cell: usize| {

@@ -169,6 +169,7 @@ pub fn setup(patches: &[(&str, GasPatch)]) -> GasSetup {
             outer_iterations: 50,
             convection: Convection::Upwind,
             pressure_corrections: 2,
+            time_scheme: Default::default(),
             most_pressure_corrections: 16,
             outer_tolerance: 1e-9,
             linear_tolerance: 1e-12,

@@ -177,6 +177,7 @@ const CENTRAL: &[Key] = &[
 const CONTROLS: &[Key] = &[
     key("outer_iterations", Whole(1, 10_000), Default("20"), "Outer iterations per window at most.", "20"),
     key("convection", Either(&Choice(words::<Convection>), &Table(CENTRAL)), Default("van-leer"), "How velocity, enthalpy and composition are carried to faces: second order with van Leer's limiter; first-order upwind; or central differences of velocity and enthalpy, which no limiter bounds, and of composition van Leer's limiter; `{ central = 0.9 }` mixes them with upwind.", "\"upwind\""),
+    key("time_scheme", Choice(words::<TimeScheme>), Default("euler"), "How velocity, enthalpy and composition are stepped over a window at an acceleration of 1: implicit Euler, first order; or two implicit stages, second order (SDIRK2). Implicit Euler under time splitting, where the gas reacts, and where particles give or take species.", "\"sdirk2\""),
     key("pressure_corrections", Whole(1, 10_000), Default("2"), "Pressure corrections per outer iteration.", "2"),
     key("most_pressure_corrections", Whole(1, 10_000), Default("16"), "Where at the pace of momentum and continuity so far `outer_iterations` would not reach `outer_tolerance`, the pressure corrections are doubled, up to this many; with that of `pressure_corrections` or less they stay as they are. Native gas.", "16"),
     key("outer_tolerance", Number(D::NONE, Positive), Default("1e-8"), "The outer iterations end below this scaled residual.", "1e-8"),

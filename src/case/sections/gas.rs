@@ -227,6 +227,7 @@ fn controls(section: &TableReader<'_>) -> Option<GasControls> {
     let table = section.table_or_empty("controls")?;
     let outer_iterations = table.small_whole("outer_iterations");
     let convection = convection(&table);
+    let time_scheme = table.choice("time_scheme");
     let pressure_corrections = table.small_whole("pressure_corrections");
     let most_pressure_corrections = table.small_whole("most_pressure_corrections");
     let outer_tolerance = table.number("outer_tolerance");
@@ -235,6 +236,7 @@ fn controls(section: &TableReader<'_>) -> Option<GasControls> {
     Some(GasControls {
         outer_iterations: outer_iterations?,
         convection: convection?,
+        time_scheme: time_scheme?,
         pressure_corrections: pressure_corrections?,
         most_pressure_corrections: most_pressure_corrections?,
         outer_tolerance: outer_tolerance?,

@@ -610,6 +610,7 @@ mod tests {
                 outer_iterations: 1,
                 convection: Convection::Upwind,
                 pressure_corrections: 1,
+                time_scheme: Default::default(),
                 most_pressure_corrections: 16,
                 outer_tolerance: 1e-9,
                 linear_tolerance: 1e-12,
