@@ -1,5 +1,6 @@
 //! A gas that becomes its isomer, or falls apart, at a constant rate, in cells without a flow through them and in cells that it leaves
-//! hardly at all, by both gases (CHM-2): a closed cell, one with an outlet alone, and a chain in which next to nothing is left of it.
+//! hardly at all, by both gases (CHM-2): a closed cell, one with an outlet alone, and a chain in which next to nothing is left of it. A
+//! cell that starts with cold gas, below the rate at which its reactor ignites.
 
 #![allow(clippy::unwrap_used)]
 
@@ -10,14 +11,14 @@ use calcine::results::read;
 
 use crate::support::program;
 
-/// Gases of constant heat capacity: B is an isomer of A, D half of it, X inert.
+/// Gases of constant heat capacity: B and C are isomers of A, C of a lower enthalpy, D half of it, X inert.
 const SPECIES: &str = "
 units: {length: m, quantity: mol, activation-energy: J/mol, energy: J, time: s}
 phases:
 - name: gas
   thermo: ideal-gas
   elements: [N]
-  species: [A, B, D, X]
+  species: [A, B, C, D, X]
   state: {T: 300.0, P: 1 atm}
 species:
 - name: A
@@ -27,6 +28,10 @@ species:
 - name: B
   composition: {N: 2}
   thermo: {model: NASA7, temperature-ranges: [200.0, 1000.0, 6000.0], data: [[3.5,0,0,0,0,0,5],[3.5,0,0,0,0,0,5]]}
+  transport: {model: gas, geometry: linear, diameter: 3.6, well-depth: 97.5}
+- name: C
+  composition: {N: 2}
+  thermo: {model: NASA7, temperature-ranges: [200.0, 1000.0, 6000.0], data: [[3.5,0,0,0,0,-3.0e4,4],[3.5,0,0,0,0,-3.0e4,4]]}
   transport: {model: gas, geometry: linear, diameter: 3.6, well-depth: 97.5}
 - name: X
   composition: {N: 2}
@@ -42,8 +47,10 @@ species:
 struct Decay {
     /// `A => B` or `A => 2 D`.
     equation: &'static str,
-    /// In 1/s.
-    rate: f64,
+    /// Its rate constant in 1/s.
+    rate: String,
+    /// The gas at the start.
+    initial: &'static str,
     /// Keys of `[time]`.
     time: String,
     /// Cells one above the other.
@@ -54,13 +61,16 @@ struct Decay {
 
 const WALL: &str = "wall = { velocity = \"slip\", heat = \"adiabatic\" }";
 const OUTLET: &str = "outlet = { pressure = \"1 atm\" }";
+const FULL: &str = "temperature = \"500 K\", composition = { mass = { A = 1 } }";
 const INLET: &str = "inlet = { superficial_velocity = \"0.1 m/s\", temperature = \"500 K\", composition = { mass = { A = 1 } } }";
 
 impl Decay {
-    fn left(&self, gas: &str, directory: &Path) -> Vec<f64> {
+    /// A field of the cells at the end.
+    fn found(&self, field: &str, gas: &str, directory: &Path) -> Vec<f64> {
         let Self {
             equation,
             rate,
+            initial,
             time,
             cells,
             ends: [bottom, top],
@@ -79,14 +89,14 @@ density = "2500 kg/m^3"
 heat_capacity = "840 J/kg/K"
 [gas]
 mixture = "isomers"
-species = ["A", "B", "D", "X"]
+species = ["A", "B", "C", "D", "X"]
 schmidt = 1e6
 controls = {{ convection = "upwind" }}
-initial = {{ temperature = "500 K", pressure = "1 atm", composition = {{ mass = {{ A = 1 }} }} }}
+initial = {{ pressure = "1 atm", {initial} }}
 [gas.species_data]
 thermo = "isomers.yaml"
 [gas.chemistry]
-reactions = [{{ name = "decay", equation = "{equation}", rate = {{ factor = {rate:e} }} }}]
+reactions = [{{ name = "decay", equation = "{equation}", rate = {{ {rate} }} }}]
 [gas.patch.bottom]
 {bottom}
 [gas.patch.top]
@@ -119,14 +129,14 @@ gas = ["temperature", "mass_fractions"]
         let out = program::run_text(directory, &name, &text, &["--gas", gas]);
         let files = read::collection(&out, "gas.pvd").unwrap();
         let arrays = read::arrays(&files.last().unwrap().1).unwrap();
-        arrays["A"].values.clone()
+        arrays[field].values.clone()
     }
 
     /// Asserts what is left in the first cells, within a share of it.
     fn assert(&self, expected: &[f64], within: f64) {
         let directory = tempfile::tempdir().unwrap();
         for gas in ["native", "openfoam"] {
-            let left = self.left(gas, directory.path());
+            let left = self.found("A", gas, directory.path());
             for (cell, (found, expected)) in left.iter().zip(expected).enumerate() {
                 assert!(
                     (found / expected - 1.0).abs() < within,
@@ -143,7 +153,8 @@ fn a_closed_cell_is_a_closed_reactor_in_windows_of_any_length() {
     for window in ["0.1 ms", "1 ms", "10 ms", "50 ms"] {
         let decay = Decay {
             equation: "A => B",
-            rate: 10.0,
+            rate: "factor = 10".into(),
+            initial: FULL,
             time: format!("motion_window = \"{window}\"\nend = \"100 ms\""),
             cells: 1,
             ends: [WALL, WALL],
@@ -157,7 +168,8 @@ fn a_cell_that_gas_only_leaves_keeps_its_share() {
     for window in ["1 ms", "100 ms"] {
         let decay = Decay {
             equation: "A => 2 D",
-            rate: 1.0,
+            rate: "factor = 1".into(),
+            initial: FULL,
             time: format!("motion_window = \"{window}\"\nend = \"1 s\""),
             cells: 1,
             ends: [WALL, OUTLET],
@@ -171,7 +183,8 @@ fn gas_that_decays_at_once_leaves_next_to_nothing_in_any_window() {
     for (rate, step, end) in [(1e5, 1000.0, 1e4), (1e6, 10.6, 53.0), (1e12, 10.0, 50.0)] {
         let decay = Decay {
             equation: "A => B",
-            rate,
+            rate: format!("factor = {rate:e}"),
+            initial: FULL,
             time: format!("process_step = \"{step} s\"\nend = \"{end} s\""),
             cells: 4,
             ends: [INLET, OUTLET],
@@ -179,5 +192,62 @@ fn gas_that_decays_at_once_leaves_next_to_nothing_in_any_window() {
         // 0.1 s pass a cell.
         let cell = 1.0 / (1.0 + 0.1 * rate);
         decay.assert(&[cell], 1e-2);
+    }
+}
+
+/// Gas of 600 K with a seventh of A that becomes C, into a cell of cold, dense gas whose reactor ignites at half as fast a reaction again: it
+/// warms up and stays unburnt, in windows of a hundredth to ten thousand residence times. A cell that kept the mass of its
+/// cold gas would ignite.
+#[test]
+fn a_cell_of_cold_gas_does_not_ignite_where_its_reactor_does_not() {
+    // ΔT of all of A is 0.15 · 30000 K/3.5; 0.1 s pass the cell at 600 K; 100 kJ/mol.
+    let (inlet, rise, residence, energy) = (600.0, 0.15 * 3.0e4 / 3.5, 0.1, 1e5 / 8.314_462_6);
+    // The rate constant's factor at which a part of A reacts in the steady state: X/(1 − X) = k τ T_in/T.
+    let factor = |part: f64| {
+        let temperature = inlet + rise * part;
+        part / (1.0 - part) * temperature / inlet / residence * (energy / temperature).exp()
+    };
+    // Up to its first maximum the factor rises with the part.
+    let step = 1e-5;
+    let mut limit = step;
+    while factor(limit + step) > factor(limit) {
+        limit += step;
+    }
+    let chosen = factor(limit) / 1.5;
+    let (mut low, mut high) = (0.0, limit);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if factor(middle) < chosen {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let expected = inlet + rise * low;
+    for [step, end] in [["1 ms", "3 s"], ["10 s", "40 s"], ["1000 s", "4000 s"]] {
+        let cell = Decay {
+            equation: "A => C",
+            rate: format!("factor = {chosen:e}, activation_energy = \"100 kJ/mol\""),
+            initial: "temperature = \"300 K\", composition = { mass = { X = 1 } }",
+            time: match step {
+                "1 ms" => format!("motion_window = \"{step}\"\nend = \"{end}\""),
+                _ => format!("process_step = \"{step}\"\nend = \"{end}\""),
+            },
+            cells: 1,
+            ends: [
+                "inlet = { superficial_velocity = \"0.1 m/s\", temperature = \"600 K\", composition = { mass = { A = 0.15, X = 0.85 } } }",
+                OUTLET,
+            ],
+        };
+        let directory = tempfile::tempdir().unwrap();
+        for gas in ["native", "openfoam"] {
+            let found = cell.found("temperature", gas, directory.path());
+            println!("{gas}, {step}: {} K, expected {expected} K", found[0]);
+            assert!(
+                (found[0] - expected).abs() < 0.05,
+                "{gas}, {step}: {}, expected {expected}",
+                found[0]
+            );
+        }
     }
 }

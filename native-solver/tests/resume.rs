@@ -9,7 +9,7 @@ use calcine_coupler::part::{
     Bed as VoidFractions, CellReceived, Gas, Part, ParticlePush, ParticleReceived, Particles,
 };
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::setup::ParticleSetup;
+use calcine_coupler::setup::{ParticleSetup, TimeScheme};
 use calcine_coupler::supervisor::{Interrupts, Supervisor};
 use calcine_coupler::time::{Clocks, Ticks, Window};
 use calcine_native::gas::{NativeError, NativeGas};
@@ -26,7 +26,13 @@ fn patches() -> [(&'static str, calcine_coupler::setup::GasPatch); 3] {
 }
 
 fn column() -> Driver {
-    let mut driver = Driver::new(&duct([0.01, 0.01, 0.12], [1, 1, 12]), &setup(&patches()));
+    column_by(TimeScheme::ImplicitEuler)
+}
+
+fn column_by(scheme: TimeScheme) -> Driver {
+    let mut setup = setup(&patches());
+    setup.controls.time_scheme = scheme;
+    let mut driver = Driver::new(&duct([0.01, 0.01, 0.12], [1, 1, 12]), &setup);
     for cell in 1..11 {
         driver.bed.void_fraction[cell] = 0.476;
         driver.exchange.drag_coefficient[cell] = 1e-5;
@@ -38,23 +44,28 @@ fn column() -> Driver {
 
 #[test]
 fn a_checkpoint_changes_nothing_and_a_resumed_gas_goes_on_alike() {
-    let folder = tempfile::tempdir().unwrap();
-    let (mut alone, mut through, mut resumed) = (column(), column(), column());
-    for _ in 0..20 {
-        alone.window(1e-3, 50.0);
-        through.window(1e-3, 50.0);
-    }
-    through.gas.checkpoint(folder.path()).unwrap();
-    resumed.gas.restore(folder.path()).unwrap();
-    resumed.clocks = through.clocks;
-    assert_eq!(resumed.bits(), alone.bits());
-    for _ in 0..20 {
-        for column in [&mut alone, &mut through, &mut resumed] {
-            column.window(1e-3, 50.0);
+    for (scheme, factor) in [(TimeScheme::ImplicitEuler, 50.0), (TimeScheme::Sdirk2, 1.0)] {
+        let folder = tempfile::tempdir().unwrap();
+        let new = || column_by(scheme);
+        let (mut alone, mut through, mut resumed) = (new(), new(), new());
+        for _ in 0..20 {
+            alone.window(1e-3, factor);
+            through.window(1e-3, factor);
         }
-        for other in [&through, &resumed] {
-            assert_eq!(other.bits(), alone.bits());
-            assert_eq!(other.received, alone.received);
+        // An attempt without a commit leaves no trace either.
+        through.attempt(1e-3, factor);
+        through.gas.checkpoint(folder.path()).unwrap();
+        resumed.gas.restore(folder.path()).unwrap();
+        resumed.clocks = through.clocks;
+        assert_eq!(resumed.bits(), alone.bits());
+        for _ in 0..20 {
+            for column in [&mut alone, &mut through, &mut resumed] {
+                column.window(1e-3, factor);
+            }
+            for other in [&through, &resumed] {
+                assert_eq!(other.bits(), alone.bits());
+                assert_eq!(other.received, alone.received);
+            }
         }
     }
 }

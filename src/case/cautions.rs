@@ -7,7 +7,7 @@ use calcine_coupler::physics::kinetics::RateConstant;
 use calcine_coupler::physics::reaction::Arrhenius;
 
 use super::model::Case;
-use super::{expectations, patch_cautions, wall_cautions};
+use super::{expectations, patch_cautions, time_cautions, wall_cautions};
 
 /// Energies in J/mol that bonds have, no activation energy is above: that of carbon monoxide is 1072 kJ/mol.
 const STRONGEST_BOND: f64 = 1.1e6;
@@ -25,6 +25,7 @@ pub fn cautions(case: &Case) -> Vec<String> {
     all.extend(idle(case));
     all.extend(patch_cautions::all(case));
     all.extend(wall_cautions::all(case));
+    all.extend(time_cautions::all(case));
     all
 }
 

@@ -28,6 +28,7 @@ mod step;
 mod stl;
 mod syntax;
 mod table;
+mod time_cautions;
 pub mod units;
 mod wall_cautions;
 mod words;

@@ -130,6 +130,7 @@ Foam::calcine::gas::gas
     corrections_ = controls.get<label>("pressureCorrections");
     outerTolerance_ = controls.get<scalar>("outerTolerance");
     linearTolerance_ = controls.get<scalar>("linearTolerance");
+    twoStages_ = controls.lookupOrDefault<bool>("twoStages", false);
     measureFaces();
     models_.reset(new models(mesh, U_, phi_, *thermo_));
     if (properties.found("turbulenceIterations"))
@@ -391,8 +392,28 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
 {
     const clockValue begun(true);
     reactionTime_ = 0;
-    window_ = when;
     given_ = given;
+    restore();
+    // Reactions are split from transport, and particles follow the fractions at the window's end: both are first order anyhow.
+    const bool reacts = reactions_ || particlesExchangeGas();
+    if (twoStages_ && when.motionSpan == when.storageSpan && !reacts)
+    {
+        attemptTwoStages(when, given.voidFraction, result);
+    }
+    else
+    {
+        beginStage(when, given.voidFraction);
+        step(result);
+    }
+    result.wallTime = begun.elapsed();
+    result.reactionTime = reactionTime_;
+}
+
+
+void Foam::calcine::gas::beginStage(const window& when, const scalarField& voidFraction)
+{
+    window_ = when;
+    given_.voidFraction = voidFraction;
     voidFraction_.primitiveFieldRef() = given_.voidFraction;
     voidFraction_.correctBoundaryConditions();
     pressureShare_ = given_.voidFraction;
@@ -400,7 +421,6 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
     {
         pressureShare_ = 1;
     }
-    restore();
     // Inlets of a given velocity carry gas of pRef, whatever the pressure of a closed domain is.
     modelPressure_ == dimensionedScalar("p", dimPressure, pRef_);
     boundary_.updateState(when.processEnd, pRef_, thermo_->T(), p_);
@@ -425,6 +445,11 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
 
     models_->begin();
     beginReactions();
+}
+
+
+void Foam::calcine::gas::step(report& result)
+{
     result = report();
     for (label outer = 1; outer <= max(outerIterations_, 1); ++outer)
     {
@@ -454,8 +479,6 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
     closeReactions(result);
     guard(false);
     finishReport(result);
-    result.wallTime = begun.elapsed();
-    result.reactionTime = reactionTime_;
 }
 
 

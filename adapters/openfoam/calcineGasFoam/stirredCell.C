@@ -234,8 +234,7 @@ void Foam::calcine::stirredCell::jacobian
         column(l, fraction ? kilo*mixture_[l].molarMass() : scalar(1));
         // Slope of r, and its relative one.
         const scalar relative = fraction ? -1/(moles*kilo*mixture_[l].molarMass()) : -1/T;
-        const scalar slopeOfHeld =
-            density > start_ ? flow_->opening*density/start_*relative : scalar(0);
+        const scalar slopeOfHeld = flow_->opening*density/start_*relative;
         scalar heat = -flow_->heatEntering/sqr(r)*slopeOfHeld;
         for (label k = 0; k < species_; ++k)
         {

@@ -5,8 +5,8 @@ use std::fmt::Write;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::{
-    Convection, GasPatch, GasSetup, InletFlow, InletScalars, PatchGas, Schedule, Turbulence,
-    WallHeat, WallVelocity,
+    Convection, GasPatch, GasSetup, InletFlow, InletScalars, PatchGas, Schedule, TimeScheme,
+    Turbulence, WallHeat, WallVelocity,
 };
 use calcine_wire::Catalogue;
 
@@ -123,7 +123,8 @@ pub fn calcine(setup: &GasSetup, case_hash: &str, catalogue: &Catalogue) -> Stri
          // How gas and particles share the pressure gradient: a or b.\nmomentumModel   {};\n\
          // Seconds of wall time between lines of the log; 0: a line for each attempt.\n\
          logInterval     1;\n\ncontrols\n{{\n    outerIterations     {};\n    \
-         pressureCorrections {};\n    outerTolerance      {:e};\n    linearTolerance     {:e};\n}}\n\n\
+         pressureCorrections {};\n    outerTolerance      {:e};\n    linearTolerance     {:e};\n    \
+         twoStages           {};\n}}\n\n\
          // Tables over process time in s: m/s, kg/s, K, Pa, W/m^2, W/m^2/K.\npatches\n{{\n",
         setup.pressure,
         vector(setup.gravity),
@@ -131,7 +132,8 @@ pub fn calcine(setup: &GasSetup, case_hash: &str, catalogue: &Catalogue) -> Stri
         controls.outer_iterations,
         controls.pressure_corrections,
         controls.outer_tolerance,
-        controls.linear_tolerance
+        controls.linear_tolerance,
+        controls.time_scheme == TimeScheme::Sdirk2
     );
     let names = setup.properties.species();
     for (name, condition) in &setup.patches {

@@ -7,7 +7,7 @@
 //! D′ Y what leaves the cell with its own gas and by diffusion from it, b′ what enters, the neighbours' share included. M is
 //! what a stirred reactor makes in the mean of the window, which starts with the cell's old gas and into which b′ flows:
 //!
-//! dY/dt = w(Y, T) + (b′ − D′ Y)/m,   M = ∫ m w dt/Δτ,   m = m_old (1 + θ max(ρ/ρ_old − 1, 0)),
+//! dY/dt = w(Y, T) + (b′ − D′ Y)/m,   M = ∫ m w dt/Δτ,   m = m_old (1 + θ (ρ/ρ_old − 1)),
 //!
 //! θ = D′Δτ/(m_old + D′Δτ), as flow fills a cell whose gas contracts; and the same with the enthalpy, whose source is −Σ_k h°_k M_k with the enthalpies of formation h° as the gas' own enthalpy
 //! is the sensible one. So a steady cell is a stirred reactor at any span and storage, a cell without flow a closed one, what a

@@ -16,7 +16,7 @@ const SAMPLES: usize = 5;
 /// What flows, diffuses and is conducted through a cell of gas, per kg of its gas at the start of a window and constant
 /// over it. Without reactions
 ///
-/// r dY_k/dt = e_k − l_k Y_k,   r dh/dt = e_h − l_h h,   r = 1 + θ max(ρ/ρ_start − 1, 0),
+/// r dY_k/dt = e_k − l_k Y_k,   r dh/dt = e_h − l_h h,   r = 1 + θ (ρ/ρ_start − 1),
 ///
 /// of the mass fractions Y and the sensible enthalpy h, r the gas of the cell over that at the start.
 #[derive(Clone, Copy, Debug)]
@@ -29,8 +29,8 @@ pub struct Throughflow<'a> {
     pub heat_entering: f64,
     /// l_h in 1/s, not negative.
     pub heat_leaving: f64,
-    /// θ, the share of the cell's contraction that flow fills within the window: 0 in a closed cell, 1 where gas passes many
-    /// times. What expansion drives out counts as at the window's end, as implicit Euler has it.
+    /// θ, the share of the cell's contraction that flow fills, and of its expansion that leaves, within the window: 0 in a closed
+    /// cell, 1 where gas passes many times. The rest counts as at the window's end, as implicit Euler has it.
     pub opening: f64,
     /// Mixing time of the partially stirred reactor in s; zero where the cell is mixed.
     pub mixing: f64,
@@ -330,11 +330,7 @@ impl CellEquations<'_> {
             share = share / (N::constant(1.0) + gained.times(flow.mixing) / all);
         }
         // Gas of the cell over that at the start, and one over it.
-        let held = if density.value() > self.start {
-            N::constant(1.0 - flow.opening) + density.times(flow.opening / self.start)
-        } else {
-            N::constant(1.0)
-        };
+        let held = N::constant(1.0 - flow.opening) + density.times(flow.opening / self.start);
         let thin = held.inverse();
         let mut heating = thin.times(flow.heat_entering);
         let mut capacity = N::constant(0.0);

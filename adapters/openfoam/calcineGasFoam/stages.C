@@ -1,0 +1,102 @@
+// The two implicit stages of a window (docs/theory.md, TSM-11), gamma = 1 - 1/sqrt(2). The second is a step over gamma of the
+// window from the start and (1 - gamma)/gamma times what the first changed, in what cells hold.
+#include "gas.H"
+
+namespace
+{
+
+using namespace Foam;
+
+const scalar stageShare = 1 - Foam::sqrt(scalar(0.5));
+
+void scaleAndAdd(calcine::balance& total, const calcine::balance& first, scalar amount)
+{
+    total.stored += amount*first.stored;
+    total.storedMagnitude += amount*first.storedMagnitude;
+    total.boundary += amount*first.boundary;
+    total.boundaryMagnitude += amount*first.boundaryMagnitude;
+    total.exchange += amount*first.exchange;
+    total.source += amount*first.source;
+    total.sourceMagnitude += amount*first.sourceMagnitude;
+}
+
+// Makes a report of the second stage one of the window: mean rates of both, and amounts, of which the first's count so often.
+void joinFirst(calcine::report& result, const calcine::report& first, scalar amount)
+{
+    result.heat = stageShare*result.heat + (1 - stageShare)*first.heat;
+    result.drag = stageShare*result.drag + (1 - stageShare)*first.drag;
+    scaleAndAdd(result.mass, first.mass, amount);
+    scaleAndAdd(result.energy, first.energy, amount);
+    for (direction axis = 0; axis < 3; ++axis)
+    {
+        scaleAndAdd(result.momentum[axis], first.momentum[axis], amount);
+    }
+    forAll(result.species, k)
+    {
+        scaleAndAdd(result.species[k], first.species[k], amount);
+    }
+    result.storageClock += amount*first.storageClock;
+    result.outerIterations += first.outerIterations;
+    result.linearIterations += first.linearIterations;
+    result.residual = max(result.residual, first.residual);
+    result.volumeResidual = max(result.volumeResidual, first.volumeResidual);
+    result.converged = result.converged && first.converged;
+}
+
+} // End anonymous namespace
+
+
+Foam::calcine::gasState Foam::calcine::gas::beyondFirstStage(scalar beyond) const
+{
+    gasState state(committed_);
+    const scalarField& m = committed_.mass;
+    state.mass = m + beyond*(mass_ - m);
+    const scalarField& h = thermo_->he().primitiveField();
+    state.enthalpy = (m*committed_.enthalpy + beyond*(mass_*h - m*committed_.enthalpy))/state.mass;
+    forAll(state.composition, k)
+    {
+        const scalarField& Y = species_->Y()[k].primitiveField();
+        const scalarField& old = committed_.composition[k];
+        state.composition[k] = (m*old + beyond*(mass_*Y - m*old))/state.mass;
+    }
+    const vectorField& u = U_.primitiveField();
+    state.velocity = (m*committed_.velocity + beyond*(mass_*u - m*committed_.velocity))/state.mass;
+    state.flux = committed_.flux + beyond*(flux_ - committed_.flux);
+    state.basePressure += beyond*(basePressure() - committed_.basePressure);
+    return state;
+}
+
+
+void Foam::calcine::gas::attemptTwoStages
+(
+    const window& when,
+    const scalarField& voidFraction,
+    report& result
+)
+{
+    const scalar beyond = (1 - stageShare)/stageShare;
+    window stage(when);
+    stage.motionSpan = stageShare*when.motionSpan;
+    stage.storageSpan = stageShare*when.storageSpan;
+    stage.processEnd = when.processEnd - (1 - stageShare)*when.storageSpan;
+    // The bed moves evenly over the window.
+    const bool known = committed_.placed && when.index > 0;
+    beginStage
+    (
+        stage,
+        known ? scalarField(committed_.voidFraction + stageShare*(voidFraction - committed_.voidFraction)) : voidFraction
+    );
+    report first;
+    step(first);
+
+    const gasState start(committed_);
+    committed_ = beyondFirstStage(beyond);
+    stage.processEnd = when.processEnd;
+    stage.index = max(when.index, uint64_t(1));
+    committed_.placed = true;
+    beginStage(stage, voidFraction);
+    step(result);
+    joinFirst(result, first, beyond);
+    committed_ = start;
+    window_ = when;
+}
