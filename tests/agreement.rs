@@ -163,6 +163,38 @@ fn a_plume_that_draws_air_in_through_openings() {
     }
 }
 
+/// A tenth of a second of a case with two stages in time, unsplit.
+fn two_stages(text: &str) -> String {
+    let chosen = text.replacen(
+        "controls = { ",
+        "controls = { time_scheme = \"sdirk2\", ",
+        1,
+    );
+    assert_ne!(chosen, text);
+    let lines = chosen
+        .lines()
+        .filter(|line| !line.starts_with("acceleration"));
+    let lines: Vec<&str> = lines
+        .map(|line| match line.starts_with("end =") {
+            true => "end = \"0.1 s\"",
+            false => line,
+        })
+        .collect();
+    lines.join("\n")
+}
+
+#[test]
+fn two_stages_in_time_agree_in_a_closed_box_a_bed_with_a_mixture_and_an_open_box() {
+    for text in [
+        cases::heated_box("no-slip", "central"),
+        cases::purge("van-leer"),
+        cases::open_box("upwind"),
+    ] {
+        agree_on(&two_stages(&text), &CLOSE);
+    }
+    agree_on(&two_stages(&cases::tube()), &SKEWED);
+}
+
 #[test]
 fn a_mixture_that_comes_back_in_through_an_outlet() {
     agree_on(&cases::backflow(), &CLOSE);
