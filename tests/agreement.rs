@@ -72,6 +72,9 @@ const TURBULENT_STEADY: Bands = Bands {
     ..TURBULENT
 };
 
+/// Difference in K of particles that hardly warm up, some units of round-off of 300 K.
+const ROUND_OFF: f64 = 1e-9;
+
 /// Runs a case with both gases and returns `compare.json`.
 fn compare(case: &Path, directory: &Path) -> Value {
     let out = directory.join("comparison");
@@ -100,7 +103,10 @@ fn agree(case: &Path, directory: &Path, bands: &Bands) {
             "particles.temperature" => bands.particle_temperature,
             _ => continue,
         };
-        assert!(most <= band * span, "{name}: {most:.2e} of {span:.4}");
+        assert!(
+            most <= (band * span).max(ROUND_OFF),
+            "{name}: {most:.2e} of {span:.4}"
+        );
     }
     for quantity in comparison["quantities"].as_array().unwrap() {
         let most = quantity["largest"]["difference"].as_f64().unwrap();
@@ -185,12 +191,17 @@ fn two_stages(text: &str) -> String {
 
 #[test]
 fn two_stages_in_time_agree_in_a_closed_box_a_bed_with_a_mixture_and_an_open_box() {
+    // The pressure drop of a gas that starts to flow is 0.05 Pa, to which the loops leave 1e-5 Pa.
+    let bands = Bands {
+        pressure_drop: 1e-3,
+        ..CLOSE
+    };
     for text in [
         cases::heated_box("no-slip", "central"),
         cases::purge("van-leer"),
         cases::open_box("upwind"),
     ] {
-        agree_on(&two_stages(&text), &CLOSE);
+        agree_on(&two_stages(&text), &bands);
     }
     agree_on(&two_stages(&cases::tube()), &SKEWED);
 }
