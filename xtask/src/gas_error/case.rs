@@ -105,6 +105,7 @@ impl Case {
 mod tests {
     use std::path::Path;
 
+    use super::super::LONGER;
     use super::*;
 
     #[test]
@@ -119,12 +120,14 @@ mod tests {
                 "{control}"
             );
             for run in case.runs.iter().chain(case.large) {
-                let steps = case.end / run.step;
-                assert!(
-                    (steps - steps.round()).abs() < 1e-9,
-                    "{} {run:?}",
-                    case.name
-                );
+                for longer in [1.0, f64::from(LONGER)] {
+                    let steps = case.end / (longer * run.step);
+                    assert!(
+                        (steps - steps.round()).abs() < 1e-9,
+                        "{} {run:?} {longer}",
+                        case.name
+                    );
+                }
             }
             if let Reference::Extrapolated(finest) = case.reference {
                 assert_eq!(finest.factor % 2, 0);

@@ -18,6 +18,8 @@ pub struct Gas {
     pub gas: &'static str,
     /// Words of `--set`.
     pub set: &'static [&'static str],
+    /// How many times longer its windows are than the steps of the others.
+    pub longer: u32,
 }
 
 /// What a run gave.

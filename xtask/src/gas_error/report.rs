@@ -27,7 +27,8 @@ pub fn head() -> String {
     "# Error against processor time of gases\n\n\
      Processor time: user and system of the whole process and those it started, by `getrusage`; `of the gas`: that of the \
      gas' phases by Calcine's summary. Errors: root mean square over cells, of means over the cells of the coarsest mesh, \
-     relative to the reference. `loose`: `outer_tolerance = 1e-4`, `linear_tolerance = 1e-8`. Times at equal error are \
+     relative to the reference. `loose`: `outer_tolerance = 1e-4`, `linear_tolerance = 1e-8`; `two stages`: \
+     `time_scheme = \"sdirk2\"`. Times at equal error are \
      interpolated in logarithms along each solver's best runs on one core; in brackets multiples of OpenFOAM's own solver; \
      `≤`: its cheapest run is more accurate.\n"
         .to_owned()
