@@ -52,7 +52,8 @@ pub(super) struct Arguments {
     /// Writes a checkpoint and stops after this wall time, for example `23h30m`.
     #[arg(long, value_name = "TIME", value_parser = wall_time)]
     stop_after: Option<Duration>,
-    /// Ends with exit code 6 where a complete run left the range of a law or did not converge somewhere.
+    /// Ends with exit code 6 where a complete run has warnings: of its case, as `check` tells them, or of what left the
+    /// range of a law or did not converge.
     #[arg(long)]
     strict: bool,
 }

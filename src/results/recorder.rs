@@ -400,6 +400,7 @@ impl Recorder {
             motion_time_s: moment.clocks.motion.seconds(),
             process_time_s: moment.clocks.process.seconds(),
             process_end_s: case.time.end.seconds(),
+            case_warnings: case.warnings.clone(),
             windows: moment.windows,
             particles: moment.particles.len(),
             cells: moment.mesh.cells(),

@@ -163,6 +163,7 @@ pub(super) fn case(
         path: path.to_owned(),
         hash,
         changes: Vec::new(),
+        warnings: Vec::new(),
         effective: effective.into(),
         time,
         mesh: mesh?,
