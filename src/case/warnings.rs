@@ -19,7 +19,7 @@ pub fn warnings(
 ) -> Vec<String> {
     let mut all: Vec<String> = buoyancy::warning(buoyancy::number(case, mesh))
         .into_iter()
-        .chain(flow_time::warning(case, mesh, setup))
+        .chain(flow_time::warning(case, mesh, setup, void_fraction))
         .collect();
     all.extend(cautions(case));
     all.extend(patch_cautions::columns(case, mesh));

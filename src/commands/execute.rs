@@ -17,8 +17,8 @@ use crate::case::buoyancy;
 use crate::case::model::Case;
 use crate::exit;
 use crate::progress::Progress;
-use crate::results::Summary;
 use crate::results::inertial_number::InertialNumberStatistics;
+use crate::results::{Summary, difference};
 use crate::simulation::{self, Ending, Simulation, SimulationError};
 
 /// How a case is run.
@@ -129,11 +129,12 @@ fn tell_buoyancy(case: &Case, prepared: &PreparedCase, shown: bool) {
 fn over(case: &Case, out: &Path, summary: &Summary, strict: bool) -> Result<Done, Failure> {
     if summary.case.hash != case.hash {
         let message = format!(
-            "the run in {} is complete, and its case differs from this one (hash {} there, {} \
-             here): `--from {0}` continues from it, into another folder",
+            "the run in {} is complete, and its case differs from this one (hash {} there, {} here){}; `--from {0}` continues from \
+             it, into another folder",
             out.display(),
             summary.case.hash,
-            case.hash
+            case.hash,
+            difference(out, &case.effective)
         );
         return Err(Failure::new(exit::CASE, message));
     }

@@ -84,7 +84,7 @@ impl Recorder {
             files::directory(&out.join(folder))?;
         }
         let counters = match resume {
-            Some(checkpoint) => resume::restore(checkpoint, out, &case.hash)?,
+            Some(checkpoint) => resume::restore(checkpoint, out, case)?,
             None => Counters {
                 case_hash: case.hash.clone(),
                 from: info.from.clone(),

@@ -177,7 +177,7 @@ impl SimulationBuilder {
         }
         let resume = self.resume && folder::has_checkpoint(&out);
         let again = self.resume && !resume;
-        if again && !(folder::begun_before(&out) && results::may_start_again(&out, &case.hash)?) {
+        if again && !(folder::begun_before(&out) && results::may_start_again(&out, case)?) {
             return Err(SimulationError::NoCheckpoint { folder: out });
         }
         if resume {

@@ -51,7 +51,15 @@ impl TableReader<'_> {
         let holds = bound.holds(value);
         if !holds {
             let rule = format!("is {} {}", shown(value), dimension.unit());
-            self.refuse(key, rule.trim_end(), format!("it {}", bound.words()));
+            let absolute = match key == "pressure" && dimension == Dimension::PRESSURE {
+                true => ": pressures are absolute, 1 atm at the ground",
+                false => "",
+            };
+            self.refuse(
+                key,
+                rule.trim_end(),
+                format!("it {}{absolute}", bound.words()),
+            );
         }
         holds
     }
@@ -246,6 +254,14 @@ impl TableReader<'_> {
 
     fn parsed(&self, key: &str, text: &str, dimension: Dimension) -> Option<Vec<f64>> {
         let (words, example) = (dimension.words(), dimension.example());
+        if let Some(point) = with_a_comma(text) {
+            self.unread(
+                key,
+                format!("has a comma in \"{text}\""),
+                format!("write the decimal point as a point, \"{point}\"; numbers of a vector stand apart by spaces"),
+            );
+            return None;
+        }
         match quantities(text) {
             Ok((numbers, found)) if found == dimension => return Some(numbers),
             Ok((_, Dimension::NONE)) => self.unread(
@@ -266,6 +282,9 @@ impl TableReader<'_> {
                 format!("has the unit \"{unit}\", which is not known"),
                 match meant(&unit) {
                     Some(known) => format!("did you mean \"{known}\"?"),
+                    None if unit.contains(|c: char| c.is_ascii_digit()) => format!(
+                        "write powers with ^ and each division with /, as in \"W/m^2/K\"; it needs {words} such as \"{example}\""
+                    ),
                     None => format!("it needs {words} such as \"{example}\""),
                 },
             ),
@@ -277,4 +296,23 @@ impl TableReader<'_> {
         }
         None
     }
+}
+
+/// The text with points in place of commas that stand between digits.
+fn with_a_comma(text: &str) -> Option<String> {
+    let letters: Vec<char> = text.chars().collect();
+    let is_digit = |place: Option<usize>| {
+        let letter = place.and_then(|place| letters.get(place));
+        letter.is_some_and(char::is_ascii_digit)
+    };
+    let decimal = |place: usize| {
+        letters[place] == ',' && is_digit(place.checked_sub(1)) && is_digit(Some(place + 1))
+    };
+    let point = |place: usize| match decimal(place) {
+        true => '.',
+        false => letters[place],
+    };
+    let places = 0..letters.len();
+    let any = places.clone().any(decimal);
+    any.then(|| places.map(point).collect())
 }
