@@ -5,8 +5,7 @@ use calcine_coupler::physics::sphere;
 use calcine_coupler::setup::{GasPatch, InletFlow, ParticleSetup, Schedule};
 
 use super::model::Case;
-use super::splitting::short3;
-use super::units::short;
+use super::units::{short, short3};
 use super::{buoyancy, span, step};
 
 /// Times of free fall through the height after which a flow by buoyancy is developed: tanh 2 is 0.96.

@@ -5,8 +5,7 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::{GasPatch, InletFlow};
 
 use super::model::Case;
-use super::splitting::short3;
-use super::units::shown;
+use super::units::{short3, shown};
 
 /// Share of a pressure by which another differs that is no longer a head of flow: between 1 bar and 1 atm it is 0.013.
 const UNIT_SLIP: f64 = 5e-3;

@@ -4,8 +4,7 @@ use calcine_coupler::physics::flow_range::{FlowRange, ReynoldsBasis};
 use calcine_coupler::physics::local::LocalGas;
 
 use super::model::Case;
-use super::splitting::short3;
-use super::units::short;
+use super::units::{short, short3};
 
 /// A number of a flow and the range that the source of a law states for it.
 pub(super) struct StatedRange {

@@ -8,7 +8,7 @@ use calcine_coupler::setup::GasPatch;
 
 use super::model::Case;
 use super::span;
-use super::splitting::short3;
+use super::units::short3;
 
 /// Diffusivities in m²/s that gases have, in pores as in the open.
 const DIFFUSIVITY: [f64; 2] = [1e-8, 1e-1];

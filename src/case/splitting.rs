@@ -10,7 +10,7 @@ use calcine_coupler::time::GasStorage;
 
 use super::model::{Case, MotionSpec, Population};
 use super::ranges;
-use super::units::short;
+use super::units::short3;
 
 /// Above this, a number of the time splitting gets a warning (docs/theory.md, TSM-6, TSM-8).
 const WARNING: f64 = 0.1;
@@ -132,12 +132,6 @@ impl<'a> Splitting<'a> {
         }
         all
     }
-}
-
-/// A computed number to three digits.
-pub(super) fn short3(number: f64) -> String {
-    let rounded = format!("{number:.2e}").parse().unwrap_or(number);
-    short(rounded)
 }
 
 /// The gas at the start, at the fastest inlet's superficial velocity.

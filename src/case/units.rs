@@ -241,6 +241,14 @@ pub fn short(number: f64) -> String {
         .to_string()
 }
 
+/// A computed number as warnings show it, to three digits.
+pub fn short3(number: f64) -> String {
+    format!("{number:.2e}")
+        .parse::<f64>()
+        .unwrap_or(number)
+        .to_string()
+}
+
 /// A difference, for bands: "0.5 K", "5 %"; degrees Celsius count as kelvins.
 pub fn difference(text: &str) -> Result<(f64, Dimension), UnitError> {
     let text = text.replace("degC", "K").replace("°C", "K");

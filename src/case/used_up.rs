@@ -1,7 +1,7 @@
 //! Where particles count as used up before they are converted.
 
 use super::model::Case;
-use super::splitting::short3;
+use super::units::short3;
 
 /// Passes over the reactions at most until nothing is left to react.
 const PASSES: usize = 100;

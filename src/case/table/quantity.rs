@@ -8,6 +8,9 @@ use super::{Key, KeyPresence, KeyValue, TableReader};
 use crate::case::keys::parse_number;
 use crate::case::units::{Dimension, UnitError, meant, quantities, shown};
 
+/// Of a rate as of an angular velocity.
+const PER_SECOND: Dimension = Dimension([0, 0, -1, 0, 0]);
+
 impl TableReader<'_> {
     /// A quantity with its unit, in SI, or a plain number, as it is declared; without it its default.
     pub fn number(&self, key: &str) -> Option<f64> {
@@ -273,9 +276,15 @@ impl TableReader<'_> {
                 key,
                 format!(
                     "needs {words} such as \"{example}\", but \"{text}\" is {}",
-                    found.words()
+                    match found {
+                        PER_SECOND => "a rate in 1/s".into(),
+                        _ => found.words(),
+                    }
                 ),
-                format!("write {words}"),
+                match dimension {
+                    Dimension::NONE => "write the number alone; what has a unit by its orders is in mol, m and s".into(),
+                    _ => format!("write {words}"),
+                },
             ),
             Err(UnitError::Unknown(unit)) => self.unread(
                 key,
