@@ -31,9 +31,8 @@ impl Stated {
 
     /// The end that is outside a range, if one is.
     fn outside(&self, range: (f64, f64)) -> Option<f64> {
-        let ends = [self.low, self.high].into_iter();
-        ends.filter(|value| *value < range.0 || *value > range.1)
-            .next_back()
+        let mut ends = [self.low, self.high].into_iter();
+        ends.rfind(|value| *value < range.0 || *value > range.1)
     }
 }
 
