@@ -18,7 +18,8 @@ pub const DIVERGED: u8 = 3;
 pub const PEER: u8 = 4;
 /// A quantity lies outside its band, or a solver breaks a law of the conformance suite.
 pub const OUTSIDE_BANDS: u8 = 5;
-/// Complete and inside its bands, but outside the ranges of laws, or not converged; with `--strict` only.
+/// Complete and inside its bands, but warned of: as the case was checked, outside the ranges of laws, or not converged; with
+/// `--strict` only.
 pub const WARNINGS: u8 = 6;
 /// Interrupted, with a checkpoint to go on from.
 pub const CHECKPOINTED: u8 = 75;
@@ -28,7 +29,7 @@ pub fn complete(summary: &Summary, strict: bool) -> u8 {
     let mut quantities = summary.quantities.values();
     if quantities.any(|quantity| quantity.verdict == Verdict::Fail) {
         OUTSIDE_BANDS
-    } else if strict && !summary.warnings.is_empty() {
+    } else if strict && !(summary.warnings.is_empty() && summary.case_warnings.is_empty()) {
         WARNINGS
     } else {
         OK

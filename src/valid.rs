@@ -8,6 +8,7 @@ use crate::assembly::{
     AssemblyError, GasBackend, Pairing, PreparedCase, native_parts, write_inputs,
 };
 use crate::case::model::Case;
+use crate::case::warnings::warnings;
 use crate::case::{CaseErrors, located, read_with, settle};
 use crate::laws::LawCatalogue;
 use crate::results::{self, ResultsError};
@@ -63,6 +64,7 @@ impl ValidCase {
         let void_fraction = prepared.void_fraction(&case);
         let void_fraction = void_fraction.map_err(|error| placed(&case, error))?;
         results::fits(&case, &prepared.mesh)?;
+        case.warnings = warnings(&case, &prepared.mesh, &prepared.particles, void_fraction);
         Ok(Self {
             case,
             prepared,

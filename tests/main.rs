@@ -58,5 +58,6 @@ mod support;
 mod test_programs;
 mod time_splitting;
 mod verification_beds;
+mod warned_and_refused;
 mod weights;
 mod window_drag;

@@ -142,6 +142,11 @@ impl StateFile {
             .insert(name.into(), Array::Counts(values.to_vec()));
     }
 
+    /// Names of all arrays, in alphabetical order.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.arrays.keys().map(String::as_str)
+    }
+
     /// The array of reals of a name.
     pub fn f64s(&self, name: &str) -> Result<&[f64], StateFileError> {
         match self.arrays.get(name) {

@@ -15,6 +15,7 @@ use calcine_physics::film::FilmCoefficient;
 use calcine_physics::thermo::Element;
 
 pub use columns::ParticleColumn;
+pub(crate) use columns::amounts;
 use error::named;
 pub use error::{ParticleModelError, RestoreError};
 use merged_column::{MergedColumn, merge};

@@ -43,22 +43,31 @@ pub fn frequency(case: &Case, mesh: &Mesh) -> f64 {
             .density(gas.pressure, kelvin, &gas.composition)
     };
     let (heavy, light) = (density(coldest), density(hottest));
-    let up = gas.gravity / -gravity;
+    (gravity * (heavy - light) / (0.5 * (heavy + light) * height(case, mesh))).sqrt()
+}
+
+/// Height in m of the mesh along gravity; zero where there is none.
+pub(super) fn height(case: &Case, mesh: &Mesh) -> f64 {
+    let gravity = case.gas.gravity;
+    if gravity.norm() == 0.0 {
+        return 0.0;
+    }
+    let up = gravity / -gravity.norm();
     let heights = mesh.topology().points.iter().map(|point| point.dot(&up));
     let (low, high) = heights.fold((f64::MAX, f64::MIN), |(low, high), z| {
         (low.min(z), high.max(z))
     });
-    (gravity * (heavy - light) / (0.5 * (heavy + light) * (high - low))).sqrt()
+    high - low
 }
 
 /// Lowest and highest temperature in K that the case states for gas, boundaries and particles.
-fn temperatures(case: &Case) -> (f64, f64) {
+pub(super) fn temperatures(case: &Case) -> (f64, f64) {
     let mut all = vec![case.gas.temperature];
-    all.extend(
-        case.particles
-            .iter()
-            .map(|population| population.temperature),
-    );
+    for population in &case.particles {
+        all.push(population.temperature);
+        let prescribed = population.prescribed_temperature.iter();
+        all.extend(prescribed.flat_map(|over_time| over_time.0.iter().map(|entry| entry.1)));
+    }
     let mut add = |schedule: &Schedule| all.extend(schedule.0.iter().map(|entry| entry.1));
     for (_, patch) in &case.gas.patches {
         if let Some((temperature, _)) = patch.entering() {

@@ -1,13 +1,14 @@
 //! What of a case that is in order is likely not meant.
 
-use std::collections::BTreeSet;
-
 use calcine_coupler::interior::reacting::Rate;
 use calcine_coupler::physics::kinetics::RateConstant;
 use calcine_coupler::physics::reaction::Arrhenius;
 
 use super::model::Case;
-use super::{expectations, patch_cautions, time_cautions, wall_cautions};
+use super::{
+    expectations, patch_cautions, reach_cautions, schedules, size_cautions, temperature_cautions,
+    time_cautions, used_up, wall_cautions,
+};
 
 /// Energies in J/mol that bonds have, no activation energy is above: that of carbon monoxide is 1072 kJ/mol.
 const STRONGEST_BOND: f64 = 1.1e6;
@@ -22,7 +23,11 @@ pub fn cautions(case: &Case) -> Vec<String> {
     all.extend(energies(case));
     all.extend(wrong_units(case));
     all.extend(orders_left_out(case));
-    all.extend(idle(case));
+    all.extend(reach_cautions::all(case));
+    all.extend(used_up::all(case));
+    all.extend(temperature_cautions::all(case));
+    all.extend(size_cautions::all(case));
+    all.extend(schedules::cautions(case));
     all.extend(patch_cautions::all(case));
     all.extend(wall_cautions::all(case));
     all.extend(time_cautions::all(case));
@@ -126,43 +131,6 @@ fn listed(names: &[&str]) -> Option<String> {
     }
 }
 
-/// Reactions of particles whose solids are in none and are made by none.
-fn idle(case: &Case) -> Vec<String> {
-    let chemistry = &case.chemistry;
-    let held = case.particles.iter().flat_map(|population| {
-        let own = chemistry.compositions.get(population.material);
-        own.into_iter().flatten().enumerate()
-    });
-    let mut there: BTreeSet<usize> = held.filter(|(_, y)| **y > 0.0).map(|(s, _)| s).collect();
-    let lacking = |there: &BTreeSet<usize>, solids: &[(usize, f64)]| {
-        let taken = solids.iter().filter(|(_, moles)| *moles < 0.0);
-        let mut missing = taken.filter(|(s, _)| !there.contains(s));
-        missing.next().map(|(s, _)| *s)
-    };
-    loop {
-        let before = there.len();
-        for one in &chemistry.reactions {
-            if lacking(&there, &one.solids).is_none() {
-                there.extend(one.solids.iter().map(|part| part.0));
-            }
-        }
-        if there.len() == before {
-            break;
-        }
-    }
-    let reactions = chemistry.reactions.iter();
-    let idle = reactions.filter_map(|one| Some((one, lacking(&there, &one.solids)?)));
-    idle.map(|(one, solid)| {
-        format!(
-            "`{}` never happens: it takes {}, which no particles are made of and no reaction that happens makes; state it in \
-             the `composition` of their material, or remove the reaction",
-            one.name,
-            chemistry.solids[solid].name()
-        )
-    })
-    .collect()
-}
-
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
@@ -233,17 +201,5 @@ pub(super) mod tests {
         assert!(text.starts_with("`rust` uses `O2`, which"), "{text}");
         let set = "reactions.rust.rate.orders={ Fe = 1, O2 = 0 }";
         assert!(said("reactions", &[set]).is_empty());
-    }
-
-    #[test]
-    fn a_reaction_whose_solids_are_nowhere_never_happens() {
-        let text = one(
-            "reactions",
-            &["materials.ore.composition={ mole = { Fe3O4 = 1 } }"],
-        );
-        assert!(
-            text.starts_with("`magnetite` never happens: it takes Fe2O3"),
-            "{text}"
-        );
     }
 }

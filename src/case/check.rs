@@ -1,6 +1,5 @@
 //! What `calcine check` says of a case that is in order.
 
-use std::f64::consts::PI;
 use std::fmt::Write as _;
 
 use calcine_adapters::openfoam::{chemistry, turbulence};
@@ -9,17 +8,11 @@ use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::film::{FilmDiffusivity, ReferenceDiffusivity};
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::law::NONE;
-use calcine_coupler::physics::local::LocalGas;
-use calcine_coupler::physics::numbers::VoidFraction;
-use calcine_coupler::physics::sphere;
-use calcine_coupler::setup::{GasPatch, InletFlow};
 
-use super::cautions::cautions;
-use super::model::{Case, MotionSpec, Population};
-use super::{buoyancy, mesh_shape, ranges, sizes};
-
-/// Above this, a number of the time splitting gets a warning (docs/theory.md, TSM-6, TSM-8).
-const WARNING: f64 = 0.1;
+use super::model::{Case, Population};
+use super::splitting::Splitting;
+use super::units::short;
+use super::{buoyancy, mesh_shape, sizes, span};
 
 /// Clocks, sizes, and how far the time splitting may be from the unsplit run.
 /// `void_fraction`: mean over the cells that hold particles.
@@ -30,28 +23,21 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
         let _ = writeln!(text, "  set            {change}");
     }
     let time = &case.time;
-    let (mut motion, mut windows, mut from) = (0.0, 0.0, 0.0);
-    for (index, &(start, factor)) in time.acceleration.steps().iter().enumerate() {
-        let next = time
-            .acceleration
-            .steps()
-            .get(index + 1)
-            .map_or(time.end, |step| step.0.min(time.end));
-        from = start.seconds().max(from);
-        let length = (next.seconds() - start.seconds()).max(0.0) / factor;
-        motion += length;
-        windows += (length / time.motion_window.seconds()).ceil();
-        let _ = writeln!(text, "  from {} of process time   AF {factor}", start);
+    for &(start, factor) in time.acceleration.steps() {
+        let factor = short(factor);
+        let _ = writeln!(text, "  from {start} of process time   AF {factor}");
     }
     let _ = writeln!(
         text,
-        "  process time   {} in {windows:.0} windows",
-        time.end
+        "  process time   {} in {} windows",
+        time.end,
+        span::windows(time)
     );
     let _ = writeln!(
         text,
-        "  motion time    {motion} s, windows of {}{}",
-        time.motion_window,
+        "  motion time    {} s, windows of {} s{}",
+        short(span::motion_time(time, [0.0, time.end.seconds()])),
+        short(time.motion_window.seconds()),
         if time.process_step.is_some() {
             " (chosen for `process_step`)"
         } else {
@@ -60,8 +46,7 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
     );
     let _ = writeln!(text, "  gas storage    {}", time.storage.name());
     let _ = writeln!(text, "  mesh           {cells} cells");
-    let (shape, badly_shaped) = mesh_shape::report(mesh);
-    for line in shape {
+    for line in mesh_shape::report(mesh).0 {
         let _ = writeln!(text, "                 {line}");
     }
     let _ = writeln!(
@@ -108,14 +93,16 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
         ),
         false => writeln!(text, "  buoyancy       none"),
     };
-    if let Some(warning) = buoyancy::warning(number) {
-        let _ = writeln!(text, "  warning: {warning}");
-    }
-    for warning in cautions(case).into_iter().chain(badly_shaped) {
+    for warning in &case.warnings {
         let _ = writeln!(text, "  warning: {warning}");
     }
     for population in &case.particles {
-        splitting(&mut text, case, population, void_fraction);
+        if let Some(splitting) = Splitting::of(case, population, void_fraction) {
+            let _ = writeln!(text, "  {}:", population.name);
+            for line in splitting.lines(case) {
+                let _ = writeln!(text, "    {line}");
+            }
+        }
         if let Some(line) = prescribed(population) {
             let _ = writeln!(text, "    {line}");
         }
@@ -283,74 +270,6 @@ fn stated(case: &Case) -> Vec<String> {
     names.chain(species).collect()
 }
 
-/// R, the error of process storage, and the window against the drag's own time.
-fn splitting(text: &mut String, case: &Case, population: &Population, eps: f64) {
-    let material = &case.materials[population.material];
-    let gas = &case.gas.properties;
-    let solid_capacity = material.heat_capacity.at(case.gas.temperature);
-    let factor = case.time.acceleration.largest();
-    let density = gas.density(
-        case.gas.pressure,
-        case.gas.temperature,
-        &case.gas.composition,
-    );
-    let capacity = gas.heat_capacity(case.gas.temperature, &case.gas.composition);
-    let solid = (1.0 - eps) * material.density * solid_capacity;
-    let ratio = factor * eps * density * capacity / solid;
-    let Some(local) = local(case, eps, density) else {
-        return;
-    };
-    let Ok(d) = population.sizes.mean() else {
-        return;
-    };
-    let nusselt = case.laws.heat_transfer.make().nusselt(&local, d);
-    let volume = sphere::volume_of_diameter(d);
-    let rate = nusselt * local.conductivity * PI * d / (material.density * volume * solid_capacity);
-    // Requirements TSM-8: the error of process storage in shares of the span.
-    let error = 0.11 * rate * factor * case.time.motion_window.seconds();
-    let warn = |value: f64| {
-        if value > WARNING {
-            "   warning: above 0.1"
-        } else {
-            ""
-        }
-    };
-    let _ = writeln!(text, "  {}:", population.name);
-    let _ = writeln!(
-        text,
-        "    R, gas heat stored over solid heat stored times AF   {ratio:.4}{}",
-        if case.time.storage == calcine_coupler::time::GasStorage::Accelerated {
-            warn(ratio)
-        } else {
-            " (matters with `accelerated` storage)"
-        }
-    );
-    let _ = writeln!(
-        text,
-        "    0.11 hA AF dt/(m c), error of process storage       {error:.2e}{}",
-        warn(error)
-    );
-    for line in ranges::lines(case, &local, d) {
-        let _ = writeln!(text, "    {line}");
-    }
-    if !case.laws.drag.is_none() {
-        let coefficient = case.laws.drag.make().coefficient(&local, d);
-        let response = material.density * volume / coefficient;
-        let window = case.time.motion_window.seconds();
-        let share = window / response;
-        let constant =
-            population.motion == MotionSpec::Free && !case.coupling.window_drag.follows();
-        let _ = writeln!(
-            text,
-            "    window over the drag's time m/K                      {share:.2e}{}",
-            match constant && share > 1.0 {
-                true => "   long: shorten it, or write coupling.window_drag = \"following\"",
-                false => "",
-            }
-        );
-    }
-}
-
 /// Of particles whose temperature is prescribed, between what values.
 fn prescribed(population: &Population) -> Option<String> {
     let values = population.prescribed_temperature.as_ref()?.0.iter();
@@ -365,31 +284,6 @@ fn prescribed(population: &Population) -> Option<String> {
     Some(format!(
         "temperature prescribed, {range}; the heat that it takes is `prescribed_heat` of the ledger"
     ))
-}
-
-/// The gas at the start, at the fastest inlet's superficial velocity.
-fn local(case: &Case, eps: f64, density: f64) -> Option<LocalGas> {
-    let fastest = case
-        .gas
-        .patches
-        .iter()
-        .filter_map(|(_, patch)| match patch {
-            GasPatch::Inlet {
-                flow: InletFlow::SuperficialVelocity(velocity),
-                ..
-            } => Some(velocity.0.iter().map(|entry| entry.1).fold(0.0, f64::max)),
-            _ => None,
-        })
-        .fold(case.gas.velocity.norm(), f64::max);
-    let gas = &case.gas.properties;
-    Some(LocalGas {
-        void_fraction: VoidFraction::new(eps).ok()?,
-        density,
-        viscosity: gas.viscosity(case.gas.temperature, &case.gas.composition),
-        conductivity: gas.conductivity(case.gas.temperature, &case.gas.composition),
-        heat_capacity: gas.heat_capacity(case.gas.temperature, &case.gas.composition),
-        slip: fastest / eps,
-    })
 }
 
 #[cfg(test)]

@@ -301,13 +301,21 @@ pub fn report(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Option<String>
     if let Some(impacts) = impact::hardest(case, motion, setup, speed) {
         text.push_str(&impacts.lines());
     }
-    if let Some(warning) = limits.warning(step) {
-        text.push_str(&format!("    warning: {warning}\n"));
-    }
     if let Some(reason) = moving::refusal(contacts) {
         text.push_str(&format!("    not with LIGGGHTS: {reason}\n"));
     }
     Some(text)
+}
+
+/// What of the contacts of a case is to be warned of.
+pub(super) fn warnings(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Vec<String> {
+    let (Told::Free(contacts), Some(motion)) = (&setup.motion, &case.motion) else {
+        return Vec::new();
+    };
+    let step = limits(case, motion, mesh, setup).warning(contacts.step);
+    let impacts = impact::hardest(case, motion, setup, fastest(case, mesh, setup));
+    let impact = impacts.and_then(|impacts| impacts.warning());
+    impact.into_iter().chain(step).collect()
 }
 
 #[cfg(test)]

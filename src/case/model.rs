@@ -44,6 +44,9 @@ pub struct Case {
     pub effective: String,
     /// What `--set` changed: key, new and old value.
     pub changes: Vec<String>,
+    /// What of the case is likely not meant, or out of range before anything runs, in words; empty until mesh and particles
+    /// are made (`ValidCase`).
+    pub warnings: Vec<String>,
     /// Clocks.
     pub time: TimeSpec,
     /// The gas mesh.

@@ -1,15 +1,18 @@
 //! What of the boundary of a case's gas is likely not meant.
 
+use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::{GasPatch, InletFlow};
 
 use super::model::Case;
-use super::units::shown;
+use super::units::{short3, shown};
 
 /// Share of a pressure by which another differs that is no longer a head of flow: between 1 bar and 1 atm it is 0.013.
 const UNIT_SLIP: f64 = 5e-3;
 /// Ratio of two pressures of one gas above which one of them is likely wrong.
 const FAR: f64 = 1.5;
+/// Share of the weight of a column of gas below which a difference of pressures does not hold it.
+const LACKING: f64 = 0.25;
 
 /// Warnings, in a fixed order.
 pub(super) fn all(case: &Case) -> Vec<String> {
@@ -126,21 +129,110 @@ fn driving_pressures(case: &Case) -> Vec<String> {
     driven
         .map(|(one, other, head)| {
             format!(
-                "`{}` and `{}` have pressures of {} and {} Pa: where nothing resists, the difference drives {:.0} m/s; 1 atm is \
+                "`{}` and `{}` have pressures of {} and {}: where nothing resists, the difference drives {:.0} m/s; 1 atm is \
                  101325 Pa, 1 bar 100000 Pa",
                 one.0,
                 other.0,
-                shown(one.1),
-                shown(other.1),
+                pressure_at(one),
+                pressure_at(other),
                 (2.0 * head / density).sqrt()
             )
         })
         .collect()
 }
 
+/// A pressure with the height where it holds, in words.
+fn pressure_at((_, pressure, height): &(&str, f64, Option<f64>)) -> String {
+    match height {
+        Some(height) => format!("{} Pa at {} m of height", shown(*pressure), short3(*height)),
+        None => format!("{} Pa", shown(*pressure)),
+    }
+}
+
+/// Outlets that stand at another height than an opening and have its pressure, without the weight of the gas between them.
+pub(super) fn columns(case: &Case, mesh: &Mesh) -> Vec<String> {
+    let gas = &case.gas;
+    let gravity = gas.gravity.norm();
+    let openings = gas.patches.iter().filter_map(|(name, patch)| match patch {
+        GasPatch::Opening {
+            pressure,
+            at,
+            gas: outside,
+        } => Some((name, pressure.at(0.0), *at, outside)),
+        _ => None,
+    });
+    let Some((opening, pressure, at, outside)) = openings.into_iter().next() else {
+        return Vec::new();
+    };
+    let composition = outside.composition.as_ref().map(|one| one.at(0.0));
+    let density = gas.properties.density(
+        pressure,
+        outside.temperature.at(0.0),
+        &composition.unwrap_or_default(),
+    );
+    let outlets = gas.patches.iter().filter_map(|(name, patch)| match patch {
+        GasPatch::Outlet { pressure, .. } => Some((name, pressure.at(0.0))),
+        _ => None,
+    });
+    let lacking = outlets.filter_map(|(name, own)| {
+        let height = (at - centre(mesh, name)?).dot(&gas.gravity) / gravity;
+        let weight = density * gravity * height;
+        // A suction, or a head that is meant, differs by another number.
+        let lacks = weight != 0.0 && (pressure - own).abs() < LACKING * weight.abs();
+        lacks.then(|| {
+            let due = pressure - weight;
+            format!(
+                "`{name}` has the pressure of the opening `{opening}`, {} Pa, but lies {} m {} where that holds: without the weight of the \
+                 gas between them, {} Pa, gas is driven through the domain against its buoyancy; write {} Pa, or make it an opening too",
+                shown(own),
+                short3(height.abs()),
+                if height > 0.0 { "above" } else { "below" },
+                short3(weight.abs()),
+                format_args!("{due:.3}")
+            )
+        })
+    });
+    lacking.collect()
+}
+
+/// Centre in m of a patch.
+fn centre(mesh: &Mesh, name: &str) -> Option<Vec3> {
+    let faces = mesh.patch(name)?.faces();
+    let parts = faces.map(|face| (mesh.face_centre()[face], mesh.face_area()[face].norm()));
+    let (sum, area) = parts.fold((Vec3::zeros(), 0.0), |(sum, area), (at, own)| {
+        (sum + at * own, area + own)
+    });
+    (area > 0.0).then(|| sum / area)
+}
+
 #[cfg(test)]
 mod tests {
     use crate::case::cautions::tests::{one, said};
+    use crate::case::warnings::tests::warned;
+
+    #[test]
+    fn an_outlet_above_an_opening_at_the_same_pressure_is_told() {
+        let lacks = |pressure: &str| {
+            let outlet = format!(
+                "gas.patch.top={{ outlet = {{ pressure = \"{pressure}\", backflow = {{ temperature = \"300 K\" }} }} }}"
+            );
+            let all = warned("chimney", &[&outlet]);
+            all.into_iter()
+                .find(|one| one.contains("has the pressure of the opening"))
+        };
+        let text = lacks("1 atm").unwrap();
+        assert!(
+            text.starts_with("`top` has the pressure of the opening `bottom`, 101325 Pa, but lies 0.2 m above where that holds"),
+            "{text}"
+        );
+        // 1.177 kg/m^3 of air over 0.2 m.
+        assert!(
+            text.contains("2.31 Pa") && text.contains("write 101322.692 Pa"),
+            "{text}"
+        );
+        assert_eq!(lacks("101322.69 Pa"), None);
+        assert_eq!(lacks("101300 Pa"), None);
+    }
 
     #[test]
     fn gas_that_has_no_way_out_is_told() {

@@ -4,18 +4,95 @@ use calcine_coupler::physics::flow_range::{FlowRange, ReynoldsBasis};
 use calcine_coupler::physics::local::LocalGas;
 
 use super::model::Case;
-use super::units::short;
+use super::units::{short, short3};
 
-/// One line for each number whose range a law of the case states: its value in this flow at a sphere of a diameter in
-/// m, the range, and a warning where it is outside.
-pub(super) fn lines(case: &Case, flow: &LocalGas, diameter: f64) -> Vec<String> {
+/// A number of a flow and the range that the source of a law states for it.
+pub(super) struct StatedRange {
+    /// What the law is of: `drag`.
+    law: &'static str,
+    /// What is in range or not.
+    what: &'static str,
+    value: f64,
+    range: (f64, f64),
+    /// The range in words.
+    stated: String,
+}
+
+impl StatedRange {
+    fn new(
+        law: &'static str,
+        what: &'static str,
+        value: f64,
+        range: (f64, f64),
+        unstated: (f64, f64),
+    ) -> Option<Self> {
+        if range == unstated {
+            return None;
+        }
+        let (low, high) = range;
+        let stated = match (low > unstated.0, high < unstated.1) {
+            (true, true) => format!("{} to {}", short(low), short(high)),
+            (true, false) => format!("from {}", short(low)),
+            _ => format!("up to {}", short(high)),
+        };
+        Some(Self {
+            law,
+            what,
+            value,
+            range,
+            stated,
+        })
+    }
+
+    fn is_outside(&self) -> bool {
+        !(self.range.0..=self.range.1).contains(&self.value)
+    }
+
+    /// A line of `check`.
+    pub(super) fn line(&self) -> String {
+        let label = format!("{}, range of {}", self.what, self.law);
+        let outside = match self.is_outside() {
+            true => "   outside",
+            false => "",
+        };
+        format!(
+            "{label:<52} {} ({}){outside}",
+            short3(self.value),
+            self.stated
+        )
+    }
+
+    /// A warning where the number is outside, of particles of this name.
+    pub(super) fn warning(&self, name: &str) -> Option<String> {
+        self.is_outside().then(|| {
+            // One void fraction stands for all particles.
+            let of = match self.what == VOID_FRACTION {
+                true => String::new(),
+                false => format!(" of `{name}`"),
+            };
+            format!(
+                "{}{of} is {}, outside the range of the law of {} ({}): its source has not shown that it holds there; choose another \
+                 law of `laws` if that matters",
+                self.what,
+                short3(self.value),
+                self.law,
+                self.stated
+            )
+        })
+    }
+}
+
+const VOID_FRACTION: &str = "void fraction";
+
+/// The numbers whose range a law of the case states, in this flow at a sphere of a diameter in m.
+pub(super) fn of(case: &Case, flow: &LocalGas, diameter: f64) -> Vec<StatedRange> {
     let laws = &case.laws;
     let ranges = [
         ("drag", laws.drag.make().range()),
         ("heat transfer", laws.heat_transfer.make().range()),
         ("mass transfer", laws.mass_transfer.make().range()),
     ];
-    let lines = ranges.iter().flat_map(|(law, range)| {
+    let numbers = ranges.iter().flat_map(|(law, range)| {
         let reynolds = match range.basis {
             ReynoldsBasis::Superficial => "Re of the superficial slip",
             ReynoldsBasis::Interstitial => "Re of the slip in the gaps",
@@ -23,14 +100,14 @@ pub(super) fn lines(case: &Case, flow: &LocalGas, diameter: f64) -> Vec<String> 
         let eps = flow.void_fraction.value();
         let (void_fraction, number) = (range.void_fraction, range.reynolds);
         [
-            line(
+            StatedRange::new(
                 law,
-                "void fraction",
+                VOID_FRACTION,
                 eps,
                 void_fraction,
                 FlowRange::UNSTATED.void_fraction,
             ),
-            line(
+            StatedRange::new(
                 law,
                 reynolds,
                 range.reynolds_of(flow, diameter),
@@ -39,37 +116,7 @@ pub(super) fn lines(case: &Case, flow: &LocalGas, diameter: f64) -> Vec<String> 
             ),
         ]
     });
-    lines.flatten().collect()
-}
-
-fn line(
-    law: &str,
-    what: &str,
-    value: f64,
-    range: (f64, f64),
-    unstated: (f64, f64),
-) -> Option<String> {
-    if range == unstated {
-        return None;
-    }
-    let (low, high) = range;
-    let stated = match (low > unstated.0, high < unstated.1) {
-        (true, true) => format!("{} to {}", short(low), short(high)),
-        (true, false) => format!("from {}", short(low)),
-        _ => format!("up to {}", short(high)),
-    };
-    let warning = match (low..=high).contains(&value) {
-        true => "",
-        false => "   warning: outside",
-    };
-    let label = format!("{what}, range of {law}");
-    Some(format!("{label:<52} {} ({stated}){warning}", short3(value)))
-}
-
-/// A computed number to three digits.
-fn short3(number: f64) -> String {
-    let rounded = format!("{number:.2e}").parse().unwrap_or(number);
-    short(rounded)
+    numbers.flatten().collect()
 }
 
 #[cfg(test)]
@@ -92,11 +139,9 @@ mod tests {
                 heat_capacity: 0.7,
                 slip: reynolds,
             };
-            let lines = lines(&case, &flow, 1.0);
-            let own = lines
-                .into_iter()
-                .filter(|line| line.contains("range of drag"));
-            own.collect::<Vec<_>>()
+            let numbers = of(&case, &flow, 1.0);
+            let own = numbers.iter().filter(|one| one.law == "drag");
+            own.map(StatedRange::line).collect::<Vec<_>>()
         };
         let ergun = told("ergun", 8.0);
         assert_eq!(ergun.len(), 1, "{ergun:?}");
@@ -108,7 +153,7 @@ mod tests {
         let fast = told("koch-hill", 1e5);
         assert!(
             fast.iter()
-                .any(|line| line.ends_with("(up to 200)   warning: outside")),
+                .any(|line| line.ends_with("(up to 200)   outside")),
             "{fast:?}"
         );
         assert!(

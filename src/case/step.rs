@@ -1,7 +1,7 @@
 //! The motion span of a case that states `time.process_step`.
 //!
-//! Where no particle moves, the motion clock carries nothing but the gas' inertia, and its momentum
-//! is quasi-steady. Its span then is a matter of convergence alone (docs/theory.md, TSM-8).
+//! Where no particle moves, the motion clock carries nothing but the gas' inertia, and its flow
+//! follows its boundary where the run has motion time enough. Its span then is a matter of convergence alone (docs/theory.md, TSM-8).
 
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::setup::{GasPatch, InletFlow, Schedule};
@@ -24,15 +24,7 @@ pub fn settle(case: &mut Case, mesh: &Mesh) {
     let Some(step) = case.time.process_step else {
         return;
     };
-    let volume: f64 = mesh.cell_volume().iter().sum();
-    let size = (volume / mesh.cells() as f64).cbrt();
-    let pores = 1.0 - case.coupling.max_solid_fraction;
-    let speed = fastest(case, mesh) / pores;
-    let crossing = CELLS_CROSSED * size / speed;
-    // N √(Δτ/Δt) Δt = 1
-    let frequency = buoyancy::frequency(case, mesh);
-    let buoyant = BUOYANT_NUMBER.powi(2) / (frequency.powi(2) * step.seconds());
-    let span = crossing.min(buoyant).min(step.seconds());
+    let span = motion_span(case, mesh, step.seconds());
     // Shorter than a tick means a gas beyond any speed; one window a step is then as good.
     let chosen = Ticks::from_seconds(span)
         .ok()
@@ -44,33 +36,50 @@ pub fn settle(case: &mut Case, mesh: &Mesh) {
     }
 }
 
+/// Motion span in s for a process step in s.
+pub(super) fn motion_span(case: &Case, mesh: &Mesh, step: f64) -> f64 {
+    let volume: f64 = mesh.cell_volume().iter().sum();
+    let size = (volume / mesh.cells() as f64).cbrt();
+    let pores = 1.0 - case.coupling.max_solid_fraction;
+    let speed = fastest(case, mesh) / pores;
+    let crossing = CELLS_CROSSED * size / speed;
+    // N √(Δτ/Δt) Δt = 1
+    let frequency = buoyancy::frequency(case, mesh);
+    let buoyant = BUOYANT_NUMBER.powi(2) / (frequency.powi(2) * step);
+    crossing.min(buoyant).min(step)
+}
+
 /// The largest superficial velocity in m/s of what flows in or stands in the gas at the start.
 fn fastest(case: &Case, mesh: &Mesh) -> f64 {
-    let gas = &case.gas;
-    let start = gas.velocity.norm();
-    let largest = |schedule: &Schedule| schedule.0.iter().map(|entry| entry.1).fold(0.0, f64::max);
-    let inlets = gas.patches.iter().filter_map(|(name, patch)| match patch {
-        GasPatch::Inlet {
-            flow, temperature, ..
-        } => Some(match flow {
-            InletFlow::SuperficialVelocity(velocity) => largest(velocity),
-            InletFlow::MassFlow(flow) => {
-                let composition = &gas.composition;
-                let density =
-                    gas.properties
-                        .density(gas.pressure, largest(temperature), composition);
-                largest(flow) / (density * area(mesh, name))
-            }
-        }),
-        _ => None,
-    });
+    let patches = case.gas.patches.iter();
+    let inlets = patches.map(|(name, patch)| fastest_in(case, mesh, name, patch));
     inlets
         .filter(|speed| speed.is_finite())
-        .fold(start, f64::max)
+        .fold(case.gas.velocity.norm(), f64::max)
+}
+
+/// The largest superficial velocity in m/s at an inlet; zero at any other patch.
+pub(super) fn fastest_in(case: &Case, mesh: &Mesh, name: &str, patch: &GasPatch) -> f64 {
+    let gas = &case.gas;
+    let largest = |schedule: &Schedule| schedule.0.iter().map(|entry| entry.1).fold(0.0, f64::max);
+    let GasPatch::Inlet {
+        flow, temperature, ..
+    } = patch
+    else {
+        return 0.0;
+    };
+    match flow {
+        InletFlow::SuperficialVelocity(velocity) => largest(velocity),
+        InletFlow::MassFlow(flow) => {
+            let (kelvin, composition) = (largest(temperature), &gas.composition);
+            let density = gas.properties.density(gas.pressure, kelvin, composition);
+            largest(flow) / (density * area(mesh, name))
+        }
+    }
 }
 
 /// Area of a patch in m².
-fn area(mesh: &Mesh, name: &str) -> f64 {
+pub(super) fn area(mesh: &Mesh, name: &str) -> f64 {
     let faces = mesh.patch(name).map(|patch| patch.faces());
     faces.map_or(0.0, |faces| {
         mesh.face_area()[faces].iter().map(|area| area.norm()).sum()

@@ -45,6 +45,11 @@ const UNITS: &[(&str, f64, [i8; 5])] = &[
     ("mbar", 1e2, [-1, 1, -2, 0, 0]),
     // Standard atmosphere, exact (CGPM 1954).
     ("atm", 101_325.0, [-1, 1, -2, 0, 0]),
+    // 1 lbf/in², exact.
+    ("psi", 6_894.757_293_168, [-1, 1, -2, 0, 0]),
+    // Thermochemical calories, those of mechanisms.
+    ("cal", 4.184, [2, 1, -2, 0, 0]),
+    ("kcal", 4184.0, [2, 1, -2, 0, 0]),
     ("J", 1.0, [2, 1, -2, 0, 0]),
     ("kJ", 1e3, [2, 1, -2, 0, 0]),
     ("MJ", 1e6, [2, 1, -2, 0, 0]),
@@ -111,7 +116,21 @@ pub enum UnitError {
     Unknown(String),
 }
 
+/// A symbol and its power: `m^3`, `m3`, which no symbol ends like, and `m-3`.
+fn raised(part: &str) -> Option<(&str, &str)> {
+    if let Some(both) = part.split_once('^') {
+        return Some(both);
+    }
+    let end = part.find(|c: char| c.is_ascii_digit() || c == '-')?;
+    let (symbol, power) = part.split_at(end);
+    let plain = power.strip_prefix('-').unwrap_or(power);
+    let is_power = plain.len() == 1 && !symbol.is_empty();
+    is_power.then_some((symbol, power))
+}
+
 fn unit(text: &str) -> Result<Unit, UnitError> {
+    let plain = text.replace('²', "^2").replace('³', "^3");
+    let text = plain.as_str();
     if text == "degC" || text == "°C" {
         return Ok(Unit {
             factor: 1.0,
@@ -123,7 +142,7 @@ fn unit(text: &str) -> Result<Unit, UnitError> {
     let mut rest = text;
     loop {
         let end = rest.find(['/', '*', '·', ' ']).unwrap_or(rest.len());
-        let (symbol, power) = match rest[..end].split_once('^') {
+        let (symbol, power) = match raised(&rest[..end]) {
             Some((symbol, power)) => {
                 let power = power.parse::<i8>().ok().filter(|p| (-9..=9).contains(p));
                 (
@@ -170,6 +189,10 @@ pub fn quantities(text: &str) -> Result<(Vec<f64>, Dimension), UnitError> {
             numbers.push(number);
             rest = rest[end..].trim_start();
             continue;
+        }
+        // "1/s" behind a number is its unit.
+        if !numbers.is_empty() && word.starts_with("1/") {
+            break;
         }
         // "2mm": a number with its unit attached
         let split = word.find(|c: char| !(c.is_ascii_digit() || ".+-".contains(c)));
@@ -218,6 +241,14 @@ pub fn short(number: f64) -> String {
         .to_string()
 }
 
+/// A computed number as warnings show it, to three digits.
+pub fn short3(number: f64) -> String {
+    format!("{number:.2e}")
+        .parse::<f64>()
+        .unwrap_or(number)
+        .to_string()
+}
+
 /// A difference, for bands: "0.5 K", "5 %"; degrees Celsius count as kelvins.
 pub fn difference(text: &str) -> Result<(f64, Dimension), UnitError> {
     let text = text.replace("degC", "K").replace("°C", "K");
@@ -251,6 +282,15 @@ mod tests {
         assert_eq!(dimension, Dimension::MOLAR_MASS);
         assert_eq!(one("180 deg"), (std::f64::consts::PI, Dimension::NONE));
         assert_eq!(one("9.81 m/s^2").1, Dimension::ACCELERATION);
+        assert_eq!(one("2700 kg/m3").0, 2700.0);
+        assert_eq!(one("2700 kg/m³"), one("2700 kg/m^3"));
+        assert_eq!(one("2700 kg m-3"), one("2700 kg/m^3"));
+        assert_eq!(one("5 W/m2/K"), one("5 W/m^2/K"));
+        assert_eq!(one("25 cm3/min"), one("25 cm^3/min"));
+        assert_eq!(one("30 kcal/mol"), one("125.52 kJ/mol"));
+        assert!((one("14.7 psi").0 / 101_353.0 - 1.0).abs() < 1e-5);
+        assert_eq!(one("1e5 1/s").0, 1e5);
+        assert!(matches!(quantities("5 W/m2K"), Err(UnitError::Unknown(unit)) if unit == "m2K"));
         assert_eq!(one("1e-3 m"), (1e-3, Dimension::LENGTH));
         assert_eq!(one("0.6"), (0.6, Dimension::NONE));
         let (flow, dimension) = one("25 cm^3/min");

@@ -58,6 +58,13 @@ fn pairings(text: &str) -> Result<Chosen, String> {
                 .ok_or_else(|| format!("`{name}` is not a pairing: choose of {known}, or all"))
         })
         .collect::<Result<_, _>>()?;
+    let twice = (1..chosen.len()).find(|&k| chosen[..k].contains(&chosen[k]));
+    if let Some(k) = twice {
+        return Err(format!(
+            "`{}` stands there twice: a comparison is of different pairings, each once",
+            chosen[k].name()
+        ));
+    }
     if chosen.len() < 2 {
         return Err(format!(
             "a comparison needs at least two pairings of {known}"

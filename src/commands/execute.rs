@@ -14,12 +14,11 @@ use super::failure::{Failure, chain};
 use super::parallel::Transport;
 use crate::assembly::{Pairing, PreparedCase, SolverStarts};
 use crate::case::buoyancy;
-use crate::case::cautions::cautions;
 use crate::case::model::Case;
 use crate::exit;
 use crate::progress::Progress;
-use crate::results::Summary;
 use crate::results::inertial_number::InertialNumberStatistics;
+use crate::results::{Summary, difference};
 use crate::simulation::{self, Ending, Simulation, SimulationError};
 
 /// How a case is run.
@@ -69,7 +68,7 @@ pub(super) fn execute(
     let interrupts = Interrupts::default();
     let _signals = SignalThread::start(&interrupts, settings.stop_after)?;
     tell_buoyancy(case, prepared, settings.progress);
-    for warning in cautions(case) {
+    for warning in &case.warnings {
         eprintln!("warning: {warning}");
     }
     let mut builder = Simulation::open(&case.path)
@@ -124,20 +123,18 @@ fn tell_buoyancy(case: &Case, prepared: &PreparedCase, shown: bool) {
         let limit = buoyancy::LIMIT;
         eprintln!("buoyancy: N sqrt(AF) dt is {number:.2e} (resolved below {limit})");
     }
-    if let Some(warning) = buoyancy::warning(number) {
-        eprintln!("warning: {warning}");
-    }
 }
 
 /// `--resume` of a run that is complete: there is nothing to do.
 fn over(case: &Case, out: &Path, summary: &Summary, strict: bool) -> Result<Done, Failure> {
     if summary.case.hash != case.hash {
         let message = format!(
-            "the run in {} is complete, and its case differs from this one (hash {} there, {} \
-             here): `--from {0}` continues from it, into another folder",
+            "the run in {} is complete, and its case differs from this one (hash {} there, {} here){}; `--from {0}` continues from \
+             it, into another folder",
             out.display(),
             summary.case.hash,
-            case.hash
+            case.hash,
+            difference(out, &case.effective)
         );
         return Err(Failure::new(exit::CASE, message));
     }
@@ -195,6 +192,22 @@ fn closing(summary: &Summary) -> String {
         let _ = writeln!(
             text,
             "  windows were cut {cuts} times (coupling.exchange.cuts)"
+        );
+    }
+    let used_up = summary.passed.used_up;
+    if used_up.rows > 0 {
+        let _ = writeln!(
+            text,
+            "  used up (burnt out) and taken out: {} particles, with {} kg left of them",
+            used_up.rows,
+            printed(used_up.mass_kg)
+        );
+    }
+    let of_case = summary.case_warnings.len();
+    if of_case > 0 {
+        let _ = writeln!(
+            text,
+            "  warnings of the case: {of_case}, told at the start, in log/calcine.log and in report.html"
         );
     }
     for (name, warning) in &summary.warnings {

@@ -25,7 +25,7 @@ const EXIT_CODES: &str = "
 | 3 | a solver diverged, the inside of a particle could not be integrated, or a law has no value for the state that it got |
 | 4 | a solver died, was silent, or could not be started |
 | 5 | a quantity lies outside its band, or a solver breaks a law of `calcine conform` |
-| 6 | with `--strict`: complete and within all bands, but with [warnings](results.md#warnings) |
+| 6 | with `--strict`: complete and within all bands, but with [warnings](results.md#warnings), of `check` too |
 | 75 | stopped with a checkpoint; `--resume` continues |
 ";
 

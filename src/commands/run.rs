@@ -49,10 +49,11 @@ pub(super) struct Arguments {
     /// Shows no progress bar.
     #[arg(long)]
     quiet: bool,
-    /// Writes a checkpoint and stops after this wall time, for example `23h30m`.
+    /// Writes a checkpoint and stops after this wall time, for example `23h30m`, `90 s`, or a plain number of seconds.
     #[arg(long, value_name = "TIME", value_parser = wall_time)]
     stop_after: Option<Duration>,
-    /// Ends with exit code 6 where a complete run left the range of a law or did not converge somewhere.
+    /// Ends with exit code 6 where a complete run has warnings: of its case, as `check` tells them, or of what left the
+    /// range of a law or did not converge.
     #[arg(long)]
     strict: bool,
 }
@@ -137,6 +138,7 @@ fn wall_time(text: &str) -> Result<Duration, String> {
                 number.push(letter);
                 continue;
             }
+            ' ' => continue,
             's' => 1.0,
             'm' => 60.0,
             'h' => 3600.0,
@@ -164,6 +166,9 @@ mod tests {
     fn a_wall_time_is_read_in_days_hours_minutes_and_seconds() {
         assert_eq!(wall_time("23h30m"), Ok(Duration::from_secs(84_600)));
         assert_eq!(wall_time("90"), Ok(Duration::from_secs(90)));
+        assert_eq!(wall_time("1 s"), Ok(Duration::from_secs(1)));
+        assert_eq!(wall_time("2 h 30 m"), Ok(Duration::from_secs(9000)));
+        assert!(wall_time(" ").is_err());
         assert_eq!(wall_time("1d"), Ok(Duration::from_secs(86_400)));
         assert!(wall_time("soon").is_err());
         assert!(wall_time("0s").is_err());

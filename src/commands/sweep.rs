@@ -15,7 +15,7 @@ use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStarts};
 use crate::compare::deviation::{Deviation, deviation};
 use crate::exit;
 use crate::results::read::Series;
-use crate::results::{ResultsError, Summary, unoccupied};
+use crate::results::{ResultsError, Summary, Verdict, unoccupied};
 
 /// Runs a case once for each combination of values and prints one table.
 ///
@@ -56,6 +56,8 @@ struct Point {
     /// `key=value`, in the order of `--set`.
     settings: Vec<String>,
     folder: PathBuf,
+    /// The exit code of its run.
+    code: u8,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
@@ -94,8 +96,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     for settings in combinations {
         let folder = out.join(folder_name(&settings));
         say(settings.join("  "))?;
-        one(arguments, &settings, &folder, &go_on)?;
-        points.push(Point { settings, folder });
+        let code = one(arguments, &settings, &folder, &go_on)?;
+        points.push(Point {
+            settings,
+            folder,
+            code,
+        });
     }
     let table = table(&points, &axes, reference, arguments.span)?;
     // Written before anything is printed: standard output may be lost.
@@ -104,7 +110,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     });
     say(&table)?;
     written.transpose()?;
-    Ok(exit::OK)
+    Ok(match points.iter().any(|point| point.code != exit::OK) {
+        true => exit::OUTSIDE_BANDS,
+        false => exit::OK,
+    })
 }
 
 /// Whether a file can be written; it stays as it is, or absent.
@@ -125,7 +134,7 @@ fn one(
     settings: &[String],
     folder: &Path,
     go_on: &str,
-) -> Result<(), Failure> {
+) -> Result<u8, Failure> {
     let (case, prepared) = read_and_prepare(&arguments.case, settings)?;
     let pairing = Pairing {
         gas: arguments.gas,
@@ -147,7 +156,7 @@ fn one(
     if done.code == exit::CHECKPOINTED {
         return Err(Failure::new(done.code, done.text));
     }
-    Ok(())
+    Ok(done.code)
 }
 
 /// `key=a,b,c` as `key=a`, `key=b`, `key=c`; commas inside brackets or quotes do not separate.
@@ -222,7 +231,7 @@ fn table(
     span: Option<f64>,
 ) -> Result<String, Failure> {
     let failed = |error: &ResultsError| Failure::told(exit::OTHER, error);
-    let mut rows: Vec<Vec<String>> = Vec::new();
+    let (mut rows, mut verdicts): (Vec<Vec<String>>, Vec<String>) = Default::default();
     let mut header: Vec<String> = axes
         .iter()
         .filter_map(|axis| axis.first()?.split_once('=').map(|(key, _)| key.to_owned()))
@@ -264,7 +273,15 @@ fn table(
                 }
             }
         }
+        verdicts.push(verdict(&summary));
         rows.push(row);
+    }
+    let columns = rows.iter().map(Vec::len).fold(header.len(), usize::max);
+    header.resize(columns, String::new());
+    header.push("verdict".into());
+    for (row, verdict) in rows.iter_mut().zip(verdicts) {
+        row.resize(columns, String::new());
+        row.push(verdict);
     }
     let mut text = format!(
         "| {} |\n|{}\n",
@@ -275,6 +292,26 @@ fn table(
         let _ = writeln!(text, "| {} |", row.join(" | "));
     }
     Ok(text)
+}
+
+/// How a run stands: which quantities are outside their bands, and how many kinds of warning it has.
+fn verdict(summary: &Summary) -> String {
+    let quantities = summary.quantities.iter();
+    let outside: Vec<&str> = quantities
+        .filter(|(_, quantity)| quantity.verdict == Verdict::Fail)
+        .map(|(name, _)| name.as_str())
+        .collect();
+    let mut text = match outside[..] {
+        [] if summary.verdict == Verdict::None => "no bands stated".to_owned(),
+        [] => summary.verdict.word().to_owned(),
+        _ => format!("outside: {}", outside.join(", ")),
+    };
+    match summary.warnings.len() + summary.case_warnings.len() {
+        0 => {}
+        1 => text += "; 1 warning",
+        count => text += &format!("; {count} warnings"),
+    }
+    text
 }
 
 /// The point that differs from `point` only in having the reference's value.

@@ -61,6 +61,14 @@ pub struct FieldDifference {
 }
 
 impl FieldDifference {
+    /// Where a difference is largest, in words; nowhere where there is none.
+    pub(super) fn place(&self, norms: &Norms) -> String {
+        match norms.maximum == 0.0 {
+            true => "–".into(),
+            false => format!("{} {}", self.per, norms.place),
+        }
+    }
+
     /// The pair that differs most.
     pub fn worst(&self) -> Option<&Norms> {
         let mut pairs = self.pairs.iter();

@@ -60,6 +60,13 @@ pub fn compare(case: &Case, runs: &[(String, PathBuf)]) -> Result<Comparison, Co
 }
 
 impl Comparison {
+    /// True where the case states a band of some difference.
+    pub(super) fn has_bands(&self) -> bool {
+        let quantities = self.quantities.iter().map(|one| one.verdict);
+        let mut all = quantities.chain(self.fields.iter().map(|field| field.verdict));
+        all.any(|verdict| verdict != Agreement::None)
+    }
+
     /// The tables for a terminal.
     pub fn table(&self) -> String {
         table::render(self)

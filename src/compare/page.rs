@@ -12,6 +12,7 @@ use crate::report::plot::{Curve, Plot, Stroke, TIME, between};
 /// The page.
 pub(super) fn render(comparison: &Comparison) -> String {
     let (class, word) = match comparison.agrees {
+        true if !comparison.has_bands() => ("none", "no bands stated"),
         true => ("pass", "the runs agree"),
         false => ("fail", "outside its bands"),
     };
@@ -102,7 +103,7 @@ fn fields(comparison: &Comparison) -> String {
                 with_unit(worst.l2, 3, &field.unit),
                 with_unit(worst.maximum, 3, &field.unit),
                 percent(worst.maximum, field.span),
-                format!("{} {}", field.per, worst.place),
+                field.place(worst),
                 span(worst.at_s),
                 field.band.clone().unwrap_or_else(|| "–".into()),
                 word(field.verdict),

@@ -89,7 +89,7 @@ fn fields(comparison: &Comparison) -> Vec<Vec<String>> {
             with_unit(worst.l2, 3, &field.unit),
             with_unit(worst.maximum, 3, &field.unit),
             percent(worst.maximum, field.span),
-            format!("{} {}", field.per, worst.place),
+            field.place(worst),
             span(worst.at_s),
             field.band.clone().unwrap_or_else(|| "–".into()),
             field.verdict.word().into(),
@@ -124,7 +124,12 @@ pub(super) fn verdict(comparison: &Comparison) -> String {
         .filter(|run| !run.complete)
         .map(|run| run.name.as_str())
         .collect();
-    let mut text = if outside.is_empty() {
+    let mut text = if !comparison.has_bands() {
+        format!(
+            "{} runs, no bands stated: add `agree` to a quantity to have them judged.",
+            comparison.runs.len()
+        )
+    } else if outside.is_empty() {
         format!(
             "{} runs agree within the case's bands.",
             comparison.runs.len()

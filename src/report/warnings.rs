@@ -1,4 +1,4 @@
-//! What was outside the ranges of laws, or did not converge, and the error with which a run ended.
+//! What the case was warned of, what was outside the ranges of laws, or did not converge, and the error with which a run ended.
 
 use super::page::{escape, table};
 use crate::results::Summary;
@@ -15,6 +15,16 @@ pub(super) fn render(summary: &Summary) -> String {
                 escape(&failure.message)
             )
         });
+    if !summary.case_warnings.is_empty() {
+        let lines = summary.case_warnings.iter();
+        let lines: Vec<String> = lines
+            .map(|one| format!("<li>{}</li>", escape(one)))
+            .collect();
+        html.push_str(&format!(
+            "<p>Of the case, as <code>calcine check</code> tells them:</p><ul>{}</ul>",
+            lines.concat()
+        ));
+    }
     let rows: Vec<Vec<String>> = summary
         .warnings
         .iter()

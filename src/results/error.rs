@@ -30,7 +30,7 @@ pub enum ResultsError {
     },
     /// A checkpoint or the start of a run of another case.
     #[error(
-        "{} is of a case with the hash {stored}, this case has {hash}",
+        "{} is of a case with the hash {stored}, this case has {hash}{keys}",
         path.display()
     )]
     #[diagnostic(help("resume with the case file and the `--set` values that the run began with"))]
@@ -41,6 +41,8 @@ pub enum ResultsError {
         stored: String,
         /// The hash of this case.
         hash: String,
+        /// Which keys differ, as the end of the sentence.
+        keys: String,
     },
     /// A directory in which no run was begun.
     #[error("{} is not the results folder of a run: {fact}", path.display())]

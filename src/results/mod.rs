@@ -5,6 +5,7 @@
 //! `probes/probes_NNNN.csv` where the case has probes, and at its end `voids.csv` where it has a bed.
 //! Every time in them is process time, unless its name begins with `motion_`.
 
+mod difference;
 mod error;
 pub(crate) mod files;
 // Only HDF5 holds descriptions.
@@ -30,6 +31,7 @@ pub mod warnings;
 use calcine_coupler::mesh::Mesh;
 
 use crate::case::model::Case;
+pub(crate) use difference::difference;
 pub use error::ResultsError;
 pub use files::{CASE, SERIES, STATUS, STORE, SUMMARY};
 pub use recorder::{Recorder, RunInfo, unoccupied};

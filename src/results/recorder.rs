@@ -84,7 +84,7 @@ impl Recorder {
             files::directory(&out.join(folder))?;
         }
         let counters = match resume {
-            Some(checkpoint) => resume::restore(checkpoint, out, &case.hash)?,
+            Some(checkpoint) => resume::restore(checkpoint, out, case)?,
             None => Counters {
                 case_hash: case.hash.clone(),
                 from: info.from.clone(),
@@ -400,6 +400,7 @@ impl Recorder {
             motion_time_s: moment.clocks.motion.seconds(),
             process_time_s: moment.clocks.process.seconds(),
             process_end_s: case.time.end.seconds(),
+            case_warnings: case.warnings.clone(),
             windows: moment.windows,
             particles: moment.particles.len(),
             cells: moment.mesh.cells(),

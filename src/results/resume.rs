@@ -6,11 +6,13 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use super::difference;
 use super::inertial_number::InertialNumberStatistics;
 use super::quantities::Captured;
 use super::summary::{ConvergenceSummary, ProcessorTimes, Provenance, Summary, Verdict, WallTimes};
 use super::warnings::Warnings;
 use super::{ResultsError, SERIES, STORE, SUMMARY, files};
+use crate::case::model::Case;
 
 /// Name of the counters in a checkpoint directory.
 const COUNTERS: &str = "recorder.json";
@@ -88,16 +90,17 @@ pub(super) fn save(
 pub(super) fn restore(
     checkpoint: &Path,
     results: &Path,
-    case_hash: &str,
+    case: &Case,
 ) -> Result<Counters, ResultsError> {
     let path = checkpoint.join(COUNTERS);
     let counters: Counters = serde_json::from_str(&files::read(&path)?)
         .map_err(|error| ResultsError::content(&path, error.to_string()))?;
-    if counters.case_hash != case_hash {
+    if counters.case_hash != case.hash {
         return Err(ResultsError::OtherCase {
             path,
             stored: counters.case_hash,
-            hash: case_hash.into(),
+            hash: case.hash.clone(),
+            keys: difference(results, &case.effective),
         });
     }
     let count = counters.snapshots.len();
@@ -125,17 +128,18 @@ pub(super) fn restore(
 
 /// True where the run in this directory ended before its end, so that it may begin again; false where it came to its
 /// end. The start of another case is an error.
-pub fn may_start_again(results: &Path, case_hash: &str) -> Result<bool, ResultsError> {
+pub fn may_start_again(results: &Path, case: &Case) -> Result<bool, ResultsError> {
     let path = results.join(SUMMARY);
     if !path.exists() {
         return Ok(true);
     }
     let summary = Summary::read(results)?;
-    if summary.case.hash != case_hash {
+    if summary.case.hash != case.hash {
         return Err(ResultsError::OtherCase {
             path,
             stored: summary.case.hash,
-            hash: case_hash.into(),
+            hash: case.hash.clone(),
+            keys: difference(results, &case.effective),
         });
     }
     Ok(matches!(

@@ -99,6 +99,9 @@ pub struct Summary {
     pub quantities: BTreeMap<String, QuantityResult>,
     /// Convergence of the gas, over the run.
     pub convergence: ConvergenceSummary,
+    /// What `calcine check` warns of in the case, in its words.
+    #[serde(default)]
+    pub case_warnings: Vec<String>,
     /// What was outside the ranges of laws, or did not converge, by kinds.
     #[serde(default)]
     pub warnings: Warnings,

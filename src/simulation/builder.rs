@@ -177,7 +177,7 @@ impl SimulationBuilder {
         }
         let resume = self.resume && folder::has_checkpoint(&out);
         let again = self.resume && !resume;
-        if again && !(folder::begun_before(&out) && results::may_start_again(&out, &case.hash)?) {
+        if again && !(folder::begun_before(&out) && results::may_start_again(&out, case)?) {
             return Err(SimulationError::NoCheckpoint { folder: out });
         }
         if resume {
@@ -236,7 +236,7 @@ impl SimulationBuilder {
             let mut run = assemble_with(case, prepared, &settings, &mut supervisor, &own)?;
             let number = buoyancy::number(case, &prepared.mesh);
             info!("N sqrt(AF) dt is {number:.2e}");
-            if let Some(warning) = buoyancy::warning(number) {
+            for warning in &case.warnings {
                 warn!("{warning}");
             }
             run.begin(&mut super::all(&mut recorder, &mut observers))?;

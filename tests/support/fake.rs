@@ -55,6 +55,7 @@ pub fn case() -> Case {
         title: "Hot air heats a column of ten spheres".into(),
         path: PathBuf::from("heated-column.toml"),
         hash: "0123456789abcdef".repeat(4),
+        warnings: Vec::new(),
         changes: Vec::new(),
         effective: "format = 1\n".into(),
         time: TimeSpec {

@@ -244,6 +244,31 @@ pub enum OriginError {
         /// Populations of this case.
         expected: String,
     },
+    /// Particles of other solids.
+    #[error(
+        "the particles of the checkpoint {path} are made of the solids [{found}], those of this case of [{expected}]: a run \
+         continues with the same solids only; leave the `composition` of `materials`, and the solids of `reactions`, as they were"
+    )]
+    Solids {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Solids there.
+        found: String,
+        /// Solids of this case.
+        expected: String,
+    },
+    /// Particles whose inside is described otherwise.
+    #[error(
+        "what is inside the particles of the checkpoint {path} is described otherwise in this case ({cause}): a run continues \
+         with the same kinds of material for each population only; leave which `materials` have a `composition`, and which \
+         particles have them, as they were"
+    )]
+    Inside {
+        /// The checkpoint.
+        path: PathBuf,
+        /// What does not suit.
+        cause: String,
+    },
     /// Another gas mixture.
     #[error(
         "the gas of the checkpoint {path} has the species [{found}], this case has [{expected}]: a \

@@ -9,6 +9,7 @@ use super::checkpoint_paths::CheckpointPaths;
 use super::error::{OriginError, RunError};
 use crate::checkpoint::{StateFile, StateFileError};
 use crate::mesh::Mesh;
+use crate::models::amounts;
 use crate::motion::Motion;
 use crate::part::Gas as _;
 use crate::setup::{GasStart, ParticleSetup};
@@ -61,6 +62,11 @@ impl Origin {
             clocks,
             state,
         })
+    }
+
+    /// Solids that the particles are made of, by name.
+    fn solids(&self) -> Vec<String> {
+        amounts(self.state.names())
     }
 
     /// The gas as any solver may start from it.
@@ -295,7 +301,23 @@ impl CoupledRun {
     /// feeds have drawn and owe. Gas and particles were built from it already (see
     /// [`Origin::take_particles`]); clocks and ledger stay at zero.
     pub fn take_over(&mut self, origin: &Origin) -> Result<(), RunError> {
-        self.restore_particles(&origin.state)?;
+        let (found, expected) = (origin.solids(), self.interior.models.amounts());
+        let path = || origin.path.clone();
+        if found != expected {
+            return Err(OriginError::Solids {
+                path: path(),
+                found: found.join(", "),
+                expected: expected.join(", "),
+            }
+            .into());
+        }
+        if let Err(error) = self.restore_particles(&origin.state) {
+            let RunError::Restore(cause) = error else {
+                return Err(error);
+            };
+            let (path, cause) = (path(), cause.to_string());
+            return Err(OriginError::Inside { path, cause }.into());
+        }
         if self.plan.free.is_empty() {
             return Ok(());
         }

@@ -42,7 +42,27 @@ fn arrays(column: &StateColumn) -> [String; 2] {
     [name, lengths]
 }
 
+/// The solids whose amounts stand in arrays of these names, in alphabetical order.
+pub(crate) fn amounts<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let solids = names.filter_map(|name| name.strip_prefix("inside.amount."));
+    let mut solids: Vec<String> = solids
+        .filter(|name| !name.ends_with(".lengths"))
+        .map(str::to_owned)
+        .collect();
+    solids.sort();
+    solids
+}
+
 impl ParticleModels {
+    /// Solids that the particles are made of, by name.
+    pub(crate) fn amounts(&self) -> Vec<String> {
+        let states = self.columns.iter().filter(|one| one.column.is_state());
+        let names: Vec<String> = states
+            .map(|one| format!("inside.{}", one.column.name))
+            .collect();
+        amounts(names.iter().map(String::as_str))
+    }
+
     /// Columns of all models.
     pub fn columns(&self) -> impl Iterator<Item = &StateColumn> {
         self.columns.iter().map(|one| &one.column)

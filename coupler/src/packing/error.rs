@@ -28,8 +28,8 @@ pub enum PackingError {
     },
     /// Spheres that overlap still.
     #[error(
-        "{count} spheres cannot be packed at a solid fraction of {target:.4}: {reached:.4} was reached \
-         without overlap; lower the solid fraction, or the number of spheres"
+        "{count} spheres cannot be packed at a solid fraction of {target:.4}: shrunk until none overlap they fill {reached:.4}; \
+         write a smaller solid fraction or number: equal spheres between walls reach 0.57 to 0.59, spheres of many sizes more"
     )]
     Fraction {
         /// Number of spheres.

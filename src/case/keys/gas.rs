@@ -60,8 +60,8 @@ const CHEMISTRY: &[Key] = &[
     key("reactions", Tables(CHEMISTRY_REACTIONS), OneOf, "Reactions of the case's own. Either this or `mechanism`.", "[{ name = \"shift\", equation = \"CO + H2O <=> CO2 + H2\", rate = { factor = 2.75e6, activation_energy = \"83.6 kJ/mol\" } }]"),
     key("model", Choice(words::<CombustionModel>), Default("laminar"), "A cell is mixed; or the partially stirred reactor: only what turbulence mixes reacts.", "\"laminar\""),
     key("mixing_constant", Number(D::NONE, Positive), Default("1"), "C_mix of the partially stirred reactor.", "1"),
-    key("tolerance", Number(D::NONE, Positive), Default("1e-6"), "Error of a step of the integration, relative to temperature and each mass fraction.", "1e-6"),
-    key("fraction_tolerance", Number(D::NONE, Positive), Default("1e-10"), "Error of a step in a mass fraction that counts as none.", "1e-10"),
+    key("tolerance", Number(D::NONE, UpTo(0.0, 0.1)), Default("1e-6"), "Error of a step of the integration, relative to temperature and each mass fraction.", "1e-6"),
+    key("fraction_tolerance", Number(D::NONE, UpTo(0.0, 0.1)), Default("1e-10"), "Error of a step in a mass fraction that counts as none.", "1e-10"),
     key("negligible", Number(D::NONE, UpTo(0.0, 1e-3)), Default("1e-12"), "Change of a mass fraction, up to 1e-3, over a step of the gas below which reactions are not integrated.", "1e-12"),
 ];
 
@@ -180,7 +180,7 @@ const CONTROLS: &[Key] = &[
     key("time_scheme", Choice(words::<TimeScheme>), Default("euler"), "How velocity, enthalpy and composition are stepped over a window at an acceleration of 1: implicit Euler, first order; or two implicit stages, second order (SDIRK2). Implicit Euler under time splitting, where the gas reacts, and where particles give or take species.", "\"sdirk2\""),
     key("pressure_corrections", Whole(1, 10_000), Default("2"), "Pressure corrections per outer iteration.", "2"),
     key("most_pressure_corrections", Whole(1, 10_000), Default("16"), "Where at the pace of momentum and continuity so far `outer_iterations` would not reach `outer_tolerance`, the pressure corrections are doubled, up to this many; with that of `pressure_corrections` or less they stay as they are. Native gas.", "16"),
-    key("outer_tolerance", Number(D::NONE, Positive), Default("1e-8"), "The outer iterations end below this scaled residual.", "1e-8"),
+    key("outer_tolerance", Number(D::NONE, UpTo(0.0, 0.1)), Default("1e-8"), "The outer iterations end below this scaled residual.", "1e-8"),
     key("linear_tolerance", Number(D::NONE, Positive), Default("1e-13"), "Tolerance of the linear solvers.", "1e-13"),
 ];
 

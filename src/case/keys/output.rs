@@ -6,7 +6,7 @@ use super::prelude::*;
 pub(super) const OUTPUT: &[Key] = &[
     key("every", Number(D::TIME, Positive), Required, "A snapshot each so much process time, and one at the start and the end.", "\"60 s\""),
     key("series_every", Number(D::TIME, Positive), Without("with every snapshot"), "A row of the time series each so much process time.", "\"1 s\""),
-    key("gas", Choices(&["temperature", "velocity", "pressure", "density", "void_fraction", "mass_fractions", "turbulence"]), Default("temperature"), "Gas fields; `mass_fractions` of each species of a mixture, by its name; `turbulence`: `turbulent_energy`, `dissipation` and `eddy_viscosity` of a turbulent gas.", "[\"temperature\", \"velocity\"]"),
+    key("gas", Choices(&["temperature", "velocity", "pressure", "density", "void_fraction", "mass_fractions", "turbulence"]), Default("temperature"), "Gas fields; `mass_fractions` of each species of a mixture, by its name; `turbulence`: `turbulent_energy`, `dissipation` and `eddy_viscosity` of a turbulent gas, the last of which is the void fraction times the eddy viscosity of the gas.", "[\"temperature\", \"velocity\"]"),
     key("particles", Choices(&["temperature", "velocity", "heat", "force", "void_fraction", "slip", "mass", "solids", "inside"]), Default("temperature"), "Particle fields; `force` is that of the gas, `void_fraction` and `slip` what the laws saw, `solids` the mass fractions of what particles that react are made of, `inside` all columns that the models of the particles show.", "[\"temperature\"]"),
 ];
 

@@ -15,7 +15,7 @@ use calcine_coupler::setup::GasPatch;
 use super::common::existing;
 use super::rate_constants::{impossible, possible_in_gas};
 use super::reactions::{heat_agrees, lacking};
-use crate::case::table::TableReader;
+use crate::case::table::{TableReader, nearest};
 use crate::case::words::CombustionModel;
 use crate::mechanism;
 
@@ -148,6 +148,18 @@ fn file(
                 None
             }
         };
+    }
+    let known = ["jones-lindstedt", "jones-lindstedt-original"];
+    if !folder.join(name).exists() && !name.contains(['/', '.']) {
+        let hint = nearest(name, known.into_iter());
+        let hint = hint.map_or(String::new(), |near| format!("; did you mean \"{near}\"?"));
+        let help = format!(
+            "built in are \"{}\"; a file of Cantera (.yaml) or CHEMKIN is named relative to the case file{hint}",
+            known.join("\" and \"")
+        );
+        let rule = format!("is \"{name}\", which is neither built in nor a file");
+        table.fail("mechanism", rule, help);
+        return None;
     }
     let path = existing(table, "mechanism", folder);
     let thermo = match table.has("thermo") {

@@ -4,6 +4,7 @@ use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::physics::thermo::Mixture;
 
 use crate::case::table::{NO_DRYING, TableReader, is_moisture};
+use crate::case::units::shown;
 
 /// How far fractions may be from summing to 1: what printed digits leave; they are then scaled.
 const SLACK: f64 = 1e-3;
@@ -34,6 +35,14 @@ pub(super) fn of_gas(table: &TableReader<'_>, mixture: &Mixture) -> Option<Vec<f
         stranger: &stranger,
     };
     read(table, &constituents)
+}
+
+/// Refuses the composition of a gas without species.
+pub(super) fn no_species(table: &TableReader<'_>) {
+    if table.has("composition") {
+        let help = "name its species, for example gas.species = [\"O2\", \"N2\"] with gas.schmidt = 0.7, or remove it";
+        table.fail("composition", "is of a gas without `gas.species`", help);
+    }
 }
 
 /// The same of solids.
@@ -77,7 +86,7 @@ fn read(table: &TableReader<'_>, of: &Constituents<'_>) -> Option<Vec<f64>> {
     table.finish();
     let sum: f64 = fractions.iter().sum();
     if let Some(help) = unfit(amounts, sum) {
-        table.fail(kind, format!("sums to {sum}"), help);
+        table.fail(kind, format!("sums to {}", shown(sum)), help);
         return None;
     }
     if amounts {

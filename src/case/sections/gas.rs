@@ -13,7 +13,7 @@ use calcine_coupler::setup::{Convection, GasControls, GasSetup};
 use calcine_coupler::time::GasStorage;
 
 use super::chemistry::{Around, chemistry};
-use super::composition::of_gas;
+use super::composition::{no_species, of_gas};
 use super::gas_patch::boundary;
 use super::species_data;
 use super::turbulence::turbulence;
@@ -201,7 +201,10 @@ fn initial(
             let table = initial.table("composition");
             table.and_then(|table| of_gas(&table, mixture))
         }
-        Some(_) => Some(Vec::new()),
+        Some(_) => {
+            no_species(&initial);
+            Some(Vec::new())
+        }
         None => {
             initial.has("composition");
             None

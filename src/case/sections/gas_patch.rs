@@ -8,7 +8,7 @@ use calcine_coupler::setup::{
 };
 
 use super::common::patches;
-use super::composition::of_gas;
+use super::composition::{no_species, of_gas};
 use super::turbulence::of_inlet;
 use crate::case::model::MeshSpec;
 use crate::case::table::TableReader;
@@ -137,7 +137,10 @@ fn entering(table: &TableReader<'_>, gas: Option<&GasModel>) -> Option<PatchGas>
     let temperature = table.schedule("temperature");
     let composition = match gas {
         Some(GasModel::Mixture(mixture)) => Some(composition(table, mixture)?),
-        Some(_) => None,
+        Some(_) => {
+            no_species(table);
+            None
+        }
         None => {
             table.has("composition");
             None

@@ -120,7 +120,7 @@ pub(super) fn case(
             probes: &probes,
             walls: &walls,
             species: species.unwrap_or_default(),
-            solids: &chemistry.solids,
+            solids: reactions::are_all(root, &chemistry.reactions).then_some(&chemistry.solids[..]),
             gravity: gas.as_ref().map(|gas| gas.setup.gravity),
         };
         quantities::quantities(root, &known)
@@ -163,6 +163,7 @@ pub(super) fn case(
         path: path.to_owned(),
         hash,
         changes: Vec::new(),
+        warnings: Vec::new(),
         effective: effective.into(),
         time,
         mesh: mesh?,

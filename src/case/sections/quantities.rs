@@ -133,7 +133,8 @@ pub(super) struct Known<'a> {
     /// Walls, with the temperatures of those that have one.
     pub walls: &'a [(Wall, Option<Schedule>)],
     pub species: &'a [String],
-    pub solids: &'a [SolidSpecies],
+    /// None where a reaction could not be read: what it would make is not known.
+    pub solids: Option<&'a [SolidSpecies]>,
     /// In m/s²; none where the gas could not be read.
     pub gravity: Option<Vec3>,
 }
@@ -157,11 +158,9 @@ fn column(
         reader.missing("of");
         return None;
     };
-    let solids: Vec<&str> = known.solids.iter().map(SolidSpecies::name).collect();
-    let gases: Vec<&str> = known.species.iter().map(String::as_str).collect();
-    let names = match measure {
-        Measure::Gas { .. } => gases,
-        _ => solids,
+    let names: Vec<&str> = match measure {
+        Measure::Gas { .. } => known.species.iter().map(String::as_str).collect(),
+        _ => known.solids?.iter().map(SolidSpecies::name).collect(),
     };
     let found = names.iter().position(|other| *other == name);
     if found.is_none() {

@@ -34,6 +34,11 @@ fn names(solids: &[SolidSpecies]) -> String {
     names.join(", ")
 }
 
+/// True where each reaction of the file was made.
+pub(super) fn are_all(root: &TableReader<'_>, made: &[Reaction]) -> bool {
+    root.tables("reactions").len() == made.len()
+}
+
 /// What a reaction may name.
 struct Known<'a> {
     solids: &'a [SolidSpecies],

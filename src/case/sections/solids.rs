@@ -11,10 +11,14 @@ use crate::case::table::{NO_DRYING, TableReader, is_moisture};
 /// All solids that a case may name: its own, and the built-in ones that it does not redefine.
 pub(super) fn solids(root: &TableReader<'_>) -> Vec<SolidSpecies> {
     let own = root.table("solids").map_or(Vec::new(), |section| {
-        let tables = section.named().into_iter();
-        tables
-            .filter_map(|(name, table)| solid(&name, &table))
-            .collect()
+        let tables = section.named();
+        let made = tables.iter().filter_map(|(name, table)| solid(name, table));
+        let made: Vec<SolidSpecies> = made.collect();
+        if made.len() < tables.len() {
+            // Whatever names one that could not be made only follows.
+            root.unusable("solids");
+        }
+        made
     });
     let mut all: Vec<SolidSpecies> = own;
     for name in SolidSpecies::built_in_names() {

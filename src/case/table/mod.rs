@@ -21,11 +21,12 @@ mod words;
 
 pub(super) use absent::{NO_DRYING, is_moisture};
 use consequences::{beside, follows, names, uses};
-pub(super) use nearest::instead_of_file;
-use nearest::nearest;
+pub(super) use nearest::{instead_of_file, nearest};
 
 /// What is said of a key that is not declared.
 pub(super) const UNKNOWN: &str = "is not a key of a case";
+/// Most places at which a key stands elsewhere that are named.
+const MOST_PLACES: usize = 3;
 /// What is said of a key that goes with another choice.
 const NO_EFFECT: &str = "has no effect here";
 
@@ -62,9 +63,16 @@ impl Problems {
     /// Records one; what was said of a place already is not said again.
     fn add(&self, span: Range<usize>, message: String, help: String, kind: ProblemKind) {
         let inside = |spoilt: &Range<usize>| spoilt.contains(&span.start) || spoilt == &span;
-        if self.spoilt.borrow().iter().any(inside) {
+        let holds = |spoilt: &Range<usize>| span.start <= spoilt.start && spoilt.end <= span.end;
+        let of_whole = kind == ProblemKind::Value;
+        let spoilt = self.spoilt.borrow();
+        if spoilt
+            .iter()
+            .any(|one| inside(one) || of_whole && holds(one))
+        {
             return;
         }
+        drop(spoilt);
         if !self.told.borrow_mut().insert((span.start, message.clone())) {
             return;
         }
@@ -320,11 +328,23 @@ impl<'a> TableReader<'a> {
         }
     }
 
+    /// An example of a key, as the end of a help that has none yet.
+    fn like(&self, key: &str, needs: &str) -> String {
+        let declared = self.keys.iter().find(|one| one.name == key);
+        let example = declared.map_or("", |one| one.example);
+        let is_value =
+            !example.is_empty() && !example.starts_with('[') && !needs.contains("such as");
+        match is_value {
+            true => format!(", for example {key} = {example}"),
+            false => String::new(),
+        }
+    }
+
     fn wrong_type(&self, key: &str, needs: &str, item: &Item) {
         self.unread(
             key,
             format!("needs {needs}, but is {}", kind(item)),
-            format!("write {needs}"),
+            format!("write {needs}{}", self.like(key, needs)),
         );
     }
 
@@ -369,7 +389,10 @@ impl<'a> TableReader<'a> {
                     let help = "remove it: it belongs to another choice than this table's";
                     (NO_EFFECT, help.into())
                 }
-                None => (UNKNOWN, self.instead_of(key)),
+                None => (
+                    UNKNOWN,
+                    self.elsewhere(key).unwrap_or_else(|| self.instead_of(key)),
+                ),
             };
             let is_known = declared.is_some();
             let drying = !is_known && self.pattern.starts_with("materials") && is_moisture(key);
@@ -390,6 +413,29 @@ impl<'a> TableReader<'a> {
             };
             self.problems.add(span, message, help, kind);
         }
+    }
+
+    /// Where a key stands that is not declared here, where it is a key of other tables near the top.
+    fn elsewhere(&self, key: &str) -> Option<String> {
+        let misspelt = nearest(key, self.keys.iter().map(|one| one.name)).is_some();
+        let mut places = Vec::new();
+        for section in ROOT {
+            if section.name == key {
+                places.push(key.to_owned());
+            }
+            for below in section.below(self.laws) {
+                let own = dotted(section.name, below.name);
+                if below.name == key {
+                    places.push(own.clone());
+                }
+                let deeper = below.below(self.laws);
+                if deeper.iter().any(|one| one.name == key) {
+                    places.push(dotted(&own, key));
+                }
+            }
+        }
+        let few = !misspelt && (1..=MOST_PLACES).contains(&places.len());
+        few.then(|| format!("it is a key of another table: `{}`", places.join("`, `")))
     }
 
     /// What to do about a key that is not declared.

@@ -31,7 +31,10 @@ pub(in crate::case) fn instead_of_file(path: &Path) -> String {
 }
 
 /// The nearest of several names, if it is near enough to be meant.
-pub(super) fn nearest<'n>(word: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
+pub(in crate::case) fn nearest<'n>(
+    word: &str,
+    names: impl Iterator<Item = &'n str>,
+) -> Option<&'n str> {
     let limit = 1 + word.chars().count() / 4;
     names
         .map(|name| (strsim::levenshtein(word, name), name))

@@ -8,6 +8,9 @@ use super::{Key, KeyPresence, KeyValue, TableReader};
 use crate::case::keys::parse_number;
 use crate::case::units::{Dimension, UnitError, meant, quantities, shown};
 
+/// Of a rate as of an angular velocity.
+const PER_SECOND: Dimension = Dimension([0, 0, -1, 0, 0]);
+
 impl TableReader<'_> {
     /// A quantity with its unit, in SI, or a plain number, as it is declared; without it its default.
     pub fn number(&self, key: &str) -> Option<f64> {
@@ -51,7 +54,15 @@ impl TableReader<'_> {
         let holds = bound.holds(value);
         if !holds {
             let rule = format!("is {} {}", shown(value), dimension.unit());
-            self.refuse(key, rule.trim_end(), format!("it {}", bound.words()));
+            let absolute = match key == "pressure" && dimension == Dimension::PRESSURE {
+                true => ": pressures are absolute, 1 atm at the ground",
+                false => "",
+            };
+            self.refuse(
+                key,
+                rule.trim_end(),
+                format!("it {}{absolute}", bound.words()),
+            );
         }
         holds
     }
@@ -246,6 +257,14 @@ impl TableReader<'_> {
 
     fn parsed(&self, key: &str, text: &str, dimension: Dimension) -> Option<Vec<f64>> {
         let (words, example) = (dimension.words(), dimension.example());
+        if let Some(point) = with_a_comma(text) {
+            self.unread(
+                key,
+                format!("has a comma in \"{text}\""),
+                format!("write the decimal point as a point, \"{point}\"; numbers of a vector stand apart by spaces"),
+            );
+            return None;
+        }
         match quantities(text) {
             Ok((numbers, found)) if found == dimension => return Some(numbers),
             Ok((_, Dimension::NONE)) => self.unread(
@@ -257,15 +276,24 @@ impl TableReader<'_> {
                 key,
                 format!(
                     "needs {words} such as \"{example}\", but \"{text}\" is {}",
-                    found.words()
+                    match found {
+                        PER_SECOND => "a rate in 1/s".into(),
+                        _ => found.words(),
+                    }
                 ),
-                format!("write {words}"),
+                match dimension {
+                    Dimension::NONE => "write the number alone; what has a unit by its orders is in mol, m and s".into(),
+                    _ => format!("write {words}"),
+                },
             ),
             Err(UnitError::Unknown(unit)) => self.unread(
                 key,
                 format!("has the unit \"{unit}\", which is not known"),
                 match meant(&unit) {
                     Some(known) => format!("did you mean \"{known}\"?"),
+                    None if unit.contains(|c: char| c.is_ascii_digit()) => format!(
+                        "write powers with ^ and each division with /, as in \"W/m^2/K\"; it needs {words} such as \"{example}\""
+                    ),
                     None => format!("it needs {words} such as \"{example}\""),
                 },
             ),
@@ -277,4 +305,23 @@ impl TableReader<'_> {
         }
         None
     }
+}
+
+/// The text with points in place of commas that stand between digits.
+fn with_a_comma(text: &str) -> Option<String> {
+    let letters: Vec<char> = text.chars().collect();
+    let is_digit = |place: Option<usize>| {
+        let letter = place.and_then(|place| letters.get(place));
+        letter.is_some_and(char::is_ascii_digit)
+    };
+    let decimal = |place: usize| {
+        letters[place] == ',' && is_digit(place.checked_sub(1)) && is_digit(Some(place + 1))
+    };
+    let point = |place: usize| match decimal(place) {
+        true => '.',
+        false => letters[place],
+    };
+    let places = 0..letters.len();
+    let any = places.clone().any(decimal);
+    any.then(|| places.map(point).collect())
 }

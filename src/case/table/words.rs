@@ -42,7 +42,25 @@ impl<'a> TableReader<'a> {
     pub(super) fn word(&self, key: &str, names: &[&str]) -> Option<&'a str> {
         let item = self.item_of(&self.declared(key)?)?;
         let Some(text) = item.as_str() else {
-            self.wrong_type(key, "a text in quotes", item);
+            let declared = self.declared(key)?;
+            let tables = declared.value.alternatives(self.laws);
+            let keys = tables.iter().find_map(|one| match one {
+                KeyValue::Table(keys) => Some(keys.iter().take(2)),
+                _ => None,
+            });
+            let needs = match keys {
+                Some(keys) => {
+                    let keys = keys.map(|key| format!("{} = {}", key.name, key.example));
+                    let keys: Vec<String> = keys.collect();
+                    format!(
+                        "{} or a table such as {{ {} }}",
+                        quoted(names),
+                        keys.join(", ")
+                    )
+                }
+                None => format!("one of {}", quoted(names)),
+            };
+            self.wrong_type(key, &needs, item);
             return None;
         };
         if names.contains(&text) {

@@ -70,10 +70,10 @@ const LAYER_DIFFUSIVITY: LawTable = LawTable {
         LawParameter {
             name: "exponent",
             dimension: Dimension::NONE,
-            bound: Bound::Any,
+            bound: Bound::Between(0.0, 4.0),
             default: Some(0.0),
             needed_with: None,
-            meaning: "Exponent of the temperature.",
+            meaning: "Exponent of the temperature, 0 to 4: kinetic theory has 1.5 to 2.",
             example: "1.75",
         },
     ],

@@ -1,0 +1,160 @@
+//! How far the time splitting and the laws of a case are from what they are meant for, population by population.
+
+use std::f64::consts::PI;
+
+use calcine_coupler::physics::local::LocalGas;
+use calcine_coupler::physics::numbers::VoidFraction;
+use calcine_coupler::physics::sphere;
+use calcine_coupler::setup::{GasPatch, InletFlow};
+use calcine_coupler::time::GasStorage;
+
+use super::model::{Case, MotionSpec, Population};
+use super::ranges;
+use super::units::short3;
+
+/// Above this, a number of the time splitting gets a warning (docs/theory.md, TSM-6, TSM-8).
+const WARNING: f64 = 0.1;
+
+/// Numbers of one population in the gas at the start.
+pub(super) struct Splitting<'a> {
+    population: &'a Population,
+    /// R, gas heat stored over solid heat stored times AF.
+    ratio: f64,
+    /// Error of process storage in shares of the span of temperatures.
+    error: f64,
+    /// Window over the drag's own time, where there is drag.
+    drag: Option<f64>,
+    local: LocalGas,
+    /// Mean diameter in m.
+    diameter: f64,
+}
+
+impl<'a> Splitting<'a> {
+    /// Of a population at a mean void fraction; `None` where it has no size.
+    pub(super) fn of(case: &Case, population: &'a Population, eps: f64) -> Option<Self> {
+        let material = &case.materials[population.material];
+        let gas = &case.gas.properties;
+        let solid_capacity = material.heat_capacity.at(case.gas.temperature);
+        let factor = case.time.acceleration.largest();
+        let window = case.time.motion_window.seconds();
+        let composition = &case.gas.composition;
+        let density = gas.density(case.gas.pressure, case.gas.temperature, composition);
+        let capacity = gas.heat_capacity(case.gas.temperature, composition);
+        let solid = (1.0 - eps) * material.density * solid_capacity;
+        let local = local(case, eps, density)?;
+        let d = population.sizes.mean().ok()?;
+        let nusselt = case.laws.heat_transfer.make().nusselt(&local, d);
+        let volume = sphere::volume_of_diameter(d);
+        let rate =
+            nusselt * local.conductivity * PI * d / (material.density * volume * solid_capacity);
+        let drag = (!case.laws.drag.is_none()).then(|| {
+            let coefficient = case.laws.drag.make().coefficient(&local, d);
+            window * coefficient / (material.density * volume)
+        });
+        Some(Self {
+            population,
+            ratio: factor * eps * density * capacity / solid,
+            // docs/theory.md, TSM-8.
+            error: 0.11 * rate * factor * window,
+            drag,
+            local,
+            diameter: d,
+        })
+    }
+
+    /// Lines of `check`.
+    pub(super) fn lines(&self, case: &Case) -> Vec<String> {
+        let above = |value: f64| match value > WARNING {
+            true => "   above 0.1",
+            false => "",
+        };
+        let matters = match case.time.storage {
+            GasStorage::Accelerated => above(self.ratio),
+            GasStorage::Process => " (matters with `accelerated` storage)",
+        };
+        let mut lines = vec![
+            format!(
+                "R, gas heat stored over solid heat stored times AF   {:.4}{matters}",
+                self.ratio
+            ),
+            format!(
+                "0.11 hA AF dt/(m c), error of process storage       {:.2e}{}",
+                self.error,
+                above(self.error)
+            ),
+        ];
+        lines.extend(
+            ranges::of(case, &self.local, self.diameter)
+                .iter()
+                .map(|one| one.line()),
+        );
+        lines.extend(self.drag.map(|share| {
+            format!("window over the drag's time m/K                      {share:.2e}")
+        }));
+        lines
+    }
+
+    /// What is to be warned of.
+    pub(super) fn warnings(&self, case: &Case) -> Vec<String> {
+        let name = &self.population.name;
+        let step = match case.time.process_step {
+            Some(_) => "shorten `time.process_step`",
+            None => "lower `time.acceleration`, or shorten `time.motion_window`",
+        };
+        let mut all = Vec::new();
+        if case.time.storage == GasStorage::Accelerated && self.ratio > WARNING {
+            all.push(format!(
+                "R of `{name}` is {}, above {WARNING}: with `accelerated` storage the gas stores that share of the heat of the solid, \
+                 which delays it; lower `time.acceleration`, or write `gas_storage = \"process\"`",
+                short3(self.ratio)
+            ));
+        }
+        if self.error > WARNING {
+            all.push(format!(
+                "0.11 hA AF dt/(m c) of `{name}` is {}, above {WARNING}: within a window its temperature comes so far towards that of \
+                 the gas that the error is this share of their difference; {step}",
+                short3(self.error)
+            ));
+        }
+        all.extend(
+            ranges::of(case, &self.local, self.diameter)
+                .iter()
+                .filter_map(|one| one.warning(name)),
+        );
+        let constant =
+            self.population.motion == MotionSpec::Free && !case.coupling.window_drag.follows();
+        if let Some(share) = self.drag.filter(|share| constant && *share > 1.0) {
+            all.push(format!(
+                "a window is {} times the time m/K in which drag takes particles of `{name}` along: shorten it, or write \
+                 coupling.window_drag = \"following\"",
+                short3(share)
+            ));
+        }
+        all
+    }
+}
+
+/// The gas at the start, at the fastest inlet's superficial velocity.
+fn local(case: &Case, eps: f64, density: f64) -> Option<LocalGas> {
+    let fastest = case
+        .gas
+        .patches
+        .iter()
+        .filter_map(|(_, patch)| match patch {
+            GasPatch::Inlet {
+                flow: InletFlow::SuperficialVelocity(velocity),
+                ..
+            } => Some(velocity.0.iter().map(|entry| entry.1).fold(0.0, f64::max)),
+            _ => None,
+        })
+        .fold(case.gas.velocity.norm(), f64::max);
+    let gas = &case.gas.properties;
+    Some(LocalGas {
+        void_fraction: VoidFraction::new(eps).ok()?,
+        density,
+        viscosity: gas.viscosity(case.gas.temperature, &case.gas.composition),
+        conductivity: gas.conductivity(case.gas.temperature, &case.gas.composition),
+        heat_capacity: gas.heat_capacity(case.gas.temperature, &case.gas.composition),
+        slip: fastest / eps,
+    })
+}

@@ -1,0 +1,64 @@
+//! All that is to be warned of in a case before it runs: `check` prints it, `run` repeats it in its log, its report and its
+//! exit code with `--strict`.
+
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::setup::ParticleSetup;
+
+use super::cautions::cautions;
+use super::model::Case;
+use super::splitting::Splitting;
+use super::{buoyancy, contacts, flow_time, mesh_shape, patch_cautions};
+
+/// Warnings about a case with its mesh and particles, in a fixed order, each once. `void_fraction`: mean over the cells that
+/// hold particles.
+pub fn warnings(
+    case: &Case,
+    mesh: &Mesh,
+    setup: &ParticleSetup,
+    void_fraction: f64,
+) -> Vec<String> {
+    let mut all: Vec<String> = buoyancy::warning(buoyancy::number(case, mesh))
+        .into_iter()
+        .chain(flow_time::warning(case, mesh, setup, void_fraction))
+        .collect();
+    all.extend(cautions(case));
+    all.extend(patch_cautions::columns(case, mesh));
+    all.extend(mesh_shape::report(mesh).1);
+    all.extend(contacts::warnings(case, mesh, setup));
+    let populations = case.particles.iter();
+    let splittings = populations.filter_map(|one| Splitting::of(case, one, void_fraction));
+    for warning in splittings.flat_map(|one| one.warnings(case)) {
+        if !all.contains(&warning) {
+            all.push(warning);
+        }
+    }
+    all
+}
+
+#[cfg(test)]
+pub(in crate::case) mod tests {
+    use crate::valid::ValidCase;
+
+    /// The warnings about a good case with keys set.
+    pub(in crate::case) fn warned(name: &str, set: &[&str]) -> Vec<String> {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let path = folder.join(format!("tests/inputs/good/{name}.toml"));
+        let set: Vec<String> = set.iter().map(|one| (*one).to_owned()).collect();
+        ValidCase::open(&path, &set).unwrap().case.warnings
+    }
+
+    #[test]
+    fn what_check_marks_in_its_lines_is_a_warning() {
+        let all = warned("burning-beads", &[]);
+        let found = |words: &str| all.iter().any(|one| one.contains(words));
+        assert!(found("0.11 hA AF dt/(m c) of `"), "{all:?}");
+        let all = warned("reactions", &[]);
+        let drag = all.iter().filter(|one| one.contains("the law of drag"));
+        assert_eq!(drag.count(), 1, "{all:?}");
+        let all = warned("moving", &[]);
+        assert!(
+            all[0].starts_with("`motion.motion_step` is 26 %"),
+            "{all:?}"
+        );
+    }
+}
