@@ -91,6 +91,68 @@ fn carbon_follows_the_d_squared_law_whatever_its_temperature_its_window_and_its_
     }
 }
 
+/// The mass of the sphere over time in a folder, with reactions in place of the case's own.
+fn masses(folder: &Path, name: &str, reactions: &str) -> Vec<f64> {
+    let text = std::fs::read_to_string(case()).unwrap();
+    let first = text.find("[[reactions]]").unwrap();
+    let rest = text.find("[laws]").unwrap();
+    let file = folder.join(format!("{name}.toml"));
+    std::fs::write(
+        &file,
+        format!("{}{reactions}{}", &text[..first], &text[rest..]),
+    )
+    .unwrap();
+    let out = folder.join(name);
+    program::run(&file, &out, &["--particles", "native"], &[""; 0]);
+    let summary = Summary::read(&out).unwrap();
+    // Of the others there is a hundred thousand times what passes.
+    let carbon = summary.ledger.elements["C"].relative_error;
+    assert!(carbon < 1e-12, "{name}: {carbon}");
+    Series::read(&out)
+        .unwrap()
+        .column("quantities.mass")
+        .to_vec()
+}
+
+/// A reaction of a case file, of a factor and with an order of a gas.
+fn reaction(name: &str, equation: &str, factor: f64, gas: &str) -> String {
+    format!(
+        "[[reactions]]\nname = \"{name}\"\nequation = \"{equation}\"\nlaw = \"power-law\"\n\
+         rate = {{ factor = {factor:e}, orders = {{ {gas} = 1.0, C = 0.0 }} }}\n\n"
+    )
+}
+
+#[test]
+fn reactions_of_one_gas_burn_through_one_film() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let burn = |name: &str, factor: f64| reaction(name, "C + O2 => CO2", factor, "O2");
+    // Limited by the film, by the reaction, and by both: 300/s · r/3 is 0.05 m/s, β about 0.6 m/s.
+    for factor in [1e9, 3e3, 300.0] {
+        let whole = masses(folder, &format!("whole-{factor}"), &burn("burn", factor));
+        let halves = burn("first", 0.5 * factor) + &burn("second", 0.5 * factor);
+        let halves = masses(folder, &format!("halves-{factor}"), &halves);
+        let off = whole
+            .iter()
+            .zip(&halves)
+            .map(|(a, b)| (a - b).abs() / whole[0]);
+        println!("{factor}: {}", off.fold(0.0, f64::max));
+        for (one, two) in whole.iter().zip(&halves) {
+            assert!(
+                (one - two).abs() < 1e-12 * whole[0],
+                "{factor}: {one:e} {two:e}"
+            );
+        }
+    }
+    // What is burnt to dioxide at the surface takes up carbon again: twice as much of it.
+    let plain = masses(folder, "plain", &burn("burn", 1e9));
+    let gasification = reaction("gasification", "C + CO2 <=> 2 CO", 1e9, "CO2");
+    let both = masses(folder, "both", &(burn("burn", 1e9) + &gasification));
+    let ratio = (both[0] - both[2]) / (plain[0] - plain[2]);
+    println!("with gasification {ratio} times the carbon");
+    assert!(ratio > 1.8 && ratio < 2.1, "{ratio}");
+}
+
 /// A particle of 600 K for 0.9 of the life that a slope in m²/s gives it: d(d²)/dt over that slope.
 fn burnt(out: &Path, solver: &str, diffusivity: &str, slope: f64) -> f64 {
     let life = 1e-6 / slope;

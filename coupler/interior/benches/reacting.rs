@@ -1,8 +1,8 @@
 //! Processor time of one attempt at one reacting particle, and of many on one and two threads.
 //!
 //! `cargo bench -p calcine-interior` prints a table: three shrinking cores in series (iron ore in CO and H2, two reactions at
-//! each interface), a power law of a gas (oxidation of iron) and one of the solid alone, over all windows of their
-//! conversion.
+//! each interface), a power law of a gas (oxidation of iron), one that its product holds back, and three that share the gas at the
+//! surface, over all windows of their conversion.
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
 use std::time::{Duration, Instant};
@@ -172,6 +172,62 @@ fn calcination() -> Kind {
     }
 }
 
+/// Carbon to CO2 and CO, and by CO2 to CO, of which the film brings the gases together.
+fn gasification() -> Kind {
+    let law = |name: &str,
+               carbon: f64,
+               gases: &[(usize, f64)],
+               (factor, energy): (f64, f64),
+               equilibrium: Equilibrium| Reaction {
+        name: name.into(),
+        solids: vec![(0, -carbon)],
+        gases: gases.to_vec(),
+        rate: Rate::Power(PowerLaw {
+            rate_constant: arrhenius(factor, energy),
+            in_series: None,
+            solids: vec![(0, 1.0)],
+            gases: vec![(gases[0].0, 1.0)],
+        }),
+        equilibrium,
+    };
+    let boudouard = gibbs(&[("C", -1.0)], &[("CO2", -1.0), ("CO", 2.0)]);
+    let one_way = Equilibrium::OneWay;
+    let reactions = vec![
+        law(
+            "dioxide",
+            1.0,
+            &[(0, -1.0), (1, 1.0)],
+            (3e3, 120_000.0),
+            one_way.clone(),
+        ),
+        law(
+            "monoxide",
+            2.0,
+            &[(0, -1.0), (2, 2.0)],
+            (3e4, 150_000.0),
+            one_way,
+        ),
+        law(
+            "gasification",
+            1.0,
+            &[(1, -1.0), (2, 2.0)],
+            (4e4, 220_000.0),
+            boudouard,
+        ),
+    ];
+    Kind {
+        name: "three power laws of one film",
+        chemistry: chemistry(&["C", "Al2O3"], &["O2", "CO2", "CO", "N2"], reactions),
+        solids: vec![0.9, 0.1],
+        gas: vec![0.1, 0.1, 0.0, 0.8],
+        temperature: 1300.0,
+        density: 1200.0,
+        radius: 5e-3,
+        window: 5.0,
+        windows: 360,
+    }
+}
+
 fn chemistry(solids: &[&str], gases: &[&str], reactions: Vec<Reaction>) -> SolidChemistry {
     let solids = solids.iter().map(|name| SolidSpecies::built_in(name));
     let gas = Mixture::new(gases.iter().copied()).unwrap();
@@ -242,7 +298,7 @@ fn main() {
         windows: 30,
         ..ore()
     };
-    let kinds = [ore(), early, oxidation(), calcination()];
+    let kinds = [ore(), early, oxidation(), calcination(), gasification()];
     println!("processor time of an attempt at one particle, over its whole conversion");
     for kind in &kinds {
         let mut workspace = ParticleWorkspace::default();

@@ -269,4 +269,6 @@ impl SolidChemistry {
 #[cfg(test)]
 mod film_tests;
 #[cfg(test)]
+mod shared_film_tests;
+#[cfg(test)]
 mod tests;

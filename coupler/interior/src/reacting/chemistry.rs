@@ -8,6 +8,7 @@ use calcine_physics::thermo::{Element, Mixture};
 use super::layers::{Layers, LayersError, gases, layers};
 use super::passage::ParticleSurroundings;
 use super::reaction::{Rate, Reaction};
+use super::shared_film::SharedFilm;
 
 /// Reactions with the solids and the gas that they are of.
 #[derive(Clone, Debug)]
@@ -20,6 +21,8 @@ pub struct SolidChemistry {
     pub reactions: Vec<Reaction>,
     /// Shrinking cores.
     layers: Vec<Layers>,
+    /// Reactions that share the gas at the surface.
+    shared: SharedFilm,
     /// The gas by whose amount each reaction's rate is linear, as far as it is.
     key: Vec<Option<usize>>,
     /// Heat of each reaction at 298.15 K in J/mol.
@@ -54,6 +57,7 @@ impl SolidChemistry {
             heat: Vec::new(),
             reactions,
             layers,
+            shared: SharedFilm::default(),
             key,
             moving: Vec::new(),
             effects: Vec::new(),
@@ -64,6 +68,7 @@ impl SolidChemistry {
         };
         made.heat = made.reactions.iter().map(|one| made.heat_of(one)).collect();
         made.index();
+        made.shared = SharedFilm::new(&made.reactions, &made.layers);
         Ok(made)
     }
 
@@ -103,6 +108,11 @@ impl SolidChemistry {
     /// The layers of its shrinking cores.
     pub(super) fn layers(&self) -> &[Layers] {
         &self.layers
+    }
+
+    /// The reactions that share the gas at the surface.
+    pub(super) fn shared(&self) -> &SharedFilm {
+        &self.shared
     }
 
     /// Solids that some reaction uses or makes.

@@ -8,6 +8,7 @@ use calcine_physics::sphere;
 use super::chemistry::SolidChemistry;
 use super::passage::{FilmFlow, ParticleSurroundings};
 use super::rates::RateState;
+use super::surface::SurfaceBalance;
 
 /// Most rounds by which the flow is found, and the change in a round, of the velocity over the largest coefficient of a
 /// film and of the lightening, below which that change, taken to first order, ends it: Newton's method squares errors.
@@ -24,6 +25,8 @@ pub(super) struct FilmBalance {
     fractions: Vec<Dual<2>>,
     /// Rates of all reactions in mol/s at the point, with their slopes there.
     rates: Vec<Dual<2>>,
+    /// The gas at the surface.
+    surface: SurfaceBalance<Dual<2>>,
     /// Velocity in m/s and lightening about which rates are known.
     point: [f64; 2],
     /// Slopes of the residuals there, inverted.
@@ -34,6 +37,12 @@ impl FilmBalance {
     /// Forgets what was found before: results depend on nothing but the particle.
     pub fn begin(&mut self) {
         self.point = [0.0, 1.0];
+        self.surface.begin();
+    }
+
+    /// The gas at the surface with it.
+    pub fn surface(&self) -> &SurfaceBalance<Dual<2>> {
+        &self.surface
     }
 
     /// The flow about which rates are known.
@@ -57,33 +66,66 @@ impl FilmBalance {
         duals(state.fractions, &mut self.fractions);
         let none = Dual::constant(0.0);
         self.rates.resize(chemistry.reactions.len(), none);
-        let (least, most) = coefficients(around, state);
-        let (mut next, mut before) = (self.point, f64::INFINITY);
-        let mut residual = [none; 2];
+        let bounds = coefficients(around, state);
+        let point = self.point;
+        let mut residual = self.find(chemistry, around, state, (point, bounds));
+        // Newton's method that is lost begins once more where what reactions make is carried away.
+        if residual.is_none() {
+            let blown = [-bounds.1, 1.0];
+            residual = self.find(chemistry, around, state, (blown, bounds));
+        }
+        let Some(residual) = residual else {
+            self.begin();
+            out.fill(f64::NAN);
+            return;
+        };
+        for (out, rate) in out.iter_mut().zip(&self.rates) {
+            *out = rate.value;
+        }
+        self.follow(residual.map(|one| one.value), out);
+    }
+
+    /// Newton's method from a velocity and a lightening on, with the smallest and largest coefficient of a film; the residuals where it
+    /// ends.
+    fn find(
+        &mut self,
+        chemistry: &SolidChemistry,
+        around: &ParticleSurroundings<'_>,
+        state: &RateState<'_, f64>,
+        (mut next, (least, most)): ([f64; 2], (f64, f64)),
+    ) -> Option<[Dual<2>; 2]> {
+        let (mut before, mut last) = (f64::INFINITY, None);
         for left in (0..ROUNDS).rev() {
             let found = self.look(chemistry, around, state, next);
             let off = found[0].value.abs() / most + found[1].value.abs() / next[1];
-            // A step too far is halved.
-            if off > before && off > CLOSE && left > 0 {
+            // A step too far is halved, as is one to where no state of the surface balances what reactions make.
+            let too_far = off > before && off > CLOSE || !off.is_finite() && before.is_finite();
+            if too_far && left > 0 {
                 next = [0, 1].map(|k| 0.5 * (next[k] + self.point[k]));
                 continue;
             }
-            (self.point, before, residual) = (next, off, found);
-            self.invert(&residual);
-            let [faster, lighter] = self.change(residual.map(|one| one.value));
+            // What makes more gas the more there is has no end but with a flow that carries it away.
+            if !off.is_finite() && left > 0 && next[0].is_finite() {
+                next = [2.0 * next[0].min(-0.5 * most), 1.0];
+                continue;
+            }
+            (self.point, before) = (next, off);
+            self.invert(&found);
+            let [faster, lighter] = self.change(found.map(|one| one.value));
             let far = faster.abs() / (most + next[0].abs()) + lighter.abs() / next[1];
-            if far < CLOSE || !far.is_finite() {
-                break;
+            if far < CLOSE {
+                return Some(found);
+            }
+            if !far.is_finite() {
+                return None;
             }
             next = [
                 (next[0] + faster).min(MOST_INFLOW * least),
                 (next[1] + lighter).clamp(0.2 * next[1], 5.0 * next[1]),
             ];
+            last = Some(found);
         }
-        for (out, rate) in out.iter_mut().zip(&self.rates) {
-            *out = rate.value;
-        }
-        self.follow(residual.map(|one| one.value), out);
+        last.filter(|_| before < CLOSE.sqrt())
     }
 
     /// Adds to rates at the point, in mol/s, what the rest of the way to the flow with their residuals does to them.
@@ -110,7 +152,7 @@ impl FilmBalance {
             trace: state.trace,
             fastest: state.fastest,
         };
-        chemistry.rates(around, &state, &mut self.rates);
+        chemistry.rates(around, &state, &mut self.surface, &mut self.rates);
         residual(chemistry, around, &state, &self.rates)
     }
 

@@ -21,8 +21,11 @@ mod model;
 pub mod passage;
 pub mod rates;
 pub mod reaction;
+mod shared_film;
+mod shared_rates;
 pub mod size;
 mod step;
+mod surface;
 
 pub use attempt::ParticleAccuracy;
 pub use chemistry::SolidChemistry;

@@ -4,13 +4,14 @@ use calcine_numerics::Number;
 use calcine_physics::gas::GAS_CONSTANT;
 use calcine_physics::reaction::equilibrium::STANDARD_PRESSURE;
 use calcine_physics::reaction::shrinking_core::{self, Interface, MOST_INTERFACES};
-use calcine_physics::reaction::{Equilibrium, PowerLaw, power_law};
+use calcine_physics::reaction::{PowerLaw, power_law};
 use calcine_physics::sphere;
 
 use super::chemistry::SolidChemistry;
 use super::layers::{GasPath, Layers};
 use super::passage::{FilmFlow, FilmPassage, ParticleSurroundings};
 use super::reaction::{LayerDiffusivity, Rate, Reaction};
+use super::surface::SurfaceBalance;
 
 /// A trace: the share of a particle's solids at the start of a window below which the rate of what uses a solid goes to
 /// zero with what is left of it. With x the amount in traces, the factor is
@@ -72,10 +73,11 @@ impl<N: Number> RateState<'_, N> {
 
 impl SolidChemistry {
     /// Rates of all reactions of a particle in mol/s.
-    pub fn rates<N: Number>(
+    pub(super) fn rates<N: Number>(
         &self,
         around: &ParticleSurroundings<'_>,
         state: &RateState<'_, N>,
+        surface: &mut SurfaceBalance<N>,
         out: &mut [N],
     ) {
         out.fill(N::constant(0.0));
@@ -85,23 +87,48 @@ impl SolidChemistry {
             .inverse()
             .times(around.pressure / GAS_CONSTANT);
         for (index, reaction) in self.reactions.iter().enumerate() {
+            if self.shared().place(index).is_some() {
+                continue;
+            }
             if let Rate::Power(law) = &reaction.rate {
                 let key = self.key(index);
                 out[index] = power(reaction, (law, key), around, state, (radius, all_gas));
             }
         }
         for layers in self.layers() {
-            self.core(layers, around, state, (radius, all_gas), out);
+            // k (s c − s' c'/K) with c + c' the same everywhere
+            let ends = |path: &GasPath, passage: &FilmPassage<N>| {
+                let gas = |g: usize| all_gas * passage.gain * state.fractions[g];
+                let bulk = gas(path.key);
+                let both = path.product.map(|product| bulk + gas(product));
+                (!self.is_shared(path)).then_some(LadderEnd { outer: bulk, both })
+            };
+            self.cores(layers, around, state, (radius, ends), |ladder| {
+                let (path, end) = (ladder.path, &ladder.end);
+                let mut flows = [N::constant(0.0); MOST_INTERFACES];
+                let film = ladder.passage.coefficient;
+                shrinking_core::flows(radius, film, end.outer, ladder.interfaces(), &mut flows);
+                for (flow, index) in flows.iter().zip(&path.reactions) {
+                    if let Some(index) = *index {
+                        out[index] = flow.times(-1.0 / moles(&self.reactions[index], path.key));
+                    }
+                }
+            });
         }
+        self.shared_rates(around, state, (radius, all_gas), surface, out);
     }
 
-    fn core<N: Number>(
+    /// The ladders of those gases of a shrinking core of which the outer ends are told.
+    pub(super) fn cores<N: Number>(
         &self,
         layers: &Layers,
         around: &ParticleSurroundings<'_>,
         state: &RateState<'_, N>,
-        (radius, all_gas): (N, N),
-        out: &mut [N],
+        (radius, ends): (
+            N,
+            impl Fn(&GasPath, &FilmPassage<N>) -> Option<LadderEnd<N>>,
+        ),
+        mut each: impl FnMut(&CoreLadder<'_, N>),
     ) {
         let count = layers.solids.len() - 1;
         let volumes = around.size.volumes();
@@ -134,13 +161,18 @@ impl SolidChemistry {
         // Layers of one case mostly follow temperature alike.
         let mut grown: Option<(&LayerDiffusivity, N)> = None;
         for path in &layers.paths {
-            let mut interfaces = [Interface::<N>::none(); MOST_INTERFACES];
-            let FilmPassage {
-                coefficient: film,
-                gain,
-            } = around.passage(path.key, radius, state.temperature, state.film_flow);
-            let bulk = all_gas * gain * state.fractions[path.key];
-            for (k, interface) in interfaces.iter_mut().enumerate().take(count) {
+            let passage = around.passage(path.key, radius, state.temperature, state.film_flow);
+            let Some(end) = ends(path, &passage) else {
+                continue;
+            };
+            let mut ladder = CoreLadder {
+                path,
+                passage,
+                end,
+                interfaces: [Interface::<N>::none(); MOST_INTERFACES],
+                turns: [false; MOST_INTERFACES],
+            };
+            for (k, interface) in ladder.interfaces.iter_mut().enumerate().take(count) {
                 let (inner, outer) = (places[k], places.get(k + 1).copied());
                 let outer = outer.filter(|_| k + 1 < count).unwrap_or(N::constant(1.0));
                 interface.radius = inner;
@@ -155,26 +187,52 @@ impl SolidChemistry {
                 interface.diffusivity = growth.times(diffusivity.value);
                 if let Some(index) = path.reactions[k] {
                     let solids = [layers.solids[k], layers.solids[k + 1]];
-                    let passed = interface.diffusivity.times(1.0 / around.radius) + film;
+                    let passed =
+                        interface.diffusivity.times(1.0 / around.radius) + passage.coefficient;
+                    ladder.turns[k] = path.product.is_none()
+                        && state.presence(solids[0], 0.0).value()
+                            != state.presence(solids[1], 0.0).value();
                     (interface.rate_constant, interface.equilibrium) = interface_of(
                         &self.reactions[index],
                         (path, passed.times(state.fastest)),
                         solids,
                         around,
                         state,
-                        (bulk, gain, all_gas),
+                        &ladder.end,
                     );
                 }
             }
-            let mut flows = [N::constant(0.0); MOST_INTERFACES];
-            let known = &interfaces[..count];
-            shrinking_core::flows(radius, film, bulk, known, &mut flows);
-            for (flow, index) in flows.iter().zip(&path.reactions) {
-                if let Some(index) = *index {
-                    out[index] = flow.times(-1.0 / moles(&self.reactions[index], path.key));
-                }
-            }
+            each(&ladder);
         }
+    }
+}
+
+/// What is known of the gas at the outer end of a ladder, in mol/m³.
+pub(super) struct LadderEnd<N> {
+    /// Of the key gas.
+    pub outer: N,
+    /// Of it and what diffuses back for it.
+    pub both: Option<N>,
+}
+
+/// The resistances between a gas and the interfaces of a shrinking core.
+pub(super) struct CoreLadder<'a, N> {
+    pub path: &'a GasPath,
+    pub passage: FilmPassage<N>,
+    pub end: LadderEnd<N>,
+    interfaces: [Interface<N>; MOST_INTERFACES],
+    turns: [bool; MOST_INTERFACES],
+}
+
+impl<N: Number> CoreLadder<'_, N> {
+    /// The interfaces, innermost first.
+    pub fn interfaces(&self) -> &[Interface<N>] {
+        &self.interfaces[..self.path.reactions.len()]
+    }
+
+    /// The concentration in mol/m³ at which an interface without a counterpart of its gas turns, where that makes a difference.
+    pub fn turns_at(&self, place: usize) -> Option<f64> {
+        self.turns[place].then(|| self.interfaces[place].equilibrium.value())
     }
 }
 
@@ -186,7 +244,7 @@ fn interface_of<N: Number>(
     [inner, outer]: [usize; 2],
     around: &ParticleSurroundings<'_>,
     state: &RateState<'_, N>,
-    (bulk, gain, all_gas): (N, N, N),
+    end: &LadderEnd<N>,
 ) -> (N, N) {
     let Rate::Core { rate_constant, .. } = &reaction.rate else {
         return (N::constant(0.0), N::constant(0.0));
@@ -203,9 +261,7 @@ fn interface_of<N: Number>(
         barely_there(state.presence(inner, 0.0)),
         barely_there(state.presence(outer, 0.0)),
     );
-    if let Some(product) = path.product {
-        // k (s c − s' c'/K) with c + c' the same everywhere
-        let both = bulk + all_gas * gain * state.fractions[product];
+    if let Some(both) = end.both {
         let returning = layer * back;
         let together = own + returning;
         let at_rest = if together.value() > 0.0 {
@@ -218,11 +274,15 @@ fn interface_of<N: Number>(
     let moles = moles(reaction, path.key);
     let at_rest = if back.value() > 0.0 {
         let power = back.ln().times(-1.0 / moles).exp();
+        let all_gas = state
+            .temperature
+            .inverse()
+            .times(around.pressure / GAS_CONSTANT);
         all_gas.times(STANDARD_PRESSURE / around.pressure) * power
     } else {
         N::constant(0.0)
     };
-    let forwards = (bulk.value() - at_rest.value()) * moles <= 0.0;
+    let forwards = (end.outer.value() - at_rest.value()) * moles <= 0.0;
     (forward * if forwards { own } else { layer }, at_rest)
 }
 
@@ -236,7 +296,7 @@ fn barely_there<N: Number>(presence: N) -> N {
     presence + N::constant((LEAST - presence.value()).max(0.0))
 }
 
-/// Rate of a reaction in the whole volume of a particle in mol/s.
+/// Rate in mol/s of a reaction in the whole volume of a particle that no other shares a gas with: of its key gas alone.
 fn power<N: Number>(
     reaction: &Reaction,
     (law, key): (&PowerLaw, Option<usize>),
@@ -244,7 +304,38 @@ fn power<N: Number>(
     state: &RateState<'_, N>,
     (radius, all_gas): (N, N),
 ) -> N {
-    let zero = N::constant(0.0);
+    let rest = prefactor(reaction, law, state, radius);
+    let Some(key) = key else {
+        let distance = N::constant(1.0) - reaction.equilibrium.inverse(state.temperature);
+        return held_back(reaction, state, rest * distance);
+    };
+    let moles = moles_of(reaction, key).unwrap_or(0.0);
+    if moles > 0.0 {
+        return rest;
+    }
+    let found = law.gases.iter().find(|one| one.0 == key);
+    let order = found.map_or(0.0, |one| one.1);
+    if order == 0.0 && state.fractions[key].value() <= 0.0 {
+        return N::constant(0.0);
+    }
+    let passage = around.passage(key, radius, state.temperature, state.film_flow);
+    let film = (sphere::surface_of(radius) * passage.coefficient).times(-1.0 / moles);
+    let bulk = all_gas * state.fractions[key] * passage.gain;
+    let surface = power_law::at_surface(bulk, film, rest, order);
+    if order == 0.0 && surface.value() <= 0.0 {
+        film * bulk
+    } else {
+        rest * power_law::power(surface, order)
+    }
+}
+
+/// Rate of a power law in a particle in mol/s, but for the factors of gases.
+pub(super) fn prefactor<N: Number>(
+    reaction: &Reaction,
+    law: &PowerLaw,
+    state: &RateState<'_, N>,
+    radius: N,
+) -> N {
     let order_in = |s: usize| {
         let found = law.solids.iter().find(|one| one.0 == s);
         found.map_or(0.0, |one| one.1)
@@ -253,8 +344,7 @@ fn power<N: Number>(
         let used = reaction.solids.iter().any(|one| one.0 == s && one.1 < 0.0);
         used && order_in(s) < 1.0
     };
-    let area = sphere::surface_of(radius);
-    let volume = (area * radius).times(1.0 / 3.0);
+    let volume = (sphere::surface_of(radius) * radius).times(1.0 / 3.0);
     let solid = |s: usize| {
         if ends(s) {
             state.at_least_a_trace(s) / volume
@@ -266,59 +356,25 @@ fn power<N: Number>(
     let left = used.fold(N::constant(1.0), |left, one| {
         left * state.presence(one.0, order_in(one.0))
     });
-    let gas = |g: usize| all_gas * state.fractions[g];
-    let (rest, order) = law.without(key, state.temperature, solid, gas);
-    let rest = left * volume * rest;
-    let back = quotient(reaction, around, state) * reaction.equilibrium.inverse(state.temperature);
-    let distance = N::constant(1.0) - back;
-    let Some(key) = key else {
-        return rest * distance;
-    };
-    let moles = moles_of(reaction, key).unwrap_or(0.0);
-    let rate = if moles > 0.0 {
-        rest * power_law::power(gas(key), order) * distance
-    } else if order == 0.0 && state.fractions[key].value() <= 0.0 {
-        zero
-    } else {
-        let passage = around.passage(key, radius, state.temperature, state.film_flow);
-        let film = (area * passage.coefficient).times(-1.0 / moles);
-        let bulk = gas(key) * passage.gain;
-        let surface = power_law::at_surface(bulk, film, rest, order);
-        let forward = if order == 0.0 && surface.value() <= 0.0 {
-            film * bulk
-        } else {
-            rest * power_law::power(surface, order)
-        };
-        forward * distance
-    };
+    let of_gas = |_: usize| N::constant(1.0);
+    left * volume * law.without(None, state.temperature, solid, of_gas).0
+}
+
+/// Backwards a reaction goes as far as its products are there.
+fn held_back<N: Number>(reaction: &Reaction, state: &RateState<'_, N>, rate: N) -> N {
     if rate.value() >= 0.0 {
         rate
     } else {
-        // Backwards a reaction goes as far as its products are there.
-        let made = reaction.solids.iter().filter(|one| one.1 > 0.0);
-        made.fold(rate, |rate, one| rate * state.presence(one.0, 0.0))
+        rate * products(reaction, state)
     }
 }
 
-/// Π (p_i/p°)^ν of a reaction's gases.
-fn quotient<N: Number>(
-    reaction: &Reaction,
-    around: &ParticleSurroundings<'_>,
-    state: &RateState<'_, N>,
-) -> N {
-    if reaction.equilibrium == Equilibrium::OneWay {
-        return N::constant(0.0);
-    }
-    let mut product = N::constant(1.0);
-    for &(g, n) in &reaction.gases {
-        let over = state.fractions[g].times(around.pressure / STANDARD_PRESSURE);
-        // Of a gas that is used up and not there, nothing reacts forwards either.
-        if over.value() <= 0.0 {
-            return N::constant(0.0);
-        }
-        product = product * power_law::power(over, n);
-    }
-    product
+/// How far the solids that a reaction makes are there.
+pub(super) fn products<N: Number>(reaction: &Reaction, state: &RateState<'_, N>) -> N {
+    let made = reaction.solids.iter().filter(|one| one.1 > 0.0);
+    made.fold(N::constant(1.0), |all, one| {
+        all * state.presence(one.0, 0.0)
+    })
 }
 
 /// Moles of a gas that a mole of a reaction makes.
@@ -327,6 +383,6 @@ fn moles_of(reaction: &Reaction, gas: usize) -> Option<f64> {
     found.map(|one| one.1)
 }
 
-fn moles(reaction: &Reaction, gas: usize) -> f64 {
+pub(super) fn moles(reaction: &Reaction, gas: usize) -> f64 {
     moles_of(reaction, gas).unwrap_or(-1.0)
 }

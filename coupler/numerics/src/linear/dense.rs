@@ -1,6 +1,7 @@
 //! DenseMatrix matrices.
 
 use super::LinearAlgebra;
+use crate::Number;
 
 /// A small dense matrix, row by row: LU factors with row pivots.
 #[derive(Clone, Debug, Default)]
@@ -23,6 +24,25 @@ impl DenseMatrix {
         self.order = order;
         self.factors.resize(order * order, 0.0);
         self.pivots.resize(order, 0);
+    }
+
+    /// Solves with the factors, in place, for right sides that have derivatives.
+    pub fn solve_numbers<N: Number>(&self, x: &mut [N]) {
+        let n = self.order;
+        for (k, &pivot) in self.pivots.iter().enumerate() {
+            x.swap(k, pivot);
+        }
+        for row in 1..n {
+            for column in 0..row {
+                x[row] = x[row] - x[column].times(self.factors[row * n + column]);
+            }
+        }
+        for row in (0..n).rev() {
+            for column in row + 1..n {
+                x[row] = x[row] - x[column].times(self.factors[row * n + column]);
+            }
+            x[row] = x[row].times(self.factors[row * n + row]);
+        }
     }
 }
 
@@ -160,6 +180,31 @@ mod tests {
             let line = &jacobian[3 * row..3 * row + 3];
             let product: f64 = line.iter().zip(x).map(|(a, x)| a * x).sum();
             assert!((2.0 * x[row] - product - right).abs() < 1e-14, "{x:?}");
+        }
+    }
+
+    #[test]
+    fn a_solution_with_derivatives_is_that_of_its_value_and_of_each_slope() {
+        use crate::Dual;
+        let jacobian = [2.0, 3.0, -1.0, 4.0, 1.0, 7.0, 0.5, -2.0, 9.0];
+        let mut matrix = DenseMatrix::new(3);
+        assert!(matrix.factorise(2.0, &jacobian));
+        let sides = [[1.0, -2.0, 0.25], [0.0, 3.0, -1.0], [2.0, 0.5, 0.5]];
+        let mut x = [0, 1, 2].map(|k| Dual::<2> {
+            value: sides[0][k],
+            slope: [sides[1][k], sides[2][k]],
+        });
+        matrix.solve_numbers(&mut x);
+        for (lane, side) in sides.into_iter().enumerate() {
+            let mut expected = side;
+            matrix.solve(&mut expected);
+            for (found, expected) in x.iter().zip(expected) {
+                let found = [found.value, found.slope[0], found.slope[1]][lane];
+                assert!(
+                    (found - expected).abs() < 1e-14,
+                    "{lane}: {found} {expected}"
+                );
+            }
         }
     }
 

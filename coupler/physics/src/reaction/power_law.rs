@@ -163,28 +163,23 @@ pub fn at_surface<N: Number>(bulk: N, film: N, rate: N, order: f64) -> N {
     N::constant(c) + (film * (bulk - N::constant(c)) - used).times(1.0 / slope)
 }
 
-/// The concentration for any order; bisection keeps hold of the root, Newton's steps find it.
+/// The concentration for any order, zero where there is none: Newton's method for its logarithm on ln((m c + r cⁿ)/(m b)), whose slope
+/// lies between one and n, so that it finds concentrations many powers of ten below that of the bulk.
 fn balance(bulk: f64, film: f64, rate: f64, order: f64) -> f64 {
-    let (mut low, mut high) = (0.0, bulk);
     let mut c = bulk;
     for _ in 0..200 {
-        let used = rate * power(c, order);
-        let left = film * (bulk - c) - used;
-        if left > 0.0 {
-            low = c;
-        } else {
-            high = c;
+        let (passed, used) = (film * c, rate * power(c, order));
+        let both = passed + used;
+        let slope = (passed + order * used) / both;
+        if slope <= 0.0 {
+            return 0.0;
         }
-        if left.abs() <= 1e-14 * film * bulk || high - low <= 1e-16 * bulk {
+        let change = (both / (film * bulk)).ln() / slope;
+        c *= (-change).exp();
+        // Its error is squared with each step.
+        if change.abs() <= 1e-8 {
             break;
         }
-        let slope = film + order * used / c;
-        let next = c + left / slope;
-        c = if next > low && next < high {
-            next
-        } else {
-            0.5 * (low + high)
-        };
     }
     c
 }
@@ -222,6 +217,21 @@ mod tests {
                 } else {
                     assert!(order == 0.0 && rate >= brought);
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn a_reaction_of_any_order_and_rate_uses_what_the_film_brings() {
+        for order in [0.1, 0.5, 0.9, 1.3, 2.0, 3.0] {
+            for rate in [1e6, 1e12, 1e18] {
+                let c = at_surface(4.0, 0.02, rate, order);
+                let used = rate * power(c, order);
+                let brought = 0.02 * (4.0 - c);
+                assert!(
+                    (used / brought - 1.0).abs() < 1e-12,
+                    "{order} {rate:e}: {c:e}"
+                );
             }
         }
     }

@@ -8,6 +8,7 @@ use crate::reacting::chemistry::SolidChemistry;
 use crate::reacting::film_balance::{self, FilmBalance};
 use crate::reacting::passage::{FilmFlow, ParticleSurroundings};
 use crate::reacting::rates::RateState;
+use crate::reacting::surface::SurfaceBalance;
 
 /// Rounds of taking back at most.
 const MOST_ROUNDS: usize = 100;
@@ -66,6 +67,9 @@ pub(super) struct Buffers {
     molar: Vec<[f64; 2]>,
     /// The net flow through the film.
     film: FilmBalance,
+    /// The gas at the surface, of rates and of their derivatives.
+    surface: SurfaceBalance<f64>,
+    surface_dual: SurfaceBalance<Slopes>,
     /// What exchanged gases do to the heat through the film.
     film_heat: FilmHeat,
     /// Change of the radius over that at the start with the amount of each solid that reacts, in 1/mol.
@@ -91,6 +95,8 @@ impl Buffers {
         self.shrinkage_slopes.clear();
         self.shrinkage_slopes.resize(chemistry.moving().len(), 0.0);
         self.film.begin();
+        self.surface.begin();
+        self.surface_dual.begin();
         self.film_heat
             .begin(chemistry, &start.around, start.temperature);
         // The heat of a reaction follows temperature so slowly that a line will do here; what is booked is exact.
@@ -243,7 +249,8 @@ impl ParticleSystem<'_> {
             let (film, rates) = (&mut self.buffers.film, &mut self.buffers.rates);
             film.solve(chemistry, around, &state, rates);
         } else {
-            chemistry.rates(around, &state, &mut self.buffers.rates);
+            let (surface, rates) = (&mut self.buffers.surface, &mut self.buffers.rates);
+            chemistry.rates(around, &state, surface, rates);
         }
     }
 }
@@ -467,7 +474,12 @@ impl ParticleSystem<'_> {
             fastest: self.fastest,
         };
         let around = &self.start.around;
-        chemistry.rates(around, &state, &mut buffers.rates_dual);
+        let surface = &mut buffers.surface_dual;
+        match chemistry.makes_film_flow(&self.start.around) {
+            true => surface.begin_with(buffers.film.surface()),
+            false => surface.begin_with(&buffers.surface),
+        }
+        chemistry.rates(around, &state, surface, &mut buffers.rates_dual);
         if chemistry.makes_film_flow(around) {
             let rates = &mut buffers.rates_dual;
             let residual = film_balance::residual(chemistry, around, &state, rates);
