@@ -242,7 +242,6 @@ fn a_cell_of_cold_gas_does_not_ignite_where_its_reactor_does_not() {
         let directory = tempfile::tempdir().unwrap();
         for gas in ["native", "openfoam"] {
             let found = cell.found("temperature", gas, directory.path());
-            println!("{gas}, {step}: {} K, expected {expected} K", found[0]);
             assert!(
                 (found[0] - expected).abs() < 0.05,
                 "{gas}, {step}: {}, expected {expected}",
