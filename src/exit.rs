@@ -59,7 +59,10 @@ pub fn of(error: &RunError) -> u8 {
         | RunError::Origin(_)
         | RunError::NoFollowingDrag { .. } => CASE,
         RunError::NoDragImpulse { .. } => PEER,
+        RunError::Reacting { cause, .. } => of(cause),
         RunError::Closure { .. }
+        | RunError::ClosureInGas { .. }
+        | RunError::Unphysical { .. }
         | RunError::NotFinite(_)
         | RunError::Interior {
             cause: ParticleModelError::Particle { .. },

@@ -97,6 +97,17 @@ pub struct CommittedState<'a> {
     pub about: [&'a SolverInfo; 2],
 }
 
+/// A window that is begun again, shorter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CutNotice {
+    /// Cuts since the last commit.
+    pub cuts: u32,
+    /// Attempts given up since then.
+    pub attempts: u32,
+    /// Length of the window now, in s of process time.
+    pub span: f64,
+}
+
 /// An observer that could not do its work, for example because a disk is full.
 #[derive(Debug, Error)]
 #[error("{doing}: {cause}")]
@@ -113,6 +124,13 @@ pub trait Observer {
     /// Called once before the first window of this process: at the start of a run
     /// (`windows` is 0) or after a resume.
     fn start(&mut self, moment: &CommittedState<'_>) -> Result<(), ObserverError>;
+
+    /// Called after a window was given up because particles that react did not settle with their gas; it is begun again,
+    /// shorter, from the moment given.
+    fn cut(&mut self, moment: &CommittedState<'_>, notice: CutNotice) -> Result<(), ObserverError> {
+        let _ = (moment, notice);
+        Ok(())
+    }
 
     /// Called after each committed window.
     fn window(&mut self, moment: &CommittedState<'_>) -> Result<(), ObserverError>;

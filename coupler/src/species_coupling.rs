@@ -125,6 +125,24 @@ impl SpeciesCoupling {
         }
     }
 
+    /// The rate that moved most in the last comparison, by its place in [`SpeciesCoupling::rates`], before and now in units/s;
+    /// `None` where none did. One that is not finite has moved more than all.
+    pub fn most_moved(&self) -> Option<(usize, [f64; 2])> {
+        let pairs = self.before.iter().zip(&self.rates).enumerate();
+        let moved = pairs.map(|(at, (before, now))| (at, [*before, *now]));
+        let by = |one: &(usize, [f64; 2])| {
+            let change = (one.1[1] - one.1[0]).abs();
+            if change.is_finite() {
+                change
+            } else {
+                f64::INFINITY
+            }
+        };
+        moved
+            .filter(|one| by(one) > 0.0)
+            .max_by(|one, other| by(one).total_cmp(&by(other)))
+    }
+
     /// Tells the gas the rates of the last attempt as they are, after `limit` has lowered them to what the particles
     /// hold.
     pub fn fix(

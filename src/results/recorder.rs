@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use calcine_coupler::ledger::BalanceLine as LedgerSums;
-use calcine_coupler::observer::{CommittedState, Observer, ObserverError, Timing};
+use calcine_coupler::observer::{CommittedState, CutNotice, Observer, ObserverError, Timing};
 use calcine_coupler::part::SolverInfo;
 use calcine_coupler::time::{Ticks, Window};
 
@@ -357,9 +357,27 @@ impl Recorder {
             motion_time_s: moment.clocks.motion.seconds(),
             acceleration: self.case.time.acceleration.at(now).0,
             windows: moment.windows,
+            cuts: 0,
+            cut_to_s: None,
             fraction_done: now.seconds() / end.seconds(),
             wall_time_left_s: None,
         }
+    }
+
+    /// Tells the status of a window that is begun again, shorter.
+    fn tell_cut(
+        &mut self,
+        moment: &CommittedState<'_>,
+        notice: CutNotice,
+    ) -> Result<(), ResultsError> {
+        if !self.watch.is_due() {
+            return Ok(());
+        }
+        self.watch.replace(Status {
+            cuts: notice.cuts,
+            cut_to_s: Some(notice.span),
+            ..self.status(moment, Verdict::Running)
+        })
     }
 
     fn summarise(
@@ -488,6 +506,8 @@ fn status_of(summary: &Summary) -> Status {
         motion_time_s: summary.motion_time_s,
         acceleration: factor.map_or(1.0, |step| step.1),
         windows: summary.windows,
+        cuts: 0,
+        cut_to_s: None,
         fraction_done: summary.process_time_s / summary.process_end_s,
         wall_time_left_s: None,
     }
@@ -518,6 +538,10 @@ impl Observer for Recorder {
 
     fn window(&mut self, moment: &CommittedState<'_>) -> Result<(), ObserverError> {
         Ok(self.advance(moment)?)
+    }
+
+    fn cut(&mut self, moment: &CommittedState<'_>, notice: CutNotice) -> Result<(), ObserverError> {
+        Ok(self.tell_cut(moment, notice)?)
     }
 
     fn checkpoint(

@@ -26,6 +26,10 @@ pub(super) struct Status {
     pub acceleration: f64,
     /// Windows committed.
     pub windows: u64,
+    /// How often the window at hand was cut so far, because particles that react did not settle with their gas.
+    pub cuts: u32,
+    /// Length in s of process time that it was cut to; `None` where it was not.
+    pub cut_to_s: Option<f64>,
     /// Share of the process time done.
     pub fraction_done: f64,
     /// Wall time left in s at the mean pace of this process; `None` before the first window.

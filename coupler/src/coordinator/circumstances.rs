@@ -20,11 +20,35 @@ impl CoupledRun {
             RunError::Part(part)
                 if matches!(part.kind, FailureKind::Diverged | FailureKind::NotFinite) =>
             {
-                let lines = [self.courant(window), self.leaning()];
+                let lines = [self.courant(window), self.leaning(), self.reacting()];
                 RunError::Part(part.under(lines.into_iter().flatten().collect()))
             }
+            RunError::Closure { .. }
+            | RunError::ClosureInGas { .. }
+            | RunError::NotFinite(_)
+            | RunError::Unphysical { .. } => match self.reacting() {
+                Some(reacting) => RunError::Reacting {
+                    cause: Box::new(error),
+                    reacting,
+                },
+                None => error,
+            },
             other => other,
         }
+    }
+
+    /// The particle and the reaction whose rate moved most between the last attempts, where some react.
+    fn reacting(&self) -> Option<String> {
+        let channels = self.interior.models.channels();
+        let (at, [before, now]) = self.exchange.species.most_moved()?;
+        let particles = self.parts.particles.fields();
+        let id = particles.id.get(at / channels.len().max(1))?;
+        let reaction = &channels.get(at % channels.len().max(1))?.name;
+        Some(format!(
+            "what reacts and its gas did not agree: the rate of `{reaction}` of particle {id} moved most between the last two \
+             attempts, from {before:.3e} to {now:.3e} mol/s; check its rate constant and its equilibrium, and with slower \
+             reactions or shorter windows (`time.process_step`, `time.motion_window`) that the particles need none so fast"
+        ))
     }
 
     fn courant(&self, window: &Window) -> Option<String> {

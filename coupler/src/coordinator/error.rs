@@ -14,8 +14,9 @@ use crate::mapping::MappingError;
 use crate::models::{ParticleModelError, RestoreError};
 use crate::observer::ObserverError;
 use crate::packing::PackingError;
+use crate::physical::UnphysicalGas;
 use crate::smoother::SmootherError;
-use crate::time::TimeError;
+use crate::time::{Ticks, TimeError};
 
 /// A run that could not go on.
 #[derive(Debug, Error)]
@@ -36,6 +37,44 @@ pub enum RunError {
         window: u64,
         /// What the law said.
         cause: ClosureError,
+    },
+    /// A law that met gas that is none.
+    #[error(
+        "window {window}: the gas that the particles see is not physical: {found}; with it {cause}. Shorter windows help \
+         (`time.motion_window`, or `time.process_step` of a frozen bed)"
+    )]
+    ClosureInGas {
+        /// Index of the window.
+        window: u64,
+        /// What of the gas is none.
+        found: UnphysicalGas,
+        /// What the law said.
+        cause: ClosureError,
+    },
+    /// A window whose gas is none, however often it is cut.
+    #[error(
+        "window {window} (from {start}): {found} after windows of {span}, cut {cuts} times: what particles take of the gas and what the \
+         gas has do not agree. Shorter windows (`time.process_step`, `time.motion_window`) or more `coupling.exchange.attempts` help"
+    )]
+    Unphysical {
+        /// Index of the window.
+        window: u64,
+        /// Process time at which it began.
+        start: Ticks,
+        /// Its length.
+        span: Ticks,
+        /// How often it was cut.
+        cuts: u32,
+        /// What of the gas is none.
+        found: UnphysicalGas,
+    },
+    /// A failure while particles reacted, with the one whose rates moved most.
+    #[error("{cause}\n  {reacting}")]
+    Reacting {
+        /// The failure.
+        cause: Box<RunError>,
+        /// The particle, its reaction, and what helps.
+        reacting: String,
     },
     /// The inside of a particle that cannot be followed.
     #[error("window {window}: {cause}")]

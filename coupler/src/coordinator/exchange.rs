@@ -6,6 +6,7 @@ use super::error::RunError;
 use super::interior::InteriorStage;
 use super::laws::LawStage;
 use super::meter::{Meter, Stage};
+use crate::error::{FailureKind, PartError};
 use crate::exchange::{Exchange, ExchangeConvergence, ExchangeInputs};
 use crate::extreme::{larger, smaller};
 use crate::finite::check_told;
@@ -34,6 +35,9 @@ pub(super) struct ExchangeStage {
     /// Attempts at windows that were cut, and cuts, since the last commit.
     discarded: u32,
     cuts: u32,
+    /// Attempts at the present window.
+    tried: u32,
+    interruptible: bool,
 }
 
 /// When the attempts of a window end.
@@ -46,6 +50,8 @@ pub(super) struct ExchangeLimits {
     /// False where the attempts only find the gas on which laws are evaluated next: what reacts is then not fixed, and
     /// nothing is credited.
     pub last: bool,
+    /// True where a first interrupt ends the attempts: the run then stops at the last commit.
+    pub interruptible: bool,
 }
 
 /// What takes part in the attempts of a window.
@@ -92,6 +98,7 @@ impl ExchangeStage {
     ) -> Result<(), RunError> {
         let first = window.attempt;
         let channels = with.interior.has_channels();
+        self.interruptible = limits.interruptible;
         self.begin(with, window);
         self.respond(with, window)?;
         self.tell_rates(with);
@@ -144,14 +151,25 @@ impl ExchangeStage {
         Ok(())
     }
 
+    /// Attempts given up since the last commit.
+    pub fn discarded(&self) -> u32 {
+        self.discarded
+    }
+
+    /// Cuts since the last commit.
+    pub fn cuts(&self) -> u32 {
+        self.cuts
+    }
+
     /// Begins to count attempts anew, after a commit.
     pub fn commit(&mut self) {
-        (self.discarded, self.cuts) = (0, 0);
+        (self.discarded, self.tried, self.cuts) = (0, 0, 0);
     }
 
     /// Counts the attempts of a window that is given up with those of the next.
     pub fn discard(&mut self) {
-        self.discarded = self.agreement.attempts;
+        self.discarded += self.tried;
+        self.tried = 0;
         self.cuts += 1;
     }
 
@@ -297,6 +315,7 @@ impl ExchangeStage {
         with: &mut Participants<'_>,
         window: &mut Window,
     ) -> Result<f64, RunError> {
+        self.check_interrupts(with.supervisor, window)?;
         let running = Meter::start(Stage::Exchange);
         let inputs = with.inputs(window);
         let start = &with.interior.lines.temperature;
@@ -317,6 +336,7 @@ impl ExchangeStage {
             gas.finish(supervisor, &mut self.received)
         })?;
         window.attempt += 1;
+        self.tried = window.attempt;
         let running = Meter::start(Stage::Exchange);
         let (gas, properties) = (with.gas.fields(), &with.laws.closures.gas);
         let told = &self.exchange.cells.species;
@@ -331,6 +351,16 @@ impl ExchangeStage {
         );
         with.meter.stop(running);
         Ok(misplaced)
+    }
+
+    /// Ends the attempts on a second interrupt, and on the first where the window can be begun again.
+    fn check_interrupts(&self, supervisor: &Supervisor, window: &Window) -> Result<(), PartError> {
+        let patience = if self.interruptible { 1 } else { 2 };
+        if supervisor.interrupts().count() < patience {
+            return Ok(());
+        }
+        let who = "the exchange of gas and particles";
+        Err(PartError::new(who, FailureKind::Interrupted, "interrupted").in_window(window))
     }
 
     /// What passes through channels, by their lines at the gas of the attempt.

@@ -7,7 +7,11 @@ use super::error::RunError;
 use crate::bed_eddies::{BedEddyInputs, BedEddyStage};
 use crate::closures::{Closures, CouplingCoefficients, DragInertia, SampledGas};
 use crate::part::{GasFields, ParticleFields};
+use crate::physical::UnphysicalGas;
 use crate::time::Window;
+
+/// Round-off of mass fractions.
+const ROUND_OFF: f64 = 1e-9;
 
 /// The laws, the gas that particles see, and what the laws made of it.
 pub(super) struct LawStage {
@@ -56,7 +60,7 @@ impl LawStage {
     pub fn evaluate(&mut self, inputs: &LawInputs<'_>) -> Result<(), RunError> {
         let (particles, window) = (&inputs.particles, inputs.window);
         let (sampled, coefficients) = (&mut self.sampled_gas, &mut self.coefficients);
-        let mapped = inputs.mapped;
+        let (mapped, species) = (inputs.mapped, self.closures.gas.species().to_vec());
         sampled.sample(&mapped.operator, &inputs.gas, &mapped.bed);
         let acceleration = window.acceleration();
         let evaluated = self.closures.evaluate(
@@ -66,9 +70,16 @@ impl LawStage {
             acceleration,
             coefficients,
         );
-        let refused = |cause| RunError::Closure {
-            window: window.index,
-            cause,
+        let refused = |cause| {
+            let window = window.index;
+            match UnphysicalGas::find(&inputs.gas, &species, ROUND_OFF) {
+                Some(found) => RunError::ClosureInGas {
+                    window,
+                    found,
+                    cause,
+                },
+                None => RunError::Closure { window, cause },
+            }
         };
         evaluated.map_err(refused)?;
         coefficients.relax(&inputs.inertia);

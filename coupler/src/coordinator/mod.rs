@@ -51,7 +51,7 @@ use particles::{MotionInputs, MotionStage};
 use repeat::{RepeatableGas, WindowCut};
 
 use crate::closures::Closures;
-use crate::error::PartError;
+use crate::error::{FailureKind, PartError};
 use crate::exchange::ExchangeConvergence;
 use crate::findings::Finding;
 use crate::ledger::{BalanceLine, Ledger};
@@ -89,6 +89,16 @@ pub struct RunParts {
 struct Solvers {
     gas: RepeatableGas,
     particles: Box<dyn Particles>,
+}
+
+/// What came of the attempts at a window.
+enum Advanced {
+    /// It is committed; the rows of particles that are used up.
+    Committed(Vec<usize>),
+    /// Nothing is, for this reason: it is begun again, shorter.
+    GivenUp(String),
+    /// Nothing is, by the user's interrupt.
+    Interrupted,
 }
 
 /// A run: the solvers, the stages, the state of the loop.
@@ -227,9 +237,18 @@ impl CoupledRun {
         self.bring_to_rest(supervisor, &window)?;
         self.feed_and_discharge(supervisor, &window)?;
         let used_up = loop {
-            match self.advance(supervisor, &window)? {
-                Some(used_up) => break used_up,
-                None => window = self.cut_window(&window)?,
+            let cause = match self.advance(supervisor, &window)? {
+                Advanced::Committed(used_up) => break used_up,
+                Advanced::GivenUp(cause) => cause,
+                Advanced::Interrupted => {
+                    self.give_up();
+                    return self.stop(supervisor, observers).map(Some);
+                }
+            };
+            let (shorter, notice) = self.cut_window(&window, &cause)?;
+            window = shorter;
+            for observer in observers.iter_mut() {
+                observer.cut(&self.moment(None), notice)?;
             }
         };
         self.check_finite(&window)?;
@@ -287,26 +306,49 @@ impl CoupledRun {
         self.moment(None)
     }
 
-    /// Bed, laws, attempts of gas and interior, particles last, ledger, commit. The rows of particles that are used up;
-    /// `None` where the exchange did not settle and the window may be cut: nothing is committed then.
-    fn advance(
-        &mut self,
-        supervisor: &Supervisor,
-        window: &Window,
-    ) -> Result<Option<Vec<usize>>, RunError> {
+    /// Bed, laws, attempts of gas and interior, particles last, ledger, commit. Where the exchange did not settle and the
+    /// window may be cut, nothing is committed.
+    fn advance(&mut self, supervisor: &Supervisor, window: &Window) -> Result<Advanced, RunError> {
         self.map()?;
         let may_cut = self.may_cut();
-        if may_cut {
+        if may_cut || self.stops_between_attempts() {
             self.parts.gas.keep();
         }
-        match self.exchange_over(supervisor, window) {
-            Ok(()) if may_cut && !self.settled() => return Ok(None),
-            Err(error) if may_cut && self.begins_again_after(&error) => return Ok(None),
-            exchanged => exchanged.map_err(|error| self.told_with_circumstances(error, window))?,
+        let exchanged = self.exchange_over(supervisor, window);
+        let exchanged = exchanged.and_then(|()| match may_cut {
+            true => Ok(()),
+            false => self.check_smallest(window),
+        });
+        match exchanged {
+            Ok(()) => {
+                if let Some(cause) = self.cause_of_cut().filter(|_| may_cut) {
+                    return Ok(Advanced::GivenUp(cause));
+                }
+            }
+            Err(error) if may_cut && self.begins_again_after(&error) => {
+                return Ok(Advanced::GivenUp(error.to_string()));
+            }
+            Err(error) if self.ends_between_attempts(supervisor, &error) => {
+                return Ok(Advanced::Interrupted);
+            }
+            Err(error) => return Err(self.told_with_circumstances(error, window)),
         }
         self.move_particles(supervisor, window)?;
         self.close_ledger(window);
-        self.commit(window).map(Some)
+        self.commit(window).map(Advanced::Committed)
+    }
+
+    /// True where the first interrupt ended the attempts: the run stops at the last commit.
+    fn ends_between_attempts(&self, supervisor: &Supervisor, error: &RunError) -> bool {
+        let asked = matches!(error, RunError::Part(part) if part.kind == FailureKind::Interrupted);
+        asked && supervisor.interrupts().count() == 1 && self.stops_between_attempts()
+    }
+
+    /// True where the window at hand can be given up between two attempts: particles that react and do not move, with a gas
+    /// that begins again. Their attempts may be many, and each may take long.
+    fn stops_between_attempts(&self) -> bool {
+        let can = self.interior.has_channels() && self.parts.gas.begins_again();
+        can && self.plan.repeats && self.plan.free.is_empty()
     }
 
     /// Laws, and attempts of gas and interior.
@@ -382,6 +424,7 @@ impl CoupledRun {
                 most.min(BETWEEN_LAWS)
             },
             last,
+            interruptible: self.stops_between_attempts(),
         };
         let mut with = Participants {
             gas: &mut self.parts.gas,

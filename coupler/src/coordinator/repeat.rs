@@ -20,7 +20,8 @@ pub(super) struct WindowCut {
     pub halvings: u32,
     /// Process time at which the window that was cut ends; `None` where none is cut.
     pub until: Option<Ticks>,
-    /// True where cuts did not help: the rest of the window goes in one part.
+    /// True where cuts did not help: parts of the rest of the window that do not settle are committed too, as long as what
+    /// they leave is near enough.
     pub given_up: bool,
 }
 
@@ -34,10 +35,7 @@ impl WindowCut {
     /// After a commit of a part that settled, or of one that did not and may not be cut again.
     pub fn longer(&mut self, reached: Ticks, settled: bool) {
         self.given_up |= self.until.is_some() && !settled;
-        self.halvings = match self.given_up {
-            true => 0,
-            false => self.halvings.saturating_sub(1),
-        };
+        self.halvings = self.halvings.saturating_sub(1);
         if self.until.is_some_and(|end| reached >= end) {
             *self = Self::default();
         }
@@ -180,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn where_cuts_do_not_help_the_rest_of_the_window_goes_in_one_part() {
+    fn where_cuts_do_not_help_parts_grow_all_the_same_up_to_the_end_of_the_window() {
         let mut cut = WindowCut::default();
         cut.longer(Ticks::new(100), false);
         assert_eq!(cut, WindowCut::default());
@@ -188,7 +186,7 @@ mod tests {
             cut.shorter(Ticks::new(1600));
         }
         cut.longer(Ticks::new(200), false);
-        assert!(cut.given_up && cut.halvings == 0);
+        assert!(cut.given_up && cut.halvings == 3);
         assert_eq!(WindowCut::from_numbers(cut.numbers()), cut);
         cut.longer(Ticks::new(1600), false);
         assert_eq!(cut, WindowCut::default());

@@ -249,7 +249,13 @@ fn interface_of<N: Number>(
     let Rate::Core { rate_constant, .. } = &reaction.rate else {
         return (N::constant(0.0), N::constant(0.0));
     };
+    let moles = moles(reaction, path.key);
     let back = reaction.equilibrium.inverse(state.temperature);
+    // K is that of the equation as it is written; the ratio of its two gases at rest is that of one mole of them.
+    let back = match path.product {
+        Some(_) if moles != -1.0 && back.value() > 0.0 => back.ln().times(-1.0 / moles).exp(),
+        _ => back,
+    };
     let forward = rate_constant.of(state.temperature);
     let turnover = match path.product {
         Some(_) => forward * (N::constant(1.0) + back),
@@ -271,7 +277,6 @@ fn interface_of<N: Number>(
         };
         return (forward * together, at_rest);
     }
-    let moles = moles(reaction, path.key);
     let at_rest = if back.value() > 0.0 {
         let power = back.ln().times(-1.0 / moles).exp();
         let all_gas = state

@@ -50,6 +50,20 @@ fn reduction(rate_constant: f64, diffusivity: f64) -> SolidChemistry {
     SolidChemistry::new(vec![solid("FeO"), solid("Fe")], Some(gas), vec![reaction]).unwrap()
 }
 
+/// FeO + CO <=> Fe + CO2, written with so many moles of each, with ln K of one mole.
+fn reversible(moles: f64, ln_k: f64) -> SolidChemistry {
+    let mut reaction = reduction(0.05, 1e-5).reactions[0].clone();
+    for (_, n) in reaction.solids.iter_mut().chain(&mut reaction.gases) {
+        *n *= moles;
+    }
+    reaction.equilibrium = Equilibrium::Line {
+        constant: moles * ln_k,
+        over_temperature: 0.0,
+    };
+    let gas = Mixture::new(["CO", "CO2", "N2"]).unwrap();
+    SolidChemistry::new(vec![solid("FeO"), solid("Fe")], Some(gas), vec![reaction]).unwrap()
+}
+
 /// One particle of 1 g of the first solid.
 fn particle(chemistry: SolidChemistry) -> Reacting {
     let mut fractions = vec![0.0; chemistry.solids.len()];
@@ -276,6 +290,24 @@ fn the_three_resistances_in_series_add_their_times() {
     };
     let error = worst(0.01, 2e-5, 0.02, closed, tau);
     assert!(error < 1e-3, "{error}");
+}
+
+#[test]
+fn an_equation_written_with_other_numbers_of_moles_is_the_same_reaction() {
+    // K = 4 of one mole, 3 of 0.788: gas with a ratio of 3.5 would be taken for one in which iron is oxidised.
+    let gas = Mixture::new(["CO", "CO2", "N2"]).unwrap();
+    for carbon_dioxide in [0.0, 0.35] {
+        let composition = gas.mass_fractions(&[0.1, carbon_dioxide, 0.9 - carbon_dioxide]);
+        let turned = [1.0, 0.788, 2.5].map(|moles| {
+            let mut one = particle(reversible(moles, 4.0_f64.ln()));
+            moles * follow(&mut one, &composition, (0.1, 1e6), 20.0, 3)[2]
+        });
+        assert!(turned[0] > 1e-6, "{turned:?}");
+        for other in &turned[1..] {
+            // What the integration is exact to.
+            assert!((other / turned[0] - 1.0).abs() < 1e-3, "{turned:?}");
+        }
+    }
 }
 
 #[test]
