@@ -36,6 +36,33 @@ fn a_bed_that_settles_goes_on_alike() {
     goes_on_alike(&shipped("settled-bed"), &set, "30 ms", [20, 75, 50]);
 }
 
+/// Particles that react and do not settle with their gas: the run stops at its last commit between two attempts, and begins
+/// the window again.
+#[test]
+fn a_reacting_bed_whose_windows_are_cut_goes_on_alike() {
+    let directory = tempfile::tempdir().unwrap();
+    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/stiff-ore.toml");
+    let command = |out: &Path| program::command(&case, out, &[], &["time.end=20 s"]);
+    let whole = directory.path().join("whole");
+    stopped::finish(command(&whole));
+    for cuts in [2, 6] {
+        let out = directory.path().join(format!("stopped-{cuts}"));
+        let cut = |_| {
+            let log = std::fs::read_to_string(out.join("log/calcine.log")).unwrap_or_default();
+            log.matches("the window is cut").count() >= cuts
+        };
+        assert_eq!(
+            stopped::stop(command(&out), cut),
+            stopped::Stopped::Checkpointed
+        );
+        let mut resumed = command(&out);
+        resumed.arg("--resume");
+        stopped::finish(resumed);
+        let differing = results_equal::values_that_differ(&whole, &out);
+        assert!(differing.is_empty(), "after {cuts} cuts: {differing:?}");
+    }
+}
+
 #[test]
 fn a_fluidised_bed_goes_on_alike() {
     let set = [

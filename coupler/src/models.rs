@@ -312,6 +312,13 @@ impl ParticleModels {
         }
     }
 
+    /// Forgets the attempts since the last commit; see [`ParticleModel::begin_again`].
+    pub fn begin_again(&mut self) {
+        for member in &mut self.members {
+            member.model.begin_again();
+        }
+    }
+
     /// Ends the attempt with what passed; see [`ParticleModel::settle`].
     pub fn settle(&mut self, took: &Transfer<'_>, span: f64) -> Result<(), ParticleModelError> {
         let (count, all, id) = (self.places.len(), self.channels.len(), &self.id);

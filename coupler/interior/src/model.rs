@@ -354,6 +354,9 @@ pub trait ParticleModel: Send + Sync {
     /// What these rows hold at the last commit.
     fn held(&self, rows: &[usize]) -> Inventory;
 
+    /// Forgets the attempts since the last commit: what follows is what would follow from a checkpoint of it.
+    fn begin_again(&mut self) {}
+
     /// Takes the last attempt as the new start. Returns the rows, ascending, of particles that are used up: the
     /// coordinator books what is left of them and takes them out by `change`.
     fn commit(&mut self) -> Vec<usize>;

@@ -147,6 +147,7 @@ impl CoupledRun {
     pub(super) fn give_up(&mut self) {
         self.parts.gas.go_back();
         self.interior.begin_again();
+        self.interior.models.begin_again();
     }
 
     /// After a commit the next part of a window that was cut is twice as long.

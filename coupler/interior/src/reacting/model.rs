@@ -255,6 +255,10 @@ impl ParticleModel for Reacting {
         all
     }
 
+    fn begin_again(&mut self) {
+        self.begin();
+    }
+
     fn commit(&mut self) -> Vec<usize> {
         self.committed.clone_from(&self.now);
         self.begin();
