@@ -94,7 +94,7 @@ enum Task {
         words: Vec<OsString>,
     },
     Bench(bench::Choice),
-    GasError(gas_error::Choice),
+    GasError(gas_error::ErrorChoice),
     /// A test program of its own, with its words.
     Program {
         name: &'static str,
@@ -122,7 +122,7 @@ fn read(words: &[OsString]) -> Option<Task> {
         }
         "bench" if rest.first().is_some_and(|word| word == "gas-error") => {
             let words = rest[1..].iter().map(|word| word.to_str());
-            gas_error::Choice::read(words).map(Task::GasError)
+            gas_error::ErrorChoice::read(words).map(Task::GasError)
         }
         "bench" => {
             let first = |name: &str| rest.first().is_some_and(|word| word == name);
@@ -276,7 +276,7 @@ mod tests {
 
     #[test]
     fn the_benchmark_of_errors_takes_names_of_its_cases() {
-        let choice = gas_error::Choice {
+        let choice = gas_error::ErrorChoice {
             names: vec!["cavity".into()],
             built: true,
         };

@@ -47,10 +47,10 @@ pub use error::NativeError;
 pub use failure::GasFailure;
 use failure::Place;
 use outer::Equations;
+use stages::StageStates;
 use state::GasState;
 pub(crate) use state::{flat, vectors};
 use turbulence::{Eddies, KEpsilonEquations, TurbulenceStep};
-use window::StageStates;
 
 use crate::numerics::grid::MeshGraph;
 use crate::numerics::matrix::Matrix;

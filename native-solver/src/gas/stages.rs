@@ -58,6 +58,19 @@ const SDIRK2: [Stage; 2] = [
     },
 ];
 
+/// What a scheme of several stages keeps; empty with one.
+#[derive(Debug, Default)]
+pub struct StageStates {
+    /// What the last attempt found at the end of its first stage.
+    pub first: GasState,
+    /// From where the second stage steps.
+    pub between: GasState,
+    /// What a stage received.
+    pub received: CellReceived,
+    /// Void fraction at the end of the stage.
+    pub void_fraction: Vec<f64>,
+}
+
 /// The stages of a scheme.
 pub fn stages(scheme: TimeScheme) -> &'static [Stage] {
     match scheme {

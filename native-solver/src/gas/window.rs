@@ -7,23 +7,9 @@ use calcine_coupler::time::Window;
 use super::attempt::AttemptFrame;
 use super::failure::GasFailure;
 use super::outer::{Begin, Equations};
-use super::stages::{self, Stage};
-use super::state::GasState;
+use super::stages::{self, Stage, StageStates};
 use super::{NativeGas, balance};
 use crate::numerics::parallel::fill;
-
-/// What a scheme of several stages keeps; empty with one.
-#[derive(Debug, Default)]
-pub(super) struct StageStates {
-    /// What the last attempt found at the end of its first stage.
-    first: GasState,
-    /// From where the second stage steps.
-    between: GasState,
-    /// What a stage received.
-    received: CellReceived,
-    /// Void fraction at the end of the stage.
-    void_fraction: Vec<f64>,
-}
 
 impl NativeGas {
     /// The scheme of a window: that of the case where its clocks are one and nothing reacts. Reactions of the gas are split from its

@@ -1,13 +1,11 @@
 //! The cases: what is solved, on which meshes and steps, and what the errors are measured against.
 
-use super::coupled::Gas;
-use super::field::Field;
+use super::field::MeanField;
 use super::start::Start;
-use super::{cavity, five_species, heated_cavity, hot_duct, taylor_green};
 
 /// A flow that every solver computes. Its files are below `of-cases/gas-error`: `case.toml` for Calcine, `stock` for
 /// the solver of OpenFOAM, on the same box, boundaries and properties.
-pub struct Case {
+pub struct ErrorCase {
     pub name: &'static str,
     /// Name of OpenFOAM's solver.
     pub stock: &'static str,
@@ -15,7 +13,7 @@ pub struct Case {
     pub coarsest: [usize; 2],
     /// End in s.
     pub end: f64,
-    pub quantities: &'static [Quantity],
+    pub quantities: &'static [ErrorQuantity],
     /// The finest mesh, as a multiple of the coarsest, that the native gas runs on with its default tolerances unless large
     /// runs are asked for.
     pub finest_strict: usize,
@@ -29,7 +27,7 @@ pub struct Case {
 }
 
 /// A field whose error is measured.
-pub struct Quantity {
+pub struct ErrorQuantity {
     pub name: &'static str,
     /// Its name in Calcine's files and in OpenFOAM's.
     pub calcine: &'static str,
@@ -56,13 +54,16 @@ pub enum Reference {
     Exact(fn(f64, f64) -> Vec<f64>, f64),
 }
 
-pub const ALL: [&Case; 5] = [
-    &cavity::CASE,
-    &taylor_green::CASE,
-    &heated_cavity::CASE,
-    &hot_duct::CASE,
-    &five_species::CASE,
-];
+/// A gas of Calcine with its settings.
+#[derive(Clone, Copy, Debug)]
+pub struct CoupledGas {
+    /// `native` or `openfoam`.
+    pub gas: &'static str,
+    /// Words of `--set`.
+    pub set: &'static [&'static str],
+    /// How many times longer its windows are than the steps of the others.
+    pub longer: u32,
+}
 
 pub const fn at(factor: usize, milliseconds: f64) -> Resolution {
     Resolution {
@@ -71,7 +72,7 @@ pub const fn at(factor: usize, milliseconds: f64) -> Resolution {
     }
 }
 
-impl Case {
+impl ErrorCase {
     /// Cells along x and y.
     pub fn cells(&self, resolution: Resolution) -> [usize; 2] {
         self.coarsest.map(|count| count * resolution.factor)
@@ -79,7 +80,7 @@ impl Case {
 
     /// The finest mesh, as a multiple of the coarsest, that a gas of Calcine runs on: slower ones would take most of the time of
     /// a benchmark. Nothing where it takes no part.
-    pub fn finest(&self, gas: &Gas, large: bool) -> Option<usize> {
+    pub fn finest(&self, gas: &CoupledGas, large: bool) -> Option<usize> {
         match (gas.gas, gas.set.is_empty(), large) {
             ("native", true, false) => Some(self.finest_strict),
             ("native", true, true) => Some(4),
@@ -92,53 +93,11 @@ impl Case {
     }
 
     /// Errors of fields on the coarsest mesh relative to the sizes of the reference.
-    pub fn errors(&self, fields: &[Field], reference: &[Field]) -> Vec<f64> {
+    pub fn errors(&self, fields: &[MeanField], reference: &[MeanField]) -> Vec<f64> {
         let each = fields.iter().zip(reference).zip(self.quantities);
         let errors = each.map(|((field, reference), quantity)| {
             field.distance(reference) / reference.size(quantity.level)
         });
         errors.collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::path::Path;
-
-    use super::super::LONGER;
-    use super::*;
-
-    #[test]
-    fn every_case_has_its_files_and_steps_that_end_at_its_end() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../of-cases/gas-error");
-        for case in ALL {
-            let folder = root.join(case.name);
-            assert!(folder.join("case.toml").is_file(), "{}", case.name);
-            let control = std::fs::read_to_string(folder.join("stock/system/controlDict")).unwrap();
-            assert!(
-                control.contains(&format!("application     {};", case.stock)),
-                "{control}"
-            );
-            for run in case.runs.iter().chain(case.large) {
-                for longer in [1.0, f64::from(LONGER)] {
-                    let steps = case.end / (longer * run.step);
-                    assert!(
-                        (steps - steps.round()).abs() < 1e-9,
-                        "{} {run:?} {longer}",
-                        case.name
-                    );
-                }
-            }
-            if let Reference::Extrapolated(finest) = case.reference {
-                assert_eq!(finest.factor % 2, 0);
-                let finer = |run: &&Resolution| run.factor < finest.factor;
-                assert_eq!(
-                    case.runs.iter().filter(finer).count(),
-                    case.runs.len(),
-                    "{}",
-                    case.name
-                );
-            }
-        }
     }
 }

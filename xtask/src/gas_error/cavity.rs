@@ -1,13 +1,13 @@
 //! Start of a lid-driven cavity at Re 100.
 
-use super::case::{Case, Quantity, Reference, at};
+use super::case::{ErrorCase, ErrorQuantity, Reference, at};
 
-pub const CASE: Case = Case {
+pub const CASE: ErrorCase = ErrorCase {
     name: "cavity",
     stock: "icoFoam",
     coarsest: [32, 32],
     end: 0.5,
-    quantities: &[Quantity {
+    quantities: &[ErrorQuantity {
         name: "velocity",
         calcine: "velocity",
         openfoam: "U",

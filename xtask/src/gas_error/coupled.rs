@@ -4,23 +4,12 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use super::case::{Case, Quantity, Resolution};
-use super::field::{self, Field};
+use super::case::{CoupledGas, ErrorCase, ErrorQuantity, Resolution};
+use super::field::{self, MeanField};
 use super::measure::{Cost, measured};
 use super::start;
 use crate::json::Json;
 use crate::steps::{Stop, TaskResult, quietly};
-
-/// A gas of Calcine with its settings.
-#[derive(Clone, Copy, Debug)]
-pub struct Gas {
-    /// `native` or `openfoam`.
-    pub gas: &'static str,
-    /// Words of `--set`.
-    pub set: &'static [&'static str],
-    /// How many times longer its windows are than the steps of the others.
-    pub longer: u32,
-}
 
 /// What a run gave.
 pub struct Done {
@@ -28,15 +17,15 @@ pub struct Done {
     /// Processor time of the gas' phases in s, by the summary.
     pub gas: Option<f64>,
     /// Its fields, where it came to its end.
-    pub fields: Option<Vec<Field>>,
+    pub fields: Option<Vec<MeanField>>,
 }
 
 /// Runs a case file into `folder` on so many threads or ranks.
 pub fn run(
-    case: &Case,
+    case: &ErrorCase,
     (program, file): (&Path, &Path),
     folder: &Path,
-    (gas, resolution, cores): (Gas, Resolution, usize),
+    (gas, resolution, cores): (CoupledGas, Resolution, usize),
 ) -> TaskResult<Done> {
     let _ = fs::remove_dir_all(folder);
     let counts = case.cells(resolution);
@@ -100,9 +89,10 @@ pub fn run(
         });
     }
     let last = last_snapshot(&folder.join("gas"))?;
-    let read =
-        |quantity: &Quantity| field::of_calcine(&last, quantity.calcine, case.cells(resolution));
-    let fields: TaskResult<Vec<Field>> = case.quantities.iter().map(read).collect();
+    let read = |quantity: &ErrorQuantity| {
+        field::of_calcine(&last, quantity.calcine, case.cells(resolution))
+    };
+    let fields: TaskResult<Vec<MeanField>> = case.quantities.iter().map(read).collect();
     Ok(Done {
         cost,
         gas: time,

@@ -7,13 +7,13 @@ use crate::steps::{Stop, TaskResult};
 
 /// Values of the cells of a block of `counts` cells along x and y, x fastest, all components of a cell together.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Field {
+pub struct MeanField {
     pub counts: [usize; 2],
     pub components: usize,
     pub values: Vec<f64>,
 }
 
-impl Field {
+impl MeanField {
     /// A field of one component or three by its values; nothing where their number is that of neither.
     pub fn new(counts: [usize; 2], values: Vec<f64>) -> Option<Self> {
         let cells = counts[0] * counts[1];
@@ -59,7 +59,7 @@ impl Field {
     }
 
     /// The sum of fields on the same cells, each times its weight.
-    pub fn sum(terms: &[(f64, &Field)]) -> Self {
+    pub fn sum(terms: &[(f64, &MeanField)]) -> Self {
         let mut sum = terms[0].1.clone();
         sum.values.fill(0.0);
         for (weight, field) in terms {
@@ -81,16 +81,16 @@ impl Field {
     }
 
     /// Root mean square of the difference to another field on the same cells.
-    pub fn distance(&self, other: &Field) -> f64 {
+    pub fn distance(&self, other: &MeanField) -> f64 {
         Self::sum(&[(1.0, self), (-1.0, other)]).size(0.0)
     }
 }
 
 /// The internal field of a file of OpenFOAM in ASCII.
-pub fn of_openfoam(path: &Path, counts: [usize; 2]) -> TaskResult<Field> {
+pub fn of_openfoam(path: &Path, counts: [usize; 2]) -> TaskResult<MeanField> {
     let text = fs::read_to_string(path).map_err(|cause| Stop::io(path, &cause))?;
     let values = internal_field(&text, counts[0] * counts[1]);
-    let field = values.and_then(|values| Field::new(counts, values));
+    let field = values.and_then(|values| MeanField::new(counts, values));
     field.ok_or_else(|| {
         Stop(format!(
             "{}: not a field of {counts:?} cells",
@@ -115,9 +115,9 @@ fn internal_field(text: &str, cells: usize) -> Option<Vec<f64>> {
 }
 
 /// An array of cells of a VTU file of Calcine.
-pub fn of_calcine(path: &Path, name: &str, counts: [usize; 2]) -> TaskResult<Field> {
+pub fn of_calcine(path: &Path, name: &str, counts: [usize; 2]) -> TaskResult<MeanField> {
     let bytes = fs::read(path).map_err(|cause| Stop::io(path, &cause))?;
-    let field = appended(&bytes, name).and_then(|values| Field::new(counts, values));
+    let field = appended(&bytes, name).and_then(|values| MeanField::new(counts, values));
     field.ok_or_else(|| {
         Stop(format!(
             "{}: no `{name}` of {counts:?} cells",
@@ -161,14 +161,14 @@ mod tests {
     #[test]
     fn blocks_of_cells_are_averaged_and_sums_keep_what_they_should() {
         let values: Vec<f64> = (0..16).map(f64::from).collect();
-        let fine = Field::new([4, 4], values).unwrap();
+        let fine = MeanField::new([4, 4], values).unwrap();
         let coarse = fine.restricted([2, 2]).unwrap();
         assert_eq!(coarse.values, [2.5, 4.5, 10.5, 12.5]);
         assert_eq!(fine.restricted([3, 2]), None);
-        let difference = Field::sum(&[(2.0, &coarse), (-1.0, &coarse)]);
+        let difference = MeanField::sum(&[(2.0, &coarse), (-1.0, &coarse)]);
         assert_eq!(difference, coarse);
         assert_eq!(coarse.distance(&difference), 0.0);
-        let lengths = Field::new([1, 1], vec![3.0, 0.0, 4.0]).unwrap();
+        let lengths = MeanField::new([1, 1], vec![3.0, 0.0, 4.0]).unwrap();
         assert_eq!(lengths.size(0.0), 5.0);
     }
 

@@ -1,21 +1,21 @@
 //! Two dilute streams of five species side by side in a duct, whose mass fractions rise with time; none reacts. Dilute,
 //! because the solvers mix viscosities by different rules.
 
-use super::case::{Case, Quantity, Reference, at};
+use super::case::{ErrorCase, ErrorQuantity, Reference, at};
 
-pub const CASE: Case = Case {
+pub const CASE: ErrorCase = ErrorCase {
     name: "five-species",
     stock: "reactingFoam",
     coarsest: [32, 32],
     end: 0.2,
     quantities: &[
-        Quantity {
+        ErrorQuantity {
             name: "CO2",
             calcine: "CO2",
             openfoam: "CO2",
             level: 0.0,
         },
-        Quantity {
+        ErrorQuantity {
             name: "CH4",
             calcine: "CH4",
             openfoam: "CH4",

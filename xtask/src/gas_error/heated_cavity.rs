@@ -1,20 +1,20 @@
 //! Start of natural convection of air in a square between a warm and a cold wall.
 
-use super::case::{Case, Quantity, Reference, at};
+use super::case::{ErrorCase, ErrorQuantity, Reference, at};
 
-pub const CASE: Case = Case {
+pub const CASE: ErrorCase = ErrorCase {
     name: "heated-cavity",
     stock: "buoyantPimpleFoam",
     coarsest: [32, 32],
     end: 1.0,
     quantities: &[
-        Quantity {
+        ErrorQuantity {
             name: "velocity",
             calcine: "velocity",
             openfoam: "U",
             level: 0.0,
         },
-        Quantity {
+        ErrorQuantity {
             name: "temperature",
             calcine: "temperature",
             openfoam: "T",

@@ -1,21 +1,21 @@
 //! Hot gas in a duct of which a part is a porous zone with Ergun's drag. Nearly all of the zone is gas, because the stock solver has
 //! no void fraction.
 
-use super::case::{Case, Quantity, Reference, at};
+use super::case::{ErrorCase, ErrorQuantity, Reference, at};
 
-pub const CASE: Case = Case {
+pub const CASE: ErrorCase = ErrorCase {
     name: "hot-duct",
     stock: "buoyantPimpleFoam",
     coarsest: [32, 32],
     end: 0.2,
     quantities: &[
-        Quantity {
+        ErrorQuantity {
             name: "velocity",
             calcine: "velocity",
             openfoam: "U",
             level: 0.0,
         },
-        Quantity {
+        ErrorQuantity {
             name: "temperature",
             calcine: "temperature",
             openfoam: "T",

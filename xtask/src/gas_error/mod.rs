@@ -2,6 +2,7 @@
 //! solvers, in one run and against one reference.
 
 mod case;
+mod cases;
 mod cavity;
 mod coupled;
 mod field;
@@ -20,11 +21,11 @@ use std::fs;
 use std::path::PathBuf;
 use std::thread;
 
-use case::{Case, Reference, Resolution};
-use coupled::{Done, Gas};
-use field::Field;
+use case::{CoupledGas, ErrorCase, Reference, Resolution};
+use coupled::Done;
+use field::MeanField;
 use measure::Cost;
-use report::Row;
+use report::ErrorRow;
 
 use crate::packages::{self, Needs};
 use crate::steps::{Stop, TaskResult, loud_step, say, step};
@@ -33,21 +34,21 @@ use crate::workspace::{CargoProfile, Workspace};
 
 /// What is asked for.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Choice {
+pub struct ErrorChoice {
     /// Names of cases; all of them if there are none.
     pub names: Vec<String>,
     /// Measures the programs that were built last.
     pub built: bool,
 }
 
-impl Choice {
+impl ErrorChoice {
     /// From the words behind `gas-error`; nothing where one is neither a case nor an option.
     pub fn read<'w>(words: impl Iterator<Item = Option<&'w str>>) -> Option<Self> {
         let mut choice = Self::default();
         for word in words {
             match word? {
                 "--no-build" => choice.built = true,
-                name if case::ALL.iter().any(|case| case.name == name) => {
+                name if cases::ALL.iter().any(|case| case.name == name) => {
                     choice.names.push(name.to_owned());
                 }
                 _ => return None,
@@ -59,10 +60,10 @@ impl Choice {
 
 /// Gases of Calcine: as cases have them unless they say otherwise, and with tolerances near those of OpenFOAM's
 /// tutorials.
-const GASES: [(&str, Gas); 5] = [
+const GASES: [(&str, CoupledGas); 5] = [
     (
         "native",
-        Gas {
+        CoupledGas {
             gas: "native",
             set: &[],
             longer: 1,
@@ -70,7 +71,7 @@ const GASES: [(&str, Gas); 5] = [
     ),
     (
         "native, loose",
-        Gas {
+        CoupledGas {
             gas: "native",
             set: LOOSE,
             longer: 1,
@@ -78,7 +79,7 @@ const GASES: [(&str, Gas); 5] = [
     ),
     (
         "native, loose, two stages",
-        Gas {
+        CoupledGas {
             gas: "native",
             set: TWO_STAGES,
             longer: LONGER,
@@ -86,7 +87,7 @@ const GASES: [(&str, Gas); 5] = [
     ),
     (
         "calcineGasFoam",
-        Gas {
+        CoupledGas {
             gas: "openfoam",
             set: &[],
             longer: 1,
@@ -94,7 +95,7 @@ const GASES: [(&str, Gas); 5] = [
     ),
     (
         "calcineGasFoam, loose",
-        Gas {
+        CoupledGas {
             gas: "openfoam",
             set: LOOSE,
             longer: 1,
@@ -114,7 +115,7 @@ const TWO_STAGES: &[&str] = &[
 const LONGER: u32 = 5;
 
 /// Builds, measures, prints the tables and writes them below the target folder.
-pub fn run(workspace: &Workspace, choice: &Choice) -> TaskResult<()> {
+pub fn run(workspace: &Workspace, choice: &ErrorChoice) -> TaskResult<()> {
     let needs = Needs {
         openfoam: true,
         ..Needs::NATIVE
@@ -124,10 +125,11 @@ pub fn run(workspace: &Workspace, choice: &Choice) -> TaskResult<()> {
         let _lock = workspace.lock()?;
         tasks::build_parts(workspace, needs, BuildScope::Runs)?;
     }
-    let chosen =
-        |case: &&Case| choice.names.is_empty() || choice.names.iter().any(|name| name == case.name);
+    let chosen = |case: &&ErrorCase| {
+        choice.names.is_empty() || choice.names.iter().any(|name| name == case.name)
+    };
     let mut text = report::head();
-    for case in case::ALL.into_iter().filter(chosen) {
+    for case in cases::ALL.into_iter().filter(chosen) {
         let bench = Bench::new(workspace, case);
         text += &loud_step(case.name, || bench.run())?;
     }
@@ -146,7 +148,7 @@ fn print(text: &str) -> TaskResult<()> {
 
 /// The runs of one case.
 struct Bench<'a> {
-    case: &'a Case,
+    case: &'a ErrorCase,
     /// Its files.
     from: PathBuf,
     /// Where it runs.
@@ -155,7 +157,7 @@ struct Bench<'a> {
 }
 
 impl<'a> Bench<'a> {
-    fn new(workspace: &Workspace, case: &'a Case) -> Self {
+    fn new(workspace: &Workspace, case: &'a ErrorCase) -> Self {
         let release = workspace.target.join(CargoProfile::Release.folder());
         Self {
             case,
@@ -206,7 +208,12 @@ impl<'a> Bench<'a> {
     }
 
     /// A row of OpenFOAM's own solver.
-    fn stock(&self, reference: &[Field], resolution: Resolution, cores: usize) -> TaskResult<Row> {
+    fn stock(
+        &self,
+        reference: &[MeanField],
+        resolution: Resolution,
+        cores: usize,
+    ) -> TaskResult<ErrorRow> {
         let (cost, fields) = self.stock_run((resolution, stock::USUAL, cores))?;
         let solver = self.case.stock.to_owned();
         let done = Done {
@@ -220,11 +227,11 @@ impl<'a> Bench<'a> {
     /// A row of a gas of Calcine.
     fn coupled(
         &self,
-        reference: &[Field],
-        (name, gas): (&str, Gas),
+        reference: &[MeanField],
+        (name, gas): (&str, CoupledGas),
         resolution: Resolution,
         cores: usize,
-    ) -> TaskResult<Row> {
+    ) -> TaskResult<ErrorRow> {
         let what = self.what(name, resolution, cores);
         let file = self.from.join("case.toml");
         let folder = self.folder.join(what.replace([' ', ','], "-"));
@@ -238,7 +245,7 @@ impl<'a> Bench<'a> {
     fn stock_run(
         &self,
         settings: (Resolution, stock::Time, usize),
-    ) -> TaskResult<(Cost, Option<Vec<Field>>)> {
+    ) -> TaskResult<(Cost, Option<Vec<MeanField>>)> {
         let (resolution, time, ranks) = settings;
         let what = self.what(
             &format!("{} {}", self.case.stock, time.scheme),
@@ -258,7 +265,7 @@ impl<'a> Bench<'a> {
     }
 
     /// The fields that all others are compared with, on the cells of the coarsest mesh.
-    fn reference(&self, large: bool) -> TaskResult<Vec<Field>> {
+    fn reference(&self, large: bool) -> TaskResult<Vec<MeanField>> {
         match self.case.reference {
             Reference::Extrapolated(usual) => {
                 let times = if large { 2 } else { 1 };
@@ -280,12 +287,12 @@ impl<'a> Bench<'a> {
                 // Errors of second order in cell and step fall to a quarter.
                 let third = 1.0 / 3.0;
                 let each = pairs.map(|(finest, coarser)| {
-                    Field::sum(&[(1.0 + third, finest), (-third, coarser)])
+                    MeanField::sum(&[(1.0 + third, finest), (-third, coarser)])
                 });
                 Ok(each.collect())
             }
             Reference::Exact(values, edge) => {
-                let field = Field::means(self.case.coarsest, edge, values);
+                let field = MeanField::means(self.case.coarsest, edge, values);
                 Ok(vec![field.ok_or_else(|| {
                     Stop::new("the exact solution is not a field")
                 })?])
@@ -293,21 +300,21 @@ impl<'a> Bench<'a> {
         }
     }
 
-    fn restricted(&self, fields: &[Field]) -> TaskResult<Vec<Field>> {
+    fn restricted(&self, fields: &[MeanField]) -> TaskResult<Vec<MeanField>> {
         let each = fields
             .iter()
             .map(|field| field.restricted(self.case.coarsest));
-        let all: Option<Vec<Field>> = each.collect();
+        let all: Option<Vec<MeanField>> = each.collect();
         all.ok_or_else(|| Stop::new("cells do not fill those of the coarsest mesh"))
     }
 
     /// What a run gave, its fields on the coarsest mesh and their errors.
     fn row(
         &self,
-        reference: &[Field],
+        reference: &[MeanField],
         (solver, resolution, cores): (String, Resolution, usize),
         done: Done,
-    ) -> TaskResult<Row> {
+    ) -> TaskResult<ErrorRow> {
         let fields = done
             .fields
             .map(|fields| self.restricted(&fields))
@@ -317,7 +324,7 @@ impl<'a> Bench<'a> {
             |fields| self.case.errors(fields, reference),
         );
         let (cost, gas) = (done.cost, done.gas);
-        Ok(Row {
+        Ok(ErrorRow {
             solver,
             resolution,
             cores,

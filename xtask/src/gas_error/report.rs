@@ -1,14 +1,14 @@
 //! The tables: all runs, and the processor time of each solver at equal error.
 
-use super::case::{Case, Resolution};
-use super::field::Field;
+use super::case::{ErrorCase, Resolution};
+use super::field::MeanField;
 use super::front::{Front, Point, TimeAt, levels};
 use super::measure::Cost;
 use crate::table::{Table, short};
 
 /// What one run gave.
 #[derive(Clone, Debug)]
-pub struct Row {
+pub struct ErrorRow {
     pub solver: String,
     pub resolution: Resolution,
     /// Threads or ranks.
@@ -17,7 +17,7 @@ pub struct Row {
     /// Processor time in s of the gas' phases, where Calcine tells it.
     pub gas: Option<f64>,
     /// Fields on the coarsest mesh, where it came to its end.
-    pub fields: Option<Vec<Field>>,
+    pub fields: Option<Vec<MeanField>>,
     /// Relative errors, one a quantity.
     pub errors: Vec<f64>,
 }
@@ -35,7 +35,7 @@ pub fn head() -> String {
 }
 
 /// The tables of a case.
-pub fn tables(case: &Case, reference: &[Field], rows: &[Row]) -> String {
+pub fn tables(case: &ErrorCase, reference: &[MeanField], rows: &[ErrorRow]) -> String {
     let mut text = format!("\n## {}\n\n{}", case.name, runs(case, rows));
     for at in 0..case.quantities.len() {
         let table = equal_errors(case, rows, at);
@@ -62,7 +62,7 @@ pub fn tables(case: &Case, reference: &[Field], rows: &[Row]) -> String {
 }
 
 /// Names of the solvers in the order of their first rows.
-fn solvers(rows: &[Row]) -> Vec<&str> {
+fn solvers(rows: &[ErrorRow]) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
     for row in rows {
         if !names.contains(&row.solver.as_str()) {
@@ -75,9 +75,9 @@ fn solvers(rows: &[Row]) -> Vec<&str> {
 /// What the runs of a solver converge to: those on its two finest meshes without the errors of their steps, of first order and
 /// known from two runs on one mesh, and then without those of their cells, of second order. Where this differs from the
 /// reference, so much of the errors is not known.
-fn own_limit(rows: &[Row], solver: &str) -> Option<Vec<Field>> {
-    let done = |row: &&Row| row.solver == solver && row.cores == 1 && row.fields.is_some();
-    let mut own: Vec<&Row> = rows.iter().filter(done).collect();
+fn own_limit(rows: &[ErrorRow], solver: &str) -> Option<Vec<MeanField>> {
+    let done = |row: &&ErrorRow| row.solver == solver && row.cores == 1 && row.fields.is_some();
+    let mut own: Vec<&ErrorRow> = rows.iter().filter(done).collect();
     own.sort_by(|one, other| {
         let (one, other) = (one.resolution, other.resolution);
         other
@@ -95,11 +95,11 @@ fn own_limit(rows: &[Row], solver: &str) -> Option<Vec<Field>> {
     let (short, long) = (pair[0], pair[1]);
     let apart = long.resolution.step - short.resolution.step;
     let limit = |at: usize| {
-        let field = |row: &Row| row.fields.as_ref()?.get(at).cloned();
+        let field = |row: &ErrorRow| row.fields.as_ref()?.get(at).cloned();
         let (brief, late) = (field(short)?, field(long)?);
-        let without_step = |row: &Row| {
+        let without_step = |row: &ErrorRow| {
             let share = row.resolution.step / apart;
-            Some(Field::sum(&[
+            Some(MeanField::sum(&[
                 (1.0, &field(row)?),
                 (share, &brief),
                 (-share, &late),
@@ -111,13 +111,13 @@ fn own_limit(rows: &[Row], solver: &str) -> Option<Vec<Field>> {
             (1.0 + weight, &without_step(fine)?),
             (-weight, &without_step(coarse)?),
         ];
-        Some(Field::sum(&terms))
+        Some(MeanField::sum(&terms))
     };
     (0..fine.errors.len()).map(limit).collect()
 }
 
 /// All runs.
-fn runs(case: &Case, rows: &[Row]) -> Table {
+fn runs(case: &ErrorCase, rows: &[ErrorRow]) -> Table {
     let errors: Vec<String> = case
         .quantities
         .iter()
@@ -165,7 +165,7 @@ fn percent(error: f64) -> String {
 }
 
 /// Processor times at equal errors of a quantity on one core, in s and as multiples of the stock solver's.
-fn equal_errors(case: &Case, rows: &[Row], quantity: usize) -> Table {
+fn equal_errors(case: &ErrorCase, rows: &[ErrorRow], quantity: usize) -> Table {
     let solvers = solvers(rows);
     let front = |solver: &&str| {
         let of = rows
@@ -218,14 +218,14 @@ mod tests {
     use super::super::case::at;
     use super::*;
 
-    fn row(solver: &str, factor: usize, milliseconds: f64, value: f64) -> Row {
-        Row {
+    fn row(solver: &str, factor: usize, milliseconds: f64, value: f64) -> ErrorRow {
+        ErrorRow {
             solver: solver.to_owned(),
             resolution: at(factor, milliseconds),
             cores: 1,
             cost: Cost::default(),
             gas: None,
-            fields: Field::new([1, 1], vec![value]).map(|field| vec![field]),
+            fields: MeanField::new([1, 1], vec![value]).map(|field| vec![field]),
             errors: vec![0.0],
         }
     }

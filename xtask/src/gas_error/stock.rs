@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::case::{Case, Quantity, Resolution};
-use super::field::{self, Field};
+use super::case::{ErrorCase, ErrorQuantity, Resolution};
+use super::field::{self, MeanField};
 use super::measure::{Cost, measured};
 use crate::steps::{Stop, TaskResult, quietly};
 
@@ -35,11 +35,11 @@ pub const ACCURATE: Time = Time {
 /// Runs a case of `from` in `folder` on so many ranks; its cost, and its fields where it
 /// came to its end.
 pub fn run(
-    case: &Case,
+    case: &ErrorCase,
     from: &Path,
     folder: &Path,
     (resolution, time, ranks): (Resolution, Time, usize),
-) -> TaskResult<(Cost, Option<Vec<Field>>)> {
+) -> TaskResult<(Cost, Option<Vec<MeanField>>)> {
     let _ = fs::remove_dir_all(folder);
     copy(from, folder)?;
     let [nx, ny] = case.cells(resolution);
@@ -92,10 +92,10 @@ pub fn run(
         quietly(&mut tool(&["reconstructPar", "-latestTime"]), &log)?;
     }
     let last = last_time(folder)?;
-    let read = |quantity: &Quantity| {
+    let read = |quantity: &ErrorQuantity| {
         field::of_openfoam(&last.join(quantity.openfoam), case.cells(resolution))
     };
-    let fields: TaskResult<Vec<Field>> = case.quantities.iter().map(read).collect();
+    let fields: TaskResult<Vec<MeanField>> = case.quantities.iter().map(read).collect();
     Ok((cost, Some(fields?)))
 }
 

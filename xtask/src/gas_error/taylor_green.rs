@@ -4,7 +4,7 @@
 
 use std::f64::consts::PI;
 
-use super::case::{Case, Quantity, Reference, at};
+use super::case::{ErrorCase, ErrorQuantity, Reference, at};
 use super::start::{Here, Start};
 
 /// Edge of the square in m.
@@ -14,12 +14,12 @@ const VISCOSITY: f64 = 1e-3;
 /// End in s, half of the time in which the velocity falls to 1/e.
 const END: f64 = 0.25;
 
-pub const CASE: Case = Case {
+pub const CASE: ErrorCase = ErrorCase {
     name: "taylor-green",
     stock: "icoFoam",
     coarsest: [32, 32],
     end: END,
-    quantities: &[Quantity {
+    quantities: &[ErrorQuantity {
         name: "velocity",
         calcine: "velocity",
         openfoam: "U",
