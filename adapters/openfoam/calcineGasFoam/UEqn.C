@@ -5,38 +5,13 @@
 //       - sum (eps mu)_f (grad(u) + grad(u)^T - 2/3 div(u)).S = -chi grad(p) V + chi rho V g + S_d - K_d u
 //
 // chi the share of the pressure gradient that the gas takes, eps by model A, 1 by model B.
-// u_f as fvSchemes says, beyond upwind explicitly; of the viscous stress the part grad(u).S is implicit. On slip walls the normal
-// viscous stress acts alone, explicitly; mu with that of eddies (models.H); gas leaves an outlet as if the flow were developed there.
+// u_f as fvSchemes says, beyond upwind explicitly; of the viscous stress the part grad(u).S is implicit. No viscous stress acts on
+// slip walls; mu with that of eddies (models.H); gas leaves an outlet as if the flow were developed there.
 #include "gas.H"
 #include "convection.H"
 #include "fvm.H"
 #include "fvc.H"
 #include "basicSymmetryFvPatchFields.H"
-
-// Stress of a wall without friction: along its normal n, (grad(u) + grad(u)^T - 2/3 div(u)), with the normal derivative of the normal
-// velocity from the cell to the face, where it is zero.
-Foam::tensorField Foam::calcine::gas::normalStress
-(
-    label patchi,
-    const volScalarField& mu,
-    const volTensorField& gradU
-) const
-{
-    const fvPatch& patch = mesh_.boundary()[patchi];
-    tensorField stress(patch.size(), Zero);
-    forAll(patch, i)
-    {
-        const label facei = patch.start() + i, celli = patch.faceCells()[i];
-        const vector& n = normal_[facei];
-        const tensor& g = gradU[celli];
-        const scalar skewed = (ownerSkew_[facei] & g) & n;
-        const scalar along = (-(U_[celli] & n) - skewed)/ownerDistance_[facei];
-        const scalar divergence = tr(g) + along - ((n & g) & n);
-        stress[i] = mu[celli]*(2*along - 2.0/3.0*divergence)*n*n;
-    }
-    return stress;
-}
-
 
 Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, report& result)
 {
@@ -46,17 +21,14 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     const surfaceScalarField faceViscosity("viscosity", fvc::interpolate(viscosity()));
 
     // Force of the explicit part of the stress on the owner of each face, in N.
-    const volScalarField mu("mu", viscosity());
-    const volTensorField gradU("gradU", fvc::grad(U_));
-    volTensorField stress("explicitStress", mu*dev2(T(gradU)));
+    volTensorField stress
+    (
+        "explicitStress", viscosity()*dev2(T(fvc::grad(U_)))
+    );
     forAll(mesh_.boundary(), patchi)
     {
         const passage way = boundary_.of(patchi);
-        if (isA<basicSymmetryFvPatchVectorField>(U_.boundaryField()[patchi]))
-        {
-            stress.boundaryFieldRef()[patchi] = normalStress(patchi, mu, gradU);
-        }
-        else if (way != passage::open && way != passage::within && !U_.boundaryField()[patchi].fixesValue())
+        if (way != passage::open && way != passage::within && !U_.boundaryField()[patchi].fixesValue())
         {
             stress.boundaryFieldRef()[patchi] = Zero;
         }

@@ -6,7 +6,7 @@
 //!
 //! (docs/theory.md, FLO-5, Newtonian), χ the share of the pressure gradient: ε by model A, 1 by model B. Implicit Euler; u_f upwind, what a second-order value has beyond it
 //! explicitly from the last iterate; of the viscous stress the part ∇u·S implicitly, the rest explicitly;
-//! on free-slip walls and planes of symmetry the normal viscous stress alone, explicitly; gas leaves an outlet as if the flow were developed there.
+//! no viscous stress on free-slip walls and planes of symmetry; gas leaves an outlet as if the flow were developed there.
 
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::Convection;
@@ -276,6 +276,9 @@ impl Momentum {
     pub fn inflow(&self, frame: &AttemptFrame<'_>, now: &GasState, index: usize) -> Vec3 {
         let face = &frame.grid.faces[index];
         let (inner, flux) = (now.velocity[face.owner], now.flux[index]);
+        if flux == 0.0 && self.viscous[index] == 0.0 {
+            return Vec3::zeros();
+        }
         let Some(velocity) = carried_velocity(frame, index, flux) else {
             return -flux * inner - self.explicit[index];
         };
@@ -335,9 +338,6 @@ impl Momentum {
                     -area * transposed(&developed, &face.normal)
                 } else {
                     explicit_at_boundary(frame, index, own, viscous[index], now)
-                        - face.area
-                            * material.viscosity[face.owner]
-                            * normal_stress(frame, index, own, now)
                 };
             }
             let flux = now.flux[index];
@@ -397,29 +397,6 @@ pub fn tensor(grid: &MeshGraph, cell: usize, value: impl Fn(usize, &Face) -> Vec
 #[inline]
 fn transposed(gradient: &Matrix3<f64>, normal: &Vec3) -> Vec3 {
     gradient.tr_mul(normal) - (2.0 / 3.0 * gradient.trace()) * normal
-}
-
-/// Normal stress of a wall without friction, or a plane of symmetry, over the viscosity, along the face's normal in 1/s: (∇u + ∇uᵀ − ⅔ ∇·u)·n
-/// without what is tangential, with the normal derivative of the normal velocity from the cell to the face, where it is zero.
-fn normal_stress(
-    frame: &AttemptFrame<'_>,
-    index: usize,
-    inner: &Matrix3<f64>,
-    now: &GasState,
-) -> Vec3 {
-    let FaceCondition::Wall { sticks: None, .. } = frame.boundary.at(index) else {
-        return Vec3::zeros();
-    };
-    let face = &frame.grid.faces[index];
-    let normal = face.normal;
-    let skewed = if frame.grid.orthogonal {
-        0.0
-    } else {
-        (inner * face.owner_skew).dot(&normal)
-    };
-    let along = (-now.velocity[face.owner].dot(&normal) - skewed) / face.distance();
-    let divergence = inner.trace() + along - (inner * normal).dot(&normal);
-    (2.0 * along - 2.0 / 3.0 * divergence) * normal
 }
 
 /// Explicit momentum flow out of the owner through a boundary face in N: skewness and the transposed
