@@ -1,6 +1,6 @@
 //! Order of the schemes in time: the error of the fields at a time against a solution of much shorter windows on the same mesh, so that
 //! what the mesh leaves drops out.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -16,10 +16,13 @@ use crate::common::{
     AIR, Driver, closure, duct, fluid, named_box, orders, outlet, setup, slip, wall,
 };
 
+/// What changes in a driver before a window that ends at a time in s.
+type Change = Box<dyn Fn(&mut Driver, f64)>;
+
 /// A case: its driver at the start, and what changes before a window that ends at a time in s.
 struct Trial {
     driver: Driver,
-    change: Box<dyn Fn(&mut Driver, f64)>,
+    change: Change,
     end: f64,
     /// True where heat and momentum pass its boundary or its bed, so that their balances mean something.
     exchanges: bool,
@@ -151,11 +154,11 @@ fn heated_box(scheme: TimeScheme, moves: bool) -> Trial {
         };
         1.0 - bed * (1.0 - centre[cell].z / 0.1)
     };
-    for cell in 0..mesh.cells() {
+    for (cell, volume) in volume.into_iter().enumerate() {
         driver.bed.void_fraction[cell] = pores(cell, 0.0);
-        driver.exchange.drag_coefficient[cell] = 5.0 * volume[cell];
-        driver.exchange.heat_coefficient[cell] = 2000.0 * volume[cell];
-        driver.exchange.heat_source[cell] = 2000.0 * 320.0 * volume[cell];
+        driver.exchange.drag_coefficient[cell] = 5.0 * volume;
+        driver.exchange.heat_coefficient[cell] = 2000.0 * volume;
+        driver.exchange.heat_source[cell] = 2000.0 * 320.0 * volume;
     }
     Trial {
         driver,
