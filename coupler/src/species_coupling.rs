@@ -7,7 +7,8 @@
 //! a window gives the gas β Y_c − (a + (β − b) Ȳ) about the gas of the attempt before, with the larger of b and β/2
 //! implicitly: the key gas implicitly, which is what keeps large process steps stable, a gas into which the
 //! channel turns it mole for mole likewise (the rate follows both, and by the key gas alone the two would be out of step
-//! until the attempts agree), all others explicitly. What comes of it gives the rates of the cells; limited to what
+//! until the attempts agree), all others explicitly, but for what would be taken of a gas whatever is left of it: that goes in
+//! proportion to what is left, so that no attempt comes to fractions below zero. What comes of it gives the rates of the cells; limited to what
 //! particles hold, they are given to the gas once more as fixed sources, all species of a channel in their proportions,
 //! so that elements close whatever the attempts before did.
 //!
@@ -60,6 +61,23 @@ pub struct SpeciesCoupling {
     fractions: Vec<f64>,
     scratch: Vec<f64>,
     sampled: Vec<f64>,
+}
+
+/// Mass fraction of a gas that is as good as not there.
+const FAINT: f64 = 1e-9;
+
+impl CellRows<'_> {
+    /// Takes implicitly what would be taken of a gas whatever is left of it, in proportion to what is left: no attempt comes
+    /// to fractions below zero. At the fractions at hand nothing changes, where there is any of the gas.
+    fn keep_positive(self, fractions: &[f64]) {
+        let rows = self.source.iter_mut().zip(self.coefficient).zip(fractions);
+        for ((source, coefficient), fraction) in rows {
+            if *source < 0.0 {
+                *coefficient -= *source / fraction.max(FAINT);
+                *source = 0.0;
+            }
+        }
+    }
 }
 
 /// The lines of one channel, summed over particles, in each cell.
@@ -356,6 +374,9 @@ impl SpeciesCoupling {
                 }
             }
             *told.heat += lines.warm_slope[cell] * fraction - lines.warm_offset[cell];
+        }
+        if implicit {
+            told.keep_positive(fractions);
         }
     }
 }

@@ -87,6 +87,16 @@ fn told(operator: &Operator, rate: f64, whole: f64, local: f64) -> [SpeciesExcha
 }
 
 #[test]
+fn no_attempt_takes_more_of_a_gas_than_there_is_whatever_the_slopes_say() {
+    let operator = operator();
+    for (rate, whole, local) in [(0.2, 0.0, 0.0), (20.0, 0.3, 1.5), (1e3, 1.0, 0.1)] {
+        let [implicit, _] = told(&operator, rate, whole, local);
+        let least = implicit.source.iter().copied().fold(0.0, f64::min);
+        assert_eq!(least, 0.0, "{rate}, {whole}, {local}");
+    }
+}
+
+#[test]
 fn a_particle_gives_its_rate_to_its_cells_by_the_local_slope_whatever_that_of_its_total() {
     let operator = operator();
     let (rate, local) = (0.2, 1.5);
@@ -111,8 +121,9 @@ fn a_particle_gives_its_rate_to_its_cells_by_the_local_slope_whatever_that_of_it
                 "{whole}, {cell}"
             );
             assert_eq!(fixed.coefficient[at], 0.0);
-            // Implicit enough for the cells of a particle to agree, and for its total.
+            // Implicit enough for the cells of a particle to agree, for its total, and for no cell to give what it does not have.
             let least = molar * share[cell] * whole.max(0.5 * local);
+            let least = least.max(-expected / co);
             assert!(
                 (implicit.coefficient[at] - least).abs() < 1e-14 * least,
                 "{whole}, {cell}"
