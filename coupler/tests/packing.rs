@@ -193,7 +193,7 @@ fn a_fraction_out_of_reach_is_refused_with_the_one_reached() {
         unreachable!("{error}");
     };
     assert!(reached > 0.2 && reached < 0.70, "{error}");
-    assert!(error.to_string().contains("lower the solid fraction"));
+    assert!(error.to_string().contains("write a smaller solid fraction"));
     // 40 000 of them fill the tube's 50 mm by more than is there.
     spec.fill = Fill::NumberToHeight {
         number: 40_000,
