@@ -114,30 +114,24 @@ pub fn extrapolate(start: &GasState, first: &GasState, beyond: f64, between: &mu
     between.base_pressure = line(start.base_pressure, first.base_pressure);
 }
 
-/// Adds what a stage received to what the window has received so far; with the first stage it begins.
-pub fn add(total: &mut CellReceived, part: &CellReceived, stage: &Stage, first: bool) {
+/// Adds what a stage received, which is scaled, to what the window has received so far; with the first stage it begins.
+pub fn add(total: &mut CellReceived, part: &mut CellReceived, stage: &Stage, first: bool) {
+    update(&mut part.heat, |_, heat| *heat *= stage.rate);
+    update(&mut part.drag, |_, drag| *drag *= stage.rate);
+    part.storage_clock *= stage.amount;
+    for balance in balances(part) {
+        *balance = scaled(balance, stage.amount);
+    }
     if first {
-        total.clone_from(part);
-        update(&mut total.heat, |_, heat| *heat *= stage.rate);
-        update(&mut total.drag, |_, drag| *drag *= stage.rate);
-        for balance in balances(total) {
-            *balance = scaled(balance, stage.amount);
-        }
-        total.storage_clock *= stage.amount;
+        std::mem::swap(total, part);
         return;
     }
-    update(&mut total.heat, |cell, heat| {
-        *heat += stage.rate * part.heat[cell]
-    });
-    update(&mut total.drag, |cell, drag| {
-        *drag += stage.rate * part.drag[cell]
-    });
-    let mut part = part.clone();
-    for (balance, part) in balances(total).into_iter().zip(balances(&mut part)) {
-        let part = scaled(part, stage.amount);
-        *balance = sum(balance, &part);
+    update(&mut total.heat, |cell, heat| *heat += part.heat[cell]);
+    update(&mut total.drag, |cell, drag| *drag += part.drag[cell]);
+    total.storage_clock += part.storage_clock;
+    for (balance, part) in balances(total).into_iter().zip(balances(part)) {
+        *balance = sum(balance, part);
     }
-    total.storage_clock += stage.amount * part.storage_clock;
 }
 
 /// All balances of what a gas received.

@@ -77,11 +77,11 @@ impl NativeGas {
             }
             self.take_bed(stage.end);
             let found = self.step(window, stage, begin)?;
-            let part = &self.steps.received;
+            let part = &mut self.steps.received;
             if several {
                 stages::add(received, part, stage, number == 0);
             } else {
-                received.clone_from(part);
+                std::mem::swap(received, part);
             }
             convergence = Some(match convergence {
                 None => found,
