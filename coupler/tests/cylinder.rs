@@ -9,7 +9,7 @@ use std::process::Command;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
 use calcine_coupler::mesh::cylinder::{
-    CylinderSpec, GradedBoxSpec, cylinder_mesh, graded_box_mesh,
+    CylinderSpec, GradedBoxSpec, cylinder_mesh, graded_box_mesh, outline,
 };
 use calcine_coupler::mesh::grading::{Region, levels, uniform};
 use calcine_coupler::mesh::polymesh::write;
@@ -55,17 +55,29 @@ fn non_orthogonality(mesh: &Mesh) -> f64 {
 }
 
 #[test]
-fn the_volume_of_a_cylinder_converges_with_second_order_from_below() {
+fn a_cylinder_has_the_volume_of_its_diameter() {
     let exact = FRAC_PI_4 * 0.05 * 0.05 * 0.3;
-    let error = |across| 1.0 - mesh(across).cell_volume().iter().sum::<f64>() / exact;
-    let errors = [8, 16, 32, 64].map(error);
-    for pair in errors.windows(2) {
-        let order = (pair[0] / pair[1]).log2();
-        assert!((order - 2.0).abs() < 0.02, "{errors:?}");
+    for across in [3, 8, 12, 33] {
+        let volume: f64 = mesh(across).cell_volume().iter().sum();
+        assert!((volume / exact - 1.0).abs() < 1e-12, "{across}: {volume}");
     }
-    // A regular polygon of n sides: 1 − n/(2π) sin(2π/n); 8 across have a core of 4, 16 sides.
-    let polygon = 1.0 - 16.0 / (2.0 * PI) * (2.0 * PI / 16.0).sin();
-    assert!((errors[0] - polygon).abs() < 1e-13);
+}
+
+#[test]
+fn the_outline_of_a_cylinder_is_a_regular_polygon_of_its_area() {
+    let mesh = mesh(8);
+    let outline = outline(8);
+    assert_eq!(outline.sides, 16);
+    // A regular polygon of n sides whose corners are at R has the area n/2 R² sin(2π/n).
+    let corners = outline.across_corners;
+    assert!((8.0 * corners * corners * (PI / 8.0).sin() / PI - 1.0).abs() < 1e-14);
+    let from_axis = |at: Vec3| (at - Vec3::new(0.01, -0.02, at.z)).norm() / 0.025;
+    for face in mesh.patch("side").unwrap().faces() {
+        assert!((from_axis(mesh.face_centre()[face]) - outline.across_sides).abs() < 1e-12);
+    }
+    let points = mesh.topology().points.iter();
+    let farthest = points.map(|&at| from_axis(at)).fold(0.0, f64::max);
+    assert!((farthest - corners).abs() < 1e-12);
 }
 
 #[test]

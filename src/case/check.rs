@@ -5,11 +5,12 @@ use std::fmt::Write as _;
 use calcine_adapters::openfoam::{chemistry, turbulence};
 use calcine_coupler::gas_chemistry::Combustion;
 use calcine_coupler::mesh::Mesh;
+use calcine_coupler::mesh::cylinder::outline;
 use calcine_coupler::physics::film::{FilmDiffusivity, ReferenceDiffusivity};
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::law::NONE;
 
-use super::model::{Case, Population};
+use super::model::{Case, MeshSpec, Population};
 use super::splitting::Splitting;
 use super::units::short;
 use super::{buoyancy, mesh_shape, sizes, span};
@@ -46,6 +47,20 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
     );
     let _ = writeln!(text, "  gas storage    {}", time.storage.name());
     let _ = writeln!(text, "  mesh           {cells} cells");
+    if let MeshSpec::Cylinder {
+        diameter, cells, ..
+    } = &case.mesh
+    {
+        let outline = outline(cells[0]);
+        let _ = writeln!(
+            text,
+            "                 diameter {} m: {} sides that enclose its area, {} m from side to side, {} m from corner to corner",
+            short(*diameter),
+            outline.sides,
+            short(outline.across_sides * diameter),
+            short(outline.across_corners * diameter)
+        );
+    }
     for line in mesh_shape::report(mesh).0 {
         let _ = writeln!(text, "                 {line}");
     }

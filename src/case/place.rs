@@ -196,12 +196,6 @@ fn grid(first: &Vec3, spacing: &Vec3, counts: [usize; 3]) -> Vec<Vec3> {
     centres
 }
 
-/// The diameter of the circle that touches the sides of a cylinder's polygon from inside, in m.
-pub(crate) fn inner_diameter(diameter: f64, across: usize) -> f64 {
-    let sides = 4 * (across - 2 * (across / 4).max(1));
-    diameter * (std::f64::consts::PI / sides as f64).cos()
-}
-
 /// What a packing needs beside a mesh that has no walls known to the case.
 fn no_walls() -> PackingError {
     PackingError::Value {
@@ -217,11 +211,8 @@ fn random(mesh: &MeshSpec, low: f64, spec: &RandomSpec) -> Result<Packing, Packi
     match mesh {
         MeshSpec::Box { origin, size, .. } => random_in_box(at(origin), [size.x, size.y], spec),
         MeshSpec::Cylinder {
-            origin,
-            diameter,
-            cells,
-            ..
-        } => random_in_cylinder(at(origin), inner_diameter(*diameter, cells[0]), spec),
+            origin, diameter, ..
+        } => random_in_cylinder(at(origin), *diameter, spec),
         MeshSpec::PolyMesh(_) => Err(no_walls()),
     }
 }
@@ -239,14 +230,8 @@ fn regular(
             regular_in_box(at(origin), [size.x, size.y, high - low], grain, lattice)
         }
         MeshSpec::Cylinder {
-            origin,
-            diameter,
-            cells,
-            ..
-        } => {
-            let inner = inner_diameter(*diameter, cells[0]);
-            regular_in_cylinder(at(origin), [inner, high - low], grain, lattice)
-        }
+            origin, diameter, ..
+        } => regular_in_cylinder(at(origin), [*diameter, high - low], grain, lattice),
         MeshSpec::PolyMesh(_) => Err(no_walls()),
     }
 }

@@ -1,9 +1,10 @@
 //! What of the walls of a case is likely not meant.
 
+use calcine_coupler::mesh::cylinder::outline;
 use calcine_coupler::motion::WallShape;
 use calcine_coupler::physics::Vec3;
 
-use super::model::{Case, MeshSpec};
+use super::model::{Case, MeshSpec, MotionSpec};
 use super::units::shown;
 
 /// Ratio of the sizes of a wall and of the mesh beyond which a unit of length is likely wrong: between m and mm it is 1000.
@@ -12,6 +13,7 @@ const FAR: f64 = 100.0;
 /// Warnings, in the order of the walls.
 pub(super) fn all(case: &Case) -> Vec<String> {
     let mut all = case.left_out_of_walls.clone();
+    all.extend(beyond_flat_sides(case));
     let Some(mesh) = size(&case.mesh) else {
         return all;
     };
@@ -30,6 +32,45 @@ pub(super) fn all(case: &Case) -> Vec<String> {
         }
     }
     all
+}
+
+/// Warns where a round wall lies so far beyond the flat sides of a cylinder's mesh that the smallest particles that move may leave it.
+fn beyond_flat_sides(case: &Case) -> Option<String> {
+    let MeshSpec::Cylinder {
+        origin,
+        diameter,
+        cells,
+        ..
+    } = &case.mesh
+    else {
+        return None;
+    };
+    let flat = 0.5 * diameter * outline(cells[0]).across_sides;
+    let radii = case.walls.iter().filter_map(|wall| match &wall.shape {
+        WallShape::Cylinder {
+            point,
+            axis,
+            radius,
+        } if axis.xy().norm() < 1e-9 => Some(radius + (point - origin).xy().norm()),
+        _ => None,
+    });
+    let reach = radii.fold(0.0, f64::max);
+    let moving = case
+        .particles
+        .iter()
+        .filter(|one| one.motion == MotionSpec::Free);
+    let smallest = moving
+        .map(|one| 0.5 * one.sizes.smallest())
+        .reduce(f64::min)?;
+    (reach - smallest > flat).then(|| {
+        format!(
+            "a round wall of {} m radius lies beyond the flat sides of the mesh, {} m from its axis, by more than {} m, the radius of the smallest \
+             particles that move: a centre that leaves the mesh there ends the run; take more cells across",
+            shown(reach),
+            shown(flat),
+            shown(smallest)
+        )
+    })
 }
 
 fn largest_extent(triangles: &[[Vec3; 3]]) -> f64 {
@@ -73,6 +114,16 @@ mod tests {
                 "the triangles of the wall `plate` reach over 100 m, the mesh over 0.3 m: check `scale`, 1e-3 for a file in mm"
             ]
         );
+    }
+
+    #[test]
+    fn a_round_wall_beyond_the_flat_sides_is_warned_of_where_particles_are_small() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/hopper.toml");
+        let set = |diameter: &str| format!("particles.beads.diameter={diameter}");
+        let told = |sizes: &str| all(&read(&path, &[set(sizes)]).unwrap());
+        assert_eq!(told("1 mm"), [""; 0]);
+        let small = told("0.01 mm");
+        assert!(small[0].contains("by more than 0.000005 m"), "{small:?}");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Upright cylinders of hexahedra: an O-grid, drawn out along z; and boxes graded the same way.
 
-use std::f64::consts::FRAC_PI_4;
+use std::f64::consts::{FRAC_PI_4, PI};
 
 use calcine_physics::Vec3;
 
@@ -28,8 +28,36 @@ pub struct CylinderSpec {
     pub patches: [String; 3],
 }
 
-/// The mesh of a cylinder; its outline is the polygon through points of the circle, so its volume
-/// approaches π/4 d² L from below with second order.
+/// The outline of a cylinder's mesh: a regular polygon of the circle's area.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outline {
+    /// Number of its sides.
+    pub sides: usize,
+    /// Distance of opposite sides over the diameter, below 1.
+    pub across_sides: f64,
+    /// Distance of opposite corners over the diameter, above 1.
+    pub across_corners: f64,
+}
+
+/// The outline of a cylinder with so many cells across. With α = π/sides a polygon whose corners are at the radius R has the area
+/// sides R² sin α cos α, which is that of the circle where R² = α/(sin α cos α) of the circle's radius.
+pub fn outline(cells_across: usize) -> Outline {
+    let sides = 4 * (cells_across - 2 * ring_layers(cells_across));
+    let (sine, cosine) = (PI / sides as f64).sin_cos();
+    let corners = (PI / sides as f64 / (sine * cosine)).sqrt();
+    Outline {
+        sides,
+        across_sides: corners * cosine,
+        across_corners: corners,
+    }
+}
+
+/// Layers of cells in the ring about the core.
+fn ring_layers(across: usize) -> usize {
+    (across / 4).max(1)
+}
+
+/// The mesh of a cylinder; its outline is a polygon of the same area, so that its volume is π/4 d² L.
 pub fn cylinder_mesh(spec: &CylinderSpec) -> Result<Mesh, MeshError> {
     let wrong = |text: String| Err(MeshError::Inconsistent(text));
     if !(spec.diameter.is_finite() && spec.diameter > 0.0) {
@@ -42,17 +70,18 @@ pub fn cylinder_mesh(spec: &CylinderSpec) -> Result<Mesh, MeshError> {
         ));
     }
     let levels = levels(spec.origin.z, spec.length, &spec.along)?;
+    let radius = 0.5 * spec.diameter * outline(spec.cells_across).across_corners;
     let mut plane = o_grid(spec.cells_across);
     for [x, y] in &mut plane.points {
-        *x = spec.origin.x + 0.5 * spec.diameter * *x;
-        *y = spec.origin.y + 0.5 * spec.diameter * *y;
+        *x = spec.origin.x + radius * *x;
+        *y = spec.origin.y + radius * *y;
     }
     extrude(&plane, &levels, &spec.patches, |_| 0)
 }
 
-/// Disc of radius 1: a rounded square of `core`² cells, and a ring of `ring` layers about it.
+/// Disc with its corners at radius 1: a rounded square of `core`² cells, and a ring of `ring` layers about it.
 fn o_grid(across: usize) -> Plane {
-    let ring = (across / 4).max(1);
+    let ring = ring_layers(across);
     let core = across - 2 * ring;
     let size = 1.05 * core as f64 / across as f64;
     let coordinate = |i: usize| 2.0 * i as f64 / core as f64 - 1.0;

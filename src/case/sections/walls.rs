@@ -9,7 +9,6 @@ use calcine_coupler::setup::Schedule;
 use super::common::existing;
 use super::heat;
 use crate::case::model::{MaterialSpec, MeshSpec};
-use crate::case::place::inner_diameter;
 use crate::case::stl;
 use crate::case::table::TableReader;
 
@@ -208,8 +207,7 @@ fn of_mesh(
     Some(chosen.map(|(_, part, shape)| (part, shape)).collect())
 }
 
-/// Patch, name and shape of each side of a generated mesh; the round side of a cylinder is the circle
-/// that touches its polygon from inside.
+/// Patch, name and shape of each side of a generated mesh; the round side of a cylinder is the circle of its diameter.
 fn parts(mesh: &MeshSpec) -> Vec<(String, &'static str, WallShape)> {
     let plane = |point: Vec3, normal: Vec3| WallShape::Plane { point, normal };
     match mesh {
@@ -236,13 +234,12 @@ fn parts(mesh: &MeshSpec) -> Vec<(String, &'static str, WallShape)> {
             origin,
             diameter,
             length,
-            cells,
             ..
         } => {
             let round = WallShape::Cylinder {
                 point: *origin,
                 axis: Vec3::z(),
-                radius: 0.5 * inner_diameter(*diameter, cells[0]),
+                radius: 0.5 * diameter,
             };
             let top = origin + *length * Vec3::z();
             vec![
