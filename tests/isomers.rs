@@ -57,7 +57,11 @@ struct Decay {
     cells: usize,
     /// Conditions of bottom and top.
     ends: [&'static str; 2],
+    /// Keys of `[gas]` about diffusion and convection.
+    transport: &'static str,
 }
+
+const STILL: &str = "schmidt = 1e6\ncontrols = { convection = \"upwind\" }";
 
 const WALL: &str = "wall = { velocity = \"slip\", heat = \"adiabatic\" }";
 const OUTLET: &str = "outlet = { pressure = \"1 atm\" }";
@@ -74,6 +78,7 @@ impl Decay {
             time,
             cells,
             ends: [bottom, top],
+            transport,
         } = self;
         let length = 10 * cells;
         let text = format!(
@@ -90,8 +95,7 @@ heat_capacity = "840 J/kg/K"
 [gas]
 mixture = "isomers"
 species = ["A", "B", "C", "D", "X"]
-schmidt = 1e6
-controls = {{ convection = "upwind" }}
+{transport}
 initial = {{ pressure = "1 atm", {initial} }}
 [gas.species_data]
 thermo = "isomers.yaml"
@@ -158,6 +162,7 @@ fn a_closed_cell_is_a_closed_reactor_in_windows_of_any_length() {
             time: format!("motion_window = \"{window}\"\nend = \"100 ms\""),
             cells: 1,
             ends: [WALL, WALL],
+            transport: STILL,
         };
         decay.assert(&[(-1.0_f64).exp()], 1e-5);
     }
@@ -173,6 +178,7 @@ fn a_cell_that_gas_only_leaves_keeps_its_share() {
             time: format!("motion_window = \"{window}\"\nend = \"1 s\""),
             cells: 1,
             ends: [WALL, OUTLET],
+            transport: STILL,
         };
         decay.assert(&[(-1.0_f64).exp()], 1e-5);
     }
@@ -188,6 +194,7 @@ fn gas_that_decays_at_once_leaves_next_to_nothing_in_any_window() {
             time: format!("process_step = \"{step} s\"\nend = \"{end} s\""),
             cells: 4,
             ends: [INLET, OUTLET],
+            transport: STILL,
         };
         // 0.1 s pass a cell.
         let cell = 1.0 / (1.0 + 0.1 * rate);
@@ -248,5 +255,147 @@ fn a_cell_of_cold_gas_does_not_ignite_where_its_reactor_does_not() {
                 found[0]
             );
         }
+    }
+}
+
+/// Uniform gas that heats itself in a closed box of cells between which it diffuses: no worse than implicit Euler in any window.
+#[test]
+fn a_closed_box_of_cells_reacts_as_fast_as_one_cell() {
+    for windows in [1, 8] {
+        let box_of_cells = Decay {
+            equation: "A => C",
+            rate: "factor = 0.05".into(),
+            initial: "temperature = \"300 K\", composition = { mass = { A = 0.05, X = 0.95 } }",
+            time: format!(
+                "process_step = \"{} s\"\nend = \"20 s\"",
+                20.0 / f64::from(windows)
+            ),
+            cells: 5,
+            ends: [WALL, WALL],
+            transport: "schmidt = 0.7",
+        };
+        let (exact, implicit) = (
+            (-1.0_f64).exp(),
+            (1.0 + 1.0 / f64::from(windows)).powi(-windows),
+        );
+        let directory = tempfile::tempdir().unwrap();
+        for gas in ["native", "openfoam"] {
+            for left in box_of_cells.found("A", gas, directory.path()) {
+                let left = left / 0.05;
+                assert!(
+                    left > exact - 1e-4 && left < implicit + 1e-4,
+                    "{gas}, {windows} windows: {left}, exact {exact}, implicit Euler {implicit}"
+                );
+            }
+        }
+    }
+}
+
+/// Gas that decays in a steady flow, with van Leer's limiter for all species, one of which is uniform: every window leaves it as it was.
+#[test]
+fn a_steady_decay_stays_with_second_order_convection() {
+    let chain = |end: &str| Decay {
+        equation: "A => B",
+        rate: "factor = 0.5".into(),
+        initial: "velocity = \"0 0 0.1 m/s\", temperature = \"500 K\", composition = { mass = { A = 0.5, X = 0.5 } }",
+        time: format!("motion_window = \"0.1 s\"\nend = \"{end}\""),
+        cells: 25,
+        ends: [
+            "inlet = { superficial_velocity = \"0.1 m/s\", temperature = \"500 K\", composition = { mass = { A = 0.5, X = 0.5 } } }",
+            OUTLET,
+        ],
+        transport: "schmidt = 1e6\ncontrols = { convection = \"van-leer\" }",
+    };
+    let directory = tempfile::tempdir().unwrap();
+    let [native, openfoam] = ["native", "openfoam"].map(|gas| {
+        let [one, other] =
+            ["10 s", "11.3 s"].map(|end| chain(end).found("A", gas, directory.path()));
+        for (one, other) in one.iter().zip(&other) {
+            assert!((one - other).abs() < 1e-6, "{gas}: {one}, then {other}");
+        }
+        one
+    });
+    for (one, other) in native.iter().zip(&openfoam) {
+        assert!((one - other).abs() < 1e-4, "{one}, {other}");
+    }
+    // 0.25 m at 0.1 m/s.
+    let left = native.last().unwrap() / 0.5;
+    assert!((left / (-1.25_f64).exp() - 1.0).abs() < 0.02, "{left}");
+}
+
+/// Gas of an element that is not there comes into a cell: it is mixed in, with its enthalpy of formation, and nothing reacts.
+#[test]
+fn gas_of_a_new_element_is_mixed_in() {
+    let text = r#"
+format = 1
+title = "Carbon dioxide into nitrogen"
+[time]
+process_step = "0.1 s"
+end = "0.3 s"
+[mesh]
+box = { size = "10 10 30 mm", cells = [1, 1, 3] }
+[materials.glass]
+density = "2500 kg/m^3"
+heat_capacity = "840 J/kg/K"
+[gas]
+mixture = "flue gas"
+species = ["CO", "CO2", "O2", "N2"]
+schmidt = 0.7
+initial = { temperature = "900 K", pressure = "1 bar", composition = { mole = { N2 = 1 } } }
+[gas.chemistry]
+reactions = [{ name = "burn", equation = "CO + 0.5 O2 => CO2", rate = { factor = 500, activation_energy = "100 kJ/mol", orders = { CO = 1, O2 = 0.5 } } }]
+[gas.patch.bottom]
+inlet = { superficial_velocity = "0.1 m/s", temperature = "900 K", composition = { mole = { CO2 = 0.5, N2 = 0.5 } } }
+[gas.patch.top]
+outlet = { pressure = "1 bar" }
+[gas.patch.side]
+symmetry = {}
+[[particles]]
+name = "speck"
+material = "glass"
+diameter = "1 um"
+motion = "frozen"
+place = { grid = { first = "5 5 3 mm", spacing = "1 1 1 mm", counts = [1, 1, 1] } }
+temperature = "900 K"
+[laws]
+drag = { law = "none" }
+heat_transfer = { law = "none" }
+conduction = { law = "none" }
+radiation = { law = "none" }
+[coupling]
+mapping = "overlap"
+[output]
+every = "1 s"
+gas = ["temperature", "mass_fractions"]
+"#;
+    let inert = text
+        .replace("[gas.chemistry]\n", "")
+        .lines()
+        .filter(|line| !line.starts_with("reactions"))
+        .collect::<Vec<_>>()
+        .join("\n");
+    let directory = tempfile::tempdir().unwrap();
+    for gas in ["native", "openfoam"] {
+        let found = |name: &str, text: &str| {
+            let out = program::run_text(
+                directory.path(),
+                &format!("{gas}-{name}"),
+                text,
+                &["--gas", gas],
+            );
+            let files = read::collection(&out, "gas.pvd").unwrap();
+            read::arrays(&files.last().unwrap().1).unwrap()
+        };
+        let (reacting, inert) = (found("reacting", text), found("inert", &inert));
+        for (field, within) in [("temperature", 1e-3), ("CO2", 1e-6)] {
+            let pairs = reacting[field].values.iter().zip(&inert[field].values);
+            for (one, other) in pairs {
+                assert!(
+                    (one - other).abs() < within,
+                    "{gas}, {field}: {one}, {other}"
+                );
+            }
+        }
+        assert!(reacting["CO2"].values[0] > 0.3);
     }
 }

@@ -24,7 +24,9 @@ use calcine_coupler::window_drag::WindowDrag;
 pub use laws::{ConductionArea, ConductionSpec, Laws, RadiationSpec};
 pub use material::{MaterialSpec, SizeLaw};
 pub use mesh::MeshSpec;
-pub use particles::{FeedSpec, MotionSpec, PlacementSpec, Population, RandomAmount};
+pub use particles::{
+    FeedSpec, MotionSpec, PackingSection, PackingSpace, PlacementSpec, Population, RandomAmount,
+};
 pub use quantity::{
     Expect, GasPlace, Measure, ParticlePlace, Probe, Quantity, Statistic, ToleranceBand,
 };

@@ -1,15 +1,15 @@
 //! From populations to particles.
 
-use calcine_coupler::packing::regular::{Lattice, regular_in_box, regular_in_cylinder};
-use calcine_coupler::packing::{
-    Fill, Packing, PackingError, RandomSpec, random_in_box, random_in_cylinder,
-};
+use calcine_coupler::packing::regular::{regular_in_box, regular_in_cylinder};
+use calcine_coupler::packing::{Fill, RandomSpec, random_in_box, random_in_cylinder};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::time::Ticks;
 
 use super::bed::{self, Choice};
-use super::model::{Case, MeshSpec, MotionSpec, PlacementSpec, Population, RandomAmount};
+use super::model::{
+    Case, MeshSpec, MotionSpec, PackingSection, PlacementSpec, Population, RandomAmount,
+};
 use super::overlap;
 use super::place_error::PlaceError;
 use super::units::shown;
@@ -127,11 +127,11 @@ fn spheres(case: &Case, population: &Population) -> Result<Vec<Sphere>, PlaceErr
             Ok(all(centres, diameters))
         }
         PlacementSpec::Random {
-            layer,
+            space,
             amount,
             seed,
         } => {
-            let height = layer[1] - layer[0];
+            let height = space.height;
             let spec = RandomSpec {
                 sizes: population.sizes.clone(),
                 fill: match *amount {
@@ -144,12 +144,24 @@ fn spheres(case: &Case, population: &Population) -> Result<Vec<Sphere>, PlaceErr
                 seed: *seed,
                 size_seed: population.size_seed,
             };
-            let packing = random(&case.mesh, layer[0], &spec).map_err(failed)?;
+            let packing = match space.section {
+                PackingSection::Rectangle(size) => random_in_box(space.origin, size, &spec),
+                PackingSection::Disc(diameter) => random_in_cylinder(space.origin, diameter, &spec),
+            };
+            let packing = packing.map_err(failed)?;
             Ok(all(packing.centres, packing.diameters))
         }
-        PlacementSpec::Regular { lattice, layer } => {
-            let diameter = population.sizes.largest();
-            let packing = regular(&case.mesh, *layer, diameter, *lattice).map_err(failed)?;
+        PlacementSpec::Regular { lattice, space } => {
+            let (grain, height) = (population.sizes.largest(), space.height);
+            let packing = match space.section {
+                PackingSection::Rectangle([x, y]) => {
+                    regular_in_box(space.origin, [x, y, height], grain, *lattice)
+                }
+                PackingSection::Disc(diameter) => {
+                    regular_in_cylinder(space.origin, [diameter, height], grain, *lattice)
+                }
+            };
+            let packing = packing.map_err(failed)?;
             Ok(all(packing.centres, packing.diameters))
         }
         PlacementSpec::File {
@@ -194,46 +206,6 @@ fn grid(first: &Vec3, spacing: &Vec3, counts: [usize; 3]) -> Vec<Vec3> {
         }
     }
     centres
-}
-
-/// What a packing needs beside a mesh that has no walls known to the case.
-fn no_walls() -> PackingError {
-    PackingError::Value {
-        what: "container",
-        value: f64::NAN,
-        need: "a box or a cylinder as mesh",
-    }
-}
-
-/// A random packing between the walls of the mesh, above `low` (z in m).
-fn random(mesh: &MeshSpec, low: f64, spec: &RandomSpec) -> Result<Packing, PackingError> {
-    let at = |origin: &Vec3| Vec3::new(origin.x, origin.y, low);
-    match mesh {
-        MeshSpec::Box { origin, size, .. } => random_in_box(at(origin), [size.x, size.y], spec),
-        MeshSpec::Cylinder {
-            origin, diameter, ..
-        } => random_in_cylinder(at(origin), *diameter, spec),
-        MeshSpec::PolyMesh(_) => Err(no_walls()),
-    }
-}
-
-/// A regular stacking between the walls of the mesh and two heights (z in m).
-fn regular(
-    mesh: &MeshSpec,
-    [low, high]: [f64; 2],
-    grain: f64,
-    lattice: Lattice,
-) -> Result<Packing, PackingError> {
-    let at = |origin: &Vec3| Vec3::new(origin.x, origin.y, low);
-    match mesh {
-        MeshSpec::Box { origin, size, .. } => {
-            regular_in_box(at(origin), [size.x, size.y, high - low], grain, lattice)
-        }
-        MeshSpec::Cylinder {
-            origin, diameter, ..
-        } => regular_in_cylinder(at(origin), [*diameter, high - low], grain, lattice),
-        MeshSpec::PolyMesh(_) => Err(no_walls()),
-    }
 }
 
 /// What is wrong with a centre outside a generated mesh.

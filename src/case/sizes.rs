@@ -1,6 +1,5 @@
 //! How much memory a case needs, estimated before anything of it is built.
 
-use std::f64::consts::PI;
 use std::fs;
 
 use calcine_coupler::setup::Turbulence;
@@ -66,7 +65,7 @@ fn views(case: &Case) -> f64 {
     let (ViewFactors::Rays { range, .. } | ViewFactors::Distance { range }) =
         radiation.view_factors;
     let solid = case.particles.iter();
-    let solid = solid.filter_map(|one| Some(random(case, one)?.solid_fraction));
+    let solid = solid.filter_map(|one| Some(random(one)?.solid_fraction));
     let solid = solid.reduce(f64::max);
     let diameters = case.particles.iter();
     let largest = diameters
@@ -123,7 +122,7 @@ fn particles(case: &Case) -> f64 {
             PlacementSpec::Grid { counts, .. } => {
                 counts.iter().map(|&count| count as f64).product()
             }
-            PlacementSpec::Random { .. } => random(case, population).map_or(0.0, |one| one.number),
+            PlacementSpec::Random { .. } => random(population).map_or(0.0, |one| one.number),
             PlacementSpec::Regular { .. } | PlacementSpec::File { .. } => 0.0,
         });
     populations.sum()
@@ -135,17 +134,12 @@ struct RandomPacking {
     solid_fraction: f64,
 }
 
-fn random(case: &Case, population: &Population) -> Option<RandomPacking> {
-    let PlacementSpec::Random { layer, amount, .. } = population.place else {
+fn random(population: &Population) -> Option<RandomPacking> {
+    let PlacementSpec::Random { space, amount, .. } = population.place else {
         return None;
     };
-    let section = match &case.mesh {
-        MeshSpec::Box { size, .. } => size.x * size.y,
-        MeshSpec::Cylinder { diameter, .. } => PI / 4.0 * diameter * diameter,
-        MeshSpec::PolyMesh(_) => return None,
-    };
     let mean = population.sizes.mean().unwrap_or(f64::INFINITY);
-    let most = section * (layer[1] - layer[0]) / sphere::volume_of_diameter(mean);
+    let most = space.section.area() * space.height / sphere::volume_of_diameter(mean);
     let (number, solid_fraction) = match amount {
         RandomAmount::SolidFraction(solid_fraction) => (most * solid_fraction, solid_fraction),
         RandomAmount::Number(number) => (number as f64, number as f64 / most),

@@ -34,6 +34,15 @@ Foam::tmp<Foam::surfaceScalarField> Foam::calcine::gas::speciesLimiter() const
         (
             limitedSurfaceInterpolationScheme<scalar>::New(mesh_, phi_, scheme)().limiter(Y)
         );
+        // Differences well below the tolerance limit nobody, so that a field that is uniform but for what a solver leaves does not steer the
+        // others.
+        surfaceScalarField square(sqr(fvc::snGrad(Y)/mesh_.nonOrthDeltaCoeffs()));
+        square.setOriented(false);
+        const surfaceScalarField share
+        (
+            square/(square + sqr(dimensionedScalar(max(outerTolerance_, VSMALL))))
+        );
+        one = tmp<surfaceScalarField>(one()*share + scalar(2)*(scalar(1) - share));
         least = least.valid() ? min(least, one) : one;
     }
     return least;

@@ -6,11 +6,13 @@
 // D' Y what leaves the cell with its own gas and by diffusion from it, b' what enters, the neighbours' share included. M is what a stirred
 // reactor makes in the mean of the window, which starts with the cell's old gas and into which b' flows:
 //
-//   dY/dt = w(Y, T) + (b' - D' Y)/m,   M = int m w dt/dtau,   m = m_old (1 + theta max(rho/rho_old - 1, 0)),
+//   dY/dt = w(Y, T) + (b' - D' Y)/m,   M = int m w dt/dtau,   m = m_old (1 + theta (rho/rho_old - 1)),
 //
-// theta = D' dtau/(m_old + D' dtau), as flow fills a cell whose gas contracts. So a steady cell is a stirred reactor at any span and storage, and one without flow a closed one. M is free of every element to round-off. b' is found by
-// nonlinear Gauss-Seidel iteration: cells are visited downstream, each with the newest gas of those above it, and all go on from there by Newton's
-// step (newtonStep.H). Across borders between ranks the last iterate is taken.
+// theta = F/(m_old/dtau + F), F what flows in and comes from particles, as flow fills a cell whose gas contracts and carries away what expands,
+// which diffusion does not. So a steady cell is a stirred reactor at any span and storage, and one without flow a closed one, whatever diffuses
+// between cells. M is free of every element to round-off. b' is found by nonlinear Gauss-Seidel iteration: cells are visited downstream, each
+// with the newest gas of those above it, and all go on from there by Newton's step (newtonStep.H). Across borders between ranks the last
+// iterate is taken.
 #include "gas.H"
 #include "clockValue.H"
 #include "link.H"
@@ -26,6 +28,8 @@ namespace
 const Foam::label mostSweeps = 5;
 // They need not change a value by less than this share of the residual of momentum and continuity, whose fluxes they take.
 const Foam::scalar closer = 0.1;
+// Share of what leaves a cell that is round-off of what diffuses through it.
+const Foam::scalar roundOff = 1e-12;
 // A reactor is not run again while what enters has changed by less than this share of the outer tolerance.
 const Foam::scalar same = 0.1;
 // Solves at the end of an attempt by which fractions below zero are taken out of what reacts, at most.
@@ -175,6 +179,15 @@ void Foam::calcine::gas::sweepReactions()
         matrices.set(k, speciesEquation(k, transport, laplacians[k]).ptr());
         diffused.set(k, (-laplacians[k].flux()).ptr());
     }
+    diffusedOut_ = -laplacians[0].diag();
+    forAll(mesh_.boundary(), patchi)
+    {
+        const labelUList& cells = mesh_.boundary()[patchi].faceCells();
+        forAll(cells, i)
+        {
+            diffusedOut_[cells[i]] -= laplacians[0].internalCoeffs()[patchi][i];
+        }
+    }
     carryEnthalpy(transport.limitedFlux, diffused);
     heatMade_ = Zero;
     assembleEnthalpy();
@@ -295,7 +308,9 @@ bool Foam::calcine::gas::react
     }
     flow.heatEntering = (given[species] - storage*committed_.enthalpy[celli])/held;
     flow.heatLeaving = leaving(equations.diagonal[species][celli]);
-    flow.opening = 1 - storage/(storage + flow.leaving[0]*held);
+    // Of what diffuses much faster, round-off is no flow.
+    const scalar out = flow.leaving[0]*held, flows = out - diffusedOut_[celli];
+    flow.opening = flows > roundOff*out ? flows/(storage + flows) : 0;
     flow.mixing = mixingTime_[celli];
     made.setSize(species);
     bool reacts = false;

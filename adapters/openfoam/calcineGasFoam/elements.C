@@ -43,9 +43,15 @@ Foam::scalar Foam::calcine::gas::conserveElements(report& result)
         laplacians.set(k, fvm::laplacian(transport.diffusion, Y[k]).ptr());
         equations.set(k, speciesEquation(k, transport, laplacians[k]).ptr());
     }
+    fvScalarMatrix matrix(equations[0]);
+    const List<scalarField> given(withoutReactions(equations, matrix));
     List<scalarField> masses;
-    scalar residual = solveElements(equations, masses, result);
-    giveElements(masses);
+    scalar residual = solveElements(matrix, given, masses, result);
+    const labelList lacking(giveElements(masses));
+    if (returnReduce(lacking.size(), sumOp<label>()) > 0)
+    {
+        bringSpecies(matrix, given, lacking, result);
+    }
 
     heatMade_ = scalarField(mesh_.nCells(), Zero);
     PtrList<surfaceScalarField> diffused(Y.size());
@@ -64,19 +70,16 @@ Foam::scalar Foam::calcine::gas::conserveElements(report& result)
 }
 
 
-// Mass of each element in a unit mass of gas at the end of the window, from the equations of the species.
-Foam::scalar Foam::calcine::gas::solveElements
+// Right sides in kg/s of the equations of all species, what boundaries give included, which `matrix` then leaves out. Conditions of all
+// species are of the same kinds, and so they have one matrix.
+Foam::List<Foam::scalarField> Foam::calcine::gas::withoutReactions
 (
     const PtrList<fvScalarMatrix>& equations,
-    List<scalarField>& masses,
-    report& result
-)
+    fvScalarMatrix& matrix
+) const
 {
-    const PtrList<volScalarField>& Y = species_->Y();
-    // Conditions of all species are of the same kinds, and so they have one matrix.
-    fvScalarMatrix matrix(equations[0]);
-    List<scalarField> given(Y.size());
-    forAll(Y, k)
+    List<scalarField> given(equations.size());
+    forAll(equations, k)
     {
         given[k] = equations[k].source();
         forAll(mesh_.boundary(), patchi)
@@ -94,7 +97,20 @@ Foam::scalar Foam::calcine::gas::solveElements
             matrix.boundaryCoeffs()[patchi] = Zero;
         }
     }
+    return given;
+}
 
+
+// Mass of each element in a unit mass of gas at the end of the window, from the equations of the species.
+Foam::scalar Foam::calcine::gas::solveElements
+(
+    fvScalarMatrix& matrix,
+    const List<scalarField>& given,
+    List<scalarField>& masses,
+    report& result
+)
+{
+    const PtrList<volScalarField>& Y = species_->Y();
     scalar residual = 0;
     const scalar content = gSumMag(matrix.diag());
     const scalar target = speciesTarget(Y.size() - 1, matrix.diag());
@@ -120,10 +136,38 @@ Foam::scalar Foam::calcine::gas::solveElements
 }
 
 
-// The species of each cell take these masses of elements over, in proportion to what is there. Negative fractions stay, which
-// corrections of diffusion leave beside steep gradients on skewed meshes: cut and made again they would never settle.
-void Foam::calcine::gas::giveElements(const List<scalarField>& masses)
+// Gives cells the gas that would be there without reactions. It has the elements that are solved for, as its species obey the same
+// equation.
+void Foam::calcine::gas::bringSpecies
+(
+    fvScalarMatrix& matrix,
+    const List<scalarField>& given,
+    const labelList& lacking,
+    report& result
+)
 {
+    PtrList<volScalarField>& Y = species_->Y();
+    const scalar target = speciesTarget(Y.size() - 1, matrix.diag());
+    volScalarField inert("inert", Y[0]);
+    forAll(Y, k)
+    {
+        inert.primitiveFieldRef() = committed_.composition[k];
+        inert.correctBoundaryConditions();
+        result.linearIterations += speciesSolver_->solve(matrix, given[k], target, inert).iterations;
+        for (const label celli : lacking)
+        {
+            Y[k].primitiveFieldRef()[celli] = inert.primitiveField()[celli];
+        }
+    }
+}
+
+
+// The species of each cell take these masses of elements over, in proportion to what is there; the cells whose species cannot have them,
+// as where gas of other elements comes in. Negative fractions stay, which
+// corrections of diffusion leave beside steep gradients on skewed meshes: cut and made again they would never settle.
+Foam::labelList Foam::calcine::gas::giveElements(const List<scalarField>& masses)
+{
+    DynamicList<label> lacking;
     PtrList<volScalarField>& Y = species_->Y();
     scalarList fractions(Y.size()), below(Y.size());
     scalarList wanted(masses.size()), found(masses.size());
@@ -133,14 +177,21 @@ void Foam::calcine::gas::giveElements(const List<scalarField>& masses)
         {
             fractions[k] = Y[k].primitiveField()[celli];
         }
-        reactions_->elementsOf(fractions, found);
-        scalar lack = 0;
+        const auto lack = [&]
+        {
+            reactions_->elementsOf(fractions, found);
+            scalar worst = 0;
+            forAll(masses, e)
+            {
+                worst = max(worst, mag(wanted[e] - found[e]));
+            }
+            return worst;
+        };
         forAll(masses, e)
         {
             wanted[e] = masses[e][celli];
-            lack = max(lack, mag(wanted[e] - found[e]));
         }
-        if (lack < noLack)
+        if (lack() < noLack)
         {
             continue;
         }
@@ -155,11 +206,16 @@ void Foam::calcine::gas::giveElements(const List<scalarField>& masses)
             wanted[e] -= found[e];
         }
         reactions_->restoreElements(wanted, fractions);
-        // Elements that no species there could give are still on their way.
+        if (lack() >= noLack)
+        {
+            lacking.append(celli);
+        }
+        // What is missing of an element that is there in traces is round-off of the others.
         const scalar all = sum(fractions) + sum(below);
         forAll(Y, k)
         {
             Y[k].primitiveFieldRef()[celli] = (fractions[k] + below[k])/all;
         }
     }
+    return labelList(lacking);
 }

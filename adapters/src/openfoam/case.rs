@@ -144,7 +144,7 @@ impl OpenfoamCase<'_> {
             return Ok(());
         };
         let files = chemistry::files(setup, mixture, gas)
-            .map_err(|error| PartError::new(NAME, FailureKind::NotStarted, error.to_string()))?;
+            .map_err(|error| PartError::new(NAME, FailureKind::Refused, error.to_string()))?;
         for (name, text) in files {
             put(&folder.join(name), &text)?;
         }
@@ -233,7 +233,7 @@ impl OpenfoamCase<'_> {
     /// Every patch of the mesh needs its condition, and every condition its patch; the program must have what the
     /// gas needs, whichever clock it runs by.
     fn check(&self) -> Result<(), PartError> {
-        let refuse = |message: String| Err(PartError::new(NAME, FailureKind::NotStarted, message));
+        let refuse = |message: String| Err(PartError::new(NAME, FailureKind::Refused, message));
         if self.solver.is_stock()
             && let Some(why) = stock::refusal(self.solver, self.setup, false)
         {

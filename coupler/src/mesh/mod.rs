@@ -10,6 +10,7 @@ pub mod openings;
 pub mod polymesh;
 pub mod quality;
 pub mod refine;
+pub mod surface;
 pub mod zone;
 
 use calcine_physics::Vec3;

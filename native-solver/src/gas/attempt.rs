@@ -28,6 +28,8 @@ pub struct AttemptFrame<'a> {
     pub turbulence: &'a Turbulence,
     /// How cell values are carried to faces.
     pub convection: Convection,
+    /// Change of a mass fraction to which the equations are solved.
+    pub tolerance: f64,
     /// Gravity in m/s².
     pub gravity: Vec3,
     /// Void fraction at the end of the window.

@@ -9,10 +9,11 @@
 //!
 //! dY/dt = w(Y, T) + (b′ − D′ Y)/m,   M = ∫ m w dt/Δτ,   m = m_old (1 + θ (ρ/ρ_old − 1)),
 //!
-//! θ = D′Δτ/(m_old + D′Δτ), as flow fills a cell whose gas contracts; and the same with the enthalpy, whose source is −Σ_k h°_k M_k with the enthalpies of formation h° as the gas' own enthalpy
-//! is the sensible one. So a steady cell is a stirred reactor at any span and storage, a cell without flow a closed one, what a
-//! cell reaches of several states is what the reactor reaches from the window's start, and no cell gives what it does not have.
-//! M is free of every element to round-off.
+//! θ = F/(m_old/Δτ + F), F what flows in and comes from particles, as flow fills a cell whose gas contracts and carries away
+//! what expands, which diffusion does not; and the same with the enthalpy, whose source is −Σ_k h°_k M_k with the enthalpies of
+//! formation h° as the gas' own enthalpy is the sensible one. So a steady cell is a stirred reactor at any span and storage, a
+//! cell without flow a closed one, whatever diffuses between cells, what a cell reaches of several states is what the reactor
+//! reaches from the window's start, and no cell gives what it does not have. M is free of every element to round-off.
 //!
 //! b′ is found by nonlinear Gauss–Seidel iteration: cells are visited downstream ([`order`]), each with the newest
 //! gas of those above it.
@@ -39,6 +40,8 @@ use crate::numerics::parallel::{fill, largest};
 
 /// Cells that a thread takes at a time at least: a reactor costs some ten to hundred microseconds.
 const GRAIN: usize = 4;
+/// Share of what leaves a cell that is round-off of what diffuses through it.
+const ROUND_OFF: f64 = 1e-12;
 /// A reactor is not run again while what enters has changed by less than this share of the outer tolerance.
 const SAME: f64 = 0.1;
 
@@ -366,7 +369,7 @@ impl CellRun<'_> {
             leaving: &leaving[..species],
             heat_entering,
             heat_leaving,
-            opening: 1.0 - storage / (storage + leaving[0] * old.mass[cell]),
+            opening: self.opening(cell, storage, leaving[0] * old.mass[cell]),
             mixing: mixing_time(frame, self.gas, cell),
         };
         let mut steps = 0;
@@ -432,6 +435,24 @@ impl CellRun<'_> {
             });
         }
         Ok(end)
+    }
+
+    /// θ of a cell whose gas is stored by `storage` and leaves, diffusion included, by `leaving`, in kg/s.
+    fn opening(&self, cell: usize, storage: f64, leaving: f64) -> f64 {
+        let links = self.frame.grid.links(cell).iter();
+        let diffused: f64 = links
+            .map(|link| (link, link.face as usize))
+            .filter(|(link, face)| {
+                !link.is_boundary() || self.frame.boundary.composition(*face).is_some()
+            })
+            .map(|(_, face)| self.equations.diffusion[face])
+            .sum();
+        let flows = (leaving - diffused).max(0.0);
+        // Of what diffuses much faster, round-off is no flow.
+        match flows > ROUND_OFF * leaving {
+            true => flows / (storage + flows),
+            false => 0.0,
+        }
     }
 
     /// Whether a cell would be run as it was, with c_p T in J/kg.

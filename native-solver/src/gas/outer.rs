@@ -222,6 +222,7 @@ impl Equations {
         let equations = ScalarEquations {
             species: self.species.matrix(),
             sources: &sources,
+            diffusion: self.species.diffusion(),
             enthalpy: matrix,
             heat,
         };

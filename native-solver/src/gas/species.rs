@@ -246,8 +246,15 @@ impl SpeciesEquations {
             if !second || index >= grid.internal {
                 return 0.0;
             }
-            let one =
-                |k: usize| limiter(grid, index, now.flux[index], &fractions[k], &gradients[k]);
+            let one = |k: usize| {
+                limiter(
+                    grid,
+                    index,
+                    now.flux[index],
+                    (&fractions[k], &gradients[k]),
+                    frame.tolerance,
+                )
+            };
             (0..fractions.len()).map(one).fold(2.0, f64::min)
         };
         update(&mut self.limiters, |index, last| {

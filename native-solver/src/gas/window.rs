@@ -111,6 +111,7 @@ impl NativeGas {
             chemistry: &self.setup.chemistry,
             turbulence: &self.setup.turbulence,
             convection: self.setup.controls.convection,
+            tolerance: self.setup.controls.outer_tolerance,
             gravity: self.setup.gravity,
             void_fraction,
             pressure_share: &self.pressure_share,

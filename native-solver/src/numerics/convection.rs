@@ -57,27 +57,30 @@ pub fn beyond_upwind(
     }
 }
 
-/// The limiter ψ of an internal face for a scalar, in [0, 2].
+/// The limiter ψ of an internal face for a scalar, in [0, 2]. Differences Δ well below `noise` limit nobody, so that a field that is
+/// uniform but for what a solver leaves does not steer others that share its limiter: ψ s + 2 (1 − s), s = Δ²/(Δ² + noise²).
 #[inline]
 pub fn limiter(
     grid: &MeshGraph,
     index: usize,
     flux: f64,
-    values: &[f64],
-    gradients: &[Vec3],
+    (values, gradients): (&[f64], &[Vec3]),
+    noise: f64,
 ) -> f64 {
     let (up, down, _) = sides(grid, index, flux);
     let difference = values[down] - values[up];
+    if difference == 0.0 {
+        return 2.0;
+    }
     let along = gradients[up].dot(&(grid.centre[down] - grid.centre[up]));
     let other = 2.0 * along - difference;
-    if other * difference > 0.0 {
-        2.0 * other / (other + difference)
-    } else if difference == 0.0 && other == 0.0 {
-        // A uniform field limits nobody.
-        2.0
-    } else {
-        0.0
-    }
+    let limiting = match other * difference > 0.0 {
+        true => 2.0 * other / (other + difference),
+        false => 0.0,
+    };
+    let square = difference * difference;
+    let share = square / (square + noise * noise);
+    limiting * share + 2.0 * (1.0 - share)
 }
 
 /// What a limiter ψ adds to an internal face's upwind value of a scalar.
@@ -144,7 +147,7 @@ mod tests {
             let values = [1.0, 3.0, 5.0];
             let beyond = beyond_upwind(Convection::VanLeer, &grid, 0, flux, &values, &slope);
             assert!((beyond - flux).abs() < 1e-14);
-            assert!((limiter(&grid, 0, flux, &values, &slope) - 1.0).abs() < 1e-14);
+            assert!((limiter(&grid, 0, flux, (&values, &slope), 0.0) - 1.0).abs() < 1e-14);
         }
         let flat = vec![Vec3::zeros(); 3];
         let values = [1.0, 3.0, 1.0];
@@ -217,5 +220,17 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn what_a_solver_leaves_of_a_uniform_field_limits_nobody() {
+        let grid = chain();
+        let flat = vec![Vec3::zeros(); 3];
+        let limits = |values: [f64; 3]| limiter(&grid, 0, 1.0, (&values, &flat), 1e-8);
+        assert_eq!(limits([0.3, 0.3, 0.3]), 2.0);
+        for noise in [1e-16, 1e-12, 1e-10] {
+            assert!(limits([0.3, 0.3 + noise, 0.3 - noise]) > 1.99);
+        }
+        assert!(limits([0.3, 0.3 + 1e-6, 0.3]) < 1e-3);
     }
 }

@@ -1,7 +1,7 @@
 //! Keys of `particles`, `feeds` and `outlets`.
 
 use super::prelude::*;
-use super::zone::ZONE;
+use super::zone::{ZONE, ZONE_BOX, ZONE_CYLINDER};
 
 #[rustfmt::skip]
 const DIAMETER_NORMAL: &[Key] = &[
@@ -44,8 +44,10 @@ const PLACE_GRID: &[Key] = &[
 
 #[rustfmt::skip]
 const PLACE_REGION: &[Key] = &[
-    key("from", Number(D::LENGTH, Any), Required, "Lowest z.", "\"60 mm\""),
-    key("to", Number(D::LENGTH, Any), Required, "Highest z.", "\"90 mm\""),
+    key("from", Number(D::LENGTH, Any), Without("needed for a layer of a generated mesh, with `to`"), "Lowest z.", "\"60 mm\""),
+    key("to", Number(D::LENGTH, Any), Without("needed for a layer of a generated mesh, with `from`"), "Highest z.", "\"90 mm\""),
+    ZONE_BOX,
+    ZONE_CYLINDER,
 ];
 
 #[rustfmt::skip]
@@ -53,11 +55,11 @@ const PLACE: &[Key] = &[
     key("grid", Table(PLACE_GRID), OneOf, "A regular stacking. Either this or `file`.", "{ first = \"5 5 5 mm\", spacing = \"10 10 10 mm\", counts = [1, 1, 10] }"),
     key("file", Path, OneOf, "Particles of a file: `.csv`, a LIGGGHTS text dump, `.vtk` (ASCII), `.vtp` or `.vtu` (ASCII or raw). Lengths in m; diameter or radius and temperature where it has them.", "\"bed.csv\""),
     key("height", Number(D::LENGTH, Positive), Without("with `packing`, either this or `region`"), "Height of the packing above the bottom of the mesh.", "\"145 mm\""),
-    key("region", Table(PLACE_REGION), Without("with `packing`, either this or `height`"), "Layer of the packing, so that populations lie one above the other.", "{ from = \"60 mm\", to = \"90 mm\" }"),
+    key("region", Table(PLACE_REGION), Without("with `packing`, either this or `height`"), "What the packing fills: a layer of a generated mesh (`from`, `to`), so that populations lie one above the other, or a box or an upright cylinder within any mesh.", "{ from = \"60 mm\", to = \"90 mm\" }"),
     key("solid_fraction", Number(D::NONE, Within(0.0, 0.74)), Without("with `random`, either this or `number`"), "Volume of spheres over the filled space, layers at the walls included; up to about 0.59 with equal spheres.", "0.58"),
     key("number", Whole(1, 10_000_000), Without("with `random`, either this or `solid_fraction`"), "Number of spheres between the ends of the packing.", "2000"),
     key("seed", Whole(0, MOST), Without("required with `random`"), "Equal seeds give equal packings, bit for bit.", "1"),
-    key("packing", Choice(words::<PackingName>), OneOf, "A packing from wall to wall of a box or cylinder mesh: random by geometry alone, without gravity, or a regular stacking of whole spheres from the bottom on.", "\"random\""),
+    key("packing", Choice(words::<PackingName>), OneOf, "A packing from wall to wall of a generated mesh, or of a region's: random by geometry alone, without gravity, or a regular stacking of whole spheres from the bottom on.", "\"random\""),
     key("timestep", Whole(0, MOST), Without("the last one"), "The snapshot of a dump.", "20000"),
     key("type", Whole(0, MOST), Without("all"), "Only particles whose column `type` says so.", "1"),
 ];

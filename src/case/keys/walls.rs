@@ -37,7 +37,7 @@ pub(super) const WALLS: &[Key] = &[
     key("cylinder", Table(CYLINDER), OneOf, "The inner side of an endless cylinder. One of `patches`, `plane`, `cylinder`, `cone`, `stl`.", "{ point = \"0 0 0 m\", axis = \"0 0 1\", radius = \"25 mm\" }"),
     key("cone", Table(CONE), OneOf, "The inner side of the frustum of a cone. One of `patches`, `plane`, `cylinder`, `cone`, `stl`.", "{ from = \"0 0 0 mm\", to = \"0 0 40 mm\", from_radius = \"5 mm\", to_radius = \"25 mm\" }"),
     key("stl", Path, OneOf, "Triangles of an STL file, ASCII or binary; both their sides are wall. One of `patches`, `plane`, `cylinder`, `cone`, `stl`.", "\"wall.stl\""),
-    key("patches", Texts(0), OneOf, "The sides of the generated mesh that carry these patches; the round side of a cylinder is the circle of its diameter. One of `patches`, `plane`, `cylinder`, `cone`, `stl`.", "[\"side\", \"bottom\"]"),
+    key("patches", Texts(0), OneOf, "The sides of the generated mesh that carry these patches, the round side of a cylinder being the circle of its diameter; of a `polymesh` the faces of these patches, as triangles. One of `patches`, `plane`, `cylinder`, `cone`, `stl`.", "[\"side\", \"bottom\"]"),
     key("scale", Number(D::NONE, Positive), Default("1"), "Length in m of a unit of the STL file.", "1e-3"),
     key("velocity", Vector(D::VELOCITY), Without("at rest"), "Velocity of the wall. Not with `rotating`.", "\"0 0 0.1 m/s\""),
     key("rotating", Table(ROTATING), Without("at rest"), "The wall turns about an axis. Not with `velocity`.", "{ point = \"0 0 0 m\", angular_velocity = \"0 0 3 rad/s\" }"),

@@ -72,6 +72,36 @@ pub enum RandomAmount {
     Number(usize),
 }
 
+/// What a packing fills: a box along the axes or an upright cylinder, in m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PackingSpace {
+    /// Lowest corner of a box; centre of a cylinder's bottom.
+    pub origin: Vec3,
+    /// Its horizontal section.
+    pub section: PackingSection,
+    /// Its height.
+    pub height: f64,
+}
+
+/// The horizontal section of what a packing fills.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PackingSection {
+    /// A rectangle with its widths along x and y in m.
+    Rectangle([f64; 2]),
+    /// A disc with its diameter in m.
+    Disc(f64),
+}
+
+impl PackingSection {
+    /// Its area in m².
+    pub fn area(&self) -> f64 {
+        match self {
+            Self::Rectangle([x, y]) => x * y,
+            Self::Disc(diameter) => std::f64::consts::PI / 4.0 * diameter * diameter,
+        }
+    }
+}
+
 /// Where particles are at the start.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PlacementSpec {
@@ -84,21 +114,21 @@ pub enum PlacementSpec {
         /// Number along x, y, z.
         counts: [usize; 3],
     },
-    /// A random packing in a layer of a box or cylinder mesh, from wall to wall.
+    /// A random packing.
     Random {
-        /// Lowest and highest z of the layer in m.
-        layer: [f64; 2],
+        /// What it fills.
+        space: PackingSpace,
         /// How many.
         amount: RandomAmount,
         /// Equal seeds give equal packings.
         seed: u64,
     },
-    /// A regular stacking in a layer of a box or cylinder mesh, from wall to wall.
+    /// A regular stacking.
     Regular {
         /// The stacking.
         lattice: Lattice,
-        /// Lowest and highest z of the layer in m.
-        layer: [f64; 2],
+        /// What it fills.
+        space: PackingSpace,
     },
     /// Read from a file: CSV, a LIGGGHTS dump, or VTK.
     File {

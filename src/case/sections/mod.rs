@@ -16,6 +16,7 @@ mod laws;
 mod mesh;
 mod motion;
 mod output;
+mod packing;
 mod particles;
 mod place;
 mod probes;

@@ -2,6 +2,9 @@
 
 use std::path::Path;
 
+use calcine_coupler::mesh::Patch;
+use calcine_coupler::mesh::polymesh::{self, PolyMeshError};
+use calcine_coupler::mesh::surface::triangles;
 use calcine_coupler::motion::{Wall, WallMotion, WallShape};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::Schedule;
@@ -92,16 +95,16 @@ fn shapes(
     mesh: Option<&MeshSpec>,
     folder: &Path,
     left_out: &mut Vec<String>,
-) -> Option<Vec<(&'static str, WallShape)>> {
+) -> Option<Vec<(String, WallShape)>> {
     let scale = table.number("scale");
     let kind = table.exactly_one()?;
     if table.has("scale") && kind != "stl" {
         table.fail("scale", "goes with `stl` only", "remove it");
     }
     match kind {
-        "plane" => plane(&table.table("plane")?).map(|shape| vec![("", shape)]),
-        "cylinder" => cylinder(&table.table("cylinder")?).map(|shape| vec![("", shape)]),
-        "cone" => cone(&table.table("cone")?).map(|shape| vec![("", shape)]),
+        "plane" => plane(&table.table("plane")?).map(|shape| vec![(String::new(), shape)]),
+        "cylinder" => cylinder(&table.table("cylinder")?).map(|shape| vec![(String::new(), shape)]),
+        "cone" => cone(&table.table("cone")?).map(|shape| vec![(String::new(), shape)]),
         "stl" => {
             let path = existing(table, "stl", folder)?;
             match stl::read(&path, scale?) {
@@ -110,7 +113,7 @@ fn shapes(
                         left_out.push(without_area(&path, &stl.flat));
                     }
                     let triangles = stl.triangles;
-                    Some(vec![("", WallShape::Mesh { triangles })])
+                    Some(vec![(String::new(), WallShape::Mesh { triangles })])
                 }
                 Err(error) => {
                     table.fail(
@@ -174,21 +177,23 @@ fn cone(table: &TableReader<'_>) -> Option<WallShape> {
     Some(WallShape::Cone { ends, radii })
 }
 
-/// The sides of the generated mesh that carry one of the named patches.
-fn of_mesh(
-    table: &TableReader<'_>,
-    mesh: Option<&MeshSpec>,
-) -> Option<Vec<(&'static str, WallShape)>> {
+/// The parts of the mesh's boundary that carry one of the named patches: sides of a generated mesh, triangles of a mesh of files.
+fn of_mesh(table: &TableReader<'_>, mesh: Option<&MeshSpec>) -> Option<Vec<(String, WallShape)>> {
     let wanted = table.texts("patches")?;
-    let parts = parts(mesh?);
+    let parts = match parts(mesh?) {
+        Ok(parts) => parts,
+        Err(error) => {
+            table.fail(
+                "patches",
+                format!("names parts of a mesh: {error}"),
+                "write a mesh that can be read",
+            );
+            return None;
+        }
+    };
     let unknown = wanted
         .iter()
         .find(|name| !parts.iter().any(|(patch, ..)| patch == *name));
-    if parts.is_empty() {
-        let help = "write planes, cylinders or STL files";
-        table.fail("patches", "needs a generated box or cylinder mesh", help);
-        return None;
-    }
     if let Some(name) = unknown {
         let mut known: Vec<&str> = parts.iter().map(|(patch, ..)| patch.as_str()).collect();
         known.sort_unstable();
@@ -207,8 +212,9 @@ fn of_mesh(
     Some(chosen.map(|(_, part, shape)| (part, shape)).collect())
 }
 
-/// Patch, name and shape of each side of a generated mesh; the round side of a cylinder is the circle of its diameter.
-fn parts(mesh: &MeshSpec) -> Vec<(String, &'static str, WallShape)> {
+/// Patch, name and shape of each side of a generated mesh, the round side of a cylinder is the circle of its diameter; patches of
+/// a mesh of files.
+fn parts(mesh: &MeshSpec) -> Result<Vec<(String, String, WallShape)>, PolyMeshError> {
     let plane = |point: Vec3, normal: Vec3| WallShape::Plane { point, normal };
     match mesh {
         MeshSpec::Box {
@@ -226,9 +232,10 @@ fn parts(mesh: &MeshSpec) -> Vec<(String, &'static str, WallShape)> {
                 } else {
                     origin + size
                 };
-                (patches[index].clone(), names[index], plane(corner, inward))
+                let name = names[index].to_owned();
+                (patches[index].clone(), name, plane(corner, inward))
             };
-            (0..6).map(side).collect()
+            Ok((0..6).map(side).collect())
         }
         MeshSpec::Cylinder {
             origin,
@@ -242,13 +249,23 @@ fn parts(mesh: &MeshSpec) -> Vec<(String, &'static str, WallShape)> {
                 radius: 0.5 * diameter,
             };
             let top = origin + *length * Vec3::z();
-            vec![
-                ("side".into(), "side", round),
-                ("bottom".into(), "bottom", plane(*origin, Vec3::z())),
-                ("top".into(), "top", plane(top, -Vec3::z())),
-            ]
+            let sides = [
+                ("side", round),
+                ("bottom", plane(*origin, Vec3::z())),
+                ("top", plane(top, -Vec3::z())),
+            ];
+            let named = sides.map(|(name, shape)| (name.to_owned(), name.to_owned(), shape));
+            Ok(named.into())
         }
-        MeshSpec::PolyMesh(_) => Vec::new(),
+        MeshSpec::PolyMesh(folder) => {
+            let mesh = polymesh::read(folder)?;
+            let part = |patch: &Patch| {
+                let triangles = triangles(&mesh, patch);
+                let name = patch.name.clone();
+                (name.clone(), name, WallShape::Mesh { triangles })
+            };
+            Ok(mesh.patches().iter().map(part).collect())
+        }
     }
 }
 

@@ -14,6 +14,11 @@ use super::surface::SurfaceBalance;
 /// film and of the lightening, below which that change, taken to first order, ends it: Newton's method squares errors.
 const ROUNDS: usize = 60;
 const CLOSE: f64 = 1e-6;
+/// Most halvings of a step in a row.
+const MOST_HALVED: usize = 8;
+/// Most doublings of a velocity by which one is found that carries away what reactions make, and halvings of what is left to its root.
+const MOST_DOUBLED: usize = 60;
+const BISECTIONS: usize = 12;
 /// Largest velocity towards the particle over the smallest coefficient of a film: no more passes, however fast a solid takes up
 /// a gas that is pure, in whose film nothing resists.
 const MOST_INFLOW: f64 = 200.0;
@@ -70,8 +75,9 @@ impl FilmBalance {
         let point = self.point;
         let mut residual = self.find(chemistry, around, state, (point, bounds));
         // Newton's method that is lost begins once more where what reactions make is carried away.
-        if residual.is_none() {
-            let blown = [-bounds.1, 1.0];
+        if residual.is_none()
+            && let Some(blown) = self.bracket(chemistry, around, state, bounds.1)
+        {
             residual = self.find(chemistry, around, state, (blown, bounds));
         }
         let Some(residual) = residual else {
@@ -94,16 +100,22 @@ impl FilmBalance {
         state: &RateState<'_, f64>,
         (mut next, (least, most)): ([f64; 2], (f64, f64)),
     ) -> Option<[Dual<2>; 2]> {
-        let (mut before, mut last) = (f64::INFINITY, None);
+        let (mut before, mut last, mut halved) = (f64::INFINITY, None, 0);
         for left in (0..ROUNDS).rev() {
             let found = self.look(chemistry, around, state, next);
             let off = found[0].value.abs() / most + found[1].value.abs() / next[1];
             // A step too far is halved, as is one to where no state of the surface balances what reactions make.
             let too_far = off > before && off > CLOSE || !off.is_finite() && before.is_finite();
-            if too_far && left > 0 {
+            if too_far && left > 0 && halved < MOST_HALVED {
                 next = [0, 1].map(|k| 0.5 * (next[k] + self.point[k]));
+                halved += 1;
                 continue;
             }
+            // Residuals that grow on the way to their root have no step downhill.
+            if too_far {
+                return None;
+            }
+            halved = 0;
             // What makes more gas the more there is has no end but with a flow that carries it away.
             if !off.is_finite() && left > 0 && next[0].is_finite() {
                 next = [2.0 * next[0].min(-0.5 * most), 1.0];
@@ -126,6 +138,64 @@ impl FilmBalance {
             last = Some(found);
         }
         last.filter(|_| before < CLOSE.sqrt())
+    }
+
+    /// A velocity and a lightening near those at which a flow away from the particle carries off what reactions make, by bisection: the
+    /// residual of the flow is below zero where it is faster than what is made. On its way it may grow, as where the pressure of a
+    /// solid's decomposition is above that of the gas: the faster the flow, the less the film resists, up to what the interface makes.
+    fn bracket(
+        &mut self,
+        chemistry: &SolidChemistry,
+        around: &ParticleSurroundings<'_>,
+        state: &RateState<'_, f64>,
+        fastest: f64,
+    ) -> Option<[f64; 2]> {
+        let mut slow = [0.0, 1.0];
+        let mut fast = [-fastest, 1.0];
+        let mut rounds = 0..MOST_DOUBLED;
+        loop {
+            let too_slow = self.lighten(chemistry, around, state, &mut fast);
+            if !too_slow {
+                break;
+            }
+            rounds.next()?;
+            slow = fast;
+            fast = [2.0 * fast[0], fast[1]];
+        }
+        for _ in 0..BISECTIONS {
+            let mut middle = [0, 1].map(|k| 0.5 * (slow[k] + fast[k]));
+            match self.lighten(chemistry, around, state, &mut middle) {
+                true => slow = middle,
+                false => fast = middle,
+            }
+        }
+        Some(fast)
+    }
+
+    /// Finds the lightening that goes with a velocity; whether reactions make more than it carries away.
+    fn lighten(
+        &mut self,
+        chemistry: &SolidChemistry,
+        around: &ParticleSurroundings<'_>,
+        state: &RateState<'_, f64>,
+        flow: &mut [f64; 2],
+    ) -> bool {
+        let mut made = f64::INFINITY;
+        for _ in 0..ROUNDS {
+            let found = self.look(chemistry, around, state, *flow);
+            if !(found[0].value.is_finite() && found[1].value.is_finite()) {
+                return true;
+            }
+            made = found[0].value;
+            // Newton's method for the lightening over what the gas at the surface says of it, which rates of all but zero lightening have too.
+            let (there, slope) = (flow[1] - found[1].value, 1.0 - found[1].slope[1]);
+            let step = -found[1].value * there / (there - flow[1] * slope).max(f64::MIN_POSITIVE);
+            if !step.is_finite() || step.abs() < CLOSE * flow[1] {
+                break;
+            }
+            flow[1] = (flow[1] + step).clamp(0.2 * flow[1], 5.0 * flow[1]);
+        }
+        made > 0.0
     }
 
     /// Adds to rates at the point, in mol/s, what the rest of the way to the flow with their residuals does to them.

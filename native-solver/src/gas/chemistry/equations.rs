@@ -9,6 +9,8 @@ pub struct ScalarEquations<'a> {
     pub species: &'a Matrix,
     /// Right sides of all species in kg/s, species by species within each cell.
     pub sources: &'a [f64],
+    /// Diffusive conductance of each face in kg/s, a part of the matrix.
+    pub diffusion: &'a [f64],
     /// Matrix of the enthalpy.
     pub enthalpy: &'a Matrix,
     /// Its right side in W.

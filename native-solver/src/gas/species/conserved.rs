@@ -69,19 +69,9 @@ impl SpeciesEquations {
                 .zip(&solution)
                 .for_each(|(m, z)| m[e] = *z);
         }
-        for (fractions, masses) in now.composition.chunks_mut(species).zip(&masses) {
-            let found = elements.of(fractions);
-            let lack = found
-                .iter()
-                .zip(masses)
-                .map(|(found, mass)| (found - mass).abs());
-            if lack.fold(0.0, f64::max) < NO_LACK {
-                continue;
-            }
-            elements.restore(masses, fractions);
-            // Elements that no species there could give are still on their way.
-            let sum: f64 = fractions.iter().sum();
-            fractions.iter_mut().for_each(|y| *y /= sum);
+        let lacking = give(elements, &masses, now.composition.chunks_mut(species));
+        if !lacking.is_empty() {
+            iterations += self.bring(frame, krylov, target, (&sources, &lacking), now);
         }
         self.take(frame, now);
         let (matrix, fractions) = (&self.matrix, &self.fractions);
@@ -89,6 +79,39 @@ impl SpeciesEquations {
             *made = matrix.row_times(at / species, &fractions[at % species]) - *made;
         });
         Some((sources, iterations))
+    }
+
+    /// Gives cells the gas that would be there without reactions, from the equations with the right sides `sources` in kg/s; returns
+    /// the linear iterations. It has the elements that are solved for, as its species obey the same equation.
+    fn bring(
+        &mut self,
+        frame: &AttemptFrame<'_>,
+        krylov: &mut Krylov,
+        target: SolveTolerance,
+        (sources, lacking): (&[f64], &[usize]),
+        now: &mut GasState,
+    ) -> u32 {
+        let species = frame.species();
+        let mut solution = vec![0.0; frame.grid.cells()];
+        let mut iterations = 0;
+        for k in 0..species {
+            fill(&mut self.source, |cell| sources[cell * species + k]);
+            fill(&mut solution, |cell| {
+                frame.old.composition[cell * species + k]
+            });
+            let solved = krylov.general(
+                &self.matrix,
+                &mut self.preconditioner,
+                &self.source,
+                &mut solution,
+                target,
+            );
+            iterations += solved.iterations;
+            for &cell in lacking {
+                now.composition[cell * species + k] = solution[cell];
+            }
+        }
+        iterations
     }
 
     /// Assembles the equations without reactions; the right sides in kg/s, species by species within each cell. The matrix
@@ -115,6 +138,11 @@ impl SpeciesEquations {
         sources
     }
 
+    /// Diffusive conductance of each face in kg/s, as last assembled.
+    pub fn diffusion(&self) -> &[f64] {
+        &self.diffusion
+    }
+
     /// The matrix as last assembled.
     pub fn matrix(&self) -> &Matrix {
         &self.matrix
@@ -129,4 +157,33 @@ impl SpeciesEquations {
         self.record(frame, now);
         self.update_carried(frame, now);
     }
+}
+
+/// Gives the species of each cell these masses of elements, in proportion to what is there; the cells whose species cannot have
+/// them, as where gas of other elements comes in.
+fn give<'a>(
+    elements: &Elements,
+    masses: &[[f64; Element::COUNT]],
+    cells: impl Iterator<Item = &'a mut [f64]>,
+) -> Vec<usize> {
+    let mut lacking = Vec::new();
+    for (cell, (fractions, masses)) in cells.zip(masses).enumerate() {
+        let lack = |fractions: &[f64]| {
+            let found = elements.of(fractions);
+            let pairs = found.iter().zip(masses);
+            let worst = pairs.map(|(found, mass)| (found - mass).abs());
+            worst.fold(0.0, f64::max)
+        };
+        if lack(fractions) < NO_LACK {
+            continue;
+        }
+        elements.restore(masses, fractions);
+        if lack(fractions) >= NO_LACK {
+            lacking.push(cell);
+        }
+        // What is missing of an element that is there in traces is round-off of the others.
+        let sum: f64 = fractions.iter().sum();
+        fractions.iter_mut().for_each(|y| *y /= sum);
+    }
+    lacking
 }

@@ -182,13 +182,18 @@ fn with_the_density_of_a_mean_composition_spalding_s_law_is_stefan_s() {
 
 /// Limestone whose interface is as fast as any, in a layer that hinders nothing.
 fn calcination(x_surface: f64, temperature: f64) -> SolidChemistry {
+    calcination_by(1e20, x_surface, temperature)
+}
+
+/// The same with a rate constant in m/s; a mole fraction of equilibrium above 1 is a pressure above that of the gas.
+fn calcination_by(factor: f64, x_surface: f64, temperature: f64) -> SolidChemistry {
     let solids = ["CaCO3", "CaO"].map(|name| SolidSpecies::built_in(name).unwrap());
     let reaction = Reaction {
         name: "calcination".into(),
         solids: vec![(0, -1.0), (1, 1.0)],
         gases: vec![(1, 1.0)],
         rate: Rate::Core {
-            rate_constant: constant(1e20),
+            rate_constant: constant(factor),
             diffusivity: LayerDiffusivity {
                 value: 1e3,
                 at: temperature,
@@ -253,6 +258,79 @@ fn carbon_dioxide_leaves_limestone_by_the_logarithm_of_what_stands_still() {
                 assert!(
                     (flux / expected - 1.0).abs() < 1e-4,
                     "{stefan_flow:?} {temperature:?} {gas} {surface}: {flux} {expected}"
+                );
+            }
+        }
+    }
+}
+
+/// Flux in mol/m²/s of carbon dioxide from limestone at the start of a window of 1 ns, in gas without it.
+fn calcination_flux(
+    (factor, equilibrium): (f64, f64),
+    theory: FilmTheory,
+    (particle, hot): (f64, f64),
+) -> f64 {
+    let chemistry = calcination_by(factor, equilibrium, particle);
+    let films = films(theory.temperature.of(particle, hot));
+    let start = ParticleStart {
+        amounts: &[1e-5, 1e-8],
+        temperature: particle,
+        around: ParticleSurroundings {
+            temperature: hot,
+            pressure: PRESSURE,
+            fractions: &[0.0, 0.0, 0.0, 1.0],
+            film: &films,
+            theory,
+            radius: RADIUS,
+            size: &SizeChange::Constant,
+        },
+        conductance: 0.0,
+        heat: 0.0,
+    };
+    let mut workspace = ParticleWorkspace::default();
+    let span = 1e-9;
+    chemistry
+        .follow(&start, span, ParticleAccuracy::default(), &mut workspace)
+        .unwrap();
+    workspace.extents[0] / span / (4.0 * std::f64::consts::PI * RADIUS * RADIUS)
+}
+
+#[test]
+fn limestone_whose_pressure_is_above_that_of_the_gas_is_as_fast_as_its_interface() {
+    let (particle, hot) = (1600.0, 1500.0);
+    let [heavy, light] = [44.009, 28.014];
+    for stefan_flow in [StefanFlow::Molar, StefanFlow::Mass] {
+        let theory = FilmTheory {
+            temperature: FilmTemperature::TwoThirds,
+            stefan_flow,
+        };
+        let film = theory.temperature.of(particle, hot);
+        for equilibrium in [0.95, 1.02, 1.5, 3.0, 10.0, 50.0, 300.0] {
+            for factor in [1e-3, 0.1, 1.0, 30.0, 1e3] {
+                let found = calcination_flux((factor, equilibrium), theory, (particle, hot));
+                // What the interface makes and what the film carries away, by the mole fraction at the surface.
+                let made = |x: f64| factor * (equilibrium - x) / particle;
+                let carried = |x: f64| {
+                    let y = x * heavy / (x * heavy + (1.0 - x) * light);
+                    let of_mole = match stefan_flow {
+                        StefanFlow::Mass => -(-y).ln_1p() * light / heavy,
+                        _ => -(-x).ln_1p(),
+                    };
+                    coefficient(film) * of_mole / film
+                };
+                let (mut low, mut high) = (0.0, 1.0 - 1e-15);
+                for _ in 0..200 {
+                    let x = 0.5 * (low + high);
+                    if made(x) > carried(x) {
+                        low = x
+                    } else {
+                        high = x
+                    }
+                }
+                let expected = made(0.5 * (low + high)) * PRESSURE / GAS_CONSTANT;
+                assert!(
+                    (found / expected - 1.0).abs() < 1e-3,
+                    "{stefan_flow:?} {equilibrium} {factor}: {found} {expected}"
                 );
             }
         }
