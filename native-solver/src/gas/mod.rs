@@ -14,6 +14,7 @@ mod friction;
 mod guard;
 mod inflow;
 mod momentum;
+mod normal_friction;
 mod opening;
 mod outer;
 mod pace;
