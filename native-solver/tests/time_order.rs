@@ -61,7 +61,8 @@ fn observed(name: &str, scheme: TimeScheme, trial: impl Fn(TimeScheme) -> Trial)
             let pairs = run[field].iter().zip(&reference[field]);
             pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
         });
-        *found = if errors[0] > 0.0 {
+        // Where nothing changes (300 K), what is left is round-off.
+        *found = if errors[0] > 1e-10 {
             orders(&errors)
         } else {
             Vec::new()
