@@ -13,7 +13,7 @@ use calcine_coupler::setup::{
 };
 
 use crate::common::{
-    AIR, Driver, closure, duct, fluid, named_box, orders, outlet, setup, slip, wall,
+    AIR, Driver, closure, duct, fluid, named_box, orders, outlet, rms, setup, slip, wall,
 };
 
 /// What changes in a driver before a window that ends at a time in s.
@@ -61,7 +61,8 @@ fn observed(name: &str, scheme: TimeScheme, trial: impl Fn(TimeScheme) -> Trial)
             let pairs = run[field].iter().zip(&reference[field]);
             pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
         });
-        *found = if errors[0] > 0.0 {
+        // Where nothing changes (300 K), what is left is round-off.
+        *found = if errors[0] > 1e-10 {
             orders(&errors)
         } else {
             Vec::new()
@@ -98,10 +99,18 @@ fn start(mesh: &Mesh, driver: &mut Driver, velocity: impl Fn(&Vec3) -> Vec3) {
 
 /// A decaying vortex of Taylor and Green in a square of free-slip walls.
 fn vortex(scheme: TimeScheme) -> Trial {
+    vortex_on(12, scheme)
+}
+
+fn vortex_on(cells: usize, scheme: TimeScheme) -> Trial {
+    viscous_vortex(cells, 0.02, scheme)
+}
+
+fn viscous_vortex(cells: usize, viscosity: f64, scheme: TimeScheme) -> Trial {
     let patches = ["side"; 6];
-    let mesh = named_box([1.0, 1.0, 0.1], [12, 12, 1], patches);
+    let mesh = named_box([1.0, 1.0, 0.1], [cells, cells, 1], patches);
     let mut setup = tight(&[("side", slip())], scheme);
-    setup.properties = fluid(1.0, 1000.0, 0.02, 1.0);
+    setup.properties = fluid(1.0, 1000.0, viscosity, 1.0);
     let mut driver = Driver::new(&mesh, &setup);
     start(&mesh, &mut driver, |at| {
         let (x, y) = (PI * at.x, PI * at.y);
@@ -219,5 +228,51 @@ fn two_stages_are_of_second_order_and_implicit_euler_of_first() {
         let [temperature, velocity] = moving;
         assert_orders(&[temperature, Vec::new()], order, within);
         assert_orders(&[velocity, Vec::new()], 1.0, 0.2);
+    }
+}
+
+/// Its walls have no friction, but a normal stress.
+#[test]
+fn a_vortex_between_walls_without_friction_decays_as_the_closed_form_with_second_order_in_the_cell()
+{
+    let errors = [16, 32, 64].map(|cells| {
+        let trial = vortex_on(cells, TimeScheme::Sdirk2);
+        let decay = (-2.0 * PI * PI * 0.02 * trial.end).exp();
+        let mesh = named_box([1.0, 1.0, 0.1], [cells, cells, 1], ["side"; 6]);
+        let [_, velocity] = trial.run(32);
+        let error = |cell: usize| {
+            let at = mesh.cell_centre()[cell];
+            let (x, y) = (PI * at.x, PI * at.y);
+            let exact = decay * Vec3::new(x.sin() * y.cos(), -x.cos() * y.sin(), 0.0);
+            let u = &velocity[3 * cell..];
+            (Vec3::new(u[0], u[1], u[2]) - exact).norm()
+        };
+        rms(&mesh, error)
+    });
+    let found = orders(&errors);
+    println!("errors {errors:?} m/s, orders {found:?}");
+    // 1.6, 1.84 and rising: errors of the walls, which are of second order in few cells, and of the inside have other signs.
+    assert!(found[1] > 1.8 && errors[2] < 1e-4, "{errors:?}");
+}
+
+/// ν Δt/d² of 10, 1000 and 100 000: a step of implicit Euler divides the vortex by 1 + 2 π² ν Δt.
+#[test]
+fn a_vortex_between_walls_without_friction_decays_at_any_viscosity() {
+    for viscosity in [0.1, 10.0, 1000.0] {
+        let mut trial = viscous_vortex(16, viscosity, TimeScheme::ImplicitEuler);
+        let speed = |driver: &Driver| {
+            let velocity = driver.gas.fields().velocity.iter();
+            velocity.map(|u| u.norm()).fold(0.0, f64::max)
+        };
+        let start = speed(&trial.driver);
+        let done = trial.driver.window(0.4, 1.0);
+        let share = speed(&trial.driver) / start;
+        let expected = 1.0 / (1.0 + 2.0 * PI * PI * viscosity * 0.4);
+        println!("{viscosity}: {done:?}, {share} for {expected}");
+        assert!(done.converged, "{viscosity} Pa s: {done:?}");
+        assert!(
+            (share / expected - 1.0).abs() < 0.02,
+            "{viscosity} Pa s: {share}"
+        );
     }
 }

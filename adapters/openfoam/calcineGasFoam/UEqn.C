@@ -5,35 +5,22 @@
 //       - sum (eps mu)_f (grad(u) + grad(u)^T - 2/3 div(u)).S = -chi grad(p) V + chi rho V g + S_d - K_d u
 //
 // chi the share of the pressure gradient that the gas takes, eps by model A, 1 by model B.
-// u_f as fvSchemes says, beyond upwind explicitly; of the viscous stress the part grad(u).S is implicit. No viscous stress acts on
-// slip walls; mu with that of eddies (models.H); gas leaves an outlet as if the flow were developed there.
+// u_f as fvSchemes says, beyond upwind explicitly; of the viscous stress the part grad(u).S is implicit. On walls without friction and planes of
+// symmetry the normal viscous stress acts alone (normalStress.C); mu with that of eddies (models.H); gas leaves an outlet as if the flow
+// were developed there.
 #include "gas.H"
 #include "convection.H"
 #include "fvm.H"
 #include "fvc.H"
-#include "basicSymmetryFvPatchFields.H"
 
 Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, report& result)
 {
     const scalarField& volume = mesh_.cellVolumes();
     const scalarField share(pressureShare_*volume);
     const scalarField inertia(committed_.mass/window_.motionSpan);
-    const surfaceScalarField faceViscosity("viscosity", fvc::interpolate(viscosity()));
-
-    // Force of the explicit part of the stress on the owner of each face, in N.
-    volTensorField stress
-    (
-        "explicitStress", viscosity()*dev2(T(fvc::grad(U_)))
-    );
-    forAll(mesh_.boundary(), patchi)
-    {
-        const passage way = boundary_.of(patchi);
-        if (way != passage::open && way != passage::within && !U_.boundaryField()[patchi].fixesValue())
-        {
-            stress.boundaryFieldRef()[patchi] = Zero;
-        }
-    }
-    stressForce_.reset((mesh_.Sf() & fvc::interpolate(stress)).ptr());
+    const volScalarField mu("mu", viscosity());
+    const surfaceScalarField faceViscosity("viscosity", fvc::interpolate(mu));
+    const volTensorField gradU("gradU", fvc::grad(U_));
 
     // The matrix of the last outer iteration goes first, with the memory it holds.
     momentum_.reset();
@@ -45,21 +32,31 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
         )
     );
     fvVectorMatrix& matrix = *momentum_;
+
+    updateNormalFriction(mu);
+    setNormalFriction(matrix, false);
+
+    // Force of the explicit part of the stress on the owner of each face, in N.
+    volTensorField stress("explicitStress", mu*dev2(T(gradU)));
+    forAll(mesh_.boundary(), patchi)
+    {
+        const passage way = boundary_.of(patchi);
+        if (slips(patchi))
+        {
+            stress.boundaryFieldRef()[patchi] = normalStress(patchi, mu, gradU);
+        }
+        else if (way != passage::open && way != passage::within && !U_.boundaryField()[patchi].fixesValue())
+        {
+            stress.boundaryFieldRef()[patchi] = Zero;
+        }
+    }
+    stressForce_.reset((mesh_.Sf() & fvc::interpolate(stress)).ptr());
+
     outflow_ = outflow();
     matrix.diag() += inertia + given_.dragCoefficient - outflow_;
     matrix.source() +=
         inertia*committed_.velocity + given_.dragSource + density*share*gravity_
       + outOf(*stressForce_) - outOf(*beyondU_);
-
-    // The normal velocity at a wall without friction is not stressed by the wall either.
-    forAll(mesh_.boundary(), patchi)
-    {
-        if (isA<basicSymmetryFvPatchVectorField>(U_.boundaryField()[patchi]))
-        {
-            matrix.internalCoeffs()[patchi] = Zero;
-            matrix.boundaryCoeffs()[patchi] = Zero;
-        }
-    }
 
     // Gas of the surroundings comes in straight through openings.
     for (const fvPatch& patch : mesh_.boundary())
@@ -86,12 +83,17 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     momentumDiagonal_ = matrix.A()().primitiveField();
     const vectorField push(-share*pressureGradient_);
     const vectorField pull(matrix.H()().primitiveField()*volume);
-    const vectorField own(momentumDiagonal_*volume*U_.primitiveField());
+    const vectorField own
+    (
+        momentumDiagonal_*volume*U_.primitiveField() + (normalFriction_ & U_.primitiveField())
+    );
     const scalar error = gSumMag(pull + push - own);
     const scalar terms = gSumMag(own) + gSumMag(push) + gSumMag(pull);
 
     const vectorField source(matrix.source() + push);
+    setNormalFriction(matrix, true);
     result.linearIterations +=
         momentumSolver_.solve(matrix, source, linearTolerance_*terms, U_).iterations;
+    setNormalFriction(matrix, false);
     return error > 0 ? error/terms : 0;
 }

@@ -122,9 +122,13 @@ void Foam::calcine::gas::balanceMomentum(report& result) const
             const labelUList& cells = mesh_.boundary()[patchi].faceCells();
             const vectorField& internal = momentum_->internalCoeffs()[patchi];
             const vectorField& given = momentum_->boundaryCoeffs()[patchi];
+            const label start = mesh_.boundary()[patchi].start();
             forAll(cells, i)
             {
+                const label facei = start + i;
+                const vector& n = normal_[facei];
                 const scalar out = internal[i][axis]*u[cells[i]][axis] - given[i][axis]
+                  + normalStiffness_[facei]*(n & u[cells[i]])*n[axis]
                   - stressForce_->boundaryField()[patchi][i][axis];
                 momentum.boundary -= span*out;
                 momentum.boundaryMagnitude += span*mag(out);

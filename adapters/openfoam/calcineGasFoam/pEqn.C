@@ -16,18 +16,19 @@
 // Continuity, per cell: sum phi_f = -(eps rho V - m_old)/dtau, rho of the model at pRef.
 #include "gas.H"
 
-Foam::scalar Foam::calcine::gas::inertia(label facei, label celli) const
+Foam::scalar Foam::calcine::gas::beside(label facei, label celli) const
 {
     const scalar faceFlux = committed_.flux[facei]/mag(mesh_.faceAreas()[facei]);
     const scalar cellFlux =
         committed_.mass[celli]/mesh_.cellVolumes()[celli]*(committed_.velocity[celli] & normal_[facei]);
-    return (faceFlux - cellFlux)/(window_.motionSpan*pressureShare_[celli]);
+    return (faceFlux - cellFlux)/(window_.motionSpan*pressureShare_[celli])
+      - across(facei, celli);
 }
 
 
 Foam::scalar Foam::calcine::gas::halfCellForce(label facei, label celli) const
 {
-    return (force_[celli] & normal_[facei]) + inertia(facei, celli);
+    return (force_[celli] & normal_[facei]) + beside(facei, celli);
 }
 
 
@@ -53,14 +54,20 @@ Foam::scalar Foam::calcine::gas::assemblePressure(const scalarField& density, bo
     mobility_ = density*given_.voidFraction*pressureShare_/momentumDiagonal_;
     const labelUList& owner = mesh_.faceOwner();
     const scalarField mobilityBeyond(shared_.beyond(mobility_));
+    const tensorField addedBeyond
+    (
+        shared_.beyond(tensorField(normalFriction_/(momentumDiagonal_*mesh_.cellVolumes())))
+    );
     forAll(conductance_, facei)
     {
         if (shared_.within(facei))
         {
+            const vector& n = normal_[facei];
+            const scalar beyond = mobilityBeyond[facei]/(1 + ((n & addedBeyond[facei]) & n));
             conductance_[facei] = mag(mesh_.faceAreas()[facei])
                /(
-                    ownerDistance_[facei]/mobility_[owner[facei]]
-                  + neighbourDistance_[facei]/mobilityBeyond[facei]
+                    ownerDistance_[facei]/mobilityAlong(facei, owner[facei])
+                  + neighbourDistance_[facei]/beyond
                 );
         }
     }
@@ -75,7 +82,8 @@ Foam::scalar Foam::calcine::gas::assemblePressure(const scalarField& density, bo
         {
             const scalar area = mag(mesh_.faceAreas()[facei]);
             conductance_[facei] = !open ? 0
-              : area/(ownerDistance_[facei]/mobility_[owner[facei]] + area*openingSlope_[facei]);
+              : area
+               /(ownerDistance_[facei]/mobilityAlong(facei, owner[facei]) + area*openingSlope_[facei]);
         }
     }
 
@@ -223,9 +231,7 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
     updatePressureAlong();
     updatePressureGradient();
 
-    U_.primitiveFieldRef() =
-        pressureShare_/momentumDiagonal_*(force_ - pressureGradient_);
-    U_.correctBoundaryConditions();
+    updateVelocity();
 }
 
 
@@ -237,7 +243,7 @@ void Foam::calcine::gas::updatePressureGradient()
     const auto add = [this](label facei, label celli, scalar distance)
     {
         const scalar area = mag(mesh_.faceAreas()[facei]);
-        const scalar slope = area*inertia(facei, celli) - flux_[facei]/mobility_[celli];
+        const scalar slope = area*beside(facei, celli) - flux_[facei]/mobilityAlong(facei, celli);
         pressureGradient_[celli] += distance*slope*normal_[facei];
     };
     forAll(flux_, facei)
@@ -261,7 +267,7 @@ void Foam::calcine::gas::updatePressureAlong()
     const auto add = [this, &next](label facei, label celli, scalar distance, const vector& skew)
     {
         const scalar area = mag(mesh_.faceAreas()[facei]);
-        const scalar slope = halfCellForce(facei, celli) - flux_[facei]/(area*mobility_[celli]);
+        const scalar slope = halfCellForce(facei, celli) - flux_[facei]/(area*mobilityAlong(facei, celli));
         next[celli] += area*(distance*slope + (skew & pressureAlong_[celli]))*normal_[facei];
     };
     forAll(flux_, facei)

@@ -1,6 +1,6 @@
-// What friction and convection do at a face. Of the diagonal A of the momentum equation the part A_t of
-// friction and convection multiplies the cell's own velocity, not that of the half cell that drag and
-// inertia meet at the face: the balance of the half cell (pEqn.C) has A_t times the flux there only to damp
+// What friction and convection do at a face. Of the diagonal A of the momentum equation, with N of walls without
+// friction (normalStress.C) along the face's normal, the part A_t of friction and convection multiplies the cell's
+// own velocity, not that of the half cell that drag and inertia meet at the face: the balance of the half cell (pEqn.C) has A_t times the flux there only to damp
 // oscillations between faces, and gets back, with M = rho eps u,
 //
 //   c_P = A_t/(rho eps chi) (M_f - M_P.n),
@@ -48,17 +48,20 @@ void Foam::calcine::gas::updateTransport(const scalarField& density)
     const labelUList& owner = mesh_.faceOwner();
     const vectorField massVelocity(density*given_.voidFraction*U_.primitiveField());
     const tensorField gradient(massVelocityGradient(massVelocity));
+    const scalarField held(density*given_.voidFraction*pressureShare_);
     const scalarField perFlux
     (
         (
             momentumDiagonal_
           - (committed_.mass/window_.motionSpan + given_.dragCoefficient)/mesh_.cellVolumes()
         )
-       /(density*given_.voidFraction*pressureShare_)
+       /held
     );
+    const tensorField normalPerFlux(normalFriction_/(held*mesh_.cellVolumes()));
     const vectorField massVelocityBeyond(shared_.beyond(massVelocity));
     const tensorField gradientBeyond(shared_.beyond(gradient));
     const scalarField perFluxBeyond(shared_.beyond(perFlux));
+    const tensorField normalPerFluxBeyond(shared_.beyond(normalPerFlux));
     forAll(transportPush_, facei)
     {
         if (!shared_.within(facei))
@@ -76,8 +79,9 @@ void Foam::calcine::gas::updateTransport(const scalarField& density)
         const scalar mean =
             weight*here + (1 - weight)*there - bend + ((miss & slope) & n);
         transportPush_[facei] =
-            ownerDistance_[facei]*perFlux[P]*(mean - here)
-          + neighbourDistance_[facei]*perFluxBeyond[facei]*(mean - there);
+            ownerDistance_[facei]*(perFlux[P] + ((n & normalPerFlux[P]) & n))*(mean - here)
+          + neighbourDistance_[facei]
+           *(perFluxBeyond[facei] + ((n & normalPerFluxBeyond[facei]) & n))*(mean - there);
     }
 }
 

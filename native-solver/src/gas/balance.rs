@@ -85,7 +85,7 @@ fn energy(
 ) -> Balance {
     let old = frame.old;
     let [stored, stored_magnitude, exchange] = sums(frame.grid.cells(), |cell| {
-        let stored = now.mass[cell] * now.enthalpy[cell] - old.mass[cell] * old.enthalpy[cell];
+        let stored = now.heat(cell) - old.heat(cell);
         [stored, stored.abs(), taken.heat[cell]]
     });
     let [inflow, magnitude] = taken.boundary;

@@ -68,6 +68,7 @@ impl NativeGas {
             let temperature = state.temperature[cell];
             state.enthalpy[cell] = gas.enthalpy(temperature, state.composition_of(cell, species));
         }
+        state.heat_remainder.fill(0.0);
         state.turbulence.begin(&self.setup.turbulence, cells);
         self.now.take(&state);
         for (velocity, pores) in state.velocity.iter_mut().zip(&state.void_fraction) {

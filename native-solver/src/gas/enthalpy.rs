@@ -236,11 +236,10 @@ impl Enthalpy {
         let [given, coefficient] = &self.given;
         let reactions = &self.reactions;
         fill(&mut self.source, |cell| {
-            let mut source = frame.old.mass[cell] * frame.old.enthalpy[cell] / frame.storage_span
-                + given[cell]
-                + reactions.gain(cell)
-                - coefficient[cell] * base[cell]
-                + compression * frame.void_fraction[cell] * grid.volume[cell];
+            let mut source =
+                frame.old.heat(cell) / frame.storage_span + given[cell] + reactions.gain(cell)
+                    - coefficient[cell] * base[cell]
+                    + compression * frame.void_fraction[cell] * grid.volume[cell];
             for link in grid.links(cell) {
                 let index = link.face as usize;
                 if link.is_boundary() {
@@ -393,6 +392,16 @@ impl Enthalpy {
                 .temperature(enthalpy[cell], composition, *temperature);
         });
         solved.iterations
+    }
+
+    /// Gives each cell what flows and particles brought it beyond m h: what the solve of the equation at hand left of it. So the energy that cells
+    /// hold is what came and went to round-off, however closely the equation is solved; the next window begins with it.
+    pub fn carry_remainder(&self, frame: &AttemptFrame<'_>, now: &mut GasState) {
+        let enthalpy = &now.enthalpy;
+        fill(&mut now.heat_remainder, |cell| {
+            let left = self.source[cell] - self.matrix.row_times(cell, enthalpy);
+            frame.storage_span * left
+        });
     }
 
     /// Heat from the particles to a cell in W, as the equation takes it.

@@ -14,6 +14,7 @@ mod friction;
 mod guard;
 mod inflow;
 mod momentum;
+mod normal_friction;
 mod opening;
 mod outer;
 mod pace;
@@ -418,6 +419,7 @@ fn start(setup: &GasSetup, cells: usize, faces: usize) -> GasState {
         temperature: vec![setup.temperature; cells],
         composition: setup.composition.repeat(cells),
         remainder: vec![0.0; setup.composition.len() * cells],
+        heat_remainder: vec![0.0; cells],
         base_pressure: setup.pressure,
         velocity: vec![setup.velocity; cells],
         pressure: vec![0.0; cells],

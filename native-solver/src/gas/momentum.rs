@@ -6,7 +6,8 @@
 //!
 //! (docs/theory.md, FLO-5, Newtonian), χ the share of the pressure gradient: ε by model A, 1 by model B. Implicit Euler; u_f upwind, what a second-order value has beyond it
 //! explicitly from the last iterate; of the viscous stress the part ∇u·S implicitly, the rest explicitly;
-//! no viscous stress on free-slip walls and planes of symmetry; gas leaves an outlet as if the flow were developed there.
+//! on free-slip walls and planes of symmetry the normal viscous stress alone ([`super::normal_friction`]); gas leaves an outlet as if the flow
+//! were developed there.
 
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::Convection;
@@ -14,6 +15,7 @@ use nalgebra::Matrix3;
 
 use super::attempt::{AttemptFrame, CellProperties};
 use super::boundary::FaceCondition;
+use super::normal_friction::NormalFriction;
 use super::state::GasState;
 use super::turbulence::wall;
 use crate::numerics::convection::vector_beyond_upwind;
@@ -31,16 +33,20 @@ const PREDICTOR: f64 = 1e-3;
 /// does not.
 const ITERATIONS: u32 = 200;
 
-/// Matrix and right-hand side, the pressure left out: A u = b − χ V ∇p.
+/// Matrix and right-hand side, the pressure left out: (A + N) u = b − χ V ∇p.
 #[derive(Debug)]
 pub struct Momentum {
     /// A, the same for each component.
     pub matrix: Matrix,
+    /// N, of walls without friction.
+    pub normal: NormalFriction,
     /// b in N.
     pub source: Vec<Vec3>,
     /// Viscous conductance of each face in kg/s.
     viscous: Vec<f64>,
     preconditioner: Incomplete,
+    /// Diagonal of A, while a component has its own.
+    diagonal: Vec<f64>,
     component: Vec<f64>,
     right: Vec<f64>,
     /// ∂u_i/∂x_j of each cell in 1/s.
@@ -115,9 +121,11 @@ impl Momentum {
         let (cells, faces) = (matrix.grid().cells(), matrix.grid().faces.len());
         Self {
             matrix,
+            normal: NormalFriction::default(),
             viscous: vec![0.0; faces],
             source: vec![Vec3::zeros(); cells],
             preconditioner: Incomplete::default(),
+            diagonal: Vec::new(),
             component: vec![0.0; cells],
             right: vec![0.0; cells],
             gradients: vec![Matrix3::zeros(); cells],
@@ -144,6 +152,7 @@ impl Momentum {
         fill(&mut self.viscous, |index| {
             viscous(frame, material, now, index)
         });
+        self.normal.update(frame, material);
         self.update_gradients(frame, &now.velocity);
         self.update_explicit(frame, material, share, now);
         let viscous = &self.viscous;
@@ -188,11 +197,12 @@ impl Momentum {
         });
     }
 
-    /// Σ over cells of |b − χ V ∇p − A u|, relative to the magnitudes of its terms.
+    /// Σ over cells of |b − χ V ∇p − (A + N) u|, relative to the magnitudes of its terms.
     pub fn residual(&self, frame: &AttemptFrame<'_>, now: &GasState) -> f64 {
         let (grid, cells) = (frame.grid, self.source.len());
         let parts = |cell: usize| {
-            let own = self.matrix.diagonal()[cell] * now.velocity[cell];
+            let velocity = &now.velocity[cell];
+            let own = self.matrix.diagonal()[cell] * velocity + self.normal.pull(cell, velocity);
             let push = frame.pressure_share[cell] * grid.volume[cell];
             let pressure = push * now.pressure_gradient[cell];
             let force = self.without_pressure(cell, &now.velocity);
@@ -218,7 +228,7 @@ impl Momentum {
         force
     }
 
-    /// The part of a cell's diagonal that is friction and convection, in kg/s.
+    /// The part of a cell's diagonal in A that is friction and convection, in kg/s.
     #[inline]
     pub fn transport(&self, frame: &AttemptFrame<'_>, cell: usize) -> f64 {
         let inertia = frame.old.mass[cell] / frame.motion_span;
@@ -239,14 +249,24 @@ impl Momentum {
         tolerance: f64,
         now: &mut GasState,
     ) -> u32 {
-        self.preconditioner.update(&self.matrix);
         let mut iterations = 0;
+        self.diagonal.clear();
+        self.diagonal.extend_from_slice(self.matrix.diagonal());
         for axis in 0..3 {
-            let (source, velocity) = (&self.source, &now.velocity);
+            let damps = self.normal.damps(axis);
+            if damps {
+                self.normal.add(axis, self.matrix.diagonal_mut());
+            }
+            if axis == 0 || damps || self.normal.damps(axis - 1) {
+                self.preconditioner.update(&self.matrix);
+            }
+            let (source, normal, velocity) = (&self.source, &self.normal, &now.velocity);
             let gradient = &now.pressure_gradient;
             fill(&mut self.right, |cell| {
                 let push = frame.pressure_share[cell] * frame.grid.volume[cell];
-                source[cell][axis] - push * gradient[cell][axis]
+                source[cell][axis]
+                    - push * gradient[cell][axis]
+                    - normal.by_others(cell, axis, &velocity[cell])
             });
             fill(&mut self.component, |cell| velocity[cell][axis]);
             let target = SolveTolerance {
@@ -268,6 +288,7 @@ impl Momentum {
                 update(&mut now.velocity, put);
             }
             iterations += solved.iterations;
+            self.matrix.diagonal_mut().copy_from_slice(&self.diagonal);
         }
         iterations
     }
@@ -277,7 +298,7 @@ impl Momentum {
         let face = &frame.grid.faces[index];
         let (inner, flux) = (now.velocity[face.owner], now.flux[index]);
         if flux == 0.0 && self.viscous[index] == 0.0 {
-            return Vec3::zeros();
+            return -self.normal.leaving(frame.grid, index, &inner) - self.explicit[index];
         }
         let Some(velocity) = carried_velocity(frame, index, flux) else {
             return -flux * inner - self.explicit[index];
@@ -326,7 +347,7 @@ impl Momentum {
         now: &GasState,
     ) {
         let grid = frame.grid;
-        let (gradients, viscous) = (&self.gradients, &self.viscous);
+        let (gradients, viscous, normal) = (&self.gradients, &self.viscous, &self.normal);
         let second = frame.convection != Convection::Upwind;
         let explicit = |index: usize| {
             let face = &grid.faces[index];
@@ -338,6 +359,7 @@ impl Momentum {
                     -area * transposed(&developed, &face.normal)
                 } else {
                     explicit_at_boundary(frame, index, own, viscous[index], now)
+                        + normal.explicit(frame, index, material.viscosity[face.owner], own)
                 };
             }
             let flux = now.flux[index];

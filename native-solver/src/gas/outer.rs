@@ -278,6 +278,7 @@ impl Equations {
             iterations += self.scalars(frame, tolerance, 0.0, now);
         }
         self.species.carry_remainder(frame, now);
+        self.enthalpy.carry_remainder(frame, now);
         iterations
     }
 

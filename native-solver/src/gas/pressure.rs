@@ -31,7 +31,7 @@ use crate::numerics::grid::{Face, MeshGraph};
 use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
 use crate::numerics::operators::{displacement, outflow};
-use crate::numerics::parallel::{CHUNK, fill, sums};
+use crate::numerics::parallel::{fill, sums};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
 /// A correction need not be solved closer than this share of its initial residual: the next one
@@ -39,11 +39,11 @@ use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 const CORRECTION: f64 = 1e-2;
 /// Iterations of a solve at most.
 const ITERATIONS: u32 = 2000;
-/// Up to this many cells the incomplete factorisation is used: it is exact on chains, and at 4394 cells
-/// it was measured level with the multigrid.
-const SMALL: usize = CHUNK;
+/// Up to this many cells the incomplete factorisation is used. There it was measured level with the multigrid, which takes half of its time
+/// at 2500 cells in two dimensions and 40 % at 10 000; in three dimensions they are level up to 8000.
+const SMALL: usize = 1000;
 
-/// Incomplete factorisation for few cells, multigrid for many.
+/// Incomplete factorisation for few cells and for chains of cells, multigrid for the others.
 #[derive(Debug)]
 enum Approximation {
     Small(Incomplete),
@@ -51,8 +51,14 @@ enum Approximation {
 }
 
 impl Approximation {
-    fn new(cells: usize) -> Self {
-        if cells <= SMALL {
+    fn new(matrix: &Matrix) -> Self {
+        let cells = matrix.diagonal().len();
+        // Where no two neighbours of a cell come after it, the factorisation is exact.
+        let later = |cell: usize| {
+            let columns = matrix.row(cell).0;
+            columns.len() - columns.partition_point(|&column| column as usize <= cell)
+        };
+        if cells <= SMALL || (0..cells).all(|cell| later(cell) <= 1) {
             Self::Small(Incomplete::default())
         } else {
             Self::Large(Multigrid::default())
@@ -79,6 +85,8 @@ pub struct Pressure {
     /// What inertia adds to the force on the half cells of each face's owner and neighbour, along
     /// the face's normal, in N/m³: the face's own old flux in place of the cell's.
     inertia: Vec<[f64; 2]>,
+    /// What those halves lose by N of their cells' velocity along each face, in N/m³; empty where no wall is without friction.
+    across: Vec<[f64; 2]>,
     transport: FaceTransport,
     friction: WallFriction,
     /// Area/(d_P/b_P + d_N/b_N) of each face in m s; zero where the flux is given.
@@ -108,11 +116,12 @@ impl Pressure {
         let recovery = recovery(matrix.grid());
         let warp = warp(matrix.grid());
         Self {
+            preconditioner: Approximation::new(&matrix),
             matrix,
-            preconditioner: Approximation::new(cells),
             mobility: vec![0.0; cells],
             force: vec![Vec3::zeros(); cells],
             inertia: vec![[0.0; 2]; faces],
+            across: Vec::new(),
             transport: FaceTransport::new(cells, faces),
             friction: WallFriction::default(),
             conductance: vec![0.0; faces],
@@ -179,18 +188,21 @@ impl Pressure {
             let index = grid.internal + face;
             OuterPressure::about(frame, index, now.flux[index])
         });
-        let (mobility, outer) = (&self.mobility, &self.outer);
-        fill(&mut self.conductance, |index| {
+        let mut conductance = std::mem::take(&mut self.conductance);
+        let outer = &self.outer;
+        fill(&mut conductance, |index| {
             let face = &grid.faces[index];
-            let resistance = face.owner_distance / mobility[face.owner];
+            let mobility = |cell: usize| self.mobility_along(momentum, cell, face);
+            let resistance = face.owner_distance / mobility(face.owner);
             if index < grid.internal {
-                face.area / (resistance + face.neighbour_distance / mobility[face.neighbour])
+                face.area / (resistance + face.neighbour_distance / mobility(face.neighbour))
             } else if let Some(outer) = outer[index - grid.internal] {
                 face.area / (resistance + face.area * outer.slope)
             } else {
                 0.0
             }
         });
+        self.conductance = conductance;
         let conductance = &self.conductance;
         let closed = frame.boundary.closed();
         self.matrix.assemble(|cell, diagonal, neighbours| {
@@ -231,6 +243,7 @@ impl Pressure {
             (momentum.without_pressure(cell, velocity) + back)
                 / (frame.pressure_share[cell] * grid.volume[cell])
         });
+        self.update_across(frame, momentum, velocity);
         self.update_drive(frame);
 
         let (drive, conductance, outer) = (&self.drive, &self.conductance, &self.outer);
@@ -299,10 +312,52 @@ impl Pressure {
         (error + self.missed_at_openings(frame, now)) / terms
     }
 
+    /// b of a cell along a face's normal, in s: with what walls without friction add to the diagonal there.
+    #[inline]
+    fn mobility_along(&self, momentum: &Momentum, cell: usize, face: &Face) -> f64 {
+        let mobility = self.mobility[cell];
+        match momentum.normal.tensor(cell) {
+            None => mobility,
+            Some(_) => {
+                let added = momentum.normal.along(cell, &face.normal);
+                mobility / (1.0 + added / momentum.matrix.diagonal()[cell])
+            }
+        }
+    }
+
+    /// The force on the two halves at a face beyond that on their cells, along its normal, in N/m³.
+    #[inline]
+    fn beside(&self, index: usize) -> [f64; 2] {
+        let [own, other] = self.inertia[index];
+        match self.across.get(index) {
+            None => [own, other],
+            Some(across) => [own - across[0], other - across[1]],
+        }
+    }
+
     /// Force on the half cell of a face's owner along the face's normal, in N/m³.
     #[inline]
     fn owner_force(&self, face: &Face, index: usize) -> f64 {
-        self.force[face.owner].dot(&face.normal) + self.inertia[index][0]
+        self.force[face.owner].dot(&face.normal) + self.beside(index)[0]
+    }
+
+    fn update_across(&mut self, frame: &AttemptFrame<'_>, momentum: &Momentum, velocity: &[Vec3]) {
+        let grid = frame.grid;
+        if momentum.normal.is_empty() {
+            self.across.clear();
+            return;
+        }
+        self.across.resize(grid.faces.len(), [0.0; 2]);
+        fill(&mut self.across, |index| {
+            let face = &grid.faces[index];
+            let half = |cell: usize| {
+                let pull = momentum.normal.across(cell, &face.normal, &velocity[cell]);
+                pull / (frame.pressure_share[cell] * grid.volume[cell])
+            };
+            let own = half(face.owner);
+            let inside = index < grid.internal;
+            [own, if inside { half(face.neighbour) } else { 0.0 }]
+        });
     }
 
     /// What transport adds to the pressure difference between the cells of an internal face, in Pa.
@@ -325,7 +380,7 @@ impl Pressure {
             }
             let mut push = face.owner_distance * self.owner_force(face, index);
             if index < frame.grid.internal {
-                let force = self.force[face.neighbour].dot(&face.normal) + self.inertia[index][1];
+                let force = self.force[face.neighbour].dot(&face.normal) + self.beside(index)[1];
                 push += face.neighbour_distance * force + self.transport_push(face, index);
             }
             self.conductance[index] * (push + displacement(frame.grid, face, &self.along))
@@ -366,17 +421,14 @@ impl Pressure {
                 let index = link.face as usize;
                 let face = &grid.faces[index];
                 // To the face's plane along its normal by the half's slope, and along the face.
-                let (out, inertia, miss) = if link.sign > 0.0 {
-                    (face.owner_distance, self.inertia[index][0], face.owner_skew)
+                let [own, other] = self.beside(index);
+                let (out, beside, miss) = if link.sign > 0.0 {
+                    (face.owner_distance, own, face.owner_skew)
                 } else {
-                    (
-                        -face.neighbour_distance,
-                        self.inertia[index][1],
-                        -face.neighbour_skew,
-                    )
+                    (-face.neighbour_distance, other, -face.neighbour_skew)
                 };
-                let slope = self.force[cell].dot(&face.normal) + inertia
-                    - now.flux[index] / (face.area * self.mobility[cell]);
+                let slope = self.force[cell].dot(&face.normal) + beside
+                    - now.flux[index] / (face.area * self.mobility_along(momentum, cell, face));
                 let beyond = out * slope + miss.dot(&last[cell]);
                 sum += (link.sign * face.area * beyond) * face.normal;
             }
@@ -404,12 +456,14 @@ impl Pressure {
             for link in grid.links(cell) {
                 let index = link.face as usize;
                 let face = &grid.faces[index];
-                let (distance, inertia) = if link.sign > 0.0 {
-                    (face.owner_distance, self.inertia[index][0])
+                let [own, other] = self.beside(index);
+                let (distance, beside) = if link.sign > 0.0 {
+                    (face.owner_distance, own)
                 } else {
-                    (face.neighbour_distance, self.inertia[index][1])
+                    (face.neighbour_distance, other)
                 };
-                let slope = face.area * inertia - flux[index] / self.mobility[cell];
+                let slope =
+                    face.area * beside - flux[index] / self.mobility_along(momentum, cell, face);
                 sum += (distance * slope) * face.normal;
             }
             sum / grid.volume[cell]
@@ -423,7 +477,17 @@ impl Pressure {
         let gradients = &now.pressure_gradient;
         fill(&mut now.velocity, |cell| {
             let share = frame.pressure_share[cell] * grid.volume[cell];
-            share / momentum.matrix.diagonal()[cell] * (self.force[cell] - gradients[cell])
+            let (diagonal, force) = (
+                momentum.matrix.diagonal()[cell],
+                self.force[cell] - gradients[cell],
+            );
+            let tensor = momentum.normal.tensor(cell);
+            let inverse =
+                tensor.and_then(|tensor| (tensor + Matrix3::identity() * diagonal).try_inverse());
+            match inverse {
+                None => share / diagonal * force,
+                Some(inverse) => inverse * (share * force),
+            }
         });
     }
 }

@@ -108,6 +108,9 @@ pub fn extrapolate(start: &GasState, first: &GasState, beyond: f64, between: &mu
     fill(&mut between.remainder, |place| {
         line(start.remainder[place], first.remainder[place])
     });
+    fill(&mut between.heat_remainder, |cell| {
+        line(start.heat_remainder[cell], first.heat_remainder[cell])
+    });
     fill(&mut between.flux, |face| {
         line(start.flux[face], first.flux[face])
     });

@@ -22,6 +22,8 @@ pub struct GasState {
     /// What flows brought a cell of each species in kg beyond m Y: what the linear solver left of its equation,
     /// which the next window begins with. In the order of the mass fractions.
     pub remainder: Vec<f64>,
+    /// What flows brought a cell of heat in J beyond m h, in the same way.
+    pub heat_remainder: Vec<f64>,
     /// Base pressure of the low-Mach gas in Pa; it changes in a closed domain alone.
     pub base_pressure: f64,
     /// Interstitial velocity in m/s.
@@ -51,6 +53,12 @@ impl GasState {
         self.mass[cell] * self.composition[place] + self.remainder[place]
     }
 
+    /// Enthalpy in J of a cell.
+    #[inline]
+    pub fn heat(&self, cell: usize) -> f64 {
+        self.mass[cell] * self.enthalpy[cell] + self.heat_remainder[cell]
+    }
+
     /// Takes the values of another state into the memory that is there.
     pub fn take(&mut self, other: &GasState) {
         self.mass.clone_from(&other.mass);
@@ -58,6 +66,7 @@ impl GasState {
         self.temperature.clone_from(&other.temperature);
         self.composition.clone_from(&other.composition);
         self.remainder.clone_from(&other.remainder);
+        self.heat_remainder.clone_from(&other.heat_remainder);
         self.base_pressure = other.base_pressure;
         self.velocity.clone_from(&other.velocity);
         self.pressure.clone_from(&other.pressure);
@@ -75,6 +84,7 @@ impl GasState {
         file.set_f64s("temperature", &self.temperature);
         file.set_f64s("composition", &self.composition);
         file.set_f64s("remainder", &self.remainder);
+        file.set_f64s("heat_remainder", &self.heat_remainder);
         file.set_f64s("base_pressure", &[self.base_pressure]);
         file.set_f64s("velocity", &flat(&self.velocity));
         file.set_f64s("pressure", &self.pressure);
@@ -101,6 +111,7 @@ impl GasState {
             temperature: file.f64s_of("temperature", cells)?.to_vec(),
             composition: file.f64s_of("composition", species * cells)?.to_vec(),
             remainder: file.f64s_of("remainder", species * cells)?.to_vec(),
+            heat_remainder: file.f64s_of("heat_remainder", cells)?.to_vec(),
             base_pressure: file.f64s_of("base_pressure", 1)?.iter().sum(),
             velocity: vectors(file.f64s_of("velocity", 3 * cells)?),
             pressure: file.f64s_of("pressure", cells)?.to_vec(),

@@ -1,4 +1,4 @@
-//! What friction and convection do at a face. Of the diagonal a of the momentum equation the part a_t of
+//! What friction and convection do at a face. Of the diagonal a of the momentum equation, with N along the face's normal, the part a_t of
 //! friction and convection multiplies the cell's own velocity, not that of the half cell that drag and
 //! inertia meet at the face: the balance of the half cell (see [`super::pressure`]) has
 //! a_t times the flux there only to damp oscillations between faces, and gets back
@@ -68,10 +68,11 @@ impl FaceTransport {
         };
         fill(&mut self.gradients, |cell| tensor(grid, cell, value));
         let gradients = &self.gradients;
-        let per_flux = |cell: usize| {
+        let per_flux = |cell: usize, normal: &Vec3| {
             let density = material.density[cell];
             let shares = frame.void_fraction[cell] * frame.pressure_share[cell];
-            momentum.transport(frame, cell) / (density * shares * grid.volume[cell])
+            let transport = momentum.transport(frame, cell) + momentum.normal.along(cell, normal);
+            transport / (density * shares * grid.volume[cell])
         };
         fill(&mut self.force[..grid.internal], |index| {
             let face = &grid.faces[index];
@@ -88,8 +89,8 @@ impl FaceTransport {
                 mean += face.normal.dot(&(slope * miss));
             }
             [
-                per_flux(own) * (mean - here),
-                per_flux(other) * (mean - there),
+                per_flux(own, &face.normal) * (mean - here),
+                per_flux(other, &face.normal) * (mean - there),
             ]
         });
     }

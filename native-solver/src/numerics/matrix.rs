@@ -37,6 +37,12 @@ impl Matrix {
         &self.diagonal
     }
 
+    /// Entries on the diagonal, to change them.
+    #[inline]
+    pub fn diagonal_mut(&mut self) -> &mut [f64] {
+        &mut self.diagonal
+    }
+
     /// Columns and values of a row's neighbours, columns ascending.
     #[inline]
     pub fn row(&self, cell: usize) -> (&[u32], &[f64]) {
