@@ -1,5 +1,6 @@
 //! A checked case: plain SI values, nothing left to parse.
 
+mod agreement;
 mod laws;
 mod material;
 mod mesh;
@@ -21,6 +22,7 @@ use calcine_coupler::setup::{GasSetup, Schedule};
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
 use calcine_coupler::window_drag::WindowDrag;
 
+pub use agreement::{AgreementSpec, FieldBand};
 pub use laws::{ConductionArea, ConductionSpec, Laws, RadiationSpec};
 pub use material::{MaterialSpec, SizeLaw};
 pub use mesh::MeshSpec;
@@ -95,6 +97,8 @@ pub struct Case {
     pub probes: Vec<Probe>,
     /// Quantities of interest with their bands.
     pub quantities: Vec<Quantity>,
+    /// What `compare` judges beside them.
+    pub agreement: AgreementSpec,
 }
 
 /// Clocks and checkpoints.

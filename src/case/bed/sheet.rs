@@ -89,8 +89,10 @@ impl Sheet {
         let [x, y, z] = AXES.map(|names| self.column(&names));
         let (Some(x), Some(y), Some(z)) = (x, y, z) else {
             let names: Vec<&str> = self.columns.iter().map(|(name, _)| name.as_str()).collect();
+            let unnamed = names.iter().all(|name| name.is_empty());
             let what = match names[..] {
                 [] => "it is empty; its first line names the columns: x, y and z (in m)".into(),
+                _ if unnamed => "its first line names no column; write x, y and z (in m)".into(),
                 _ => format!(
                     "it has the columns {}, and needs x, y and z (in m)",
                     names.join(", ")
