@@ -165,6 +165,8 @@ pub struct FreeMotion {
     pub kind: MotionKind,
     /// Time step in s of motion time; `None`: chosen from the contacts.
     pub step: Option<f64>,
+    /// True where a step that is too long for the contacts is warned of, not refused.
+    pub long_step: bool,
     /// Law of contacts.
     pub law: ContactLaw,
     /// When the bed is held.

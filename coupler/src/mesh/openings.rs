@@ -156,9 +156,14 @@ mod tests {
 
     #[test]
     fn an_opening_that_others_cover_is_refused() {
-        let mut covered = burner([-0.001, 0.001]);
-        covered.name = "lance".into();
-        let wide = burner([-0.001, 0.06]);
+        let lying = |name: &str, high: f64| Opening {
+            name: name.into(),
+            zone: Zone::Box {
+                low: Vec3::new(-0.001, 0.04, 0.18),
+                high: Vec3::new(0.001, 0.06, high),
+            },
+        };
+        let (wide, covered) = (lying("slot", 0.26), lying("lance", 0.22));
         let error = open(&duct(), &[wide, covered]).unwrap_err();
         assert!(
             error
