@@ -137,6 +137,9 @@ pub fn heat(case: &Case) -> Option<HeatLaws> {
                 Some(ContactForce::Linear {
                     characteristic_speed: speed,
                 }) => ElasticLaw::Linear { speed },
+                Some(ContactForce::LinearSprings { stiffness, .. }) => {
+                    ElasticLaw::Springs { stiffness }
+                }
                 _ => ElasticLaw::Hertz,
             })
         }

@@ -8,6 +8,7 @@ use crate::assembly::{
     AssemblyError, GasBackend, Pairing, PreparedCase, native_parts, write_inputs,
 };
 use crate::case::model::Case;
+use crate::case::packed::BedPacking;
 use crate::case::warnings::warnings;
 use crate::case::{CaseErrors, located, read_with, settle};
 use crate::laws::LawCatalogue;
@@ -20,8 +21,8 @@ pub struct ValidCase {
     pub case: Case,
     /// Its mesh and particles at the start.
     pub prepared: PreparedCase,
-    /// Mean void fraction that the particles see at the start.
-    pub void_fraction: f64,
+    /// How the bed is packed at the start.
+    pub packing: BedPacking,
 }
 
 /// Why a case cannot be run.
@@ -61,14 +62,14 @@ impl ValidCase {
         let mut case = read_with(path, set, laws)?;
         let prepared = PreparedCase::new(&case).map_err(|error| placed(&case, error))?;
         settle(&mut case, &prepared.mesh);
-        let void_fraction = prepared.void_fraction(&case);
-        let void_fraction = void_fraction.map_err(|error| placed(&case, error))?;
+        let packing = prepared.packing(&case);
+        let packing = packing.map_err(|error| placed(&case, error))?;
         results::fits(&case, &prepared.mesh)?;
-        case.warnings = warnings(&case, &prepared.mesh, &prepared.particles, void_fraction);
+        case.warnings = warnings(&case, &prepared.mesh, &prepared.particles, &packing);
         Ok(Self {
             case,
             prepared,
-            void_fraction,
+            packing,
         })
     }
 

@@ -295,7 +295,7 @@ fn an_excluded_zone_beside_the_mesh_is_refused() {
     let zone = "coupling.smoother.excluded[0].box={ from = \"0 0 200 mm\", to = \"10 10 210 mm\" }";
     let case = case("refined-box.toml", &[zone]);
     let prepared = PreparedCase::new(&case).unwrap();
-    let error = prepared.void_fraction(&case).unwrap_err();
+    let error = prepared.packing(&case).unwrap_err();
     assert_eq!(
         error.to_string(),
         "`coupling.smoother.excluded[0]` holds no centre of a cell; enlarge it, or move it into the mesh"

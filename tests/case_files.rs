@@ -255,6 +255,21 @@ fn particles_of_a_file_stay_in_the_box_and_apart_from_other_populations() {
     );
 }
 
+#[test]
+fn free_particles_start_with_the_velocities_and_spins_of_their_file_and_frozen_ones_at_rest() {
+    use calcine::case::particles;
+    let good =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/springs-and-gates.toml");
+    let placed = |set: &[String]| particles(&read(&good, set).unwrap()).unwrap().setup;
+    let free = placed(&[]);
+    let first = (free.velocity[0], free.angular_velocity[0]);
+    assert_eq!(first.0.as_slice(), [0.1, 0.0, -0.2]);
+    assert_eq!(first.1.as_slice(), [0.0, 30.0, 0.0]);
+    assert_eq!(free.velocity[1].norm(), 0.0);
+    let frozen = placed(&["particles[0].motion=frozen".into()]);
+    assert!(frozen.velocity.is_empty() && frozen.angular_velocity.is_empty());
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
 

@@ -362,6 +362,94 @@ fn the_line_that_a_stopped_run_prints_continues_it() {
 }
 
 #[test]
+fn the_results_folder_alone_suffices_to_resume() {
+    let folder = tempfile::tempdir().unwrap();
+    let told = stopped(folder.path());
+    assert!(
+        told.contains("`calcine run --resume out` goes on"),
+        "{told}"
+    );
+    // From elsewhere, after the folder has moved, and again from what that run keeps.
+    let elsewhere = folder.path().join("elsewhere");
+    fs::create_dir(&elsewhere).unwrap();
+    fs::rename(folder.path().join("out"), elsewhere.join("moved")).unwrap();
+    for _ in 0..2 {
+        let words = ["run", "--resume", "moved", "--stop-after", "0.2s"];
+        let output = calcine(&elsewhere, &words);
+        assert_eq!(output.status.code(), Some(75), "{output:?}");
+        let told = String::from_utf8(output.stdout).unwrap();
+        let kept = "--out moved --resume --set 'time.end=1000000 s' --threads 1 --strict --quiet";
+        assert!(told.contains(kept), "{told}");
+    }
+    let set = ["run", "--resume", "moved", "--set", "time.end=2 s"];
+    let text = refused(&elsewhere, 2, &set);
+    assert!(
+        text.contains(
+            "`--set` beside `--resume moved`, which takes it from the run in moved: leave it out"
+        ),
+        "{text}"
+    );
+    let text = refused(&elsewhere, 2, &["run", "--resume", "nosuch"]);
+    assert!(
+        text.contains("nosuch/command.json cannot be read") && text.contains("or the case as well"),
+        "{text}"
+    );
+}
+
+#[test]
+fn of_a_key_that_is_set_twice_the_line_repeats_the_value_that_holds() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::copy(column(), folder.path().join("a.toml")).unwrap();
+    let set = ["--set", "time.end=3 s", "--set", "time.end=1000000 s"];
+    let words = [
+        "run",
+        "a.toml",
+        "--out",
+        "out",
+        "--quiet",
+        "--stop-after",
+        "0.2s",
+    ];
+    let output = calcine(folder.path(), &[&words[..], &set].concat());
+    assert_eq!(output.status.code(), Some(75), "{output:?}");
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        told.ends_with("--resume --set 'time.end=1000000 s' --quiet\n"),
+        "{told}"
+    );
+}
+
+#[test]
+fn swept_quantities_have_a_column_each() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |name: &str, number: u32| {
+        format!("{{name=\"{name}\", measure={{ particle = \"temperature\", number = {number} }}}}")
+    };
+    let set = format!("quantities[0]={},{}", of("first", 1), of("last", 10));
+    let case = column();
+    let words = ["sweep", case.to_str().unwrap(), "--quiet", "--out", "out"];
+    let more = ["--set", "time.end=1 s", "--set", &set];
+    let output = calcine(folder.path(), &[&words[..], &more].concat());
+    let told = String::from_utf8(output.stdout).unwrap();
+    let cells = |line: &str| -> Vec<String> {
+        line.split('|').map(|cell| cell.trim().to_owned()).collect()
+    };
+    let table: Vec<Vec<String>> = told
+        .lines()
+        .filter(|line| line.starts_with('|'))
+        .map(cells)
+        .collect();
+    let column = |name: &str| table[0].iter().position(|cell| cell == name).unwrap();
+    let (first, last) = (column("first K"), column("last K"));
+    let filled = |row: &[String]| (!row[first].is_empty(), !row[last].is_empty());
+    assert_eq!(
+        (filled(&table[2]), filled(&table[3])),
+        ((true, false), (false, true)),
+        "{told}"
+    );
+}
+
+#[test]
 fn a_sweep_that_is_stopped_does_not_print_a_line_that_resumes_one_run() {
     let folder = tempfile::tempdir().unwrap();
     let case = column();

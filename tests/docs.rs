@@ -321,6 +321,11 @@ fn shortened(words: &[String]) -> Vec<String> {
     } else {
         &SHORT[..1]
     };
+    // `--resume DIR` alone takes the values that the run was begun with.
+    let alone = words
+        .windows(2)
+        .any(|pair| pair[0] == "--resume" && !pair[1].starts_with('-'));
+    let set = if alone { &[] } else { set };
     words.extend(
         set.iter()
             .flat_map(|set| ["--set".into(), (*set).to_owned()]),

@@ -3,6 +3,9 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+use std::path::Path;
+
+use calcine::results::Summary;
 use calcine::results::read::Series;
 
 use crate::support::hopper;
@@ -42,6 +45,41 @@ fn projectile(mut velocity: [f64; 2], mut height: f64, time: f64) -> ([f64; 2], 
         velocity = next;
     }
     (velocity, height)
+}
+
+/// A bead of a file that falls without touching: its velocity at the start is that of the file. The step is longer than the
+/// contacts allow, which `long_step` turns into a warning.
+#[test]
+fn a_bead_of_a_file_starts_with_its_velocity_and_a_long_step_is_warned_of() {
+    let case =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/springs-and-gates.toml");
+    let out = tempfile::tempdir().unwrap();
+    let set = ["time.end=0.02 s", "motion.motion_step=500 us"];
+    program::run(&case, out.path(), &[], &set);
+    let series = Series::read(out.path()).unwrap();
+    let height = series.column("quantities.height");
+    let time = 0.02;
+    let fallen = 0.29 - 0.2 * time - 0.5 * 9.81 * time * time;
+    let last = height.last().unwrap();
+    // The drag of air on 2 mm of glass is a thousandth of its weight.
+    assert!((last - fallen).abs() < 2e-5, "{last} {fallen}");
+    let summary = Summary::read(out.path()).unwrap();
+    let told = |words: &str| summary.case_warnings.iter().any(|one| one.contains(words));
+    assert!(
+        told("% of the shortest impact"),
+        "{:?}",
+        summary.case_warnings
+    );
+    let short = program::command(
+        &case,
+        &out.path().join("refused"),
+        &[],
+        &["motion.motion_step=500 us", "motion.long_step=false"],
+    )
+    .output()
+    .unwrap();
+    let text = String::from_utf8_lossy(&short.stderr);
+    assert!(text.contains("motion.long_step = true"), "{text}");
 }
 
 #[test]

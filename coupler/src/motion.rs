@@ -1,9 +1,12 @@
 //! What a discrete element solver is told beside the particles: materials, contacts, walls. All
 //! values are of the motion clock.
 
+use std::f64::consts::TAU;
+
 use calcine_physics::Vec3;
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
+use calcine_physics::points::linear;
 
 /// How the particles of a run move.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -105,6 +108,13 @@ pub enum ContactForce {
         /// Characteristic speed of impact in m/s.
         characteristic_speed: f64,
     },
+    /// Linear springs and dashpots with tangential history, of one stated stiffness for all pairs.
+    LinearSprings {
+        /// Normal stiffness in N/m.
+        stiffness: f64,
+        /// Tangential over normal stiffness.
+        tangential_ratio: f64,
+    },
 }
 
 /// Resistance to rolling.
@@ -156,6 +166,38 @@ pub static CONTACT_LAWS: &[&LawEntry<ContactForce>] = &[
         make: |values| {
             Box::new(ContactForce::Linear {
                 characteristic_speed: values[0],
+            })
+        },
+    },
+    &LawEntry {
+        name: "linear-springs",
+        summary: "Linear springs and dashpots of a stated stiffness with tangential history.",
+        source: "Cundall and Strack, Geotechnique 29 (1979) 47, doi 10.1680/geot.1979.29.1.47",
+        parameters: &[
+            LawParameter {
+                name: "stiffness",
+                dimension: Dimension::STIFFNESS,
+                bound: Bound::Positive,
+                default: None,
+                needed_with: None,
+                meaning: "Normal stiffness of all pairs; Young's moduli then do not act on contacts.",
+                example: "\"1 kN/m\"",
+            },
+            LawParameter {
+                name: "tangential_ratio",
+                dimension: Dimension::NONE,
+                bound: Bound::UpTo(0.0, 1.0),
+                default: Some(2.0 / 7.0),
+                needed_with: None,
+                meaning: "Tangential over normal stiffness, k_t/k_n.",
+                example: "0.2857",
+            },
+        ],
+        tables: &[],
+        make: |values| {
+            Box::new(ContactForce::LinearSprings {
+                stiffness: values[0],
+                tangential_ratio: values[1],
             })
         },
     },
@@ -264,7 +306,7 @@ pub enum WallShape {
 }
 
 /// How a wall moves, on the motion clock.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum WallMotion {
     /// It stays.
     #[default]
@@ -278,6 +320,58 @@ pub enum WallMotion {
         /// Angular velocity in rad/s.
         angular_velocity: Vec3,
     },
+    /// It is moved along a line by a schedule, as gates are.
+    Scheduled {
+        /// Unit vector along the line.
+        direction: Vec3,
+        /// Distance in m from where it starts over motion time in s: linear between entries, constant outside them.
+        distance: Vec<(f64, f64)>,
+    },
+    /// It oscillates about where it starts, by A sin(2 π t/T).
+    Oscillating {
+        /// Amplitude A in m.
+        amplitude: Vec3,
+        /// Period T in s.
+        period: f64,
+    },
+}
+
+impl WallMotion {
+    /// Displacement in m at a motion time in s of a wall that does not turn, and its velocity in m/s; at a kink that of what follows.
+    pub fn displacement(&self, time: f64) -> (Vec3, Vec3) {
+        match self {
+            Self::Still | Self::Rotating { .. } => (Vec3::zeros(), Vec3::zeros()),
+            Self::Translating(velocity) => (velocity * time, *velocity),
+            Self::Scheduled {
+                direction,
+                distance,
+            } => {
+                let mut legs = distance.windows(2);
+                let leg = legs.find(|leg| leg[0].0 <= time && time < leg[1].0);
+                let rate = leg.map_or(0.0, |leg| (leg[1].1 - leg[0].1) / (leg[1].0 - leg[0].0));
+                (direction * linear(distance, time), direction * rate)
+            }
+            Self::Oscillating { amplitude, period } => {
+                let rate = TAU / period;
+                let (sine, cosine) = (rate * time).sin_cos();
+                (amplitude * sine, amplitude * (rate * cosine))
+            }
+        }
+    }
+
+    /// Largest speed in m/s of a wall that does not turn.
+    pub fn largest_speed(&self) -> f64 {
+        match self {
+            Self::Still | Self::Rotating { .. } => 0.0,
+            Self::Translating(velocity) => velocity.norm(),
+            Self::Scheduled { distance, .. } => {
+                let legs = distance.windows(2);
+                let rates = legs.map(|leg| ((leg[1].1 - leg[0].1) / (leg[1].0 - leg[0].0)).abs());
+                rates.fold(0.0, f64::max)
+            }
+            Self::Oscillating { amplitude, period } => TAU / period * amplitude.norm(),
+        }
+    }
 }
 
 /// Particles that come and go between two windows, become others by what reacts in them, or are held. The
@@ -336,4 +430,43 @@ pub struct NewParticle {
     pub density: f64,
     /// Number of real particles that it stands for.
     pub weight: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gate_is_where_its_schedule_says_and_moves_only_on_the_way() {
+        let gate = WallMotion::Scheduled {
+            direction: Vec3::x(),
+            distance: vec![(1.0, 0.0), (1.5, 0.04), (3.0, 0.04), (5.0, 0.0)],
+        };
+        let at = |time: f64| gate.displacement(time).0.x;
+        let speed = |time: f64| gate.displacement(time).1.x;
+        assert_eq!(
+            [at(0.0), at(1.25), at(2.0), at(9.0)],
+            [0.0, 0.02, 0.04, 0.0]
+        );
+        assert_eq!(
+            [speed(0.0), speed(1.0), speed(2.0), speed(4.0), speed(5.0)],
+            [0.0, 0.08, 0.0, -0.02, 0.0]
+        );
+        assert_eq!(gate.largest_speed(), 0.08);
+    }
+
+    #[test]
+    fn an_oscillation_has_its_velocity_and_closes_after_a_period() {
+        let shaker = WallMotion::Oscillating {
+            amplitude: Vec3::z() * 2e-3,
+            period: 0.05,
+        };
+        let (start, fast) = shaker.displacement(0.0);
+        assert_eq!(start, Vec3::zeros());
+        assert!((fast.z / shaker.largest_speed() - 1.0).abs() < 1e-15);
+        assert!((shaker.displacement(0.0125).0.z / 2e-3 - 1.0).abs() < 1e-12);
+        assert!(shaker.displacement(0.05).0.norm() < 1e-17);
+        let (a, b) = (shaker.displacement(0.01), shaker.displacement(0.01 + 1e-7));
+        assert!(((b.0 - a.0).z / 1e-7 / a.1.z - 1.0).abs() < 1e-4);
+    }
 }

@@ -67,6 +67,8 @@ pub struct CommittedState<'a> {
     pub gas: GasFields<'a>,
     /// The bed that the gas saw.
     pub bed: &'a Bed,
+    /// Share of the solid volume that the smoother moved out of cells above its threshold.
+    pub smoothed_share: f64,
     /// The particles.
     pub particles: ParticleFields<'a>,
     /// Particle temperatures in K, in the order of `particles`.

@@ -304,6 +304,8 @@ pub struct ParticleSetup {
     pub density: Vec<f64>,
     /// Velocities in m/s of motion time; empty where all are at rest.
     pub velocity: Vec<Vec3>,
+    /// Angular velocities in rad/s of motion time; empty where none spins.
+    pub angular_velocity: Vec<Vec3>,
     /// Statistical weights: how many real particles each stands for; empty where each stands for itself alone.
     pub weight: Vec<f64>,
     /// How they move.
@@ -324,6 +326,8 @@ impl ParticleSetup {
         self.radius.push(others.radius[row]);
         self.density.push(others.density[row]);
         self.velocity.extend(others.velocity.get(row));
+        self.angular_velocity
+            .extend(others.angular_velocity.get(row));
         self.weight.extend(others.weight.get(row));
     }
 }

@@ -164,6 +164,26 @@ fn a_turning_cylinder_drags_a_sphere_along_until_it_slides_no_more() {
 }
 
 #[test]
+fn a_floor_that_rises_by_a_schedule_lifts_a_sphere_and_then_holds_it() {
+    let mut contacts = heavy(1e-5);
+    contacts.walls = vec![plane(Vec3::zeros(), Vec3::z())];
+    contacts.walls[0].motion = WallMotion::Scheduled {
+        direction: Vec3::z(),
+        distance: vec![(0.0, 0.0), (0.1, 0.01), (1.0, 0.01)],
+    };
+    let mut bed = Bed::new(
+        contacts,
+        &[sphere(1, Vec3::z() * RADIUS, Vec3::zeros(), RADIUS)],
+    );
+    bed.run(9_000);
+    assert!((bed.velocity(0).z - 0.1).abs() < 1e-4);
+    bed.run(41_000);
+    let height = bed.place(0).z - (0.01 + RADIUS);
+    assert!(height.abs() < 1e-5, "{height}");
+    assert!(bed.velocity(0).norm() < 1e-4, "{}", bed.velocity(0));
+}
+
+#[test]
 fn a_rising_floor_lifts_and_a_turning_mesh_drags_as_its_cylinder_does() {
     let mut contacts = heavy(1e-5);
     contacts.walls = vec![plane(Vec3::zeros(), Vec3::z())];

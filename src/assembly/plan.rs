@@ -44,7 +44,10 @@ pub(super) fn plan(case: &Case, prepared: &PreparedCase, checkpoint: CheckpointP
         paths: paths(case, prepared),
         step_limit: match &prepared.particles.motion {
             Motion::Frozen => None,
-            Motion::Free(contacts) => Some(ContactStepLimit::of(contacts)),
+            Motion::Free(contacts) => {
+                let waived = case.motion.as_ref().is_some_and(|motion| motion.long_step);
+                (!waived).then(|| ContactStepLimit::of(contacts))
+            }
         },
     }
 }

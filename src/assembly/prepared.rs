@@ -8,16 +8,21 @@ use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::physics::{Vec3, sphere};
 use calcine_coupler::setup::ParticleSetup;
+use calcine_coupler::smoother::packing_density::median_solid_fraction;
 use calcine_coupler::smoother::{Smoother, SmootherSettings as Smoothing};
 
 use super::error::AssemblyError;
 use crate::case::model::{Case, MappingSpec, Population};
+use crate::case::packed::BedPacking;
 use crate::case::sizes;
 use crate::case::{InitialParticles, PlaceError, contacts, in_wall, mesh, particles};
 
 /// Diameter over the narrowest width of a mesh that only a slip of units gives: slices of a bed may be thinner than its
 /// particles, which are pressed together.
 const FAR: f64 = 2.0;
+
+/// Mean diameters about a cell over which the density of the packing is looked at.
+const REACH: f64 = 2.0;
 
 /// What does not change during a run, made from a case: mesh and particles at the start.
 #[derive(Clone, Debug)]
@@ -72,8 +77,8 @@ impl PreparedCase {
         })
     }
 
-    /// Mean void fraction that the particles see, mapped and smoothed as in a run.
-    pub fn void_fraction(&self, case: &Case) -> Result<f64, AssemblyError> {
+    /// The bed at the start, mapped and smoothed as in a run.
+    pub fn packing(&self, case: &Case) -> Result<BedPacking, AssemblyError> {
         let particles = &self.particles;
         let radii = particles.radius.iter().enumerate();
         let volumes: Vec<f64> = radii
@@ -83,13 +88,19 @@ impl PreparedCase {
         let weights = mapper
             .fill(method(case), &particles.position, &particles.radius)
             .map_err(RunError::from)?;
+        let solid_fraction =
+            median_solid_fraction(&self.mesh, &weights, &volumes, REACH * self.mean_diameter);
         let smoother = smoother(case, self)?;
         let operator = smoother
             .operator(weights, &volumes)
             .map_err(RunError::from)?;
         let mut seen = vec![0.0; volumes.len()];
         operator.sample(operator.solid_fraction(), &mut seen);
-        Ok(1.0 - seen.iter().sum::<f64>() / seen.len() as f64)
+        Ok(BedPacking {
+            void_fraction: 1.0 - seen.iter().sum::<f64>() / seen.len() as f64,
+            solid_fraction,
+            moved_share: operator.moved_share(),
+        })
     }
 }
 

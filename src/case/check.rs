@@ -9,15 +9,23 @@ use calcine_coupler::mesh::cylinder::outline;
 use calcine_coupler::physics::film::{FilmDiffusivity, ReferenceDiffusivity};
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::physics::law::NONE;
+use calcine_coupler::setup::ParticleSetup;
 
+use super::flow_numbers::FlowNumbers;
 use super::model::{Case, MeshSpec, Population};
+use super::packed::BedPacking;
 use super::splitting::Splitting;
-use super::units::short;
-use super::{buoyancy, mesh_shape, sizes, span};
+use super::units::{short, short3};
+use super::{buoyancy, mesh_shape, sizes, span, work};
 
-/// Clocks, sizes, and how far the time splitting may be from the unsplit run.
-/// `void_fraction`: mean over the cells that hold particles.
-pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f64) -> String {
+/// Clocks, sizes, the flow, and how far the time splitting may be from the unsplit run.
+pub fn check_report(
+    case: &Case,
+    mesh: &Mesh,
+    setup: &ParticleSetup,
+    packing: &BedPacking,
+) -> String {
+    let (particles, void_fraction) = (setup.id.len(), packing.void_fraction);
     let cells = mesh.cells();
     let mut text = format!("{} ({})\n", case.title, case.path.display());
     for change in &case.changes {
@@ -68,6 +76,15 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
         text,
         "  bed            {particles} particles, void fraction {void_fraction:.3}"
     );
+    if packing.moved_share > 0.0 {
+        let _ = writeln!(
+            text,
+            "  smoother       moves {} % of the solid volume out of cells above {}; packing {:.3}",
+            short3(100.0 * packing.moved_share),
+            case.coupling.max_solid_fraction,
+            packing.solid_fraction
+        );
+    }
     if !case.gas.turbulence.is_laminar() {
         let bed = match case.gas.turbulence.is_in_bed() {
             true => "and in the bed",
@@ -99,6 +116,15 @@ pub fn check_report(case: &Case, mesh: &Mesh, particles: usize, void_fraction: f
         "  memory         about {} (native)",
         sizes::shown(memory)
     );
+    let _ = writeln!(
+        text,
+        "  wall time      {} (native, two cores; without what feeds bring)",
+        work::shown(work::seconds(case, cells, setup))
+    );
+    let flow = FlowNumbers::of(case, mesh, setup, packing);
+    for line in flow.iter().flat_map(FlowNumbers::lines) {
+        let _ = writeln!(text, "  {line}");
+    }
     let number = buoyancy::number(case, mesh);
     let _ = match number > 0.0 {
         true => writeln!(
@@ -242,24 +268,33 @@ fn openfoam(case: &Case) -> String {
                  see docs/how-to/stock-solvers.md";
     }
     if let Some(template) = &case.openfoam.template {
-        let mut names = Vec::new();
+        let (mut names, mut ignored) = (Vec::new(), Vec::new());
         for folder in ["0", "constant", "system"] {
             let Ok(entries) = std::fs::read_dir(template.join(folder)) else {
                 continue;
             };
             for entry in entries.filter_map(Result::ok) {
                 let name = format!("{folder}/{}", entry.file_name().to_string_lossy());
-                if entry.path().is_file() && !stated.contains(&name) {
-                    names.push(name);
+                match entry.path().is_file() {
+                    true if stated.contains(&name) => ignored.push(name),
+                    true => names.push(name),
+                    false => {}
                 }
             }
         }
         names.sort();
-        let _ = write!(
-            text,
-            "; `openfoam.template`, which restricts the case to this gas, adds {}",
-            names.join(", ")
-        );
+        ignored.sort();
+        let _ = write!(text, "; `openfoam.template` restricts the case to this gas");
+        if !ignored.is_empty() {
+            let list = ignored.join(", ");
+            let _ = write!(
+                text,
+                "; its {list} are ignored, as the case states what is in them"
+            );
+        }
+        if !names.is_empty() {
+            let _ = write!(text, "; it adds {}", names.join(", "));
+        }
     }
     text
 }
@@ -332,6 +367,10 @@ mod tests {
             let text = openfoam(&good(name, template.path()));
             text.split_once(" adds ").unwrap().1.to_owned()
         };
+        let said = openfoam(&good("turbulent-duct", template.path()));
+        let ignored =
+            "its 0/U, 0/alphat, 0/k, constant/turbulenceProperties are ignored, as the case states";
+        assert!(said.contains(ignored), "{said}");
         let turbulent = "0/G, constant/fvOptions, system/fvSchemes";
         assert_eq!(added("turbulent-duct"), turbulent);
         assert_eq!(

@@ -29,10 +29,9 @@ const CHOSEN: [f64; 2] = [0.15, 0.05];
 pub enum ContactsError {
     /// The step is too long for the contacts.
     #[error(
-        "`motion.motion_step` is {} s, but a surface wave crosses the smallest particle in {} s \
-         (Rayleigh) and the fastest impact lasts {} s (Hertz, at {} m/s); write {} s or less, or a \
-         softer material", shown(*.step), shown(*.rayleigh), shown(*.hertz), shown(*.speed),
-        shown(*.fit)
+        "`motion.motion_step` is {} s, but {}the fastest impact lasts {} s (at {} m/s); write {} s or less, a \
+         softer material, or motion.long_step = true, which warns in place of this error", shown(*.step), wave(*.rayleigh),
+        shown(*.hertz), shown(*.speed), shown(*.fit)
     )]
     Step {
         /// The step in s.
@@ -55,6 +54,14 @@ pub enum ContactsError {
         /// Its name.
         wall: String,
     },
+    /// Walls that move by a schedule of process time in a bed that is held.
+    #[error(
+        "wall \"{wall}\" is `moved` or `oscillating`, but `motion.held` stops it while its schedule goes on; leave out one of the two"
+    )]
+    Held {
+        /// Its name.
+        wall: String,
+    },
     /// A time between two in which the bed is held that is shorter than a step.
     #[error(
         "between two times of `motion.held` the bed moves from {from} to {to}, which is {} s of motion time, less \
@@ -72,10 +79,21 @@ pub enum ContactsError {
     },
 }
 
+/// Rayleigh's time in s in words; nothing where waves do not limit.
+fn wave(rayleigh: f64) -> String {
+    match rayleigh.is_finite() {
+        true => format!(
+            "a surface wave crosses the smallest particle in {} s (Rayleigh) and ",
+            shown(rayleigh)
+        ),
+        false => String::new(),
+    }
+}
+
 /// Times that limit the step of a contact solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Shortest [Rayleigh time](time_step::rayleigh) in s of a particle.
+    /// Shortest [Rayleigh time](time_step::rayleigh) in s of a particle; infinite where springs are stated, in which no wave runs.
     pub rayleigh: f64,
     /// Shortest [duration of an impact](time_step::hertz_collision) in s at `speed`.
     pub hertz: f64,
@@ -93,6 +111,13 @@ impl Limits {
     pub fn warning(&self, step: f64) -> Option<String> {
         let shares = [step / self.rayleigh, step / self.hertz];
         (shares[0] > RAYLEIGH[0] || shares[1] > HERTZ[0]).then(|| {
+            if self.rayleigh.is_infinite() {
+                return format!(
+                    "`motion.motion_step` is {:.0} % of the shortest impact; contacts lose accuracy above {:.0} %",
+                    100.0 * shares[1],
+                    100.0 * HERTZ[0]
+                );
+            }
             format!(
                 "`motion.motion_step` is {:.0} % of Rayleigh's time and {:.0} % of the shortest impact; \
                  contacts lose accuracy above {:.0} % and {:.0} %",
@@ -132,7 +157,7 @@ pub fn motion(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Result<Told, C
         // A whole number of steps fills a window.
         None => window / (window / limits.fit()).ceil(),
     };
-    if let Some(error) = limits.refuse(step) {
+    if let Some(error) = limits.refuse(step).filter(|_| !motion.long_step) {
         return Err(error);
     }
     let moving = motion.held.moving(&case.time.acceleration, case.time.end);
@@ -195,11 +220,19 @@ fn pairs(case: &Case) -> Vec<Pair> {
 /// The walls; what users write of their speed is process time, of which so many pass in one of motion time while
 /// the bed moves.
 fn walls(case: &Case, mut factors: impl Iterator<Item = f64>) -> Result<Vec<Wall>, ContactsError> {
+    let held = case
+        .motion
+        .as_ref()
+        .is_some_and(|motion| !motion.held.is_none());
     let factor = factors.next().unwrap_or(1.0);
     let changes = factors.any(|one| one != factor);
     let quicker = |wall: &Wall| {
-        let motion = match wall.motion {
+        let motion = match &wall.motion {
             WallMotion::Still => WallMotion::Still,
+            WallMotion::Scheduled { .. } | WallMotion::Oscillating { .. } if held => {
+                let wall = wall.name.clone();
+                return Err(ContactsError::Held { wall });
+            }
             _ if changes => {
                 let wall = wall.name.clone();
                 return Err(ContactsError::Schedule { wall });
@@ -209,8 +242,22 @@ fn walls(case: &Case, mut factors: impl Iterator<Item = f64>) -> Result<Vec<Wall
                 point,
                 angular_velocity,
             } => WallMotion::Rotating {
-                point,
+                point: *point,
                 angular_velocity: factor * angular_velocity,
+            },
+            WallMotion::Scheduled {
+                direction,
+                distance,
+            } => WallMotion::Scheduled {
+                direction: *direction,
+                distance: distance
+                    .iter()
+                    .map(|(time, one)| (time / factor, *one))
+                    .collect(),
+            },
+            WallMotion::Oscillating { amplitude, period } => WallMotion::Oscillating {
+                amplitude: *amplitude,
+                period: period / factor,
             },
         };
         Ok(Wall {
@@ -230,10 +277,7 @@ fn fastest(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> f64 {
         false => 0.0,
     };
     let start = setup.velocity.iter().map(|velocity| velocity.norm());
-    let moving = case.walls.iter().filter_map(|wall| match wall.motion {
-        WallMotion::Translating(velocity) => Some(velocity.norm()),
-        _ => None,
-    });
+    let moving = case.walls.iter().map(|wall| wall.motion.largest_speed());
     start.chain(moving).fold(fall, f64::max)
 }
 
@@ -251,6 +295,13 @@ pub fn limits(case: &Case, motion: &FreeMotion, mesh: &Mesh, setup: &ParticleSet
     };
     for one in moving_spheres(case, setup) {
         let (radius, density) = (one.radius[0], one.density);
+        if let ContactForce::LinearSprings { stiffness, .. } = motion.law.force {
+            // Two equal spheres: m* = m/2; a wall is heavier.
+            let mass = 0.5 * sphere::mass(radius, density);
+            let time = time_step::linear_collision(mass, stiffness);
+            limits.hertz = limits.hertz.min(time);
+            continue;
+        }
         let Elastic { young, poisson } = one.elastic;
         let rayleigh = time_step::rayleigh(radius, density, young, poisson);
         // Two equal spheres: m* = m/2, R* = R/2, E* = E/(2(1 − ν²)).
@@ -276,10 +327,13 @@ pub fn report(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Option<String>
         MotionKind::Accelerated => "accelerated",
     };
     let mut text = format!(
-        "  moving particles ({kind}):\n    step {step:.3e} s of motion time, {:.0} in a window; Rayleigh's time \
-         {:.3e} s, shortest impact {:.3e} s (at {:.3} m/s)\n",
+        "  moving particles ({kind}):\n    step {step:.3e} s of motion time, {:.0} in a window; {}shortest impact {:.3e} s \
+         (at {:.3} m/s)\n",
         window / step,
-        limits.rayleigh,
+        match limits.rayleigh.is_finite() {
+            true => format!("Rayleigh's time {:.3e} s, ", limits.rayleigh),
+            false => String::new(),
+        },
         limits.hertz,
         limits.speed
     );

@@ -66,6 +66,7 @@ impl ImpactPair {
                 let there = hertz(self.mass, characteristic_speed);
                 there * speed / characteristic_speed * (mass / self.mass).sqrt()
             }
+            ContactForce::LinearSprings { stiffness, .. } => speed * (mass / stiffness).sqrt(),
             ContactForce::HertzMindlin | ContactForce::SpringSliderDashpot => hertz(mass, speed),
         }
     }

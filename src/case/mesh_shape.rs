@@ -2,6 +2,9 @@
 
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::mesh::quality::InCell;
+use calcine_coupler::physics::Vec3;
+
+use super::model::{Case, MeshSpec};
 
 /// Largest angle in degrees between a face's normal and the line of centres at which gas was tried (docs/verification.md).
 const MOST_ANGLE: f64 = 70.0;
@@ -9,6 +12,30 @@ const MOST_ANGLE: f64 = 70.0;
 const MOST_SKEWNESS: f64 = 1.0;
 /// Angle in degrees and skewness that nobody needs to be told of.
 const SLIGHT: [f64; 2] = [0.1, 1e-3];
+
+/// Openings of different names that lie in each other's faces.
+pub(super) fn overlaps(case: &Case, mesh: &Mesh) -> Vec<String> {
+    let openings = match &case.mesh {
+        MeshSpec::Box { openings, .. } | MeshSpec::Cylinder { openings, .. } => &openings[..],
+        MeshSpec::PolyMesh(_) => &[],
+    };
+    let centres = &mesh.face_centre()[mesh.internal_faces()..];
+    let pairs = openings.iter().enumerate();
+    let pairs = pairs.flat_map(|(k, first)| openings[..k].iter().map(move |other| (other, first)));
+    let mut told = Vec::new();
+    for (first, second) in pairs.filter(|(first, second)| first.name != second.name) {
+        let both = |at: &&Vec3| first.zone.holds(**at) && second.zone.holds(**at);
+        let shared = centres.iter().filter(both).count();
+        if shared > 0 {
+            told.push(format!(
+                "the openings `{}` and `{}` overlap in {shared} faces, which belong to `{0}`, the first in the file: make one of them \
+                 smaller",
+                first.name, second.name
+            ));
+        }
+    }
+    told
+}
 
 /// The lines that follow the number of cells, and warnings.
 pub(super) fn report(mesh: &Mesh) -> (Vec<String>, Vec<String>) {

@@ -6,6 +6,7 @@ pub mod cautions;
 mod check;
 pub mod contacts;
 pub mod expectations;
+mod flow_numbers;
 mod flow_time;
 mod impact;
 pub mod in_wall;
@@ -16,6 +17,7 @@ mod meshing;
 pub mod model;
 mod moving;
 mod overlap;
+pub mod packed;
 mod patch_cautions;
 mod place;
 mod place_error;
@@ -41,6 +43,7 @@ mod used_up;
 mod wall_cautions;
 pub mod warnings;
 mod words;
+mod work;
 
 use std::path::Path;
 

@@ -1,5 +1,6 @@
 //! A checked case: plain SI values, nothing left to parse.
 
+mod agreement;
 mod laws;
 mod material;
 mod mesh;
@@ -21,6 +22,7 @@ use calcine_coupler::setup::{GasSetup, Schedule};
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
 use calcine_coupler::window_drag::WindowDrag;
 
+pub use agreement::{AgreementSpec, FieldBand};
 pub use laws::{ConductionArea, ConductionSpec, Laws, RadiationSpec};
 pub use material::{MaterialSpec, SizeLaw};
 pub use mesh::MeshSpec;
@@ -97,6 +99,8 @@ pub struct Case {
     pub probes: Vec<Probe>,
     /// Quantities of interest with their bands.
     pub quantities: Vec<Quantity>,
+    /// What `compare` judges beside them.
+    pub agreement: AgreementSpec,
 }
 
 /// Clocks and checkpoints.
@@ -163,6 +167,8 @@ pub struct FreeMotion {
     pub kind: MotionKind,
     /// Time step in s of motion time; `None`: chosen from the contacts.
     pub step: Option<f64>,
+    /// True where a step that is too long for the contacts is warned of, not refused.
+    pub long_step: bool,
     /// Law of contacts.
     pub law: ContactLaw,
     /// When the bed is held.

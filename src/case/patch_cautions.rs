@@ -196,7 +196,7 @@ pub(super) fn columns(case: &Case, mesh: &Mesh) -> Vec<String> {
 }
 
 /// Centre in m of a patch.
-fn centre(mesh: &Mesh, name: &str) -> Option<Vec3> {
+pub(super) fn centre(mesh: &Mesh, name: &str) -> Option<Vec3> {
     let faces = mesh.patch(name)?.faces();
     let parts = faces.map(|face| (mesh.face_centre()[face], mesh.face_area()[face].norm()));
     let (sum, area) = parts.fold((Vec3::zeros(), 0.0), |(sum, area), (at, own)| {

@@ -43,7 +43,9 @@ pub fn particles(case: &Case) -> Result<InitialParticles, PlaceError> {
             setup.position.push(sphere.centre);
             setup.radius.push(0.5 * sphere.diameter);
             setup.density.push(density);
-            setup.velocity.push(velocity);
+            let own = sphere.velocity.map(|own| factor * own);
+            setup.velocity.push(own.unwrap_or(velocity));
+            setup.angular_velocity.push(factor * sphere.spin);
             setup.weight.push(population.weight);
             placed.temperature.push(sphere.temperature);
         }
@@ -64,6 +66,13 @@ pub fn particles(case: &Case) -> Result<InitialParticles, PlaceError> {
         .all(|velocity| *velocity == Vec3::zeros())
     {
         setup.velocity.clear();
+    }
+    if setup
+        .angular_velocity
+        .iter()
+        .all(|spin| *spin == Vec3::zeros())
+    {
+        setup.angular_velocity.clear();
     }
     if setup.weight.iter().all(|weight| *weight == 1.0) {
         setup.weight.clear();
@@ -89,6 +98,10 @@ struct Sphere {
     centre: Vec3,
     diameter: f64,
     temperature: f64,
+    /// Velocity in m/s of process time, where it has one of its own.
+    velocity: Option<Vec3>,
+    /// Angular velocity in rad/s of process time.
+    spin: Vec3,
 }
 
 fn spheres(case: &Case, population: &Population) -> Result<Vec<Sphere>, PlaceError> {
@@ -107,6 +120,8 @@ fn spheres(case: &Case, population: &Population) -> Result<Vec<Sphere>, PlaceErr
                 centre,
                 diameter,
                 temperature: population.temperature,
+                velocity: None,
+                spin: Vec3::zeros(),
             })
             .collect()
     };
@@ -175,6 +190,8 @@ fn spheres(case: &Case, population: &Population) -> Result<Vec<Sphere>, PlaceErr
             };
             let entries = bed::read(path, choice)?;
             let diameters = draw(entries.len())?;
+            // What is held has no velocity, whatever it had where the file was written.
+            let moves = population.motion == MotionSpec::Free;
             let mut made = Vec::with_capacity(entries.len());
             for (entry, drawn) in entries.into_iter().zip(diameters) {
                 if let Some(what) = outside(&case.mesh, &entry.centre) {
@@ -188,6 +205,8 @@ fn spheres(case: &Case, population: &Population) -> Result<Vec<Sphere>, PlaceErr
                         .temperature
                         .filter(|_| population.prescribed_temperature.is_none())
                         .unwrap_or(population.temperature),
+                    velocity: entry.velocity.filter(|_| moves),
+                    spin: entry.spin.filter(|_| moves).unwrap_or_default(),
                 });
             }
             Ok(made)

@@ -24,6 +24,8 @@ pub(super) struct Splitting<'a> {
     error: f64,
     /// Window over the drag's own time, where there is drag.
     drag: Option<f64>,
+    /// Biot number h (d/6)/k of the film against the inside, where the material states its conductivity.
+    biot: Option<f64>,
     local: LocalGas,
     /// Mean diameter in m.
     diameter: f64,
@@ -47,6 +49,11 @@ impl<'a> Splitting<'a> {
         let volume = sphere::volume_of_diameter(d);
         let rate =
             nusselt * local.conductivity * PI * d / (material.density * volume * solid_capacity);
+        let conductivity = material.conductivity.as_ref();
+        let conductivity = conductivity.map(|law| law.at(case.gas.temperature));
+        let prescribed = population.prescribed_temperature.is_some();
+        let biot = conductivity.filter(|_| !prescribed && nusselt > 0.0);
+        let biot = biot.map(|inside| nusselt * local.conductivity / (6.0 * inside));
         let drag = (!case.laws.drag.is_none()).then(|| {
             let coefficient = case.laws.drag.make().coefficient(&local, d);
             window * coefficient / (material.density * volume)
@@ -57,6 +64,7 @@ impl<'a> Splitting<'a> {
             // docs/theory.md, TSM-8.
             error: 0.11 * rate * factor * window,
             drag,
+            biot,
             local,
             diameter: d,
         })
@@ -88,6 +96,12 @@ impl<'a> Splitting<'a> {
                 .iter()
                 .map(|one| one.line()),
         );
+        lines.extend(self.biot.map(|biot| {
+            format!(
+                "Biot number h d/(6 k) of particles without gradients {biot:.2e}{}",
+                above(biot)
+            )
+        }));
         lines.extend(self.drag.map(|share| {
             format!("window over the drag's time m/K                      {share:.2e}")
         }));
@@ -114,6 +128,13 @@ impl<'a> Splitting<'a> {
                 "0.11 hA AF dt/(m c) of `{name}` is {}, above {WARNING}: within a window its temperature comes so far towards that of \
                  the gas that the error is this share of their difference; {step}",
                 short3(self.error)
+            ));
+        }
+        if let Some(biot) = self.biot.filter(|biot| *biot > WARNING) {
+            all.push(format!(
+                "the Biot number h d/(6 k) of `{name}` is {}, above {WARNING}: real particles of this size are colder inside than at their \
+                 surface, while these have one temperature each and take up heat faster",
+                short3(biot)
             ));
         }
         all.extend(
@@ -157,4 +178,20 @@ fn local(case: &Case, eps: f64, density: f64) -> Option<LocalGas> {
         heat_capacity: gas.heat_capacity(case.gas.temperature, &case.gas.composition),
         slip: fastest / eps,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::case::warnings::tests::warned;
+
+    #[test]
+    fn particles_whose_inside_conducts_worse_than_their_film_are_told() {
+        let told = |conductivity: &str| {
+            let set = format!("materials.glass.conductivity={conductivity}");
+            let all = warned("conducting-column", &[&set]);
+            all.into_iter().find(|one| one.contains("Biot number"))
+        };
+        assert_eq!(told("400 W/m/K"), None);
+        assert!(told("0.01 W/m/K").unwrap().contains("above 0.1"));
+    }
 }

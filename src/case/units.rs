@@ -2,6 +2,10 @@
 
 pub use calcine_coupler::physics::dimension::Dimension;
 
+/// Sizes of numbers between which messages show them without an exponent.
+const LEAST_PLAIN: f64 = 1e-12;
+const MOST_PLAIN: f64 = 1e15;
+
 /// A unit: value in SI = factor · value (+ offset for degrees Celsius alone).
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Unit {
@@ -36,6 +40,7 @@ const UNITS: &[(&str, f64, [i8; 5])] = &[
     ("l", 1e-3, [3, 0, 0, 0, 0]),
     ("N", 1.0, [1, 1, -2, 0, 0]),
     ("mN", 1e-3, [1, 1, -2, 0, 0]),
+    ("kN", 1e3, [1, 1, -2, 0, 0]),
     ("Pa", 1.0, [-1, 1, -2, 0, 0]),
     ("hPa", 1e2, [-1, 1, -2, 0, 0]),
     ("kPa", 1e3, [-1, 1, -2, 0, 0]),
@@ -227,26 +232,29 @@ pub fn quantities(text: &str) -> Result<(Vec<f64>, Dimension), UnitError> {
 
 /// A number as messages show it: without the last digits' round-off.
 pub fn shown(number: f64) -> String {
-    format!("{number:.9e}")
-        .parse::<f64>()
-        .unwrap_or(number)
-        .to_string()
+    rounded(number, 9)
 }
 
 /// A computed number as messages show it, to six digits.
 pub fn short(number: f64) -> String {
-    format!("{number:.5e}")
-        .parse::<f64>()
-        .unwrap_or(number)
-        .to_string()
+    rounded(number, 5)
 }
 
 /// A computed number as warnings show it, to three digits.
 pub fn short3(number: f64) -> String {
-    format!("{number:.2e}")
+    rounded(number, 2)
+}
+
+/// A number to so many digits behind the first, with an exponent where it would have many zeros.
+fn rounded(number: f64, digits: usize) -> String {
+    let rounded = format!("{number:.digits$e}")
         .parse::<f64>()
-        .unwrap_or(number)
-        .to_string()
+        .unwrap_or(number);
+    let size = rounded.abs();
+    match size == 0.0 || (LEAST_PLAIN..MOST_PLAIN).contains(&size) {
+        true => rounded.to_string(),
+        false => format!("{rounded:e}"),
+    }
 }
 
 /// A difference, for bands: "0.5 K", "5 %"; degrees Celsius count as kelvins.
@@ -261,6 +269,19 @@ pub fn difference(text: &str) -> Result<(f64, Dimension), UnitError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_are_shown_without_hundreds_of_zeros() {
+        assert_eq!(
+            (shown(1e300), short(1e-300)),
+            ("1e300".into(), "1e-300".into())
+        );
+        assert_eq!(
+            (shown(0.0), short3(-2.5e-3)),
+            ("0".into(), "-0.0025".into())
+        );
+        assert_eq!(shown(9.2e6), "9200000");
+    }
 
     fn one(text: &str) -> (f64, Dimension) {
         let (numbers, dimension) = quantities(text).unwrap();

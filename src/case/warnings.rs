@@ -5,18 +5,20 @@ use calcine_coupler::mesh::Mesh;
 use calcine_coupler::setup::ParticleSetup;
 
 use super::cautions::cautions;
+use super::flow_numbers::FlowNumbers;
 use super::model::Case;
+use super::packed::BedPacking;
 use super::splitting::Splitting;
 use super::{buoyancy, contacts, flow_time, mesh_shape, patch_cautions};
 
-/// Warnings about a case with its mesh and particles, in a fixed order, each once. `void_fraction`: mean over the cells that
-/// hold particles.
+/// Warnings about a case with its mesh and particles, in a fixed order, each once.
 pub fn warnings(
     case: &Case,
     mesh: &Mesh,
     setup: &ParticleSetup,
-    void_fraction: f64,
+    packing: &BedPacking,
 ) -> Vec<String> {
+    let void_fraction = packing.void_fraction;
     let mut all: Vec<String> = buoyancy::warning(buoyancy::number(case, mesh))
         .into_iter()
         .chain(flow_time::warning(case, mesh, setup, void_fraction))
@@ -25,6 +27,10 @@ pub fn warnings(
     all.extend(patch_cautions::columns(case, mesh));
     all.extend(mesh_shape::report(mesh).1);
     all.extend(contacts::warnings(case, mesh, setup));
+    all.extend(packing.warning(case));
+    let flow = FlowNumbers::of(case, mesh, setup, packing);
+    all.extend(flow.iter().flat_map(|flow| flow.warnings(case)));
+    all.extend(mesh_shape::overlaps(case, mesh));
     let populations = case.particles.iter();
     let splittings = populations.filter_map(|one| Splitting::of(case, one, void_fraction));
     for warning in splittings.flat_map(|one| one.warnings(case)) {

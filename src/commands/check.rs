@@ -6,7 +6,8 @@ use clap::Args;
 
 use super::console::say;
 use super::failure::{Failure, chain};
-use crate::assembly::{GasBackend, Pairing, ParticleBackend, check_own_script};
+use super::parallel::crowded;
+use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStarts, check_own_script};
 use crate::case::{check_report, contacts};
 use crate::exit;
 use crate::valid::ValidCase;
@@ -28,22 +29,24 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
-    let valid = ValidCase::open(&arguments.case, &arguments.set)?;
-    valid.honoured_by(Pairing {
+    let mut valid = ValidCase::open(&arguments.case, &arguments.set)?;
+    let pairing = Pairing {
         gas: arguments.gas,
         particles: arguments.particles,
-    })?;
+    };
+    valid.honoured_by(pairing)?;
+    let starts = SolverStarts::of(&valid.case, pairing);
+    valid.case.warnings.extend(crowded(&starts, pairing));
     let ValidCase {
         case,
         prepared,
-        void_fraction,
+        packing,
     } = &valid;
-    let particles = prepared.particles.id.len();
     say(check_report(
         case,
         &prepared.mesh,
-        particles,
-        *void_fraction,
+        &prepared.particles,
+        packing,
     ))?;
     if let Some(text) = contacts::report(case, &prepared.mesh, &prepared.particles) {
         say(text)?;

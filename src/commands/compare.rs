@@ -134,6 +134,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
             progress: !arguments.quiet,
             stop_after: None,
             strict: false,
+            recorded: None,
             go_on: &go_on,
         };
         let done = execute::execute(&case, &prepared, &settings)?;

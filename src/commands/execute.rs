@@ -10,6 +10,7 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
 use super::console::printed;
+use super::continuation::Recorded;
 use super::failure::{Failure, chain};
 use super::parallel::Transport;
 use crate::assembly::{Pairing, PreparedCase, SolverStarts};
@@ -41,6 +42,8 @@ pub(super) struct Settings<'a> {
     pub(super) stop_after: Option<Duration>,
     /// Ends with an exit code of its own where a complete run has warnings.
     pub(super) strict: bool,
+    /// The command that `--resume DIR` goes on with, where it can.
+    pub(super) recorded: Option<Recorded>,
     /// How to go on after an interrupt, in words.
     pub(super) go_on: &'a str,
 }
@@ -83,6 +86,9 @@ pub(super) fn execute(
     }
     let progress = Box::new(Progress::new(case, settings.progress));
     let mut simulation = builder.start_prepared(case, prepared, vec![progress])?;
+    if let Some(recorded) = &settings.recorded {
+        recorded.write(out)?;
+    }
     for note in simulation.notes() {
         eprintln!("warning: {note}");
     }

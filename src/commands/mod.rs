@@ -68,8 +68,7 @@ pub fn main() -> ExitCode {
 pub fn run_line(network: Option<&Arc<dyn SolverNetwork>>) -> u8 {
     let arguments = Arguments::parse();
     let outcome = match &arguments.command {
-        Command::Run(arguments) if network.is_none() && arguments.needs_mpi() => Err(become_mpi()),
-        Command::Run(arguments) => run::run(arguments, network),
+        Command::Run(arguments) => run::run(arguments, network, become_mpi),
         Command::Check(arguments) => check::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Sweep(arguments) => sweep::run(arguments),

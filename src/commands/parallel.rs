@@ -7,7 +7,6 @@ use calcine_wire::SolverNetwork;
 use clap::{Args, ValueEnum};
 
 use super::failure::Failure;
-use super::shell::word;
 use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStart, SolverStarts};
 use crate::exit;
 
@@ -61,6 +60,22 @@ impl Parallel {
     /// What carries the messages of a pairing's solvers.
     pub(super) fn transport(&self) -> Transport {
         self.transport
+    }
+
+    /// The first option that was given, if any was.
+    pub(super) fn given(&self) -> Option<&'static str> {
+        let options = [
+            ("--ranks-gas", self.ranks_gas.is_some()),
+            ("--ranks-particles", self.ranks_particles.is_some()),
+            ("--transport", self.transport != Transport::default()),
+            ("--launch-gas", self.launch_gas.is_some()),
+            ("--launch-particles", self.launch_particles.is_some()),
+            ("--attach", self.attach),
+        ];
+        options
+            .iter()
+            .find(|(_, given)| *given)
+            .map(|(name, _)| *name)
     }
 
     /// What was asked for; an option for a solver that does not take part is refused.
@@ -141,29 +156,50 @@ impl Parallel {
     }
 }
 
-/// The options that a run was started with, as a user would type them to go on.
-pub(super) fn flags(starts: &SolverStarts) -> String {
-    let mut text = String::new();
+/// A warning where Calcine starts more ranks on this machine than it has cores.
+pub(super) fn crowded(starts: &SolverStarts, pairing: Pairing) -> Option<String> {
+    let external = [
+        (pairing.gas != GasBackend::Native, &starts.gas),
+        (
+            pairing.particles != ParticleBackend::Native,
+            &starts.particles,
+        ),
+    ];
+    let here = |launcher: &Launcher| matches!(launcher, Launcher::Mpirun | Launcher::Hand);
+    let started = external
+        .iter()
+        .filter(|(external, start)| *external && here(&start.launcher));
+    let ranks = started.map(|(_, start)| start.ranks).max()?;
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    (ranks as usize > cores).then(|| {
+        format!(
+            "{ranks} ranks on a machine of {cores} cores: ranks that wait for each other take turns, and a window may take hundreds of times \
+             longer; start {cores} at most (`--ranks-gas`, `--ranks-particles`, or `ranks` of the case), or name a launcher of other \
+             machines (`--launch-gas`, `--launch-particles`)"
+        )
+    })
+}
+
+/// The options that a run was started with, word by word.
+pub(super) fn flags(starts: &SolverStarts) -> Vec<String> {
+    let mut words = Vec::new();
     for (name, start) in [("gas", &starts.gas), ("particles", &starts.particles)] {
         if start.ranks > 1 {
-            text.push_str(&format!(" --ranks-{name} {}", start.ranks));
+            words.extend([format!("--ranks-{name}"), start.ranks.to_string()]);
         }
-        if let Launcher::Own(words) = &start.launcher {
-            text.push_str(&format!(
-                " --launch-{name} {}",
-                word(words.join(" ").as_ref())
-            ));
+        if let Launcher::Own(launcher) = &start.launcher {
+            words.extend([format!("--launch-{name}"), launcher.join(" ")]);
         }
     }
     let both = [&starts.gas, &starts.particles];
     if both.iter().any(|start| start.launcher == Launcher::Hand) {
-        text.push_str(" --attach");
+        words.push("--attach".into());
     }
     let spawned = |start: &&&SolverStart| matches!(start.launcher, Launcher::Network(_));
     if both.iter().any(|start| spawned(&start)) {
-        text.push_str(" --transport mpi");
+        words.extend(["--transport".into(), "mpi".into()]);
     }
-    text
+    words
 }
 
 #[cfg(test)]
@@ -191,8 +227,25 @@ mod tests {
         let words = ["--ranks-gas", "16", "--launch-gas", "srun -n 16"];
         let read = starts(&words, "openfoam+native").unwrap();
         assert_eq!(read.gas.ranks, 16);
-        assert_eq!(flags(&read), " --ranks-gas 16 --launch-gas 'srun -n 16'");
-        assert_eq!(flags(&starts(&[], "native+native").unwrap()), "");
+        assert_eq!(flags(&read), words);
+        assert!(flags(&starts(&[], "native+native").unwrap()).is_empty());
+    }
+
+    #[test]
+    fn more_ranks_than_cores_are_told_unless_another_machine_has_them() {
+        let told = |words: &[&str], pairing: &str| {
+            crowded(
+                &starts(words, pairing).unwrap(),
+                Pairing::parse(pairing).unwrap(),
+            )
+        };
+        let many = ["--ranks-gas", "60000"];
+        let text = told(&many, "openfoam+native").unwrap();
+        assert!(text.starts_with("60000 ranks on a machine of "), "{text}");
+        assert_eq!(told(&["--ranks-gas", "1"], "openfoam+native"), None);
+        let elsewhere = [&many[..], &["--launch-gas", "srun -n 60000"]].concat();
+        assert_eq!(told(&elsewhere, "openfoam+native"), None);
+        assert_eq!(told(&[], "native+native"), None);
     }
 
     #[test]

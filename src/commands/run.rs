@@ -1,26 +1,28 @@
 //! `calcine run CASE`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
 use calcine_wire::SolverNetwork;
-use clap::Args;
+use clap::{Args, Parser};
 
 use super::console::say;
-use super::continuation::Line;
+use super::continuation::{Line, Recorded};
 use super::execute::{self, Settings};
 use super::failure::Failure;
 use super::inputs::{read_and_prepare, results_folder};
-use super::parallel::{Parallel, Transport};
+use super::parallel::{Parallel, Transport, crowded};
+use super::shell::word;
 use crate::assembly::{GasBackend, Pairing, ParticleBackend, SolverStarts};
 use crate::exit;
 
 /// Runs a case, natively or with production solvers.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(super) struct Arguments {
-    /// The case file.
-    case: PathBuf,
+    /// The case file; with `--resume DIR` that of the run in DIR, if none is named.
+    #[arg(required_unless_present = "resume")]
+    case: Option<PathBuf>,
     /// Solver of the gas.
     #[arg(long, value_enum, default_value_t)]
     gas: GasBackend,
@@ -36,8 +38,9 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Continues from the last checkpoint in the results folder; a run that was stopped before its first one starts again.
-    #[arg(long)]
-    resume: bool,
+    /// `--resume DIR` alone takes case, `--set` and solvers from the run in DIR.
+    #[arg(long, value_name = "DIR", num_args = 0..=1)]
+    resume: Option<Option<PathBuf>>,
     /// Starts from the last checkpoint of another run on the same mesh, with this
     /// case's settings and clocks at zero.
     #[arg(long, value_name = "DIR")]
@@ -60,18 +63,94 @@ pub(super) struct Arguments {
 
 impl Arguments {
     /// True where the solvers talk over MPI.
-    pub(super) fn needs_mpi(&self) -> bool {
+    fn needs_mpi(&self) -> bool {
         let external = self.gas != GasBackend::Native || self.particles != ParticleBackend::Native;
         external && self.parallel.transport() == Transport::Mpi
     }
+
+    /// The arguments with what `--resume DIR` stands for, and the case.
+    fn completed(&self) -> Result<(Self, PathBuf), Failure> {
+        let refused = |message: String| Err(Failure::new(exit::CASE, message));
+        match (&self.case, &self.resume) {
+            (Some(case), Some(Some(folder))) => {
+                if let Some(out) = self.out.as_ref().filter(|out| *out != folder) {
+                    return refused(format!(
+                        "`--resume {}` and `--out {}` name two results folders; name one",
+                        folder.display(),
+                        out.display()
+                    ));
+                }
+                let out = Some(folder.clone());
+                Ok((Self { out, ..self.clone() }, case.clone()))
+            }
+            (Some(case), _) => Ok((self.clone(), case.clone())),
+            // The case, after an option that may have a value.
+            (None, Some(Some(case))) if case.is_file() => Ok((self.clone(), case.clone())),
+            (None, Some(Some(folder))) => self.of_folder(folder),
+            (None, _) => refused(
+                "`--resume` needs the results folder of the run, or its case: calcine run --resume DIR".into(),
+            ),
+        }
+    }
+
+    /// The arguments of the run in a results folder, with what limits or shows this stretch of it.
+    fn of_folder(&self, folder: &Path) -> Result<(Self, PathBuf), Failure> {
+        let own = [
+            ("--set", !self.set.is_empty()),
+            ("--gas", self.gas != GasBackend::Native),
+            ("--particles", self.particles != ParticleBackend::Native),
+            ("--from", self.from.is_some()),
+            ("--out", self.out.is_some()),
+        ];
+        let given = own.iter().find(|(_, given)| *given).map(|(name, _)| *name);
+        if let Some(option) = given.or_else(|| self.parallel.given()) {
+            let message = format!(
+                "`{option}` beside `--resume {0}`, which takes it from the run in {0}: leave it out, or name the case as well",
+                folder.display()
+            );
+            return Err(Failure::new(exit::CASE, message));
+        }
+        let recorded = Recorded::read(folder)?;
+        let words = ["calcine", "--resume"].into_iter();
+        let words = words.chain(recorded.options.iter().map(String::as_str));
+        let before = RecordedLine::try_parse_from(words).map_err(|error| {
+            Failure::new(
+                exit::CASE,
+                format!("the command that is kept in {}: {error}", folder.display()),
+            )
+        })?;
+        let before = before.arguments;
+        let arguments = Self {
+            out: Some(folder.to_owned()),
+            threads: self.threads.or(before.threads),
+            quiet: self.quiet || before.quiet,
+            strict: self.strict || before.strict,
+            stop_after: self.stop_after,
+            ..before
+        };
+        Ok((arguments, recorded.case.into()))
+    }
 }
 
+/// The options of a run as its results folder keeps them.
+#[derive(Debug, Parser)]
+struct RecordedLine {
+    #[command(flatten)]
+    arguments: Arguments,
+}
+
+/// Runs a case. Without a network, one whose solvers talk over MPI is handed over.
 pub(super) fn run(
     arguments: &Arguments,
     network: Option<&Arc<dyn SolverNetwork>>,
+    hand_over: impl FnOnce() -> Failure,
 ) -> Result<u8, Failure> {
+    let (arguments, case_file) = &arguments.completed()?;
+    if network.is_none() && arguments.needs_mpi() {
+        return Err(hand_over());
+    }
     use_threads(arguments.threads.map(usize::from))?;
-    let (case, prepared) = read_and_prepare(&arguments.case, &arguments.set)?;
+    let (mut case, prepared) = read_and_prepare(case_file, &arguments.set)?;
     for change in &case.changes {
         say(format_args!("set {change}"))?;
     }
@@ -82,8 +161,9 @@ pub(super) fn run(
     };
     let of_case = SolverStarts::of(&case, pairing);
     let starts = arguments.parallel.starts(pairing, &of_case, network)?;
+    case.warnings.extend(crowded(&starts, pairing));
     let line = Line {
-        case: &arguments.case,
+        case: case_file,
         out: &out,
         pairing,
         starts: &starts,
@@ -97,12 +177,17 @@ pub(super) fn run(
         starts: &starts,
         transport: arguments.parallel.transport(),
         out: &out,
-        resume: arguments.resume,
+        resume: arguments.resume.is_some(),
         from: arguments.from.as_deref(),
         progress: !arguments.quiet,
         stop_after: arguments.stop_after,
         strict: arguments.strict,
-        go_on: &format!("continue with\n  {}", line.resume()),
+        recorded: line.recorded(),
+        go_on: &format!(
+            "`calcine run --resume {}` goes on, as does\n  {}",
+            word(out.as_os_str()),
+            line.resume()
+        ),
     };
     let done = execute::execute(&case, &prepared, &settings)?;
     // Written before anything is printed: standard output may be lost.

@@ -150,6 +150,7 @@ fn one(
         progress: !arguments.quiet,
         stop_after: None,
         strict: false,
+        recorded: None,
         go_on,
     };
     let done = execute::execute(&case, &prepared, &settings)?;
@@ -265,11 +266,14 @@ fn table(
             _ => {
                 for (name, quantity) in &summary.quantities {
                     let column = format!("{name} {}", quantity.unit);
-                    if !header.contains(&column) {
+                    // Runs of other quantities have other columns.
+                    let place = header.iter().position(|one| *one == column);
+                    let place = place.unwrap_or_else(|| {
                         header.push(column);
-                    }
-                    let value = quantity.value.unwrap_or(f64::NAN);
-                    row.push(printed(value));
+                        header.len() - 1
+                    });
+                    row.resize(row.len().max(place + 1), String::new());
+                    row[place] = printed(quantity.value.unwrap_or(f64::NAN));
                 }
             }
         }

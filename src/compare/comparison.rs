@@ -17,6 +17,10 @@ pub struct ComparedRun {
     pub wall_time_s: f64,
     /// True where it reached the end of the case.
     pub complete: bool,
+    /// Share of its windows that ended at a limit of iterations.
+    pub unconverged_share: f64,
+    /// True where that is no more than the case allows (`agreement.unconverged`).
+    pub converged: bool,
     /// Largest relative error of the ledger's mass and energy lines.
     pub ledger_error: f64,
 }
@@ -36,7 +40,7 @@ pub struct Comparison {
     pub quantities: Vec<QuantityDifference>,
     /// Differences of the fields.
     pub fields: Vec<FieldDifference>,
-    /// True where every band holds and every run is complete.
+    /// True where every band holds, and every run is complete and has converged.
     pub agrees: bool,
     #[serde(skip)]
     pub(super) series: Vec<Series>,

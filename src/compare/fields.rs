@@ -8,7 +8,7 @@ use super::common;
 use super::error::CompareError;
 use super::quantities::{common_times, exceeds, words};
 use super::source::Source;
-use crate::case::model::{Case, Measure, ToleranceBand};
+use crate::case::model::{Case, FieldBand, Measure, ToleranceBand};
 use crate::report::plot::between;
 use crate::results::read::{self, Arrays};
 
@@ -127,7 +127,52 @@ pub(super) fn differences(
             .into_iter()
             .filter(|field| !known.contains(&field.name)),
     );
+    for band in &case.agreement.fields {
+        match list.iter_mut().find(|field| field.name == band.field) {
+            Some(field) => judge(field, band),
+            None => list.push(FieldDifference {
+                band: Some("not written".into()),
+                verdict: Agreement::Outside,
+                ..finish(&band.field, "cell", "1", Vec::new(), (0.0, 0.0))
+            }),
+        }
+    }
     Ok(list)
+}
+
+/// Judges a field by a band that the case states; a band that holds already stays.
+fn judge(field: &mut FieldDifference, band: &FieldBand) {
+    let norms = |of: fn(&Norms) -> f64| {
+        let values = field.pairs.iter().map(of);
+        values.fold(
+            0.0,
+            |worst, one| if exceeds(one, worst) { one } else { worst },
+        )
+    };
+    let bands = [
+        ("at most", band.largest, norms(|pair| pair.maximum)),
+        (
+            "root mean square",
+            band.root_mean_square,
+            norms(|pair| pair.l2),
+        ),
+    ];
+    let mut told: Vec<String> = field.band.take().into_iter().collect();
+    let stated = bands
+        .into_iter()
+        .filter_map(|(what, band, found)| Some((what, band?, found)));
+    for (what, band, found) in stated {
+        let allowed = match band {
+            ToleranceBand::Relative(share) => share * field.span,
+            ToleranceBand::Absolute(distance) => distance,
+        };
+        told.push(format!("{} {what}", words(band, &field.unit)));
+        let multiple = if found == 0.0 { 0.0 } else { found / allowed };
+        if field.verdict != Agreement::Outside {
+            field.verdict = Agreement::of(Some(multiple));
+        }
+    }
+    field.band = Some(told.join(", "));
 }
 
 /// Columns of the series over all particles: their mean is NaN where one of them has no temperature.
@@ -381,6 +426,39 @@ fn unit(field: &str) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_field_is_judged_by_its_largest_difference_and_by_its_mean_square() {
+        let norms = |maximum: f64, l2: f64| Norms {
+            maximum,
+            l2,
+            ..Norms::default()
+        };
+        let judged = |largest, root_mean_square| {
+            let mut field = finish("gas.temperature", "cell", "K", Vec::new(), (300.0, 400.0));
+            field.pairs = vec![norms(1.0, 0.5), norms(4.0, 0.1)];
+            let band = FieldBand {
+                field: field.name.clone(),
+                largest,
+                root_mean_square,
+            };
+            judge(&mut field, &band);
+            (field.verdict, field.band.unwrap())
+        };
+        let (relative, absolute) = (ToleranceBand::Relative, ToleranceBand::Absolute);
+        assert_eq!(
+            judged(Some(absolute(4.0)), Some(relative(0.005))),
+            (
+                Agreement::Inside,
+                "4 K at most, 0.5 % root mean square".into()
+            )
+        );
+        assert_eq!(judged(Some(relative(0.03)), None).0, Agreement::Outside);
+        assert_eq!(
+            judged(Some(absolute(5.0)), Some(absolute(0.4))).0,
+            Agreement::Outside
+        );
+    }
 
     #[test]
     fn a_particle_that_one_run_no_longer_has_is_not_compared_there() {

@@ -43,7 +43,7 @@ pub fn compare(case: &Case, runs: &[(String, PathBuf)]) -> Result<Comparison, Co
     let listed: Vec<ComparedRun> = sources.iter().map(|source| run(case, source)).collect();
     let bands = quantities.iter().map(|quantity| quantity.verdict);
     let bands = bands.chain(fields.iter().map(|field| field.verdict));
-    let agrees = listed.iter().all(|run| run.complete)
+    let agrees = listed.iter().all(|run| run.complete && run.converged)
         && bands
             .into_iter()
             .all(|verdict| verdict != Agreement::Outside);
@@ -104,7 +104,12 @@ fn run(case: &Case, source: &Source) -> ComparedRun {
         let line = source.summary.ledger.lines.get(name);
         line.map_or(f64::NAN, |line| line.relative_error)
     });
+    let sums = &source.summary.convergence;
+    let unconverged = sums.unconverged_windows.max(sums.unsettled_windows);
+    let unconverged_share = unconverged as f64 / source.summary.windows.max(1) as f64;
     ComparedRun {
+        unconverged_share,
+        converged: unconverged_share <= case.agreement.unconverged,
         name: source.name.clone(),
         process_time_s: source.summary.process_time_s,
         wall_time_s: source.summary.wall_time_s.total,

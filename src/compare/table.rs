@@ -137,6 +137,23 @@ pub(super) fn verdict(comparison: &Comparison) -> String {
     } else {
         format!("outside its band: {}.", outside.join(", "))
     };
+    let restless = comparison.runs.iter().filter(|run| !run.converged);
+    let restless: Vec<String> = restless
+        .map(|run| {
+            format!(
+                "{} ({} of its windows)",
+                run.name,
+                percent(run.unconverged_share, 1.0)
+            )
+        })
+        .collect();
+    if !restless.is_empty() {
+        let _ = write!(
+            text,
+            " Not converged: {}: raise the limit of iterations or shorten the windows, or state how many may (`agreement.unconverged`).",
+            restless.join(", ")
+        );
+    }
     if !short.is_empty() {
         let _ = write!(text, " Stopped early: {}.", short.join(", "));
     }

@@ -327,7 +327,8 @@ fn converged(summary: &Summary) -> String {
     format!(
         "{} of {} windows ended at the limit of outer iterations; {} outer and {} linear \
          iterations a window; largest residual {}, largest volume residual {}. The exchange took {} \
-         attempts a window; {} windows ended at their limit, the largest misplaced share is {}; windows were cut {} times.",
+         attempts a window; {} windows ended at their limit, the largest misplaced share is {}; windows were cut {} times. \
+         The smoother moved {} % of the solid volume out of cells above its threshold at the end, {} % at most.",
         sums.unconverged_windows,
         summary.windows,
         per_window(sums.outer_iterations),
@@ -338,6 +339,8 @@ fn converged(summary: &Summary) -> String {
         sums.unsettled_windows,
         figure(sums.largest_misplaced, 2),
         sums.cuts,
+        figure(100.0 * summary.smoother.moved_share, 3),
+        figure(100.0 * summary.smoother.largest_moved_share, 3),
     )
 }
 

@@ -18,6 +18,8 @@ pub const STATUS: &str = "status.json";
 pub const SERIES: &str = "series.csv";
 /// Name of the HDF5 file.
 pub const STORE: &str = "results.h5";
+/// Name of the file with the command of the run, from which it is resumed.
+pub const COMMAND: &str = "command.json";
 /// Name of the effective case, `--set` applied.
 pub const CASE: &str = "case.toml";
 

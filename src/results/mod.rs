@@ -1,6 +1,6 @@
 //! Results of a run: what is written while it runs, and how it is read back.
 //!
-//! A result directory holds `summary.json`, `status.json`, `series.csv`, `results.h5`, `case.toml`,
+//! A result directory holds `summary.json`, `status.json`, `series.csv`, `results.h5`, `case.toml`, `command.json`,
 //! `gas.pvd` with `gas/gas_NNNN.vtu`, `particles.pvd` with `particles/particles_NNNN.vtp`,
 //! `probes/probes_NNNN.csv` where the case has probes, and at its end `voids.csv` where it has a bed.
 //! Every time in them is process time, unless its name begins with `motion_`.

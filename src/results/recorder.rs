@@ -16,7 +16,8 @@ use super::status::{Status, Watch};
 use super::store::Store;
 use super::summary::{
     Backends, CaseName, LedgerLineSummary, LedgerSummary, PassedParticles, ProcessorTimes,
-    Provenance, RunFailure, SolverSummaries, SolverSummary, Summary, Verdict, WallTimes,
+    Provenance, RunFailure, SmootherSummary, SolverSummaries, SolverSummary, Summary, Verdict,
+    WallTimes,
 };
 use super::vtk::{self, Cells};
 use super::{
@@ -155,6 +156,7 @@ impl Recorder {
             store,
         });
         self.collect()?;
+        self.smoothed(moment);
         if !self.resumed {
             self.row(moment)?;
             self.snapshot(moment)?;
@@ -223,8 +225,15 @@ impl Recorder {
         (pace.rows > 0).then(|| pace.warning()).flatten()
     }
 
+    /// Keeps the largest share of the solid that the smoother moved.
+    fn smoothed(&mut self, moment: &CommittedState<'_>) {
+        let largest = &mut self.counters.largest_moved_share;
+        *largest = largest.max(moment.smoothed_share);
+    }
+
     /// Adds the window's convergence.
     fn count(&mut self, moment: &CommittedState<'_>) {
+        self.smoothed(moment);
         let time = moment.clocks.process.seconds();
         for first in warnings::add(&mut self.counters.warnings, moment.findings, time) {
             tracing::warn!("{first}; counted in {SUMMARY}, not told of again");
@@ -448,6 +457,10 @@ impl Recorder {
             processor_time_s: self.processor(moment.timing),
             quantities: captured.results(case, over),
             convergence: self.counters.convergence,
+            smoother: SmootherSummary {
+                moved_share: moment.smoothed_share,
+                largest_moved_share: self.counters.largest_moved_share,
+            },
             warnings: self.counters.warnings.clone(),
             failure: None,
             pace: (self.counters.pace.rows > 0).then_some(self.counters.pace),

@@ -43,6 +43,9 @@ pub(super) struct Counters {
     pub captured: Captured,
     /// Convergence so far.
     pub convergence: ConvergenceSummary,
+    /// Largest share of the solid volume that the smoother moved so far.
+    #[serde(default)]
+    pub largest_moved_share: f64,
     /// What was outside the ranges of laws, or did not converge, so far.
     #[serde(default)]
     pub warnings: Warnings,

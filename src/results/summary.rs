@@ -99,6 +99,9 @@ pub struct Summary {
     pub quantities: BTreeMap<String, QuantityResult>,
     /// Convergence of the gas, over the run.
     pub convergence: ConvergenceSummary,
+    /// What the smoother moved.
+    #[serde(default)]
+    pub smoother: SmootherSummary,
     /// What `calcine check` warns of in the case, in its words.
     #[serde(default)]
     pub case_warnings: Vec<String>,
@@ -372,6 +375,15 @@ pub struct ConvergenceSummary {
     /// Largest volume residual of a window (docs/theory.md, CON-2).
     #[serde(deserialize_with = "number")]
     pub largest_volume_residual: f64,
+}
+
+/// What the smoother did to the bed (docs/theory.md, VFS-1).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SmootherSummary {
+    /// Share of the solid volume that it moved out of cells above `coupling.smoother.max_solid_fraction` in the last window.
+    pub moved_share: f64,
+    /// The largest such share of a window, or of the start.
+    pub largest_moved_share: f64,
 }
 
 impl Summary {

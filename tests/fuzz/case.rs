@@ -145,8 +145,8 @@ fn check(case: &Case) {
     let Ok(prepared) = PreparedCase::new(case) else {
         return;
     };
-    if let Ok(void) = prepared.void_fraction(case) {
-        let count = prepared.particles.id.len();
-        assert!(!check_report(case, &prepared.mesh, count, void).is_empty());
+    if let Ok(packing) = prepared.packing(case) {
+        let particles = &prepared.particles;
+        assert!(!check_report(case, &prepared.mesh, particles, &packing).is_empty());
     }
 }

@@ -140,6 +140,7 @@ pub fn case() -> Case {
             gas: true,
             particles: true,
         }],
+        agreement: Default::default(),
         quantities: vec![
             quantity(
                 "pressure_drop",
@@ -376,6 +377,7 @@ impl World {
                 turbulence: Default::default(),
             },
             bed: &self.bed,
+            smoothed_share: 0.0,
             particles: ParticleFields {
                 id: &self.id,
                 population: &self.population,

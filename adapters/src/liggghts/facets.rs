@@ -18,15 +18,16 @@ const MARGIN: f64 = 0.005;
 /// Whether a surface moves within itself, so that its triangles may stay while only its speed acts.
 pub fn within_itself(wall: &Wall) -> bool {
     let along = |a: &Vec3, b: &Vec3| a.cross(b).norm() <= 1e-9 * a.norm() * b.norm();
-    match (&wall.shape, wall.motion) {
+    match (&wall.shape, &wall.motion) {
         (_, WallMotion::Still) | (WallShape::Mesh { .. }, _) => false,
         (WallShape::Plane { normal, .. }, WallMotion::Translating(velocity)) => {
             velocity.dot(normal).abs() <= 1e-9 * velocity.norm()
         }
         (WallShape::Cylinder { axis, .. }, WallMotion::Translating(velocity)) => {
-            along(axis, &velocity)
+            along(axis, velocity)
         }
-        (WallShape::Cone { .. }, WallMotion::Translating(_)) => false,
+        (WallShape::Cone { .. }, WallMotion::Translating(_))
+        | (_, WallMotion::Scheduled { .. } | WallMotion::Oscillating { .. }) => false,
         (
             shape,
             WallMotion::Rotating {
@@ -34,15 +35,15 @@ pub fn within_itself(wall: &Wall) -> bool {
                 angular_velocity,
             },
         ) => match shape {
-            WallShape::Plane { normal, .. } => along(normal, &angular_velocity),
+            WallShape::Plane { normal, .. } => along(normal, angular_velocity),
             WallShape::Cylinder {
                 point: on_axis,
                 axis,
                 ..
-            } => along(axis, &angular_velocity) && along(axis, &(on_axis - point)),
+            } => along(axis, angular_velocity) && along(axis, &(on_axis - point)),
             WallShape::Cone { ends, .. } => {
                 let axis = ends[1] - ends[0];
-                along(&axis, &angular_velocity) && along(&axis, &(ends[0] - point))
+                along(&axis, angular_velocity) && along(&axis, &(ends[0] - point))
             }
             WallShape::Mesh { .. } => false,
         },

@@ -214,12 +214,19 @@ impl Inputs<'_> {
                 centre.z
             );
         }
-        if !setup.velocity.is_empty() {
-            text.push_str("\nVelocities\n\n");
+        if setup.velocity.is_empty() && setup.angular_velocity.is_empty() {
+            return text;
         }
-        for (id, velocity) in setup.id.iter().zip(&setup.velocity) {
-            let [x, y, z] = (*velocity).into();
-            let _ = writeln!(text, "{id} {x:e} {y:e} {z:e} 0 0 0");
+        text.push_str("\nVelocities\n\n");
+        for (row, id) in setup.id.iter().enumerate() {
+            let of = |list: &[Vec3]| list.get(row).copied().unwrap_or_default();
+            let [x, y, z] = of(&setup.velocity).into();
+            let spin: [f64; 3] = of(&setup.angular_velocity).into();
+            let [p, q, r] = spin.map(|one| match one == 0.0 {
+                true => "0".to_owned(),
+                false => format!("{one:e}"),
+            });
+            let _ = writeln!(text, "{id} {x:e} {y:e} {z:e} {p} {q} {r}");
         }
         text
     }

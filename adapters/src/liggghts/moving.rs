@@ -41,7 +41,24 @@ pub fn refusal(contacts: &Contacts) -> Option<String> {
                  `motion.contact.characteristic_speed` is {characteristic_speed} m/s"
             ));
         }
+        ContactForce::LinearSprings { .. } => {
+            return Some(
+                "it has no linear law of a stated stiffness whose damping follows the restitution (\"linear-springs\"); write \
+                 motion.contact = { law = \"linear\", characteristic_speed = … }, whose stiffness follows a speed of impact"
+                    .into(),
+            );
+        }
         ContactForce::Linear { .. } | ContactForce::HertzMindlin => {}
+    }
+    let scheduled = contacts
+        .walls
+        .iter()
+        .find(|wall| matches!(wall.motion, WallMotion::Scheduled { .. }));
+    if let Some(wall) = scheduled {
+        return Some(format!(
+            "it has no walls that move by a schedule (wall \"{}\"); write `velocity` or `oscillating`",
+            wall.name
+        ));
     }
     for material in &contacts.materials {
         if material.poisson < 0.0 {
@@ -201,7 +218,9 @@ fn properties(text: &mut String, contacts: &Contacts) {
 fn model(contacts: &Contacts) -> String {
     let law = &contacts.law;
     let mut model = match law.force {
-        ContactForce::Linear { .. } => "model hooke".to_owned(),
+        ContactForce::Linear { .. } | ContactForce::LinearSprings { .. } => {
+            "model hooke".to_owned()
+        }
         ContactForce::HertzMindlin | ContactForce::SpringSliderDashpot => "model hertz".to_owned(),
     };
     model.push_str(" tangential history");
@@ -323,14 +342,14 @@ pub fn walls(contacts: &Contacts, form: WallForm) -> String {
             "fix calcine_mesh_{index} all mesh/surface file {} type {kind}{}{}",
             file(index),
             if stays {
-                surface(wall.motion)
+                surface(&wall.motion)
             } else {
                 String::new()
             },
             curvature(wall, form.smallest)
         );
         if !stays {
-            moving_mesh(&mut text, index, wall.motion);
+            moving_mesh(&mut text, index, &wall.motion);
         }
         meshes.push(format!("calcine_mesh_{index}"));
     }
@@ -355,9 +374,11 @@ fn curvature(wall: &Wall, smallest: f64) -> String {
 }
 
 /// The speed of a surface that moves within itself: its triangles stay.
-fn surface(motion: WallMotion) -> String {
+fn surface(motion: &WallMotion) -> String {
     match motion {
-        WallMotion::Still => String::new(),
+        WallMotion::Still | WallMotion::Scheduled { .. } | WallMotion::Oscillating { .. } => {
+            String::new()
+        }
         WallMotion::Translating(v) => format!(" surface_vel {:e} {:e} {:e}", v.x, v.y, v.z),
         WallMotion::Rotating {
             point,
@@ -376,10 +397,10 @@ fn surface(motion: WallMotion) -> String {
     }
 }
 
-fn moving_mesh(text: &mut String, index: usize, motion: WallMotion) {
+fn moving_mesh(text: &mut String, index: usize, motion: &WallMotion) {
     let head = format!("fix calcine_turn_{index} all move/mesh mesh calcine_mesh_{index}");
     match motion {
-        WallMotion::Still => {}
+        WallMotion::Still | WallMotion::Scheduled { .. } | WallMotion::Oscillating { .. } => {}
         WallMotion::Translating(v) => {
             let _ = writeln!(text, "{head} linear {:e} {:e} {:e}", v.x, v.y, v.z);
         }

@@ -81,6 +81,15 @@ pub enum ScriptTemplateError {
         /// What to write.
         remedy: &'static str,
     },
+    /// Several of these, in the order of their lines.
+    #[error("{}", told(.0))]
+    Several(Vec<Self>),
+}
+
+/// Findings one after the other.
+fn told(findings: &[ScriptTemplateError]) -> String {
+    let each: Vec<String> = findings.iter().map(ToString::to_string).collect();
+    each.join("\n")
 }
 
 impl ScriptTemplateError {
@@ -97,6 +106,31 @@ impl ScriptTemplateError {
             Self::Missing { what, remedy } => {
                 (format!("there is no `{what}`"), format!("write `{remedy}`"))
             }
+            Self::Several(_) => (self.to_string(), "change these lines".into()),
+        }
+    }
+
+    /// Line of the script; of what is missing, behind all.
+    fn line(&self) -> usize {
+        match self {
+            Self::Line { line, .. } => *line,
+            _ => usize::MAX,
+        }
+    }
+
+    /// One error for each thing that is wrong.
+    pub fn findings(&self) -> &[Self] {
+        match self {
+            Self::Several(findings) => findings,
+            one => std::slice::from_ref(one),
+        }
+    }
+
+    /// Nothing, the only finding, or all of them.
+    fn of(mut findings: Vec<Self>) -> Result<(), Self> {
+        match findings.len() {
+            0 | 1 => findings.pop().map_or(Ok(()), Err),
+            _ => Err(Self::Several(findings)),
         }
     }
 }
@@ -161,8 +195,12 @@ impl ScriptTemplate {
             path: path.to_owned(),
             cause: cause.to_string(),
         })?;
-        let commands = commands(&text);
-        check(&commands)?;
+        let mut commands = commands(&text);
+        let mut findings = check(&commands);
+        let folder = path.parent().unwrap_or(Path::new("."));
+        findings.extend(beside(folder, &mut commands));
+        findings.sort_by_key(ScriptTemplateError::line);
+        ScriptTemplateError::of(findings)?;
         Ok(Self {
             path: path.to_owned(),
             commands,
@@ -178,8 +216,11 @@ impl ScriptTemplate {
         values: &ScriptVariables,
     ) -> Result<String, ScriptTemplateError> {
         let variables = self.variables(contacts, values);
-        self.check_step(&variables, values.step)?;
-        self.check_gravity(&variables, contacts.gravity)?;
+        let findings = [
+            self.check_step(&variables, values.step),
+            self.check_gravity(&variables, contacts.gravity),
+        ];
+        ScriptTemplateError::of(findings.into_iter().filter_map(Result::err).collect())?;
         let mut text = format!(
             "# Written by Calcine: its variables, then {}, then what Calcine drives it by.\n",
             self.path.display()
@@ -366,8 +407,52 @@ fn commands(text: &str) -> Vec<Command> {
     all
 }
 
-/// What holds for every script, whatever the case's numbers.
-fn check(commands: &[Command]) -> Result<(), ScriptTemplateError> {
+/// Turns names of files, which are relative to the script, into absolute paths: LIGGGHTS runs in a folder of the results. What comes back
+/// are files that are not there.
+fn beside(folder: &Path, commands: &mut [Command]) -> Vec<ScriptTemplateError> {
+    let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
+    let mut absent = Vec::new();
+    for command in commands {
+        let words = command.words();
+        let reads = match words[..] {
+            ["fix", _, _, style, ..] => {
+                style.starts_with("mesh/") || style.starts_with("particletemplate/")
+            }
+            ["variable", _, "file", ..] => true,
+            _ => false,
+        };
+        let named = words.windows(2).find(|pair| reads && pair[0] == "file");
+        let Some(name) = named.map(|pair| pair[1].trim_matches('"').to_owned()) else {
+            continue;
+        };
+        if name.contains("${") || Path::new(&name).is_absolute() {
+            continue;
+        }
+        let path = folder.join(&name);
+        if !path.is_file() {
+            let rule = format!("there is no file {name} beside the script");
+            let remedy = "put it there, or write its absolute path";
+            absent.push(command.refuse(rule, remedy));
+            continue;
+        }
+        let path = path.display().to_string();
+        let path = match path.contains(' ') {
+            true => format!("\"{path}\""),
+            false => path,
+        };
+        let mut is_next = false;
+        let words = words.iter().map(|word| {
+            let is_name = std::mem::replace(&mut is_next, *word == "file");
+            if is_name { path.as_str() } else { *word }
+        });
+        command.text = words.collect::<Vec<_>>().join(" ");
+    }
+    absent
+}
+
+/// What holds for every script, whatever the case's numbers: all that is wrong.
+fn check(commands: &[Command]) -> Vec<ScriptTemplateError> {
+    let mut found = Vec::new();
     let mut needed = [
         ("units si", "units si", false),
         ("atom_style granular", "atom_style granular", false),
@@ -379,20 +464,23 @@ fn check(commands: &[Command]) -> Result<(), ScriptTemplateError> {
         match words[..] {
             ["units", "si"] => needed[0].2 = true,
             ["units", ..] => {
-                return Err(command.refuse("Calcine is SI throughout", "write `units si`"));
+                needed[0].2 = true;
+                found.push(command.refuse("Calcine is SI throughout", "write `units si`"));
             }
             ["atom_style", "granular" | "sphere"] => needed[1].2 = true,
             ["atom_style", ..] => {
+                needed[1].2 = true;
                 let rule = "Calcine's particles are spheres";
-                return Err(command.refuse(rule, "write `atom_style granular`"));
+                found.push(command.refuse(rule, "write `atom_style granular`"));
             }
             ["read_data", _] if needed[2].2 => {
-                return Err(command.refuse("particles are read once", "leave the line out"));
+                found.push(command.refuse("particles are read once", "leave the line out"));
             }
             ["read_data", "${calcine_data}" | DATA] => needed[2].2 = true,
             ["read_data", ..] => {
+                needed[2].2 = true;
                 let rule = "the case file says which particles there are";
-                return Err(command.refuse(rule, "write `read_data ${calcine_data}`"));
+                found.push(command.refuse(rule, "write `read_data ${calcine_data}`"));
             }
             ["timestep", ..] => needed[3].2 = true,
             [
@@ -401,25 +489,24 @@ fn check(commands: &[Command]) -> Result<(), ScriptTemplateError> {
             ] => {}
             ["fix", _, _, style, ..] if style.starts_with("insert/") => {
                 let rule = "particles come in as the case file says";
-                return Err(command.refuse(rule, "write a `[[feeds]]`"));
+                found.push(command.refuse(rule, "write a `[[feeds]]`"));
             }
             ["fix", _, _, "external", ..] => {
                 let rule = "by this fix the host has drag follow the particles";
-                return Err(command.refuse(rule, "leave the line out"));
+                found.push(command.refuse(rule, "leave the line out"));
             }
             [first, ..] => {
                 let refused = REFUSED.iter().find(|(names, ..)| names.contains(&first));
                 if let Some((_, rule, remedy)) = refused {
-                    return Err(command.refuse(*rule, *remedy));
+                    found.push(command.refuse(*rule, *remedy));
                 }
             }
             [] => {}
         }
     }
-    match needed.iter().find(|(.., found)| !found) {
-        Some(&(what, remedy, _)) => Err(ScriptTemplateError::Missing { what, remedy }),
-        None => Ok(()),
-    }
+    let missing = needed.iter().filter(|(.., there)| !there);
+    found.extend(missing.map(|&(what, remedy, _)| ScriptTemplateError::Missing { what, remedy }));
+    found
 }
 
 #[cfg(test)]
@@ -430,14 +517,12 @@ mod tests {
         timestep ${calcine_step}\n";
 
     fn refused(more: &str) -> String {
-        check(&commands(&format!("{SCRIPT}{more}")))
-            .unwrap_err()
-            .to_string()
+        told(&check(&commands(&format!("{SCRIPT}{more}"))))
     }
 
     #[test]
     fn what_calcine_does_itself_is_refused_with_the_line() {
-        assert_eq!(check(&commands(SCRIPT)), Ok(()));
+        assert_eq!(check(&commands(SCRIPT)), []);
         for (more, part) in [
             ("run 1000", "line 5, `run 1000`: Calcine advances"),
             ("\n  clear", "line 6, `clear`"),
@@ -469,8 +554,8 @@ mod tests {
                 "write `timestep ${calcine_step}`",
             ),
         ] {
-            let error = check(&commands(&SCRIPT.replace(left_out, ""))).unwrap_err();
-            assert!(error.to_string().contains(part), "{error}");
+            let found = told(&check(&commands(&SCRIPT.replace(left_out, ""))));
+            assert!(found.contains(part), "{found}");
         }
     }
 
@@ -519,6 +604,42 @@ mod tests {
             template("").check_gravity(&variables, Vec3::zeros()),
             Ok(())
         );
+    }
+
+    #[test]
+    fn all_that_is_wrong_with_a_script_is_told_at_once_in_the_order_of_its_lines() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("in.bed");
+        let text = "units cgs\natom_style granular\ncreate_atoms 1 single 0 0 0\nfix m all mesh/surface file funnel.stl type 1\nrun 5\n";
+        fs::write(&path, text).unwrap();
+        let error = ScriptTemplate::read(&path, Vec::new(), Vec::new()).unwrap_err();
+        let found: Vec<String> = error.findings().iter().map(ToString::to_string).collect();
+        let parts = [
+            "line 1, `units cgs`: Calcine is SI",
+            "line 3, `create_atoms",
+            "there is no file funnel.stl beside the script",
+            "line 5, `run 5`",
+            "there is no `read_data`",
+            "there is no `timestep`",
+        ];
+        assert_eq!(found.len(), parts.len(), "{found:?}");
+        for (found, part) in found.iter().zip(parts) {
+            assert!(found.contains(part), "{found}");
+        }
+    }
+
+    #[test]
+    fn files_of_a_script_are_relative_to_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let stl = folder.path().join("funnel.stl");
+        fs::write(&stl, "").unwrap();
+        let mut commands = commands(
+            "fix m all mesh/surface file funnel.stl type 1\nfix p all print 10 text file x.txt",
+        );
+        assert_eq!(beside(folder.path(), &mut commands), []);
+        let expected = format!("fix m all mesh/surface file {} type 1", stl.display());
+        assert_eq!(commands[0].text, expected);
+        assert!(commands[1].text.contains("file x.txt"));
     }
 
     #[test]

@@ -519,6 +519,7 @@ impl CoupledRun {
             mesh: &self.mesh,
             gas: self.parts.gas.fields(),
             bed: &self.bed.mapped.bed,
+            smoothed_share: self.bed.mapped.operator.moved_share(),
             particles: self.parts.particles.fields(),
             particle_temperature: self.interior.models.temperature(),
             particle_heat: &self.exchange.exchange.heat,

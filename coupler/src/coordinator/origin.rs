@@ -176,6 +176,7 @@ impl Origin {
             density: mass.iter().zip(spheres).map(|(m, v)| m / v).collect(),
             radius,
             velocity: vectors("particle_velocity")?,
+            angular_velocity: Vec::new(),
             weight: self.state.f64s("particle_weight")?.to_vec(),
             motion: motion.clone(),
             id,

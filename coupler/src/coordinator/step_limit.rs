@@ -1,10 +1,10 @@
 //! How light a particle may become before the time step of contacts is too long for it.
 
-use calcine_physics::contact::time_step::rayleigh;
+use calcine_physics::contact::time_step::{linear_collision, rayleigh};
 use calcine_physics::sphere;
 
 use super::error::TooLight;
-use crate::motion::{Contacts, Elastic, Resized};
+use crate::motion::{ContactForce, Contacts, Elastic, Resized};
 
 /// Share of Rayleigh's time above which a contact solver's step is too long.
 pub const LONGEST_STEP: f64 = 0.5;
@@ -16,6 +16,8 @@ pub struct ContactStepLimit {
     pub step: f64,
     /// Elastic constants of each population.
     pub elastic: Vec<Elastic>,
+    /// Stiffness in N/m of springs that are stated in their place.
+    pub stiffness: Option<f64>,
 }
 
 impl ContactStepLimit {
@@ -25,6 +27,10 @@ impl ContactStepLimit {
         Self {
             step: contacts.step,
             elastic: of.map(|&material| contacts.materials[material]).collect(),
+            stiffness: match contacts.law.force {
+                ContactForce::LinearSprings { stiffness, .. } => Some(stiffness),
+                _ => None,
+            },
         }
     }
 
@@ -34,7 +40,11 @@ impl ContactStepLimit {
             return Ok(());
         };
         let density = sphere::density(new.mass, new.radius);
-        let time = rayleigh(new.radius, density, elastic.young, elastic.poisson);
+        let time = match self.stiffness {
+            // Of two such particles: the impact bounds the step as half of it would Rayleigh's time.
+            Some(stiffness) => 0.5 * linear_collision(0.5 * new.mass, stiffness),
+            None => rayleigh(new.radius, density, elastic.young, elastic.poisson),
+        };
         // A time that is NaN bounds nothing and is refused too.
         if self.step <= LONGEST_STEP * time {
             return Ok(());
@@ -62,6 +72,7 @@ mod tests {
                 young: 5e7,
                 poisson: 0.22,
             }],
+            stiffness: None,
         };
         // 3.802 817 5e-5 s at 1 mm and 2500 kg/m³ (see the law).
         let new = Resized {
@@ -75,6 +86,13 @@ mod tests {
             error.contains("particle 7") && error.contains("0.00003802"),
             "{error}"
         );
+        let springs = |step: f64| ContactStepLimit {
+            stiffness: Some(1000.0),
+            ..step_limit(step)
+        };
+        let quarter = 0.25 * PI * (0.5 * new.mass / 1000.0).sqrt();
+        assert!(springs(0.99 * quarter).bears(0, &new).is_ok());
+        assert!(springs(1.01 * quarter).bears(0, &new).is_err());
         let nothing = Resized { mass: 0.0, ..new };
         assert!(step_limit(1e-9).bears(0, &nothing).is_err());
     }

@@ -45,6 +45,15 @@ pub fn open(mesh: &Mesh, openings: &[Opening]) -> Result<Mesh, MeshError> {
         let found = openings.iter().find(|one| one.zone.holds(centres[face]));
         found.map(|one| one.name.as_str())
     };
+    let boundary = || mesh.internal_faces()..mesh.faces();
+    if let Some(name) = names
+        .iter()
+        .find(|name| !boundary().any(|face| own(face) == Some(**name)))
+    {
+        return wrong(format!(
+            "the opening {name} has no face of its own: all that it holds lie in openings before it; move one of them"
+        ));
+    }
     let mut order: Vec<usize> = (0..mesh.internal_faces()).collect();
     let mut patches: Vec<Patch> = Vec::new();
     let mut add = |name: &str, faces: &mut dyn Iterator<Item = usize>| {
@@ -143,6 +152,25 @@ mod tests {
         assert!((sides - area(&fine, "side")).abs() < 1e-12);
         assert_eq!(made.cell_centre(), fine.cell_centre());
         assert_eq!(made.neighbour(), fine.neighbour());
+    }
+
+    #[test]
+    fn an_opening_that_others_cover_is_refused() {
+        let lying = |name: &str, high: f64| Opening {
+            name: name.into(),
+            zone: Zone::Box {
+                low: Vec3::new(-0.001, 0.04, 0.18),
+                high: Vec3::new(0.001, 0.06, high),
+            },
+        };
+        let (wide, covered) = (lying("slot", 0.26), lying("lance", 0.22));
+        let error = open(&duct(), &[wide, covered]).unwrap_err();
+        assert!(
+            error
+                .to_string()
+                .contains("the opening lance has no face of its own"),
+            "{error}"
+        );
     }
 
     #[test]

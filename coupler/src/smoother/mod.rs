@@ -20,6 +20,7 @@ mod kernel;
 mod multigrid;
 mod obstacle;
 mod operator;
+pub mod packing_density;
 mod scratch;
 mod sparse;
 mod sweeps;
@@ -157,7 +158,7 @@ impl Smoother {
             kernel,
             self.diffusion.clone(),
             &self.graph.volume,
-            solid_volume,
+            solid,
         ))
     }
 

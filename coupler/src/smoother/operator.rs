@@ -15,6 +15,8 @@ pub struct Operator {
     kernel: Option<Kernel>,
     diffusion: Option<Diffusion>,
     solid_fraction: Vec<f64>,
+    /// Share of the solid volume that S moved from cell to cell.
+    moved: f64,
     scratch: Scratch,
     recent: Recent,
     /// Real particles that each row stands for; empty: one each.
@@ -22,30 +24,42 @@ pub struct Operator {
 }
 
 impl Operator {
+    /// `solid`: W₀ applied to the solid volumes in m³.
     pub(super) fn new(
         weights: Weights,
         kernel: Option<Kernel>,
         diffusion: Option<Diffusion>,
         cell_volume: &[f64],
-        solid_volume: &[f64],
+        solid: Vec<f64>,
     ) -> Self {
-        let mut operator = Self {
-            solid_fraction: Vec::new(),
-            weights,
-            kernel,
-            diffusion,
-            scratch: Scratch::default(),
-            recent: Recent::default(),
-            count: Vec::new(),
-        };
-        let mut fraction = vec![0.0; operator.cells()];
-        operator.spread(solid_volume, &mut fraction);
+        let scratch = Scratch::default();
+        let total: f64 = solid.iter().sum();
+        let mut fraction = solid;
+        let mut moved = 0.0;
+        if let Some(kernel) = &kernel {
+            let before = fraction.clone();
+            kernel.apply(&mut fraction);
+            let changes = fraction.iter().zip(&before);
+            let changed: f64 = changes.map(|(after, before)| (after - before).abs()).sum();
+            moved = 0.5 * changed / total;
+        }
+        if let Some(diffusion) = diffusion.as_ref().filter(|_| total > 0.0) {
+            diffusion.apply(&mut fraction, &scratch);
+        }
         for (fraction, volume) in fraction.iter_mut().zip(cell_volume) {
             // F keeps to zero within 1e-12 where nothing is.
             *fraction = (*fraction / volume).max(0.0);
         }
-        operator.solid_fraction = fraction;
-        operator
+        Self {
+            weights,
+            kernel,
+            diffusion,
+            solid_fraction: fraction,
+            moved,
+            scratch,
+            recent: Recent::default(),
+            count: Vec::new(),
+        }
     }
 
     /// The same operator for rows that stand for several real particles: what is spread is given for one of them and
@@ -78,6 +92,12 @@ impl Operator {
     /// Solid volume fraction α of each cell: W applied to the particles' solid volumes, over V.
     pub fn solid_fraction(&self) -> &[f64] {
         &self.solid_fraction
+    }
+
+    /// Share of the solid volume that the smoother S moved out of cells above the threshold; the diffusion F, which moves
+    /// more, is not in it.
+    pub fn moved_share(&self) -> f64 {
+        self.moved
     }
 
     /// Sweeps of the smoother, or V-cycles of the multigrid that stands for them; 0 where no cell was

@@ -28,6 +28,13 @@ pub fn check(setup: &ParticleSetup) -> Result<(), NativeError> {
             count,
         ));
     }
+    if !setup.angular_velocity.is_empty() && setup.angular_velocity.len() != count {
+        return Err(length(
+            "the list of angular velocities",
+            setup.angular_velocity.len(),
+            count,
+        ));
+    }
     if !setup.weight.is_empty() && setup.weight.len() != count {
         return Err(length("the list of weights", setup.weight.len(), count));
     }
@@ -86,6 +93,14 @@ fn contact(contacts: &Contacts, population: &[u32]) -> Result<(), NativeError> {
     } = contacts.law.force
     {
         positive("the characteristic speed", speed, "m/s", motion)?;
+    }
+    if let ContactForce::LinearSprings {
+        stiffness,
+        tangential_ratio,
+    } = contacts.law.force
+    {
+        positive("the stiffness", stiffness, "N/m", motion)?;
+        positive("the ratio of stiffnesses", tangential_ratio, "", motion)?;
     }
     let materials = contacts.materials.len();
     for (k, material) in contacts.materials.iter().enumerate() {

@@ -88,6 +88,9 @@ impl NativeParticles {
             if !setup.velocity.is_empty() {
                 bed.velocity.clone_from(&setup.velocity);
             }
+            if !setup.angular_velocity.is_empty() {
+                bed.angular_velocity.clone_from(&setup.angular_velocity);
+            }
             bed.engine = Some(Box::new(Engine::new(Contacts::clone(contacts))));
             bed.hand_over((Vec::new(), Vec::new()))
                 .map_err(|stray| bed.outside(stray))?;

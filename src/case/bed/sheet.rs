@@ -24,6 +24,10 @@ pub(in crate::case) struct Entry {
     pub diameter: Option<f64>,
     /// Its temperature in K, where the file states one.
     pub temperature: Option<f64>,
+    /// Its velocity in m/s, where the file states one.
+    pub velocity: Option<Vec3>,
+    /// Its angular velocity in rad/s, where the file states one.
+    pub spin: Option<Vec3>,
 }
 
 /// Where a particle stands in its file.
@@ -59,6 +63,18 @@ pub(super) struct Sheet {
 /// Names under which programs write the same thing, the first one that is there counts.
 const AXES: [[&str; 2]; 3] = [["x", "points:0"], ["y", "points:1"], ["z", "points:2"]];
 
+const VELOCITY: [[&str; 3]; 3] = [
+    ["vx", "velocity:0", "v:0"],
+    ["vy", "velocity:1", "v:1"],
+    ["vz", "velocity:2", "v:2"],
+];
+
+const SPIN: [[&str; 3]; 3] = [
+    ["omegax", "angular_velocity:0", "omega:0"],
+    ["omegay", "angular_velocity:1", "omega:1"],
+    ["omegaz", "angular_velocity:2", "omega:2"],
+];
+
 const DIAMETER: [&str; 1] = ["diameter"];
 
 const RADIUS: [&str; 1] = ["radius"];
@@ -78,6 +94,12 @@ impl Sheet {
         })
     }
 
+    /// Three columns, where all are there.
+    fn vectors(&self, names: [[&str; 3]; 3]) -> Option<[&[f64]; 3]> {
+        let [x, y, z] = names.map(|names| self.column(&names));
+        Some([x?, y?, z?])
+    }
+
     fn row(&self, index: usize) -> Row {
         match self.lines.get(index) {
             Some(&line) => Row::Line(line),
@@ -89,8 +111,10 @@ impl Sheet {
         let [x, y, z] = AXES.map(|names| self.column(&names));
         let (Some(x), Some(y), Some(z)) = (x, y, z) else {
             let names: Vec<&str> = self.columns.iter().map(|(name, _)| name.as_str()).collect();
+            let unnamed = names.iter().all(|name| name.is_empty());
             let what = match names[..] {
                 [] => "it is empty; its first line names the columns: x, y and z (in m)".into(),
+                _ if unnamed => "its first line names no column; write x, y and z (in m)".into(),
                 _ => format!(
                     "it has the columns {}, and needs x, y and z (in m)",
                     names.join(", ")
@@ -117,6 +141,8 @@ impl Sheet {
         let own = self.column(&DIAMETER).map(|list| (list, 1.0));
         let own = own.or_else(|| self.column(&RADIUS).map(|list| (list, 2.0)));
         let temperature = self.column(&TEMPERATURE);
+        let velocity = self.vectors(VELOCITY);
+        let spin = self.vectors(SPIN);
         let positive = |what: &str, index: usize, value: f64| {
             if value.is_finite() && value > 0.0 {
                 return Ok(value);
@@ -135,11 +161,25 @@ impl Sheet {
                 positive(what, index, list[index]).map(|value| factor * value)
             });
             let temperature = temperature.map(|list| positive("temperature", index, list[index]));
+            let vector = |what: &str, lists: [&[f64]; 3]| {
+                let value = Vec3::from(lists.map(|list| list[index]));
+                match value.iter().all(|one| one.is_finite()) {
+                    true => Ok(value),
+                    false => {
+                        let what = format!("a component of the {what} is not a finite number");
+                        Err((Some(self.row(index)), what))
+                    }
+                }
+            };
+            let velocity = velocity.map(|lists| vector("velocity", lists));
+            let spin = spin.map(|lists| vector("angular velocity", lists));
             Ok(Entry {
                 row: self.row(index),
                 centre,
                 diameter: diameter.transpose()?,
                 temperature: temperature.transpose()?,
+                velocity: velocity.transpose()?,
+                spin: spin.transpose()?,
             })
         };
         order.into_iter().map(entry).collect()

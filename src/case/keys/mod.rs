@@ -2,6 +2,7 @@
 //! whether it must be there, what holds without it, what it means and an example. The reader, the JSON schema and
 //! the reference in the docs take them from here; a reader that asks for what is not declared is refused.
 
+mod agreement;
 mod below;
 mod contacts;
 mod coupling;

@@ -14,6 +14,7 @@ const HELD: &[Key] = &[
 pub(super) const MOTION: &[Key] = &[
     key("kind", Choice(words::<MotionKind>), Required, "Fluidised beds, drums and sprays move in real time, and AF is 1; the slow motion of shafts and moving beds is the same at any pace, and may be accelerated.", "\"real-time\""),
     key("motion_step", Number(D::TIME, Positive), Without("a whole share of the window, at most 15 % of the time of a Rayleigh wave and 5 % of the shortest impact"), "Time step of the contacts in motion time.", "\"5 us\""),
+    key("long_step", Truth, Default("false"), "Whether a `motion_step` that is too long for the contacts is warned of in place of refused: above half the time of a Rayleigh wave, or a quarter of the shortest impact.", "true"),
     key("contact", Law(laws::contact, &[]), Required, "Force of an elastic contact with damping and friction; LIGGGHTS has `hertz-mindlin` and `linear`.", "{ law = \"hertz-mindlin\" }"),
     key("attractive_damping", Truth, Default("true"), "Whether damping may pull separating spheres together: true gives the stated restitution, false cuts the force at zero.", "false"),
     key("rolling", Law(laws::rolling, &[]), Required, "Resistance to rolling.", "{ law = \"none\" }"),

@@ -1,5 +1,6 @@
 //! Keys of the file, and of `time`.
 
+use super::agreement::AGREEMENT;
 use super::contacts::CONTACTS;
 use super::coupling::COUPLING;
 use super::external::{EXTERNAL, LIGGGHTS, OPENFOAM};
@@ -40,6 +41,7 @@ pub(in crate::case) const ROOT: &[Key] = &[
     key("output", Table(OUTPUT), Required, "What is written.", "[output]"),
     key("probes", Tables(PROBES), Without("none"), "Points at which fields are sampled with every snapshot, into `results.h5` and `probes/`.", "[[probes]]"),
     key("quantities", Tables(QUANTITIES), Without("none"), "Quantities of interest.", "[[quantities]]"),
+    key("agreement", Table(AGREEMENT), Without("windows that converge, no bands of fields"), "What `compare` judges beside quantities.", "[agreement]"),
 ];
 
 #[rustfmt::skip]

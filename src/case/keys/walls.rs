@@ -30,6 +30,18 @@ const ROTATING: &[Key] = &[
 ];
 
 #[rustfmt::skip]
+const MOVED: &[Key] = &[
+    key("direction", Vector(D::NONE), Required, "Direction in which it is moved; of any length.", "\"1 0 0\""),
+    key("distance", Schedule(D::LENGTH, Any), Required, "Distance from where it starts over process time: linear between entries, constant outside them, 0 at the start of the run.", "[[\"5 s\", \"0 mm\"], [\"6 s\", \"40 mm\"]]"),
+];
+
+#[rustfmt::skip]
+const OSCILLATING: &[Key] = &[
+    key("amplitude", Vector(D::LENGTH), Required, "Largest displacement A; the wall is displaced by A sin(2 π t/T).", "\"0 0 2 mm\""),
+    key("period", Number(D::TIME, Positive), Required, "Period T in process time.", "\"50 ms\""),
+];
+
+#[rustfmt::skip]
 pub(super) const WALLS: &[Key] = &[
     key("name", Text, Required, "Name.", "\"container\""),
     key("material", Text, Required, "Its material.", "\"steel\""),
@@ -39,7 +51,9 @@ pub(super) const WALLS: &[Key] = &[
     key("stl", Path, OneOf, "Triangles of an STL file, ASCII or binary; both their sides are wall. One of `patches`, `plane`, `cylinder`, `cone`, `stl`.", "\"wall.stl\""),
     key("patches", Texts(0), OneOf, "The sides of the generated mesh that carry these patches, the round side of a cylinder being the circle of its diameter; of a `polymesh` the faces of these patches, as triangles. One of `patches`, `plane`, `cylinder`, `cone`, `stl`.", "[\"side\", \"bottom\"]"),
     key("scale", Number(D::NONE, Positive), Default("1"), "Length in m of a unit of the STL file.", "1e-3"),
-    key("velocity", Vector(D::VELOCITY), Without("at rest"), "Velocity of the wall. Not with `rotating`.", "\"0 0 0.1 m/s\""),
-    key("rotating", Table(ROTATING), Without("at rest"), "The wall turns about an axis. Not with `velocity`.", "{ point = \"0 0 0 m\", angular_velocity = \"0 0 3 rad/s\" }"),
+    key("velocity", Vector(D::VELOCITY), Without("at rest"), "Velocity of the wall. One of `velocity`, `rotating`, `moved`, `oscillating`.", "\"0 0 0.1 m/s\""),
+    key("rotating", Table(ROTATING), Without("at rest"), "The wall turns about an axis. One of `velocity`, `rotating`, `moved`, `oscillating`.", "{ point = \"0 0 0 m\", angular_velocity = \"0 0 3 rad/s\" }"),
+    key("moved", Table(MOVED), Without("at rest"), "The wall is moved along a line by a schedule, as gates and dampers are; not in LIGGGHTS, nor with `motion.held`. One of `velocity`, `rotating`, `moved`, `oscillating`.", "{ direction = \"1 0 0\", distance = [[\"5 s\", \"0 mm\"], [\"6 s\", \"40 mm\"]] }"),
+    key("oscillating", Table(OSCILLATING), Without("at rest"), "The wall oscillates, as vibrated floors do; not in LIGGGHTS, nor with `motion.held`. One of `velocity`, `rotating`, `moved`, `oscillating`.", "{ amplitude = \"0 0 2 mm\", period = \"50 ms\" }"),
     key("temperature", Schedule(D::TEMPERATURE, Positive), Without("adiabatic"), "Temperature of the wall, for conduction and radiation between it and particles. A wall without it conducts nothing and reflects radiation as a mirror.", "\"400 K\""),
 ];

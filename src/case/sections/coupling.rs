@@ -116,8 +116,10 @@ pub(super) fn check_script(
         section.fail("template", rule, help);
     }
     if let Err(error) = ScriptTemplate::read(path, Vec::new(), Vec::new()) {
-        let (rule, help) = error.parts();
-        section.fail("template", format!("cannot be used: {rule}"), &help);
+        for finding in error.findings() {
+            let (rule, help) = finding.parts();
+            section.fail("template", format!("cannot be used: {rule}"), &help);
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! The sections of a case file, one file each.
 
+mod agreement;
 mod chemistry;
 mod common;
 mod composition;
@@ -112,6 +113,7 @@ pub(super) fn case(
     if let (Some(gas), Some(output)) = (&gas, &output) {
         turbulence::fits(root, &gas.setup.turbulence, gas.held, output);
     }
+    let agreement = agreement::agreement(root, output.as_ref());
     let probes = probes::probes(root);
     let quantities = {
         let species = gas.as_ref().map(|gas| gas.setup.properties.species());
@@ -190,5 +192,6 @@ pub(super) fn case(
         output: output?,
         probes,
         quantities,
+        agreement,
     })
 }

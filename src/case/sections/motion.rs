@@ -13,6 +13,7 @@ pub(super) fn motion(root: &TableReader<'_>, time: Option<&TimeSpec>) -> Option<
     let known = section.laws();
     let kind = section.choice("kind");
     let step = section.number("motion_step");
+    let long_step = section.truth("long_step");
     let force = section.plain_law("contact", &known.contact);
     let attractive = section.truth("attractive_damping");
     let rolling = section.plain_law("rolling", &known.rolling);
@@ -22,6 +23,7 @@ pub(super) fn motion(root: &TableReader<'_>, time: Option<&TimeSpec>) -> Option<
     Some(FreeMotion {
         kind: kind?,
         step,
+        long_step: long_step?,
         law: ContactLaw {
             force: *force?.make(),
             attractive_damping: attractive?,

@@ -103,7 +103,11 @@ fn quantity(table: &TableReader<'_>, known: &Known<'_>) -> Option<Quantity> {
 }
 
 /// A band such as "5 %" or "0.5 K".
-fn band(table: &TableReader<'_>, key: &str, dimension: Dimension) -> Option<ToleranceBand> {
+pub(super) fn band(
+    table: &TableReader<'_>,
+    key: &str,
+    dimension: Dimension,
+) -> Option<ToleranceBand> {
     let text = table.text(key)?;
     let made = match difference(text) {
         Ok((number, _)) if number >= 0.0 && text.trim_end().ends_with('%') => {

@@ -62,7 +62,7 @@ pub(super) fn walls(
                 name,
                 material,
                 shape,
-                motion,
+                motion: motion.clone(),
             };
             all.push((wall, temperature.clone()));
         }
@@ -280,13 +280,39 @@ fn motion(table: &TableReader<'_>) -> WallMotion {
             angular_velocity: speed?.into(),
         })
     });
-    match (translating, rotating) {
-        (Some(_), Some(_)) => {
-            table.fail_whole("has `velocity` and `rotating`", "write one of the two");
-            WallMotion::Still
+    let moved = table.table("moved").and_then(|moved| {
+        let direction = direction(&moved, "direction");
+        let distance = moved.schedule("distance");
+        if distance
+            .as_ref()
+            .is_some_and(|distance| distance.at(0.0) != 0.0)
+        {
+            let help = "begin with a distance of 0: the wall starts where its shape is stated";
+            moved.fail("distance", "is not 0 at the start of the run", help);
         }
-        (Some(velocity), None) => WallMotion::Translating(velocity),
-        (None, Some(rotating)) => rotating,
-        (None, None) => WallMotion::Still,
+        moved.finish();
+        Some(WallMotion::Scheduled {
+            direction: direction?,
+            distance: distance?.0,
+        })
+    });
+    let oscillating = table.table("oscillating").and_then(|oscillating| {
+        let amplitude = oscillating.vector("amplitude");
+        let period = oscillating.number("period");
+        oscillating.finish();
+        Some(WallMotion::Oscillating {
+            amplitude: amplitude?.into(),
+            period: period?,
+        })
+    });
+    let translating = translating.map(WallMotion::Translating);
+    let mut stated = [translating, rotating, moved, oscillating]
+        .into_iter()
+        .flatten();
+    let first = stated.next();
+    if stated.next().is_some() {
+        let rule = "has several of `velocity`, `rotating`, `moved` and `oscillating`";
+        table.fail_whole(rule, "write one of them");
     }
+    first.unwrap_or_default()
 }

@@ -23,6 +23,11 @@ pub enum ElasticLaw {
         /// Characteristic speed of impact in m/s.
         speed: f64,
     },
+    /// A linear spring of a stiffness in N/m.
+    Springs {
+        /// Stiffness in N/m.
+        stiffness: f64,
+    },
 }
 
 /// The overlap by which a contact conducts.
@@ -94,6 +99,7 @@ impl ContactArea {
                     ElasticLaw::Linear { speed } => {
                         Linear { speed }.prepare(&pair, effective, mass) * overlap
                     }
+                    ElasticLaw::Springs { stiffness } => stiffness * overlap,
                 })
             }
             Self::Load { force, within } if overlap >= -within => hertz(force),

@@ -7,6 +7,7 @@ mod cohesion;
 mod friction;
 mod hertz_mindlin;
 mod linear;
+mod linear_springs;
 mod rolling;
 mod spring_slider_dashpot;
 pub mod time_step;
@@ -15,6 +16,7 @@ pub use cohesion::{CohesionArea, sjkr};
 pub use friction::{Tangential, friction};
 pub use hertz_mindlin::HertzMindlin;
 pub use linear::Linear;
+pub use linear_springs::LinearSprings;
 pub use rolling::{RollingSpring, constant_torque, elastic_plastic};
 pub use spring_slider_dashpot::SpringSliderDashpot;
 

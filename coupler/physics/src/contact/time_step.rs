@@ -36,6 +36,15 @@ pub fn hertz_overlap(radius: f64, mass: f64, young: f64, speed: f64) -> f64 {
     (15.0 * mass * speed * speed / (16.0 * young * radius.sqrt())).powf(0.4)
 }
 
+/// Duration in s of the elastic collision of two spheres by a linear spring: effective mass in kg, stiffness in N/m.
+///
+/// t = π √(m*/k)
+///
+/// Source: half a period of the harmonic oscillator.
+pub fn linear_collision(mass: f64, stiffness: f64) -> f64 {
+    PI * (mass / stiffness).sqrt()
+}
+
 /// 2 ∫₀¹ dx/√(1 − x^2.5) (15/16)^(2/5) = 2.943 275 18 · (15/16)^(2/5).
 const COLLISION: f64 = 2.868_265_70;
 
@@ -46,6 +55,8 @@ mod tests {
     #[test]
     fn agree_with_independent_values() {
         // glass-like: R = 1 mm, ρ = 2500, E = 50 MPa, ν = 0.22: G = 2.0491803e7, √(ρ/G) = 1.1045361e-2
+        let linear = linear_collision(1e-5, 1000.0);
+        assert!((linear / 3.141_592_65e-4 - 1.0).abs() < 1e-8, "{linear}");
         let time = rayleigh(1e-3, 2500.0, 5e7, 0.22);
         assert!((time / 3.802_817_5e-5 - 1.0).abs() < 1e-5, "{time}");
         let unit = hertz_collision(1.0, 1.0, 1.0, 1.0);

@@ -8,7 +8,9 @@ use std::iter::repeat;
 
 use calcine_coupler::motion::{ContactForce, Contacts};
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::physics::contact::{ContactModel, HertzMindlin, Linear, SpringSliderDashpot};
+use calcine_coupler::physics::contact::{
+    ContactModel, HertzMindlin, Linear, LinearSprings, SpringSliderDashpot,
+};
 use rayon::prelude::*;
 
 use super::block::{Block, size};
@@ -422,6 +424,16 @@ impl Engine {
                     speed: characteristic_speed,
                 },
                 true,
+            ),
+            ContactForce::LinearSprings {
+                stiffness,
+                tangential_ratio,
+            } => self.find_with(
+                &LinearSprings {
+                    stiffness,
+                    tangential_ratio,
+                },
+                false,
             ),
         }
     }

@@ -3,7 +3,9 @@
 use std::iter::repeat;
 
 use calcine_coupler::motion::ContactForce;
-use calcine_coupler::physics::contact::{ContactModel, HertzMindlin, Linear, SpringSliderDashpot};
+use calcine_coupler::physics::contact::{
+    ContactModel, HertzMindlin, Linear, LinearSprings, SpringSliderDashpot,
+};
 use rayon::prelude::*;
 
 use super::super::block::{Block, size};
@@ -39,6 +41,17 @@ impl Engine {
             ContactForce::Linear {
                 characteristic_speed: speed,
             } => self.pass_with(&Linear { speed }, step, moves),
+            ContactForce::LinearSprings {
+                stiffness,
+                tangential_ratio,
+            } => self.pass_with(
+                &LinearSprings {
+                    stiffness,
+                    tangential_ratio,
+                },
+                step,
+                moves,
+            ),
         }
     }
 

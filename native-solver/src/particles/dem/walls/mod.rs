@@ -28,6 +28,8 @@ pub struct WallBody {
     motion: WallMotion,
     turn: Matrix3<f64>,
     shift: Vec3,
+    /// Velocity in m/s of a wall that does not turn.
+    rate: Vec3,
     /// Largest speed in m/s at which its surface comes nearer to a place within the bounds.
     pub speed: f64,
 }
@@ -38,18 +40,17 @@ impl WallBody {
         Self {
             shape: wall.shape.clone(),
             material: wall.material as u32,
-            motion: wall.motion,
+            motion: wall.motion.clone(),
             turn: Matrix3::identity(),
             shift: Vec3::zeros(),
+            rate: wall.motion.displacement(0.0).1,
             speed: speed(wall, bounds),
         }
     }
 
     /// Moves it to where it is at a motion time in s.
     pub fn pose(&mut self, time: f64) {
-        match self.motion {
-            WallMotion::Still => {}
-            WallMotion::Translating(velocity) => self.shift = velocity * time,
+        match &self.motion {
             WallMotion::Rotating {
                 point,
                 angular_velocity,
@@ -57,16 +58,18 @@ impl WallBody {
                 self.turn = *Rotation3::new(angular_velocity * time).matrix();
                 self.shift = point - self.turn * point;
             }
+            WallMotion::Still => {}
+            moving => (self.shift, self.rate) = moving.displacement(time),
         }
     }
 
     /// A place in the wall's own frame.
     #[inline]
     pub fn own(&self, place: Vec3) -> Vec3 {
-        match self.motion {
+        match &self.motion {
             WallMotion::Still => place,
-            WallMotion::Translating(_) => place - self.shift,
             WallMotion::Rotating { .. } => self.turn.tr_mul(&(place - self.shift)),
+            _ => place - self.shift,
         }
     }
 
@@ -79,7 +82,7 @@ impl WallBody {
     /// A direction of the wall's own frame as seen from outside.
     #[inline]
     pub fn outside(&self, direction: Vec3) -> Vec3 {
-        match self.motion {
+        match &self.motion {
             WallMotion::Rotating { .. } => self.turn * direction,
             _ => direction,
         }
@@ -88,23 +91,22 @@ impl WallBody {
     /// Velocity in m/s of its surface at a place.
     #[inline]
     pub fn velocity(&self, place: Vec3) -> Vec3 {
-        match self.motion {
-            WallMotion::Still => Vec3::zeros(),
-            WallMotion::Translating(velocity) => velocity,
+        match &self.motion {
             WallMotion::Rotating {
                 point,
                 angular_velocity,
             } => angular_velocity.cross(&(place - point)),
+            _ => self.rate,
         }
     }
 
     /// Angular velocity in rad/s.
     #[inline]
     pub fn spin(&self) -> Vec3 {
-        match self.motion {
+        match &self.motion {
             WallMotion::Rotating {
                 angular_velocity, ..
-            } => angular_velocity,
+            } => *angular_velocity,
             _ => Vec3::zeros(),
         }
     }
@@ -112,13 +114,12 @@ impl WallBody {
 
 /// The largest speed of the surface where particles can be; zero for one that turns within itself.
 fn speed(wall: &Wall, (low, high): (Vec3, Vec3)) -> f64 {
-    match wall.motion {
-        WallMotion::Still => 0.0,
-        WallMotion::Translating(velocity) => velocity.norm(),
+    match &wall.motion {
         WallMotion::Rotating {
             point,
             angular_velocity,
         } => {
+            let (point, angular_velocity) = (*point, *angular_velocity);
             let axial = |axis: Vec3, on_axis: Vec3| {
                 axis.cross(&angular_velocity).norm() <= 1e-12 * angular_velocity.norm()
                     && axis.cross(&(on_axis - point)).norm() <= 1e-12 * (high - low).norm()
@@ -142,5 +143,6 @@ fn speed(wall: &Wall, (low, high): (Vec3, Vec3)) -> f64 {
             let far = (low - point).abs().sup(&(high - point).abs());
             angular_velocity.norm() * far.norm()
         }
+        other => other.largest_speed(),
     }
 }
