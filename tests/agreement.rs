@@ -208,7 +208,9 @@ fn two_stages_in_time_agree_in_a_closed_box_a_bed_with_a_mixture_and_an_open_box
 
 #[test]
 fn a_mixture_that_comes_back_in_through_an_outlet() {
-    agree_on(&cases::backflow(), &CLOSE);
+    // One of OpenFOAM's windows ends at its limit as the flow turns.
+    let text = cases::backflow() + "\n[agreement]\nunconverged = 0.02\n";
+    agree_on(&text, &CLOSE);
 }
 
 #[test]
