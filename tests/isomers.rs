@@ -245,6 +245,7 @@ fn a_cell_of_cold_gas_does_not_ignite_where_its_reactor_does_not() {
                 "inlet = { superficial_velocity = \"0.1 m/s\", temperature = \"600 K\", composition = { mass = { A = 0.15, X = 0.85 } } }",
                 OUTLET,
             ],
+            transport: STILL,
         };
         let directory = tempfile::tempdir().unwrap();
         for gas in ["native", "openfoam"] {
