@@ -283,7 +283,7 @@ fn particles_that_cannot_be_placed_are_told_with_the_line_of_the_case() {
         (
             "particles[0].diameter=60 mm".into(),
             "diameter = \"60 mm\"",
-            "spheres of 0.06 m do not fit between walls that are 0.0496 m apart",
+            "spheres of 0.06 m do not fit between walls that are 0.0500 m apart",
             "take smaller spheres or a wider vessel",
         ),
         (

@@ -30,12 +30,11 @@ pub(super) fn all(case: &Case) -> Vec<String> {
     all.extend(orders(case));
     all.extend(built_in(case));
     all.extend(prescribed(case));
-    all.extend(pores(case));
     all
 }
 
 /// Eddies that the flow through pores makes to grow over a fraction of a particle: cells do not resolve it.
-fn pores(case: &Case) -> Option<String> {
+pub(super) fn pores(case: &Case) -> Option<String> {
     (case.laws.bed_eddies.entry().name == "pedras-de-lemos").then(|| {
         "`gas.turbulence.bed`: eddies by pedras-de-lemos grow over √K/(c_k ε), about a third of a diameter, which cells that are as wide as \
          particles do not resolve: the finer the cells, the more eddies the bed has; compare meshes, or take nakayama-kuwahara"

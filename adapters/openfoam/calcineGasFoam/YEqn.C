@@ -17,6 +17,27 @@
 #include "fvm.H"
 #include "fvc.H"
 
+// The last species is what the others leave, their solvers' errors included. Where it differs by less than the tolerance it limits nobody.
+void Foam::calcine::gas::limitNobodyByNoise(surfaceScalarField& limiter, const volScalarField& Y) const
+{
+    const surfaceScalarField difference(fvc::snGrad(Y)/mesh_.nonOrthDeltaCoeffs());
+    const scalar noise = max(sqr(outerTolerance_), VSMALL);
+    const auto blend = [&](scalarField& values, const scalarField& differences)
+    {
+        forAll(values, i)
+        {
+            const scalar square = sqr(differences[i]), share = square/(square + noise);
+            values[i] = values[i]*share + 2*(1 - share);
+        }
+    };
+    blend(limiter.primitiveFieldRef(), difference.primitiveField());
+    forAll(limiter.boundaryField(), patchi)
+    {
+        blend(limiter.boundaryFieldRef()[patchi], difference.boundaryField()[patchi]);
+    }
+}
+
+
 Foam::tmp<Foam::surfaceScalarField> Foam::calcine::gas::speciesLimiter() const
 {
     tmp<surfaceScalarField> least;
@@ -34,15 +55,10 @@ Foam::tmp<Foam::surfaceScalarField> Foam::calcine::gas::speciesLimiter() const
         (
             limitedSurfaceInterpolationScheme<scalar>::New(mesh_, phi_, scheme)().limiter(Y)
         );
-        // Differences well below the tolerance limit nobody, so that a field that is uniform but for what a solver leaves does not steer the
-        // others.
-        surfaceScalarField square(sqr(fvc::snGrad(Y)/mesh_.nonOrthDeltaCoeffs()));
-        square.setOriented(false);
-        const surfaceScalarField share
-        (
-            square/(square + sqr(dimensionedScalar(max(outerTolerance_, VSMALL))))
-        );
-        one = tmp<surfaceScalarField>(one()*share + scalar(2)*(scalar(1) - share));
+        if (&Y == &species_->Y().last())
+        {
+            limitNobodyByNoise(one.ref(), Y);
+        }
         least = least.valid() ? min(least, one) : one;
     }
     return least;

@@ -156,7 +156,7 @@ void Foam::calcine::gas::bringSpecies
         result.linearIterations += speciesSolver_->solve(matrix, given[k], target, inert).iterations;
         for (const label celli : lacking)
         {
-            Y[k].primitiveFieldRef()[celli] = inert.primitiveField()[celli];
+            Y[k].primitiveFieldRef()[celli] = max(inert.primitiveField()[celli], scalar(0));
         }
     }
 }
@@ -177,13 +177,14 @@ Foam::labelList Foam::calcine::gas::giveElements(const List<scalarField>& masses
         {
             fractions[k] = Y[k].primitiveField()[celli];
         }
-        const auto lack = [&]
+        // Less than nothing of an element, which corrections of diffusion leave, no species can have.
+        const auto lack = [&](bool missing)
         {
             reactions_->elementsOf(fractions, found);
             scalar worst = 0;
             forAll(masses, e)
             {
-                worst = max(worst, mag(wanted[e] - found[e]));
+                worst = max(worst, missing ? wanted[e] - found[e] : mag(wanted[e] - found[e]));
             }
             return worst;
         };
@@ -191,7 +192,7 @@ Foam::labelList Foam::calcine::gas::giveElements(const List<scalarField>& masses
         {
             wanted[e] = masses[e][celli];
         }
-        if (lack() < noLack)
+        if (lack(false) < noLack)
         {
             continue;
         }
@@ -206,7 +207,7 @@ Foam::labelList Foam::calcine::gas::giveElements(const List<scalarField>& masses
             wanted[e] -= found[e];
         }
         reactions_->restoreElements(wanted, fractions);
-        if (lack() >= noLack)
+        if (lack(true) >= noLack)
         {
             lacking.append(celli);
         }

@@ -40,6 +40,8 @@ use crate::numerics::parallel::{fill, largest};
 
 /// Cells that a thread takes at a time at least: a reactor costs some ten to hundred microseconds.
 const GRAIN: usize = 4;
+/// What the elements of a cell may be off by at the end of a correction, as a share of its gas.
+const ELEMENTS_KEPT: f64 = 1e-14;
 /// Share of what leaves a cell that is round-off of what diffuses through it.
 const ROUND_OFF: f64 = 1e-12;
 /// A reactor is not run again while what enters has changed by less than this share of the outer tolerance.
@@ -260,11 +262,14 @@ impl CellChemistry {
             if !own.iter().any(|y| *y < 0.0) {
                 continue;
             }
-            any = true;
             let mut positive = [0.0; MOST_SPECIES];
             let positive = &mut positive[..species];
             positive.copy_from_slice(own);
-            elements.restore(&elements.of(own), positive);
+            // Elements of which there is less than nothing no species can give back.
+            if elements.restore(&elements.of(own), positive) > ELEMENTS_KEPT {
+                continue;
+            }
+            any = true;
             for (made, (after, before)) in made.iter_mut().zip(positive.iter().zip(own.iter())) {
                 *made += diagonal * (after - before);
             }

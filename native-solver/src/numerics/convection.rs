@@ -57,8 +57,8 @@ pub fn beyond_upwind(
     }
 }
 
-/// The limiter ψ of an internal face for a scalar, in [0, 2]. Differences Δ well below `noise` limit nobody, so that a field that is
-/// uniform but for what a solver leaves does not steer others that share its limiter: ψ s + 2 (1 − s), s = Δ²/(Δ² + noise²).
+/// The limiter ψ of an internal face for a scalar, in [0, 2]. Where there is noise, differences Δ well below it limit nobody, so that a
+/// field that is uniform but for what solvers leave does not steer others that share its limiter: ψ s + 2 (1 − s), s = Δ²/(Δ² + noise²).
 #[inline]
 pub fn limiter(
     grid: &MeshGraph,
@@ -69,15 +69,19 @@ pub fn limiter(
 ) -> f64 {
     let (up, down, _) = sides(grid, index, flux);
     let difference = values[down] - values[up];
-    if difference == 0.0 {
-        return 2.0;
-    }
     let along = gradients[up].dot(&(grid.centre[down] - grid.centre[up]));
     let other = 2.0 * along - difference;
-    let limiting = match other * difference > 0.0 {
-        true => 2.0 * other / (other + difference),
-        false => 0.0,
+    let limiting = if other * difference > 0.0 {
+        2.0 * other / (other + difference)
+    } else if difference == 0.0 && other == 0.0 {
+        // A uniform field limits nobody.
+        2.0
+    } else {
+        0.0
     };
+    if noise == 0.0 {
+        return limiting;
+    }
     let square = difference * difference;
     let share = square / (square + noise * noise);
     limiting * share + 2.0 * (1.0 - share)

@@ -1,7 +1,7 @@
 //! Keys of `particles`, `feeds` and `outlets`.
 
 use super::prelude::*;
-use super::zone::{ZONE, ZONE_BOX, ZONE_CYLINDER};
+use super::zone::{BOX, CYLINDER, ZONE};
 
 #[rustfmt::skip]
 const DIAMETER_NORMAL: &[Key] = &[
@@ -46,8 +46,8 @@ const PLACE_GRID: &[Key] = &[
 const PLACE_REGION: &[Key] = &[
     key("from", Number(D::LENGTH, Any), Without("needed for a layer of a generated mesh, with `to`"), "Lowest z.", "\"60 mm\""),
     key("to", Number(D::LENGTH, Any), Without("needed for a layer of a generated mesh, with `from`"), "Highest z.", "\"90 mm\""),
-    ZONE_BOX,
-    ZONE_CYLINDER,
+    key("box", Table(BOX), Without("either this, `cylinder`, or `from` and `to`"), "A box along the axes.", "{ from = \"0 0 0 mm\", to = \"10 10 50 mm\" }"),
+    key("cylinder", Table(CYLINDER), Without("either this, `box`, or `from` and `to`"), "An upright cylinder.", "{ from = \"0 0 0 mm\", to = \"0 0 50 mm\", radius = \"8 mm\" }"),
 ];
 
 #[rustfmt::skip]

@@ -14,13 +14,13 @@ pub(super) const ZONE_CYLINDER: Key =
     key("cylinder", Table(CYLINDER), OneOf, "A cylinder of any direction. Either this or `box`.", "{ from = \"0 0 0 mm\", to = \"0 0 50 mm\", radius = \"8 mm\" }");
 
 #[rustfmt::skip]
-const BOX: &[Key] = &[
+pub(super) const BOX: &[Key] = &[
     key("from", Vector(D::LENGTH), Required, "Corner with the smallest coordinates.", "\"0 0 0 mm\""),
     key("to", Vector(D::LENGTH), Required, "Corner with the largest coordinates.", "\"10 10 50 mm\""),
 ];
 
 #[rustfmt::skip]
-const CYLINDER: &[Key] = &[
+pub(super) const CYLINDER: &[Key] = &[
     key("from", Vector(D::LENGTH), Required, "Centre of one end.", "\"0 0 0 mm\""),
     key("to", Vector(D::LENGTH), Required, "Centre of the other end.", "\"0 0 50 mm\""),
     key("radius", Number(D::LENGTH, Positive), Required, "Radius.", "\"8 mm\""),

@@ -4,7 +4,7 @@ use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::packing::Sizes;
 use calcine_coupler::physics::Vec3;
 
-use super::zone::zone;
+use super::zone::zone_of;
 use crate::case::model::{MeshSpec, PackingSection, PackingSpace, PlacementSpec, RandomAmount};
 use crate::case::table::TableReader;
 use crate::case::units::shown;
@@ -87,7 +87,10 @@ fn space(
         (true, None) => layer(place, "height", sizes, mesh, |low| {
             Some([low, low + height?])
         }),
-        _ => {
+        (_, region) => {
+            if let Some(region) = region {
+                let _heights = [region.number("from"), region.number("to")];
+            }
             let rule = "needs exactly one of height and region with a packing";
             place.fail_whole(rule, "for example height = \"145 mm\"");
             None
@@ -177,7 +180,15 @@ fn of_region(
         region.fail_whole(rule, "write `from` and `to`, or a `box`, or a `cylinder`");
         return None;
     }
-    let (space, [low, high]) = match zone(region)? {
+    let kind = match (region.has("box"), region.has("cylinder")) {
+        (true, true) => {
+            region.fail_whole("has two shapes", "write a `box` or a `cylinder`");
+            return None;
+        }
+        (true, false) => "box",
+        _ => "cylinder",
+    };
+    let (space, [low, high]) = match zone_of(region, kind)? {
         Zone::Box { low, high } => {
             let size = high - low;
             let section = PackingSection::Rectangle([size.x, size.y]);

@@ -10,7 +10,11 @@ use crate::case::units::shown;
 
 /// A zone from the keys of its own table: `box` or `cylinder`.
 pub(super) fn zone(table: &TableReader<'_>) -> Option<Zone> {
-    let kind = table.exactly_one()?;
+    zone_of(table, table.exactly_one()?)
+}
+
+/// The zone of one kind, `box` or `cylinder`.
+pub(super) fn zone_of(table: &TableReader<'_>, kind: &str) -> Option<Zone> {
     let shape = table.table(kind)?;
     let from = shape.vector("from");
     let to = shape.vector("to");

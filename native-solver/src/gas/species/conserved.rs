@@ -108,7 +108,7 @@ impl SpeciesEquations {
             );
             iterations += solved.iterations;
             for &cell in lacking {
-                now.composition[cell * species + k] = solution[cell];
+                now.composition[cell * species + k] = solution[cell].max(0.0);
             }
         }
         iterations
@@ -168,17 +168,19 @@ fn give<'a>(
 ) -> Vec<usize> {
     let mut lacking = Vec::new();
     for (cell, (fractions, masses)) in cells.zip(masses).enumerate() {
-        let lack = |fractions: &[f64]| {
+        let off = |fractions: &[f64], size: fn(f64) -> f64| {
             let found = elements.of(fractions);
             let pairs = found.iter().zip(masses);
-            let worst = pairs.map(|(found, mass)| (found - mass).abs());
-            worst.fold(0.0, f64::max)
+            pairs.fold(0.0, |worst: f64, (found, mass)| {
+                worst.max(size(mass - found))
+            })
         };
-        if lack(fractions) < NO_LACK {
+        if off(fractions, f64::abs) < NO_LACK {
             continue;
         }
         elements.restore(masses, fractions);
-        if lack(fractions) >= NO_LACK {
+        // Less than nothing of an element, which corrections of diffusion leave, no species can have.
+        if off(fractions, |missing| missing) >= NO_LACK {
             lacking.push(cell);
         }
         // What is missing of an element that is there in traces is round-off of the others.
