@@ -47,6 +47,28 @@ fn projectile(mut velocity: [f64; 2], mut height: f64, time: f64) -> ([f64; 2], 
     (velocity, height)
 }
 
+/// A bead that bounces on a patch of a mesh of files and on a plane in its place: the same heights.
+#[test]
+fn patches_of_a_mesh_of_files_are_walls() {
+    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/own-mesh-packed.toml");
+    let bead = "particles.beads.place={ grid = { first = \"4 3 8 mm\", spacing = \"5 5 5 mm\", counts = [1, 1, 1] } }";
+    let far = "particles.grains.place={ grid = { first = \"-5 -5 0.5 mm\", spacing = \"5 5 5 mm\", counts = [1, 1, 1] } }";
+    let heights = |wall: &str| {
+        let out = tempfile::tempdir().unwrap();
+        let wall = format!("walls[0]={{ name = \"floor\", material = \"glass\", {wall} }}");
+        program::run(&case, out.path(), &[], &["gas.held=true", bead, far, &wall]);
+        let series = Series::read(out.path()).unwrap();
+        series.column("quantities.mean_height").to_vec()
+    };
+    let patch = heights("patches = [\"bottom\"]");
+    let plane = heights("plane = { point = \"0 0 0 m\", normal = \"0 0 1\" }");
+    let lowest = patch.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(patch.last().unwrap() > &lowest, "it bounces: {patch:?}");
+    for (patch, plane) in patch.iter().zip(&plane) {
+        assert!((patch - plane).abs() < 1e-9, "{patch} {plane}");
+    }
+}
+
 /// A bead of a file that falls without touching: its velocity at the start is that of the file. The step is longer than the
 /// contacts allow, which `long_step` turns into a warning.
 #[test]
