@@ -29,8 +29,6 @@ use crate::numerics::operators::{
 use crate::numerics::parallel::{fill, sums, update};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
-/// Differences of the last species that others' solvers may leave, over the tolerance.
-const NOISE: f64 = 0.01;
 /// Iterations of a solve at most.
 const ITERATIONS: u32 = 1000;
 
@@ -251,11 +249,7 @@ impl SpeciesEquations {
             // The last species is what the others leave, their solvers' errors included.
             let last = fractions.len() - 1;
             let one = |k: usize| {
-                let noise = if k == last {
-                    NOISE * frame.tolerance
-                } else {
-                    0.0
-                };
+                let noise = if k == last { frame.tolerance } else { 0.0 };
                 let fields = (&fractions[k][..], &gradients[k][..]);
                 limiter(grid, index, now.flux[index], fields, noise)
             };
