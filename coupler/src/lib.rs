@@ -29,6 +29,7 @@ pub mod observer;
 pub mod packing;
 pub mod part;
 pub mod paths;
+pub mod periodicity;
 pub mod physical;
 pub mod setup;
 pub mod smoother;
