@@ -17,7 +17,7 @@ use imports::{Modules, circles};
 
 /// All arrows there may be: a crate and the crates of this workspace that it may use. Another
 /// arrow is a change of the design (CONTRIBUTING.md), not of this table alone.
-const ARROWS: [(&str, &[&str]); 11] = [
+const ARROWS: [(&str, &[&str]); 12] = [
     (
         "calcine",
         &[
@@ -33,6 +33,10 @@ const ARROWS: [(&str, &[&str]); 11] = [
     (
         "calcine-coupler",
         &["calcine-interior", "calcine-numerics", "calcine-physics"],
+    ),
+    (
+        "calcine-flowsheet",
+        &["calcine-numerics", "calcine-physics"],
     ),
     ("calcine-interior", &["calcine-numerics", "calcine-physics"]),
     ("calcine-liggghts", &["calcine-wire"]),

@@ -1,0 +1,125 @@
+//! What is wrong with a plant, or stops its computation.
+
+use thiserror::Error;
+
+/// What is wrong with a plant, or stops its computation. Each says the fact, the number, the place and the remedy.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum PlantError {
+    /// Edges of size classes that are not a grid.
+    #[error("size grid: {0}; give rising edges of two classes or more, from 0 m or above")]
+    Grid(String),
+    /// A number outside of what a law or a unit allows.
+    #[error("{place}: {quantity} is {value}; {allowed}")]
+    Value {
+        /// Unit or law.
+        place: String,
+        /// Which number.
+        quantity: &'static str,
+        /// The number, in SI.
+        value: f64,
+        /// What it may be.
+        allowed: &'static str,
+    },
+    /// A distribution that does not fit its grid.
+    #[error(
+        "{place}: {share:.3e} of the distribution lies outside of the size grid, {from} m to {to} m; widen the grid"
+    )]
+    OutsideGrid {
+        /// Unit or stream.
+        place: String,
+        /// Share of the mass.
+        share: f64,
+        /// First edge of the grid in m.
+        from: f64,
+        /// Last edge of the grid in m.
+        to: f64,
+    },
+    /// Two units of one name.
+    #[error("two units are named \"{0}\"; rename one of them")]
+    DuplicateUnit(String),
+    /// A unit that is not there.
+    #[error("no unit is named \"{0}\"; the units are {1}")]
+    UnknownUnit(String, String),
+    /// A port that is not there.
+    #[error("unit \"{unit}\" has no port \"{port}\"; its ports of that kind are {ports}")]
+    UnknownPort {
+        /// Unit.
+        unit: String,
+        /// Port asked for.
+        port: String,
+        /// Ports of that direction.
+        ports: String,
+    },
+    /// A port without a stream.
+    #[error("port \"{port}\" of unit \"{unit}\" is not connected; connect a stream to it")]
+    Unconnected {
+        /// Unit.
+        unit: String,
+        /// Port.
+        port: String,
+    },
+    /// A port with two streams.
+    #[error("port \"{port}\" of unit \"{unit}\" has two streams; put a mixer or a splitter there")]
+    TakenTwice {
+        /// Unit.
+        unit: String,
+        /// Port.
+        port: String,
+    },
+    /// A mill without solids.
+    #[error(
+        "no solids flow into mill \"{unit}\" at {time} s, so that its power has nothing to act on; lower the screen's cut size, or take a mill without power (`constant`)"
+    )]
+    IdleMill {
+        /// Unit.
+        unit: String,
+        /// Time in s.
+        time: f64,
+    },
+    /// A recycle that does not converge.
+    #[error(
+        "recycle through stream {stream} does not converge at {time} s: residual {residual:.3e} of its flow after {iterations} iterations, largest in {grows}; the recycle gains more than leaves the plant, check screens and splitters within it"
+    )]
+    Recycle {
+        /// Tear stream, as "unit.port -> unit.port".
+        stream: String,
+        /// Time in s.
+        time: f64,
+        /// Residual relative to the flow.
+        residual: f64,
+        /// Iterations done.
+        iterations: usize,
+        /// What has the largest residual.
+        grows: String,
+    },
+    /// A number that is not finite.
+    #[error(
+        "{quantity} of {place} is not finite at {time} s; check the unit's parameters and its feeds"
+    )]
+    NotFinite {
+        /// Unit or stream.
+        place: String,
+        /// Which number.
+        quantity: &'static str,
+        /// Time in s.
+        time: f64,
+    },
+    /// An integration that does not come to its end.
+    #[error("the plant could not be followed beyond {reached} s: {cause}")]
+    Steps {
+        /// Time reached in s.
+        reached: f64,
+        /// Why.
+        cause: &'static str,
+    },
+    /// Newton's iteration found no steady state.
+    #[error(
+        "no steady state was found: change of {residual:.3e} kg/s after {iterations} iterations; run the plant for longer first, or move the key in smaller steps"
+    )]
+    NoSteadyState {
+        /// Largest rate of change in kg/s.
+        residual: f64,
+        /// Iterations done.
+        iterations: usize,
+    },
+}

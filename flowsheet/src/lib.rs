@@ -1,0 +1,30 @@
+//! Plants: streams of solids with distributions, units, population balances, recycles, their dynamics and steady states.
+//!
+//! Knows neither cases nor solvers. Equations and sources: docs/theory.md, FLS-1 to FLS-6 and PBM-1 to PBM-8.
+//!
+//! - [`StreamLayout`], [`SizeGrid`], [`distribution`]: what streams are made of;
+//! - [`screen`], [`mill`]: laws, one a file;
+//! - [`population`]: growth, aggregation, breakage over size classes;
+//! - [`ProcessUnit`], [`units`]: what stands in a plant;
+//! - [`Plant`]: units and streams, with recycles solved through tear streams; [`PlantRun`] follows it in time.
+
+pub mod distribution;
+mod error;
+mod grid;
+mod layout;
+pub mod mill;
+mod plant;
+pub mod population;
+pub mod screen;
+mod timetable;
+mod transformation;
+mod unit;
+pub mod units;
+
+pub use error::PlantError;
+pub use grid::SizeGrid;
+pub use layout::{Attribute, Compound, REFERENCE_TEMPERATURE, StreamLayout};
+pub use plant::*;
+pub use timetable::Timetable;
+pub use transformation::Transformation;
+pub use unit::{ProcessUnit, UnitView};

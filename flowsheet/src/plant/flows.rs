@@ -1,0 +1,307 @@
+//! Streams at a time, recycles included.
+
+use calcine_numerics::Anderson;
+
+use super::order::Block;
+use super::topology::Plant;
+use crate::{PlantError, UnitView};
+
+/// What a tear stream may differ from itself after one way round, relative to its flow.
+pub const LOOP_CLOSURE: f64 = 1e-13;
+/// Most ways round.
+const MOST_ROUNDS: usize = 400;
+/// Most that may go round a recycle, relative to what enters it.
+const MOST_FLOW: f64 = 1e9;
+/// Enthalpies among the numbers of a tear stream count in MW, so that they weigh as masses do.
+const ENTHALPY_WEIGHT: f64 = 1e-6;
+
+/// Streams, and memory to compute them. Tear streams begin where they were.
+#[derive(Clone, Debug, Default)]
+pub struct FlowWorkspace {
+    /// All streams, one after the other.
+    pub streams: Vec<f64>,
+    /// Largest difference of a tear stream from itself, relative to its flow.
+    pub closure: f64,
+    /// Ways round the recycles, all in all.
+    pub rounds: usize,
+    made: Vec<f64>,
+}
+
+impl FlowWorkspace {
+    /// Streams at rest.
+    pub fn new(plant: &Plant) -> Self {
+        Self {
+            streams: vec![0.0; plant.names.len() * plant.layout.width()],
+            ..Self::default()
+        }
+    }
+
+    /// One stream.
+    pub fn stream(&self, plant: &Plant, index: usize) -> &[f64] {
+        let width = plant.layout.width();
+        &self.streams[index * width..(index + 1) * width]
+    }
+}
+
+/// A span of time that is integrated: where it is, and where it ends.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment {
+    /// Time in s.
+    pub time: f64,
+    /// End of the span in s.
+    pub end: f64,
+}
+
+impl Plant {
+    /// Runs `visit` on a unit's view.
+    pub(super) fn view<'a>(
+        &'a self,
+        unit: usize,
+        at: Moment,
+        y: &'a [f64],
+        streams: &'a [f64],
+    ) -> UnitView<'a> {
+        let own = &self.units[unit];
+        UnitView {
+            time: at.time,
+            end: at.end,
+            layout: &self.layout,
+            name: &own.name,
+            state: &y[own.state.clone()],
+            streams,
+            inlets: &own.inlets,
+        }
+    }
+
+    /// All streams at a time, from the unknowns.
+    pub(super) fn flows(
+        &self,
+        at: Moment,
+        y: &[f64],
+        work: &mut FlowWorkspace,
+    ) -> Result<(), PlantError> {
+        work.closure = 0.0;
+        for block in &self.blocks {
+            if block.tears.is_empty() {
+                for unit in &block.units {
+                    self.produce(*unit, at, y, work)?;
+                    self.put(*unit, &[], work, &mut []);
+                }
+            } else {
+                self.close(block, at, y, work)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// What flows out of a unit, into `made`.
+    fn produce(
+        &self,
+        unit: usize,
+        at: Moment,
+        y: &[f64],
+        work: &mut FlowWorkspace,
+    ) -> Result<(), PlantError> {
+        let FlowWorkspace { streams, made, .. } = work;
+        made.clear();
+        made.resize(self.units[unit].outlets.len() * self.layout.width(), 0.0);
+        self.units[unit]
+            .unit
+            .produce(&self.view(unit, at, y, streams), made)
+    }
+
+    /// Puts `made` in its place: tear streams among `new`, others among the streams.
+    fn put(&self, unit: usize, tears: &[usize], work: &mut FlowWorkspace, new: &mut [f64]) {
+        let width = self.layout.width();
+        let FlowWorkspace { streams, made, .. } = work;
+        for (own, stream) in made
+            .chunks_exact(width)
+            .zip(self.units[unit].outlets.clone())
+        {
+            match tears.iter().position(|tear| *tear == stream) {
+                Some(place) => new[place * width..(place + 1) * width].copy_from_slice(own),
+                None => streams[stream * width..(stream + 1) * width].copy_from_slice(own),
+            }
+        }
+    }
+
+    /// Goes round a recycle until its tear streams agree with themselves.
+    fn close(
+        &self,
+        block: &Block,
+        at: Moment,
+        y: &[f64],
+        work: &mut FlowWorkspace,
+    ) -> Result<(), PlantError> {
+        let (width, enthalpy) = (self.layout.width(), self.layout.enthalpy());
+        let mut x = Vec::with_capacity(block.tears.len() * width);
+        for tear in &block.tears {
+            x.extend_from_slice(&work.streams[tear * width..(tear + 1) * width]);
+        }
+        let inflow = self.inflow(block, &work.streams);
+        let mut new = vec![0.0; x.len()];
+        let mut anderson = Anderson::default();
+        let mut closure = f64::INFINITY;
+        for _ in 0..MOST_ROUNDS {
+            for unit in &block.units {
+                self.produce(*unit, at, y, work)?;
+                self.put(*unit, &block.tears, work, &mut new);
+            }
+            work.rounds += 1;
+            if let Some(bad) = new.iter().position(|flow| !flow.is_finite()) {
+                return Err(PlantError::NotFinite {
+                    place: format!("stream \"{}\"", self.names[block.tears[bad / width]]),
+                    quantity: "a flow",
+                    time: at.time,
+                });
+            }
+            closure = self.difference(&x, &new);
+            // A flow beyond all bounds is closed relative to itself, not relative to what enters.
+            let bounded = x.iter().map(|flow| flow.abs()).sum::<f64>() < MOST_FLOW * inflow;
+            if closure <= LOOP_CLOSURE && (bounded || inflow == 0.0) {
+                work.closure = work.closure.max(closure);
+                return Ok(());
+            }
+            let scale = |list: &mut [f64], factor: f64| {
+                list.iter_mut()
+                    .skip(enthalpy)
+                    .step_by(width)
+                    .for_each(|h| *h *= factor);
+            };
+            let plain = new.clone();
+            scale(&mut x, ENTHALPY_WEIGHT);
+            scale(&mut new, ENTHALPY_WEIGHT);
+            anderson.accelerate(&x, &mut new);
+            scale(&mut new, 1.0 / ENTHALPY_WEIGHT);
+            // A flow that would turn round is no guess: the iteration goes its own way there.
+            let total: f64 = plain.iter().map(|flow| flow.abs()).sum();
+            let masses = |k: usize| k % width != enthalpy;
+            if (0..new.len()).any(|k| masses(k) && new[k] < -1e-9 * total) {
+                new.copy_from_slice(&plain);
+            }
+            for (tear, own) in block.tears.iter().zip(new.chunks_exact(width)) {
+                work.streams[tear * width..(tear + 1) * width].copy_from_slice(own);
+            }
+            std::mem::swap(&mut x, &mut new);
+        }
+        let names = block
+            .tears
+            .iter()
+            .map(|tear| format!("\"{}\"", self.names[*tear]));
+        let grows = (0..x.len()).max_by(|a, b| {
+            let size =
+                |k: usize| (new[k] - x[k]).abs() * if k % width == enthalpy { 1e-6 } else { 1.0 };
+            size(*a).total_cmp(&size(*b))
+        });
+        Err(PlantError::Recycle {
+            stream: names.collect::<Vec<_>>().join(", "),
+            time: at.time,
+            residual: closure,
+            iterations: MOST_ROUNDS,
+            grows: self.place_name(grows.unwrap_or(0) % width),
+        })
+    }
+
+    /// Mass and weighted enthalpy that enter the units of a recycle from outside.
+    fn inflow(&self, block: &Block, streams: &[f64]) -> f64 {
+        let (width, enthalpy) = (self.layout.width(), self.layout.enthalpy());
+        let enters =
+            |(from, to): &(usize, usize)| block.units.contains(to) && !block.units.contains(from);
+        let inside = self.ends.iter().zip(streams.chunks_exact(width));
+        let flows = inside
+            .filter(|(ends, _)| enters(ends))
+            .map(|(_, stream)| stream[..enthalpy].iter().sum::<f64>() + stream[enthalpy].abs());
+        flows.sum()
+    }
+
+    /// Largest difference of a tear stream from what it became: of its mass flows together, or of its enthalpy relative to
+    /// what its heat capacity carries over 100 K.
+    fn difference(&self, x: &[f64], new: &[f64]) -> f64 {
+        let (width, enthalpy) = (self.layout.width(), self.layout.enthalpy());
+        let mut largest = 0.0f64;
+        for (x, new) in x.chunks_exact(width).zip(new.chunks_exact(width)) {
+            let pairs = x[..enthalpy].iter().zip(&new[..enthalpy]);
+            let (mut apart, mut size) = (0.0, 0.0);
+            for (old, new) in pairs {
+                apart += (new - old).abs();
+                size += new.abs();
+            }
+            let (capacity, latent) = self.layout.heat_capacity(new);
+            let heat = (new[enthalpy] - x[enthalpy]).abs();
+            let carried = 100.0 * capacity + latent + new[enthalpy].abs();
+            for (apart, size) in [(apart, size), (heat, carried)] {
+                if apart != 0.0 {
+                    largest = largest.max(apart / size);
+                }
+            }
+        }
+        largest
+    }
+
+    /// What stands at a place of a stream, in words.
+    fn place_name(&self, place: usize) -> String {
+        let layout = &self.layout;
+        let count = layout.compounds().len();
+        if place == layout.enthalpy() {
+            return "the enthalpy".into();
+        }
+        if place < layout.solids() {
+            let d = layout.grid().diameters()[place / layout.inner()];
+            return format!(
+                "solid {} of {d:.4e} m",
+                layout.compounds()[place % count].name
+            );
+        }
+        let rest = place - layout.solids();
+        let phase = if rest < count { "liquid" } else { "vapour" };
+        format!("{phase} {}", layout.compounds()[rest % count].name)
+    }
+
+    /// Rates of the unknowns and of the totals ([`Plant::totals`]), with all streams.
+    pub(super) fn rates(
+        &self,
+        at: Moment,
+        y: &[f64],
+        work: &mut FlowWorkspace,
+        rates: &mut [f64],
+    ) -> Result<(), PlantError> {
+        self.flows(at, y, work)?;
+        rates.fill(0.0);
+        let width = self.layout.width();
+        let (own, totals) = rates.split_at_mut(self.unknowns);
+        let kinds = self.layout.compounds().len() + 1;
+        let (of_streams, heats) = totals.split_at_mut(self.names.len() * kinds);
+        for (index, unit) in self.units.iter().enumerate() {
+            let view = self.view(index, at, y, &work.streams);
+            let out = &work.streams[unit.outlets.start * width..unit.outlets.end * width];
+            unit.unit.rates(&view, out, &mut own[unit.state.clone()])?;
+            heats[index] = unit.unit.heat(&view, out, &own[unit.state.clone()]);
+        }
+        let streams = work.streams.chunks_exact(width);
+        for (stream, to) in streams.zip(of_streams.chunks_exact_mut(kinds)) {
+            self.layout.kinds(stream, to);
+        }
+        Ok(())
+    }
+
+    /// Number of totals: of each stream the mass of each compound and the enthalpy, of each unit the heat.
+    pub(super) fn totals(&self) -> usize {
+        self.names.len() * (self.layout.compounds().len() + 1) + self.units.len()
+    }
+
+    /// Lets every unit look at its unknowns.
+    pub(super) fn verify(&self, at: Moment, y: &[f64], streams: &[f64]) -> Result<(), PlantError> {
+        for (index, unit) in self.units.iter().enumerate() {
+            let bad = y[unit.state.clone()].iter().any(|value| !value.is_finite());
+            if bad {
+                return Err(PlantError::NotFinite {
+                    place: format!("unit \"{}\"", unit.name),
+                    quantity: "an unknown",
+                    time: at.time,
+                });
+            }
+            unit.unit.verify(&self.view(index, at, y, streams))?;
+        }
+        Ok(())
+    }
+}

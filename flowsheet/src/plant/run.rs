@@ -1,0 +1,265 @@
+//! A plant in time.
+
+use super::explicit::DormandPrince;
+use super::flows::{FlowWorkspace, Moment};
+use super::implicit::ImplicitRungeKutta;
+use super::ledger::PlantLedger;
+use super::topology::Plant;
+use crate::PlantError;
+
+/// How a plant is followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Integrator {
+    /// Dormand and Prince's explicit pair: cheap steps, of which fast exchange takes many.
+    Explicit,
+    /// Kennedy and Carpenter's ESDIRK4(3)6L, with a Jacobian by differences.
+    Stiff,
+}
+
+/// Most steps between two times that are asked for.
+const MOST_STEPS: usize = 2_000_000;
+
+#[derive(Clone, Debug)]
+enum Method {
+    Explicit(DormandPrince),
+    Stiff(ImplicitRungeKutta),
+}
+
+impl Method {
+    #[expect(clippy::too_many_arguments, reason = "state and memory of one step")]
+    fn advance(
+        &mut self,
+        plant: &Plant,
+        at: Moment,
+        y: &mut [f64],
+        totals: &mut [f64],
+        scales: &[f64],
+        tolerance: f64,
+        fresh: bool,
+        work: &mut FlowWorkspace,
+        steps: &mut [usize; 2],
+    ) -> Result<f64, PlantError> {
+        match self {
+            Self::Explicit(method) => {
+                method.advance(plant, at, y, totals, scales, tolerance, fresh, work, steps)
+            }
+            Self::Stiff(method) => {
+                method.advance(plant, at, y, totals, scales, tolerance, fresh, work, steps)
+            }
+        }
+    }
+
+    fn step(&self) -> f64 {
+        match self {
+            Self::Explicit(method) => method.step,
+            Self::Stiff(method) => method.step,
+        }
+    }
+
+    fn set_step(&mut self, step: f64) {
+        match self {
+            Self::Explicit(method) => method.step = step,
+            Self::Stiff(method) => method.step = step,
+        }
+    }
+}
+
+/// What decides how a run goes on: with the plant itself, all of a checkpoint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlantStep {
+    /// Time in s.
+    pub time: f64,
+    /// Unknowns.
+    pub unknowns: Vec<f64>,
+    /// Totals since the start.
+    pub totals: Vec<f64>,
+    /// Streams: tear streams begin there.
+    pub streams: Vec<f64>,
+    /// Length of the next step in s, as far as it is known.
+    pub step: f64,
+    /// Largest closure so far.
+    pub closure: f64,
+    /// What was held at the start.
+    pub held: Vec<Vec<f64>>,
+}
+
+/// A plant that is followed in time, with all recycles closed at every evaluation (docs/theory.md, FLS-4).
+pub struct PlantRun<'a> {
+    plant: &'a Plant,
+    method: Method,
+    tolerance: f64,
+    time: f64,
+    y: Vec<f64>,
+    totals: Vec<f64>,
+    scales: Vec<f64>,
+    held: Vec<Vec<f64>>,
+    closure: f64,
+    work: FlowWorkspace,
+    /// Steps, and steps that were repeated.
+    steps: [usize; 2],
+}
+
+impl<'a> PlantRun<'a> {
+    /// A plant at its start.
+    pub fn new(
+        plant: &'a Plant,
+        integrator: Integrator,
+        tolerance: f64,
+    ) -> Result<Self, PlantError> {
+        Self::from(plant, plant.start(), integrator, tolerance)
+    }
+
+    /// A plant from given unknowns at time zero.
+    pub fn from(
+        plant: &'a Plant,
+        y: Vec<f64>,
+        integrator: Integrator,
+        tolerance: f64,
+    ) -> Result<Self, PlantError> {
+        if !(tolerance > 0.0 && tolerance < 1.0) {
+            return Err(PlantError::Value {
+                place: "integrator".into(),
+                quantity: "tolerance",
+                value: tolerance,
+                allowed: "it is above 0 and below 1",
+            });
+        }
+        let mut run = Self {
+            plant,
+            method: match integrator {
+                Integrator::Explicit => Method::Explicit(DormandPrince::default()),
+                Integrator::Stiff => Method::Stiff(ImplicitRungeKutta::default()),
+            },
+            tolerance,
+            time: 0.0,
+            held: plant.held(&y),
+            totals: vec![0.0; plant.totals()],
+            scales: plant.scales(),
+            y,
+            closure: 0.0,
+            work: FlowWorkspace::new(plant),
+            steps: [0; 2],
+        };
+        run.settle()?;
+        Ok(run)
+    }
+
+    /// Computes the streams of the present unknowns.
+    fn settle(&mut self) -> Result<(), PlantError> {
+        let at = Moment {
+            time: self.time,
+            end: f64::INFINITY,
+        };
+        self.plant.flows(at, &self.y, &mut self.work)?;
+        self.closure = self.closure.max(self.work.closure);
+        self.plant.verify(at, &self.y, &self.work.streams)
+    }
+
+    /// Advances to a time in s.
+    pub fn advance(&mut self, until: f64) -> Result<(), PlantError> {
+        while self.time < until {
+            let end = self.plant.next_break(self.time).min(until);
+            self.follow(end)?;
+            self.time = end;
+            self.settle()?;
+        }
+        Ok(())
+    }
+
+    /// Steps from the present time to `end`, between which nothing jumps.
+    fn follow(&mut self, end: f64) -> Result<(), PlantError> {
+        for step in 0..MOST_STEPS {
+            let at = Moment {
+                time: self.time,
+                end,
+            };
+            let took = self.method.advance(
+                self.plant,
+                at,
+                &mut self.y,
+                &mut self.totals,
+                &self.scales,
+                self.tolerance,
+                step == 0,
+                &mut self.work,
+                &mut self.steps,
+            )?;
+            // The last stage is at the end of the step.
+            self.closure = self.closure.max(self.work.closure);
+            self.time += took;
+            let now = Moment {
+                time: self.time,
+                end,
+            };
+            self.plant.verify(now, &self.y, &self.work.streams)?;
+            if took >= end - at.time {
+                return Ok(());
+            }
+        }
+        Err(PlantError::Steps {
+            reached: self.time,
+            cause: "it took too many steps; let the `stiff` integrator follow it, or raise the tolerance",
+        })
+    }
+
+    /// Time in s.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Unknowns.
+    pub fn unknowns(&self) -> &[f64] {
+        &self.y
+    }
+
+    /// Unknowns of a unit.
+    pub fn unit(&self, index: usize) -> &[f64] {
+        &self.y[self.plant.units[index].state.clone()]
+    }
+
+    /// A stream.
+    pub fn stream(&self, index: usize) -> &[f64] {
+        self.work.stream(self.plant, index)
+    }
+
+    /// Steps, and steps that were repeated.
+    pub fn steps(&self) -> [usize; 2] {
+        self.steps
+    }
+
+    /// Ways round the recycles, all in all.
+    pub fn rounds(&self) -> usize {
+        self.work.rounds
+    }
+
+    /// Balances since the start.
+    pub fn ledger(&self) -> PlantLedger {
+        let now = self.plant.held(&self.y);
+        self.plant
+            .ledger(&self.held, &now, &self.totals, self.closure)
+    }
+
+    /// All that decides how the run goes on.
+    pub fn checkpoint(&self) -> PlantStep {
+        PlantStep {
+            time: self.time,
+            unknowns: self.y.clone(),
+            totals: self.totals.clone(),
+            streams: self.work.streams.clone(),
+            step: self.method.step(),
+            closure: self.closure,
+            held: self.held.clone(),
+        }
+    }
+
+    /// Goes on from a checkpoint of the same plant: the same bits as without.
+    pub fn resume(&mut self, from: PlantStep) {
+        self.time = from.time;
+        self.y = from.unknowns;
+        self.totals = from.totals;
+        self.work.streams = from.streams;
+        self.method.set_step(from.step);
+        self.closure = from.closure;
+        self.held = from.held;
+    }
+}

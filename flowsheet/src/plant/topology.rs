@@ -1,0 +1,260 @@
+//! Which streams connect which units.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use super::order::{Block, order};
+use crate::{PlantError, ProcessUnit, StreamLayout};
+
+/// A stream: from a unit's outlet to a unit's inlet.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Connection {
+    /// Name of the stream.
+    pub name: String,
+    /// Unit and port that it leaves.
+    pub from: (String, String),
+    /// Unit and port that it enters.
+    pub to: (String, String),
+}
+
+impl Connection {
+    /// A stream between two ports.
+    pub fn new(name: &str, from: (&str, &str), to: (&str, &str)) -> Self {
+        let own = |(unit, port): (&str, &str)| (unit.to_owned(), port.to_owned());
+        Self {
+            name: name.to_owned(),
+            from: own(from),
+            to: own(to),
+        }
+    }
+}
+
+/// A unit in its plant.
+pub struct PlantUnit {
+    /// Name.
+    pub name: String,
+    pub(super) unit: Box<dyn ProcessUnit>,
+    /// Its unknowns among those of the plant.
+    pub(super) state: Range<usize>,
+    /// Streams that enter, port by port; streams that leave follow one another.
+    pub(super) inlets: Vec<usize>,
+    pub(super) outlets: Range<usize>,
+}
+
+/// A plant: units, streams between their ports, and the order in which they are computed.
+pub struct Plant {
+    pub(super) layout: StreamLayout,
+    pub(super) units: Vec<PlantUnit>,
+    pub(super) names: Vec<String>,
+    pub(super) blocks: Vec<Block>,
+    pub(super) unknowns: usize,
+    /// Unit that each stream leaves, and that it enters.
+    pub(super) ends: Vec<(usize, usize)>,
+}
+
+impl Plant {
+    /// A plant of named units and the streams between them; else all that is wrong.
+    pub fn new(
+        layout: StreamLayout,
+        units: Vec<(String, Box<dyn ProcessUnit>)>,
+        connections: &[Connection],
+    ) -> Result<Self, Vec<PlantError>> {
+        let mut wrong = Vec::new();
+        let mut seen = BTreeSet::new();
+        let mut made = Vec::new();
+        let (mut unknowns, mut streams) = (0, 0);
+        let mut ports = Vec::new();
+        for (name, mut unit) in units {
+            if !seen.insert(name.clone()) {
+                wrong.push(PlantError::DuplicateUnit(name.clone()));
+            }
+            if let Err(error) = unit.prepare(&layout, &name) {
+                wrong.push(error);
+            }
+            let (inlets, outlets) = (unit.inlets(), unit.outlets());
+            let (state, out) = (unit.unknowns(&layout), outlets.len());
+            made.push(PlantUnit {
+                name,
+                unit,
+                state: unknowns..unknowns + state,
+                inlets: Vec::new(),
+                outlets: streams..streams + out,
+            });
+            ports.push((inlets, outlets));
+            (unknowns, streams) = (unknowns + state, streams + out);
+        }
+        let places = Self::connect(&mut made, &ports, connections, streams, &mut wrong);
+        if !wrong.is_empty() {
+            return Err(wrong);
+        }
+        let ends: Vec<(usize, usize)> = places.iter().map(|(_, from, to)| (*from, *to)).collect();
+        let direct: Vec<bool> = made.iter().map(|u| u.unit.passes_through()).collect();
+        let blocks = order(made.len(), &ends, &direct);
+        Ok(Self {
+            layout,
+            units: made,
+            names: places.into_iter().map(|(name, ..)| name).collect(),
+            blocks,
+            unknowns,
+            ends,
+        })
+    }
+
+    /// Sets the units' inlets; name and ends of each stream.
+    fn connect(
+        units: &mut [PlantUnit],
+        ports: &[(Vec<String>, Vec<String>)],
+        connections: &[Connection],
+        streams: usize,
+        wrong: &mut Vec<PlantError>,
+    ) -> Vec<(String, usize, usize)> {
+        let names: Vec<String> = units.iter().map(|u| u.name.clone()).collect();
+        let find = |unit: &str, port: &str, out: bool| {
+            let Some(index) = names.iter().position(|name| name == unit) else {
+                return Err(PlantError::UnknownUnit(unit.to_owned(), names.join(", ")));
+            };
+            let known = if out {
+                &ports[index].1
+            } else {
+                &ports[index].0
+            };
+            let place = known.iter().position(|name| name == port);
+            place
+                .map(|place| (index, place))
+                .ok_or_else(|| PlantError::UnknownPort {
+                    unit: unit.to_owned(),
+                    port: port.to_owned(),
+                    ports: if known.is_empty() {
+                        "none".into()
+                    } else {
+                        known.join(", ")
+                    },
+                })
+        };
+        let mut left: Vec<Option<(String, usize, usize)>> = vec![None; streams];
+        let mut entered: Vec<Vec<Option<usize>>> = ports
+            .iter()
+            .map(|(inlets, _)| vec![None; inlets.len()])
+            .collect();
+        for connection in connections {
+            let from = find(&connection.from.0, &connection.from.1, true);
+            let to = find(&connection.to.0, &connection.to.1, false);
+            let (from, to) = match (from, to) {
+                (Ok(from), Ok(to)) => (from, to),
+                (from, to) => {
+                    wrong.extend(from.err());
+                    wrong.extend(to.err());
+                    continue;
+                }
+            };
+            let stream = units[from.0].outlets.start + from.1;
+            let twice = |(unit, port): &(String, String)| PlantError::TakenTwice {
+                unit: unit.clone(),
+                port: port.clone(),
+            };
+            if left[stream].is_some() {
+                wrong.push(twice(&connection.from));
+            }
+            if entered[to.0][to.1].is_some() {
+                wrong.push(twice(&connection.to));
+            }
+            left[stream] = Some((connection.name.clone(), from.0, to.0));
+            entered[to.0][to.1] = Some(stream);
+        }
+        let unconnected = |unit: &str, port: &str| PlantError::Unconnected {
+            unit: unit.to_owned(),
+            port: port.to_owned(),
+        };
+        for (index, (inlets, outlets)) in ports.iter().enumerate() {
+            for (port, stream) in inlets.iter().zip(&entered[index]) {
+                match stream {
+                    Some(stream) => units[index].inlets.push(*stream),
+                    None => wrong.push(unconnected(&names[index], port)),
+                }
+            }
+            for (port, place) in outlets.iter().zip(units[index].outlets.clone()) {
+                if left[place].is_none() {
+                    wrong.push(unconnected(&names[index], port));
+                }
+            }
+        }
+        left.into_iter().flatten().collect()
+    }
+
+    /// What streams are made of.
+    pub fn layout(&self) -> &StreamLayout {
+        &self.layout
+    }
+
+    /// Units.
+    pub fn units(&self) -> &[PlantUnit] {
+        &self.units
+    }
+
+    /// Names of the streams.
+    pub fn streams(&self) -> &[String] {
+        &self.names
+    }
+
+    /// Number of unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.unknowns
+    }
+
+    /// Streams that recycles are torn at.
+    pub fn tears(&self) -> Vec<&str> {
+        let tears = self.blocks.iter().flat_map(|block| &block.tears);
+        tears.map(|stream| self.names[*stream].as_str()).collect()
+    }
+
+    /// Index of a stream by its name.
+    pub fn stream(&self, name: &str) -> Option<usize> {
+        self.names.iter().position(|own| own == name)
+    }
+
+    /// Index of a unit by its name.
+    pub fn unit(&self, name: &str) -> Option<usize> {
+        self.units.iter().position(|unit| unit.name == name)
+    }
+
+    /// The unknowns at the start.
+    pub fn start(&self) -> Vec<f64> {
+        let mut y = vec![0.0; self.unknowns];
+        for unit in &self.units {
+            unit.unit.start(&self.layout, &mut y[unit.state.clone()]);
+        }
+        y
+    }
+
+    /// Sizes of the unknowns, of which errors count as none in proportion to the tolerance.
+    pub fn scales(&self) -> Vec<f64> {
+        let mut scales = vec![1.0; self.unknowns];
+        for unit in &self.units {
+            unit.unit
+                .scales(&self.layout, &mut scales[unit.state.clone()]);
+        }
+        scales
+    }
+
+    /// The first time after `time` at which something jumps.
+    pub fn next_break(&self, time: f64) -> f64 {
+        let breaks = self
+            .units
+            .iter()
+            .filter_map(|unit| unit.unit.next_break(time));
+        breaks.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Puts back what the unknowns have to fulfil at any time.
+    pub fn constrain(&self, y: &mut [f64]) {
+        for unit in &self.units {
+            unit.unit
+                .constrain(&self.layout, &mut y[unit.state.clone()]);
+        }
+    }
+
+    /// How many combinations of the unknowns never change.
+    pub fn invariants(&self) -> usize {
+        self.units.iter().map(|unit| unit.unit.invariants()).sum()
+    }
+}

@@ -1,0 +1,32 @@
+//! What breaks, and into what.
+
+/// Breakage of particles of volume v in m³.
+pub trait BreakageLaw: Send + Sync {
+    /// Rate S at which a particle of volume v breaks, in 1/s.
+    fn rate(&self, v: f64) -> f64;
+
+    /// Number of fragments of a particle of volume v that are smaller than u ≤ v, and their volume in m³. Of all fragments
+    /// the volume is v.
+    fn below(&self, u: f64, v: f64) -> [f64; 2];
+}
+
+/// Random binary breakage at a rate in proportion to volume.
+///
+/// S = S₀ v,   β(u, v) = 2/v
+///
+/// Source: Ziff and McGrady, J. Phys. A 18 (1985) 3027, doi 10.1088/0305-4470/18/15/026.
+#[derive(Clone, Copy, Debug)]
+pub struct RandomBinary {
+    /// S₀ in 1/(s m³).
+    pub rate: f64,
+}
+
+impl BreakageLaw for RandomBinary {
+    fn rate(&self, v: f64) -> f64 {
+        self.rate * v
+    }
+
+    fn below(&self, u: f64, v: f64) -> [f64; 2] {
+        [2.0 * u / v, u * u / v]
+    }
+}

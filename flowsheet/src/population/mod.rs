@@ -1,0 +1,31 @@
+//! Populations over size classes: growth, aggregation, breakage.
+
+mod aggregation;
+mod breakage;
+mod dyssol;
+mod fragments;
+mod growth;
+mod growth_law;
+mod kernels;
+
+pub use aggregation::Aggregation;
+pub use breakage::ParticleBreakage;
+pub use dyssol::dyssol_growth;
+pub use fragments::{BreakageLaw, RandomBinary};
+pub use growth::{GrowthScheme, SizeFluxes};
+pub use growth_law::{GrowthLaw, LinearGrowth, TabulatedGrowth, UniformGrowth};
+pub use kernels::{AggregationKernel, ConstantKernel, ProductKernel, SumKernel};
+
+/// Something that moves the solids of a bed between size classes and conserves them.
+pub trait SizeProcess: Send + Sync {
+    /// Looks at the numbers and prepares what does not change, for size classes whose particles have these masses in kg.
+    fn prepare(
+        &mut self,
+        grid: &crate::SizeGrid,
+        particle: &[f64],
+        place: &str,
+    ) -> Result<(), crate::PlantError>;
+
+    /// Adds its rates in kg/s to those of the masses in kg: size classes of `inner` numbers each.
+    fn add(&self, inner: usize, masses: &[f64], rates: &mut [f64]);
+}

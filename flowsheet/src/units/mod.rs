@@ -1,0 +1,21 @@
+//! Units, one a file.
+
+mod bunker;
+mod dryer;
+mod granulator;
+mod inlet;
+mod mill;
+mod mixer;
+mod outlet;
+mod screen;
+mod splitter;
+
+pub use bunker::{Bunker, Discharge};
+pub use dryer::Dryer;
+pub use granulator::{BedHeat, BedLevel, Granulator, Overspray};
+pub use inlet::PlantInlet;
+pub use mill::Mill;
+pub use mixer::Mixer;
+pub use outlet::PlantOutlet;
+pub use screen::Screen;
+pub use splitter::Splitter;

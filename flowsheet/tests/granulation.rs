@@ -1,0 +1,146 @@
+//! The granulation plant of Dyssol, converged (docs/theory.md, FLS-V2, FLS-V3).
+
+use calcine_flowsheet::distribution::{mean_diameter, normal_shares};
+use calcine_flowsheet::mill::{BondLaw, BondLength, BondNormal};
+use calcine_flowsheet::screen::Plitt;
+use calcine_flowsheet::units::{Granulator, Mill, Mixer, PlantInlet, PlantOutlet, Screen};
+use calcine_flowsheet::{
+    Connection, Integrator, Plant, PlantRun, ProcessUnit, SizeGrid, StreamLayout, Timetable,
+};
+
+use crate::support::{air, solid, solids, water};
+
+/// Time of the figures in s.
+const END: f64 = 3500.0;
+
+/// All flows and the mill's power times `scale`.
+fn plant(classes: usize, scale: f64) -> Plant {
+    let grid = SizeGrid::uniform(classes, 0.0, 4e-3).unwrap();
+    let layout = StreamLayout::new(
+        grid.clone(),
+        Vec::new(),
+        vec![solid("urea"), water(), air()],
+    )
+    .unwrap();
+    let normal = |mean, deviation| normal_shares(&grid, mean, deviation, "test").unwrap();
+    let nuclei = solids(&layout, &normal(1.5e-3, 1e-4), 0.1 * scale);
+    let mut spray = vec![0.0; layout.width()];
+    spray[layout.liquid(0)] = 0.05 * scale;
+    spray[layout.liquid(1)] = 0.05 * scale;
+    layout.set_temperature(&mut spray, 300.0);
+    let mut gas = vec![0.0; layout.width()];
+    gas[layout.vapour(2)] = 0.01 * scale;
+    layout.set_temperature(&mut gas, 300.0);
+    let mut content = vec![0.0; layout.solids()];
+    for (class, share) in normal(2e-3, 1e-4).iter().enumerate() {
+        content[class * layout.inner()] = 20.0 * share;
+    }
+    let bond = BondLaw {
+        work_index: 7.5 * 3600.0,
+        power: 800.0 * scale,
+        length: BondLength::Millimetre,
+    };
+    let inlet = |stream| -> Box<dyn ProcessUnit> {
+        Box::new(PlantInlet::new(stream, Timetable::constant(1.0)))
+    };
+    let screen = |cut| -> Box<dyn ProcessUnit> {
+        Box::new(Screen::new(Box::new(Plitt {
+            cut,
+            sharpness: 4.0,
+        })))
+    };
+    let units: Vec<(String, Box<dyn ProcessUnit>)> = vec![
+        ("FeedSusp".into(), inlet(spray)),
+        ("FeedNucl".into(), inlet(nuclei)),
+        ("FeedGas".into(), inlet(gas)),
+        ("Mixer1".into(), Box::new(Mixer { inlets: 2 })),
+        (
+            "Granulator".into(),
+            Box::new(Granulator::new(content, 1320.0).with_moisture(0.01)),
+        ),
+        ("Screen1".into(), screen(2.5e-3)),
+        ("Screen2".into(), screen(1e-3)),
+        (
+            "Crusher".into(),
+            Box::new(Mill::new(Box::new(BondNormal {
+                bond,
+                deviation: 1e-4,
+            }))),
+        ),
+        ("Mixer2".into(), Box::new(Mixer { inlets: 2 })),
+        ("OutDust".into(), Box::new(PlantOutlet)),
+        ("Product".into(), Box::new(PlantOutlet)),
+    ];
+    let streams = [
+        Connection::new("InSusp", ("FeedSusp", "out"), ("Granulator", "spray")),
+        Connection::new("InNucl", ("FeedNucl", "out"), ("Mixer1", "in1")),
+        Connection::new("InGas", ("FeedGas", "out"), ("Granulator", "gas")),
+        Connection::new("Mixed", ("Mixer2", "out"), ("Mixer1", "in2")),
+        Connection::new("MixNucl", ("Mixer1", "out"), ("Granulator", "feed")),
+        Connection::new("GranProd", ("Granulator", "product"), ("Screen1", "in")),
+        Connection::new("GranDust", ("Granulator", "exhaust"), ("OutDust", "in")),
+        Connection::new("Coarse1", ("Screen1", "coarse"), ("Crusher", "in")),
+        Connection::new("Fines1", ("Screen1", "fine"), ("Screen2", "in")),
+        Connection::new("Coarse2", ("Screen2", "coarse"), ("Product", "in")),
+        Connection::new("Fines2", ("Screen2", "fine"), ("Mixer2", "in1")),
+        Connection::new("Milled", ("Crusher", "out"), ("Mixer2", "in2")),
+    ];
+    Plant::new(layout, units, &streams).unwrap_or_else(|wrong| panic!("{wrong:?}"))
+}
+
+/// Flows in kg/s, mean of the product and of the hold-up in mm.
+fn figures(plant: &Plant, run: &PlantRun<'_>) -> [f64; 7] {
+    let layout = plant.layout();
+    let stream = |name: &str| run.stream(plant.stream(name).unwrap());
+    let flow = |name: &str| layout.mass_flow(stream(name));
+    let mean = |masses: &[f64]| 1e3 * mean_diameter(layout.grid(), masses).unwrap();
+    let bed = run.unit(plant.unit("Granulator").unwrap());
+    [
+        flow("GranProd"),
+        flow("Coarse1"),
+        flow("Fines1"),
+        flow("Fines2"),
+        flow("Mixed"),
+        mean(&layout.by_size(stream("Coarse2"))),
+        mean(&layout.by_size(bed)),
+    ]
+}
+
+/// FLS-V2.
+#[test]
+fn the_granulation_plant_has_its_converged_figures() {
+    let expected = [0.18023, 0.02578, 0.15445, 0.002950, 0.02873, 1.6668, 1.6833];
+    let mut all = Vec::new();
+    for classes in [200, 400] {
+        let plant = plant(classes, 1.0);
+        assert_eq!(plant.tears().len(), 1, "{:?}", plant.tears());
+        let mut run = PlantRun::new(&plant, Integrator::Explicit, 1e-6).unwrap();
+        run.advance(END).unwrap();
+        let found = figures(&plant, &run);
+        println!(
+            "{classes} classes: {found:?}, steps {:?}, rounds {}",
+            run.steps(),
+            run.rounds()
+        );
+        let ledger = run.ledger();
+        assert!(ledger.closure <= 1e-12);
+        assert!(ledger.worst() < 1e-11, "{:#?}", ledger.lines);
+        all.push(found);
+    }
+    for (found, expected) in all[1].iter().zip(expected) {
+        assert!((found / expected - 1.0).abs() < 2e-3, "{found} {expected}");
+    }
+}
+
+/// FLS-V3: a twentieth of every flow and of the power, at 20 t.
+#[test]
+fn a_plant_of_a_twentieth_does_the_same_in_twenty_times_the_time() {
+    let (whole, slow) = (plant(100, 1.0), plant(100, 0.05));
+    let mut run = PlantRun::new(&whole, Integrator::Explicit, 1e-9).unwrap();
+    run.advance(1000.0).unwrap();
+    let mut other = PlantRun::new(&slow, Integrator::Explicit, 1e-9).unwrap();
+    other.advance(20_000.0).unwrap();
+    for (a, b) in run.unknowns().iter().zip(other.unknowns()) {
+        assert!((a - b).abs() < 1e-6 * 20.0 / 100.0, "{a} {b}");
+    }
+}

@@ -1,0 +1,9 @@
+//! Tests of plants from outside.
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
+
+mod granulation;
+mod growth;
+mod kernels;
+mod loops;
+mod oscillation;
+mod support;
