@@ -3,11 +3,12 @@
 //! Knows neither cases nor solvers. Equations and sources: docs/theory.md, FLS-1 to FLS-6 and PBM-1 to PBM-8.
 //!
 //! - [`StreamLayout`], [`SizeGrid`], [`distribution`]: what streams are made of;
-//! - [`screen`], [`mill`]: laws, one a file;
+//! - [`screen`], [`mill`], [`cyclone`]: laws, one a file;
 //! - [`population`]: growth, aggregation, breakage over size classes;
 //! - [`ProcessUnit`], [`units`]: what stands in a plant;
 //! - [`Plant`]: units and streams, with recycles solved through tear streams; [`PlantRun`] follows it in time.
 
+pub mod cyclone;
 pub mod distribution;
 mod error;
 mod grid;

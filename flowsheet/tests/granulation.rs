@@ -2,6 +2,7 @@
 
 use calcine_flowsheet::distribution::{mean_diameter, normal_shares};
 use calcine_flowsheet::mill::{BondLaw, BondLength, BondNormal};
+use calcine_flowsheet::population::GrowthScheme;
 use calcine_flowsheet::screen::Plitt;
 use calcine_flowsheet::units::{Granulator, Mill, Mixer, PlantInlet, PlantOutlet, Screen};
 use calcine_flowsheet::{
@@ -13,8 +14,12 @@ use crate::support::{air, solid, solids, water};
 /// Time of the figures in s.
 const END: f64 = 3500.0;
 
+pub fn plant(classes: usize, scale: f64) -> Plant {
+    plant_by(classes, scale, GrowthScheme::VanLeer)
+}
+
 /// All flows and the mill's power times `scale`.
-fn plant(classes: usize, scale: f64) -> Plant {
+pub fn plant_by(classes: usize, scale: f64, scheme: GrowthScheme) -> Plant {
     let grid = SizeGrid::uniform(classes, 0.0, 4e-3).unwrap();
     let layout = StreamLayout::new(
         grid.clone(),
@@ -56,7 +61,11 @@ fn plant(classes: usize, scale: f64) -> Plant {
         ("Mixer1".into(), Box::new(Mixer { inlets: 2 })),
         (
             "Granulator".into(),
-            Box::new(Granulator::new(content, 1320.0).with_moisture(0.01)),
+            Box::new(
+                Granulator::new(content, 1320.0)
+                    .with_moisture(0.01)
+                    .with_scheme(scheme),
+            ),
         ),
         ("Screen1".into(), screen(2.5e-3)),
         ("Screen2".into(), screen(1e-3)),
@@ -89,7 +98,7 @@ fn plant(classes: usize, scale: f64) -> Plant {
 }
 
 /// Flows in kg/s, mean of the product and of the hold-up in mm.
-fn figures(plant: &Plant, run: &PlantRun<'_>) -> [f64; 7] {
+pub fn figures(plant: &Plant, run: &PlantRun<'_>) -> [f64; 7] {
     let layout = plant.layout();
     let stream = |name: &str| run.stream(plant.stream(name).unwrap());
     let flow = |name: &str| layout.mass_flow(stream(name));

@@ -1,9 +1,11 @@
 //! Tests of plants from outside.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
+mod dyssol;
 mod granulation;
 mod growth;
 mod kernels;
 mod loops;
+mod methods;
 mod oscillation;
 mod support;

@@ -5,7 +5,8 @@ use calcine_flowsheet::mill::ConstantMill;
 use calcine_flowsheet::screen::Plitt;
 use calcine_flowsheet::units::{Granulator, Mill, Mixer, PlantInlet, PlantOutlet, Screen};
 use calcine_flowsheet::{
-    Connection, Integrator, Plant, PlantRun, ProcessUnit, SizeGrid, SteadyState, Timetable,
+    Connection, Continuation, Integrator, Plant, PlantRun, ProcessUnit, SizeGrid, SteadyState,
+    Timetable,
 };
 
 use crate::support::plain;
@@ -94,26 +95,18 @@ fn a_flat_screen_damps() {
 /// The steady state loses its stability at α = 11.72 ± 0.05 with a period of 1116 s.
 #[test]
 fn stability_is_lost_at_the_critical_slope() {
-    let rate = |slope: f64| {
-        let (plant, found) = steady(slope);
-        let stability = plant.stability(&found, 0.0).unwrap();
-        (
-            stability.growth_rate().unwrap(),
-            stability.period().unwrap(),
-        )
-    };
-    let (mut low, mut high) = ((11.5, rate(11.5)), (11.9, rate(11.9)));
-    for _ in 0..3 {
-        let share = low.1.0 / (low.1.0 - high.1.0);
-        let slope = low.0 + share * (high.0 - low.0);
-        let found = rate(slope);
-        println!("slope {slope}: {found:?}");
-        (low, high) = (high, (slope, found));
-        if found.0.abs() < 1e-9 {
-            break;
-        }
+    let slopes = Continuation::new(|slope| Ok(plant(slope)), 0.0);
+    let points = slopes.follow(&[4.0, 6.0, 8.0, 10.0, 11.5, 11.9]).unwrap();
+    for point in &points {
+        println!(
+            "slope {}: growth rate {:e} 1/s, period {} s",
+            point.value, point.growth_rate, point.period
+        );
     }
-    let (slope, (_, period)) = high;
+    let limits = slopes.limits(&points, 1e-4).unwrap();
+    assert_eq!(limits.len(), 1);
+    let (slope, period) = (limits[0].value, limits[0].period);
+    println!("limit {slope}, period {period} s");
     assert!((slope - 11.72).abs() < 0.05, "{slope}");
     assert!((period / 1116.0 - 1.0).abs() < 5e-3, "{period}");
 }

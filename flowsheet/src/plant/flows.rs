@@ -4,6 +4,7 @@ use calcine_numerics::Anderson;
 
 use super::order::Block;
 use super::topology::Plant;
+use super::waveform::Waveform;
 use crate::{PlantError, UnitView};
 
 /// What a tear stream may differ from itself after one way round, relative to its flow.
@@ -25,6 +26,9 @@ pub struct FlowWorkspace {
     /// Ways round the recycles, all in all.
     pub rounds: usize,
     made: Vec<f64>,
+    /// Tear streams that are given, and what they became.
+    pub(super) given: Option<Waveform>,
+    pub(super) became: Vec<f64>,
 }
 
 impl FlowWorkspace {
@@ -81,6 +85,7 @@ impl Plant {
         work: &mut FlowWorkspace,
     ) -> Result<(), PlantError> {
         work.closure = 0.0;
+        work.became.clear();
         for block in &self.blocks {
             if block.tears.is_empty() {
                 for unit in &block.units {
@@ -88,10 +93,64 @@ impl Plant {
                     self.put(*unit, &[], work, &mut []);
                 }
             } else {
-                self.close(block, at, y, work)?;
+                match work.given.take() {
+                    None => self.close(block, at, y, work)?,
+                    Some(wave) => {
+                        let done = self.pass(block, &wave, at, y, work);
+                        work.given = Some(wave);
+                        done?;
+                    }
+                }
             }
         }
         Ok(())
+    }
+
+    /// Goes once round a recycle whose tear streams are given.
+    fn pass(
+        &self,
+        block: &Block,
+        wave: &Waveform,
+        at: Moment,
+        y: &[f64],
+        work: &mut FlowWorkspace,
+    ) -> Result<(), PlantError> {
+        let width = self.layout.width();
+        let mut values = Vec::new();
+        wave.at(at.time, &mut values);
+        // Tear streams of the blocks before come first.
+        let values = &values[work.became.len()..];
+        for (tear, own) in block.tears.iter().zip(values.chunks_exact(width)) {
+            work.streams[tear * width..(tear + 1) * width].copy_from_slice(own);
+        }
+        let mut new = vec![0.0; block.tears.len() * width];
+        for unit in &block.units {
+            self.produce(*unit, at, y, work)?;
+            self.put(*unit, &block.tears, work, &mut new);
+        }
+        work.rounds += 1;
+        work.became.extend_from_slice(&new);
+        Ok(())
+    }
+
+    /// All tear streams as they are.
+    pub(super) fn torn(&self, work: &FlowWorkspace) -> Vec<f64> {
+        let tears = self.blocks.iter().flat_map(|block| &block.tears);
+        tears
+            .flat_map(|tear| work.stream(self, *tear).to_vec())
+            .collect()
+    }
+
+    /// Lets enthalpies among tear streams weigh as masses do, or takes the weight off.
+    pub(super) fn weigh_heat(&self, tears: &mut [f64], on: bool) {
+        let factor = if on {
+            ENTHALPY_WEIGHT
+        } else {
+            1.0 / ENTHALPY_WEIGHT
+        };
+        let (width, enthalpy) = (self.layout.width(), self.layout.enthalpy());
+        let heats = tears.iter_mut().skip(enthalpy).step_by(width);
+        heats.for_each(|heat| *heat *= factor);
     }
 
     /// What flows out of a unit, into `made`.
@@ -162,17 +221,11 @@ impl Plant {
                 work.closure = work.closure.max(closure);
                 return Ok(());
             }
-            let scale = |list: &mut [f64], factor: f64| {
-                list.iter_mut()
-                    .skip(enthalpy)
-                    .step_by(width)
-                    .for_each(|h| *h *= factor);
-            };
             let plain = new.clone();
-            scale(&mut x, ENTHALPY_WEIGHT);
-            scale(&mut new, ENTHALPY_WEIGHT);
+            self.weigh_heat(&mut x, true);
+            self.weigh_heat(&mut new, true);
             anderson.accelerate(&x, &mut new);
-            scale(&mut new, 1.0 / ENTHALPY_WEIGHT);
+            self.weigh_heat(&mut new, false);
             // A flow that would turn round is no guess: the iteration goes its own way there.
             let total: f64 = plain.iter().map(|flow| flow.abs()).sum();
             let masses = |k: usize| k % width != enthalpy;
@@ -216,7 +269,7 @@ impl Plant {
 
     /// Largest difference of a tear stream from what it became: of its mass flows together, or of its enthalpy relative to
     /// what its heat capacity carries over 100 K.
-    fn difference(&self, x: &[f64], new: &[f64]) -> f64 {
+    pub(super) fn difference(&self, x: &[f64], new: &[f64]) -> f64 {
         let (width, enthalpy) = (self.layout.width(), self.layout.enthalpy());
         let mut largest = 0.0f64;
         for (x, new) in x.chunks_exact(width).zip(new.chunks_exact(width)) {

@@ -1,5 +1,6 @@
 //! Units and streams together.
 
+mod continuation;
 mod explicit;
 mod flows;
 mod implicit;
@@ -9,9 +10,13 @@ mod order;
 mod run;
 mod steady;
 mod topology;
+mod waveform;
+mod windows;
 
+pub use continuation::{Continuation, ContinuationPoint};
 pub use flows::{FlowWorkspace, LOOP_CLOSURE};
 pub use ledger::{LedgerLine, PlantLedger};
 pub use run::{Integrator, PlantRun, PlantStep};
 pub use steady::{Mode, Stability, SteadyState};
 pub use topology::{Connection, Plant, PlantUnit};
+pub use waveform::{Acceleration, Waveform, WaveformSettings};

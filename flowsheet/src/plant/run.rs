@@ -77,6 +77,8 @@ pub struct PlantStep {
     pub streams: Vec<f64>,
     /// Length of the next step in s, as far as it is known.
     pub step: f64,
+    /// Length of the next window in s.
+    pub window: f64,
     /// Largest closure so far.
     pub closure: f64,
     /// What was held at the start.
@@ -85,16 +87,18 @@ pub struct PlantStep {
 
 /// A plant that is followed in time, with all recycles closed at every evaluation (docs/theory.md, FLS-4).
 pub struct PlantRun<'a> {
-    plant: &'a Plant,
+    pub(super) plant: &'a Plant,
     method: Method,
-    tolerance: f64,
-    time: f64,
-    y: Vec<f64>,
+    pub(super) tolerance: f64,
+    pub(super) time: f64,
+    pub(super) y: Vec<f64>,
     totals: Vec<f64>,
     scales: Vec<f64>,
     held: Vec<Vec<f64>>,
-    closure: f64,
-    work: FlowWorkspace,
+    pub(super) closure: f64,
+    pub(super) work: FlowWorkspace,
+    /// Length of the next window of waveform relaxation in s; zero before the first.
+    pub(super) window: f64,
     /// Steps, and steps that were repeated.
     steps: [usize; 2],
 }
@@ -137,6 +141,7 @@ impl<'a> PlantRun<'a> {
             scales: plant.scales(),
             y,
             closure: 0.0,
+            window: 0.0,
             work: FlowWorkspace::new(plant),
             steps: [0; 2],
         };
@@ -167,7 +172,7 @@ impl<'a> PlantRun<'a> {
     }
 
     /// Steps from the present time to `end`, between which nothing jumps.
-    fn follow(&mut self, end: f64) -> Result<(), PlantError> {
+    pub(super) fn follow(&mut self, end: f64) -> Result<(), PlantError> {
         for step in 0..MOST_STEPS {
             let at = Moment {
                 time: self.time,
@@ -200,6 +205,20 @@ impl<'a> PlantRun<'a> {
             reached: self.time,
             cause: "it took too many steps; let the `stiff` integrator follow it, or raise the tolerance",
         })
+    }
+
+    /// What a window begins with.
+    pub(super) fn clone_state(&self) -> (f64, Vec<f64>, Vec<f64>, f64) {
+        let (y, totals) = (self.y.clone(), self.totals.clone());
+        (self.time, y, totals, self.method.step())
+    }
+
+    /// Back to what a window began with.
+    pub(super) fn restore(&mut self, to: &(f64, Vec<f64>, Vec<f64>, f64)) {
+        self.time = to.0;
+        self.y.copy_from_slice(&to.1);
+        self.totals.copy_from_slice(&to.2);
+        self.method.set_step(to.3);
     }
 
     /// Time in s.
@@ -247,6 +266,7 @@ impl<'a> PlantRun<'a> {
             totals: self.totals.clone(),
             streams: self.work.streams.clone(),
             step: self.method.step(),
+            window: self.window,
             closure: self.closure,
             held: self.held.clone(),
         }
@@ -259,6 +279,7 @@ impl<'a> PlantRun<'a> {
         self.totals = from.totals;
         self.work.streams = from.streams;
         self.method.set_step(from.step);
+        self.window = from.window;
         self.closure = from.closure;
         self.held = from.held;
     }

@@ -1,6 +1,7 @@
 //! Units, one a file.
 
 mod bunker;
+mod cyclone;
 mod dryer;
 mod granulator;
 mod inlet;
@@ -11,6 +12,7 @@ mod screen;
 mod splitter;
 
 pub use bunker::{Bunker, Discharge};
+pub use cyclone::Cyclone;
 pub use dryer::Dryer;
 pub use granulator::{BedHeat, BedLevel, Granulator, Overspray};
 pub use inlet::PlantInlet;

@@ -1,0 +1,134 @@
+//! Waveform relaxation.
+
+use super::flows::{LOOP_CLOSURE, Moment};
+use super::run::PlantRun;
+use super::waveform::{NODES, NodeIteration, Waveform, WaveformSettings};
+use crate::PlantError;
+
+/// Windows grow less where tear streams bend: relative to the integrator's tolerance, what they may differ from their
+/// polynomials between nodes.
+const BEND: f64 = 1.0;
+
+impl PlantRun<'_> {
+    /// Advances to a time in s by waveform relaxation (docs/theory.md, FLS-1): in each window the plant, opened at its tear
+    /// streams, is followed with these given as polynomials in time, until what they become at the nodes is what they were.
+    pub fn advance_by_windows(
+        &mut self,
+        until: f64,
+        settings: &WaveformSettings,
+    ) -> Result<(), PlantError> {
+        if self.plant.tears().is_empty() {
+            return self.advance(until);
+        }
+        let mut span = if self.window > 0.0 {
+            self.window
+        } else {
+            settings.first
+        };
+        while self.time < until {
+            let end = self.plant.next_break(self.time).min(until);
+            let took = span.min(end - self.time);
+            match self.window(took, end, settings)? {
+                Some(iterations) => {
+                    if took < span {
+                        // Shortened by the end: says nothing about the next.
+                        self.window = span;
+                    } else if iterations <= settings.few {
+                        self.window = (span * settings.change).min(settings.longest);
+                    } else if iterations > settings.many {
+                        self.window = span / settings.change;
+                    }
+                }
+                None => {
+                    self.window = 0.5 * took;
+                    if self.window < settings.shortest {
+                        return Err(PlantError::Steps {
+                            reached: self.time,
+                            cause: "windows became too short for their tear streams; take `monolithic` in place of `waveform`",
+                        });
+                    }
+                }
+            }
+            span = self.window;
+        }
+        Ok(())
+    }
+
+    /// One window; the iterations it took, or none where it has to be shorter (the state is then that of its start).
+    fn window(
+        &mut self,
+        span: f64,
+        end: f64,
+        settings: &WaveformSettings,
+    ) -> Result<Option<usize>, PlantError> {
+        let start = self.clone_state();
+        let from = self.time;
+        // The streams of now, closed at once, are the first guess of all nodes.
+        let at = Moment { time: from, end };
+        self.work.given = None;
+        self.plant.flows(at, &self.y, &mut self.work)?;
+        let mut wave = Waveform::constant(from, span, &self.plant.torn(&self.work));
+        let size = wave.values[0].len();
+        let mut iteration = NodeIteration::new();
+        for count in 1..=settings.most {
+            self.restore(&start);
+            self.work.given = Some(wave.clone());
+            let mut x = Vec::with_capacity(NODES * size);
+            let mut made = Vec::with_capacity(NODES * size);
+            let (mut closure, mut bend) = (0.0f64, 0.0f64);
+            for k in 0..NODES {
+                let time = if k == NODES - 1 {
+                    from + span
+                } else {
+                    from + span * Waveform::node(k)
+                };
+                // Halfway between nodes the polynomial is compared with what it became, too.
+                if k > 0 {
+                    let middle = 0.5 * (self.time + time);
+                    self.follow(middle)?;
+                    bend = bend.max(self.torn_difference(middle, end)?);
+                    self.follow(time)?;
+                }
+                closure = closure.max(self.torn_difference(time, end)?);
+                x.extend_from_slice(&wave.values[k]);
+                made.extend_from_slice(&self.work.became);
+            }
+            if closure <= LOOP_CLOSURE * 10.0 {
+                if bend > BEND * self.tolerance.max(LOOP_CLOSURE * 100.0)
+                    && span > settings.shortest
+                {
+                    self.work.given = None;
+                    self.restore(&start);
+                    return Ok(None);
+                }
+                self.time = from + span;
+                self.work.given = None;
+                self.closure = self.closure.max(closure);
+                let now = Moment {
+                    time: self.time,
+                    end,
+                };
+                self.plant.verify(now, &self.y, &self.work.streams)?;
+                return Ok(Some(count));
+            }
+            self.plant.weigh_heat(&mut x, true);
+            self.plant.weigh_heat(&mut made, true);
+            iteration.accelerate(settings.acceleration, &x, &mut made);
+            self.plant.weigh_heat(&mut made, false);
+            for (values, new) in wave.values.iter_mut().zip(made.chunks_exact(size)) {
+                values.copy_from_slice(new);
+            }
+        }
+        self.work.given = None;
+        self.restore(&start);
+        Ok(None)
+    }
+
+    /// What the tear streams became at the present unknowns, against what they were.
+    fn torn_difference(&mut self, time: f64, end: f64) -> Result<f64, PlantError> {
+        let at = Moment { time, end };
+        self.plant.flows(at, &self.y, &mut self.work)?;
+        let were = self.plant.torn(&self.work);
+        Ok(self.plant.difference(&were, &self.work.became))
+    }
+}
