@@ -9,3 +9,4 @@ mod loops;
 mod methods;
 mod oscillation;
 mod support;
+mod units;

@@ -182,8 +182,11 @@ impl Granulator {
         let compounds = layout.compounds();
         let spray = view.inlet(SPRAY);
         let mut sprayed = vec![0.0; compounds.len()];
-        for (place, flow) in spray[..layout.solids()].iter().enumerate() {
-            sprayed[place % compounds.len()] += flow;
+        for cell in spray[..layout.solids()].chunks_exact(compounds.len()) {
+            sprayed
+                .iter_mut()
+                .zip(cell)
+                .for_each(|(s, flow)| *s += flow);
         }
         for (k, compound) in compounds.iter().enumerate() {
             if !compound.volatile {
