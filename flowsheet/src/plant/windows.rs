@@ -5,9 +5,9 @@ use super::run::PlantRun;
 use super::waveform::{NODES, NodeIteration, Waveform, WaveformSettings};
 use crate::PlantError;
 
-/// Windows grow less where tear streams bend: relative to the integrator's tolerance, what they may differ from their
-/// polynomials between nodes.
-const BEND: f64 = 1.0;
+/// What tear streams may differ from their polynomials between nodes, relative to the integrator's tolerance, whose own
+/// errors are in them.
+const BEND: f64 = 10.0;
 
 impl PlantRun<'_> {
     /// Advances to a time in s by waveform relaxation (docs/theory.md, FLS-1): in each window the plant, opened at its tear
