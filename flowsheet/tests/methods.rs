@@ -1,6 +1,6 @@
 //! Monolithic recycles and waveform relaxation against each other (docs/theory.md, FLS-1, FLS-4).
 
-use calcine_flowsheet::{Acceleration, Integrator, PlantRun, WaveformSettings};
+use calcine_flowsheet::{Integrator, PlantRun, TearAcceleration, WaveformSettings};
 
 use crate::granulation::plant;
 
@@ -10,7 +10,7 @@ fn both_methods_of_recycles_agree_and_close() {
     let (tolerance, end) = (1e-8, 200.0);
     let mut whole = PlantRun::new(&plant, Integrator::Explicit, tolerance).unwrap();
     whole.advance(end).unwrap();
-    for acceleration in [Acceleration::Anderson, Acceleration::Wegstein(-0.5)] {
+    for acceleration in [TearAcceleration::Anderson, TearAcceleration::Wegstein(-0.5)] {
         let settings = WaveformSettings {
             acceleration,
             ..WaveformSettings::default()

@@ -2,7 +2,7 @@
 
 use calcine_numerics::Anderson;
 
-use super::order::Block;
+use super::order::UnitBlock;
 use super::topology::Plant;
 use super::waveform::Waveform;
 use crate::{PlantError, UnitView};
@@ -109,7 +109,7 @@ impl Plant {
     /// Goes once round a recycle whose tear streams are given.
     fn pass(
         &self,
-        block: &Block,
+        block: &UnitBlock,
         wave: &Waveform,
         at: Moment,
         y: &[f64],
@@ -187,7 +187,7 @@ impl Plant {
     /// Goes round a recycle until its tear streams agree with themselves.
     fn close(
         &self,
-        block: &Block,
+        block: &UnitBlock,
         at: Moment,
         y: &[f64],
         work: &mut FlowWorkspace,
@@ -256,7 +256,7 @@ impl Plant {
     }
 
     /// Mass and weighted enthalpy that enter the units of a recycle from outside.
-    fn inflow(&self, block: &Block, streams: &[f64]) -> f64 {
+    fn inflow(&self, block: &UnitBlock, streams: &[f64]) -> f64 {
         let (width, enthalpy) = (self.layout.width(), self.layout.enthalpy());
         let enters =
             |(from, to): &(usize, usize)| block.units.contains(to) && !block.units.contains(from);

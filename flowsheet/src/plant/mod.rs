@@ -19,4 +19,4 @@ pub use ledger::{LedgerLine, PlantLedger};
 pub use run::{Integrator, PlantRun, PlantStep};
 pub use steady::{Mode, Stability, SteadyState};
 pub use topology::{Connection, Plant, PlantUnit};
-pub use waveform::{Acceleration, Waveform, WaveformSettings};
+pub use waveform::{TearAcceleration, Waveform, WaveformSettings};

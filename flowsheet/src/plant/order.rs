@@ -2,7 +2,7 @@
 
 /// Units that are computed one after the other; those of a recycle until its tear streams agree with themselves.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Block {
+pub struct UnitBlock {
     /// Units, in order.
     pub units: Vec<usize>,
     /// Streams that a recycle is torn at; none for a unit alone.
@@ -16,7 +16,7 @@ pub struct Block {
 /// that flow against it.
 ///
 /// Source: Tarjan, SIAM J. Comput. 1 (1972) 146, doi 10.1137/0201010.
-pub fn order(units: usize, ends: &[(usize, usize)], direct: &[bool]) -> Vec<Block> {
+pub fn order(units: usize, ends: &[(usize, usize)], direct: &[bool]) -> Vec<UnitBlock> {
     let mut search = Search {
         next: vec![Vec::new(); units],
         index: vec![None; units],
@@ -41,7 +41,7 @@ pub fn order(units: usize, ends: &[(usize, usize)], direct: &[bool]) -> Vec<Bloc
         let own = |from: usize, to: usize| direct[to] && from == to;
         let loops = members.len() > 1 || ends.iter().any(|(a, b)| *a == members[0] && own(*a, *b));
         if !loops {
-            blocks.push(Block {
+            blocks.push(UnitBlock {
                 units: members,
                 tears: Vec::new(),
             });
@@ -54,10 +54,10 @@ pub fn order(units: usize, ends: &[(usize, usize)], direct: &[bool]) -> Vec<Bloc
 }
 
 /// Orders the units of a recycle: next is the first that waits for no other, else the one with the fewest streams to tear.
-fn tear(members: &[usize], ends: &[(usize, usize)]) -> Block {
+fn tear(members: &[usize], ends: &[(usize, usize)]) -> UnitBlock {
     let inside = |unit: &usize| members.contains(unit);
     let mut left = members.to_vec();
-    let mut block = Block::default();
+    let mut block = UnitBlock::default();
     while !left.is_empty() {
         let waits = |unit: usize| {
             let open = |(from, to): &&(usize, usize)| *to == unit && left.contains(from);

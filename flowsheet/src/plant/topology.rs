@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::order::{Block, order};
+use super::order::{UnitBlock, order};
 use crate::{PlantError, ProcessUnit, StreamLayout};
 
 /// A stream: from a unit's outlet to a unit's inlet.
@@ -46,7 +46,7 @@ pub struct Plant {
     pub(super) layout: StreamLayout,
     pub(super) units: Vec<PlantUnit>,
     pub(super) names: Vec<String>,
-    pub(super) blocks: Vec<Block>,
+    pub(super) blocks: Vec<UnitBlock>,
     pub(super) unknowns: usize,
     /// Unit that each stream leaves, and that it enters.
     pub(super) ends: Vec<(usize, usize)>,

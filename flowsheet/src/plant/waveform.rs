@@ -7,7 +7,7 @@ pub const NODES: usize = 6;
 
 /// How an iteration of tear streams is accelerated.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Acceleration {
+pub enum TearAcceleration {
     /// Anderson's method over all tear streams and nodes together.
     Anderson,
     /// Wegstein's secant of every number for itself, with q not below a limit (Dyssol's is −0.5).
@@ -33,8 +33,8 @@ pub struct WaveformSettings {
     pub many: usize,
     /// Most iterations of a window.
     pub most: usize,
-    /// Acceleration.
-    pub acceleration: Acceleration,
+    /// TearAcceleration.
+    pub acceleration: TearAcceleration,
 }
 
 impl Default for WaveformSettings {
@@ -47,7 +47,7 @@ impl Default for WaveformSettings {
             few: 12,
             many: 40,
             most: 500,
-            acceleration: Acceleration::Anderson,
+            acceleration: TearAcceleration::Anderson,
         }
     }
 }
@@ -120,8 +120,8 @@ impl NodeIteration {
     }
 
     /// The next iterate in place of what the iteration made of `x`.
-    pub fn accelerate(&mut self, by: Acceleration, x: &[f64], made: &mut [f64]) {
-        let Acceleration::Wegstein(limit) = by else {
+    pub fn accelerate(&mut self, by: TearAcceleration, x: &[f64], made: &mut [f64]) {
+        let TearAcceleration::Wegstein(limit) = by else {
             self.anderson.accelerate(x, made);
             return;
         };
@@ -164,7 +164,7 @@ mod tests {
         let mut x = [0.0];
         for _ in 0..2 {
             let mut made = [map(x[0])];
-            iteration.accelerate(Acceleration::Wegstein(-5.0), &x, &mut made);
+            iteration.accelerate(TearAcceleration::Wegstein(-5.0), &x, &mut made);
             x = made;
         }
         // The slope is −0.4, q = 0.4/1.4 above zero: not allowed, so that the iteration is the plain one.
@@ -174,7 +174,7 @@ mod tests {
         let mut x = [0.0];
         for _ in 0..2 {
             let mut made = [map(x[0])];
-            iteration.accelerate(Acceleration::Wegstein(-5.0), &x, &mut made);
+            iteration.accelerate(TearAcceleration::Wegstein(-5.0), &x, &mut made);
             x = made;
         }
         assert!((x[0] - 5.0).abs() < 1e-14, "{}", x[0]);
