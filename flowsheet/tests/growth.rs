@@ -190,7 +190,7 @@ fn a_stirred_tank_has_an_exponential_distribution_of_numbers() {
     feed[seeds] = 0.01;
     let (residence, start) = (1000.0, grid.diameters()[seeds]);
     let mut content = vec![0.0; grid.classes()];
-    content[seeds] = 100.0;
+    content[seeds] = 10.0;
     let make = |bed: Granulator| bed.with_level(BedLevel::Residence(residence));
     let plant = tank(grid.clone(), &feed, 0.03, make, content);
     let mut run = PlantRun::new(&plant, Integrator::Explicit, 1e-6).unwrap();
@@ -239,7 +239,7 @@ fn linear_growth_gives_a_power_law() {
     let mut feed = vec![0.0; grid.classes()];
     feed[seeds] = 0.01;
     let mut content = vec![0.0; grid.classes()];
-    content[seeds] = 100.0;
+    content[seeds] = 10.0;
     let reference = 2e-3;
     let make = |bed: Granulator| {
         let law = Box::new(LinearGrowth { reference });
