@@ -1,6 +1,6 @@
 //! Plants: streams of solids with distributions, units, population balances, recycles, their dynamics and steady states.
 //!
-//! Knows neither cases nor solvers. Equations and sources: docs/theory.md, FLS-1 to FLS-6 and PBM-1 to PBM-8.
+//! Knows neither cases nor solvers. Equations and sources: docs/theory.md, FLS-1 to FLS-6 and PBM-1 to PBM-7.
 //!
 //! - [`StreamLayout`], [`SizeGrid`], [`distribution`]: what streams are made of;
 //! - [`screen`], [`mill`], [`cyclone`]: laws, one a file;
