@@ -62,7 +62,7 @@ fn a_bunker_empties_by_its_residence_time() {
             (found / expected - 1.0).abs() < 1e-8,
             "{integrator:?}: {found} {expected}"
         );
-        assert!(run.ledger().worst() < 1e-13, "{:?}", run.ledger());
+        assert!(run.ledger().worst() < 1e-12, "{:?}", run.ledger());
     }
 }
 
@@ -145,7 +145,7 @@ fn a_dryer_closes_its_enthalpy() {
         let found = layout.temperature(stream).unwrap();
         assert!((found - expected).abs() < 1e-9, "{found} {expected}");
     }
-    assert!(run.ledger().worst() < 1e-14);
+    assert!(run.ledger().worst() < 1e-13);
 }
 
 /// With `balanced` heat the bed cools towards the temperature at which everything leaves that enters.
