@@ -44,6 +44,8 @@ pub struct WindowOutcome {
 #[derive(Clone, Debug, PartialEq)]
 pub struct WindowControl {
     bounds: WindowBounds,
+    /// Windows are whole numbers of this, in s; `None`: of any length.
+    step: Option<f64>,
     size: Ticks,
     /// The error of the window before.
     error_before: Option<f64>,
@@ -51,12 +53,15 @@ pub struct WindowControl {
 
 impl WindowControl {
     /// Begins with the shortest window.
-    pub fn new(bounds: WindowBounds) -> Self {
-        Self {
+    pub fn new(bounds: WindowBounds, step: Option<f64>) -> Self {
+        let mut control = Self {
             bounds,
+            step,
             size: bounds.min,
             error_before: None,
-        }
+        };
+        control.restart();
+        control
     }
 
     /// The next window's length, motion time.
@@ -66,13 +71,13 @@ impl WindowControl {
 
     /// After a jump: the shortest window again.
     pub fn restart(&mut self) {
-        self.size = self.bounds.min;
+        self.size = self.within(0.0);
         self.error_before = None;
     }
 
     /// Why a window is too long, in words, where it is and could be shorter.
     pub fn refuses(&self, window: &WindowOutcome) -> Option<String> {
-        if window.span <= self.bounds.min {
+        if window.span <= self.within(0.0) {
             return None;
         }
         let courant = window.courant_rate * window.span.seconds();
@@ -142,7 +147,17 @@ impl WindowControl {
     /// The nearest length that the bounds allow.
     fn within(&self, seconds: f64) -> Ticks {
         let [min, max] = [self.bounds.min, self.bounds.max];
-        let size = Ticks::from_seconds(seconds.min(max.seconds()));
+        let mut seconds = seconds.clamp(min.seconds(), max.seconds());
+        if let Some(step) = self.step {
+            // Of round-off in the number of steps as little as a tick is.
+            const WHOLE: f64 = 1e-6;
+            let whole = (seconds / step + WHOLE).floor();
+            let least = (min.seconds() / step - WHOLE).ceil().max(1.0);
+            seconds = step * whole.max(least);
+            let size = Ticks::from_seconds(seconds);
+            return size.unwrap_or(min);
+        }
+        let size = Ticks::from_seconds(seconds);
         size.map_or(min, |size| size.clamp(min, max))
     }
 
@@ -172,12 +187,15 @@ mod tests {
     }
 
     fn control(courant: Option<f64>, error: Option<f64>) -> WindowControl {
-        WindowControl::new(WindowBounds {
-            min: ticks(1e-5),
-            max: ticks(1e-2),
-            courant,
-            error,
-        })
+        WindowControl::new(
+            WindowBounds {
+                min: ticks(1e-5),
+                max: ticks(1e-2),
+                courant,
+                error,
+            },
+            None,
+        )
     }
 
     fn outcome(control: &WindowControl, error: Option<f64>, courant_rate: f64) -> WindowOutcome {
@@ -239,6 +257,18 @@ mod tests {
         assert!(control.refuses(&fast).unwrap().contains("Courant"));
         control.shrink(&fast);
         assert_eq!(control.size(), ticks(0.9e-3));
+    }
+
+    #[test]
+    fn windows_are_whole_numbers_of_the_particles_step() {
+        let mut control = control(Some(1.0), None);
+        control.step = Some(3e-6);
+        control.restart();
+        assert_eq!(control.size(), ticks(1.2e-5));
+        control.advance(&outcome(&control, None, 0.0));
+        assert_eq!(control.size(), ticks(2.4e-5));
+        control.advance(&outcome(&control, None, 0.9 / 2e-5));
+        assert_eq!(control.size(), ticks(1.8e-5));
     }
 
     #[test]

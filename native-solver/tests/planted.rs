@@ -223,6 +223,7 @@ fn beads(planted: Planted, results: &Path) -> CoupledRun {
         end: Ticks::from_seconds(6e-2).unwrap(),
         motion_window: window,
         window_bounds: None,
+        particle_step: None,
         breaks: Vec::new(),
         jumps: Vec::new(),
         time_scheme: Default::default(),

@@ -18,6 +18,10 @@ pub(super) fn plan(case: &Case, prepared: &PreparedCase, checkpoint: CheckpointP
         end: case.time.end,
         motion_window: case.time.motion_window,
         window_bounds: case.time.window_bounds,
+        particle_step: match &prepared.particles.motion {
+            Motion::Frozen => None,
+            Motion::Free(contacts) => Some(contacts.step),
+        },
         breaks,
         jumps,
         time_scheme: case.gas.controls.time_scheme,

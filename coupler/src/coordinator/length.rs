@@ -2,12 +2,13 @@
 
 use super::CoupledRun;
 use super::error::RunError;
+use super::plan::Plan;
 use crate::checkpoint::{StateFile, StateFileError};
 use crate::part::{Gas as _, GasFields};
 use crate::setup::TimeScheme;
 use crate::step_error::{StepError, StepHistory, StepOrder, StepSpans};
 use crate::time::{Ticks, Window};
-use crate::window_control::{WindowBounds, WindowControl, WindowOutcome};
+use crate::window_control::{WindowControl, WindowOutcome};
 
 /// What the windows so far say of the next one's length.
 pub(super) struct LengthStage {
@@ -21,10 +22,11 @@ pub(super) struct LengthStage {
 }
 
 impl LengthStage {
-    pub fn new(bounds: Option<WindowBounds>, gas: &GasFields<'_>) -> Self {
+    pub fn new(plan: &Plan, gas: &GasFields<'_>) -> Self {
+        let control = |bounds| WindowControl::new(bounds, plan.particle_step);
         Self {
             history: StepHistory::begin(gas),
-            control: bounds.map(WindowControl::new),
+            control: plan.window_bounds.map(control),
             error: None,
             courant: None,
         }

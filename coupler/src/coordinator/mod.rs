@@ -180,7 +180,7 @@ impl CoupledRun {
             settled: true,
             ..ExchangeConvergence::default()
         };
-        let length = LengthStage::new(plan.window_bounds, &parts.gas.fields());
+        let length = LengthStage::new(&plan, &parts.gas.fields());
         let mut run = Self {
             plan,
             mesh,

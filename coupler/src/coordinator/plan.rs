@@ -24,6 +24,8 @@ pub struct Plan {
     pub motion_window: Ticks,
     /// Bounds between which the length follows the run; `None`: it is always the same.
     pub window_bounds: Option<WindowBounds>,
+    /// Time step of the particles that move in s of motion time: windows that follow the run are whole numbers of it.
+    pub particle_step: Option<f64>,
     /// Process times at which boundary values begin to follow another line; windows that follow the run end there.
     pub breaks: Vec<Ticks>,
     /// Those of them at which the shortest window begins anew.
