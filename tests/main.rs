@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod adaptive_windows;
 mod agreement;
 mod architecture;
 mod beds;

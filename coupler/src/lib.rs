@@ -34,10 +34,12 @@ pub mod physical;
 pub mod setup;
 pub mod smoother;
 pub mod species_coupling;
+pub mod step_error;
 pub mod supervisor;
 pub mod time;
 pub mod turbulence;
 pub mod view_factors;
+pub mod window_control;
 pub mod window_drag;
 
 pub use calcine_interior as interior;

@@ -12,6 +12,7 @@ use crate::ledger::Ledger;
 use crate::mesh::Mesh;
 use crate::models::ParticleModels;
 use crate::part::{Bed, Convergence, GasFields, ParticleFields, SolverInfo};
+use crate::step_error::StepError;
 use crate::time::{Clocks, Window};
 
 /// Wall time spent in each stage since this process began the run, and processor time of the two solvers.
@@ -87,6 +88,10 @@ pub struct CommittedState<'a> {
     pub reservoir_heat: &'a [f64],
     /// The ledger so far.
     pub ledger: &'a Ledger,
+    /// The estimated error of the window's step; `None` where too few windows have passed for one.
+    pub step_error: Option<&'a StepError>,
+    /// Largest Courant number of the gas at the end of the window, over its motion time.
+    pub courant: Option<f64>,
     /// Convergence of the gas in the window.
     pub convergence: &'a Convergence,
     /// Attempts of the window, and what they left misplaced.

@@ -24,6 +24,7 @@ mod planted;
 mod resume;
 mod skewed;
 mod species;
+mod step_errors;
 mod stirred;
 mod stirred_cells;
 mod time_order;

@@ -222,6 +222,12 @@ fn beads(planted: Planted, results: &Path) -> CoupledRun {
     let plan = Plan {
         end: Ticks::from_seconds(6e-2).unwrap(),
         motion_window: window,
+        window_bounds: None,
+        particle_step: None,
+        breaks: Vec::new(),
+        jumps: Vec::new(),
+        time_scheme: Default::default(),
+        gas_reacts: false,
         acceleration: Acceleration::constant(1.0).unwrap(),
         storage: GasStorage::Process,
         checkpoint_every: Some(window),

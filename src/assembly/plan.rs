@@ -13,9 +13,19 @@ use crate::case::model::Case;
 use crate::laws;
 
 pub(super) fn plan(case: &Case, prepared: &PreparedCase, checkpoint: CheckpointPaths) -> Plan {
+    let [breaks, jumps] = crate::case::breaks(case);
     Plan {
         end: case.time.end,
         motion_window: case.time.motion_window,
+        window_bounds: case.time.window_bounds,
+        particle_step: match &prepared.particles.motion {
+            Motion::Frozen => None,
+            Motion::Free(contacts) => Some(contacts.step),
+        },
+        breaks,
+        jumps,
+        time_scheme: case.gas.controls.time_scheme,
+        gas_reacts: case.gas.chemistry.reacting().is_some(),
         acceleration: case.time.acceleration.clone(),
         storage: case.time.storage,
         checkpoint_every: case.time.checkpoint_every,

@@ -12,7 +12,7 @@ use calcine_coupler::physics::law::NONE;
 use calcine_coupler::setup::ParticleSetup;
 
 use super::flow_numbers::FlowNumbers;
-use super::model::{Case, MeshSpec, Population};
+use super::model::{Case, MeshSpec, Population, TimeSpec};
 use super::packed::BedPacking;
 use super::splitting::Splitting;
 use super::units::{short, short3};
@@ -40,13 +40,13 @@ pub fn check_report(
         text,
         "  process time   {} in {} windows",
         time.end,
-        span::windows(time)
+        number_of_windows(time)
     );
     let _ = writeln!(
         text,
         "  motion time    {} s, windows of {} s{}",
         short(span::motion_time(time, [0.0, time.end.seconds()])),
-        short(time.motion_window.seconds()),
+        lengths(time),
         if time.process_step.is_some() {
             " (chosen for `process_step`)"
         } else {
@@ -150,6 +150,31 @@ pub fn check_report(
     }
     honoured(&mut text, case);
     text
+}
+
+/// How many windows a run makes; where their length follows the gas, between which numbers.
+fn number_of_windows(time: &TimeSpec) -> String {
+    let fewest = span::windows(time);
+    match span::most_windows(time) {
+        most if most > fewest => format!("{fewest} to {most}"),
+        _ => fewest.to_string(),
+    }
+}
+
+/// Lengths of windows in s of motion time, and what they follow.
+fn lengths(time: &TimeSpec) -> String {
+    let longest = short(time.motion_window.seconds());
+    let Some(bounds) = time.window_bounds else {
+        return longest;
+    };
+    let courant = bounds.courant.map(|it| format!("Courant number {it}"));
+    let error = bounds.error.map(|it| format!("error of a step {it}"));
+    let follow: Vec<String> = courant.into_iter().chain(error).collect();
+    format!(
+        "{} to {longest} (up to {})",
+        short(bounds.min.seconds()),
+        follow.join(", ")
+    )
 }
 
 /// The laws that the case chose, with their sources.

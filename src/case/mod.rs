@@ -56,6 +56,7 @@ pub use meshing::{MeshingError, mesh};
 pub use place::{InitialParticles, particles};
 pub use place_error::PlaceError;
 pub use problem::{CaseErrors, Problem};
+pub use schedules::breaks;
 pub use step::settle;
 
 use calcine_coupler::motion::WallShape;

@@ -20,6 +20,7 @@ pub use calcine_coupler::paths::SURROUNDINGS;
 use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::setup::{GasSetup, Schedule};
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
+use calcine_coupler::window_control::WindowBounds;
 use calcine_coupler::window_drag::WindowDrag;
 
 pub use agreement::{AgreementSpec, FieldBand};
@@ -111,8 +112,10 @@ pub struct TimeSpec {
     /// Length of a coupling window in process time, where the case states that instead of the
     /// next two; they then follow from the mesh (`case::settle`).
     pub process_step: Option<Ticks>,
-    /// Length of a coupling window, motion time.
+    /// Length of a coupling window, motion time; the longest, where it follows the gas.
     pub motion_window: Ticks,
+    /// Between which bounds it follows the gas; `None`: all windows are of one length.
+    pub window_bounds: Option<WindowBounds>,
     /// Acceleration factor over process time.
     pub acceleration: Acceleration,
     /// Over which clock the gas stores.

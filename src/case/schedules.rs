@@ -1,6 +1,7 @@
 //! All values over process time of a case, with their keys.
 
 use calcine_coupler::setup::{GasPatch, InletFlow, Schedule, WallHeat};
+use calcine_coupler::time::Ticks;
 
 use super::model::Case;
 use super::units::short;
@@ -72,6 +73,35 @@ fn times(case: &Case) -> Vec<(String, Vec<f64>)> {
     all
 }
 
+/// Where windows that follow the gas end because a value over time follows another line from there on, and begin anew as the
+/// shortest ones: where a ramp begins that is shorter than the longest window, after a course that is not. Ascending.
+pub fn breaks(case: &Case) -> [Vec<Ticks>; 2] {
+    let (mut breaks, mut jumps) = (Vec::new(), Vec::new());
+    let window = case.time.motion_window.seconds();
+    for (_, times) in times(case) {
+        for (place, &time) in times.iter().enumerate() {
+            let within = time > 0.0 && time < case.time.end.seconds();
+            let Some(at) = Ticks::from_seconds(time).ok().filter(|_| within) else {
+                continue;
+            };
+            let longest = window * case.time.acceleration.at(at).0;
+            let before = place.checked_sub(1).map(|one| time - times[one]);
+            let after = times.get(place + 1).map(|next| next - time);
+            if after.is_some_and(|after| after < longest)
+                && before.is_none_or(|before| before >= longest)
+            {
+                jumps.push(at);
+            }
+            breaks.push(at);
+        }
+    }
+    for list in [&mut breaks, &mut jumps] {
+        list.sort_unstable();
+        list.dedup();
+    }
+    [breaks, jumps]
+}
+
 /// Warnings about schedules that begin before the run or after its end.
 pub(super) fn cautions(case: &Case) -> Vec<String> {
     let end = case.time.end.seconds();
@@ -98,6 +128,24 @@ pub(super) fn cautions(case: &Case) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use crate::case::cautions::tests::{one, said};
+
+    #[test]
+    fn windows_end_at_the_entries_of_schedules_and_begin_anew_at_steep_ramps() {
+        let ramps = "[[\"0 s\", \"300 K\"], [\"10 s\", \"300 K\"], [\"10.01 s\", \"400 K\"], \
+                     [\"20 s\", \"500 K\"], [\"9000 s\", \"500 K\"]]";
+        let set = [
+            format!("gas.patch.bottom.inlet.temperature={ramps}"),
+            "time.motion_window={ min = \"1 ms\", max = \"1 s\", error = 1e-3 }".to_owned(),
+            "time.acceleration=2".to_owned(),
+        ];
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let path = folder.join("tests/inputs/good/two-populations.toml");
+        let case = crate::case::read(&path, &set).unwrap();
+        let [breaks, jumps] = super::breaks(&case)
+            .map(|list| list.iter().map(|time| time.seconds()).collect::<Vec<f64>>());
+        assert_eq!(breaks, [10.0, 10.01, 20.0]);
+        assert_eq!(jumps, [10.0]);
+    }
 
     #[test]
     fn a_schedule_that_begins_before_the_run_or_after_its_end_is_told() {

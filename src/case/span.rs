@@ -44,10 +44,20 @@ pub(super) fn is_accelerated(time: &TimeSpec, [from, to]: [f64; 2]) -> bool {
         .any(|([start, end], factor)| factor > 1.0 && from < end.seconds() && start.seconds() < to)
 }
 
-/// Windows of the run, as [`calcine_coupler::time::Acceleration::span`] cuts them.
+/// Windows of the run, as [`calcine_coupler::time::Acceleration::span`] cuts them; the fewest where their length follows the gas.
 pub(super) fn windows(time: &TimeSpec) -> i64 {
+    windows_of(time, time.motion_window)
+}
+
+/// The most windows that the run may make.
+pub(super) fn most_windows(time: &TimeSpec) -> i64 {
+    let shortest = time.window_bounds.map(|bounds| bounds.min);
+    windows_of(time, shortest.unwrap_or(time.motion_window))
+}
+
+fn windows_of(time: &TimeSpec, motion_window: Ticks) -> i64 {
     let windows = spans(time).map(|([from, to], factor)| {
-        let full = Ticks::from_seconds(time.motion_window.seconds() * factor);
+        let full = Ticks::from_seconds(motion_window.seconds() * factor);
         let full = full.map_or(i64::MAX, |full| full.count().max(1));
         let length = to.since(from).count();
         length / full + i64::from(length % full > 0)

@@ -328,6 +328,7 @@ fn converged(summary: &Summary) -> String {
         "{} of {} windows ended at the limit of outer iterations; {} outer and {} linear \
          iterations a window; largest residual {}, largest volume residual {}. The exchange took {} \
          attempts a window; {} windows ended at their limit, the largest misplaced share is {}; windows were cut {} times. \
+         {} \
          The smoother moved {} % of the solid volume out of cells above its threshold at the end, {} % at most.",
         sums.unconverged_windows,
         summary.windows,
@@ -339,8 +340,27 @@ fn converged(summary: &Summary) -> String {
         sums.unsettled_windows,
         figure(sums.largest_misplaced, 2),
         sums.cuts,
+        steps(summary),
         figure(100.0 * summary.smoother.moved_share, 3),
         figure(100.0 * summary.smoother.largest_moved_share, 3),
+    )
+}
+
+/// Lengths of windows and errors of their steps, in words.
+fn steps(summary: &Summary) -> String {
+    let steps = &summary.steps;
+    if steps.longest_window_s == 0.0 {
+        return String::new();
+    }
+    format!(
+        "Windows were {} to {} s of motion time long, with Courant numbers of {} at most; the errors of their steps are estimated \
+         at {} of the velocity, {} of the temperature and {} of mass fractions at most.",
+        figure(steps.shortest_window_s, 3),
+        figure(steps.longest_window_s, 3),
+        figure(steps.largest_courant, 3),
+        figure(steps.largest_velocity_error, 2),
+        figure(steps.largest_temperature_error, 2),
+        figure(steps.largest_composition_error, 2),
     )
 }
 
@@ -380,7 +400,24 @@ fn residuals(series: &Series) -> String {
             curve("linear", "gas.linear_iterations", 1),
         ],
     );
-    format!("<div class=\"plots\">{left}{right}</div>")
+    let errors = plot(
+        "Estimated error of the window's step",
+        true,
+        vec![
+            curve("velocity", "step.velocity_error", 0),
+            curve("temperature", "step.temperature_error", 1),
+            curve("composition", "step.composition_error", 2),
+        ],
+    );
+    let lengths = plot(
+        "Window in s of motion time, and its Courant number",
+        true,
+        vec![
+            curve("window", "step.motion_window", 0),
+            curve("Courant number", "step.courant", 1),
+        ],
+    );
+    format!("<div class=\"plots\">{left}{right}{errors}{lengths}</div>")
 }
 
 fn provenance(summary: &Summary) -> String {

@@ -21,6 +21,7 @@ pub(crate) mod sheet;
 #[cfg_attr(not(feature = "hdf5"), allow(dead_code))]
 mod snapshot;
 mod status;
+pub mod steps;
 #[cfg_attr(not(feature = "hdf5"), path = "no_store.rs")]
 mod store;
 pub mod summary;

@@ -238,6 +238,12 @@ impl Recorder {
         for first in warnings::add(&mut self.counters.warnings, moment.findings, time) {
             tracing::warn!("{first}; counted in {SUMMARY}, not told of again");
         }
+        let bounds = self.case.time.window_bounds;
+        let bounds = [
+            bounds.and_then(|bounds| bounds.error),
+            bounds.and_then(|bounds| bounds.courant),
+        ];
+        self.counters.steps.add(moment, bounds);
         let (sums, window) = (&mut self.counters.convergence, moment.convergence);
         sums.unconverged_windows += u64::from(!window.converged);
         sums.unsettled_windows += u64::from(!moment.exchange_convergence.settled);
@@ -366,6 +372,9 @@ impl Recorder {
             motion_time_s: moment.clocks.motion.seconds(),
             acceleration: self.case.time.acceleration.at(now).0,
             windows: moment.windows,
+            motion_window_s: moment.window.map(|window| window.span.motion.seconds()),
+            step_error: moment.step_error.map(|error| error.largest()),
+            courant: moment.courant,
             cuts: 0,
             cut_to_s: None,
             fraction_done: now.seconds() / end.seconds(),
@@ -457,6 +466,7 @@ impl Recorder {
             processor_time_s: self.processor(moment.timing),
             quantities: captured.results(case, over),
             convergence: self.counters.convergence,
+            steps: self.counters.steps,
             smoother: SmootherSummary {
                 moved_share: moment.smoothed_share,
                 largest_moved_share: self.counters.largest_moved_share,
@@ -519,6 +529,9 @@ fn status_of(summary: &Summary) -> Status {
         motion_time_s: summary.motion_time_s,
         acceleration: factor.map_or(1.0, |step| step.1),
         windows: summary.windows,
+        motion_window_s: None,
+        step_error: None,
+        courant: None,
         cuts: 0,
         cut_to_s: None,
         fraction_done: summary.process_time_s / summary.process_end_s,

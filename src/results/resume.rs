@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::difference;
 use super::inertial_number::InertialNumberStatistics;
 use super::quantities::Captured;
+use super::steps::StepSummary;
 use super::summary::{ConvergenceSummary, ProcessorTimes, Provenance, Summary, Verdict, WallTimes};
 use super::warnings::Warnings;
 use super::{ResultsError, SERIES, STORE, SUMMARY, files};
@@ -43,6 +44,9 @@ pub(super) struct Counters {
     pub captured: Captured,
     /// Convergence so far.
     pub convergence: ConvergenceSummary,
+    /// Windows and errors of their steps so far.
+    #[serde(default)]
+    pub steps: StepSummary,
     /// Largest share of the solid volume that the smoother moved so far.
     #[serde(default)]
     pub largest_moved_share: f64,

@@ -5,6 +5,7 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use calcine_coupler::observer::CommittedState;
+use calcine_coupler::step_error::StepError;
 use calcine_coupler::time::Window;
 
 use super::probe::Site;
@@ -18,7 +19,7 @@ pub(super) const TRACKED_PARTICLES: usize = 1000;
 /// A column of the series.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Column {
-    /// Group, empty or one of `quantities`, `ledger`, `gas`, `particles`.
+    /// Group, empty or one of `quantities`, `ledger`, `gas`, `particles`, `step`.
     pub group: &'static str,
     /// Name inside the group.
     pub name: String,
@@ -47,6 +48,31 @@ impl Column {
         }
     }
 }
+
+/// What is told of the step of a window; NaN before there is any.
+const STEPS: [(&str, &str, &str); 5] = [
+    ("motion_window", "s", "length of the window in motion time"),
+    (
+        "velocity_error",
+        "1",
+        "estimated error of the window's step in the velocity, as a share of its largest root mean square",
+    ),
+    (
+        "temperature_error",
+        "1",
+        "estimated error of the window's step in the gas temperature, as a share of it",
+    ),
+    (
+        "composition_error",
+        "1",
+        "estimated error of the window's step in the mass fraction of which it is largest",
+    ),
+    (
+        "courant",
+        "1",
+        "largest Courant number at the end of the window, over its motion time",
+    ),
+];
 
 /// The columns of a case, particles apart.
 pub(super) fn columns(case: &Case, moment: &CommittedState<'_>) -> Vec<Column> {
@@ -111,6 +137,9 @@ pub(super) fn columns(case: &Case, moment: &CommittedState<'_>) -> Vec<Column> {
         "1",
         "largest mismatch of continuity and equation of state of the window",
     ));
+    for (name, unit, description) in STEPS {
+        list.push(Column::new("step", name, unit, description));
+    }
     let elements = moment.ledger.elements.iter();
     let elements = elements.map(|(name, _)| (format!("element_{name}"), "kg"));
     let lines = moment.ledger.lines().into_iter();
@@ -195,6 +224,16 @@ pub(super) fn row(
     values.push(f64::from(moment.convergence.linear_iterations));
     values.push(moment.convergence.residual);
     values.push(moment.convergence.volume_residual);
+    let error = |of: fn(&StepError) -> f64| moment.step_error.map_or(f64::NAN, of);
+    values.extend([
+        moment
+            .window
+            .map_or(f64::NAN, |window| window.span.motion.seconds()),
+        error(|error| error.velocity),
+        error(|error| error.temperature),
+        error(|error| error.composition),
+        moment.courant.unwrap_or(f64::NAN),
+    ]);
     let ledger = moment.ledger;
     let lines = ledger.lines().into_iter();
     let lines = lines.map(|(_, _, line)| (line.relative_error(), line));

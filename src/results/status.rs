@@ -26,6 +26,12 @@ pub(super) struct Status {
     pub acceleration: f64,
     /// Windows committed.
     pub windows: u64,
+    /// Length of the last window in s of motion time; this and the next two `None` before there is one, and after the run.
+    pub motion_window_s: Option<f64>,
+    /// Largest estimated error of its step.
+    pub step_error: Option<f64>,
+    /// Courant number at its end, over its motion time.
+    pub courant: Option<f64>,
     /// How often the window at hand was cut so far, because particles that react did not settle with their gas.
     pub cuts: u32,
     /// Length in s of process time that it was cut to; `None` where it was not.

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::files::{self, COMPARISON, number};
 use super::inertial_number::InertialNumberStatistics;
+use super::steps::StepSummary;
 use super::warnings::Warnings;
 use super::{ResultsError, SUMMARY};
 use crate::case::units::{short, shown};
@@ -99,6 +100,9 @@ pub struct Summary {
     pub quantities: BTreeMap<String, QuantityResult>,
     /// Convergence of the gas, over the run.
     pub convergence: ConvergenceSummary,
+    /// Windows and the errors of their steps.
+    #[serde(default)]
+    pub steps: StepSummary,
     /// What the smoother moved.
     #[serde(default)]
     pub smoother: SmootherSummary,

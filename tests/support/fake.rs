@@ -61,6 +61,7 @@ pub fn case() -> Case {
         time: TimeSpec {
             end: seconds(20.0),
             process_step: None,
+            window_bounds: None,
             motion_window: seconds(0.01),
             acceleration: Acceleration::constant(50.0).unwrap(),
             storage: GasStorage::Process,
@@ -394,6 +395,8 @@ impl World {
             models: &self.models,
             particle_gas: Default::default(),
             findings: &[],
+            step_error: None,
+            courant: None,
             exchange_convergence: &SETTLED,
             reservoirs: &[],
             reservoir_heat: &[],

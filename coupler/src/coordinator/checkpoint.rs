@@ -14,7 +14,7 @@ use super::repeat::WindowCut;
 use crate::checkpoint::StateFile;
 use crate::ledger::{CarriedInventory, Ledger};
 use crate::observer::Observer;
-use crate::part::Part as _;
+use crate::part::{Gas as _, Part as _};
 use crate::time::{Clocks, Ticks};
 
 impl CoupledRun {
@@ -85,6 +85,7 @@ impl CoupledRun {
         state.set_f64s("ledger", &ledger);
         state.set_u64s("windows_and_clocks", &clocks);
         state.set_u64s("window_cut", &self.cut.numbers());
+        self.length.record(&mut state);
         state.set_u64s("held", &[self.motion.held.count().cast_unsigned()]);
         state.set_u64s("case_hash", &hash);
         self.interior.models.record(&mut state);
@@ -194,6 +195,7 @@ impl CoupledRun {
             self.motion.held = Ticks::new(held.cast_signed());
         }
         self.restore_controls(&state)?;
+        self.length.restore(&self.parts.gas.fields(), &state)?;
         self.neighbours_due = self.interior.restore_neighbours(&state)?;
         Ok(())
     }

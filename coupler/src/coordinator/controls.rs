@@ -23,6 +23,7 @@ impl CoupledRun {
         );
         self.controls.retain(|old| !control.replaces(old));
         self.controls.push(control);
+        self.length.jump();
         Ok(())
     }
 

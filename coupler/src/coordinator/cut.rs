@@ -23,11 +23,12 @@ impl CoupledRun {
     pub(super) fn next_window(&self) -> Result<Window, TimeError> {
         let plan = &self.plan;
         let (_, change) = plan.holds.at(self.clocks.process);
-        let ends = [change, self.cut.until].into_iter().flatten();
+        let (full, a_break) = self.full_window();
+        let ends = [change, self.cut.until, a_break].into_iter().flatten();
         let span = next_span(
             &plan.acceleration,
             self.clocks,
-            Ticks::new((plan.motion_window.count() >> self.cut.halvings).max(1)),
+            Ticks::new((full.count() >> self.cut.halvings).max(1)),
             ends.fold(plan.end, Ticks::min),
         )?;
         Ok(Window {
@@ -122,7 +123,7 @@ impl CoupledRun {
         cause: &str,
     ) -> Result<(Window, CutNotice), TimeError> {
         self.cut.shorter(window.end()?.process);
-        self.exchange.discard();
+        self.exchange.cut();
         self.give_up();
         let cut = self.next_window()?;
         let notice = CutNotice {

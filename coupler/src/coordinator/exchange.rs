@@ -170,6 +170,11 @@ impl ExchangeStage {
     pub fn discard(&mut self) {
         self.discarded += self.tried;
         self.tried = 0;
+    }
+
+    /// The same of a window that is cut.
+    pub fn cut(&mut self) {
+        self.discard();
         self.cuts += 1;
     }
 

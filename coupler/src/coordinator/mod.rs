@@ -17,6 +17,7 @@ mod finite;
 mod hold;
 mod interior;
 mod laws;
+mod length;
 mod meter;
 mod neighbours;
 mod origin;
@@ -46,6 +47,7 @@ use bed::BedStage;
 use exchange::{ExchangeLimits, ExchangeStage, Participants};
 use interior::InteriorStage;
 use laws::{LawInputs, LawStage};
+use length::LengthStage;
 use meter::{Meter, Stage};
 use particles::{MotionInputs, MotionStage};
 use repeat::{RepeatableGas, WindowCut};
@@ -95,6 +97,8 @@ struct Solvers {
 enum Advanced {
     /// It is committed; the rows of particles that are used up.
     Committed(Vec<usize>),
+    /// Nothing is, as its step was too long: it is begun again, shorter.
+    TooLong,
     /// Nothing is, for this reason: it is begun again, shorter.
     GivenUp(String),
     /// Nothing is, by the user's interrupt.
@@ -117,6 +121,8 @@ pub struct CoupledRun {
     windows: u64,
     /// Where a window was cut, how it goes on.
     cut: WindowCut,
+    /// Errors of the steps, and how long windows are by them.
+    length: LengthStage,
     /// True where a run resumed after particles had moved: what they meet is found before the next window.
     neighbours_due: bool,
     /// What was set while the run goes on, each condition once.
@@ -174,6 +180,7 @@ impl CoupledRun {
             settled: true,
             ..ExchangeConvergence::default()
         };
+        let length = LengthStage::new(&plan, &parts.gas.fields());
         let mut run = Self {
             plan,
             mesh,
@@ -188,6 +195,7 @@ impl CoupledRun {
             clocks: Clocks::default(),
             windows: 0,
             cut: WindowCut::default(),
+            length,
             neighbours_due: false,
             controls: Vec::new(),
             findings: Vec::new(),
@@ -239,6 +247,10 @@ impl CoupledRun {
         let used_up = loop {
             let cause = match self.advance(supervisor, &window)? {
                 Advanced::Committed(used_up) => break used_up,
+                Advanced::TooLong => {
+                    window = self.shorten_window()?;
+                    continue;
+                }
                 Advanced::GivenUp(cause) => cause,
                 Advanced::Interrupted => {
                     self.give_up();
@@ -311,7 +323,7 @@ impl CoupledRun {
     fn advance(&mut self, supervisor: &Supervisor, window: &Window) -> Result<Advanced, RunError> {
         self.map()?;
         let may_cut = self.may_cut();
-        if may_cut || self.stops_between_attempts() {
+        if may_cut || self.stops_between_attempts() || self.may_shorten() {
             self.parts.gas.keep();
         }
         let exchanged = self.exchange_over(supervisor, window);
@@ -332,6 +344,9 @@ impl CoupledRun {
                 return Ok(Advanced::Interrupted);
             }
             Err(error) => return Err(self.told_with_circumstances(error, window)),
+        }
+        if self.is_too_long(window) {
+            return Ok(Advanced::TooLong);
         }
         self.move_particles(supervisor, window)?;
         self.close_ledger(window);
@@ -469,6 +484,7 @@ impl CoupledRun {
 
     fn commit(&mut self, window: &Window) -> Result<Vec<usize>, RunError> {
         self.parts.gas.commit()?;
+        self.judge_step(window);
         self.exchange.commit();
         self.parts.particles.commit()?;
         let particles = self.parts.particles.fields();
@@ -533,6 +549,8 @@ impl CoupledRun {
             reservoirs: self.interior.reservoirs(),
             reservoir_heat: &self.interior.reservoir_heat,
             ledger: &self.ledger,
+            step_error: self.length.error.as_ref(),
+            courant: self.length.courant,
             convergence: &self.exchange.convergence,
             exchange_convergence: &self.exchange.agreement,
             findings: &self.findings,

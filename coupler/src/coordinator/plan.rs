@@ -10,7 +10,9 @@ use crate::feeds::FeedsAndOutlets;
 use crate::hold::Holds;
 use crate::mapping::Method;
 use crate::paths::PathsSetup;
+use crate::setup::TimeScheme;
 use crate::time::{Acceleration, GasStorage, Ticks};
+use crate::window_control::WindowBounds;
 use crate::window_drag::WindowDrag;
 
 /// When windows, checkpoints and the run end, and how exactly a window is exchanged.
@@ -18,8 +20,20 @@ use crate::window_drag::WindowDrag;
 pub struct Plan {
     /// End of the run, process time.
     pub end: Ticks,
-    /// Length of a window, motion time.
+    /// Length of a window, motion time; the longest where it follows the run.
     pub motion_window: Ticks,
+    /// Bounds between which the length follows the run; `None`: it is always the same.
+    pub window_bounds: Option<WindowBounds>,
+    /// Time step of the particles that move in s of motion time: windows that follow the run are whole numbers of it.
+    pub particle_step: Option<f64>,
+    /// Process times at which boundary values begin to follow another line; windows that follow the run end there.
+    pub breaks: Vec<Ticks>,
+    /// Those of them at which the shortest window begins anew.
+    pub jumps: Vec<Ticks>,
+    /// How the case wants the gas stepped where its clocks are one.
+    pub time_scheme: TimeScheme,
+    /// True where gas reacts with itself.
+    pub gas_reacts: bool,
     /// Acceleration factor over process time.
     pub acceleration: Acceleration,
     /// Over which clock the gas stores.

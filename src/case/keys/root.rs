@@ -51,9 +51,17 @@ const CHECKPOINT: &[Key] = &[
 ];
 
 #[rustfmt::skip]
+const WINDOW: &[Key] = &[
+    key("min", Number(D::TIME, Positive), Required, "The shortest window, with which the run begins, and begins anew where something jumps.", "\"10 us\""),
+    key("max", Number(D::TIME, Positive), Required, "The longest window.", "\"10 ms\""),
+    key("courant", Number(D::NONE, Positive), Without("no bound; required without `error`"), "Largest Courant number of the gas over a window's motion time.", "2"),
+    key("error", Number(D::NONE, UpTo(0.0, 0.1)), Without("no bound; required without `courant`"), "Largest estimated error of a window's step: root mean square over the gas, of the velocity as a share of its largest, of the temperature as a share of itself, of the mass fractions as they are.", "1e-3"),
+];
+
+#[rustfmt::skip]
 const TIME: &[Key] = &[
     key("end", Number(D::TIME, Positive), Required, "End of the run.", "\"10 min\""),
-    key("motion_window", Number(D::TIME, Positive), OneOf, "Length of a coupling window in motion time. Either this or `process_step`.", "\"1 ms\""),
+    key("motion_window", Either(&Number(D::TIME, Positive), &Table(WINDOW)), OneOf, "Length of a coupling window in motion time, or bounds between which it follows the gas (docs/how-to/adaptive-windows.md). Either this or `process_step`.", "\"1 ms\""),
     key("process_step", Number(D::TIME, Positive), OneOf, "Length of a coupling window in process time, for beds that do not move: the motion time and with it the acceleration factor follow from mesh and inlets. Either this or `motion_window`; not with `acceleration` or `accelerated` storage.", "\"0.5 s\""),
     key("acceleration", Schedule(D::NONE, Any), Default("1"), "Acceleration factor AF, at least 1: process time passes AF times as fast as motion time.", "[[\"0 s\", 1], [\"5 s\", 50]]"),
     key("gas_storage", Choice(words::<GasStorage>), Default("process"), "Clock over which the gas stores mass and heat.", "\"process\""),

@@ -149,6 +149,17 @@ pub(super) fn case(
             motion::need_properties(root, &meeting);
         }
     }
+    if let (Some((time, _)), Some(gas), Some(section)) = (&time, &gas, root.table("time"))
+        && time.window_bounds.is_some()
+        && gas.held
+    {
+        let help = "write a number, for example motion_window = \"1 ms\"";
+        section.fail(
+            "motion_window",
+            "follows the gas, but `gas.held` keeps it as it is",
+            help,
+        );
+    }
     let (time, _) = time?;
     let GasRead {
         setup: mut gas,

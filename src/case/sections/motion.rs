@@ -66,7 +66,8 @@ pub(super) fn fits(
                     a moving bed whose motion is the same at any pace";
         section.fail("kind", rule, help);
     }
-    let window = time.motion_window.seconds();
+    let window = time.window_bounds.map_or(time.motion_window, |it| it.min);
+    let window = window.seconds();
     if let Some(step) = motion.step.filter(|step| *step > window) {
         let rule = format!("is {step} s, longer than the window of {window} s");
         section.fail(

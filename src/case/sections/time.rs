@@ -1,6 +1,7 @@
 //! `[time]`.
 
 use calcine_coupler::time::{Acceleration, GasStorage, Ticks};
+use calcine_coupler::window_control::WindowBounds;
 
 use crate::case::model::TimeSpec;
 use crate::case::table::TableReader;
@@ -13,7 +14,13 @@ pub(super) fn read(root: &TableReader<'_>) -> Option<(TimeSpec, GasStorage)> {
     if !stepped {
         section.need("motion_window");
     }
-    let motion_window = ticks(&section, "motion_window");
+    let (motion_window, bounds) = match section.is_table("motion_window") {
+        true => {
+            let bounds = bounds(&section);
+            (bounds.map(|bounds| bounds.max), bounds)
+        }
+        false => (ticks(&section, "motion_window"), None),
+    };
     let acceleration = acceleration(&section);
     let storage = section.choice("gas_storage").unwrap_or_default();
     let (mut every, mut wall) = (None, None);
@@ -41,12 +48,37 @@ pub(super) fn read(root: &TableReader<'_>) -> Option<(TimeSpec, GasStorage)> {
         end,
         process_step,
         motion_window,
+        window_bounds: bounds,
         acceleration,
         storage,
         checkpoint_every: every,
         checkpoint_wall: wall,
     };
     Some((time, storage))
+}
+
+/// Bounds between which the length of windows follows the gas.
+fn bounds(section: &TableReader<'_>) -> Option<WindowBounds> {
+    let table = section.table("motion_window")?;
+    let (min, max) = (ticks(&table, "min"), ticks(&table, "max"));
+    let (courant, error) = (table.number("courant"), table.number("error"));
+    if !table.has("courant") && !table.has("error") {
+        let help = "write a largest Courant number or error, for example courant = 2, or a fixed window: motion_window = \"1 ms\"";
+        section.fail("motion_window", "has nothing that windows follow", help);
+    }
+    table.finish();
+    let (min, max) = (min?, max?);
+    if min > max {
+        let rule = format!("is {min}, longer than `max`, {max}");
+        table.fail("min", rule, "lower it, or raise `max`");
+        return None;
+    }
+    Some(WindowBounds {
+        min,
+        max,
+        courant,
+        error,
+    })
 }
 
 /// A process step stands for the motion clock as a whole.
