@@ -37,7 +37,7 @@ fn times(case: &Case) -> Vec<(String, Vec<f64>)> {
                 }
                 WallHeat::Adiabatic => {}
             },
-            GasPatch::Symmetry => {}
+            GasPatch::Symmetry | GasPatch::Periodic { .. } | GasPatch::Empty | GasPatch::Wedge => {}
         }
         let table = match patch {
             GasPatch::Inlet { .. } => "inlet",

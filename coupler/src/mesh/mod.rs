@@ -4,6 +4,7 @@
 pub mod block;
 pub mod cylinder;
 mod extrude;
+pub mod flat;
 pub mod grading;
 pub mod locate;
 pub mod openings;

@@ -205,6 +205,21 @@ impl Mesh {
         (pair != u32::MAX).then_some(pair as usize)
     }
 
+    /// The partner of a periodic patch.
+    pub fn partner(&self, patch: &super::Patch) -> Option<&super::Patch> {
+        if patch.count == 0 {
+            return None;
+        }
+        let pair = &self.periodic_faces[self.periodic_pair(patch.start)?];
+        let other = if pair.face == patch.start {
+            pair.partner
+        } else {
+            pair.face
+        };
+        let mut patches = self.topology.patches.iter();
+        patches.find(|patch| patch.faces().contains(&other))
+    }
+
     /// The cell on the other side of a face, across periodic planes too.
     #[inline]
     pub fn beyond(&self, cell: usize, face: usize) -> Option<CellBeyond> {
