@@ -14,6 +14,7 @@ mod openfoam_inlets;
 mod openfoam_life;
 mod openfoam_openings;
 mod openfoam_pasr;
+mod openfoam_periodic;
 mod openfoam_ranks;
 mod openfoam_stirred_cells;
 mod openfoam_support;

@@ -50,6 +50,8 @@ pub struct GasSetup {
     pub velocity: Vec3,
     /// Gravity in m/s².
     pub gravity: Vec3,
+    /// Mean pressure gradient in Pa/m beside that of the pressure field, which drives gas along periodic directions.
+    pub pressure_gradient: Vec3,
     /// How gas and particles share their momentum.
     pub momentum: MomentumModel,
     /// Eddies.
@@ -161,6 +163,15 @@ pub enum GasPatch {
     },
     /// A plane of symmetry.
     Symmetry,
+    /// One side of a pair through which the domain repeats itself: what leaves through one comes in through the other.
+    Periodic {
+        /// The patch on the other side, which has this one as its own partner.
+        with: String,
+    },
+    /// The sides of a plane flow, one cell apart: nothing passes and nothing varies from one to the other.
+    Empty,
+    /// One of the two sides of an axisymmetric flow without swirl, one cell apart.
+    Wedge,
 }
 
 /// Gas beyond a patch.
@@ -205,7 +216,12 @@ impl GasPatch {
                     }),
                 ..
             } => Some((temperature, composition.as_ref())),
-            Self::Outlet { backflow: None, .. } | Self::Wall { .. } | Self::Symmetry => None,
+            Self::Outlet { backflow: None, .. }
+            | Self::Wall { .. }
+            | Self::Symmetry
+            | Self::Periodic { .. }
+            | Self::Empty
+            | Self::Wedge => None,
         }
     }
 

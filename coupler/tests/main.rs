@@ -10,6 +10,7 @@ mod mesh;
 mod packing;
 mod refine;
 mod smoother;
+mod smoother_periodic;
 mod smoother_refusals;
 mod smoother_tall;
 mod species_coupling;

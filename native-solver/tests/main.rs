@@ -31,5 +31,6 @@ mod time_order;
 mod verification_bed_eddies;
 mod verification_flow;
 mod verification_heat;
+mod verification_periodic;
 mod verification_porous;
 mod verification_turbulence;

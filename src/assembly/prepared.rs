@@ -15,7 +15,7 @@ use super::error::AssemblyError;
 use crate::case::model::{Case, MappingSpec, Population};
 use crate::case::packed::BedPacking;
 use crate::case::sizes;
-use crate::case::{InitialParticles, PlaceError, contacts, in_wall, mesh, particles};
+use crate::case::{InitialParticles, PlaceError, contacts, in_wall, mesh_of, particles};
 
 /// Diameter over the narrowest width of a mesh that only a slip of units gives: slices of a bed may be thinner than its
 /// particles, which are pressed together.
@@ -45,7 +45,7 @@ impl PreparedCase {
             mut setup,
             temperature,
         } = particles(case)?;
-        let mesh = Arc::new(mesh(&case.mesh)?);
+        let mesh = Arc::new(mesh_of(case)?);
         fit_between_walls(case, &mesh, &setup)?;
         setup.motion = contacts::motion(case, &mesh, &setup).map_err(PlaceError::from)?;
         in_wall::check(case, &setup)?;

@@ -16,7 +16,7 @@ use super::model::{Case, MeshSpec, Population, TimeSpec};
 use super::packed::BedPacking;
 use super::splitting::Splitting;
 use super::units::{short, short3};
-use super::{buoyancy, mesh_shape, sizes, span, work};
+use super::{boundaries, buoyancy, mesh_shape, sizes, span, work};
 
 /// Clocks, sizes, the flow, and how far the time splitting may be from the unsplit run.
 pub fn check_report(
@@ -69,7 +69,8 @@ pub fn check_report(
             short(outline.across_corners * diameter)
         );
     }
-    for line in mesh_shape::report(mesh).0 {
+    let directions = boundaries::lines(case, mesh);
+    for line in directions.into_iter().chain(mesh_shape::report(mesh).0) {
         let _ = writeln!(text, "                 {line}");
     }
     let _ = writeln!(

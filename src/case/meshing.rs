@@ -1,11 +1,15 @@
 //! From the mesh of a case to cells.
 
+use std::path::PathBuf;
+
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
 use calcine_coupler::mesh::cylinder::{
     CylinderSpec, GradedBoxSpec, cylinder_mesh, graded_box_mesh,
 };
+use calcine_coupler::mesh::flat::FlatError;
 use calcine_coupler::mesh::grading::{Stretch, shared};
 use calcine_coupler::mesh::openings::open;
+use calcine_coupler::mesh::periodic::PeriodicError;
 use calcine_coupler::mesh::polymesh::{self, PolyMeshError};
 use calcine_coupler::mesh::refine::refine;
 use calcine_coupler::mesh::{Mesh, MeshError};
@@ -22,6 +26,63 @@ pub enum MeshingError {
     /// The polyMesh cannot be read.
     #[error(transparent)]
     PolyMesh(#[from] PolyMeshError),
+    /// Patches that are no periodic pair.
+    #[error("{0}; mesh both sides alike, or give the patches another condition in `gas.patch`")]
+    Periodic(#[from] PeriodicError),
+    /// Sides that are not those of a plane or axisymmetric flow.
+    #[error("{0}; mesh one cell across, or give the patches another condition in `gas.patch`")]
+    Flat(#[from] FlatError),
+    /// A patch that is something else in the mesh than in the case.
+    #[error(
+        "patch `{patch}` is of type `{kind}` in {}, and `gas.patch.{patch}` states {stated}: write {wanted}, or change the type there",
+        file.display()
+    )]
+    Boundary {
+        /// The file of the mesh.
+        file: PathBuf,
+        /// The patch.
+        patch: String,
+        /// Its type there.
+        kind: String,
+        /// The key of its condition in the case.
+        stated: String,
+        /// A condition that agrees with the type.
+        wanted: String,
+    },
+    /// A type of patch that neither gas has.
+    #[error("patch `{patch}` is of type `{kind}` in {}, which is not supported: {remedy}", file.display())]
+    Unsupported {
+        /// The file of the mesh.
+        file: PathBuf,
+        /// The patch.
+        patch: String,
+        /// Its type there.
+        kind: String,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// Particles that move in a plane or axisymmetric flow.
+    #[error(
+        "the gas is one cell deep between patches that are `{kind}`, and `{population}` moves: particles move in three dimensions; use \
+         symmetry or periodic patches in place of `{kind}`, or make the particles frozen"
+    )]
+    Moving {
+        /// `empty` or `wedge`.
+        kind: &'static str,
+        /// The population.
+        population: String,
+    },
+    /// A mean pressure gradient along a direction that is not periodic.
+    #[error(
+        "`gas.pressure_gradient` is {gradient} Pa/m along {axis}, which is not periodic: there the boundary conditions drive the gas; \
+         make the direction periodic, or the component 0"
+    )]
+    Gradient {
+        /// Name of the axis.
+        axis: char,
+        /// In Pa/m.
+        gradient: f64,
+    },
 }
 
 /// Generates or reads the gas mesh: graded first, then refined in its zones, then opened.

@@ -1,6 +1,7 @@
 //! Case files: TOML to a checked [`model::Case`].
 
 mod bed;
+mod boundaries;
 pub mod buoyancy;
 pub mod cautions;
 mod check;
@@ -50,6 +51,7 @@ use std::path::Path;
 use sha2::{Digest, Sha256};
 use toml_edit::{Item, Value};
 
+pub use boundaries::mesh_of;
 pub use check::check_report;
 pub use located::located;
 pub use meshing::{MeshingError, mesh};

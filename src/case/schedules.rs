@@ -38,7 +38,7 @@ fn times(case: &Case) -> Vec<(String, Vec<f64>)> {
                 }
                 WallHeat::Adiabatic => {}
             },
-            GasPatch::Symmetry => {}
+            GasPatch::Symmetry | GasPatch::Periodic { .. } | GasPatch::Empty | GasPatch::Wedge => {}
         }
         let table = match patch {
             GasPatch::Inlet { .. } => "inlet",

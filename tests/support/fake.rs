@@ -201,6 +201,7 @@ fn gas_setup() -> GasSetup {
         pressure: 101_325.0,
         velocity: Vec3::zeros(),
         gravity: Vec3::new(0.0, 0.0, -9.81),
+        pressure_gradient: Vec3::zeros(),
         turbulence: Default::default(),
         momentum: Default::default(),
         patches: vec![],

@@ -2,9 +2,9 @@
 // residual, per cell:
 //
 //   m_old (u - u_old)/dt + sum phi_f u_f - u sum phi_f
-//       - sum (eps mu)_f (grad(u) + grad(u)^T - 2/3 div(u)).S = -chi grad(p) V + chi rho V g + S_d - K_d u
+//       - sum (eps mu)_f (grad(u) + grad(u)^T - 2/3 div(u)).S = -chi (grad(p) + G) V + chi rho V g + S_d - K_d u
 //
-// chi the share of the pressure gradient that the gas takes, eps by model A, 1 by model B.
+// G a mean pressure gradient that the case gives, chi the share of the pressure gradient that the gas takes, eps by model A, 1 by model B.
 // u_f as fvSchemes says, beyond upwind explicitly; of the viscous stress the part grad(u).S is implicit. On walls without friction and planes of
 // symmetry the normal viscous stress acts alone (normalStress.C); mu with that of eddies (models.H); gas leaves an outlet as if the flow
 // were developed there.
@@ -56,7 +56,7 @@ Foam::scalar Foam::calcine::gas::predictVelocity(const scalarField& density, rep
     matrix.diag() += inertia + given_.dragCoefficient - outflow_;
     matrix.source() +=
         inertia*committed_.velocity + given_.dragSource + density*share*gravity_
-      + outOf(*stressForce_) - outOf(*beyondU_);
+      - share*meanGradient_ + outOf(*stressForce_) - outOf(*beyondU_);
 
     // Gas of the surroundings comes in straight through openings.
     for (const fvPatch& patch : mesh_.boundary())

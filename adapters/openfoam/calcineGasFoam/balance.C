@@ -102,7 +102,7 @@ void Foam::calcine::gas::balanceMomentum(report& result) const
     const vectorField gained((mass_ - committed_.mass)*u);
     const vectorField source
     (
-        span*(share*(density()*gravity_ - pressureGradient_) + u*outflow_) + gained
+        span*(share*(density()*gravity_ - pressureGradient_ - meanGradient_) + u*outflow_) + gained
     );
     result.storageClock = (1 - span/window_.storageSpan)*gSum(gained);
     for (direction axis = 0; axis < 3; ++axis)

@@ -1,4 +1,5 @@
 #include "boundary.H"
+#include "cyclicFvPatch.H"
 #include "processorFvPatch.H"
 
 #include <sstream>
@@ -78,16 +79,17 @@ Foam::calcine::boundary::boundary
 
     forAll(passages_, patchi)
     {
-        if (isA<processorFvPatch>(mesh_.boundary()[patchi]))
+        const fvPatch& patch = mesh_.boundary()[patchi];
+        if (isA<processorFvPatch>(patch) || isA<cyclicFvPatch>(patch))
         {
             passages_[patchi] = passage::within;
             continue;
         }
-        if (mesh_.boundary()[patchi].coupled())
+        if (patch.coupled())
         {
             FatalErrorInFunction
-                << "the patch " << mesh_.boundary()[patchi].name()
-                << " is coupled (" << mesh_.boundary()[patchi].type()
+                << "the patch " << patch.name()
+                << " is coupled (" << patch.type()
                 << "), which this solver does not support" << exit(FatalError);
         }
         if (walls[patchi])

@@ -2,6 +2,7 @@
 #include "clockValue.H"
 #include "link.H"
 #include "OStringStream.H"
+#include "wedgePolyPatch.H"
 
 #include <cmath>
 
@@ -84,6 +85,7 @@ Foam::calcine::gas::gas
     firstCell_(numbers.local(0)),
     pRef_(properties.get<scalar>("pRef")),
     gravity_(properties.get<vector>("gravity")),
+    meanGradient_(properties.lookupOrDefault<vector>("pressureGradient", Zero)),
     modelPressure_
     (
         IOobject("p", mesh.time().timeName(), mesh),
@@ -182,6 +184,23 @@ void Foam::calcine::gas::measureFaces()
     transportPush_.setSize(faces, 0);
     recovery_ = tensorField(mesh_.nCells(), Zero);
     warp_ = tensorField(mesh_.nCells(), Zero);
+    turns_ = boolList(faces, false);
+    // Normal of the middle plane of a wedge's cells: nothing is recovered along it.
+    vectorField between(mesh_.nCells(), Zero);
+    for (const polyPatch& patch : mesh_.boundaryMesh())
+    {
+        if (!isA<wedgePolyPatch>(patch))
+        {
+            continue;
+        }
+        forAll(patch, i)
+        {
+            turns_[patch.start() + i] = true;
+            vector& sum = between[patch.faceCells()[i]];
+            const vector n = normalised(mesh_.faceAreas()[patch.start() + i]);
+            sum = mag(sum) > 0 ? normalised(sum - n) : n;
+        }
+    }
     for (label facei = 0; facei < faces; ++facei)
     {
         const vector& centre = mesh_.faceCentres()[facei];
@@ -204,12 +223,16 @@ void Foam::calcine::gas::measureFaces()
             recovery_[mesh_.faceNeighbour()[facei]] +=
                 neighbourDistance_[facei]*mag(mesh_.faceAreas()[facei])*n*n;
         }
-        recovery_[mesh_.faceOwner()[facei]] +=
-            ownerDistance_[facei]*mag(mesh_.faceAreas()[facei])*n*n;
+        if (!turns_[facei])
+        {
+            recovery_[mesh_.faceOwner()[facei]] +=
+                ownerDistance_[facei]*mag(mesh_.faceAreas()[facei])*n*n;
+        }
     }
     forAll(recovery_, celli)
     {
-        recovery_[celli] = inv(recovery_[celli]/mesh_.cellVolumes()[celli]);
+        recovery_[celli] =
+            inv(recovery_[celli]/mesh_.cellVolumes()[celli] + between[celli]*between[celli]);
         warp_[celli] = tensor(I) + warp_[celli]/mesh_.cellVolumes()[celli];
     }
 }
@@ -222,6 +245,7 @@ void Foam::calcine::gas::place()
     committed_.velocity = startVelocity_/given_.voidFraction;
     const scalarField rho(density());
     committed_.mass = rho*given_.voidFraction*mesh_.cellVolumes();
+    const vectorField beyond(shared_.beyond(vectorField(rho*startVelocity_)));
     for (label facei = 0; facei < mesh_.nFaces(); ++facei)
     {
         const label owner = mesh_.faceOwner()[facei];
@@ -232,6 +256,14 @@ void Foam::calcine::gas::place()
             const vector massVelocity =
                 weight*rho[owner]*startVelocity_[owner]
               + (1 - weight)*rho[neighbour]*startVelocity_[neighbour];
+            committed_.flux[facei] = massVelocity & mesh_.faceAreas()[facei];
+            continue;
+        }
+        if (shared_.within(facei))
+        {
+            const scalar weight = ownerWeight(facei);
+            const vector massVelocity =
+                weight*rho[owner]*startVelocity_[owner] + (1 - weight)*beyond[facei];
             committed_.flux[facei] = massVelocity & mesh_.faceAreas()[facei];
             continue;
         }
@@ -565,7 +597,7 @@ const Foam::vectorField& Foam::calcine::gas::velocity() const
 }
 
 
-const Foam::vectorField& Foam::calcine::gas::pressureGradient() const
+Foam::vectorField Foam::calcine::gas::pressureGradient() const
 {
-    return pressureGradient_;
+    return pressureGradient_ + meanGradient_;
 }

@@ -1,4 +1,4 @@
-// Normal viscous stress of walls without friction and planes of symmetry. There u.n = 0, and the stress on the cell behind has the one part
+// Normal viscous stress of walls without friction, planes of symmetry and the sides of wedges. There u.n = 0, and the stress on the cell behind has the one part
 //
 //   tau_n = mu (4/3 du_n/dn - 2/3 div_t(u)),   du_n/dn = -(u.n + t.grad(u_n))/d,
 //
@@ -11,10 +11,12 @@
 // coefficients of such patches, |n_i| for each component, would enter A as their mean over the components.
 #include "gas.H"
 #include "basicSymmetryFvPatchFields.H"
+#include "wedgeFvPatchFields.H"
 
 bool Foam::calcine::gas::slips(label patchi) const
 {
-    return isA<basicSymmetryFvPatchVectorField>(U_.boundaryField()[patchi]);
+    const fvPatchVectorField& patch = U_.boundaryField()[patchi];
+    return isA<basicSymmetryFvPatchVectorField>(patch) || isA<wedgeFvPatchVectorField>(patch);
 }
 
 

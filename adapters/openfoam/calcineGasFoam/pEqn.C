@@ -128,7 +128,7 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
               + transportPush_[facei]
             );
     }
-    // The neighbour of a shared face is the owner on the other rank, where everything along the normal
+    // The neighbour of a shared face is the owner on the other side, where everything along the normal
     // has the other sign.
     scalarField otherPush(mesh_.nFaces(), 0);
     for (label facei = internal; facei < mesh_.nFaces(); ++facei)
@@ -220,11 +220,12 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
     forAll(mesh_.boundary(), patchi)
     {
         const fvPatch& patch = mesh_.boundary()[patchi];
+        const fvPatchScalarField& outer = p_.boundaryField()[patchi];
+        const scalarField beyond(outer.coupled() ? outer.patchNeighbourField()() : scalarField(outer));
         forAll(patch, i)
         {
             const label facei = patch.start() + i;
-            flux_[facei] +=
-                conductance_[facei]*(p_[owner[facei]] - p_.boundaryField()[patchi][i]);
+            flux_[facei] += conductance_[facei]*(p_[owner[facei]] - beyond[i]);
         }
     }
     shared_.agree(flux_);
@@ -242,6 +243,11 @@ void Foam::calcine::gas::updatePressureGradient()
     pressureGradient_ = Zero;
     const auto add = [this](label facei, label celli, scalar distance)
     {
+        // The sides of wedges have the slope of their cell.
+        if (turns_[facei])
+        {
+            return;
+        }
         const scalar area = mag(mesh_.faceAreas()[facei]);
         const scalar slope = area*beside(facei, celli) - flux_[facei]/mobilityAlong(facei, celli);
         pressureGradient_[celli] += distance*slope*normal_[facei];
@@ -267,7 +273,9 @@ void Foam::calcine::gas::updatePressureAlong()
     const auto add = [this, &next](label facei, label celli, scalar distance, const vector& skew)
     {
         const scalar area = mag(mesh_.faceAreas()[facei]);
-        const scalar slope = halfCellForce(facei, celli) - flux_[facei]/(area*mobilityAlong(facei, celli));
+        const scalar slope = turns_[facei]
+          ? (pressureAlong_[celli] & normal_[facei])
+          : halfCellForce(facei, celli) - flux_[facei]/(area*mobilityAlong(facei, celli));
         next[celli] += area*(distance*slope + (skew & pressureAlong_[celli]))*normal_[facei];
     };
     forAll(flux_, facei)

@@ -1,4 +1,5 @@
 #include "sharedFaces.H"
+#include "cyclicPolyPatch.H"
 #include "processorPolyPatch.H"
 
 Foam::calcine::sharedFaces::sharedFaces(const polyMesh& mesh)
@@ -9,7 +10,8 @@ Foam::calcine::sharedFaces::sharedFaces(const polyMesh& mesh)
 {
     for (const polyPatch& patch : mesh.boundaryMesh())
     {
-        if (const auto* between = isA<processorPolyPatch>(patch))
+        const bool known = isA<processorPolyPatch>(patch) || isA<cyclicPolyPatch>(patch);
+        if (const auto* between = known ? isA<coupledPolyPatch>(patch) : nullptr)
         {
             forAll(patch, i)
             {

@@ -10,6 +10,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use calcine_coupler::error::{FailureKind, PartError};
+use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::supervisor::{Supervisor, log_end};
 
@@ -30,6 +31,24 @@ pub fn divide(centres: &[Vec3], ranks: u32) -> Vec<u32> {
     let mut cells: Vec<usize> = (0..centres.len()).collect();
     bisect(centres, &mut cells, 0, ranks, &mut parts);
     parts
+}
+
+/// Gives the cells on both sides of each periodic pair of faces to one rank, the lowest of theirs, so that a cyclic patch stays one.
+pub fn keep_pairs(mesh: &Mesh, parts: &mut [u32]) {
+    // Cells at the edge of two periodic directions hang together by several pairs.
+    loop {
+        let mut changed = false;
+        for pair in mesh.periodic_faces() {
+            let [one, other] = [pair.face, pair.partner].map(|face| mesh.owner()[face] as usize);
+            let rank = parts[one].min(parts[other]);
+            changed |= parts[one] != rank || parts[other] != rank;
+            parts[one] = rank;
+            parts[other] = rank;
+        }
+        if !changed {
+            return;
+        }
+    }
 }
 
 fn bisect(centres: &[Vec3], cells: &mut [usize], first: u32, ranks: u32, parts: &mut [u32]) {

@@ -120,6 +120,7 @@ pub fn calcine(setup: &GasSetup, case_hash: &str, catalogue: &Catalogue) -> Stri
         "caseHash        \"{case_hash}\";\n\
          // Reference pressure of the low-Mach gas in Pa; gravity in m/s^2.\n\
          pRef            {:e};\ngravity         {};\n\
+         // Mean pressure gradient in Pa/m beside that of the pressure field.\npressureGradient {};\n\
          // How gas and particles share the pressure gradient: a or b.\nmomentumModel   {};\n\
          // Seconds of wall time between lines of the log; 0: a line for each attempt.\n\
          logInterval     1;\n\ncontrols\n{{\n    outerIterations     {};\n    \
@@ -128,6 +129,7 @@ pub fn calcine(setup: &GasSetup, case_hash: &str, catalogue: &Catalogue) -> Stri
          // Tables over process time in s: m/s, kg/s, K, Pa, W/m^2, W/m^2/K.\npatches\n{{\n",
         setup.pressure,
         vector(setup.gravity),
+        vector(setup.pressure_gradient),
         setup.momentum.name(),
         controls.outer_iterations,
         controls.pressure_corrections,
@@ -212,7 +214,8 @@ fn entries(condition: &GasPatch, names: &[String]) -> Vec<(&'static str, String)
             entries.extend(beyond(gas, names));
             entries
         }
-        GasPatch::Symmetry => vec![("closed", "true".into())],
+        GasPatch::Symmetry | GasPatch::Empty | GasPatch::Wedge => vec![("closed", "true".into())],
+        GasPatch::Periodic { .. } => Vec::new(),
         GasPatch::Wall { heat, .. } => {
             let mut entries = vec![("closed", "true".into())];
             match heat {
@@ -291,7 +294,9 @@ pub fn velocity(setup: &GasSetup) -> String {
     field(about, setup, |patch| match patch {
         GasPatch::Inlet { .. } => fixed("(0 0 0)"),
         GasPatch::Outlet { .. } | GasPatch::Opening { .. } => zero_gradient(),
-        GasPatch::Symmetry => "type            slip;".into(),
+        GasPatch::Symmetry | GasPatch::Periodic { .. } | GasPatch::Empty | GasPatch::Wedge => {
+            "type            slip;".into()
+        }
         GasPatch::Wall { velocity, .. } => match velocity {
             WallVelocity::NoSlip => "type            noSlip;".into(),
             WallVelocity::Slip => "type            slip;".into(),
@@ -307,7 +312,12 @@ pub fn temperature(setup: &GasSetup) -> String {
     let first = |schedule: &Schedule| fixed(&format!("{:e}", schedule.at(0.0)));
     field(about, setup, |patch| match patch {
         GasPatch::Inlet { temperature, .. } => first(temperature),
-        GasPatch::Outlet { .. } | GasPatch::Opening { .. } | GasPatch::Symmetry => zero_gradient(),
+        GasPatch::Outlet { .. }
+        | GasPatch::Opening { .. }
+        | GasPatch::Symmetry
+        | GasPatch::Periodic { .. }
+        | GasPatch::Empty
+        | GasPatch::Wedge => zero_gradient(),
         // The solver adds heat fluxes and losses to its equation.
         GasPatch::Wall { heat, .. } => match heat {
             WallHeat::Temperature(temperature) => first(temperature),
@@ -326,6 +336,11 @@ pub fn pressure(setup: &GasSetup) -> String {
         GasPatch::Outlet { pressure, .. } | GasPatch::Opening { pressure, .. } => {
             fixed(&format!("{:e}", pressure.at(0.0)))
         }
-        GasPatch::Inlet { .. } | GasPatch::Wall { .. } | GasPatch::Symmetry => zero_gradient(),
+        GasPatch::Inlet { .. }
+        | GasPatch::Wall { .. }
+        | GasPatch::Symmetry
+        | GasPatch::Periodic { .. }
+        | GasPatch::Empty
+        | GasPatch::Wedge => zero_gradient(),
     })
 }

@@ -25,7 +25,8 @@ pub(super) fn table(schedule: &Schedule) -> String {
     format!("({})", entries.join(" "))
 }
 
-/// A field of `0/` with a boundary condition for each patch.
+/// A field of `0/` with a boundary condition for each patch; of periodic ones and the sides of plane and axisymmetric flows the
+/// mesh says it all.
 pub(super) fn field(
     (class, name, dimensions, start): (&str, &str, &str, &str),
     setup: &GasSetup,
@@ -37,7 +38,12 @@ pub(super) fn field(
         "dimensions      {dimensions};\n\ninternalField   uniform {start};\n\nboundaryField\n{{\n"
     );
     for (patch, kind) in &setup.patches {
-        let condition = condition(kind);
+        let condition = match kind {
+            GasPatch::Periodic { .. } => "type            cyclic;".to_owned(),
+            GasPatch::Empty => "type            empty;".to_owned(),
+            GasPatch::Wedge => "type            wedge;".to_owned(),
+            kind => condition(kind),
+        };
         let _ = writeln!(text, "    {patch}\n    {{\n        {condition}\n    }}");
     }
     text + "}\n"

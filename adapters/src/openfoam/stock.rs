@@ -81,6 +81,9 @@ pub fn refusal(solver: StockSolver, setup: &GasSetup, moving_clock: bool) -> Opt
     if !solver.has_gravity() && setup.gravity.norm() > 0.0 {
         return Some("it has no gravity (`gas.gravity`)".into());
     }
+    if setup.pressure_gradient.norm() > 0.0 {
+        return Some("it has no mean pressure gradient (`gas.pressure_gradient`)".into());
+    }
     if solver != StockSolver::BuoyantPimpleFoam && matches!(setup.properties, GasModel::Constant(_))
     {
         return Some("its gas has a density that follows the pressure (`gas.mixture`)".into());
@@ -133,7 +136,9 @@ pub fn refusal(solver: StockSolver, setup: &GasSetup, moving_clock: bool) -> Opt
                     ));
                 }
             },
-            GasPatch::Symmetry => Vec::new(),
+            GasPatch::Symmetry | GasPatch::Periodic { .. } | GasPatch::Empty | GasPatch::Wedge => {
+                Vec::new()
+            }
         };
         if moving_clock && schedules.iter().any(|schedule| schedule.0.len() > 1) {
             return Some(format!(
@@ -238,7 +243,9 @@ pub fn velocity(setup: &GasSetup) -> String {
             ),
         },
         GasPatch::Outlet { .. } | GasPatch::Opening { .. } => zero_gradient(),
-        GasPatch::Symmetry => "type            slip;".into(),
+        GasPatch::Symmetry | GasPatch::Periodic { .. } | GasPatch::Empty | GasPatch::Wedge => {
+            "type            slip;".into()
+        }
         GasPatch::Wall { velocity, .. } => match velocity {
             WallVelocity::NoSlip => "type            noSlip;".into(),
             WallVelocity::Slip => "type            slip;".into(),

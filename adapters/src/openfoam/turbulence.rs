@@ -69,7 +69,10 @@ fn sticks(patch: &GasPatch) -> bool {
         GasPatch::Inlet { .. }
         | GasPatch::Outlet { .. }
         | GasPatch::Opening { .. }
-        | GasPatch::Symmetry => false,
+        | GasPatch::Symmetry
+        | GasPatch::Periodic { .. }
+        | GasPatch::Empty
+        | GasPatch::Wedge => false,
     }
 }
 
@@ -90,7 +93,10 @@ fn inlet(patch: &GasPatch) -> Option<InletTurbulence> {
         GasPatch::Outlet { .. }
         | GasPatch::Opening { .. }
         | GasPatch::Wall { .. }
-        | GasPatch::Symmetry => None,
+        | GasPatch::Symmetry
+        | GasPatch::Periodic { .. }
+        | GasPatch::Empty
+        | GasPatch::Wedge => None,
     }
 }
 

@@ -44,6 +44,7 @@ dimensions! {
     VELOCITY = [1, 0, -1, 0, 0], "a velocity", "m/s", "0.5 m/s";
     ACCELERATION = [1, 0, -2, 0, 0], "an acceleration", "m/s^2", "9.81 m/s^2";
     PRESSURE = [-1, 1, -2, 0, 0], "a pressure", "Pa", "1 atm";
+    PRESSURE_GRADIENT = [-2, 1, -2, 0, 0], "a pressure gradient", "Pa/m", "1.2 Pa/m";
     DENSITY = [-3, 1, 0, 0, 0], "a density", "kg/m^3", "2500 kg/m^3";
     HEAT_CAPACITY = [2, 0, -2, -1, 0], "a specific heat capacity", "J/kg/K", "840 J/kg/K";
     CONDUCTIVITY = [1, 1, -3, -1, 0], "a thermal conductivity", "W/m/K", "1.1 W/m/K";

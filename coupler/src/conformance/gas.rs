@@ -141,6 +141,7 @@ pub fn setup(mesh: &Mesh) -> GasSetup {
         pressure: PRESSURE,
         velocity: Vec3::new(0.0, 0.0, SPEED),
         gravity: Vec3::zeros(),
+        pressure_gradient: Vec3::zeros(),
         turbulence: Default::default(),
         momentum: Default::default(),
         patches: patches

@@ -8,6 +8,7 @@ mod drag;
 pub mod gas;
 pub mod particles;
 mod six_spheres;
+pub mod wedge;
 
 use std::fmt;
 use std::time::Duration;

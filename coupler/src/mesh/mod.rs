@@ -4,9 +4,11 @@
 pub mod block;
 pub mod cylinder;
 mod extrude;
+pub mod flat;
 pub mod grading;
 pub mod locate;
 pub mod openings;
+pub mod periodic;
 pub mod polymesh;
 pub mod quality;
 pub mod refine;
@@ -15,6 +17,9 @@ pub mod zone;
 
 use calcine_physics::Vec3;
 use thiserror::Error;
+
+use crate::periodicity::Periodicity;
+use periodic::PeriodicFace;
 
 /// A named set of boundary faces.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -86,6 +91,10 @@ pub struct Mesh {
     face_centre: Vec<Vec3>,
     cell_face_offsets: Vec<u32>,
     cell_faces: Vec<u32>,
+    periodicity: Periodicity,
+    periodic_faces: Vec<PeriodicFace>,
+    /// Index into `periodic_faces` of each boundary face, `u32::MAX` of others; empty where nothing is periodic.
+    pair_of: Vec<u32>,
 }
 
 impl Mesh {
@@ -127,6 +136,9 @@ impl Mesh {
             face_centre,
             cell_face_offsets: counts,
             cell_faces,
+            periodicity: Periodicity::default(),
+            periodic_faces: Vec::new(),
+            pair_of: Vec::new(),
         };
         mesh.measure_cells()?;
         Ok(mesh)
@@ -262,7 +274,7 @@ impl Mesh {
         }
     }
 
-    /// The cell on the other side of a face, if the face is internal.
+    /// The cell on the other side of a face, if the face is internal ([`Mesh::beyond`]: across periodic planes too).
     pub fn across(&self, cell: usize, face: usize) -> Option<usize> {
         let neighbour = *self.topology.neighbour.get(face)? as usize;
         Some(if neighbour == cell {

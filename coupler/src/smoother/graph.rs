@@ -6,7 +6,7 @@ use crate::mesh::Mesh;
 use calcine_numerics::parallel;
 
 /// Symmetric conductances g = |S_f|/|d_f| in m between neighbouring cells, fixed by the mesh
-/// (docs/theory.md, VFS-4), zero into excluded cells. L is their Laplacian,
+/// (docs/theory.md, VFS-4), across periodic planes too, zero into excluded cells. L is their Laplacian,
 /// (L y)_i = Σ_j g_ij (y_i − y_j).
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Graph {
@@ -30,8 +30,26 @@ impl Graph {
             let conductance = mesh.face_area()[face].norm() / distance;
             joined.push((a.min(b), a.max(b), conductance));
         }
+        for pair in mesh.periodic_faces() {
+            let [a, b] = [pair.face, pair.partner].map(|face| mesh.owner()[face]);
+            if excluded[a as usize] || excluded[b as usize] {
+                continue;
+            }
+            let centre = |cell: u32| mesh.cell_centre()[cell as usize];
+            let distance = (centre(b) - centre(a) - pair.translation).norm();
+            let conductance = mesh.face_area()[pair.face].norm() / distance;
+            joined.push((a.min(b), a.max(b), conductance));
+        }
         // By cell, then neighbour: lower neighbours arrive before higher ones.
         joined.sort_by_key(|&(low, high, _)| (low, high));
+        // Two cells across a periodic direction meet on both sides.
+        joined.dedup_by(|next, kept| {
+            let same = (next.0, next.1) == (kept.0, kept.1);
+            if same {
+                kept.2 += next.2;
+            }
+            same
+        });
         let conductance = Sparse::from_entries(mesh.cells(), |entry| {
             for &(low, high, conductance) in &joined {
                 entry(high, low, conductance);

@@ -53,10 +53,12 @@ fn about(mesh: &Mesh, cell: usize, reach: f64, mark: u32, visited: &mut [u32]) -
     while let Some(&current) = found.get(next) {
         next += 1;
         for &face in mesh.faces_of(current) {
-            let Some(other) = mesh.across(current, face as usize) else {
+            let Some(other) = mesh.beyond(current, face as usize) else {
                 continue;
             };
-            if visited[other] != mark && (centres[other] - centres[cell]).norm() <= reach {
+            let other = other.cell;
+            let distance = || mesh.periodicity().shortest(centres[other] - centres[cell]);
+            if visited[other] != mark && distance().norm() <= reach {
                 visited[other] = mark;
                 found.push(other);
             }

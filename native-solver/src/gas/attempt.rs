@@ -32,6 +32,8 @@ pub struct AttemptFrame<'a> {
     pub tolerance: f64,
     /// Gravity in m/s².
     pub gravity: Vec3,
+    /// Mean pressure gradient in Pa/m beside that of the pressure field.
+    pub mean_gradient: Vec3,
     /// Void fraction at the end of the window.
     pub void_fraction: &'a [f64],
     /// Share of −∇p and ρ g that the gas of each cell takes: ε by model A, 1 by model B (docs/theory.md,

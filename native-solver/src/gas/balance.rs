@@ -118,7 +118,8 @@ fn momenta(
         let velocity = now.velocity[cell];
         let stored = now.mass[cell] * velocity - old.mass[cell] * old.velocity[cell];
         let share = frame.pressure_share[cell] * grid.volume[cell];
-        let force = share * (material.density[cell] * frame.gravity - now.pressure_gradient[cell]);
+        let gradient = now.pressure_gradient[cell] + frame.mean_gradient;
+        let force = share * (material.density[cell] * frame.gravity - gradient);
         let gained = now.mass[cell] - old.mass[cell];
         let residual = span * outflow(grid, &now.flux, cell) + gained;
         let source = span * force + residual * velocity;

@@ -151,7 +151,7 @@ impl Boundaries {
             }
         }
         let mut boundaries = Self {
-            internal: mesh.internal_faces(),
+            internal: mesh.internal_faces() + mesh.periodic_faces().len(),
             patches: Vec::new(),
             patch_of: Vec::with_capacity(mesh.faces() - mesh.internal_faces()),
         };
@@ -162,6 +162,16 @@ impl Boundaries {
                     patch: patch.name.clone(),
                 });
             };
+            let joined = mesh.periodic_pair(patch.start).is_some();
+            if joined != matches!(condition, GasPatch::Periodic { .. }) {
+                return Err(NativeError::NotJoined {
+                    patch: patch.name.clone(),
+                    joined,
+                });
+            }
+            if joined {
+                continue;
+            }
             if let GasPatch::Wall {
                 velocity: WallVelocity::Moving(velocity),
                 ..
@@ -226,6 +236,19 @@ impl Boundaries {
     #[inline]
     pub fn at(&self, face: usize) -> FaceCondition {
         self.patches[self.patch_of[face - self.internal] as usize].value
+    }
+
+    /// True where a patch is a side of a wedge.
+    pub fn has_wedges(&self) -> bool {
+        self.patches
+            .iter()
+            .any(|boundary| boundary.condition == GasPatch::Wedge)
+    }
+
+    /// True of a boundary face on a side of a wedge.
+    pub fn is_wedge(&self, face: usize) -> bool {
+        let patch = self.patch_of[face - self.internal] as usize;
+        self.patches[patch].condition == GasPatch::Wedge
     }
 
     /// Mass fractions of the gas that flows in through a boundary face; `None` where it is the cell's or none does.
@@ -314,10 +337,13 @@ impl Boundary {
                     surroundings: Some(AmbientGas { density, at: *at }),
                 }
             }
-            GasPatch::Symmetry => FaceCondition::Wall {
-                sticks: None,
-                heat: HeatCondition::Adiabatic,
-            },
+            // Nothing passes the sides of a plane or axisymmetric flow, nor does it vary across them.
+            GasPatch::Symmetry | GasPatch::Periodic { .. } | GasPatch::Empty | GasPatch::Wedge => {
+                FaceCondition::Wall {
+                    sticks: None,
+                    heat: HeatCondition::Adiabatic,
+                }
+            }
             GasPatch::Wall { velocity, heat } => FaceCondition::Wall {
                 sticks: match velocity {
                     WallVelocity::Slip => None,
@@ -411,7 +437,9 @@ fn check(name: &str, condition: &GasPatch) -> Result<(), NativeError> {
             all(pressure, "the pressure", "Pa", "positive", positive)?;
             temperature(&gas.temperature)
         }
-        GasPatch::Symmetry => Ok(()),
+        GasPatch::Symmetry | GasPatch::Periodic { .. } | GasPatch::Empty | GasPatch::Wedge => {
+            Ok(())
+        }
         GasPatch::Wall { heat, .. } => match heat {
             WallHeat::Adiabatic => Ok(()),
             WallHeat::Temperature(schedule) => temperature(schedule),

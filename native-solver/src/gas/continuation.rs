@@ -16,7 +16,7 @@ impl NativeGas {
     /// changed. The base pressure is the setup's, in a closed domain the other run's.
     pub fn take_over(&mut self, directory: &Path) -> Result<(), NativeError> {
         let species = self.setup.properties.species().len();
-        let (cells, faces) = (self.mesh.cells(), self.mesh.faces());
+        let (cells, faces) = (self.mesh.cells(), self.grid.faces.len());
         let state = GasState::read(&directory.join(STATE), cells, faces, species)?;
         self.begin_with(state);
         Ok(())
@@ -32,7 +32,7 @@ impl NativeGas {
     pub fn start_from(&mut self, other: &GasStart) {
         let gas = &self.setup.properties;
         let species = gas.species().len();
-        let mut state = start(&self.setup, self.mesh.cells(), self.mesh.faces());
+        let mut state = start(&self.setup, self.mesh.cells(), self.grid.faces.len());
         state.temperature.clone_from(&other.temperature);
         state.composition.clone_from(&other.composition);
         state.velocity.clone_from(&other.velocity);
@@ -43,7 +43,7 @@ impl NativeGas {
             let density = gas.density(base, state.temperature[cell], composition);
             density * state.velocity[cell]
         };
-        let (grid, mut flux) = (&self.grid, vec![0.0; self.mesh.faces()]);
+        let (grid, mut flux) = (&self.grid, vec![0.0; self.grid.faces.len()]);
         fill(&mut flux, |index| {
             let face = &grid.faces[index];
             let through = match index < grid.internal {
@@ -84,7 +84,7 @@ impl NativeGas {
 
     /// The state before anything is known of the bed; its velocity is superficial.
     pub(super) fn origin(&self) -> GasState {
-        let new = || start(&self.setup, self.mesh.cells(), self.mesh.faces());
+        let new = || start(&self.setup, self.mesh.cells(), self.grid.faces.len());
         self.taken_over.clone().unwrap_or_else(new)
     }
 

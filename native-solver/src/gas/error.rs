@@ -22,6 +22,17 @@ pub enum NativeError {
         /// Patches of the mesh.
         present: String,
     },
+    /// A mesh and a setup that do not agree on what is periodic.
+    #[error(
+        "patch `{patch}` of the mesh is {}joined to a partner, and `gas.patch.{patch}` says otherwise",
+        if *joined { "" } else { "not " }
+    )]
+    NotJoined {
+        /// Name of the patch.
+        patch: String,
+        /// Whether the mesh has it joined.
+        joined: bool,
+    },
     /// An inlet of turbulent gas that says nothing of its eddies.
     #[error(
         "the gas is turbulent, and `gas.patch.{patch}.inlet` says nothing of its eddies; give it a \

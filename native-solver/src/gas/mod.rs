@@ -92,6 +92,8 @@ pub struct NativeGas {
     pressure: Vec<f64>,
     /// Density of the equation of state in kg/m³, for the eyes of others.
     density: Vec<f64>,
+    /// Pressure gradient in Pa/m with the mean one, for the eyes of others.
+    pressure_gradient: Vec<Vec3>,
 }
 
 impl NativeGas {
@@ -102,7 +104,7 @@ impl NativeGas {
         check(setup)?;
         let boundaries = Boundaries::new(&mesh, setup)?;
         let grid = Arc::new(MeshGraph::new(&mesh));
-        let (cells, faces) = (mesh.cells(), mesh.faces());
+        let (cells, faces) = (mesh.cells(), grid.faces.len());
         let committed = start(setup, cells, faces);
         let mut gas = Self {
             about: SolverInfo {
@@ -129,6 +131,7 @@ impl NativeGas {
             backflow: None,
             pressure: vec![0.0; cells],
             density: vec![0.0; cells],
+            pressure_gradient: vec![Vec3::zeros(); cells],
         };
         gas.update_fields();
         Ok(gas)
@@ -140,7 +143,7 @@ impl NativeGas {
         self.committed = GasState::read(
             &path,
             self.mesh.cells(),
-            self.mesh.faces(),
+            self.grid.faces.len(),
             self.setup.properties.species().len(),
         )?;
         self.started = !self.committed.mass.is_empty();
@@ -154,6 +157,10 @@ impl NativeGas {
         let (now, setup) = (&self.now, &self.setup);
         let (gas, base) = (&setup.properties, now.base_pressure);
         fill(&mut self.pressure, |cell| base + now.pressure[cell]);
+        let mean = setup.pressure_gradient;
+        fill(&mut self.pressure_gradient, |cell| {
+            now.pressure_gradient[cell] + mean
+        });
         fill(&mut self.density, |cell| {
             let composition = now.composition_of(cell, gas.species().len());
             gas.density(base, now.temperature[cell], composition)
@@ -329,7 +336,7 @@ impl Gas for NativeGas {
             density: &self.density,
             composition: &self.now.composition,
             velocity: &self.now.velocity,
-            pressure_gradient: &self.now.pressure_gradient,
+            pressure_gradient: &self.pressure_gradient,
             turbulence: self.now.turbulence.fields(),
         }
     }

@@ -176,10 +176,12 @@ impl Momentum {
         });
         let explicit = &self.explicit;
         fill(&mut self.source, |cell| {
-            let weight = frame.pressure_share[cell] * material.density[cell] * grid.volume[cell];
+            let share = frame.pressure_share[cell] * grid.volume[cell];
+            let weight = share * material.density[cell];
             let mut source = inertia(cell) * frame.old.velocity[cell]
                 + frame.exchange.drag_source[cell]
-                + weight * frame.gravity;
+                + weight * frame.gravity
+                - share * frame.mean_gradient;
             for link in grid.links(cell) {
                 let index = link.face as usize;
                 if link.is_boundary() {

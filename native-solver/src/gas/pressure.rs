@@ -97,7 +97,9 @@ pub struct Pressure {
     source: Vec<f64>,
     /// Pressure at each face of the boundary, where gas passes freely.
     outer: Vec<Option<OuterPressure>>,
-    /// V (Σ A d n nᵀ)⁻¹ of each cell; empty where it is the identity.
+    /// Faces of the boundary that are sides of wedges, across which nothing varies but the axes turn; empty where none is.
+    wedge: Vec<bool>,
+    /// V (Σ A d n nᵀ)⁻¹ of each cell, sides of wedges left out; empty where it is the identity.
     recovery: Vec<Matrix3<f64>>,
     /// What Σ S (x_f − x_P)ᵀ/V of each cell lacks of the identity, as its faces are warped; empty where it lacks nothing.
     warp: Vec<Matrix3<f64>>,
@@ -113,7 +115,7 @@ impl Pressure {
     /// An empty equation on a matrix's graph.
     pub fn new(matrix: Matrix) -> Self {
         let (cells, faces) = (matrix.grid().cells(), matrix.grid().faces.len());
-        let recovery = recovery(matrix.grid());
+        let recovery = recovery(matrix.grid(), &[]);
         let warp = warp(matrix.grid());
         Self {
             preconditioner: Approximation::new(&matrix),
@@ -128,6 +130,7 @@ impl Pressure {
             drive: vec![0.0; faces],
             source: vec![0.0; cells],
             outer: Vec::new(),
+            wedge: Vec::new(),
             recovery,
             warp,
             along: Vec::new(),
@@ -149,6 +152,12 @@ impl Pressure {
     /// Takes up the state from which the frame steps.
     pub fn begin(&mut self, frame: &AttemptFrame<'_>) {
         let (grid, old) = (frame.grid, frame.old);
+        if self.wedge.is_empty() && frame.boundary.has_wedges() {
+            self.wedge = (grid.internal..grid.faces.len())
+                .map(|index| frame.boundary.is_wedge(index))
+                .collect();
+            self.recovery = recovery(grid, &self.wedge);
+        }
         fill(&mut self.inertia, |index| {
             let face = &grid.faces[index];
             let half = |cell: usize| {
@@ -325,6 +334,12 @@ impl Pressure {
         }
     }
 
+    /// True of a side of a wedge: the slope of the pressure along its normal is that of its cell.
+    #[inline]
+    fn turns(&self, grid: &MeshGraph, index: usize) -> bool {
+        index >= grid.internal && self.wedge.get(index - grid.internal) == Some(&true)
+    }
+
     /// The force on the two halves at a face beyond that on their cells, along its normal, in N/m³.
     #[inline]
     fn beside(&self, index: usize) -> [f64; 2] {
@@ -427,8 +442,14 @@ impl Pressure {
                 } else {
                     (-face.neighbour_distance, other, -face.neighbour_skew)
                 };
-                let slope = self.force[cell].dot(&face.normal) + beside
-                    - now.flux[index] / (face.area * self.mobility_along(momentum, cell, face));
+                let slope = match self.turns(grid, index) {
+                    true => last[cell].dot(&face.normal),
+                    false => {
+                        self.force[cell].dot(&face.normal) + beside
+                            - now.flux[index]
+                                / (face.area * self.mobility_along(momentum, cell, face))
+                    }
+                };
                 let beyond = out * slope + miss.dot(&last[cell]);
                 sum += (link.sign * face.area * beyond) * face.normal;
             }
@@ -455,6 +476,9 @@ impl Pressure {
             let mut sum = Vec3::zeros();
             for link in grid.links(cell) {
                 let index = link.face as usize;
+                if self.turns(grid, index) {
+                    continue;
+                }
                 let face = &grid.faces[index];
                 let [own, other] = self.beside(index);
                 let (distance, beside) = if link.sign > 0.0 {
@@ -492,16 +516,27 @@ impl Pressure {
     }
 }
 
-/// V (Σ A d n nᵀ)⁻¹ of each cell, the sum over its faces, d the distance of its centre from their planes.
-fn recovery(grid: &MeshGraph) -> Vec<Matrix3<f64>> {
+/// V (Σ A d n nᵀ)⁻¹ of each cell, the sum over its faces but the sides of wedges, d the distance of its centre from their planes. From
+/// one side of a wedge to the other nothing is recovered: there the gradient is the force.
+fn recovery(grid: &MeshGraph, wedge: &[bool]) -> Vec<Matrix3<f64>> {
     if grid.orthogonal {
         return Vec::new();
     }
     let mut inverse = vec![Matrix3::identity(); grid.cells()];
     fill(&mut inverse, |cell| {
         let mut sum = Matrix3::zeros();
+        let mut between = Vec3::zeros();
         for link in grid.links(cell) {
-            let face = &grid.faces[link.face as usize];
+            let index = link.face as usize;
+            let face = &grid.faces[index];
+            if link.is_boundary() && wedge.get(index - grid.internal) == Some(&true) {
+                // The normals of the two sides are opposite but for the angle between them.
+                between = match between == Vec3::zeros() {
+                    true => face.normal,
+                    false => (between - face.normal).normalize(),
+                };
+                continue;
+            }
             let distance = if link.sign > 0.0 {
                 face.owner_distance
             } else {
@@ -509,7 +544,7 @@ fn recovery(grid: &MeshGraph) -> Vec<Matrix3<f64>> {
             };
             sum += (face.area * distance) * face.normal * face.normal.transpose();
         }
-        (sum / grid.volume[cell])
+        (sum / grid.volume[cell] + between * between.transpose())
             .try_inverse()
             .unwrap_or_else(Matrix3::identity)
     });

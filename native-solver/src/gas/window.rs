@@ -113,6 +113,7 @@ impl NativeGas {
             convection: self.setup.controls.convection,
             tolerance: self.setup.controls.outer_tolerance,
             gravity: self.setup.gravity,
+            mean_gradient: self.setup.pressure_gradient,
             void_fraction,
             pressure_share: &self.pressure_share,
             exchange: &self.exchange,

@@ -27,6 +27,13 @@ fn sides(grid: &MeshGraph, index: usize, flux: f64) -> (usize, usize, f64) {
     }
 }
 
+/// From the centre upstream of an internal face to the one downstream, in m.
+#[inline]
+fn downstream(grid: &MeshGraph, index: usize, flux: f64) -> Vec3 {
+    let line = grid.between(index);
+    if flux >= 0.0 { line } else { -line }
+}
+
 /// What an internal face's value of a scalar is beyond the upwind one.
 #[inline]
 pub fn beyond_upwind(
@@ -48,7 +55,7 @@ pub fn beyond_upwind(
         return 0.0;
     }
     let difference = values[down] - values[up];
-    let along = gradients[up].dot(&(grid.centre[down] - grid.centre[up]));
+    let along = gradients[up].dot(&downstream(grid, index, flux));
     let other = 2.0 * along - difference;
     if other * difference > 0.0 {
         weight * 2.0 * other * difference / (other + difference)
@@ -69,7 +76,7 @@ pub fn limiter(
 ) -> f64 {
     let (up, down, _) = sides(grid, index, flux);
     let difference = values[down] - values[up];
-    let along = gradients[up].dot(&(grid.centre[down] - grid.centre[up]));
+    let along = gradients[up].dot(&downstream(grid, index, flux));
     let other = 2.0 * along - difference;
     let limiting = if other * difference > 0.0 {
         2.0 * other / (other + difference)
@@ -118,7 +125,7 @@ pub fn vector_beyond_upwind(
     }
     let difference = values[down] - values[up];
     let square = difference.norm_squared();
-    let along = gradients[up] * (grid.centre[down] - grid.centre[up]);
+    let along = gradients[up] * downstream(grid, index, flux);
     let other = 2.0 * along.dot(&difference) - square;
     if other > 0.0 && square > 0.0 {
         (weight * 2.0 * other / (other + square)) * difference

@@ -70,13 +70,15 @@ pub struct MeshGraph {
     pub volume: Vec<f64>,
     /// Cell centres in m.
     pub centre: Vec<Vec3>,
-    /// Faces, internal ones first.
+    /// Faces: the mesh's internal ones, one for each pair of periodic faces, then the others of the boundary in the mesh's order.
     pub faces: Vec<Face>,
-    /// Number of internal faces.
+    /// Number of faces between two cells.
     pub internal: usize,
     /// True where no face needs a correction for a line between centres that misses the face's
     /// centre or is not normal to it.
     pub orthogonal: bool,
+    /// What the neighbour's coordinates lack to lie beside the face, of each pair of periodic faces, in m.
+    shifts: Vec<Vec3>,
     links: Vec<CellFace>,
     link_offsets: Vec<u32>,
     row_offsets: Vec<u32>,
@@ -86,7 +88,24 @@ pub struct MeshGraph {
 impl MeshGraph {
     /// The grid of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
-        let faces: Vec<Face> = (0..mesh.faces()).map(|face| measure(mesh, face)).collect();
+        let (inside, pairs) = (mesh.internal_faces(), mesh.periodic_faces());
+        let internal = inside + pairs.len();
+        // Place of each face of the mesh's boundary.
+        let mut next = internal;
+        let mut place = Vec::with_capacity(mesh.faces() - inside);
+        let mut order: Vec<usize> = (0..inside).collect();
+        order.extend(pairs.iter().map(|pair| pair.face));
+        for face in inside..mesh.faces() {
+            match mesh.periodic_pair(face) {
+                Some(pair) => place.push(inside + pair),
+                None => {
+                    place.push(next);
+                    order.push(face);
+                    next += 1;
+                }
+            }
+        }
+        let faces: Vec<Face> = order.iter().map(|&face| measure(mesh, face)).collect();
         let orthogonal = faces.iter().all(|face| {
             let skew = face.owner_skew.norm().max(face.neighbour_skew.norm());
             skew <= SKEW * face.distance()
@@ -95,25 +114,30 @@ impl MeshGraph {
             volume: mesh.cell_volume().to_vec(),
             centre: mesh.cell_centre().to_vec(),
             faces,
-            internal: mesh.internal_faces(),
+            internal,
             orthogonal,
-            links: Vec::with_capacity(mesh.faces() + mesh.internal_faces()),
+            shifts: pairs.iter().map(|pair| -pair.translation).collect(),
+            links: Vec::with_capacity(mesh.faces() + inside),
             link_offsets: vec![0],
             row_offsets: vec![0],
-            columns: Vec::with_capacity(2 * mesh.internal_faces()),
+            columns: Vec::with_capacity(2 * internal),
         };
         let mut others = Vec::new();
         for cell in 0..mesh.cells() {
             others.clear();
-            let across = |&face: &u32| mesh.across(cell, face as usize);
-            others.extend(mesh.faces_of(cell).iter().filter_map(across));
+            let beyond = |&face: &u32| Some(mesh.beyond(cell, face as usize)?.cell);
+            others.extend(mesh.faces_of(cell).iter().filter_map(beyond));
             others.sort_unstable();
             others.dedup();
             grid.columns.extend(others.iter().map(|&cell| cell as u32));
             grid.row_offsets.push(grid.columns.len() as u32);
-            for &face in mesh.faces_of(cell) {
-                let owned = mesh.owner()[face as usize] as usize == cell;
-                let other = mesh.across(cell, face as usize);
+            for face in mesh.faces_of(cell) {
+                let other = beyond(face);
+                let face = match (*face as usize).checked_sub(inside) {
+                    None => *face,
+                    Some(boundary) => place[boundary] as u32,
+                };
+                let owned = grid.faces[face as usize].owner == cell;
                 let slot = other.and_then(|other| others.binary_search(&other).ok());
                 grid.links.push(CellFace {
                     face,
@@ -131,6 +155,17 @@ impl MeshGraph {
     #[inline]
     pub fn cells(&self) -> usize {
         self.volume.len()
+    }
+
+    /// From the centre of an internal face's owner to that of its neighbour beside it, in m.
+    #[inline]
+    pub fn between(&self, face: usize) -> Vec3 {
+        let ends = &self.faces[face];
+        let line = self.centre[ends.neighbour] - self.centre[ends.owner];
+        match face.checked_sub(self.internal - self.shifts.len()) {
+            None => line,
+            Some(pair) => line + self.shifts[pair],
+        }
     }
 
     /// Links of a cell.
@@ -154,12 +189,15 @@ impl MeshGraph {
 
 fn measure(mesh: &Mesh, face: usize) -> Face {
     let owner = mesh.owner()[face] as usize;
-    let neighbour = mesh.neighbour().get(face).map(|&cell| cell as usize);
+    let beyond = mesh.beyond(owner, face);
+    let neighbour = beyond.map(|beyond| beyond.cell);
     let area = mesh.face_area()[face].norm();
     let normal = mesh.face_area()[face] / area;
     let centre = mesh.face_centre()[face];
     let inner = centre - mesh.cell_centre()[owner];
-    let outer = neighbour.map_or_else(Vec3::zeros, |cell| mesh.cell_centre()[cell] - centre);
+    let outer = beyond.map_or_else(Vec3::zeros, |beyond| {
+        mesh.cell_centre()[beyond.cell] + beyond.shift - centre
+    });
     let (owner_distance, neighbour_distance) = (normal.dot(&inner), normal.dot(&outer));
     Face {
         owner,

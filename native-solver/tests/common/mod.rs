@@ -159,6 +159,7 @@ pub fn setup(patches: &[(&str, GasPatch)]) -> GasSetup {
         pressure: ATMOSPHERE,
         velocity: Vec3::zeros(),
         gravity: Vec3::zeros(),
+        pressure_gradient: Vec3::zeros(),
         turbulence: Default::default(),
         momentum: Default::default(),
         patches: patches

@@ -160,12 +160,20 @@ const PATCH_WALL: &[Key] = &[
 ];
 
 #[rustfmt::skip]
+const PATCH_PERIODIC: &[Key] = &[
+    key("with", Text, Required, "Name of the partner. It may state this patch as its own partner, and needs no condition otherwise.", "\"right\""),
+];
+
+#[rustfmt::skip]
 const PATCH: &[Key] = &[
-    key("inlet", Table(PATCH_INLET), OneOf, "Gas flows in. One of `inlet`, `outlet`, `opening`, `wall`, `symmetry`.", "{ superficial_velocity = \"0.5 m/s\", temperature = \"400 K\" }"),
-    key("outlet", Table(PATCH_OUTLET), OneOf, "Gas flows out. One of `inlet`, `outlet`, `opening`, `wall`, `symmetry`.", "{ pressure = \"1 atm\" }"),
-    key("opening", Table(PATCH_OPENING), OneOf, "Gas flows out to surroundings at rest, or in from them with their total pressure, as the pressures have it. One of `inlet`, `outlet`, `opening`, `wall`, `symmetry`.", "{ pressure = \"1 atm\", temperature = \"300 K\" }"),
-    key("wall", Table(PATCH_WALL), OneOf, "A wall. One of `inlet`, `outlet`, `opening`, `wall`, `symmetry`.", "{ velocity = \"slip\", heat = \"adiabatic\" }"),
-    key("symmetry", Table(&[]), OneOf, "A plane of symmetry. One of `inlet`, `outlet`, `opening`, `wall`, `symmetry`.", "{}"),
+    key("inlet", Table(PATCH_INLET), OneOf, "Gas flows in. One of `inlet`, `outlet`, `opening`, `wall`, `symmetry`, `periodic`, `empty`, `wedge`.", "{ superficial_velocity = \"0.5 m/s\", temperature = \"400 K\" }"),
+    key("outlet", Table(PATCH_OUTLET), OneOf, "Gas flows out. One of `inlet`, `outlet`, `opening`, `wall`, `symmetry`, `periodic`, `empty`, `wedge`.", "{ pressure = \"1 atm\" }"),
+    key("opening", Table(PATCH_OPENING), OneOf, "Gas flows out to surroundings at rest, or in from them with their total pressure, as the pressures have it. One of `inlet`, `outlet`, `opening`, `wall`, `symmetry`, `periodic`, `empty`, `wedge`.", "{ pressure = \"1 atm\", temperature = \"300 K\" }"),
+    key("wall", Table(PATCH_WALL), OneOf, "A wall. One of `inlet`, `outlet`, `opening`, `wall`, `symmetry`, `periodic`, `empty`, `wedge`.", "{ velocity = \"slip\", heat = \"adiabatic\" }"),
+    key("symmetry", Table(&[]), OneOf, "A plane of symmetry. One of `inlet`, `outlet`, `opening`, `wall`, `symmetry`, `periodic`, `empty`, `wedge`.", "{}"),
+    key("periodic", Table(PATCH_PERIODIC), OneOf, "What leaves through it comes in through its partner; both are planes normal to the same coordinate axis, at the ends of the mesh, with the same faces. One of `inlet`, `outlet`, `opening`, `wall`, `symmetry`, `periodic`, `empty`, `wedge`.", "{ with = \"right\" }"),
+    key("empty", Table(&[]), OneOf, "Both sides of a plane flow, one cell apart: gas does not flow from one to the other. One of `inlet`, `outlet`, `opening`, `wall`, `symmetry`, `periodic`, `empty`, `wedge`.", "{}"),
+    key("wedge", Table(&[]), OneOf, "One of the two sides of a slice of an axisymmetric flow without swirl, one cell apart. One of `inlet`, `outlet`, `opening`, `wall`, `symmetry`, `periodic`, `empty`, `wedge`.", "{}"),
 ];
 
 #[rustfmt::skip]
@@ -189,6 +197,7 @@ pub(super) const GAS: &[Key] = &[
     key("mixture", Text, Required, "`air`, or any name together with `gas.properties` or `gas.constant`.", "\"air\""),
     key("initial", Table(INITIAL), Required, "The gas at the start, everywhere.", "{ temperature = \"300 K\", pressure = \"1 atm\" }"),
     key("gravity", Vector(D::ACCELERATION), Default("0 0 0 m/s^2"), "Gravity on gas and free particles.", "\"0 0 -9.81 m/s^2\""),
+    key("pressure_gradient", Vector(D::PRESSURE_GRADIENT), Default("0 0 0 Pa/m"), "Mean pressure gradient beside that of the pressure field: it drives gas along periodic directions, towards where it falls.", "\"-1.2 0 0 Pa/m\""),
     key("held", Truth, Default("false"), "The gas stays as it is at the start, at any exchange: superficial velocity, temperature, and a pressure gradient of its own weight. No gas solver runs.", "true"),
     key("species", Texts(0), Without("a single gas"), "Species of a mixture of ideal gases: N2, O2, Ar, CO2, H2O, CO, H2, CH4 are built in, others are of `species_data`; with `gas.schmidt`, and a composition wherever gas stands at the start or flows in.", "[\"N2\", \"O2\"]"),
     key("schmidt", Number(D::NONE, Positive), With("species"), "Schmidt number of all species: they diffuse alike, with viscosity over density over this.", "0.7"),

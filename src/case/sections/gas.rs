@@ -45,6 +45,7 @@ pub(super) fn read(
     let schmidt = schmidt(&section, properties.as_ref());
     let initial = initial(&section, properties.as_ref());
     let gravity = section.vector("gravity").unwrap_or([0.0; 3]);
+    let pressure_gradient = section.vector("pressure_gradient").unwrap_or([0.0; 3]);
     let held = section.truth("held").unwrap_or(false);
     let turbulence = turbulence(&section);
     let turbulent = turbulence.as_ref().map(|(model, _)| !model.is_laminar());
@@ -85,6 +86,7 @@ pub(super) fn read(
         pressure,
         velocity,
         gravity: Vec3::from(gravity),
+        pressure_gradient: Vec3::from(pressure_gradient),
         turbulence,
         momentum: MomentumModel::default(), // `laws.drag.model` says
         patches: patches?,

@@ -32,6 +32,7 @@ pub(super) fn boundary(
         }
         reader.finish();
     }
+    partners(&table, &mut made, &mut complete);
     if let Some(known) = patches(mesh) {
         for (name, _) in &named {
             if !known.contains(&name.as_str()) {
@@ -39,8 +40,20 @@ pub(super) fn boundary(
                 table.fail(name, "is not a patch of the mesh", help);
             }
         }
+        for (name, patch) in &made {
+            if let GasPatch::Periodic { with } = patch
+                && known.contains(&name.as_str())
+                && !known.contains(&with.as_str())
+            {
+                let help = format!("the patches of the mesh are {}", known.join(", "));
+                let rule = format!("is periodic with `{with}`, which is not a patch of the mesh");
+                table.fail(name, rule, help);
+                complete = false;
+            }
+        }
         for name in known {
-            if !named.iter().any(|(other, _)| other == name) {
+            let stated = named.iter().any(|(other, _)| other == name);
+            if !stated && !made.iter().any(|(other, _)| other == name) {
                 table.missing_like(
                     name,
                     "{ wall = { velocity = \"no-slip\", heat = \"adiabatic\" } }",
@@ -65,6 +78,47 @@ pub(super) fn boundary(
     complete.then_some(made)
 }
 
+/// Gives each periodic patch's partner its side, where the file states one of the two, and compares them where it states both.
+fn partners(table: &TableReader<'_>, made: &mut Vec<(String, GasPatch)>, complete: &mut bool) {
+    let pairs: Vec<(String, String)> = made
+        .iter()
+        .filter_map(|(name, patch)| match patch {
+            GasPatch::Periodic { with } => Some((name.clone(), with.clone())),
+            _ => None,
+        })
+        .collect();
+    for (name, with) in pairs {
+        let mut refuse = |rule: String, help: String| {
+            table.fail(&name, rule, help);
+            *complete = false;
+        };
+        if name == with {
+            let help = "name the patch on the other side".to_owned();
+            refuse("is periodic with itself".to_owned(), help);
+            continue;
+        }
+        let partner = made.iter().find(|(other, _)| *other == with);
+        match partner.map(|(_, patch)| patch) {
+            None if table.has(&with) => *complete = false,
+            None => {
+                let with_this = GasPatch::Periodic { with: name };
+                made.push((with, with_this));
+            }
+            Some(GasPatch::Periodic { with: back }) if *back == name => {}
+            Some(GasPatch::Periodic { with: back }) => refuse(
+                format!("is periodic with `{with}`, which is periodic with `{back}`"),
+                "a periodic patch has one partner: let both name each other".to_owned(),
+            ),
+            Some(_) => refuse(
+                format!("is periodic with `{with}`, which has another condition"),
+                format!(
+                    "leave out the condition of `{with}`, or write periodic = {{ with = \"{name}\" }} there"
+                ),
+            ),
+        }
+    }
+}
+
 fn patch(
     reader: &TableReader<'_>,
     gas: Option<&GasModel>,
@@ -77,6 +131,12 @@ fn patch(
         "outlet" => outlet(&table, gas),
         "opening" => opening(&table, gas),
         "symmetry" => Some(GasPatch::Symmetry),
+        "periodic" => {
+            let with = table.text("with").map(str::to_owned);
+            with.map(|with| GasPatch::Periodic { with })
+        }
+        "empty" => Some(GasPatch::Empty),
+        "wedge" => Some(GasPatch::Wedge),
         _ => wall(&table),
     };
     table.finish();

@@ -9,5 +9,5 @@ mod write;
 
 pub use error::PolyMeshError;
 pub use field::internal_field;
-pub use read::read;
+pub use read::{PatchType, patch_types, read};
 pub use write::{write, write_with};

@@ -17,6 +17,7 @@ pub fn read(dir: &Path) -> Result<Mesh, PolyMeshError> {
     let owner = in_file(dir, "owner", |scan, header| labels(scan, header, limit))?;
     let neighbour = in_file(dir, "neighbour", |scan, header| labels(scan, header, limit))?;
     let patches = in_file(dir, "boundary", |scan, _| boundary(scan))?;
+    let patches = patches.into_iter().map(|(patch, _)| patch).collect();
     let topology = Topology {
         points,
         face_offsets,
@@ -29,6 +30,23 @@ pub fn read(dir: &Path) -> Result<Mesh, PolyMeshError> {
         folder: dir.to_path_buf(),
         cause,
     })
+}
+
+/// What a polyMesh itself says of a patch.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PatchType {
+    /// Its name.
+    pub name: String,
+    /// Its `type`; empty where none is stated.
+    pub kind: String,
+    /// Its `neighbourPatch`, of coupled patches.
+    pub neighbour: Option<String>,
+}
+
+/// Types of the patches of a polyMesh folder, in the order of its file `boundary`.
+pub fn patch_types(dir: &Path) -> Result<Vec<PatchType>, PolyMeshError> {
+    let patches = in_file(dir, "boundary", |scan, _| boundary(scan))?;
+    Ok(patches.into_iter().map(|(_, kind)| kind).collect())
 }
 
 /// Opens a file, reads its header and body, and sees that nothing follows.
@@ -169,16 +187,25 @@ fn faces(scan: &mut Scanner<'_>, header: &Header) -> Result<(Vec<u32>, Vec<u32>)
     Ok((offsets, points))
 }
 
-fn boundary(scan: &mut Scanner<'_>) -> Result<Vec<Patch>, PolyMeshError> {
+fn boundary(scan: &mut Scanner<'_>) -> Result<Vec<(Patch, PatchType)>, PolyMeshError> {
     list(scan, 0, |scan| {
         let name = scan.word("a patch's name")?;
         scan.expect(b'{')?;
         let (mut start, mut count) = (None, None);
+        let (mut kind, mut neighbour) = (String::new(), None);
         while !scan.take(b'}')? {
             let key = scan.word("a key of the patch")?;
             let wanted = match key.as_str() {
                 "startFace" => &mut start,
                 "nFaces" => &mut count,
+                "type" => {
+                    kind = scan.entry()?.unwrap_or_default();
+                    continue;
+                }
+                "neighbourPatch" => {
+                    neighbour = scan.entry()?;
+                    continue;
+                }
                 _ => {
                     scan.entry()?;
                     continue;
@@ -188,7 +215,16 @@ fn boundary(scan: &mut Scanner<'_>) -> Result<Vec<Patch>, PolyMeshError> {
             scan.expect(b';')?;
         }
         match (start, count) {
-            (Some(start), Some(count)) => Ok(Patch { name, start, count }),
+            (Some(start), Some(count)) => {
+                let own = name.clone();
+                let kind = PatchType {
+                    name,
+                    kind,
+                    neighbour,
+                };
+                let name = own;
+                Ok((Patch { name, start, count }, kind))
+            }
             _ => Err(scan.error(format!(
                 "patch `{name}` lacks `{}`",
                 if start.is_none() {

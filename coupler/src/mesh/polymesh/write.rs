@@ -9,7 +9,7 @@ use crate::mesh::Mesh;
 
 /// Writes the five files of a mesh, in ASCII, into a polyMesh folder, which is made if it is not
 /// there. Coordinates are written with as many digits (at most 17) as read back to the same bits;
-/// every patch gets the type `patch`.
+/// every patch gets the type `patch`, but joined ones `cyclic`.
 pub fn write(mesh: &Mesh, dir: &Path) -> Result<(), PolyMeshError> {
     write_with(mesh, dir, |_| "patch")
 }
@@ -107,14 +107,16 @@ fn labels(list: &[u32]) -> String {
 fn boundary(mesh: &Mesh, kind: impl Fn(&str) -> &'static str) -> String {
     let mut text = format!("{}\n(\n", mesh.patches().len());
     for patch in mesh.patches() {
+        let partner = mesh.partner(patch);
+        let kind = partner.map_or_else(|| kind(&patch.name), |_| "cyclic");
+        let more = partner.map_or_else(String::new, |partner| {
+            format!("        neighbourPatch  {};\n", partner.name)
+        });
         let _ = writeln!(
             text,
-            "    {}\n    {{\n        type            {};\n        nFaces          {};\n        \
-             startFace       {};\n    }}",
-            patch.name,
-            kind(&patch.name),
-            patch.count,
-            patch.start
+            "    {}\n    {{\n        type            {kind};\n        nFaces          {};\n        \
+             startFace       {};\n{more}    }}",
+            patch.name, patch.count, patch.start
         );
     }
     text + ")\n"

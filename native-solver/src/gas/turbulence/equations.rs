@@ -603,6 +603,7 @@ mod tests {
             pressure: 101_325.0,
             velocity: Vec3::zeros(),
             gravity: Vec3::zeros(),
+            pressure_gradient: Vec3::zeros(),
             momentum: Default::default(),
             turbulence: Turbulence::Laminar,
             patches: patches.map(|(name, patch)| (name.to_owned(), patch)).into(),
