@@ -37,7 +37,7 @@ fn of(placed: &InitialParticles, population: usize) -> Vec<[f64; 4]> {
 
 #[test]
 fn ten_layers_lie_each_in_its_own_place_with_its_own_sizes() {
-    let placed = particles(&case("layers.toml", &[])).unwrap();
+    let placed = particles(&case("layers.toml", &[]), &Default::default()).unwrap();
     let sizes = [
         [3.0, 5.0],
         [2.0, 6.0],
@@ -69,7 +69,7 @@ fn ten_layers_lie_each_in_its_own_place_with_its_own_sizes() {
 /// Of the dump: ids 3 and 7 of type 2 at step 1000, in the order of their ids.
 #[test]
 fn files_give_their_own_diameters_and_temperatures_where_they_hold_them() {
-    let placed = particles(&case("layers.toml", &[])).unwrap();
+    let placed = particles(&case("layers.toml", &[]), &Default::default()).unwrap();
     let shown = |population| -> Vec<[f64; 2]> {
         let spheres = of(&placed, population);
         spheres
@@ -87,7 +87,7 @@ fn files_give_their_own_diameters_and_temperatures_where_they_hold_them() {
 #[test]
 fn populations_that_reach_into_each_other_are_refused_with_both_names() {
     let region = "particles[1].place.region={ from = \"19 mm\", to = \"40 mm\" }";
-    let error = particles(&case("layers.toml", &[region])).unwrap_err();
+    let error = particles(&case("layers.toml", &[region]), &Default::default()).unwrap_err();
     let message = error.to_string();
     assert!(
         message.contains("\"normal\"") && message.contains("\"log-normal\" overlap"),
@@ -98,7 +98,7 @@ fn populations_that_reach_into_each_other_are_refused_with_both_names() {
 #[test]
 fn a_grid_that_leaves_a_cylinder_is_refused_with_its_particle() {
     let grid = "particles[4].place={ grid = { first = \"0 0 90 mm\", spacing = \"9 9 9 mm\", counts = [4, 1, 1] } }";
-    let error = particles(&case("layers.toml", &[grid])).unwrap_err();
+    let error = particles(&case("layers.toml", &[grid]), &Default::default()).unwrap_err();
     assert_eq!(
         error.to_string(),
         "population \"cubic\", particle 4: the centre lies at distance from the axis = 0.027 m, but the \
@@ -108,13 +108,21 @@ fn a_grid_that_leaves_a_cylinder_is_refused_with_its_particle() {
 
 #[test]
 fn a_timestep_of_a_file_without_timesteps_is_refused() {
-    let error = particles(&case("layers.toml", &["particles[8].place.timestep=3"])).unwrap_err();
+    let error = particles(
+        &case("layers.toml", &["particles[8].place.timestep=3"]),
+        &Default::default(),
+    )
+    .unwrap_err();
     let message = error.to_string();
     assert!(
         message.ends_with("bed.vtk: it holds no timesteps to choose from; leave out `timestep`"),
         "{message}"
     );
-    let error = particles(&case("layers.toml", &["particles[7].place.timestep=3"])).unwrap_err();
+    let error = particles(
+        &case("layers.toml", &["particles[7].place.timestep=3"]),
+        &Default::default(),
+    )
+    .unwrap_err();
     let message = error.to_string();
     assert!(
         message.ends_with("bed.liggghts: it has no timestep 3; it holds 0, 1000, 2000"),
@@ -138,7 +146,7 @@ fn from_file(name: &str, bytes: &[u8]) -> Result<InitialParticles, String> {
     let case = read(&folder.path().join("case.toml"), &[]).unwrap();
     let folder = folder.path().canonicalize().unwrap();
     let prefix = format!("{}/", folder.display());
-    particles(&case).map_err(|error| error.to_string().replace(&prefix, ""))
+    particles(&case, &Default::default()).map_err(|error| error.to_string().replace(&prefix, ""))
 }
 
 /// A `.vtp` as Calcine writes it: raw appended arrays, here with single-precision radii.

@@ -239,15 +239,26 @@ fn particles_of_a_file_stay_in_the_box_and_apart_from_other_populations() {
     use calcine::case::particles;
     let good = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/two-populations.toml");
     let case = |set: &str| read(&good, &[set.to_owned()]).unwrap();
-    assert_eq!(particles(&case("time.end=1 s")).unwrap().setup.id.len(), 4);
+    assert_eq!(
+        particles(&case("time.end=1 s"), &Default::default())
+            .unwrap()
+            .setup
+            .id
+            .len(),
+        4
+    );
     // The upper sphere (radius 5 mm) at 19 mm, the lower grain (2 mm) at 25 mm.
-    let error = particles(&case("particles[0].place.grid.first=\"5 5 9 mm\"")).unwrap_err();
+    let error = particles(
+        &case("particles[0].place.grid.first=\"5 5 9 mm\""),
+        &Default::default(),
+    )
+    .unwrap_err();
     assert_eq!(
         error.to_string(),
         "particle 2 of \"spheres\" and particle 3 of \"grains\" overlap: their centres are 0.006 m \
          apart, their radii add up to 0.007 m; move one of the populations"
     );
-    let error = particles(&case("mesh.box.size=10 10 30 mm")).unwrap_err();
+    let error = particles(&case("mesh.box.size=10 10 30 mm"), &Default::default()).unwrap_err();
     let message = error.to_string();
     assert!(
         message.contains("bed.csv, line 3: the centre lies at z = 0.031 m, but the mesh reaches from 0 m to 0.03 m"),
@@ -260,7 +271,11 @@ fn free_particles_start_with_the_velocities_and_spins_of_their_file_and_frozen_o
     use calcine::case::particles;
     let good =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/springs-and-gates.toml");
-    let placed = |set: &[String]| particles(&read(&good, set).unwrap()).unwrap().setup;
+    let placed = |set: &[String]| {
+        particles(&read(&good, set).unwrap(), &Default::default())
+            .unwrap()
+            .setup
+    };
     let free = placed(&[]);
     let first = (free.velocity[0], free.angular_velocity[0]);
     assert_eq!(first.0.as_slice(), [0.1, 0.0, -0.2]);

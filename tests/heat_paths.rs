@@ -236,7 +236,11 @@ const PARTED: f64 = 1e-3;
 /// the centres in m and their radius.
 fn touching_bed(folder: &Path) -> (PathBuf, Vec<f64>, f64) {
     let path = case("cases/bed-conductivity.toml");
-    let bed = calcine::case::particles(&calcine::case::read(&path, &[]).unwrap()).unwrap();
+    let bed = calcine::case::particles(
+        &calcine::case::read(&path, &[]).unwrap(),
+        &Default::default(),
+    )
+    .unwrap();
     let radius = 3e-3 * (1.0 + PARTED);
     let mut rows = String::from("x,y,z,diameter\n");
     let mut heights = Vec::new();

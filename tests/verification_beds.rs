@@ -131,7 +131,7 @@ fn cut(directory: &Path, height: usize) -> usize {
     let case = directory.join("whole.toml");
     fs::write(&case, text).unwrap();
     let case = read(&case, &[]).unwrap_or_else(|errors| panic!("{errors}"));
-    let placed = particles(&case).unwrap();
+    let placed = particles(&case, &Default::default()).unwrap();
     let mut table = "x,y,z\n".to_owned();
     let mut count = 0;
     for centre in &placed.setup.position {

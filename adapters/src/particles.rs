@@ -11,6 +11,7 @@ use calcine_coupler::named_columns::NamedColumns;
 use calcine_coupler::part::{
     Bed, Part, ParticleFields, ParticlePush, ParticleReceived, Particles, SolverInfo,
 };
+use calcine_coupler::periodicity::Periodicity;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::supervisor::Supervisor;
@@ -111,6 +112,8 @@ pub struct LinkedParticles {
     alone: bool,
     /// The largest id that the solver can hold.
     largest_id: u64,
+    /// Directions in which the domain repeats itself; the solver's places may lie beyond their planes.
+    periodicity: Periodicity,
 }
 
 impl LinkedParticles {
@@ -145,6 +148,10 @@ impl LinkedParticles {
             alone: matches!(&setup.motion, Motion::Free(contacts)
                 if contacts.walls.is_empty() && !contacts.held.contains(&true)),
             largest_id,
+            periodicity: match &setup.motion {
+                Motion::Free(contacts) => contacts.periodicity,
+                Motion::Frozen => Periodicity::default(),
+            },
         };
         particles.committed = particles.read(None)?;
         particles.attempt = particles.committed.clone();
@@ -164,7 +171,12 @@ impl LinkedParticles {
     /// The particles in the messages that the links hold.
     fn read(&self, window: Option<&Window>) -> Result<ReceivedParticles, PartError> {
         let state = ReceivedParticles::read(self.solver.links(), &self.solver.hello().catalogue);
-        let state = state.map_err(|error| self.solver.failure(window, error))?;
+        let mut state = state.map_err(|error| self.solver.failure(window, error))?;
+        if !self.periodicity.is_none() {
+            for place in &mut state.position {
+                *place = self.periodicity.wrap(*place);
+            }
+        }
         let unordered = state.id.windows(2).find(|pair| pair[0] >= pair[1]);
         if let Some(pair) = unordered {
             let message = format!("particle {} follows particle {}", pair[1], pair[0]);

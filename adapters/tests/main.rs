@@ -5,6 +5,7 @@
 
 mod conformance;
 mod liggghts_moving;
+mod liggghts_periodic;
 mod liggghts_ranks;
 mod liggghts_support;
 mod openfoam_burner;

@@ -33,6 +33,7 @@ fn packings(criterion: &mut Criterion) {
             },
             seed: 1,
             size_seed: 2,
+            periodicity: Default::default(),
         };
         let of = format!("solid fraction {solid_fraction}");
         group.bench_function(BenchmarkId::new(of, number), |bencher| {

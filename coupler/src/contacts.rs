@@ -4,6 +4,7 @@ use calcine_interior::{NeighbourPair, NeighbourWall};
 use calcine_physics::Vec3;
 use rayon::prelude::*;
 
+use crate::periodicity::Periodicity;
 use crate::view_factors::WallSurface;
 
 /// Spheres that one thread looks about at a time.
@@ -126,6 +127,53 @@ pub fn pairs(bounds: (Vec3, Vec3), radii: &[f64], centres: &[Vec3], gap: f64) ->
     found.concat()
 }
 
+/// Pairs of spheres whose surfaces are nearer than `gap` in m across a periodic plane, the smaller index first, and the
+/// translation of the second that brings it near the first. A pair may be near by several images, and comes with each; a
+/// sphere is no pair with its own image. Centres may be anywhere.
+pub fn pairs_across(
+    periodicity: &Periodicity,
+    radii: &[f64],
+    centres: &[Vec3],
+    gap: f64,
+) -> Vec<([u32; 2], Vec3)> {
+    if periodicity.is_none() {
+        return Vec::new();
+    }
+    let largest = radii.iter().copied().fold(0.0, f64::max);
+    // Spheres that have an image near the domain: others are in no such pair.
+    let (mut of, mut seen, mut shifts) = (Vec::new(), Vec::new(), Vec::new());
+    for ((sphere, &radius), &centre) in (0u32..).zip(radii).zip(centres) {
+        let place = periodicity.wrap(centre);
+        for shift in periodicity.images(place, radius + largest + gap) {
+            if seen.last() != Some(&sphere) {
+                seen.push(sphere);
+            }
+            of.push(sphere);
+            shifts.push(place + shift - centre);
+        }
+    }
+    let own = seen.len();
+    let all = seen.iter().chain(&of).map(|&sphere| sphere as usize);
+    let (all, radii): (Vec<usize>, Vec<f64>) = all.map(|one| (one, radii[one])).unzip();
+    let place = |k: usize| match k.checked_sub(own) {
+        Some(image) => centres[all[k]] + shifts[image],
+        None => periodicity.wrap(centres[all[k]]),
+    };
+    let places: Vec<Vec3> = (0..all.len()).map(place).collect();
+    let found = near(&radii, &places, gap).into_iter();
+    let across = found.filter_map(|[a, b]| {
+        let (a, b) = (a as usize, b as usize);
+        let pair = [all[a], all[b]];
+        // Each is found from both sides: as the first and an image of the second, and as an image of the first.
+        if a >= own || b < own || pair[0] >= pair[1] {
+            return None;
+        }
+        let moved = places[a] - centres[pair[0]];
+        Some((pair.map(|one| one as u32), shifts[b - own] - moved))
+    });
+    across.collect()
+}
+
 /// Pairs of spheres whose surfaces are nearer than `gap` in m, in the order of their indices.
 fn near(radii: &[f64], centres: &[Vec3], gap: f64) -> Vec<[u32; 2]> {
     let Some(first) = centres.first() else {
@@ -157,19 +205,38 @@ pub fn pairs_around(radii: &[f64], centres: &[Vec3], reach: f64) -> Vec<[u32; 2]
     found
 }
 
-/// Pairs of spheres that overlap, or whose surfaces are nearer than `gap` in m, in the order of their indices.
-pub fn touching(radii: &[f64], centres: &[Vec3], gap: f64) -> Vec<NeighbourPair> {
-    let touch = |[a, b]: [u32; 2]| {
+/// Pairs of spheres that overlap, or whose surfaces are nearer than `gap` in m, in the order of their indices, across
+/// periodic planes too; a pair that touches by several images comes with each.
+pub fn touching(
+    periodicity: &Periodicity,
+    radii: &[f64],
+    centres: &[Vec3],
+    gap: f64,
+) -> Vec<NeighbourPair> {
+    let wrapped: Vec<Vec3> = match periodicity.is_none() {
+        true => Vec::new(),
+        false => centres.iter().map(|&at| periodicity.wrap(at)).collect(),
+    };
+    let centres = match periodicity.is_none() {
+        true => centres,
+        false => &wrapped,
+    };
+    let touch = |([a, b], shift): ([u32; 2], Vec3)| {
         let particles = [a as usize, b as usize];
         let radius = particles.map(|p| radii[p]);
-        let distance = (centres[particles[1]] - centres[particles[0]]).norm();
+        let distance = (centres[particles[1]] - centres[particles[0]] + shift).norm();
         NeighbourPair {
             particles,
             radius,
             overlap: radius[0] + radius[1] - distance,
         }
     };
-    let touches = near(radii, centres, gap).into_iter().map(touch);
+    let within = near(radii, centres, gap).into_iter();
+    let mut found: Vec<_> = within.map(|pair| (pair, Vec3::zeros())).collect();
+    found.extend(pairs_across(periodicity, radii, centres, gap));
+    // Those of a pair stay in their order.
+    found.sort_by_key(|one| one.0);
+    let touches = found.into_iter().map(touch);
     touches.filter(|touch| touch.overlap > -gap).collect()
 }
 
@@ -201,6 +268,11 @@ pub fn touching_walls<'w>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::periodicity::PeriodicSpan;
+
+    fn touching(radii: &[f64], centres: &[Vec3], gap: f64) -> Vec<NeighbourPair> {
+        super::touching(&Periodicity::default(), radii, centres, gap)
+    }
 
     /// Numbers in [0, 1) of a linear congruential generator (Knuth's MMIX constants).
     fn scatter() -> impl FnMut() -> f64 {
@@ -238,6 +310,59 @@ mod tests {
                 .map(|touch| touch.particles)
                 .collect();
             assert_eq!(fast, slow);
+        }
+    }
+
+    #[test]
+    fn pairs_across_periodic_planes_are_those_within_a_bed_that_is_moved() {
+        let span = |high: f64| Some(PeriodicSpan { low: 0.0, high });
+        let periodicity = Periodicity {
+            axes: [span(0.9), None, span(0.7)],
+        };
+        let mut next = scatter();
+        for round in 1..40 {
+            let count = 4 * round;
+            let centres: Vec<Vec3> = (0..count)
+                .map(|_| Vec3::new(0.9 * next(), 0.8 * next(), 0.7 * next()))
+                .collect();
+            let radii: Vec<f64> = (0..count).map(|_| 0.12 * 0.3f64.powf(next())).collect();
+            let mut slow = Vec::new();
+            for a in 0..count {
+                for b in a + 1..count {
+                    for image in 0..9 {
+                        let [x, z] = [image % 3, image / 3].map(|k| f64::from(k) - 1.0);
+                        let apart = centres[b] - centres[a] + Vec3::new(0.9 * x, 0.0, 0.7 * z);
+                        let overlap = radii[a] + radii[b] - apart.norm();
+                        if overlap > -0.01 {
+                            slow.push(([a, b], overlap));
+                        }
+                    }
+                }
+            }
+            let found = super::touching(&periodicity, &radii, &centres, 0.01);
+            assert_eq!(found.len(), slow.len());
+            // Of two images of a pair the order may differ.
+            let mut fast: Vec<_> = found
+                .iter()
+                .map(|one| (one.particles, one.overlap))
+                .collect();
+            for list in [&mut fast, &mut slow] {
+                list.sort_by(|one, other| one.0.cmp(&other.0).then(one.1.total_cmp(&other.1)));
+            }
+            for (found, wanted) in fast.iter().zip(&slow) {
+                assert_eq!(found.0, wanted.0);
+                assert!((found.1 - wanted.1).abs() < 1e-15);
+            }
+            // A sphere that stands in another period is as its image.
+            let mut away = centres.clone();
+            away[0].x -= 1.8;
+            away[1].z += 0.7;
+            let found: Vec<_> = super::touching(&periodicity, &radii, &away, 0.01)
+                .iter()
+                .map(|one| one.particles)
+                .collect();
+            let wanted: Vec<_> = fast.iter().map(|one| one.0).collect();
+            assert_eq!(found, wanted);
         }
     }
 

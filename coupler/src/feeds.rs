@@ -11,6 +11,7 @@ use crate::motion::{NewParticle, ParticleChanges};
 use crate::packing::random::SplitMix64;
 use crate::packing::{PackingError, Sizes};
 use crate::part::ParticleFields;
+use crate::periodicity::Periodicity;
 
 /// Places that are tried for a particle in one window; without a free one it waits for the next.
 const TRIES: u32 = 200;
@@ -62,6 +63,8 @@ pub struct FeedsAndOutlets {
     pub outlets: Vec<Outlet>,
     /// Upwards, by which "lowest" is meant.
     pub up: Vec3,
+    /// Directions in which the domain repeats itself.
+    periodicity: Periodicity,
     /// Id of the next particle that comes.
     next_id: u64,
     /// Mass in kg that each feed owes, and that each outlet may still take.
@@ -102,8 +105,22 @@ impl FeedsAndOutlets {
             feeds,
             outlets,
             up,
+            periodicity: Periodicity::default(),
             next_id,
         }
+    }
+
+    /// The same in a domain that repeats itself: new particles keep away from images too, and no particle is lower than
+    /// another along a periodic direction.
+    #[must_use]
+    pub fn in_periods(mut self, periodicity: &Periodicity) -> Self {
+        self.periodicity = *periodicity;
+        for (axis, span) in periodicity.axes.iter().enumerate() {
+            if span.is_some() {
+                self.up[axis] = 0.0;
+            }
+        }
+        self
     }
 
     /// True where nothing ever comes or goes.
@@ -180,18 +197,21 @@ impl FeedsAndOutlets {
                     break;
                 }
                 let mut random = SplitMix64(mixed(feed.seed, number, moment.window + 1));
+                let periodicity = &self.periodicity;
+                let square =
+                    |other: Vec3, place: &Vec3| periodicity.shortest(other - place).norm_squared();
                 let free = |place: &Vec3| {
                     let old = (0..particles.len()).filter(|&row| !gone[row]).all(|row| {
                         let apart = particles.radius[row] + radius;
-                        (particles.position[row] - place).norm_squared() >= apart * apart
+                        square(particles.position[row], place) >= apart * apart
                     });
                     old && due.change.insert.iter().all(|new| {
                         let apart = new.radius + radius;
-                        (new.position - place).norm_squared() >= apart * apart
+                        square(new.position, place) >= apart * apart
                     })
                 };
                 let place = (0..TRIES)
-                    .map(|_| within(&feed.zone, radius, &mut random))
+                    .map(|_| periodicity.wrap(within(&feed.zone, radius, &mut random)))
                     .find(free);
                 let Some(position) = place else { break };
                 due.change.insert.push(NewParticle {

@@ -29,6 +29,7 @@ pub mod observer;
 pub mod packing;
 pub mod part;
 pub mod paths;
+pub mod periodic_motion;
 pub mod periodicity;
 pub mod physical;
 pub mod setup;

@@ -8,6 +8,8 @@ use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 use calcine_physics::points::linear;
 
+use crate::periodicity::Periodicity;
+
 /// How the particles of a run move.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Motion {
@@ -35,6 +37,8 @@ pub struct Contacts {
     /// Lower and upper corner of the space in which particles may be, in m; one that leaves it is
     /// an error that names it.
     pub bounds: (Vec3, Vec3),
+    /// Directions in which this space repeats itself: what leaves through one plane comes in through the other.
+    pub periodicity: Periodicity,
     /// Elastic constants of each material.
     pub materials: Vec<Elastic>,
     /// Index of the material of each population.

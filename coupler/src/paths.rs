@@ -6,6 +6,7 @@ use calcine_interior::{ExchangeAreas, Neighbours};
 use crate::contacts::{touching, touching_walls};
 use crate::motion::WallShape;
 use crate::part::ParticleFields;
+use crate::periodicity::Periodicity;
 use crate::setup::Schedule;
 use crate::view_factors::{RadiationScene, RadiationWall, ViewFactors, WallSurface, views};
 
@@ -47,6 +48,8 @@ pub struct PathsSetup {
 #[derive(Debug, Default)]
 pub struct Paths {
     setup: PathsSetup,
+    /// Directions in which the domain repeats itself.
+    periodicity: Periodicity,
     mirrors: Vec<RadiationWall>,
     names: Vec<String>,
     /// Process time in s at which views were found last.
@@ -57,7 +60,7 @@ pub struct Paths {
 
 impl Paths {
     /// Walls that have a temperature are the first reservoirs, in their order; the surroundings are the last.
-    pub fn new(setup: PathsSetup) -> Self {
+    pub fn new(setup: PathsSetup, periodicity: Periodicity) -> Self {
         let mut reservoirs = 0..;
         let warm = setup.walls.iter().filter(|wall| wall.temperature.is_some());
         let beyond = setup.surroundings.as_ref();
@@ -77,6 +80,7 @@ impl Paths {
                 .collect(),
             seen_at: None,
             kelvin: Vec::new(),
+            periodicity,
             setup,
         }
     }
@@ -124,7 +128,7 @@ impl Paths {
     ) {
         let (radii, centres) = (particles.radius, particles.position);
         let gap = self.setup.gap;
-        let touches = touching(radii, centres, gap);
+        let touches = touching(&self.periodicity, radii, centres, gap);
         let absorbing = self.mirrors.iter().filter_map(|mirror| {
             let (reservoir, _) = mirror.absorbs?;
             Some((reservoir, &mirror.surface))
@@ -154,5 +158,51 @@ impl Paths {
             walls: &walls,
             views: found.as_ref(),
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::periodicity::PeriodicSpan;
+    use calcine_physics::Vec3;
+
+    #[test]
+    fn what_touches_across_a_periodic_plane_is_found_as_within() {
+        let span = PeriodicSpan {
+            low: 0.0,
+            high: 0.02,
+        };
+        let periodicity = Periodicity {
+            axes: [Some(span), None, None],
+        };
+        let overlap = |x: f64| {
+            let pair = [x, x + 1.9e-3].map(|x| periodicity.wrap(Vec3::new(x, 0.0, 1e-3)));
+            let radii = [1e-3; 2];
+            let fields = ParticleFields {
+                id: &[1, 2],
+                population: &[0, 0],
+                position: &pair,
+                velocity: &[],
+                angular_velocity: &[],
+                radius: &radii,
+                mass: &[],
+                weight: &[],
+            };
+            let mut paths = Paths::new(PathsSetup::default(), periodicity);
+            let mut found = Vec::new();
+            paths.find_neighbours(&fields, 0.0, |near| {
+                found.extend(near.pairs.iter().map(|pair| (pair.particles, pair.overlap)));
+            });
+            found
+        };
+        let within = overlap(5e-3);
+        assert_eq!(within.len(), 1);
+        for x in [0.0192, 0.0185, 0.02, -1e-4] {
+            let across = overlap(x);
+            assert_eq!(across.len(), 1);
+            assert_eq!(across[0].0, within[0].0);
+            assert!((across[0].1 - within[0].1).abs() < 1e-16);
+        }
     }
 }

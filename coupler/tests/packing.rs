@@ -11,6 +11,7 @@ use calcine_coupler::packing::regular::{
 use calcine_coupler::packing::{
     Fill, Packing, PackingError, RandomSpec, Shape, Share, Sizes, random_in_box, random_in_cylinder,
 };
+use calcine_coupler::periodicity::{PeriodicSpan, Periodicity};
 use calcine_coupler::physics::Vec3;
 
 const TUBE: f64 = 0.05;
@@ -25,6 +26,7 @@ fn spec(seed: u64) -> RandomSpec {
         },
         seed,
         size_seed: seed,
+        periodicity: Default::default(),
     }
 }
 
@@ -236,7 +238,7 @@ fn beds_of_many_spheres_are_the_same_bits_on_any_number_of_threads() {
     let one = bed(1);
     assert!(one == bed(3));
     let radii: Vec<f64> = one.diameters.iter().map(|d| 0.5 * d).collect();
-    assert!(touching(&radii, &one.centres, 0.0).is_empty());
+    assert!(touching(&Default::default(), &radii, &one.centres, 0.0).is_empty());
 }
 
 #[test]
@@ -438,4 +440,71 @@ fn a_face_centred_stack_has_12_contacts() {
         .filter(|c| (*c - middle).norm() < 1.0 + 1e-9)
         .count();
     assert_eq!(touching - 1, 12);
+}
+
+/// Along periodic directions that it spans a packing has no walls; spheres and the images of others do not overlap.
+#[test]
+fn a_periodic_packing_reaches_across_the_planes_and_overlaps_no_images() {
+    let span = |low: f64, high: f64| Some(PeriodicSpan { low, high });
+    let size = [0.03, 0.02];
+    let axes = [span(0.01, 0.04), None, span(0.0, 0.025)];
+    for (axes, sizes, solid_fraction) in [
+        (axes, Sizes::Equal(2e-3), 0.6),
+        ([None, span(0.0, 0.02), None], Sizes::Equal(2e-3), 0.58),
+        (
+            [span(0.01, 0.04), span(0.0, 0.02), span(0.0, 0.025)],
+            range(Shape::Uniform, 1e-3, 4e-3),
+            0.62,
+        ),
+    ] {
+        let periodicity = Periodicity { axes };
+        let spec = RandomSpec {
+            sizes,
+            fill: Fill::Height {
+                height: 0.025,
+                solid_fraction,
+            },
+            seed: 5,
+            size_seed: 5,
+            periodicity,
+        };
+        let packing = random_in_box(Vec3::new(0.01, 0.0, 0.0), size, &spec).unwrap();
+        let reached = packing.volume() / (size[0] * size[1] * 0.025);
+        assert!((reached / solid_fraction - 1.0).abs() < 2e-3, "{reached}");
+        let mut crossing = [0; 3];
+        let (low, high) = (Vec3::new(0.01, 0.0, 0.0), Vec3::new(0.04, 0.02, 0.025));
+        for (a, (centre, diameter)) in packing.centres.iter().zip(&packing.diameters).enumerate() {
+            assert_eq!(*centre, periodicity.wrap(*centre));
+            let radius = 0.5 * diameter;
+            for axis in 0..3 {
+                let beyond = (low[axis] - centre[axis]).max(centre[axis] - high[axis]) + radius;
+                crossing[axis] += usize::from(beyond > 1e-12);
+            }
+            for (other, diameter) in packing.centres[..a].iter().zip(&packing.diameters) {
+                let apart = periodicity.shortest(centre - other).norm();
+                assert!(apart >= radius + 0.5 * diameter, "{centre} {other}");
+            }
+        }
+        for axis in 0..3 {
+            assert_eq!(crossing[axis] > 20, axes[axis].is_some(), "{crossing:?}");
+        }
+    }
+    // A box that does not reach from plane to plane has walls.
+    let part = RandomSpec {
+        periodicity: Periodicity { axes },
+        sizes: Sizes::Equal(2e-3),
+        fill: Fill::Height {
+            height: 0.02,
+            solid_fraction: 0.5,
+        },
+        ..spec(1)
+    };
+    let packing = random_in_box(Vec3::new(0.01, 0.0, 0.0), [0.02, 0.02], &part).unwrap();
+    assert!(
+        packing
+            .centres
+            .iter()
+            .all(|c| c.x >= 0.0109999 && c.x <= 0.0290001)
+    );
+    assert!(packing.centres.iter().all(|c| c.z >= 0.0009999));
 }

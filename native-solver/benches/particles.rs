@@ -197,6 +197,7 @@ fn settled(count: usize, width: f64) -> Vec<NewParticle> {
         },
         seed: 1,
         size_seed: 1,
+        periodicity: Default::default(),
     };
     let packing = random_in_box(Vec3::zeros(), [width; 2], &spec).unwrap();
     let spheres: Vec<NewParticle> = packing

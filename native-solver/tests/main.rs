@@ -11,6 +11,7 @@ mod dem_beds;
 mod dem_drag;
 mod dem_impacts;
 mod dem_momentum;
+mod dem_periodic;
 mod dem_restart;
 mod dem_single;
 mod dem_walls;

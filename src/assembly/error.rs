@@ -26,6 +26,15 @@ pub enum AssemblyError {
         /// Number of the zone, from 0.
         index: usize,
     },
+    /// Radiation between particles of a domain that repeats itself.
+    #[error(
+        "particles do not see each other across the periodic planes along {axis}; write `laws.radiation = {{ law = \"none\" }}`, \
+         or make the patches walls"
+    )]
+    PeriodicRadiation {
+        /// Axis of the first periodic direction.
+        axis: char,
+    },
     /// More than this machine's memory.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
@@ -59,6 +68,7 @@ impl AssemblyError {
     pub fn key(&self, case: &Case) -> Option<String> {
         match self {
             Self::Mesh(_) => Some("mesh".into()),
+            Self::PeriodicRadiation { .. } => Some("laws.radiation".into()),
             Self::Excluded { index } => Some(format!("coupling.smoother.excluded[{index}]")),
             Self::Particles(error) => Some(error.key(case)),
             Self::Layers(_) => Some("reactions".into()),

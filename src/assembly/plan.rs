@@ -82,7 +82,8 @@ fn feeds_and_outlets(case: &Case, prepared: &PreparedCase) -> FeedsAndOutlets {
     });
     let up = (-case.gas.gravity).try_normalize(0.0).unwrap_or(Vec3::z());
     let next = prepared.particles.id.last().map_or(1, |last| last + 1);
-    FeedsAndOutlets::new(feeds.collect(), case.outlets.clone(), up, next)
+    let feeds = FeedsAndOutlets::new(feeds.collect(), case.outlets.clone(), up, next);
+    feeds.in_periods(prepared.mesh.periodicity())
 }
 
 /// Heat between particles and to walls, as the coordinator finds it.

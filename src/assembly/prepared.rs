@@ -5,6 +5,7 @@ use std::sync::Arc;
 use calcine_coupler::coordinator::{Origin, RunError};
 use calcine_coupler::mapping::{Mapper, Method};
 use calcine_coupler::mesh::Mesh;
+use calcine_coupler::mesh::periodic::axis_name;
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::physics::{Vec3, sphere};
 use calcine_coupler::setup::ParticleSetup;
@@ -41,11 +42,16 @@ impl PreparedCase {
     /// Generates or reads the mesh and places the particles.
     pub fn new(case: &Case) -> Result<Self, AssemblyError> {
         sizes::fits(case)?;
+        let mesh = Arc::new(mesh_of(case)?);
+        let periodic = mesh.periodicity().axes.iter().position(Option::is_some);
+        if let Some(axis) = periodic.filter(|_| case.laws.radiation.is_some()) {
+            let axis = axis_name(axis);
+            return Err(AssemblyError::PeriodicRadiation { axis });
+        }
         let InitialParticles {
             mut setup,
             temperature,
-        } = particles(case)?;
-        let mesh = Arc::new(mesh_of(case)?);
+        } = particles(case, mesh.periodicity())?;
         fit_between_walls(case, &mesh, &setup)?;
         setup.motion = contacts::motion(case, &mesh, &setup).map_err(PlaceError::from)?;
         in_wall::check(case, &setup)?;

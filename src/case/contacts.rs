@@ -6,6 +6,7 @@ use calcine_coupler::mesh::Mesh;
 use calcine_coupler::motion::{
     ContactForce, Contacts, Elastic, Motion as Told, Pair, Wall, WallMotion,
 };
+use calcine_coupler::periodic_motion::{self, PeriodicMotionError};
 use calcine_coupler::physics::contact::time_step;
 use calcine_coupler::physics::sphere;
 use calcine_coupler::setup::ParticleSetup;
@@ -61,6 +62,13 @@ pub enum ContactsError {
     Held {
         /// Its name.
         wall: String,
+    },
+    /// Walls or particles that do not go with the periodic directions.
+    #[error("{cause}; {}", .cause.remedy())]
+    Periodic {
+        /// What does not.
+        #[from]
+        cause: PeriodicMotionError,
     },
     /// A time between two in which the bed is held that is shorter than a step.
     #[error(
@@ -177,10 +185,11 @@ pub fn motion(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Result<Told, C
         young: material.young.unwrap_or(1e7),
         poisson: material.poisson.unwrap_or(0.3),
     };
-    Ok(Told::Free(Box::new(Contacts {
+    let contacts = Contacts {
         step,
         gravity: case.gas.gravity,
         bounds: mesh.bounds().into(),
+        periodicity: *mesh.periodicity(),
         materials: case.materials.iter().map(elastic).collect(),
         material_of: case.particles.iter().map(|one| one.material).collect(),
         held: case
@@ -191,7 +200,14 @@ pub fn motion(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Result<Told, C
         law: motion.law,
         pairs: pairs(case),
         walls: walls(case, moving.iter().map(|one| one.1))?,
-    })))
+    };
+    let radii = setup.radius.iter().copied().fold(0.0, f64::max);
+    let fed = case
+        .feeds
+        .iter()
+        .map(|feed| 0.5 * case.particles[feed.population].sizes.largest());
+    periodic_motion::check(&contacts, fed.fold(radii, f64::max))?;
+    Ok(Told::Free(Box::new(contacts)))
 }
 
 /// Properties of all pairs; those that are not stated never touch.
@@ -383,7 +399,9 @@ mod tests {
             std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/moving.toml");
         let case = crate::case::read(&path, &[]).unwrap();
         let mesh = crate::case::mesh(&case.mesh).unwrap();
-        let setup = crate::case::particles(&case).unwrap().setup;
+        let setup = crate::case::particles(&case, &Default::default())
+            .unwrap()
+            .setup;
         let mut motion = case.motion.clone().unwrap();
         motion.law.force = ContactForce::Linear {
             characteristic_speed: 1.0,

@@ -102,7 +102,9 @@ mod tests {
             std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/moving.toml");
         let set: Vec<String> = set.iter().map(|one| (*one).to_owned()).collect();
         let case = crate::case::read(&path, &set).unwrap();
-        let setup = crate::case::particles(&case).unwrap().setup;
+        let setup = crate::case::particles(&case, &Default::default())
+            .unwrap()
+            .setup;
         let motion = case.motion.clone().unwrap();
         hardest(&case, &motion, &setup, speed).unwrap()
     }

@@ -1,9 +1,10 @@
 //! Particles that move must not begin inside walls.
 
 use calcine_coupler::motion::{Contacts, Motion, Wall, WallShape};
+use calcine_coupler::periodicity::Periodicity;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
-use calcine_native::particles::dem::{distance_to_shape, distance_to_triangle};
+use calcine_native::particles::dem::{distance_to_shape, distance_to_triangle, repeated};
 
 use super::model::Case;
 use super::overlap::CRUSHED;
@@ -39,6 +40,7 @@ struct Moving<'a> {
     setup: &'a ParticleSetup,
     rows: Vec<usize>,
     largest: f64,
+    periodicity: Periodicity,
 }
 
 impl<'a> Moving<'a> {
@@ -51,13 +53,17 @@ impl<'a> Moving<'a> {
             setup,
             rows,
             largest,
+            periodicity: contacts.periodicity,
         }
     }
 
     /// The first particle that is in a wall, and the distance of its centre from it in m.
     fn first_in(&self, wall: &Wall) -> Option<(usize, f64)> {
         match &wall.shape {
-            WallShape::Mesh { triangles } => {
+            WallShape::Mesh { .. } => {
+                let WallShape::Mesh { triangles } = repeated(&wall.shape, &self.periodicity) else {
+                    return None;
+                };
                 let each = triangles.iter().filter_map(|one| self.first_at(one));
                 each.min_by_key(|(row, _)| *row)
             }

@@ -2,6 +2,7 @@
 
 use calcine_coupler::contacts::touching;
 use calcine_coupler::interior::NeighbourPair;
+use calcine_coupler::periodicity::Periodicity;
 use calcine_coupler::setup::ParticleSetup;
 
 /// Two particles that overlap.
@@ -25,7 +26,11 @@ pub(super) const CRUSHED: f64 = 0.2;
 
 /// The first particle that overlaps one before it: of another population by more than spheres that are pressed together, of
 /// its own, where particles act on each other, by more than the softest contact does.
-pub(super) fn first(setup: &ParticleSetup, act_on_each_other: bool) -> Option<Overlap> {
+pub(super) fn first(
+    setup: &ParticleSetup,
+    periodicity: &Periodicity,
+    act_on_each_other: bool,
+) -> Option<Overlap> {
     let too_near = |touch: &NeighbourPair| {
         let [a, b] = touch.particles;
         let radii = touch.radius[0] + touch.radius[1];
@@ -37,7 +42,7 @@ pub(super) fn first(setup: &ParticleSetup, act_on_each_other: bool) -> Option<Ov
     if !act_on_each_other && !foreign {
         return None;
     }
-    let touches = touching(&setup.radius, &setup.position, 0.0).into_iter();
+    let touches = touching(periodicity, &setup.radius, &setup.position, 0.0).into_iter();
     let found = touches
         .filter(too_near)
         .min_by_key(|touch| touch.particles[1])?;
@@ -53,7 +58,13 @@ pub(super) fn first(setup: &ParticleSetup, act_on_each_other: bool) -> Option<Ov
 mod tests {
     use calcine_coupler::physics::Vec3;
 
+    use calcine_coupler::periodicity::PeriodicSpan;
+
     use super::*;
+
+    fn first(setup: &ParticleSetup, act_on_each_other: bool) -> Option<Overlap> {
+        super::first(setup, &Periodicity::default(), act_on_each_other)
+    }
 
     fn bed(spheres: &[(u32, [f64; 3], f64)]) -> ParticleSetup {
         let mut setup = ParticleSetup::default();
@@ -86,5 +97,20 @@ mod tests {
         // In one place.
         assert_eq!(first(&one(0.0), true).unwrap().distance, 0.0);
         assert_eq!(first(&one(0.0), false), None);
+    }
+
+    #[test]
+    fn a_sphere_and_the_image_of_another_overlap_across_a_periodic_plane() {
+        let span = PeriodicSpan {
+            low: 0.0,
+            high: 20.0,
+        };
+        let periodicity = Periodicity {
+            axes: [Some(span), None, None],
+        };
+        let setup = bed(&[(0, [1.0, 5.0, 5.0], 2.0), (0, [18.8, 5.0, 5.0], 2.0)]);
+        assert_eq!(first(&setup, true), None);
+        let found = super::first(&setup, &periodicity, true).unwrap();
+        assert!((found.distance - 2.2).abs() < 1e-12);
     }
 }

@@ -2,6 +2,7 @@
 
 use calcine_coupler::packing::regular::{regular_in_box, regular_in_cylinder};
 use calcine_coupler::packing::{Fill, RandomSpec, random_in_box, random_in_cylinder};
+use calcine_coupler::periodicity::Periodicity;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::time::Ticks;
@@ -25,18 +26,19 @@ pub struct InitialParticles {
 }
 
 /// The particles of all populations, ids from 1 in the order of the file; on a grid x runs fastest,
-/// in files of particles their own ids give the order.
-pub fn particles(case: &Case) -> Result<InitialParticles, PlaceError> {
+/// in files of particles their own ids give the order. Places are within the periodic planes, by their images.
+pub fn particles(case: &Case, periodicity: &Periodicity) -> Result<InitialParticles, PlaceError> {
     let mut placed = InitialParticles::default();
     let setup = &mut placed.setup;
     for (index, population) in (0u32..).zip(&case.particles) {
         let density = case.materials[population.material].density;
         let (factor, _) = case.time.acceleration.at(Ticks::ZERO);
         let velocity = factor * population.velocity;
-        let spheres = spheres(case, population).map_err(|cause| PlaceError::Population {
-            index: index as usize,
-            cause: Box::new(cause),
-        })?;
+        let spheres =
+            spheres(case, population, periodicity).map_err(|cause| PlaceError::Population {
+                index: index as usize,
+                cause: Box::new(cause),
+            })?;
         for sphere in spheres {
             setup.id.push(setup.id.len() as u64 + 1);
             setup.population.push(index);
@@ -79,7 +81,7 @@ pub fn particles(case: &Case) -> Result<InitialParticles, PlaceError> {
     }
     let moves = |one: &Population| one.motion == MotionSpec::Free;
     let act_on_each_other = case.particles.iter().any(moves) || laws::heat(case).is_some();
-    match overlap::first(setup, act_on_each_other) {
+    match overlap::first(setup, periodicity, act_on_each_other) {
         None => Ok(placed),
         Some(found) => Err(PlaceError::Overlap {
             ids: found.pair.map(|index| setup.id[index]),
@@ -104,7 +106,11 @@ struct Sphere {
     spin: Vec3,
 }
 
-fn spheres(case: &Case, population: &Population) -> Result<Vec<Sphere>, PlaceError> {
+fn spheres(
+    case: &Case,
+    population: &Population,
+    periodicity: &Periodicity,
+) -> Result<Vec<Sphere>, PlaceError> {
     let failed = |cause| PlaceError::Packing {
         name: population.name.clone(),
         cause,
@@ -131,7 +137,10 @@ fn spheres(case: &Case, population: &Population) -> Result<Vec<Sphere>, PlaceErr
             spacing,
             counts,
         } => {
-            let centres = grid(first, spacing, *counts);
+            let mut centres = grid(first, spacing, *counts);
+            for centre in &mut centres {
+                *centre = periodicity.wrap(*centre);
+            }
             for (number, centre) in (1..).zip(&centres) {
                 if let Some(what) = outside(&case.mesh, centre) {
                     let place = format!("population \"{}\", particle {number}", population.name);
@@ -158,6 +167,7 @@ fn spheres(case: &Case, population: &Population) -> Result<Vec<Sphere>, PlaceErr
                 },
                 seed: *seed,
                 size_seed: population.size_seed,
+                periodicity: *periodicity,
             };
             let packing = match space.section {
                 PackingSection::Rectangle(size) => random_in_box(space.origin, size, &spec),
@@ -194,12 +204,13 @@ fn spheres(case: &Case, population: &Population) -> Result<Vec<Sphere>, PlaceErr
             let moves = population.motion == MotionSpec::Free;
             let mut made = Vec::with_capacity(entries.len());
             for (entry, drawn) in entries.into_iter().zip(diameters) {
-                if let Some(what) = outside(&case.mesh, &entry.centre) {
+                let centre = periodicity.wrap(entry.centre);
+                if let Some(what) = outside(&case.mesh, &centre) {
                     let place = format!("{}, {}", path.display(), entry.row);
                     return Err(PlaceError::File { place, what });
                 }
                 made.push(Sphere {
-                    centre: entry.centre,
+                    centre,
                     diameter: entry.diameter.unwrap_or(drawn),
                     temperature: entry
                         .temperature

@@ -13,9 +13,16 @@ pub const QUASI_STATIC: f64 = 1e-2;
 /// Inertial number of the bed in motion time: the mean over all pairs of particles that touch. The shear
 /// rate of a pair is its relative velocity across the line of centres over their distance; the pressure is
 /// the weight of all particles from its lower one up, less what the gas lifts of it, over the mean
-/// cross-section of the mesh. Zero where none touch.
+/// cross-section of the mesh; gravity along periodic directions presses nothing. Zero where none touch.
 pub(super) fn of_bed(moment: &CommittedState<'_>, gravity: Vec3) -> f64 {
     let bed = moment.particles;
+    let periodicity = moment.mesh.periodicity();
+    let mut gravity = gravity;
+    for (axis, span) in periodicity.axes.iter().enumerate() {
+        if span.is_some() {
+            gravity[axis] = 0.0;
+        }
+    }
     let Some(up) = (-gravity).try_normalize(0.0) else {
         return f64::NAN;
     };
@@ -36,12 +43,12 @@ pub(super) fn of_bed(moment: &CommittedState<'_>, gravity: Vec3) -> f64 {
         above -= (bed.mass[p] * gravity + force(p)).dot(&up);
         pressure[p] = above / area;
     }
-    let touching = contacts::touching(bed.radius, bed.position, 0.0);
+    let touching = contacts::touching(periodicity, bed.radius, bed.position, 0.0);
     if touching.is_empty() {
         return 0.0;
     }
     let number = |[a, b]: [usize; 2]| {
-        let apart = bed.position[b] - bed.position[a];
+        let apart = periodicity.shortest(bed.position[b] - bed.position[a]);
         let distance = apart.norm();
         let relative = bed.velocity[b] - bed.velocity[a];
         let along = relative.dot(&apart) / (distance * distance) * apart;

@@ -107,6 +107,7 @@ fn walls() -> Vec<Wall> {
 fn contacts(walls: Vec<Wall>) -> Contacts {
     Contacts {
         bounds: (Vec3::repeat(-1.0), Vec3::repeat(2.0)),
+        periodicity: Default::default(),
         pairs: vec![Pair {
             restitution: 1.0,
             ..Pair::default()

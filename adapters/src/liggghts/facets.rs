@@ -64,7 +64,12 @@ pub fn is_primitive(wall: &Wall) -> bool {
 /// The triangles of a wall that LIGGGHTS does not have itself; `radius` is that of the smallest sphere in m.
 pub fn of(wall: &Wall, contacts: &Contacts, radius: f64) -> Vec<[Vec3; 3]> {
     let (low, high) = contacts.bounds;
-    let margin = Vec3::repeat(MARGIN * (high - low).norm());
+    let beyond = MARGIN * (high - low).norm();
+    // Along periodic directions a wall ends at the planes, where its image goes on.
+    let margin = Vec3::from_fn(|axis, _| match contacts.periodicity.axes[axis] {
+        Some(_) => 0.0,
+        None => beyond,
+    });
     let bounds = (low - margin, high + margin);
     match &wall.shape {
         WallShape::Mesh { triangles } => triangles.clone(),
@@ -201,6 +206,7 @@ mod tests {
             step: 1e-6,
             gravity: Vec3::zeros(),
             bounds: (Vec3::zeros(), Vec3::new(0.1, 0.2, 0.3)),
+            periodicity: Default::default(),
             materials: Vec::new(),
             material_of: Vec::new(),
             held: Vec::new(),

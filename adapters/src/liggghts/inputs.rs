@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::motion::Motion;
+use calcine_coupler::periodic_motion;
+use calcine_coupler::periodicity::{PeriodicSpan, Periodicity};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 
@@ -82,10 +84,14 @@ impl Inputs<'_> {
     fn check(&self) -> Result<(), PartError> {
         let refuse = |message: String| Err(PartError::new(WHO, FailureKind::NotStarted, message));
         let setup = self.setup;
-        if let Motion::Free(contacts) = &setup.motion
-            && let Some(reason) = moving::refusal(contacts)
-        {
-            return refuse(reason);
+        if let Motion::Free(contacts) = &setup.motion {
+            if let Some(reason) = moving::refusal(contacts) {
+                return refuse(reason);
+            }
+            let largest = setup.radius.iter().copied().fold(0.0, f64::max);
+            if let Err(error) = periodic_motion::check(contacts, largest) {
+                return refuse(format!("{error}; {}", error.remedy()));
+            }
         }
         if setup.id.is_empty() {
             return refuse("there are no particles".into());
@@ -176,6 +182,7 @@ impl Inputs<'_> {
         };
         let script = template
             .replace("{bins}", &format!("{bins:e}"))
+            .replace("{boundary}", &boundary(&self.periodicity()))
             .replace("{contacts}", &contacts)
             .replace("{processors}", &grid)
             .replace("{skin}", &format!("{skin:e}"))
@@ -201,8 +208,9 @@ impl Inputs<'_> {
             let _ = writeln!(text, "{low:e} {high:e} {name}lo {name}hi");
         }
         text.push_str("\nAtoms\n\n");
+        let periodicity = self.periodicity();
         for (p, id) in setup.id.iter().enumerate() {
-            let centre = setup.position[p];
+            let centre = periodicity.wrap(setup.position[p]);
             let _ = writeln!(
                 text,
                 "{id} {} {:e} {:e} {:e} {:e} {:e}",
@@ -245,7 +253,16 @@ impl Inputs<'_> {
         radii.fold(f64::INFINITY, f64::min)
     }
 
-    /// Corners of a box around domain and spheres, with a margin that keeps particles off its faces.
+    /// Directions in which the domain of moving particles repeats itself.
+    fn periodicity(&self) -> Periodicity {
+        match &self.setup.motion {
+            Motion::Free(contacts) => contacts.periodicity,
+            Motion::Frozen => Periodicity::default(),
+        }
+    }
+
+    /// Corners of a box around domain and spheres, with a margin that keeps particles off its faces; along periodic
+    /// directions it reaches from plane to plane.
     fn corners(&self) -> (Vec3, Vec3) {
         let (mut lower, mut upper) = self.bounds;
         for (centre, &radius) in self.setup.position.iter().zip(&self.setup.radius) {
@@ -263,8 +280,20 @@ impl Inputs<'_> {
             }
         }
         let margin = 0.01 * (upper - lower);
-        (lower - margin, upper + margin)
+        (lower, upper) = (lower - margin, upper + margin);
+        for (axis, span) in self.periodicity().axes.iter().enumerate() {
+            if let Some(span) = span {
+                (lower[axis], upper[axis]) = (span.low, span.high);
+            }
+        }
+        (lower, upper)
     }
+}
+
+/// LIGGGHTS' words for the sides of its box.
+pub fn boundary(periodicity: &Periodicity) -> String {
+    let word = |span: &Option<PeriodicSpan>| if span.is_some() { "p" } else { "f" };
+    periodicity.axes.each_ref().map(word).join(" ")
 }
 
 fn unwritable(path: &Path, error: std::io::Error) -> PartError {

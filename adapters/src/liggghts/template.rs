@@ -6,13 +6,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use calcine_coupler::motion::Contacts;
+use calcine_coupler::periodicity::{PeriodicSpan, Periodicity};
 use calcine_coupler::physics::Vec3;
 use thiserror::Error;
 
-use super::moving;
+use super::{inputs, moving};
 
 /// Name of the data file.
 pub const DATA: &str = "particles.data";
+/// The variable of the sides of the box.
+const VARIABLE: &str = "${calcine_boundary}";
 /// Name of the script's variables of Calcine begin with this.
 const PREFIX: &str = "calcine_";
 /// Numbers of a script and of its case may differ by this share, as texts of few digits do.
@@ -217,6 +220,7 @@ impl ScriptTemplate {
     ) -> Result<String, ScriptTemplateError> {
         let variables = self.variables(contacts, values);
         let findings = [
+            self.check_boundary(&contacts.periodicity),
             self.check_step(&variables, values.step),
             self.check_gravity(&variables, contacts.gravity),
         ];
@@ -255,6 +259,7 @@ impl ScriptTemplate {
         let mut add = |name: &str, value: String| all.push((format!("{PREFIX}{name}"), value));
         add("data", DATA.into());
         add("processors", values.processors.clone());
+        add("boundary", inputs::boundary(&contacts.periodicity));
         let (lower, upper) = values.corners;
         let numbers = [
             ("step", values.step),
@@ -299,6 +304,55 @@ impl ScriptTemplate {
             }
         }
         all
+    }
+
+    /// Sides of the box repeat themselves where those of the case do, and nowhere else. A script that says nothing of them
+    /// has them all do so.
+    fn check_boundary(&self, periodicity: &Periodicity) -> Result<(), ScriptTemplateError> {
+        let wanted = inputs::boundary(periodicity);
+        let mut found = None;
+        for command in &self.commands {
+            let words = command.words();
+            let sides = match words[..] {
+                ["boundary", VARIABLE] => {
+                    found = Some(command);
+                    continue;
+                }
+                ["boundary", x, y, z] => [x, y, z],
+                ["boundary", ..] => ["?"; 3],
+                _ => continue,
+            };
+            found = Some(command);
+            let is_same = |(side, span): (&str, &Option<PeriodicSpan>)| match span {
+                Some(_) => side == "p",
+                None => ["f", "s", "m"].contains(&side.get(..1).unwrap_or_default()),
+            };
+            if !sides.into_iter().zip(&periodicity.axes).all(is_same) {
+                let periodic: Vec<&str> = ["x", "y", "z"]
+                    .into_iter()
+                    .zip(&periodicity.axes)
+                    .filter_map(|(name, span)| span.map(|_| name))
+                    .collect();
+                let rule = match periodic.is_empty() {
+                    true => "the case has no periodic patches".to_owned(),
+                    false => format!(
+                        "the case is periodic along {} alone",
+                        periodic.join(" and ")
+                    ),
+                };
+                return Err(command.refuse(
+                    rule,
+                    format!("write `boundary {wanted}`, or `boundary {VARIABLE}`"),
+                ));
+            }
+        }
+        match found.is_some() || wanted == "p p p" {
+            true => Ok(()),
+            false => Err(ScriptTemplateError::Missing {
+                what: "boundary",
+                remedy: "boundary ${calcine_boundary}",
+            }),
+        }
     }
 
     fn check_step(
@@ -604,6 +658,62 @@ mod tests {
             template("").check_gravity(&variables, Vec3::zeros()),
             Ok(())
         );
+    }
+
+    #[test]
+    fn the_sides_of_the_box_repeat_themselves_where_the_case_does() {
+        let span = Some(PeriodicSpan {
+            low: 0.0,
+            high: 1.0,
+        });
+        let along_x = Periodicity {
+            axes: [span, None, None],
+        };
+        let check = |more: &str, periodicity: &Periodicity| {
+            let found = template(more).check_boundary(periodicity);
+            found
+                .err()
+                .map(|error| error.to_string())
+                .unwrap_or_default()
+        };
+        let none = Periodicity::default();
+        for fine in [
+            "boundary f f f",
+            "boundary s fm m",
+            "boundary ${calcine_boundary}",
+        ] {
+            assert_eq!(check(fine, &none), "", "{fine}");
+        }
+        assert_eq!(check("boundary p f f", &along_x), "");
+        assert_eq!(check("boundary ${calcine_boundary}", &along_x), "");
+        for (wrong, periodicity, part) in [
+            (
+                "boundary p f f",
+                &none,
+                "line 5, `boundary p f f`: the case has no periodic patches",
+            ),
+            (
+                "boundary f f f",
+                &along_x,
+                "is periodic along x alone; write `boundary p f f`",
+            ),
+            ("boundary p p f", &along_x, "is periodic along x alone"),
+            (
+                "boundary p",
+                &along_x,
+                "write `boundary p f f`, or `boundary ${calcine_boundary}`",
+            ),
+            (
+                "",
+                &none,
+                "there is no `boundary`; write `boundary ${calcine_boundary}`",
+            ),
+        ] {
+            let found = check(wrong, periodicity);
+            assert!(found.contains(part), "{found}");
+        }
+        let all = Periodicity { axes: [span; 3] };
+        assert_eq!(check("", &all), "");
     }
 
     #[test]

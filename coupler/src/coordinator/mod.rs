@@ -170,7 +170,7 @@ impl CoupledRun {
         };
         let motion = MotionStage::new(plan.free.clone(), plan.gravity, plan.window_drag, &fields);
         particles::check_window_drag(plan.window_drag, &*parts.particles)?;
-        let paths = Paths::new(plan.paths.clone());
+        let paths = Paths::new(plan.paths.clone(), *mesh.periodicity());
         let substance = plan.substance.clone();
         let interior = InteriorStage::new(models, network, paths, substance, &fields);
         interior.check_weights(&fields)?;

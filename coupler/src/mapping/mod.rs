@@ -19,6 +19,7 @@ pub use weights::Weights;
 
 use crate::mesh::Mesh;
 use crate::mesh::locate::Locator;
+use crate::periodicity::Periodicity;
 use overlap::{Overlap, Scratch};
 use passage::{Parts, Passage};
 pub(crate) use weights::Amount;
@@ -41,6 +42,7 @@ pub struct Mapper<M> {
     locator: Locator<M>,
     overlap: Overlap,
     passage: Passage,
+    periodicity: Periodicity,
 }
 
 impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
@@ -51,8 +53,9 @@ impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
     /// Up to so many particles one thread finds their regions alone.
     const ALONE: usize = 4096;
 
-    /// The mapper of a mesh.
+    /// The mapper of a mesh; what of a sphere lies beyond a periodic plane is in the cells at the other.
     pub fn new(mesh: M) -> Self {
+        let periodicity = *mesh.periodicity();
         let locator = Locator::new(mesh);
         let overlap = Overlap::new(&locator);
         let passage = Passage::new(&locator, &overlap);
@@ -60,6 +63,7 @@ impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
             locator,
             overlap,
             passage,
+            periodicity,
         }
     }
 
@@ -181,6 +185,7 @@ impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
             return Err(MappingError::Radius { particle, radius });
         }
         let mesh = self.locator.mesh();
+        let position = self.periodicity.wrap(position);
         let (home, depth) = self
             .passage
             .home(mesh, position, memory.home)
@@ -205,6 +210,9 @@ impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
                 {
                     self.by_overlap(sphere, memory);
                 }
+                for shift in self.periodicity.images(position, radius) {
+                    self.image(first, (position + shift, radius), memory);
+                }
             }
         }
         Ok(first)
@@ -212,7 +220,7 @@ impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
 
     fn by_satellites(&self, (position, radius): (Vec3, f64), whole: f64, memory: &mut Memory) {
         let cells = satellites::points(position, radius)
-            .filter_map(|point| self.locator.cell_at(point))
+            .filter_map(|point| self.locator.cell_at(self.periodicity.wrap(point)))
             .map(|cell| cell as u32);
         memory.cells.clear();
         memory.cells.extend(cells);
@@ -220,6 +228,24 @@ impl<M: Deref<Target = Mesh> + Sync> Mapper<M> {
         let share = whole / memory.cells.len() as f64;
         for same in memory.cells.chunk_by(|a, b| a == b) {
             memory.parts.push(same[0], same.len() as f64 * share);
+        }
+    }
+
+    /// Adds what an image of the sphere whose first cell stands at `first` shares with cells.
+    fn image(&self, first: usize, (position, radius): (Vec3, f64), memory: &mut Memory) {
+        let Memory {
+            cells,
+            scratch,
+            parts,
+            ..
+        } = memory;
+        self.locator.cells_near(position, radius, cells);
+        let mesh = self.locator.mesh();
+        let volumes = self.overlap.volumes(mesh, cells, position, radius, scratch);
+        for (&cell, &volume) in cells.iter().zip(volumes) {
+            if volume > 0.0 {
+                parts.add(first, cell, volume);
+            }
         }
     }
 

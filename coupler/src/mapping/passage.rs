@@ -77,6 +77,12 @@ impl Parts {
         self.whole.push(false);
     }
 
+    /// Adds a volume that is known to a cell of the sphere whose first cell stands at `first`.
+    pub fn add(&mut self, first: usize, cell: u32, volume: f64) {
+        let place = self.place(first, cell);
+        self.volumes[place] += volume;
+    }
+
     /// Evaluates the faces that still wait.
     pub fn finish(&mut self, mesh: &Mesh) {
         self.batch.flush(&mut self.lanes);

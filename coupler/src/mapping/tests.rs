@@ -15,7 +15,7 @@ fn moved(shift: impl Fn(Vec3) -> Vec3) -> Mesh {
         origin: Vec3::zeros(),
         size: Vec3::repeat(4.0),
         cells: [4; 3],
-        patches: ["all"; 6].map(String::from),
+        patches: ["x-", "x+", "y-", "y+", "z-", "z+"].map(String::from),
     };
     let mut topology = box_mesh(&spec).unwrap().topology().clone();
     for point in &mut topology.points {
@@ -293,4 +293,78 @@ fn domains_are_known_to_be_convex_or_not() {
         }
     });
     assert!(!is_convex(&bump));
+}
+
+/// A mesh that repeats itself along some axes.
+fn repeated(mesh: &Mesh, axes: &[&str]) -> Mesh {
+    let pairs: Vec<_> = axes
+        .iter()
+        .map(|axis| [format!("{axis}-"), format!("{axis}+")])
+        .collect();
+    mesh.clone().with_periodic(&pairs).unwrap()
+}
+
+/// Spheres of all kinds over a mesh that repeats itself along x and z, and the same moved by whole cells.
+#[test]
+fn a_sphere_across_a_periodic_plane_keeps_its_volume_and_moves_with_the_cells() {
+    let mesh = repeated(&hexahedra(), &["x", "z"]);
+    let periodicity = *mesh.periodicity();
+    let mapper = Mapper::new(&mesh);
+    let cell = |cell: usize| [cell % 4, cell / 4 % 4, cell / 16];
+    let mut random = SplitMix64(3);
+    for method in [Method::Overlap, Method::Divided, Method::Centroid] {
+        for _ in 0..200 {
+            let radius = 0.1 + 1.5 * random.unit();
+            let high = radius + (4.0 - 2.0 * radius) * random.unit();
+            let centre = Vec3::new(1.0 + random.unit(), high, 1.0 + random.unit());
+            let row = |shift: [usize; 2]| {
+                let moved = centre + Vec3::new(shift[0] as f64, 0.0, shift[1] as f64);
+                let weights = mapper.fill(method, &[periodicity.wrap(moved)], &[radius]);
+                let mut share = [0.0; 64];
+                for (at, value) in weights.unwrap().of_particle(0) {
+                    let [i, j, k] = cell(at);
+                    let back = (i + 4 - shift[0]) % 4 + 4 * j + 16 * ((k + 4 - shift[1]) % 4);
+                    share[back] += value;
+                }
+                share
+            };
+            let wanted = row([0, 0]);
+            assert!((wanted.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+            for shift in [[2, 0], [3, 0], [0, 2], [2, 3], [3, 2]] {
+                for (found, wanted) in row(shift).iter().zip(&wanted) {
+                    assert!(
+                        (found - wanted).abs() < 1e-13,
+                        "{method:?} {centre} {radius}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_a_sphere_shares_with_cells_across_a_plane_is_its_volume_there() {
+    let mesh = warped();
+    // The points of the boundary of this mesh stand in their planes.
+    let periodic = repeated(&mesh, &["x"]);
+    let (centre, radius) = (Vec3::new(0.2, 2.1, 1.9), 0.9);
+    let weights = Mapper::new(&periodic).fill(Method::Overlap, &[centre], &[radius]);
+    let beyond: f64 = weights
+        .unwrap()
+        .of_particle(0)
+        .filter(|(cell, _)| mesh.cell_centre()[*cell].x > 2.0)
+        .map(|(_, share)| share)
+        .sum();
+    // Cap of height R − 0.2: π h² (3 R − h)/3 over 4/3 π R³.
+    let high: f64 = 0.7;
+    let wanted = high * high * (2.7 - high) / (4.0 * radius.powi(3));
+    assert!((beyond - wanted).abs() < 1e-3, "{beyond} {wanted}");
+    // Without images it is put back among the others.
+    let weights = Mapper::new(&mesh).fill(Method::Overlap, &[centre], &[radius]);
+    let weights = weights.unwrap();
+    assert!(
+        weights
+            .of_particle(0)
+            .all(|(cell, _)| mesh.cell_centre()[cell].x < 2.0)
+    );
 }

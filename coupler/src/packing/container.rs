@@ -5,6 +5,10 @@ use std::f64::consts::FRAC_PI_4;
 use calcine_physics::Vec3;
 
 use super::random::SplitMix64;
+use crate::periodicity::Periodicity;
+
+/// Round-off of lengths, as a share of them.
+const ROUND_OFF: f64 = 1e-9;
 
 /// Horizontal section of the filled space.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +23,8 @@ pub(super) struct Container {
     pub origin: Vec3,
     pub section: Section,
     pub height: f64,
+    /// Directions in which it repeats itself from end to end: there spheres have no walls, but images.
+    pub periodicity: Periodicity,
 }
 
 impl Section {
@@ -52,10 +58,31 @@ impl Container {
         }
     }
 
+    /// Of the periodic directions those along which the space reaches from plane to plane.
+    pub fn spanned(self, periodicity: &Periodicity) -> Self {
+        let (corner, size) = self.bounds();
+        let mut spanned = *periodicity;
+        for (axis, span) in spanned.axes.iter_mut().enumerate() {
+            let along = axis == 2 || matches!(self.section, Section::Rectangle { .. });
+            *span = span.filter(|span| {
+                let off = (corner[axis] - span.low).abs() + (size[axis] - span.length()).abs();
+                along && off <= ROUND_OFF * span.length()
+            });
+        }
+        Self {
+            periodicity: spanned,
+            ..self
+        }
+    }
+
     /// The nearest place at which a sphere of this radius is inside.
-    pub fn inside(&self, mut centre: Vec3, radius: f64) -> Vec3 {
-        let low = self.origin.z + radius;
-        centre.z = centre.z.min(self.origin.z + self.height - radius).max(low);
+    pub fn inside(&self, centre: Vec3, radius: f64) -> Vec3 {
+        let mut centre = self.periodicity.wrap(centre);
+        let has_walls = |axis: usize| self.periodicity.axes[axis].is_none();
+        if has_walls(2) {
+            let low = self.origin.z + radius;
+            centre.z = centre.z.min(self.origin.z + self.height - radius).max(low);
+        }
         match self.section {
             Section::Disc { diameter } => {
                 let (x, y) = (centre.x - self.origin.x, centre.y - self.origin.y);
@@ -66,7 +93,8 @@ impl Container {
                 }
             }
             Section::Rectangle { size } => {
-                for (axis, size) in size.into_iter().enumerate() {
+                let walls = size.into_iter().enumerate();
+                for (axis, size) in walls.filter(|(axis, _)| has_walls(*axis)) {
                     let low = self.origin[axis] + radius;
                     let high = self.origin[axis] + size - radius;
                     centre[axis] = centre[axis].min(high).max(low);

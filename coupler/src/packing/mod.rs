@@ -16,6 +16,8 @@ use container::{Container, Section};
 use error::positive;
 use random::SplitMix64;
 
+use crate::periodicity::Periodicity;
+
 /// Most spheres of one packing.
 const MOST: usize = 10_000_000;
 
@@ -96,7 +98,8 @@ fn check_solid_fraction(value: f64) -> Result<(), PackingError> {
     })
 }
 
-/// A random packing. The filled space has a flat bottom and top, which spheres touch from inside.
+/// A random packing. The filled space has a flat bottom and top, which spheres touch from inside, and walls; not so where it
+/// reaches from one periodic plane to the other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RandomSpec {
     /// Diameters of the spheres.
@@ -107,6 +110,8 @@ pub struct RandomSpec {
     pub seed: u64,
     /// Of the diameters, where they differ.
     pub size_seed: u64,
+    /// Directions in which the domain repeats itself.
+    pub periodicity: Periodicity,
 }
 
 /// A random packing in an upright cylinder; `origin` is the centre of its bottom, in m.
@@ -153,7 +158,9 @@ fn fill(origin: Vec3, section: Section, spec: &RandomSpec) -> Result<Packing, Pa
         origin,
         section,
         height,
-    };
+        periodicity: Periodicity::default(),
+    }
+    .spanned(&spec.periodicity);
     let diameter = diameters.iter().copied().fold(0.0, f64::max);
     if diameter > container.width() {
         let width = container.width();

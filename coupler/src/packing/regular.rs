@@ -5,6 +5,7 @@ use calcine_physics::Vec3;
 use super::container::{Container, Section};
 use super::error::{PackingError, positive};
 use super::{MOST, Packing, too_many};
+use crate::periodicity::Periodicity;
 
 /// Regular stackings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,6 +61,7 @@ pub fn regular_in_box(
             size: [size[0], size[1]],
         },
         height: size[2],
+        periodicity: Periodicity::default(),
     };
     filled(&container, diameter, lattice)
 }
@@ -77,6 +79,7 @@ pub fn regular_in_cylinder(
         origin,
         section: Section::Disc { diameter: size[0] },
         height: size[1],
+        periodicity: Periodicity::default(),
     };
     filled(&container, diameter, lattice)
 }

@@ -4,7 +4,8 @@ use calcine_physics::Vec3;
 use rayon::prelude::*;
 
 use super::Container;
-use crate::contacts::pairs;
+use crate::contacts::{pairs, pairs_across};
+use crate::periodicity::Periodicity;
 
 /// Pairs are parted a little farther than contact, so that overlaps end after finitely many sweeps.
 const MARGIN: f64 = 1e-3;
@@ -56,6 +57,7 @@ struct Near {
     within: Vec<Vec<[u32; 2]>>,
     /// Pairs of spheres of two blocks.
     across: Vec<[u32; 2]>,
+    periodicity: Periodicity,
 }
 
 impl Near {
@@ -71,8 +73,11 @@ impl Near {
             size,
             within: vec![Vec::new(); blocks],
             across: Vec::new(),
+            periodicity: container.periodicity,
         };
-        for [a, b] in pairs(container.bounds(), radii, centres, gap) {
+        let within = pairs(container.bounds(), radii, centres, gap).into_iter();
+        let across = pairs_across(&container.periodicity, radii, centres, gap);
+        for [a, b] in within.chain(across.into_iter().map(|(pair, _)| pair)) {
             let block = a as usize / size;
             let first = (block * size) as u32;
             if b as usize / size == block {
@@ -86,18 +91,20 @@ impl Near {
 
     /// Parts each overlapping pair in turn: pairs of all blocks side by side, then those between blocks.
     fn part(&self, radii: &[f64], centres: &mut [Vec3]) {
+        let lines = Lines(self.periodicity);
         let blocks = centres.par_chunks_mut(self.size);
         let blocks = blocks.zip(radii.par_chunks(self.size)).zip(&self.within);
-        blocks.for_each(|((centres, radii), pairs)| part(pairs, radii, centres));
-        part(&self.across, radii, centres);
+        blocks.for_each(|((centres, radii), pairs)| lines.part(pairs, radii, centres));
+        lines.part(&self.across, radii, centres);
     }
 
     /// Largest overlap over the sum of the pair's radii, 0 if there is none.
     fn overlap(&self, radii: &[f64], centres: &[Vec3]) -> f64 {
+        let lines = Lines(self.periodicity);
         let blocks = centres.par_chunks(self.size);
         let blocks = blocks.zip(radii.par_chunks(self.size)).zip(&self.within);
-        let within = blocks.map(|((centres, radii), pairs)| overlap(pairs, radii, centres));
-        let across = overlap(&self.across, radii, centres);
+        let within = blocks.map(|((centres, radii), pairs)| lines.overlap(pairs, radii, centres));
+        let across = lines.overlap(&self.across, radii, centres);
         within.reduce(|| 0.0, f64::max).max(across)
     }
 }
@@ -113,7 +120,8 @@ fn sweeps(container: &Container, radii: &[f64], centres: &mut [Vec3], blocks: us
     let mut listed = centres.to_vec();
     let mut near = find(centres);
     for sweep in 0..SWEEPS {
-        let moved = |(new, old): (&Vec3, &Vec3)| (new - old).norm_squared();
+        let moved =
+            |(new, old): (&Vec3, &Vec3)| container.periodicity.shortest(new - old).norm_squared();
         let moved = centres.par_iter().zip(&listed).map(moved);
         let farthest = moved.reduce(|| 0.0, f64::max);
         // The list is renewed before two spheres that it lacks can touch.
@@ -131,11 +139,31 @@ fn sweeps(container: &Container, radii: &[f64], centres: &mut [Vec3], blocks: us
     Near::find(container, radii, centres, 0.0, blocks).overlap(radii, centres)
 }
 
-fn part(pairs: &[[u32; 2]], radii: &[f64], centres: &mut [Vec3]) {
+/// Lines between centres, the shortest ones across periodic planes.
+#[derive(Clone, Copy)]
+struct Lines(Periodicity);
+
+impl Lines {
+    fn part(self, pairs: &[[u32; 2]], radii: &[f64], centres: &mut [Vec3]) {
+        match self.0.is_none() {
+            true => part(pairs, radii, centres, |line| line),
+            false => part(pairs, radii, centres, |line| self.0.shortest(line)),
+        }
+    }
+
+    fn overlap(self, pairs: &[[u32; 2]], radii: &[f64], centres: &[Vec3]) -> f64 {
+        match self.0.is_none() {
+            true => overlap(pairs, radii, centres, |line| line),
+            false => overlap(pairs, radii, centres, |line| self.0.shortest(line)),
+        }
+    }
+}
+
+fn part(pairs: &[[u32; 2]], radii: &[f64], centres: &mut [Vec3], shortest: impl Fn(Vec3) -> Vec3) {
     for &[a, b] in pairs {
         let (a, b) = (a as usize, b as usize);
         let apart = (radii[a] + radii[b]) * (1.0 + MARGIN);
-        let line = centres[b] - centres[a];
+        let line = shortest(centres[b] - centres[a]);
         let square = line.norm_squared();
         if square < apart * apart {
             let distance = square.sqrt();
@@ -153,10 +181,15 @@ fn part(pairs: &[[u32; 2]], radii: &[f64], centres: &mut [Vec3]) {
     }
 }
 
-fn overlap(pairs: &[[u32; 2]], radii: &[f64], centres: &[Vec3]) -> f64 {
+fn overlap(
+    pairs: &[[u32; 2]],
+    radii: &[f64],
+    centres: &[Vec3],
+    shortest: impl Fn(Vec3) -> Vec3,
+) -> f64 {
     let of = |&[a, b]: &[u32; 2]| {
         let (a, b) = (a as usize, b as usize);
-        1.0 - (centres[b] - centres[a]).norm() / (radii[a] + radii[b])
+        1.0 - shortest(centres[b] - centres[a]).norm() / (radii[a] + radii[b])
     };
     pairs.iter().map(of).fold(0.0, f64::max)
 }

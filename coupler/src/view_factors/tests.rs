@@ -160,6 +160,7 @@ fn bed() -> (Vec<Vec3>, Vec<RadiationWall>) {
         },
         seed: 3,
         size_seed: 1,
+        periodicity: Default::default(),
     };
     let packing = random_in_box(Vec3::zeros(), [size.x, size.y], &spec).unwrap();
     let mut walls = Vec::new();

@@ -1,6 +1,7 @@
 //! Setups that the native gas cannot take.
 
 use calcine_coupler::checkpoint::StateFileError;
+use calcine_coupler::periodic_motion::PeriodicMotionError;
 use thiserror::Error;
 
 /// Why a native part cannot be made or taken up again.
@@ -59,6 +60,9 @@ pub enum NativeError {
         /// What is allowed.
         rule: &'static str,
     },
+    /// Moving particles that do not go with the periodic directions.
+    #[error(transparent)]
+    Periodic(#[from] PeriodicMotionError),
     /// A particle that left the space in which particles may be.
     #[error(
         "particle {id} left its bounds at ({}, {}, {}) m with a velocity of ({}, {}, {}) m/s; a hole in \

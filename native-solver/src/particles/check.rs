@@ -3,6 +3,7 @@
 use calcine_coupler::motion::{
     ContactForce, Contacts, Motion, ParticleChanges, Resized, Wall, WallShape,
 };
+use calcine_coupler::periodic_motion;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 
@@ -48,6 +49,8 @@ pub fn check(setup: &ParticleSetup) -> Result<(), NativeError> {
         Motion::Frozen => Ok(()),
         Motion::Free(contacts) => {
             contact(contacts, &setup.population)?;
+            let largest = setup.radius.iter().copied().fold(0.0, f64::max);
+            periodic_motion::check(contacts, largest)?;
             (0..count).try_for_each(|i| {
                 let held = contacts.held.get(setup.population[i] as usize);
                 let place = || format!("particle {}", setup.id[i]);

@@ -14,6 +14,7 @@ use calcine_coupler::part::{
     Bed, DRAG_COEFFICIENT, DRAG_IMPULSE, GAS_VELOCITY, Part, ParticleFields, ParticlePush,
     ParticleReceived, Particles, SolverInfo,
 };
+use calcine_coupler::periodic_motion::check_period;
 use calcine_coupler::physics::{Vec3, sphere};
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::supervisor::Supervisor;
@@ -153,8 +154,20 @@ impl NativeParticles {
         Ok(())
     }
 
-    /// Takes over what the solver has reached.
+    /// Takes over what the solver has reached; places between the periodic planes.
     fn read(&mut self) {
+        self.read_unwrapped();
+        let Some(engine) = &self.engine else { return };
+        let periodicity = &engine.contacts().periodicity;
+        if !periodicity.is_none() {
+            for place in &mut self.position {
+                *place = periodicity.wrap(*place);
+            }
+        }
+    }
+
+    /// The same with places as the solver has them, beyond periodic planes since its last search for neighbours.
+    fn read_unwrapped(&mut self) {
         if let Some(engine) = &self.engine {
             engine.read(
                 &mut self.position,
@@ -331,6 +344,8 @@ impl NativeParticles {
 
     /// Takes particles out and puts new ones in; the others keep the memories of their contacts.
     fn exchange(&mut self, change: &ParticleChanges) -> Result<(), NativeError> {
+        // Memories go with places as the solver has them.
+        self.read_unwrapped();
         self.resize(change)?;
         if change.rest {
             self.velocity.fill(Vec3::zeros());
@@ -390,9 +405,11 @@ impl NativeParticles {
             }
         }
         self.impulse = vec![Vec3::zeros(); self.id.len()];
-        if self.engine.is_none() {
+        let Some(engine) = &self.engine else {
             return Ok(());
-        }
+        };
+        let largest = self.radius.iter().copied().fold(0.0, f64::max);
+        check_period(engine.contacts(), largest)?;
         self.hand_over((pairs, walls))
             .map_err(|stray| self.outside(stray))
     }

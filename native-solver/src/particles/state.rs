@@ -17,10 +17,15 @@ impl NativeParticles {
     /// Writes the state, with the memories of contacts, loads and the last search for neighbours.
     pub(super) fn write(&mut self, directory: &Path) -> Result<(), NativeError> {
         let population: Vec<u64> = self.population.iter().map(|&p| u64::from(p)).collect();
+        // As the solver has them: beyond periodic planes since its last search.
+        let mut position = self.position.clone();
+        if let Some(engine) = &self.engine {
+            engine.read_places(&mut position);
+        }
         let mut file = StateFile::new();
         file.set_u64s("id", &self.id);
         file.set_u64s("population", &population);
-        file.set_f64s("position", &flat(&self.position));
+        file.set_f64s("position", &flat(&position));
         file.set_f64s("velocity", &flat(&self.velocity));
         file.set_f64s("angular_velocity", &flat(&self.angular_velocity));
         file.set_f64s("radius", &self.radius);

@@ -22,6 +22,7 @@ use calcine_native::particles::NativeParticles;
 pub fn contacts(step: f64) -> Contacts {
     Contacts {
         bounds: (Vec3::repeat(-1.0), Vec3::repeat(1.0)),
+        periodicity: Default::default(),
         ..soft_spheres(step, 1e7)
     }
 }

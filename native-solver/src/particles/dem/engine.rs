@@ -136,7 +136,7 @@ impl Engine {
             walls: contacts
                 .walls
                 .iter()
-                .map(|wall| WallBody::new(wall, contacts.bounds))
+                .map(|wall| WallBody::new(wall, contacts.bounds, &contacts.periodicity))
                 .collect(),
             spheres: Spheres::default(),
             blocks: Vec::new(),
@@ -201,13 +201,21 @@ impl Engine {
         }
     }
 
-    /// Copies centres, velocities and angular velocities out, by rows.
+    /// Copies centres, velocities and angular velocities out, by rows. Between two searches centres may be beyond a
+    /// periodic plane, as far as a particle goes in that time.
     pub fn read(&self, centre: &mut [Vec3], velocity: &mut [Vec3], spin: &mut [Vec3]) {
         let spheres = &self.spheres;
         for ((place, moves), &row) in spheres.place.iter().zip(&spheres.moves).zip(&spheres.row) {
             centre[row as usize] = place.centre;
             velocity[row as usize] = moves.velocity;
             spin[row as usize] = moves.spin;
+        }
+    }
+
+    /// Copies centres out, by rows, as they are between two searches.
+    pub fn read_places(&self, centre: &mut [Vec3]) {
+        for (place, &row) in self.spheres.place.iter().zip(&self.spheres.row) {
+            centre[row as usize] = place.centre;
         }
     }
 
@@ -229,7 +237,8 @@ impl Engine {
     /// first step on.
     pub fn energy(&self) -> BedEnergy {
         let mut energy = BedEnergy::default();
-        for (place, moves) in self.spheres.place.iter().zip(&self.spheres.moves) {
+        let spheres = self.spheres.place.iter().zip(&self.spheres.moves);
+        for (place, moves) in spheres.take(self.spheres.len()) {
             if moves.inverse_mass > 0.0 {
                 let mass = 1.0 / moves.inverse_mass;
                 let inertia = 0.4 * mass * place.radius * place.radius;
@@ -259,6 +268,7 @@ impl Engine {
         let mut fastest = self.drift(1);
         for k in 0..steps {
             self.pose(done + k + 1);
+            self.spheres.move_images();
             self.gone += fastest * step;
             self.wall_gone += step * self.walls.iter().map(|wall| wall.speed).fold(0.0, f64::max);
             self.age += 1;
@@ -290,8 +300,8 @@ impl Engine {
     /// Every particle must be within the bounds.
     fn check(&self) -> Result<(), EscapedParticle> {
         let (low, high) = self.contacts.bounds;
-        for (k, place) in self.spheres.place.iter().enumerate() {
-            let centre = place.centre;
+        for (k, place) in self.spheres.place[..self.spheres.len()].iter().enumerate() {
+            let centre = self.contacts.periodicity.wrap(place.centre);
             if !(0..3).all(|axis| centre[axis] >= low[axis] && centre[axis] <= high[axis]) {
                 return Err(EscapedParticle {
                     row: self.spheres.row[k],
@@ -301,6 +311,21 @@ impl Engine {
             }
         }
         Ok(())
+    }
+
+    /// Brings all particles back between the periodic planes, and the memories in `search.stored` with them.
+    fn wrap(&mut self) {
+        let periodicity = &self.contacts.periodicity;
+        if periodicity.is_none() {
+            return;
+        }
+        let mut moved = vec![Vec3::zeros(); self.spheres.len()];
+        for (place, &row) in self.spheres.place.iter_mut().zip(&self.spheres.row) {
+            let within = periodicity.wrap(place.centre);
+            moved[row as usize] = within - place.centre;
+            place.centre = within;
+        }
+        self.search.stored.shift(|row| moved[row as usize]);
     }
 
     /// A wider skin means fewer searches, a thinner one fewer candidates.
@@ -414,6 +439,7 @@ impl Engine {
 
     /// Finds candidates anew; the memories are in `search.stored`.
     fn find(&mut self) {
+        self.wrap();
         match self.contacts.law.force {
             ContactForce::HertzMindlin => self.find_with(&HertzMindlin, false),
             ContactForce::SpringSliderDashpot => self.find_with(&SpringSliderDashpot, false),
@@ -446,6 +472,7 @@ impl Engine {
             rules: &self.rules,
             walls: &self.walls,
             bounds: self.contacts.bounds,
+            periodicity: &self.contacts.periodicity,
             skin: self.skin,
             stamp: self.stamp,
         };
@@ -457,7 +484,7 @@ impl Engine {
             parallel,
         );
         (self.gone, self.wall_gone, self.age) = (0.0, 0.0, 0);
-        let places = self.spheres.place.iter();
+        let places = self.spheres.place[..self.spheres.len()].iter();
         self.searched.0.clear();
         self.searched.0.extend(places.map(|place| place.centre));
         self.searched.1 = self.posed;

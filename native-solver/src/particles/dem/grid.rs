@@ -64,11 +64,18 @@ pub struct SearchGrid {
 }
 
 impl SearchGrid {
-    /// Sorts spheres into cells such that spheres whose surfaces are nearer than `gap` in m are found.
-    pub fn fill(&mut self, places: &[SpherePosition], (low, high): (Vec3, Vec3), gap: f64) {
+    /// Sorts spheres into cells such that spheres whose surfaces are nearer than `gap` in m are found. The first `along` of
+    /// them stand along the curve.
+    pub fn fill(
+        &mut self,
+        places: &[SpherePosition],
+        along: usize,
+        (low, high): (Vec3, Vec3),
+        gap: f64,
+    ) {
         self.low = low;
         let largest = places.iter().map(|place| place.radius).fold(0.0, f64::max);
-        let alike = places.iter().all(|place| place.radius == largest);
+        let sorted = along == places.len() && places.iter().all(|place| place.radius == largest);
         let class = |radius: f64| {
             let (mut class, mut bound) = (0usize, 0.5 * largest);
             while radius <= bound && class < 40 {
@@ -109,7 +116,7 @@ impl SearchGrid {
             }
             // Along the curve, whose cells are as wide as the smallest sphere, equal keys stand together already
             // where all spheres are alike; else those of a cell may be apart, and would not be found.
-            if !alike {
+            if !sorted {
                 self.keyed.sort_unstable();
             }
             self.levels[k].fill(&self.keyed);

@@ -22,4 +22,4 @@ mod walls;
 
 pub use engine::{Engine, EngineState, EscapedParticle, InsertedSphere};
 pub use stored_contacts::{StoredContact, StoredWallContact};
-pub use walls::{distance_to_shape, distance_to_triangle};
+pub use walls::{distance_to_shape, distance_to_triangle, repeated};

@@ -13,6 +13,7 @@ use super::stored_contacts::StoredContacts;
 use super::walls::WallBody;
 use super::walls::{shape, triangle};
 use calcine_coupler::motion::Rolling;
+use calcine_coupler::periodicity::Periodicity;
 use calcine_coupler::physics::Vec3;
 
 /// Scratch memory of the search.
@@ -43,6 +44,8 @@ pub struct SearchInputs<'a, L> {
     pub walls: &'a [WallBody],
     /// Bounds in m.
     pub bounds: (Vec3, Vec3),
+    /// Directions in which they repeat.
+    pub periodicity: &'a Periodicity,
     /// Surfaces nearer than this are candidates, in m.
     pub skin: f64,
     /// The evaluation in which carried contacts touched.
@@ -59,9 +62,12 @@ impl NeighbourSearch {
         outgoing: &mut Vec<Vec<SphereLoad>>,
         parallel: bool,
     ) {
+        spheres.drop_images();
         self.sort(task, spheres);
+        spheres.add_images(task.periodicity, task.skin);
         self.stored.sort(spheres.len());
-        self.grid.fill(&spheres.place, task.bounds, task.skin);
+        self.grid
+            .fill(&spheres.place, spheres.len(), task.bounds, task.skin);
         self.near_triangles(task, spheres);
         let size = size(spheres.len());
         blocks.resize_with(spheres.len().div_ceil(size), Block::default);
@@ -89,7 +95,7 @@ impl NeighbourSearch {
         } else {
             blocks.iter_mut().zip(outgoing).enumerate().for_each(list);
         }
-        self.forward = deliver(blocks, size);
+        self.forward = deliver(blocks, spheres, size);
     }
 
     fn sort<L>(&mut self, task: &SearchInputs<'_, L>, spheres: &mut Spheres) {
@@ -121,22 +127,23 @@ impl NeighbourSearch {
             let own = self.grid.level(i);
             for (level, memory) in memory.iter_mut().enumerate().skip(own) {
                 for j in self.grid.around(level, place.centre, memory) {
-                    let other = j as usize;
+                    // Across a plane too, one of the two finds the other.
+                    let (seen, other) = (j as usize, spheres.origin(j as usize));
                     if level == own && other <= i {
                         continue;
                     }
-                    let cut = place.radius + spheres.place[other].radius + task.skin;
-                    let apart = (spheres.place[other].centre - place.centre).norm_squared();
+                    let cut = place.radius + spheres.place[seen].radius + task.skin;
+                    let apart = (spheres.place[seen].centre - place.centre).norm_squared();
                     let held =
                         spheres.moves[i].inverse_mass + spheres.moves[other].inverse_mass == 0.0;
                     if apart < cut * cut && !held {
-                        let inner = (block.begin..end).contains(&other);
+                        let inner = (block.begin..end).contains(&seen);
                         let list = if inner {
                             &mut block.inner
                         } else {
                             &mut block.cross
                         };
-                        self.add(task, spheres, list, i, other);
+                        self.add(task, spheres, list, i, seen);
                     }
                 }
             }
@@ -152,7 +159,7 @@ impl NeighbourSearch {
         i: usize,
         j: usize,
     ) {
-        let memory = self.stored.pair(spheres.row[i], spheres.row[j]);
+        let memory = self.stored.pair(spheres.row[i], spheres.row_of(j));
         let (shift, rolling) = memory.unwrap_or_default();
         list.pair.push([i as u32, j as u32]);
         list.shift.push(shift);
@@ -246,6 +253,10 @@ impl NeighbourSearch {
                 let span = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
                 let list = &mut self.triangles;
                 self.grid.within(span, task.skin, |sphere| {
+                    // Triangles have images of their own.
+                    if sphere as usize >= spheres.len() {
+                        return;
+                    }
                     let place = &spheres.place[sphere as usize];
                     let reach = place.radius + task.skin;
                     let (point, _) = triangle::nearest(place.centre, &[a, b, c]);
@@ -261,14 +272,14 @@ impl NeighbourSearch {
 
 /// Tells each block which loads of others are for its particles, in the order of blocks and slots; true where all
 /// of them come from blocks before it.
-fn deliver(blocks: &mut [Block], size: usize) -> bool {
+fn deliver(blocks: &mut [Block], spheres: &Spheres, size: usize) -> bool {
     let mut forward = true;
     for block in blocks.iter_mut() {
         block.incoming.clear();
     }
     for source in 0..blocks.len() {
         for slot in 0..blocks[source].cross.pair.len() {
-            let particle = blocks[source].cross.pair[slot][1] as usize;
+            let particle = spheres.origin(blocks[source].cross.pair[slot][1] as usize);
             forward &= source < particle / size;
             let target = &mut blocks[particle / size];
             let own = (particle % size) as u32;

@@ -75,7 +75,7 @@ impl StoredContacts {
             for candidates in [&block.inner, &block.cross] {
                 for (k, shift) in candidates.shift.iter().enumerate() {
                     if candidates.touched[k] {
-                        let [i, j] = candidates.pair[k].map(|index| spheres.row[index as usize]);
+                        let [i, j] = candidates.pair[k].map(|index| spheres.row_of(index as usize));
                         let rolling = candidates.rolling.get(k).copied().unwrap_or_default();
                         let sign = if i < j { 1.0 } else { -1.0 };
                         self.pairs.push(StoredContact {
@@ -101,6 +101,13 @@ impl StoredContacts {
                     });
                 }
             }
+        }
+    }
+
+    /// Takes the memories along with particles that were moved by so many m, given by row: contact points of walls.
+    pub fn shift(&mut self, moved: impl Fn(u32) -> Vec3) {
+        for one in &mut self.walls {
+            one.point += moved(one.row);
         }
     }
 

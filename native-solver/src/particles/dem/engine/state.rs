@@ -91,6 +91,7 @@ impl Engine {
         for (place, row) in self.spheres.place.iter_mut().zip(rows) {
             place.centre = particles[row].centre;
         }
+        self.spheres.move_images();
         for (block, wall_force) in self.blocks.iter_mut().zip(&state.wall_force) {
             block.wall_force = *wall_force;
             for (load, row) in block.load.iter_mut().zip(&self.spheres.row[block.begin..]) {

@@ -5,6 +5,7 @@ pub mod shape;
 pub mod triangle;
 
 use calcine_coupler::motion::{Wall, WallMotion, WallShape};
+use calcine_coupler::periodicity::Periodicity;
 use calcine_coupler::physics::Vec3;
 use nalgebra::{Matrix3, Rotation3};
 
@@ -35,10 +36,10 @@ pub struct WallBody {
 }
 
 impl WallBody {
-    /// A wall at the start of the run, within the bounds of the particles.
-    pub fn new(wall: &Wall, bounds: (Vec3, Vec3)) -> Self {
+    /// A wall at the start of the run, within the bounds of the particles, with its images beyond periodic planes.
+    pub fn new(wall: &Wall, bounds: (Vec3, Vec3), periodicity: &Periodicity) -> Self {
         Self {
-            shape: wall.shape.clone(),
+            shape: repeated(&wall.shape, periodicity),
             material: wall.material as u32,
             motion: wall.motion.clone(),
             turn: Matrix3::identity(),
@@ -110,6 +111,31 @@ impl WallBody {
             _ => Vec3::zeros(),
         }
     }
+}
+
+/// A mesh with the images of its triangles that are no farther than half a period from the particles: more than particles
+/// reach. All other walls go on beyond the planes.
+pub fn repeated(shape: &WallShape, periodicity: &Periodicity) -> WallShape {
+    let WallShape::Mesh { triangles } = shape else {
+        return shape.clone();
+    };
+    let mut triangles = triangles.clone();
+    for (axis, span) in periodicity.axes.iter().enumerate() {
+        let Some(span) = span else { continue };
+        let near = |triangle: &[Vec3; 3]| {
+            let along = triangle.map(|corner| corner[axis]);
+            let low = along.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = along.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            high >= span.low - 0.5 * span.length() && low <= span.high + 0.5 * span.length()
+        };
+        let shift = Vec3::ith(axis, span.length());
+        let images = [shift, -shift].map(|shift| {
+            let images = triangles.iter().map(|one| one.map(|corner| corner + shift));
+            images.filter(near).collect::<Vec<_>>()
+        });
+        triangles.extend(images.into_iter().flatten());
+    }
+    WallShape::Mesh { triangles }
 }
 
 /// The largest speed of the surface where particles can be; zero for one that turns within itself.
