@@ -173,6 +173,8 @@ fn a_stock_solver_with_gravity_runs_on_cells_that_lean_by_27_degrees() {
             "time.acceleration=1".into(),
             "time.end=0.1 s".into(),
             "gas.patch.bottom.inlet.scalars=value".into(),
+            "probes[0].line.from=60 50 10 mm".into(),
+            "probes[0].line.to=100 50 90 mm".into(),
         ];
         program::run(&case, &out, &["--gas", "openfoam"], &set);
         let series = Series::read(&out).unwrap();
@@ -180,5 +182,6 @@ fn a_stock_solver_with_gravity_runs_on_cells_that_lean_by_27_degrees() {
     };
     let [own, stock] = ["calcineGasFoam", "buoyantPimpleFoam"].map(drop);
     println!("{own} {stock} Pa");
+    // 5.12 and 4.41 Pa: gas may pass beside this bed, and stores and convects as if it filled whole cells (stock-solvers.md).
     assert!((0.8..1.1).contains(&(stock / own)), "{stock} of {own} Pa");
 }
