@@ -1,5 +1,5 @@
 #!/bin/bash
-# Builds libcalcineFoam.so and calcineGasFoam against Debian's OpenFOAM 1912. `cargo xtask setup`
+# Builds libcalcineFoam.so, calcineGasFoam and OpenFOAM's buoyantPimpleFoam against Debian's OpenFOAM 1912. `cargo xtask setup`
 # calls it with these variables:
 #   HEADERS_DIR   OpenFOAM's src/ with an lnInclude folder in each library
 #   WIRE_INCLUDE  folder of calcine_wire.h
@@ -56,3 +56,19 @@ g++ -o "$OUT_DIR/.calcineGasFoam" "${solver[@]}" -L "$OUT_DIR" '-Wl,-rpath,$ORIG
     -lfluidThermophysicalModels -lcompressibleTransportModels -lturbulenceModels \
     -lcompressibleTurbulenceModels -lradiationModels -lspecie -lreactionThermophysicalModels -lchemistryModel -lODE -lOpenFOAM -lPstream -ldl -lm
 mv "$OUT_DIR/.calcineGasFoam" "$OUT_DIR/calcineGasFoam"
+
+# Debian's buoyantPimpleFoam computes wrong velocities on all meshes that are not orthogonal: `inv(tensors) & vectors` of
+# fvc::reconstruct writes its product over the vectors, through pointers that OpenFOAM 1912 declares __restrict__, and GCC 12
+# vectorises it at -O3 in an order that reads what is overwritten. The same sources without that.
+stock=$HEADERS_DIR/applications/solvers/heatTransfer/buoyantPimpleFoam
+name=buoyantPimpleFoam
+if [ ! "$OUT_DIR/$name" -nt "$stock/$name.C" ] || [ ! "$OUT_DIR/$name" -nt build.sh ]; then
+    echo "compile $name"
+    g++ "${flags[@]}" -w -fno-tree-vectorize -I "$stock" -isystem "$src/sampling/lnInclude" \
+        -isystem "$src/atmosphericModels/lnInclude" -c "$stock/$name.C" -o "$objects/$name.o.part"
+    mv "$objects/$name.o.part" "$objects/$name.o"
+    g++ -o "$OUT_DIR/.$name" "$objects/$name.o" -Xlinker --add-needed -Xlinker --no-as-needed -lfiniteVolume -lfvOptions \
+        -lmeshTools -lsampling -lcompressibleTransportModels -lfluidThermophysicalModels -lradiationModels -lspecie \
+        -lturbulenceModels -lcompressibleTurbulenceModels -latmosphericModels -lOpenFOAM -lPstream -ldl -lm
+    mv "$OUT_DIR/.$name" "$OUT_DIR/$name"
+fi

@@ -1,5 +1,6 @@
 //! What several files of tests share. Test programs of their own take single files of it by their path.
 
+pub mod blocks;
 pub mod c_solver;
 #[cfg(feature = "hdf5")]
 pub mod checkpoint_harm;

@@ -6,6 +6,8 @@
 
 mod agreement;
 mod backward_step;
+#[path = "../support/blocks.rs"]
+mod blocks;
 #[cfg(feature = "hdf5")]
 mod checkpoint_faults;
 #[cfg(feature = "hdf5")]
@@ -39,6 +41,10 @@ mod results_equal;
 mod shaft_choices;
 mod shaft_flames;
 mod shaft_furnace;
+mod skewed_cavity;
+mod skewed_meshes;
+mod spouted_bed;
+mod square_cylinder;
 #[cfg(feature = "hdf5")]
 #[path = "../support/stopped.rs"]
 #[allow(dead_code)]
@@ -71,6 +77,10 @@ const ALL: &[(&str, fn())] = &[
     ("shaft-choices", shaft_choices::run),
     ("shaft-flames", shaft_flames::run),
     ("shaft-furnace", shaft_furnace::run),
+    ("skewed-cavity", skewed_cavity::run),
+    ("skewed-meshes", skewed_meshes::run),
+    ("spouted-bed", spouted_bed::run),
+    ("square-cylinder", square_cylinder::run),
     ("voids", voids::run),
 ];
 

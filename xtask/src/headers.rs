@@ -12,7 +12,14 @@ use crate::sources::write_source_entries;
 use crate::steps::{Stop, TaskResult, new_log, quietly, step};
 
 /// A complete tree of headers holds this file: written last, before the tree gets its name.
-const STAMP: &str = ".complete";
+const STAMP: &str = ".complete-with-solvers";
+
+/// What is kept of the sources: headers, and the solver that Debian's compiler broke (adapters/openfoam/build.sh).
+const KEPT: [&str; 3] = [
+    "src",
+    "wmake",
+    "applications/solvers/heatTransfer/buoyantPimpleFoam",
+];
 
 /// End of the name of a folder in which headers are being prepared.
 const PART: &str = ".headers.part";
@@ -93,7 +100,7 @@ fn apt(work: &Path) -> Command {
     command
 }
 
-/// Unpacks the source package and keeps `src/` and `wmake/`, as `work/kept`.
+/// Unpacks the source package and keeps the parts in use, as `work/kept`.
 fn unpack(work: &Path, log: &Path) -> TaskResult<()> {
     let description = fs::read_dir(work)
         .map_err(|cause| Stop::io(work, &cause))?
@@ -110,8 +117,11 @@ fn unpack(work: &Path, log: &Path) -> TaskResult<()> {
     quietly(&mut command, log)?;
     let kept = work.join("kept");
     fs::create_dir_all(&kept).map_err(|cause| Stop::io(&kept, &cause))?;
-    for part in ["src", "wmake"] {
+    for part in KEPT {
         let (from, to) = (work.join("tree").join(part), kept.join(part));
+        if let Some(parent) = to.parent() {
+            fs::create_dir_all(parent).map_err(|cause| Stop::io(parent, &cause))?;
+        }
         fs::rename(&from, &to).map_err(|cause| Stop::io(&from, &cause))?;
     }
     Ok(())

@@ -55,7 +55,8 @@ usage: cargo xtask TASK
   validate [NAME …]       long validations, all by default: agreement, backward-step,
                           checkpoint-faults, elastic-box, flame, fluidised-bed, hopper,
                           moving-bed, repose, restarts, shaft-choices, shaft-flames,
-                          shaft-furnace, voids";
+                          shaft-furnace, skewed-cavity, skewed-meshes,
+                          spouted-bed, square-cylinder, voids";
 
 /// Exit code of a wrong command line, as `calcine` has it.
 const USAGE_CODE: u8 = 2;

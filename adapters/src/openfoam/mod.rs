@@ -172,14 +172,19 @@ impl OpenfoamLaunch<'_> {
 pub fn find(solver: StockSolver) -> Result<(PathBuf, PathBuf), PartError> {
     let own = find_program(SOLVER_VARIABLE, SOLVER)?;
     let path = match solver.is_stock() {
-        true => stock_program(solver.name())?,
+        true => stock_program(&own, solver.name())?,
         false => own.clone(),
     };
     Ok((path, own))
 }
 
-/// A program of Debian's OpenFOAM, on the path.
-fn stock_program(name: &str) -> Result<PathBuf, PartError> {
+/// A program of OpenFOAM: the one that was built with Calcine's own, because Debian's is wrong (adapters/openfoam/build.sh), else on
+/// the path.
+fn stock_program(own: &Path, name: &str) -> Result<PathBuf, PartError> {
+    let beside = own.with_file_name(name);
+    if beside.is_file() {
+        return Ok(beside);
+    }
     let path = std::env::var_os("PATH").unwrap_or_default();
     let found = std::env::split_paths(&path)
         .map(|folder| folder.join(name))
