@@ -6,8 +6,10 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
+use calcine::assembly::ParticleBackend;
 use calcine::results::Summary;
 use calcine::results::read::Series;
+use calcine::simulation::Simulation;
 
 fn run(case: &Path, out: &Path, more: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_calcine"))
@@ -353,4 +355,41 @@ fn an_openfoam_gas_starts_from_a_time_directory_that_openfoam_wrote() {
     );
     let none = text(&case.join("system"));
     assert!(none.contains("none of the fields T, p, U"), "{none}");
+}
+
+/// Speeds and spins of beads in free fall, which nothing turns: natively to the bit, and taken over by LIGGGHTS.
+#[test]
+fn beads_go_on_with_the_speeds_and_spins_that_they_had() {
+    let directory = tempfile::tempdir().unwrap();
+    let bed = directory.path().join("bed.csv");
+    let text = "x,y,z,vx,vy,vz,omegax,omegay,omegaz\n0.005,0.005,0.29,0.1,0,-0.2,1,30,-2\n0.015,0.015,0.28,0,0.1,0,0,0,7\n";
+    std::fs::write(&bed, text).unwrap();
+    let place = format!("particles[0].place={{ file = \"{}\" }}", bed.display());
+    let open = |out: &str| {
+        let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/settling-sphere.toml");
+        let builder = Simulation::open(case).out(directory.path().join(out));
+        builder.set(&place).set("time.end=20 ms")
+    };
+    let motions = |run: &Simulation| {
+        let fields = run.particles();
+        (fields.velocity.to_vec(), fields.angular_velocity.to_vec())
+    };
+    let mut first = open("first").start().unwrap();
+    first.finish().unwrap();
+    let left = motions(&first);
+    assert!(left.1[0].y == 30.0 && left.0[0].z < -0.3, "{left:?}");
+    drop(first);
+    let from = directory.path().join("first");
+    let native = open("native").from(&from).start().unwrap();
+    assert_eq!(motions(&native), left);
+    let liggghts = open("liggghts").particles(ParticleBackend::Liggghts);
+    let taken = motions(&liggghts.from(&from).start().unwrap());
+    for (found, left) in [(taken.0, left.0), (taken.1, left.1)] {
+        for (found, left) in found.iter().zip(&left) {
+            assert!(
+                (found - left).norm() <= 1e-12 * left.norm(),
+                "{found} {left}"
+            );
+        }
+    }
 }

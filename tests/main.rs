@@ -59,6 +59,8 @@ mod stopped;
 mod support;
 mod test_programs;
 mod time_splitting;
+mod told;
+mod vacuum;
 mod verification_beds;
 mod warned_and_refused;
 mod weights;

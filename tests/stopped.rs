@@ -5,10 +5,13 @@
 
 use std::path::{Path, PathBuf};
 
+use calcine::results::read::Series;
+
 use crate::support::program::{self, shipped};
 use crate::support::{results_equal, stopped};
 
-/// Runs a case without interruption and without checkpoints, then stops it after each number of rows of its series, with and
+/// Runs a case without interruption and without checkpoints, then stops it after each number of rows of its series, the first
+/// in its first windows, with and
 /// without scheduled checkpoints, and compares every value.
 fn goes_on_alike(case: &Path, set: &[&str], every: &str, rows: [usize; 3]) {
     let directory = tempfile::tempdir().unwrap();
@@ -33,7 +36,7 @@ fn a_bed_that_settles_goes_on_alike() {
         "particles[0].place.region.from=2 mm",
         "particles[0].place.region.to=40 mm",
     ];
-    goes_on_alike(&shipped("settled-bed"), &set, "30 ms", [20, 75, 50]);
+    goes_on_alike(&shipped("settled-bed"), &set, "30 ms", [1, 75, 50]);
 }
 
 /// Particles that react and do not settle with their gas: the run stops at its last commit between two attempts, and begins
@@ -71,7 +74,7 @@ fn a_fluidised_bed_goes_on_alike() {
         "output.series_every=2 ms",
         "particles[0].place.height=30 mm",
     ];
-    goes_on_alike(&shipped("fluidised-bed"), &set, "50 ms", [20, 75, 50]);
+    goes_on_alike(&shipped("fluidised-bed"), &set, "50 ms", [1, 75, 50]);
 }
 
 #[test]
@@ -81,7 +84,7 @@ fn a_rotating_drum_goes_on_alike() {
         "output.every=0.1 s",
         "output.series_every=5 ms",
     ];
-    goes_on_alike(&shipped("rotating-drum"), &set, "70 ms", [20, 75, 50]);
+    goes_on_alike(&shipped("rotating-drum"), &set, "70 ms", [1, 75, 50]);
 }
 
 #[test]
@@ -93,7 +96,7 @@ fn a_bed_with_feed_and_outlet_goes_on_alike() {
         "feeds[0].mass_rate=4 g/s",
         "outlets[0].mass_rate=4 g/s",
     ];
-    goes_on_alike(&shipped("moving-bed"), &set, "7 s", [11, 40, 25]);
+    goes_on_alike(&shipped("moving-bed"), &set, "7 s", [1, 40, 25]);
 }
 
 #[test]
@@ -106,7 +109,7 @@ fn a_bed_that_reacts_goes_on_alike() {
         "mesh.box.cells=[2, 2, 11]",
         "particles[0].place.grid.counts=[2, 2, 8]",
     ];
-    goes_on_alike(&shipped("ore-reduction"), &set, "3 min", [8, 40, 25]);
+    goes_on_alike(&shipped("ore-reduction"), &set, "3 min", [1, 40, 25]);
 }
 
 /// Views hold for 3 s, while particles come and go.
@@ -119,4 +122,43 @@ fn a_moving_bed_that_radiates_goes_on_alike() {
     ];
     let case = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/good/moving-heat.toml");
     goes_on_alike(&case, &set, "5 s", [10, 43, 25]);
+}
+
+/// The largest difference of columns of two series that have these words in their names, relative to the larger value.
+fn apart(one: &Path, other: &Path, words: &[&str]) -> f64 {
+    let [one, other] = [one, other].map(|out| Series::read(out).unwrap());
+    let mut largest = 0.0f64;
+    for name in one
+        .names
+        .iter()
+        .filter(|name| words.iter().any(|word| name.contains(word)))
+    {
+        let pairs = one.column(name).iter().zip(other.column(name));
+        for (a, b) in pairs.filter(|(a, b)| a != b) {
+            largest = largest.max((a - b).abs() / a.abs().max(b.abs()));
+        }
+    }
+    largest
+}
+
+/// An unscheduled checkpoint has OpenFOAM and LIGGGHTS read anew what they wrote: a frozen bed then differs by round-off from the run
+/// without a stop, which the solver of the pressure amplifies (docs/how-to/continue-a-run.md).
+#[test]
+fn a_frozen_bed_with_external_solvers_goes_on_within_round_off() {
+    let directory = tempfile::tempdir().unwrap();
+    let set = [
+        "time.end=10 s",
+        "output.every=5 s",
+        "output.series_every=0.1 s",
+    ];
+    let words = ["--gas", "openfoam", "--particles", "liggghts"];
+    let case = shipped("heated-column");
+    let command = |out: &Path| program::command(&case, out, &words, &set);
+    let (whole, out) = (directory.path().join("whole"), directory.path().join("out"));
+    stopped::finish(command(&whole));
+    stopped::stop_and_resume(|| command(&out), &out, 12);
+    let temperatures = apart(&whole, &out, &["temperature"]);
+    assert!(temperatures <= 1e-14, "{temperatures}");
+    let pressure = apart(&whole, &out, &["pressure_drop"]);
+    assert!(pressure <= 1.5e-11, "{pressure}");
 }

@@ -8,6 +8,7 @@ pub mod external;
 pub mod find;
 pub mod gas;
 mod gas_columns;
+pub mod last_words;
 pub mod launch;
 pub mod liggghts;
 pub mod openfoam;

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod conformance;
+mod last_words;
 mod liggghts_moving;
 mod liggghts_periodic;
 mod liggghts_ranks;

@@ -28,7 +28,7 @@ impl Grid {
     fn new((corner, size): (Vec3, Vec3), centres: &[Vec3], members: &[u32], reach: f64) -> Self {
         // No more cells than spheres along an axis: a wide, thin bed needs no more memory.
         let most = (members.len() as f64).cbrt().ceil();
-        let count = [0, 1, 2].map(|axis| (size[axis] / reach).clamp(1.0, most) as usize);
+        let count = [0, 1, 2].map(|axis| (size[axis] / reach).max(1.0).min(most) as usize);
         let mut grid = Self {
             corner,
             size,

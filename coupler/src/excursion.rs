@@ -102,6 +102,9 @@ impl FlowExcursion {
     pub fn look(&mut self, range: &FlowRange, row: usize, gas: &LocalGas, diameter: f64) {
         let voids = gas.void_fraction.value();
         self.void_fraction.look(row, voids, range.void_fraction);
+        if gas.viscosity == 0.0 {
+            return; // a vacuum
+        }
         let reynolds = range.reynolds_of(gas, diameter);
         self.reynolds.look(row, reynolds, range.reynolds);
     }

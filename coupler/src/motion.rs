@@ -104,8 +104,10 @@ pub struct ContactLaw {
 pub enum ContactForce {
     /// Hertz, Mindlin and Tsuji with tangential history (docs/theory.md, COR-12).
     HertzMindlin,
-    /// OpenFOAM's pair of spring, slider and dashpot (docs/theory.md, COR-13).
+    /// OpenFOAM's pair of spring, slider and dashpot, friction limiting the sum of the two (docs/theory.md, COR-13).
     SpringSliderDashpot,
+    /// The same as OpenFOAM has it: friction limits the spring alone, which slip forgets (docs/theory.md, COR-13).
+    OpenfoamSpringSliderDashpot,
     /// Linear spring and dashpot with tangential history: the stiffness at which a pair that meets with this
     /// speed in m/s overlaps as much as by Hertz' law.
     Linear {
@@ -207,11 +209,19 @@ pub static CONTACT_LAWS: &[&LawEntry<ContactForce>] = &[
     },
     &LawEntry {
         name: "spring-slider-dashpot",
-        summary: "OpenFOAM's pair of spring, slider and dashpot.",
-        source: "OpenFOAM 6, `PairSpringSliderDashpot.C`",
+        summary: "OpenFOAM's pair of spring, slider and dashpot, the sum of spring and dashpot limited by friction.",
+        source: "OpenFOAM 6, `PairSpringSliderDashpot.C`; Luding, Granular Matter 10 (2008) 235, doi 10.1007/s10035-008-0099-x",
         parameters: &[],
         tables: &[],
         make: |_| Box::new(ContactForce::SpringSliderDashpot),
+    },
+    &LawEntry {
+        name: "spring-slider-dashpot-openfoam",
+        summary: "The same as OpenFOAM has it: the dashpot is not limited, and slip forgets the spring, so that friction depends on the step.",
+        source: "OpenFOAM 6, `PairSpringSliderDashpot.C`",
+        parameters: &[],
+        tables: &[],
+        make: |_| Box::new(ContactForce::OpenfoamSpringSliderDashpot),
     },
 ];
 

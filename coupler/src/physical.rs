@@ -33,6 +33,12 @@ impl UnphysicalGas {
     /// The value that is farthest from what a gas can have: a temperature at or below zero first, then a mass fraction that is
     /// below zero by more than `tolerance`. What is NaN is farther than all.
     pub fn find(gas: &GasFields<'_>, species: &[String], tolerance: f64) -> Option<Self> {
+        // A vacuum has no temperature.
+        let is_vacuum =
+            gas.density.iter().all(|density| *density == 0.0) && !gas.density.is_empty();
+        if is_vacuum {
+            return None;
+        }
         let least = |values: &[f64], bound: f64| {
             let mut found: Option<(usize, f64)> = None;
             for (place, value) in values.iter().enumerate() {

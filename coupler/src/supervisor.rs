@@ -24,6 +24,8 @@ const LONGEST_SLICE: Duration = Duration::from_secs(1);
 const LOOK: Duration = Duration::from_millis(200);
 /// How many lines of a log an error shows.
 const LOG_LINES: usize = 12;
+/// How many lines of an error that is earlier in the log it shows before them.
+const ERROR_LINES: usize = 6;
 
 /// A process that the run depends on.
 #[derive(Debug)]
@@ -306,7 +308,8 @@ fn signal_name(signal: i32) -> &'static str {
     }
 }
 
-/// The last lines of a log file; empty where it cannot be read.
+/// The last lines of a log file, after those with which the last error in it begins, where these are earlier; empty where it cannot be
+/// read.
 pub fn log_end(path: &Path) -> Vec<String> {
     let Ok(bytes) = fs::read(path) else {
         return Vec::new();
@@ -318,7 +321,19 @@ pub fn log_end(path: &Path) -> Vec<String> {
         .filter(|line| !line.is_empty())
         .map(str::to_owned)
         .collect();
-    lines[lines.len().saturating_sub(LOG_LINES)..].to_vec()
+    let first = lines.len().saturating_sub(LOG_LINES);
+    let says_why = |line: &String| line.contains("ERROR") || line.contains("sigFpe");
+    let why = lines[..first].iter().rposition(says_why);
+    let mut end = Vec::new();
+    if let Some(why) = why {
+        // OpenFOAM prints what called what after its error.
+        end.extend_from_slice(&lines[why..first.min(why + ERROR_LINES)]);
+        if why + ERROR_LINES < first {
+            end.push("…".to_owned());
+        }
+    }
+    end.extend_from_slice(&lines[first..]);
+    end
 }
 
 #[cfg(test)]

@@ -41,6 +41,7 @@ fn a_checkpoint_changes_nothing_and_a_resumed_bed_goes_on_alike_with_every_law()
     for (rolling, force) in [
         (Rolling::ElasticPlastic, ContactForce::HertzMindlin),
         (Rolling::ConstantTorque, ContactForce::SpringSliderDashpot),
+        (Rolling::None, ContactForce::OpenfoamSpringSliderDashpot),
         (Rolling::None, linear),
     ] {
         goes_on_alike(|| drum(rolling, force), 1000);

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use calcine_coupler::motion::Contacts;
+use calcine_coupler::motion::{ContactForce, Contacts};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::time_step::hertz_collision;
 
@@ -172,6 +172,32 @@ fn a_sliding_sphere_ends_rolling_with_five_sevenths_of_its_speed() {
     let found = bed.velocity(0).x / 0.2;
     assert!((found - 5.0 / 7.0).abs() < 2e-3, "{found}");
     assert!((bed.spin(0).y * RADIUS / bed.velocity(0).x - 1.0).abs() < 5e-3);
+}
+
+/// Slowing of a sphere that slides on a floor, over μ g, with steps of a share of the usual one.
+fn slowing(force: ContactForce, share: f64) -> f64 {
+    let mut contacts = floor(0.1, 50.0 / share, 0.3, 0.3);
+    contacts.gravity = Vec3::z() * -9.81;
+    contacts.law.force = force;
+    let weight = mass(RADIUS) * 9.81;
+    let rest = (weight / (4.0 / 3.0 * MODULUS * RADIUS.sqrt())).powf(2.0 / 3.0);
+    let step = contacts.step;
+    let start = sphere(1, Vec3::z() * (RADIUS - rest), Vec3::x() * 0.2, RADIUS);
+    let mut bed = Bed::new(contacts, &[start]);
+    // Half of the time for which it slides.
+    bed.run((0.2 / (7.0 * 0.3 * 9.81) / step) as u64);
+    (0.2 - bed.velocity(0).x) / (0.3 * 9.81 * bed.clocks.motion.seconds())
+}
+
+#[test]
+fn a_sphere_that_slides_on_spring_slider_and_dashpot_is_slowed_by_mu_g_at_any_step() {
+    for share in [1.0, 0.2, 0.05] {
+        let found = slowing(ContactForce::SpringSliderDashpot, share);
+        assert!((found - 1.0).abs() < 1e-3, "{share}: {found}");
+    }
+    // OpenFOAM's own form depends on the step.
+    let own = [1.0, 0.05].map(|share| slowing(ContactForce::OpenfoamSpringSliderDashpot, share));
+    assert!(own[0] < 1.1 && own[1] > 1.2, "{own:?}");
 }
 
 #[test]

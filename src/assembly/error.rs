@@ -1,5 +1,6 @@
 //! What keeps a case from being assembled.
 
+use calcine_adapters::last_words;
 use calcine_coupler::coordinator::RunError;
 use calcine_coupler::error::PartError;
 use calcine_coupler::interior::reacting::LayersError;
@@ -64,6 +65,14 @@ pub enum AssemblyError {
 }
 
 impl AssemblyError {
+    /// What helps against the failure of an external solver at its start.
+    pub fn remedy(&self) -> Option<&'static str> {
+        match self {
+            Self::Part(part) | Self::Run(RunError::Part(part)) => last_words::remedy(part),
+            _ => None,
+        }
+    }
+
     /// The key of the case that the error is about, where it is about one.
     pub fn key(&self, case: &Case) -> Option<String> {
         match self {

@@ -34,7 +34,7 @@ pub fn warning(number: f64) -> Option<String> {
 pub fn frequency(case: &Case, mesh: &Mesh) -> f64 {
     let gas = &case.gas;
     let gravity = gas.gravity.norm();
-    if gravity == 0.0 {
+    if gravity == 0.0 || gas.properties.is_vacuum() {
         return 0.0;
     }
     let (coldest, hottest) = temperatures(case);

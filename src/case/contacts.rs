@@ -8,7 +8,6 @@ use calcine_coupler::motion::{
 };
 use calcine_coupler::periodic_motion::{self, PeriodicMotionError};
 use calcine_coupler::physics::contact::time_step;
-use calcine_coupler::physics::sphere;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::time::Ticks;
 use thiserror::Error;
@@ -16,6 +15,7 @@ use thiserror::Error;
 use super::impact;
 use super::model::{Case, FreeMotion, MaterialSpec, MotionKind, MotionSpec};
 use super::moving::moving_spheres;
+use super::touching::{Touching, touching};
 use super::units::shown;
 
 /// A step above this share of Rayleigh's time gets a warning, above the second it is refused.
@@ -101,7 +101,7 @@ fn wave(rayleigh: f64) -> String {
 /// Times that limit the step of a contact solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Shortest [Rayleigh time](time_step::rayleigh) in s of a particle; infinite where springs are stated, in which no wave runs.
+    /// Shortest [Rayleigh time](time_step::rayleigh) in s of a particle, softer where all that it can touch is; infinite where springs are stated, in which no wave runs.
     pub rayleigh: f64,
     /// Shortest [duration of an impact](time_step::hertz_collision) in s at `speed`.
     pub hertz: f64,
@@ -163,7 +163,7 @@ pub fn motion(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Result<Told, C
     let step = match motion.step {
         Some(step) => step,
         // A whole number of steps fills a window.
-        None => window / (window / limits.fit()).ceil(),
+        None => window / (window / limits.fit()).ceil().max(1.0),
     };
     if let Some(error) = limits.refuse(step).filter(|_| !motion.long_step) {
         return Err(error);
@@ -297,7 +297,7 @@ fn fastest(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> f64 {
     start.chain(moving).fold(fall, f64::max)
 }
 
-/// What limits the time step, over all particles that are free.
+/// What limits the time step, over all contacts that particles which are free can have.
 pub fn limits(case: &Case, motion: &FreeMotion, mesh: &Mesh, setup: &ParticleSetup) -> Limits {
     let mut limits = Limits {
         rayleigh: f64::INFINITY,
@@ -310,22 +310,24 @@ pub fn limits(case: &Case, motion: &FreeMotion, mesh: &Mesh, setup: &ParticleSet
         },
     };
     for one in moving_spheres(case, setup) {
-        let (radius, density) = (one.radius[0], one.density);
-        if let ContactForce::LinearSprings { stiffness, .. } = motion.law.force {
-            // Two equal spheres: m* = m/2; a wall is heavier.
-            let mass = 0.5 * sphere::mass(radius, density);
-            let time = time_step::linear_collision(mass, stiffness);
-            limits.hertz = limits.hertz.min(time);
-            continue;
+        for Touching {
+            young,
+            mass,
+            radius,
+        } in touching(case, setup, &one)
+        {
+            if let ContactForce::LinearSprings { stiffness, .. } = motion.law.force {
+                let time = time_step::linear_collision(mass, stiffness);
+                limits.hertz = limits.hertz.min(time);
+                continue;
+            }
+            let poisson = one.elastic.poisson;
+            let rayleigh = time_step::rayleigh(one.radius[0], one.density, young, poisson);
+            let stiff = young / (2.0 * (1.0 - poisson * poisson));
+            let hertz = time_step::hertz_collision(radius, mass, stiff, limits.speed);
+            limits.rayleigh = limits.rayleigh.min(rayleigh);
+            limits.hertz = limits.hertz.min(hertz);
         }
-        let Elastic { young, poisson } = one.elastic;
-        let rayleigh = time_step::rayleigh(radius, density, young, poisson);
-        // Two equal spheres: m* = m/2, R* = R/2, E* = E/(2(1 − ν²)).
-        let mass = 0.5 * sphere::mass(radius, density);
-        let stiff = young / (2.0 * (1.0 - poisson * poisson));
-        let hertz = time_step::hertz_collision(0.5 * radius, mass, stiff, limits.speed);
-        limits.rayleigh = limits.rayleigh.min(rayleigh);
-        limits.hertz = limits.hertz.min(hertz);
     }
     limits
 }
@@ -440,5 +442,35 @@ mod tests {
         let fed = limits(&ParticleSetup::default());
         assert_eq!(fed.rayleigh, limits(&placed(0.5e-3)).rayleigh);
         assert!(fed.rayleigh < 0.6 * limits(&placed(1e-3)).rayleigh);
+    }
+
+    /// A sphere of 50 MPa that is alone among walls of 5 MPa: their E* is that of spheres of 2/(1/5 + 1/50) = 9.0909 MPa with each other.
+    #[test]
+    fn a_particle_that_is_alone_is_limited_by_what_it_can_touch() {
+        let path =
+            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/settling-sphere.toml");
+        let limits = |material: &str| {
+            let entry = |other: &str| {
+                format!(
+                    "{{ between = [\"{material}\", \"{other}\"], restitution = 0.8, friction = 0.3 }}"
+                )
+            };
+            let set = [
+                "materials.hard={ density = \"2500 kg/m^3\", heat_capacity = \"840 J/kg/K\", young = \"50 MPa\", poisson = 0.22 }".to_owned(),
+                format!("contacts=[{}]", [entry("glass"), entry("hard")].join(", ")),
+                format!("particles[0].material={material}"),
+            ];
+            let case = crate::case::read(&path, &set).unwrap();
+            let mesh = crate::case::mesh(&case.mesh).unwrap();
+            let setup = crate::case::particles(&case).unwrap().setup;
+            super::limits(&case, &case.motion.clone().unwrap(), &mesh, &setup)
+        };
+        let (soft, hard) = (limits("glass"), limits("hard"));
+        // T_R goes with E^(-1/2), the impact with E*^(-2/5).
+        let stiffer = 2.0 / (1.0 / 5.0 + 1.0 / 50.0) / 5.0f64;
+        let rayleigh = hard.rayleigh / soft.rayleigh * stiffer.sqrt();
+        let hertz = hard.hertz / soft.hertz * stiffer.powf(0.4);
+        assert!((rayleigh - 1.0).abs() < 1e-12, "{hard:?} {soft:?}");
+        assert!((hertz - 1.0).abs() < 1e-12, "{hard:?} {soft:?}");
     }
 }

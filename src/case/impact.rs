@@ -67,7 +67,9 @@ impl ImpactPair {
                 there * speed / characteristic_speed * (mass / self.mass).sqrt()
             }
             ContactForce::LinearSprings { stiffness, .. } => speed * (mass / stiffness).sqrt(),
-            ContactForce::HertzMindlin | ContactForce::SpringSliderDashpot => hertz(mass, speed),
+            ContactForce::HertzMindlin
+            | ContactForce::SpringSliderDashpot
+            | ContactForce::OpenfoamSpringSliderDashpot => hertz(mass, speed),
         }
     }
 }

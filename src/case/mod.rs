@@ -39,6 +39,7 @@ mod syntax;
 mod table;
 mod temperature_cautions;
 mod time_cautions;
+mod touching;
 pub mod units;
 mod used_up;
 mod wall_cautions;

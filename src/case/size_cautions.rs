@@ -14,6 +14,8 @@ use super::units::short3;
 const DIFFUSIVITY: [f64; 2] = [1e-8, 1e-1];
 /// Heat capacity in J/kg/K below which no solid is at the temperatures of beds: that of lead is 129.
 const LEAST_HEAT_CAPACITY: f64 = 50.0;
+/// Densities in kg/m³ that particles have: from foams to osmium.
+const DENSITY: [f64; 2] = [10.0, 22_600.0];
 /// Largest order of a reaction that is likely meant.
 const HIGHEST_ORDER: f64 = 5.0;
 /// Largest gravity in m/s² that is likely meant.
@@ -26,6 +28,7 @@ pub(super) fn all(case: &Case) -> Vec<String> {
     let mut all = windows(case);
     all.extend(gravity(case));
     all.extend(diffusivities(case));
+    all.extend(densities(case));
     all.extend(heat_capacities(case));
     all.extend(orders(case));
     all.extend(built_in(case));
@@ -108,6 +111,21 @@ fn diffusivities(case: &Case) -> Vec<String> {
         format!(
             "`{key}` is {value:e} m^2/s, but gases have {:e} to {:e} m^2/s, in pores as in the open: check its unit, 1 cm^2/s is 1e-4 m^2/s",
             DIFFUSIVITY[0], DIFFUSIVITY[1]
+        )
+    })
+    .collect()
+}
+
+fn densities(case: &Case) -> Vec<String> {
+    let materials = case.materials.iter();
+    let odd = materials.filter(|one| !(DENSITY[0]..=DENSITY[1]).contains(&one.density));
+    odd.map(|one| {
+        format!(
+            "`materials.{}.density` is {} kg/m^3, outside {} to {} kg/m^3, what solids have: check its unit, kg/m^3 and not g/cm^3",
+            one.name,
+            short3(one.density),
+            DENSITY[0],
+            DENSITY[1]
         )
     })
     .collect()

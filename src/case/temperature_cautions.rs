@@ -38,7 +38,10 @@ impl Stated {
 
 /// Warnings, in a fixed order.
 pub(super) fn all(case: &Case) -> Vec<String> {
-    let gas = of_gas(case);
+    let gas = match case.gas.properties.is_vacuum() {
+        true => Vec::new(),
+        false => of_gas(case),
+    };
     let mut all = Vec::new();
     let range = case.gas.properties.temperature_range();
     let data = format!("the species of the gas end at {} K", ends(range));

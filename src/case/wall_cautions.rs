@@ -1,7 +1,7 @@
 //! What of the walls of a case is likely not meant.
 
 use calcine_coupler::mesh::cylinder::outline;
-use calcine_coupler::motion::WallShape;
+use calcine_coupler::motion::{WallMotion, WallShape};
 use calcine_coupler::physics::Vec3;
 
 use super::model::{Case, MeshSpec, MotionSpec};
@@ -29,9 +29,33 @@ pub(super) fn all(case: &Case) -> Vec<String> {
                 shown(size),
                 shown(mesh)
             ));
+        } else if wall.motion == WallMotion::Still && beside(triangles, &case.mesh) {
+            all.push(format!(
+                "the triangles of the wall `{}` all lie beside the mesh, where no particle comes: check `scale` and the place of the surface",
+                wall.name
+            ));
         }
     }
     all
+}
+
+/// True of triangles that all lie beside a mesh that the case states.
+fn beside(triangles: &[[Vec3; 3]], mesh: &MeshSpec) -> bool {
+    let (low, high) = match mesh {
+        MeshSpec::Box { origin, size, .. } => (*origin, origin + size),
+        MeshSpec::Cylinder {
+            origin,
+            diameter,
+            length,
+            ..
+        } => {
+            let across = Vec3::new(0.5 * diameter, 0.5 * diameter, 0.0);
+            (origin - across, origin + across + *length * Vec3::z())
+        }
+        MeshSpec::PolyMesh(_) => return false,
+    };
+    let (from, to) = extent(triangles);
+    (0..3).any(|axis| to[axis] < low[axis] || from[axis] > high[axis])
 }
 
 /// Warns where a round wall lies so far beyond the flat sides of a cylinder's mesh that the smallest particles that move may leave it.
@@ -73,10 +97,16 @@ fn beyond_flat_sides(case: &Case) -> Option<String> {
     })
 }
 
-fn largest_extent(triangles: &[[Vec3; 3]]) -> f64 {
+/// Lowest and highest corner in m of a box around triangles.
+fn extent(triangles: &[[Vec3; 3]]) -> (Vec3, Vec3) {
     let corners = || triangles.iter().flatten();
     let low = corners().fold(Vec3::repeat(f64::MAX), |low, one| low.inf(one));
     let high = corners().fold(Vec3::repeat(f64::MIN), |high, one| high.sup(one));
+    (low, high)
+}
+
+fn largest_extent(triangles: &[[Vec3; 3]]) -> f64 {
+    let (low, high) = extent(triangles);
     (high - low).max()
 }
 

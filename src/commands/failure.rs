@@ -51,7 +51,8 @@ impl From<AssemblyError> for Failure {
             AssemblyError::Part(_) => exit::PEER,
             _ => exit::CASE,
         };
-        Failure::new(code, chain(&error))
+        let remedy = error.remedy().map(|help| format!("\n  help: {help}"));
+        Failure::new(code, chain(&error) + &remedy.unwrap_or_default())
     }
 }
 

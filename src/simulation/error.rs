@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use calcine_adapters::last_words;
 use calcine_coupler::coordinator::{Ending, RunError};
 use miette::Diagnostic;
 use thiserror::Error;
@@ -116,6 +117,15 @@ pub enum SimulationError {
     Failed,
 }
 
+/// What helps against the failure of an external solver.
+pub(crate) fn of_run(error: &RunError) -> Option<&'static str> {
+    match error {
+        RunError::Part(part) => last_words::remedy(part),
+        RunError::Reacting { cause, .. } => of_run(cause),
+        _ => None,
+    }
+}
+
 fn words(ending: &Ending) -> String {
     match ending {
         Ending::Finished => "at the end of its time".into(),
@@ -154,6 +164,8 @@ impl SimulationError {
     pub fn remedy(&self) -> Option<String> {
         match self {
             Self::Results(error) => error.help().map(|help| help.to_string()),
+            Self::Assembly(error) => error.remedy().map(str::to_owned),
+            Self::Run(error) => of_run(error).map(str::to_owned),
             _ => None,
         }
     }

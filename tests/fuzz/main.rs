@@ -8,11 +8,15 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
+mod attached;
 mod case;
+#[cfg(feature = "hdf5")]
+mod checkpoint;
 mod mutate;
 mod parent;
 mod polymesh;
 mod random;
+mod set;
 mod worker;
 
 use std::fs;
@@ -21,6 +25,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use random::Random;
+use tempfile::TempDir;
 
 /// An input: files by name.
 type Files = Vec<(String, Vec<u8>)>;
@@ -34,13 +39,36 @@ trait Target {
 }
 
 /// Names of the targets.
-const TARGETS: [&str; 2] = ["case", "polymesh"];
+const TARGETS: &[&str] = &[
+    "case",
+    "polymesh",
+    "stl",
+    "csv",
+    "vtk",
+    "set",
+    #[cfg(feature = "hdf5")]
+    "checkpoint",
+];
 
 fn target(name: &str) -> Box<dyn Target> {
     match name {
         "case" => Box::new(case::CaseFiles::new()),
+        "set" => Box::new(set::Assignments::new()),
+        "stl" | "csv" | "vtk" => Box::new(attached::AttachedFiles::new(name)),
+        #[cfg(feature = "hdf5")]
+        "checkpoint" => Box::new(checkpoint::Checkpoints::new()),
         _ => Box::new(polymesh::PolyMeshes::new()),
     }
+}
+
+/// A folder for the files of inputs, in memory where there is such a place.
+fn scratch() -> TempDir {
+    let memory = Path::new("/dev/shm");
+    let folder = match memory.is_dir() {
+        true => tempfile::tempdir_in(memory),
+        false => tempfile::tempdir(),
+    };
+    folder.unwrap()
 }
 
 /// Executes a finding again, in this process, so that a backtrace can be seen. The folder's
@@ -48,7 +76,11 @@ fn target(name: &str) -> Box<dyn Target> {
 fn replay(folder: &Path) -> ExitCode {
     let name = folder.parent().and_then(Path::file_name).unwrap();
     let read = |path: PathBuf| {
-        let file = path.file_name().unwrap().to_string_lossy().into_owned();
+        let file = path
+            .file_name()
+            .unwrap()
+            .to_string_lossy()
+            .replace('%', "/");
         (file, fs::read(&path).unwrap())
     };
     let entries = fs::read_dir(folder).unwrap();
@@ -80,7 +112,8 @@ fn main() -> ExitCode {
     let minutes = value("--minutes").and_then(|text| text.parse::<f64>().ok());
     let seed = value("--seed").and_then(|text| text.parse().ok());
     let named: Vec<&str> = TARGETS
-        .into_iter()
+        .iter()
+        .copied()
         .filter(|name| words.iter().any(|word| word == name))
         .collect();
     let mut filters = words
@@ -94,11 +127,7 @@ fn main() -> ExitCode {
     let time = minutes.map_or(Duration::from_secs(5), |minutes| {
         Duration::from_secs_f64(60.0 * minutes)
     });
-    let chosen = if named.is_empty() {
-        &TARGETS[..]
-    } else {
-        &named
-    };
+    let chosen = if named.is_empty() { TARGETS } else { &named };
     let findings: usize = chosen
         .iter()
         .map(|name| parent::run(name, seed.unwrap_or(SEED), time))

@@ -97,7 +97,8 @@ pub fn save(name: &str, seed: u64, input: u64, files: &Files, message: &str) {
     let folder = folder(name).join(format!("{seed}-{input}"));
     fs::create_dir_all(&folder).unwrap();
     for (file, bytes) in files {
-        fs::write(folder.join(file), bytes).unwrap();
+        // Files of an input may lie in folders.
+        fs::write(folder.join(file.replace('/', "%")), bytes).unwrap();
     }
     fs::write(folder.join("message"), message).unwrap();
     println!("finding {}: {message}", folder.display());

@@ -2,7 +2,6 @@
 //! and what it accepts is a mesh that can be worked with.
 
 use std::fs;
-use std::path::Path;
 
 use calcine_coupler::mesh::block::{BoxSpec, box_mesh};
 use calcine_coupler::mesh::cylinder::{CylinderSpec, cylinder_mesh};
@@ -14,7 +13,7 @@ use tempfile::TempDir;
 
 use crate::mutate::mutate;
 use crate::random::Random;
-use crate::{Files, Target};
+use crate::{Files, Target, scratch};
 
 const FILES: [&str; 5] = ["points", "faces", "owner", "neighbour", "boundary"];
 
@@ -33,15 +32,9 @@ impl PolyMeshes {
                 corpus.push(binary(&mesh, label, scalar));
             }
         }
-        // In memory where there is such a folder: an input is five files.
-        let memory = Path::new("/dev/shm");
-        let folder = match memory.is_dir() {
-            true => tempfile::tempdir_in(memory),
-            false => tempfile::tempdir(),
-        };
         Self {
             corpus,
-            folder: folder.unwrap(),
+            folder: scratch(),
         }
     }
 }

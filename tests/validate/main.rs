@@ -25,6 +25,7 @@ mod hopper;
 #[path = "../support/hopper.rs"]
 mod hopper_bed;
 mod kept;
+mod load;
 mod moving_bed;
 #[path = "../support/program.rs"]
 mod program;
@@ -70,6 +71,7 @@ const ALL: &[(&str, fn())] = &[
     #[cfg(feature = "hdf5")]
     ("fluidised-bed", fluidised_bed::run),
     ("hopper", hopper::run),
+    ("load", load::run),
     ("moving-bed", moving_bed::run),
     ("repose", repose::run),
     #[cfg(feature = "hdf5")]

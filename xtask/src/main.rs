@@ -45,7 +45,8 @@ usage: cargo xtask TASK
                           hot-duct, five-species
         [--no-build]      with the programs that were built last
   fuzz [--minutes N]      fuzz the readers of users' files, ten minutes each by default
-        [--seed S] [case|polymesh]
+        [--seed S]        of case, polymesh, stl, csv, vtk, set, checkpoint
+        [TARGET …]
   torture [--kills N]     kill runs at random moments, resume, compare every bit (default: 50)
         [--seed S]        the seed of the random numbers
         [--from K]        begin with the K-th kill, to repeat one
@@ -54,9 +55,9 @@ usage: cargo xtask TASK
         [--from K]        that nothing is left (default: 500 trials)
   validate [NAME …]       long validations, all by default: agreement, backward-step,
                           checkpoint-faults, elastic-box, flame, fluidised-bed, hopper,
-                          moving-bed, repose, restarts, shaft-choices, shaft-flames,
-                          shaft-furnace, skewed-cavity, skewed-meshes,
-                          spouted-bed, square-cylinder, voids";
+                          load, moving-bed, repose, restarts, shaft-choices, shaft-flames,
+                          shaft-furnace, skewed-cavity, skewed-meshes, spouted-bed,
+                          square-cylinder, voids";
 
 /// Exit code of a wrong command line, as `calcine` has it.
 const USAGE_CODE: u8 = 2;

@@ -26,10 +26,10 @@ pub fn types(contacts: &Contacts) -> usize {
 /// What LIGGGHTS cannot do of a case, with the remedy.
 pub fn refusal(contacts: &Contacts) -> Option<String> {
     match contacts.law.force {
-        ContactForce::SpringSliderDashpot => {
+        ContactForce::SpringSliderDashpot | ContactForce::OpenfoamSpringSliderDashpot => {
             return Some(
-                "it has no contact law \"spring-slider-dashpot\", which forgets its tangential spring as \
-                 it slips; write motion.contact = { law = \"hertz-mindlin\" }"
+                "it has no contact law \"spring-slider-dashpot\", neither with friction that limits spring and dashpot together \
+                 nor with a spring that slip forgets; write motion.contact = { law = \"hertz-mindlin\" }"
                     .into(),
             );
         }
@@ -221,7 +221,9 @@ fn model(contacts: &Contacts) -> String {
         ContactForce::Linear { .. } | ContactForce::LinearSprings { .. } => {
             "model hooke".to_owned()
         }
-        ContactForce::HertzMindlin | ContactForce::SpringSliderDashpot => "model hertz".to_owned(),
+        ContactForce::HertzMindlin
+        | ContactForce::SpringSliderDashpot
+        | ContactForce::OpenfoamSpringSliderDashpot => "model hertz".to_owned(),
     };
     model.push_str(" tangential history");
     if law.cohesion == Cohesion::Sjkr {

@@ -43,6 +43,19 @@ impl GasModel {
         }
     }
 
+    /// No gas at all: neither mass nor pressure, and nothing that moves heat or drags.
+    pub const VACUUM: Self = Self::Constant(ConstantGas {
+        density: 0.0,
+        heat_capacity: 0.0,
+        viscosity: 0.0,
+        conductivity: 0.0,
+    });
+
+    /// True where there is no gas.
+    pub fn is_vacuum(&self) -> bool {
+        *self == Self::VACUUM
+    }
+
     /// True where density follows pressure and temperature.
     pub fn compressible(&self) -> bool {
         !matches!(self, Self::Constant(_))

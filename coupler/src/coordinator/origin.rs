@@ -19,6 +19,9 @@ use crate::time::{Clocks, Ticks};
 /// decimal numbers return them rounded.
 const SAME: f64 = 1e-9;
 
+/// Angular velocities in a checkpoint of the coordinator.
+const SPIN: &str = "particle_angular_velocity";
+
 /// The last checkpoint of another run: what a run of a changed case takes over from it, and what
 /// must be the same for that.
 #[derive(Debug)]
@@ -88,7 +91,7 @@ impl Origin {
     /// The particles to go on with, and an error where mesh, species or what must be the same of the particles differ.
     ///
     /// Where particles of this case move, it goes on with all those that the other run left, of the same populations by
-    /// name: where they came to, as large, heavy and fast, without their spins and what contacts remember. Where
+    /// name: where they came to, as large, heavy and fast, with their spins, without what contacts remember. Where
     /// none moves, with those of this case that the other run still has; only particles of the populations of which `reacts`
     /// is true may then have changed their sizes and masses and been used up.
     pub fn take_particles(
@@ -176,7 +179,7 @@ impl Origin {
             density: mass.iter().zip(spheres).map(|(m, v)| m / v).collect(),
             radius,
             velocity: vectors("particle_velocity")?,
-            angular_velocity: Vec::new(),
+            angular_velocity: vectors(SPIN)?,
             weight: self.state.f64s("particle_weight")?.to_vec(),
             motion: motion.clone(),
             id,
@@ -291,6 +294,11 @@ impl CoupledRun {
         state.set_u64s("populations", &bytes(&self.plan.populations.join(", ")));
         state.set_u64s("particle_population", &population);
         state.set_f64s("particle_velocity", &velocities);
+        let spins = particles
+            .angular_velocity
+            .iter()
+            .flat_map(|one| <[f64; 3]>::from(*one));
+        state.set_f64s(SPIN, &spins.collect::<Vec<f64>>());
         state.set_u64s("particle_id", particles.id);
         state.set_f64s("particle_position", &centres);
         state.set_f64s("particle_radius", particles.radius);

@@ -95,9 +95,23 @@ impl Sheet {
     }
 
     /// Three columns, where all are there.
-    fn vectors(&self, names: [[&str; 3]; 3]) -> Option<[&[f64]; 3]> {
-        let [x, y, z] = names.map(|names| self.column(&names));
-        Some([x?, y?, z?])
+    fn vectors(
+        &self,
+        what: &str,
+        names: [[&'static str; 3]; 3],
+    ) -> Result<Option<[&[f64]; 3]>, Fault> {
+        let found = names.map(|names| self.column(&names));
+        match found {
+            [Some(x), Some(y), Some(z)] => Ok(Some([x, y, z])),
+            [None, None, None] => Ok(None),
+            _ => {
+                let is_missing = |index: &usize| found[*index].is_none();
+                let missing = (0..3).filter(is_missing).map(|index| names[index][0]);
+                let missing = missing.collect::<Vec<_>>().join(" and ");
+                let fact = format!("it has components of the {what}, but no column {missing}");
+                Err((None, fact))
+            }
+        }
     }
 
     fn row(&self, index: usize) -> Row {
@@ -141,13 +155,19 @@ impl Sheet {
         let own = self.column(&DIAMETER).map(|list| (list, 1.0));
         let own = own.or_else(|| self.column(&RADIUS).map(|list| (list, 2.0)));
         let temperature = self.column(&TEMPERATURE);
-        let velocity = self.vectors(VELOCITY);
-        let spin = self.vectors(SPIN);
+        let velocity = self.vectors("velocity", VELOCITY)?;
+        let spin = self.vectors("angular velocity", SPIN)?;
         let positive = |what: &str, index: usize, value: f64| {
-            if value.is_finite() && value > 0.0 {
+            // Of what is larger no volume can be computed.
+            if value.powi(3).is_finite() && value > 0.0 {
                 return Ok(value);
             }
-            let what = format!("the {what} is {value}, not above zero");
+            let rule = if value > 0.0 {
+                "beyond all measure"
+            } else {
+                "not above zero"
+            };
+            let what = format!("the {what} is {value}, {rule}");
             Err((Some(self.row(index)), what))
         };
         let entry = |index: usize| {

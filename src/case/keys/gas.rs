@@ -194,8 +194,8 @@ const CONTROLS: &[Key] = &[
 
 #[rustfmt::skip]
 pub(super) const GAS: &[Key] = &[
-    key("mixture", Text, Required, "`air`, or any name together with `gas.properties` or `gas.constant`.", "\"air\""),
-    key("initial", Table(INITIAL), Required, "The gas at the start, everywhere.", "{ temperature = \"300 K\", pressure = \"1 atm\" }"),
+    key("mixture", Text, Required, "`air`, any name together with `gas.properties` or `gas.constant`, or `vacuum`: no gas, no `initial`, no `patch`, and laws `none` of drag and heat transfer.", "\"air\""),
+    key("initial", Table(INITIAL), Without("none in a vacuum; else required"), "The gas at the start, everywhere.", "{ temperature = \"300 K\", pressure = \"1 atm\" }"),
     key("gravity", Vector(D::ACCELERATION), Default("0 0 0 m/s^2"), "Gravity on gas and free particles.", "\"0 0 -9.81 m/s^2\""),
     key("pressure_gradient", Vector(D::PRESSURE_GRADIENT), Default("0 0 0 Pa/m"), "Mean pressure gradient beside that of the pressure field: it drives gas along periodic directions, towards where it falls.", "\"-1.2 0 0 Pa/m\""),
     key("held", Truth, Default("false"), "The gas stays as it is at the start, at any exchange: superficial velocity, temperature, and a pressure gradient of its own weight. No gas solver runs.", "true"),
@@ -206,6 +206,6 @@ pub(super) const GAS: &[Key] = &[
     key("constant", Table(CONSTANT), Without("an ideal gas"), "A fluid of constant properties; not with `gas.properties`. Its enthalpy is c_p (T - 298.15 K).", "[gas.constant]"),
     key("properties", Table(PROPERTIES), Without("those of `gas.mixture`"), "An ideal gas by its properties.", "[gas.properties]"),
     key("turbulence", Table(TURBULENCE), Without("a laminar gas"), "Eddies, outside the bed (where the solid fraction is 0.1 or less), and in it by `bed`.", "[gas.turbulence]"),
-    key("patch", Named(PATCH), Required, "Boundary condition of every patch by its name. Without an outlet or an opening the domain is closed: an ideal gas then takes the pressure at which it fills the pores.", "[gas.patch.bottom]"),
+    key("patch", Named(PATCH), Without("none in a vacuum; else required"), "Boundary condition of every patch by its name. Without an outlet or an opening the domain is closed: an ideal gas then takes the pressure at which it fills the pores.", "[gas.patch.bottom]"),
     key("controls", Table(CONTROLS), Without("see its keys"), "Accuracy of the gas solver.", "{ outer_tolerance = 1e-8 }"),
 ];

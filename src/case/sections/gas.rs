@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use calcine_coupler::gas_chemistry::Combustion;
+use calcine_coupler::gas_chemistry::{Combustion, GasChemistry};
 use calcine_coupler::momentum_model::MomentumModel;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::gas::GasProperties;
 use calcine_coupler::physics::gas_model::{ConstantGas, GasModel};
-use calcine_coupler::physics::law::LawChoice;
+use calcine_coupler::physics::law::{LawChoice, NONE};
 use calcine_coupler::physics::turbulence::BedEddies;
-use calcine_coupler::setup::{Convection, GasControls, GasSetup};
+use calcine_coupler::setup::{Convection, GasControls, GasSetup, Turbulence};
 use calcine_coupler::time::GasStorage;
 
 use super::chemistry::{Around, chemistry};
@@ -17,8 +17,11 @@ use super::composition::{no_species, of_gas};
 use super::gas_patch::boundary;
 use super::species_data;
 use super::turbulence::turbulence;
-use crate::case::model::MeshSpec;
+use crate::case::model::{Laws, MeshSpec};
 use crate::case::table::TableReader;
+
+/// The mixture that is none.
+const VACUUM: &str = "vacuum";
 
 /// What the section says.
 pub(super) struct GasRead {
@@ -38,6 +41,9 @@ pub(super) fn read(
 ) -> Option<GasRead> {
     let section = root.table("gas")?;
     let mixture = section.text("mixture");
+    if mixture == Some(VACUUM) {
+        return vacuum(&section);
+    }
     let (properties, mut files) = match properties(&section, mixture, folder) {
         Some((gas, files)) => (Some(gas), files),
         None => (None, Vec::new()),
@@ -98,6 +104,80 @@ pub(super) fn read(
         files,
         bed_eddies,
     })
+}
+
+/// No gas: what else the section says of one is an error.
+fn vacuum(section: &TableReader<'_>) -> Option<GasRead> {
+    for key in [
+        "initial",
+        "patch",
+        "properties",
+        "constant",
+        "species",
+        "species_data",
+        "schmidt",
+        "chemistry",
+        "turbulence",
+    ] {
+        if section.has(key) {
+            let rule = "stands beside a vacuum, which has none";
+            section.fail(key, rule, "remove it, or write another `gas.mixture`");
+        }
+    }
+    let gravity = section.vector("gravity").unwrap_or([0.0; 3]);
+    // A vacuum stays as it is, held or not, and nothing is solved for.
+    section.truth("held");
+    let controls = controls(section);
+    section.finish();
+    let setup = GasSetup {
+        mixture: VACUUM.into(),
+        properties: GasModel::VACUUM,
+        schmidt: 1.0,
+        chemistry: GasChemistry::default(),
+        storage: GasStorage::default(),
+        temperature: 0.0,
+        composition: Vec::new(),
+        pressure: 0.0,
+        velocity: Vec3::zeros(),
+        gravity: Vec3::from(gravity),
+        momentum: MomentumModel::default(),
+        turbulence: Turbulence::Laminar,
+        patches: Vec::new(),
+        controls: controls?,
+    };
+    Some(GasRead {
+        setup,
+        held: true,
+        files: Vec::new(),
+        bed_eddies: LawChoice::named(&section.laws().bed_eddies, NONE, Vec::new())?,
+    })
+}
+
+/// Laws of what a gas does to particles are none in a vacuum.
+pub(super) fn acts(root: &TableReader<'_>, gas: &GasSetup, laws: &Laws) {
+    let Some(section) = root.table("laws").filter(|_| gas.properties.is_vacuum()) else {
+        return;
+    };
+    let stated = [
+        ("drag", laws.drag.entry().name, laws.drag.is_none()),
+        (
+            "heat_transfer",
+            laws.heat_transfer.entry().name,
+            laws.heat_transfer.is_none(),
+        ),
+        (
+            "mass_transfer",
+            laws.mass_transfer.entry().name,
+            laws.mass_transfer.is_none(),
+        ),
+    ];
+    for (key, name, is_none) in stated {
+        if !is_none {
+            let rule =
+                format!("is \"{name}\", but the gas is a vacuum, which does nothing to particles");
+            section.fail(key, rule, format!("write {key} = {{ law = \"none\" }}"));
+        }
+    }
 }
 
 /// A built-in mixture, or the properties of `[gas.properties]` or `[gas.constant]`.
@@ -193,6 +273,7 @@ fn initial(
     section: &TableReader<'_>,
     gas: Option<&GasModel>,
 ) -> Option<(f64, f64, Vec3, Vec<f64>)> {
+    section.need("initial");
     let initial = section.table("initial")?;
     let temperature = initial.number("temperature");
     let pressure = initial.number("pressure");

@@ -21,6 +21,7 @@ pub(super) fn boundary(
     gas: Option<&GasModel>,
     turbulent: Option<bool>,
 ) -> Option<Vec<(String, GasPatch)>> {
+    section.need("patch");
     let table = section.table("patch")?;
     let named = table.named();
     let mut made = Vec::new();

@@ -87,6 +87,9 @@ pub(super) fn case(
         schmidt: gas.setup.schmidt,
     });
     let laws = laws::read(root, bed_eddies, film_gas);
+    if let (Some(gas), Some(laws)) = (&gas, &laws) {
+        gas::acts(root, &gas.setup, laws);
+    }
     let (walls, left_out) = walls::walls(root, &materials, mesh.as_ref(), folder);
     let motion = motion::motion(root, time.as_ref().map(|(time, _)| time));
     let coupling = coupling::read(root);

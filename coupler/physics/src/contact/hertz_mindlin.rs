@@ -1,6 +1,6 @@
 //! Hertz, Mindlin and Tsuji.
 
-use super::{ContactModel, PairConstants, Springs};
+use super::{ContactModel, PairConstants, Slip, Springs};
 
 /// Elastic spheres with a tangential spring and a damping that makes the restitution independent of the
 /// speed of impact.
@@ -21,7 +21,7 @@ pub struct HertzMindlin;
 pub(super) const DAMPING: f64 = 1.825_741_858_350_553_6;
 
 impl ContactModel for HertzMindlin {
-    const FORGETS_ON_SLIP: bool = false;
+    const SLIP: Slip = Slip::SpringKept;
 
     #[inline(always)]
     fn springs(

@@ -1,6 +1,6 @@
 //! Linear spring and dashpot.
 
-use super::{ContactModel, PairConstants, Springs};
+use super::{ContactModel, PairConstants, Slip, Springs};
 
 /// A linear spring that overlaps as much as Hertz' law does when two spheres meet at a characteristic speed.
 ///
@@ -16,7 +16,7 @@ pub struct Linear {
 }
 
 impl ContactModel for Linear {
-    const FORGETS_ON_SLIP: bool = false;
+    const SLIP: Slip = Slip::SpringKept;
 
     /// The stiffness k in N/m.
     fn prepare(&self, pair: &PairConstants, radius: f64, mass: f64) -> f64 {

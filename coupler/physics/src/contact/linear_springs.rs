@@ -1,6 +1,6 @@
 //! Linear springs and dashpots of a stated stiffness.
 
-use super::{ContactModel, PairConstants, Springs};
+use super::{ContactModel, PairConstants, Slip, Springs};
 
 /// A linear spring of one stiffness for all pairs, and a tangential one of a share of it.
 ///
@@ -21,7 +21,7 @@ pub struct LinearSprings {
 }
 
 impl ContactModel for LinearSprings {
-    const FORGETS_ON_SLIP: bool = false;
+    const SLIP: Slip = Slip::SpringKept;
 
     #[inline(always)]
     fn springs(

@@ -18,7 +18,7 @@ pub use hertz_mindlin::HertzMindlin;
 pub use linear::Linear;
 pub use linear_springs::LinearSprings;
 pub use rolling::{RollingSpring, constant_torque, elastic_plastic};
-pub use spring_slider_dashpot::SpringSliderDashpot;
+pub use spring_slider_dashpot::{OpenfoamSpringSliderDashpot, SpringSliderDashpot};
 
 /// What the contact of two materials needs, worked out once per pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,11 +78,21 @@ pub struct Springs {
     pub tangential_damping: f64,
 }
 
+/// What friction limits, and what becomes of the tangential spring as a contact slips.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slip {
+    /// The spring alone, which keeps the length that friction can hold (docs/theory.md, COR-12).
+    SpringKept,
+    /// The spring alone, which is forgotten; the force then acts against the velocity of slip (docs/theory.md, COR-13).
+    SpringForgotten,
+    /// Spring and dashpot together; the spring keeps what makes the next sum that limit (docs/theory.md, COR-13).
+    SumLimited,
+}
+
 /// A law of the force between two spheres in contact; a flat wall is a sphere of endless radius and mass.
 pub trait ContactModel: Copy + Send + Sync {
-    /// True where the tangential spring is forgotten when the contact slips, false where it keeps what
-    /// friction can hold.
-    const FORGETS_ON_SLIP: bool;
+    /// What friction limits, and what becomes of the tangential spring as the contact slips.
+    const SLIP: Slip;
 
     /// A value of the pair of spheres that does not change with their overlap: effective radius R* =
     /// R₁R₂/(R₁ + R₂) in m, effective mass m* = m₁m₂/(m₁ + m₂) in kg.

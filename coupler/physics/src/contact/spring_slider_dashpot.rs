@@ -1,23 +1,48 @@
-//! OpenFOAM's pair of spring, slider and dashpot.
+//! Spring, slider and dashpot, limited as Coulomb says or as OpenFOAM does.
 
 use super::hertz_mindlin::DAMPING;
-use super::{ContactModel, PairConstants, Springs};
+use super::{ContactModel, PairConstants, Slip, Springs};
 
-/// OpenFOAM's `pairSpringSliderDashpot` with b = 1.5.
+/// The springs and dashpots of OpenFOAM's `pairSpringSliderDashpot` with b = 1.5, their tangential force limited by friction.
 ///
-/// k_N = 4/3 E* √R*, F = k_N δ^1.5, η_N = α √(m* k_N) δ^¼ with α = √5 β, k_T = 8 G* √(R* δ), η_T = η_N
+/// k_N = 4/3 E* √R*, F = k_N δ^1.5, η_N = α √(m* k_N) δ^¼ with α = √5 β, k_T = 8 G* √(R* δ), η_T = η_N, |k_T ξ + η_T v_t| ≤ μ |F_n|
 /// (docs/theory.md, COR-13)
 ///
-/// It differs from `HertzMindlin` in the tangential damping, and in that slip forgets the tangential
-/// spring and acts against the slip's velocity.
+/// It differs from `HertzMindlin` in the tangential damping, and in that friction limits spring and dashpot together.
 ///
 /// Source: OpenFOAM 6, `PairSpringSliderDashpot.C`; Tsuji, Tanaka, Ishida, Powder Technol. 71 (1992) 239,
-/// doi 10.1016/0032-5910(92)88030-L.
+/// doi 10.1016/0032-5910(92)88030-L; limit of the sum by Luding, Granular Matter 10 (2008) 235, doi 10.1007/s10035-008-0099-x.
 #[derive(Clone, Copy, Debug)]
 pub struct SpringSliderDashpot;
 
+/// The same as OpenFOAM has it: friction limits the spring alone, and slip forgets it.
+///
+/// The friction of a contact that slides then depends on the time step: after each slip the spring begins anew, and the dashpot, which
+/// nothing limits, acts until it has grown. With small steps that is more than μ |F_n| where it slides fast, and less where it slides
+/// slowly.
+///
+/// Source: OpenFOAM 6, `PairSpringSliderDashpot.C`.
+#[derive(Clone, Copy, Debug)]
+pub struct OpenfoamSpringSliderDashpot;
+
+/// Springs and dashpots of both.
+#[inline(always)]
+fn springs(pair: &PairConstants, overlap: f64, radius: f64, mass: f64) -> Springs {
+    let contact_radius = (radius * overlap).sqrt();
+    let normal = 2.0 * pair.young * contact_radius;
+    let elastic = 2.0 / 3.0 * normal * overlap;
+    let damping = DAMPING * pair.damping * (normal * mass).sqrt();
+    Springs {
+        elastic,
+        energy: 0.4 * elastic * overlap,
+        normal_damping: damping,
+        tangential_stiffness: 8.0 * pair.shear * contact_radius,
+        tangential_damping: damping,
+    }
+}
+
 impl ContactModel for SpringSliderDashpot {
-    const FORGETS_ON_SLIP: bool = true;
+    const SLIP: Slip = Slip::SumLimited;
 
     #[inline(always)]
     fn springs(
@@ -28,17 +53,23 @@ impl ContactModel for SpringSliderDashpot {
         radius: f64,
         mass: f64,
     ) -> Springs {
-        let contact_radius = (radius * overlap).sqrt();
-        let normal = 2.0 * pair.young * contact_radius;
-        let elastic = 2.0 / 3.0 * normal * overlap;
-        let damping = DAMPING * pair.damping * (normal * mass).sqrt();
-        Springs {
-            elastic,
-            energy: 0.4 * elastic * overlap,
-            normal_damping: damping,
-            tangential_stiffness: 8.0 * pair.shear * contact_radius,
-            tangential_damping: damping,
-        }
+        springs(pair, overlap, radius, mass)
+    }
+}
+
+impl ContactModel for OpenfoamSpringSliderDashpot {
+    const SLIP: Slip = Slip::SpringForgotten;
+
+    #[inline(always)]
+    fn springs(
+        &self,
+        pair: &PairConstants,
+        _prepared: f64,
+        overlap: f64,
+        radius: f64,
+        mass: f64,
+    ) -> Springs {
+        springs(pair, overlap, radius, mass)
     }
 }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use calcine_coupler::motion::Rolling;
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::physics::contact::{CohesionArea, ContactModel};
+use calcine_coupler::physics::contact::{CohesionArea, ContactModel, Slip};
 
 use super::candidates::{CandidatePairs, TouchingPair};
 use super::contact::{SurfaceOverlap, evaluate};
@@ -86,7 +86,7 @@ impl Block {
         outgoing.fill(SphereLoad::default());
         // Counting energies, rolling, cohesion and looks without a step go one by one.
         let plain = !BUDGET
-            && !L::FORGETS_ON_SLIP
+            && L::SLIP == Slip::SpringKept
             && !scene.rules.cohesion
             && scene.rules.rolling == Rolling::None
             && scene.step > 0.0;

@@ -9,7 +9,8 @@ use std::iter::repeat;
 use calcine_coupler::motion::{ContactForce, Contacts};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::contact::{
-    ContactModel, HertzMindlin, Linear, LinearSprings, SpringSliderDashpot,
+    ContactModel, HertzMindlin, Linear, LinearSprings, OpenfoamSpringSliderDashpot,
+    SpringSliderDashpot,
 };
 use rayon::prelude::*;
 
@@ -443,6 +444,9 @@ impl Engine {
         match self.contacts.law.force {
             ContactForce::HertzMindlin => self.find_with(&HertzMindlin, false),
             ContactForce::SpringSliderDashpot => self.find_with(&SpringSliderDashpot, false),
+            ContactForce::OpenfoamSpringSliderDashpot => {
+                self.find_with(&OpenfoamSpringSliderDashpot, false);
+            }
             ContactForce::Linear {
                 characteristic_speed,
             } => self.find_with(

@@ -4,7 +4,8 @@ use std::iter::repeat;
 
 use calcine_coupler::motion::ContactForce;
 use calcine_coupler::physics::contact::{
-    ContactModel, HertzMindlin, Linear, LinearSprings, SpringSliderDashpot,
+    ContactModel, HertzMindlin, Linear, LinearSprings, OpenfoamSpringSliderDashpot,
+    SpringSliderDashpot,
 };
 use rayon::prelude::*;
 
@@ -38,6 +39,9 @@ impl Engine {
         match self.contacts.law.force {
             ContactForce::HertzMindlin => self.pass_with(&HertzMindlin, step, moves),
             ContactForce::SpringSliderDashpot => self.pass_with(&SpringSliderDashpot, step, moves),
+            ContactForce::OpenfoamSpringSliderDashpot => {
+                self.pass_with(&OpenfoamSpringSliderDashpot, step, moves)
+            }
             ContactForce::Linear {
                 characteristic_speed: speed,
             } => self.pass_with(&Linear { speed }, step, moves),
