@@ -198,7 +198,7 @@ void Foam::calcine::gas::measureFaces()
             turns_[patch.start() + i] = true;
             vector& sum = between[patch.faceCells()[i]];
             const vector n = normalised(mesh_.faceAreas()[patch.start() + i]);
-            sum = mag(sum) > 0 ? normalised(sum - n) : n;
+            sum = mag(sum) > 0 ? vector(normalised(sum - n)) : n;
         }
     }
     for (label facei = 0; facei < faces; ++facei)
