@@ -130,6 +130,7 @@ impl Found {
         // Steady: e^-9 of what the slowest mode had is left.
         let turns = if known.reynolds > 500.0 { 80.0 } else { 30.0 };
         let windows = (turns * cells as f64 / courant).ceil();
+        // In whole nanoseconds.
         let window = (1e9 * turns * SIDE / windows).round();
         let (sine, cosine) = known.degrees.to_radians().sin_cos();
         let place = [
@@ -137,11 +138,11 @@ impl Found {
             0.5 * SIDE * sine,
             0.5 * depth,
         ];
-        let end = window * windows;
+        let (end, window) = (window * windows / 1e9, window / 1e9);
         let set = [
-            format!("time.motion_window={window} ns"),
-            format!("time.end={end} ns"),
-            format!("output.every={end} ns"),
+            format!("time.motion_window={window} s"),
+            format!("time.end={end} s"),
+            format!("output.every={end} s"),
             format!("gas.constant.viscosity={} Pa s", SIDE / known.reynolds),
             format!(
                 "particles[0].place.grid.first={} {} {} m",

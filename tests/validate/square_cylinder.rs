@@ -52,12 +52,11 @@ fn strouhal(gas: &str, cells: u32, width: f64, window: f64) -> f64 {
         shape: &|[x, y, z]| [SIDE * x, SIDE * y, z],
     };
     let mesh = block.write(folder.path());
-    let unit = SIDE * 1e9;
     let set = [
-        format!("time.motion_window={} ns", window * unit),
-        format!("time.end={} ns", END * unit),
-        format!("output.every={} ns", END * unit),
-        format!("output.series_every={} ns", window * unit),
+        format!("time.motion_window={} ms", window * SIDE * 1e3),
+        format!("time.end={} ms", END * SIDE * 1e3),
+        format!("output.every={} ms", END * SIDE * 1e3),
+        format!("output.series_every={} ms", window * SIDE * 1e3),
         format!(
             "probes[0].point={} {} {} m",
             2.5 * SIDE,
