@@ -7,6 +7,7 @@ mod conformance;
 mod liggghts_moving;
 mod liggghts_ranks;
 mod liggghts_support;
+mod manufactured;
 mod openfoam_burner;
 mod openfoam_flame;
 mod openfoam_flow;

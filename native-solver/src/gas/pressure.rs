@@ -24,6 +24,7 @@ use super::boundary::FaceCondition;
 use super::friction::{self, WallFriction};
 use super::momentum::Momentum;
 use super::opening::OuterPressure;
+use super::recovery::Recovery;
 use super::state::GasState;
 use super::transport::FaceTransport;
 use crate::numerics::amg::Multigrid;
@@ -97,8 +98,9 @@ pub struct Pressure {
     source: Vec<f64>,
     /// Pressure at each face of the boundary, where gas passes freely.
     outer: Vec<Option<OuterPressure>>,
-    /// V (Σ A d n nᵀ)⁻¹ of each cell; empty where it is the identity.
-    recovery: Vec<Matrix3<f64>>,
+    recovery: Recovery,
+    /// What the old mass flux per area has at each face beyond its cells', divided as the inertia; empty where cells do not need it.
+    old_reach: Vec<[f64; 2]>,
     /// What Σ S (x_f − x_P)ᵀ/V of each cell lacks of the identity, as its faces are warped; empty where it lacks nothing.
     warp: Vec<Matrix3<f64>>,
     /// Σ p_f S/V of each cell in Pa/m, p_f from the cell's own half; empty where no centre is displaced along a face.
@@ -113,7 +115,7 @@ impl Pressure {
     /// An empty equation on a matrix's graph.
     pub fn new(matrix: Matrix) -> Self {
         let (cells, faces) = (matrix.grid().cells(), matrix.grid().faces.len());
-        let recovery = recovery(matrix.grid());
+        let recovery = Recovery::new(matrix.grid());
         let warp = warp(matrix.grid());
         Self {
             preconditioner: Approximation::new(&matrix),
@@ -129,6 +131,7 @@ impl Pressure {
             source: vec![0.0; cells],
             outer: Vec::new(),
             recovery,
+            old_reach: Vec::new(),
             warp,
             along: Vec::new(),
             corrections: 0,
@@ -164,6 +167,20 @@ impl Pressure {
             };
             [half(face.owner), neighbour]
         });
+        self.old_reach.clear();
+        if !grid.orthogonal {
+            self.old_reach.resize(grid.faces.len(), [0.0; 2]);
+            let reach = self.transport.old_reach(frame);
+            fill(&mut self.old_reach, |index| {
+                let face = &grid.faces[index];
+                let per = |cell: usize| frame.motion_span * frame.pressure_share[cell];
+                let [own, other] = reach[index];
+                match index < grid.internal {
+                    true => [own / per(face.owner), other / per(face.neighbour)],
+                    false => [own / per(face.owner), 0.0],
+                }
+            });
+        }
     }
 
     /// Assembles the matrix for the momentum equation and properties at hand.
@@ -174,7 +191,8 @@ impl Pressure {
         momentum: &Momentum,
         now: &GasState,
     ) {
-        self.transport.update(frame, material, momentum, now);
+        self.transport
+            .update(frame, material, momentum, &self.recovery, now);
         self.corrections = 0;
         self.friction.begin(frame, momentum, &now.velocity);
         let grid = frame.grid;
@@ -235,7 +253,8 @@ impl Pressure {
     ) -> u32 {
         let grid = frame.grid;
         if grid.orthogonal && self.corrections > 0 {
-            self.transport.update(frame, material, momentum, now);
+            self.transport
+                .update(frame, material, momentum, &self.recovery, now);
         }
         let (velocity, friction) = (&now.velocity, &self.friction);
         fill(&mut self.force, |cell| {
@@ -335,6 +354,23 @@ impl Pressure {
         }
     }
 
+    /// What the slope of pressure in a half cell has along the face's normal beyond the cell's own force F, but for what the flux and the
+    /// old one have there beyond the cell's by their gradients; in Pa/m.
+    #[inline]
+    fn slope_beyond(&self, momentum: &Momentum, flux: &[f64], index: usize, side: usize) -> f64 {
+        let face = &self.matrix.grid().faces[index];
+        let cell = [face.owner, face.neighbour][side];
+        let mut passing = flux[index] / face.area;
+        let mut beside = self.beside(index)[side];
+        if let (Some(reach), Some(old)) =
+            (self.transport.reach.get(index), self.old_reach.get(index))
+        {
+            passing -= reach[side];
+            beside -= old[side];
+        }
+        beside - passing / self.mobility_along(momentum, cell, face)
+    }
+
     /// Force on the half cell of a face's owner along the face's normal, in N/m³.
     #[inline]
     fn owner_force(&self, face: &Face, index: usize) -> f64 {
@@ -421,14 +457,13 @@ impl Pressure {
                 let index = link.face as usize;
                 let face = &grid.faces[index];
                 // To the face's plane along its normal by the half's slope, and along the face.
-                let [own, other] = self.beside(index);
-                let (out, beside, miss) = if link.sign > 0.0 {
-                    (face.owner_distance, own, face.owner_skew)
+                let (side, out, miss) = if link.sign > 0.0 {
+                    (0, face.owner_distance, face.owner_skew)
                 } else {
-                    (-face.neighbour_distance, other, -face.neighbour_skew)
+                    (1, -face.neighbour_distance, -face.neighbour_skew)
                 };
-                let slope = self.force[cell].dot(&face.normal) + beside
-                    - now.flux[index] / (face.area * self.mobility_along(momentum, cell, face));
+                let slope = self.force[cell].dot(&face.normal)
+                    + self.slope_beyond(momentum, &now.flux, index, side);
                 let beyond = out * slope + miss.dot(&last[cell]);
                 sum += (link.sign * face.area * beyond) * face.normal;
             }
@@ -451,28 +486,9 @@ impl Pressure {
         let grid = frame.grid;
         let flux = &now.flux;
         // What the slopes have beyond the cell's own force F.
-        let beyond = |cell: usize| {
-            let mut sum = Vec3::zeros();
-            for link in grid.links(cell) {
-                let index = link.face as usize;
-                let face = &grid.faces[index];
-                let [own, other] = self.beside(index);
-                let (distance, beside) = if link.sign > 0.0 {
-                    (face.owner_distance, own)
-                } else {
-                    (face.neighbour_distance, other)
-                };
-                let slope =
-                    face.area * beside - flux[index] / self.mobility_along(momentum, cell, face);
-                sum += (distance * slope) * face.normal;
-            }
-            sum / grid.volume[cell]
-        };
         fill(&mut now.pressure_gradient, |cell| {
-            match self.recovery.get(cell) {
-                Some(recovery) => self.force[cell] + recovery * beyond(cell),
-                None => self.force[cell] + beyond(cell),
-            }
+            let slope = |index: usize, side: usize| self.slope_beyond(momentum, flux, index, side);
+            self.force[cell] + self.recovery.vector(grid, cell, slope)
         });
         let gradients = &now.pressure_gradient;
         fill(&mut now.velocity, |cell| {
@@ -490,30 +506,6 @@ impl Pressure {
             }
         });
     }
-}
-
-/// V (Σ A d n nᵀ)⁻¹ of each cell, the sum over its faces, d the distance of its centre from their planes.
-fn recovery(grid: &MeshGraph) -> Vec<Matrix3<f64>> {
-    if grid.orthogonal {
-        return Vec::new();
-    }
-    let mut inverse = vec![Matrix3::identity(); grid.cells()];
-    fill(&mut inverse, |cell| {
-        let mut sum = Matrix3::zeros();
-        for link in grid.links(cell) {
-            let face = &grid.faces[link.face as usize];
-            let distance = if link.sign > 0.0 {
-                face.owner_distance
-            } else {
-                face.neighbour_distance
-            };
-            sum += (face.area * distance) * face.normal * face.normal.transpose();
-        }
-        (sum / grid.volume[cell])
-            .try_inverse()
-            .unwrap_or_else(Matrix3::identity)
-    });
-    inverse
 }
 
 /// What Σ S (x_f − x_P)ᵀ/V of each cell lacks of the identity, which it is where faces are flat; nothing where all are.
