@@ -135,8 +135,8 @@ fn gas_at_rest_stays_at_rest_where_faces_are_warped() {
 }
 
 /// Air of 1 m/s through a duct of 60 × 10 × 100 mm that leans by so many degrees, in windows of 5 ms: the fastest cell in m/s
-/// after 0.2 s, as `native-solver/tests/skewed.rs` has it; at 65 degrees 1.5e-3 less, because
-/// gradients behind walls that gas slips along are OpenFOAM's own.
+/// after 0.2 s, as `native-solver/tests/skewed.rs` has it; at 65 degrees its own
+/// figure, 1.5e-3 less than the native one.
 #[test]
 fn air_passes_a_duct_that_leans_by_up_to_65_degrees() {
     for (degrees, expected) in [
