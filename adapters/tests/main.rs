@@ -9,6 +9,7 @@ mod liggghts_moving;
 mod liggghts_periodic;
 mod liggghts_ranks;
 mod liggghts_support;
+mod manufactured;
 mod openfoam_burner;
 mod openfoam_flame;
 mod openfoam_flow;

@@ -18,6 +18,7 @@ mod dem_walls;
 mod flame;
 mod grains;
 mod inlets;
+mod manufactured;
 mod multigrid;
 mod numerics;
 mod openings;

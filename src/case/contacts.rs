@@ -462,7 +462,9 @@ mod tests {
             ];
             let case = crate::case::read(&path, &set).unwrap();
             let mesh = crate::case::mesh(&case.mesh).unwrap();
-            let setup = crate::case::particles(&case).unwrap().setup;
+            let setup = crate::case::particles(&case, mesh.periodicity())
+                .unwrap()
+                .setup;
             super::limits(&case, &case.motion.clone().unwrap(), &mesh, &setup)
         };
         let (soft, hard) = (limits("glass"), limits("hard"));

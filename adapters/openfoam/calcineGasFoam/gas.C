@@ -229,6 +229,14 @@ void Foam::calcine::gas::measureFaces()
                 ownerDistance_[facei]*mag(mesh_.faceAreas()[facei])*n*n;
         }
     }
+    for (label facei = 0; facei < faces; ++facei)
+    {
+        const scalar skew = max(mag(ownerSkew_[facei]), mag(neighbourSkew_[facei]));
+        oblique_ = oblique_ || skew > 1e-9*(ownerDistance_[facei] + neighbourDistance_[facei]);
+    }
+    reduce(oblique_, orOp<bool>());
+    massGradient_ = tensorField(mesh_.nCells(), Zero);
+    oldMassGradient_ = massGradient_;
     forAll(recovery_, celli)
     {
         recovery_[celli] =
@@ -474,6 +482,12 @@ void Foam::calcine::gas::beginStage(const window& when, const scalarField& voidF
     }
     updateInflow();
     U_.correctBoundaryConditions();
+    if (oblique_)
+    {
+        const scalarField held(committed_.mass/mesh_.cellVolumes());
+        oldMassGradient_ = massVelocityGradient(held*committed_.velocity, held, committed_.flux);
+        massGradient_ = oldMassGradient_;
+    }
 
     models_->begin();
     beginReactions();

@@ -26,6 +26,15 @@ Foam::scalar Foam::calcine::gas::beside(label facei, label celli) const
 }
 
 
+Foam::scalar Foam::calcine::gas::slopeBeyond(label facei, label celli) const
+{
+    const scalar span = window_.motionSpan*pressureShare_[celli];
+    const scalar passing = flux_[facei]/mag(mesh_.faceAreas()[facei]) - reach(facei, celli, massGradient_);
+    return beside(facei, celli) - reach(facei, celli, oldMassGradient_)/span
+      - passing/mobilityAlong(facei, celli);
+}
+
+
 Foam::scalar Foam::calcine::gas::halfCellForce(label facei, label celli) const
 {
     return (force_[celli] & normal_[facei]) + beside(facei, celli);
@@ -249,8 +258,7 @@ void Foam::calcine::gas::updatePressureGradient()
             return;
         }
         const scalar area = mag(mesh_.faceAreas()[facei]);
-        const scalar slope = area*beside(facei, celli) - flux_[facei]/mobilityAlong(facei, celli);
-        pressureGradient_[celli] += distance*slope*normal_[facei];
+        pressureGradient_[celli] += area*distance*slopeBeyond(facei, celli)*normal_[facei];
     };
     forAll(flux_, facei)
     {
@@ -275,7 +283,7 @@ void Foam::calcine::gas::updatePressureAlong()
         const scalar area = mag(mesh_.faceAreas()[facei]);
         const scalar slope = turns_[facei]
           ? (pressureAlong_[celli] & normal_[facei])
-          : halfCellForce(facei, celli) - flux_[facei]/(area*mobilityAlong(facei, celli));
+          : (force_[celli] & normal_[facei]) + slopeBeyond(facei, celli);
         next[celli] += area*(distance*slope + (skew & pressureAlong_[celli]))*normal_[facei];
     };
     forAll(flux_, facei)

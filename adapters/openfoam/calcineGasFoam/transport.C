@@ -12,8 +12,17 @@
 // would remain on every mesh.
 #include "gas.H"
 
-Foam::tensorField Foam::calcine::gas::massVelocityGradient(const vectorField& massVelocity) const
+Foam::tensorField Foam::calcine::gas::massVelocityGradient
+(
+    const vectorField& massVelocity,
+    const scalarField& held,
+    const scalarField& flux
+) const
 {
+    if (oblique_)
+    {
+        return obliqueGradient(massVelocity, held, flux);
+    }
     const labelUList& owner = mesh_.faceOwner();
     const vectorField beyond(shared_.beyond(massVelocity));
     tensorField gradient(mesh_.nCells(), Zero);
@@ -35,7 +44,7 @@ Foam::tensorField Foam::calcine::gas::massVelocityGradient(const vectorField& ma
         else
         {
             // The cell's own, its normal part that of the flux.
-            gradient[owner[facei]] += S*(own + (flux_[facei]/mag(S) - (own & n))*n);
+            gradient[owner[facei]] += S*(own + (flux[facei]/mag(S) - (own & n))*n);
         }
     }
     gradient /= mesh_.cellVolumes();
@@ -47,7 +56,8 @@ void Foam::calcine::gas::updateTransport(const scalarField& density)
 {
     const labelUList& owner = mesh_.faceOwner();
     const vectorField massVelocity(density*given_.voidFraction*U_.primitiveField());
-    const tensorField gradient(massVelocityGradient(massVelocity));
+    massGradient_ = massVelocityGradient(massVelocity, density*given_.voidFraction, flux_);
+    const tensorField& gradient = massGradient_;
     const scalarField held(density*given_.voidFraction*pressureShare_);
     const scalarField perFlux
     (
@@ -62,6 +72,14 @@ void Foam::calcine::gas::updateTransport(const scalarField& density)
     const tensorField gradientBeyond(shared_.beyond(gradient));
     const scalarField perFluxBeyond(shared_.beyond(perFlux));
     const tensorField normalPerFluxBeyond(shared_.beyond(normalPerFlux));
+    scalarField along;
+    vectorField bending, bendingBeyond;
+    if (oblique_)
+    {
+        along = passing(massVelocity, massVelocityBeyond, gradientBeyond);
+        bending = bent(massVelocity, along);
+        bendingBeyond = shared_.beyond(bending);
+    }
     forAll(transportPush_, facei)
     {
         if (!shared_.within(facei))
@@ -74,15 +92,136 @@ void Foam::calcine::gas::updateTransport(const scalarField& density)
         const scalar here = massVelocity[P] & n, there = massVelocityBeyond[facei] & n;
         const scalar bend =
             ownerDistance_[facei]*weight*(n & ((gradientBeyond[facei] - gradient[P]) & n));
-        const vector miss = weight*ownerSkew_[facei] - (1 - weight)*neighbourSkew_[facei];
-        const tensor slope = weight*gradient[P] + (1 - weight)*gradientBeyond[facei];
-        const scalar mean =
-            weight*here + (1 - weight)*there - bend + ((miss & slope) & n);
+        const scalar mean = oblique_
+          ? along[facei] - ((weight*bending[P] + (1 - weight)*bendingBeyond[facei]) & n)
+          : weight*here + (1 - weight)*there - bend;
         transportPush_[facei] =
             ownerDistance_[facei]*(perFlux[P] + ((n & normalPerFlux[P]) & n))*(mean - here)
           + neighbourDistance_[facei]
            *(perFluxBeyond[facei] + ((n & normalPerFluxBeyond[facei]) & n))*(mean - there);
     }
+}
+
+
+// By least squares, exact for linear fields on any mesh; where nothing but the slope along the normal is given, zero, the value counts at
+// the foot of the normal.
+Foam::tensorField Foam::calcine::gas::obliqueGradient
+(
+    const vectorField& massVelocity,
+    const scalarField& held,
+    const scalarField& flux
+) const
+{
+    const vectorField beyond(shared_.beyond(massVelocity));
+    tensorField ways(mesh_.nCells(), Zero), sum(mesh_.nCells(), Zero);
+    const auto add = [&](label celli, const vector& way, const vector& difference)
+    {
+        const vector weighted = way/magSqr(way);
+        ways[celli] += weighted*way;
+        sum[celli] += weighted*difference;
+    };
+    for (label facei = 0; facei < mesh_.nFaces(); ++facei)
+    {
+        if (!shared_.within(facei))
+        {
+            continue;
+        }
+        const label P = mesh_.faceOwner()[facei];
+        const vector way = ownerDistance_[facei]*normal_[facei] + ownerSkew_[facei]
+          + neighbourDistance_[facei]*normal_[facei] + neighbourSkew_[facei];
+        const vector difference = beyond[facei] - massVelocity[P];
+        add(P, way, difference);
+        if (facei < mesh_.nInternalFaces())
+        {
+            add(mesh_.faceNeighbour()[facei], -way, -difference);
+        }
+    }
+    forAll(mesh_.boundary(), patchi)
+    {
+        const fvPatch& patch = mesh_.boundary()[patchi];
+        if (boundary_.of(patchi) == passage::within)
+        {
+            continue;
+        }
+        const fvPatchVectorField& U = U_.boundaryField()[patchi];
+        const bool given = U.fixesValue();
+        forAll(patch, i)
+        {
+            const label facei = patch.start() + i, P = patch.faceCells()[i];
+            const vector& n = normal_[facei];
+            const vector own = given ? vector(held[P]*U[i]) : massVelocity[P];
+            const vector value = own + (flux[facei]/mag(mesh_.faceAreas()[facei]) - (own & n))*n;
+            const vector foot = ownerDistance_[facei]*n;
+            add(P, given ? vector(foot + ownerSkew_[facei]) : foot, value - massVelocity[P]);
+        }
+    }
+    forAll(sum, celli)
+    {
+        sum[celli] = inv(ways[celli]) & sum[celli];
+    }
+    return sum;
+}
+
+
+Foam::scalar Foam::calcine::gas::reach(label facei, label celli, const tensorField& gradient) const
+{
+    const vector way = mesh_.faceCentres()[facei] - mesh_.cellCentres()[celli];
+    return oblique_ ? (way & gradient[celli]) & normal_[facei] : 0;
+}
+
+
+Foam::scalarField Foam::calcine::gas::passing
+(
+    const vectorField& massVelocity,
+    const vectorField& massVelocityBeyond,
+    const tensorField& gradientBeyond
+) const
+{
+    scalarField values(mesh_.nFaces());
+    forAll(values, facei)
+    {
+        if (!shared_.within(facei))
+        {
+            values[facei] = flux_[facei]/mag(mesh_.faceAreas()[facei]);
+            continue;
+        }
+        const label P = mesh_.faceOwner()[facei];
+        const scalar weight = ownerWeight(facei);
+        const vector miss = weight*ownerSkew_[facei] - (1 - weight)*neighbourSkew_[facei];
+        const tensor slope = weight*massGradient_[P] + (1 - weight)*gradientBeyond[facei];
+        const vector mean = weight*massVelocity[P] + (1 - weight)*massVelocityBeyond[facei];
+        values[facei] = (mean + (miss & slope)) & normal_[facei];
+    }
+    return values;
+}
+
+
+Foam::vectorField Foam::calcine::gas::bent
+(
+    const vectorField& massVelocity,
+    const scalarField& passing
+) const
+{
+    vectorField sum(mesh_.nCells(), Zero);
+    const auto add = [&](label facei, label celli, scalar distance)
+    {
+        // Nothing is recovered across the sides of wedges.
+        if (turns_[facei])
+        {
+            return;
+        }
+        const scalar part = passing[facei] - reach(facei, celli, massGradient_);
+        sum[celli] += mag(mesh_.faceAreas()[facei])*distance*part*normal_[facei];
+    };
+    forAll(passing, facei)
+    {
+        add(facei, mesh_.faceOwner()[facei], ownerDistance_[facei]);
+        if (facei < mesh_.nInternalFaces())
+        {
+            add(facei, mesh_.faceNeighbour()[facei], neighbourDistance_[facei]);
+        }
+    }
+    return (recovery_ & (sum/mesh_.cellVolumes())) - massVelocity;
 }
 
 

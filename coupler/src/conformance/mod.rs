@@ -6,6 +6,7 @@
 
 mod drag;
 pub mod gas;
+pub mod manufactured;
 pub mod particles;
 mod six_spheres;
 pub mod wedge;
@@ -16,6 +17,7 @@ use std::time::Duration;
 use thiserror::Error;
 
 use crate::error::{FailureKind, PartError};
+use crate::mesh::MeshError;
 use crate::supervisor::{Interrupts, Supervisor};
 use crate::time::{Clocks, Ticks, TimeError, Window};
 
@@ -31,6 +33,9 @@ pub enum LawError {
     /// A time that is none.
     #[error("{0}")]
     Time(#[from] TimeError),
+    /// A mesh that cannot be made.
+    #[error("{0}")]
+    Mesh(#[from] MeshError),
     /// The folder for checkpoints cannot be used.
     #[error("{0}")]
     Folder(#[from] std::io::Error),

@@ -23,9 +23,7 @@ use super::tolerance::ScalarTolerance;
 use crate::numerics::convection::beyond_upwind;
 use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
-use crate::numerics::operators::{
-    conductance, displacement, face_values, follow, gradient, interpolate,
-};
+use crate::numerics::operators::{conductance, displacement, follow, gradients, interpolate};
 use crate::numerics::parallel::{fill, sum, sums, update};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
@@ -305,29 +303,25 @@ impl Enthalpy {
                 FaceCondition::Wall {
                     heat: HeatCondition::Temperature(temperature),
                     ..
-                } => frame.properties.enthalpy(
+                } => Some(frame.properties.enthalpy(
                     temperature,
                     now.composition_of(grid.faces[index].owner, frame.species()),
-                ),
-                _ => inflow::face_heat(frame, index, inner, |gas| gas.enthalpy).unwrap_or(inner),
+                )),
+                _ => inflow::face_heat(frame, index, inner, |gas| gas.enthalpy),
             };
-            let gradients = &mut self.gradients[0];
-            face_values(grid, &now.enthalpy, gradients, boundary, &mut self.faces);
-            let faces = &self.faces;
-            fill(gradients, |cell| gradient(grid, faces, cell));
+            let (found, faces) = (&mut self.gradients[0], &mut self.faces);
+            gradients(grid, &now.enthalpy, boundary, found, faces);
         }
         if !grid.orthogonal {
             let boundary = |index: usize, inner: f64| match frame.boundary.at(index) {
                 FaceCondition::Wall {
                     heat: HeatCondition::Temperature(temperature),
                     ..
-                } => temperature,
-                _ => inflow::face_heat(frame, index, inner, |gas| gas.temperature).unwrap_or(inner),
+                } => Some(temperature),
+                _ => inflow::face_heat(frame, index, inner, |gas| gas.temperature),
             };
-            let gradients = &mut self.gradients[1];
-            face_values(grid, &now.temperature, gradients, boundary, &mut self.faces);
-            let faces = &self.faces;
-            fill(gradients, |cell| gradient(grid, faces, cell));
+            let (found, faces) = (&mut self.gradients[1], &mut self.faces);
+            gradients(grid, &now.temperature, boundary, found, faces);
         }
         let [carried, conducted] = &self.gradients;
         let conduction = &self.conduction;

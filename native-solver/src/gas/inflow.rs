@@ -58,9 +58,9 @@ fn share(flow: f64, conductance: f64) -> f64 {
     }
 }
 
-/// Mass fraction at a boundary face, given that of its cell: that of a gas that is stated there, or a mean.
+/// Mass fraction at an inlet face, given that of its cell: that of a gas that is stated there, or a mean; `None` at other faces.
 #[inline]
-pub fn face_fraction(frame: &AttemptFrame<'_>, index: usize, k: usize, inner: f64) -> f64 {
+pub fn face_fraction(frame: &AttemptFrame<'_>, index: usize, k: usize, inner: f64) -> Option<f64> {
     let (
         Some(stated),
         FaceCondition::Inlet {
@@ -71,13 +71,13 @@ pub fn face_fraction(frame: &AttemptFrame<'_>, index: usize, k: usize, inner: f6
         },
     ) = (frame.boundary.composition(index), frame.boundary.at(index))
     else {
-        return inner;
+        return None;
     };
     if diffuses {
-        return stated[k];
+        return Some(stated[k]);
     }
     let flow = mass_flux * frame.grid.faces[index].area;
-    inner + share(flow, diffusive(frame, index, &gas)) * (stated[k] - inner)
+    Some(inner + share(flow, diffusive(frame, index, &gas)) * (stated[k] - inner))
 }
 
 /// Temperature or enthalpy at an inlet face, given that of its cell and, by `stated`, that of the stated gas; `None` at

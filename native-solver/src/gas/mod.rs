@@ -19,6 +19,7 @@ mod opening;
 mod outer;
 mod pace;
 mod pressure;
+mod recovery;
 mod species;
 mod stages;
 mod state;

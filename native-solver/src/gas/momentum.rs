@@ -19,6 +19,7 @@ use super::normal_friction::NormalFriction;
 use super::state::GasState;
 use super::turbulence::wall;
 use crate::numerics::convection::vector_beyond_upwind;
+use crate::numerics::gradient::{self, Beside};
 use crate::numerics::grid::{Face, MeshGraph};
 use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
@@ -51,8 +52,6 @@ pub struct Momentum {
     right: Vec<f64>,
     /// ∂u_i/∂x_j of each cell in 1/s.
     gradients: Vec<Matrix3<f64>>,
-    /// Memory for the next gradients.
-    scratch: Vec<Matrix3<f64>>,
     /// Momentum that leaves the owner of each face in N, of what the equation takes explicitly.
     explicit: Vec<Vec3>,
 }
@@ -129,7 +128,6 @@ impl Momentum {
             component: vec![0.0; cells],
             right: vec![0.0; cells],
             gradients: vec![Matrix3::zeros(); cells],
-            scratch: Vec::new(),
             explicit: vec![Vec3::zeros(); faces],
         }
     }
@@ -322,23 +320,13 @@ impl Momentum {
             fill(&mut self.gradients, |cell| tensor(grid, cell, value));
             return;
         }
-        // Improved by the last gradients where the line between centres misses the face's centre.
-        let last = std::mem::take(&mut self.gradients);
-        let value = |index: usize, face: &Face| {
-            let plain = face_velocity(frame, index, face, velocity);
-            if index >= grid.internal {
-                return plain;
+        let boundary = |index: usize, _: Vec3| match frame.boundary.at(index) {
+            FaceCondition::Wall { sticks: None, .. } | FaceCondition::Outlet { .. } => {
+                Beside::AtFoot(face_velocity(frame, index, &grid.faces[index], velocity))
             }
-            let weight = face.owner_weight();
-            let miss = weight * face.owner_skew - (1.0 - weight) * face.neighbour_skew;
-            let mean = last[face.owner] * weight + last[face.neighbour] * (1.0 - weight);
-            plain + mean * miss
+            _ => Beside::AtFace(face_velocity(frame, index, &grid.faces[index], velocity)),
         };
-        let mut next = std::mem::take(&mut self.scratch);
-        next.resize(grid.cells(), Matrix3::zeros());
-        fill(&mut next, |cell| tensor(grid, cell, value));
-        self.gradients = next;
-        self.scratch = last;
+        gradient::vector(grid, velocity, boundary, &mut self.gradients);
     }
 
     fn update_explicit(

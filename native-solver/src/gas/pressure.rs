@@ -24,6 +24,7 @@ use super::boundary::FaceCondition;
 use super::friction::{self, WallFriction};
 use super::momentum::Momentum;
 use super::opening::OuterPressure;
+use super::recovery::Recovery;
 use super::state::GasState;
 use super::transport::FaceTransport;
 use crate::numerics::amg::Multigrid;
@@ -97,10 +98,9 @@ pub struct Pressure {
     source: Vec<f64>,
     /// Pressure at each face of the boundary, where gas passes freely.
     outer: Vec<Option<OuterPressure>>,
-    /// Faces of the boundary that are sides of wedges, across which nothing varies but the axes turn; empty where none is.
-    wedge: Vec<bool>,
-    /// V (Σ A d n nᵀ)⁻¹ of each cell, sides of wedges left out; empty where it is the identity.
-    recovery: Vec<Matrix3<f64>>,
+    recovery: Recovery,
+    /// What the old mass flux per area has at each face beyond its cells', divided as the inertia; empty where cells do not need it.
+    old_reach: Vec<[f64; 2]>,
     /// What Σ S (x_f − x_P)ᵀ/V of each cell lacks of the identity, as its faces are warped; empty where it lacks nothing.
     warp: Vec<Matrix3<f64>>,
     /// Σ p_f S/V of each cell in Pa/m, p_f from the cell's own half; empty where no centre is displaced along a face.
@@ -115,7 +115,7 @@ impl Pressure {
     /// An empty equation on a matrix's graph.
     pub fn new(matrix: Matrix) -> Self {
         let (cells, faces) = (matrix.grid().cells(), matrix.grid().faces.len());
-        let recovery = recovery(matrix.grid(), &[]);
+        let recovery = Recovery::new(matrix.grid(), Vec::new());
         let warp = warp(matrix.grid());
         Self {
             preconditioner: Approximation::new(&matrix),
@@ -130,8 +130,8 @@ impl Pressure {
             drive: vec![0.0; faces],
             source: vec![0.0; cells],
             outer: Vec::new(),
-            wedge: Vec::new(),
             recovery,
+            old_reach: Vec::new(),
             warp,
             along: Vec::new(),
             corrections: 0,
@@ -152,11 +152,11 @@ impl Pressure {
     /// Takes up the state from which the frame steps.
     pub fn begin(&mut self, frame: &AttemptFrame<'_>) {
         let (grid, old) = (frame.grid, frame.old);
-        if self.wedge.is_empty() && frame.boundary.has_wedges() {
-            self.wedge = (grid.internal..grid.faces.len())
+        if !self.recovery.has_wedges() && frame.boundary.has_wedges() {
+            let wedge = (grid.internal..grid.faces.len())
                 .map(|index| frame.boundary.is_wedge(index))
                 .collect();
-            self.recovery = recovery(grid, &self.wedge);
+            self.recovery = Recovery::new(grid, wedge);
         }
         fill(&mut self.inertia, |index| {
             let face = &grid.faces[index];
@@ -173,6 +173,20 @@ impl Pressure {
             };
             [half(face.owner), neighbour]
         });
+        self.old_reach.clear();
+        if !grid.orthogonal {
+            self.old_reach.resize(grid.faces.len(), [0.0; 2]);
+            let reach = self.transport.old_reach(frame);
+            fill(&mut self.old_reach, |index| {
+                let face = &grid.faces[index];
+                let per = |cell: usize| frame.motion_span * frame.pressure_share[cell];
+                let [own, other] = reach[index];
+                match index < grid.internal {
+                    true => [own / per(face.owner), other / per(face.neighbour)],
+                    false => [own / per(face.owner), 0.0],
+                }
+            });
+        }
     }
 
     /// Assembles the matrix for the momentum equation and properties at hand.
@@ -183,7 +197,8 @@ impl Pressure {
         momentum: &Momentum,
         now: &GasState,
     ) {
-        self.transport.update(frame, material, momentum, now);
+        self.transport
+            .update(frame, material, momentum, &self.recovery, now);
         self.corrections = 0;
         self.friction.begin(frame, momentum, &now.velocity);
         let grid = frame.grid;
@@ -244,7 +259,8 @@ impl Pressure {
     ) -> u32 {
         let grid = frame.grid;
         if grid.orthogonal && self.corrections > 0 {
-            self.transport.update(frame, material, momentum, now);
+            self.transport
+                .update(frame, material, momentum, &self.recovery, now);
         }
         let (velocity, friction) = (&now.velocity, &self.friction);
         fill(&mut self.force, |cell| {
@@ -334,12 +350,6 @@ impl Pressure {
         }
     }
 
-    /// True of a side of a wedge: the slope of the pressure along its normal is that of its cell.
-    #[inline]
-    fn turns(&self, grid: &MeshGraph, index: usize) -> bool {
-        index >= grid.internal && self.wedge.get(index - grid.internal) == Some(&true)
-    }
-
     /// The force on the two halves at a face beyond that on their cells, along its normal, in N/m³.
     #[inline]
     fn beside(&self, index: usize) -> [f64; 2] {
@@ -348,6 +358,23 @@ impl Pressure {
             None => [own, other],
             Some(across) => [own - across[0], other - across[1]],
         }
+    }
+
+    /// What the slope of pressure in a half cell has along the face's normal beyond the cell's own force F, but for what the flux and the
+    /// old one have there beyond the cell's by their gradients; in Pa/m.
+    #[inline]
+    fn slope_beyond(&self, momentum: &Momentum, flux: &[f64], index: usize, side: usize) -> f64 {
+        let face = &self.matrix.grid().faces[index];
+        let cell = [face.owner, face.neighbour][side];
+        let mut passing = flux[index] / face.area;
+        let mut beside = self.beside(index)[side];
+        if let (Some(reach), Some(old)) =
+            (self.transport.reach.get(index), self.old_reach.get(index))
+        {
+            passing -= reach[side];
+            beside -= old[side];
+        }
+        beside - passing / self.mobility_along(momentum, cell, face)
     }
 
     /// Force on the half cell of a face's owner along the face's normal, in N/m³.
@@ -436,18 +463,16 @@ impl Pressure {
                 let index = link.face as usize;
                 let face = &grid.faces[index];
                 // To the face's plane along its normal by the half's slope, and along the face.
-                let [own, other] = self.beside(index);
-                let (out, beside, miss) = if link.sign > 0.0 {
-                    (face.owner_distance, own, face.owner_skew)
+                let (side, out, miss) = if link.sign > 0.0 {
+                    (0, face.owner_distance, face.owner_skew)
                 } else {
-                    (-face.neighbour_distance, other, -face.neighbour_skew)
+                    (1, -face.neighbour_distance, -face.neighbour_skew)
                 };
-                let slope = match self.turns(grid, index) {
+                let slope = match self.recovery.turns(grid, index) {
                     true => last[cell].dot(&face.normal),
                     false => {
-                        self.force[cell].dot(&face.normal) + beside
-                            - now.flux[index]
-                                / (face.area * self.mobility_along(momentum, cell, face))
+                        self.force[cell].dot(&face.normal)
+                            + self.slope_beyond(momentum, &now.flux, index, side)
                     }
                 };
                 let beyond = out * slope + miss.dot(&last[cell]);
@@ -472,31 +497,9 @@ impl Pressure {
         let grid = frame.grid;
         let flux = &now.flux;
         // What the slopes have beyond the cell's own force F.
-        let beyond = |cell: usize| {
-            let mut sum = Vec3::zeros();
-            for link in grid.links(cell) {
-                let index = link.face as usize;
-                if self.turns(grid, index) {
-                    continue;
-                }
-                let face = &grid.faces[index];
-                let [own, other] = self.beside(index);
-                let (distance, beside) = if link.sign > 0.0 {
-                    (face.owner_distance, own)
-                } else {
-                    (face.neighbour_distance, other)
-                };
-                let slope =
-                    face.area * beside - flux[index] / self.mobility_along(momentum, cell, face);
-                sum += (distance * slope) * face.normal;
-            }
-            sum / grid.volume[cell]
-        };
         fill(&mut now.pressure_gradient, |cell| {
-            match self.recovery.get(cell) {
-                Some(recovery) => self.force[cell] + recovery * beyond(cell),
-                None => self.force[cell] + beyond(cell),
-            }
+            let slope = |index: usize, side: usize| self.slope_beyond(momentum, flux, index, side);
+            self.force[cell] + self.recovery.vector(grid, cell, slope)
         });
         let gradients = &now.pressure_gradient;
         fill(&mut now.velocity, |cell| {
@@ -514,41 +517,6 @@ impl Pressure {
             }
         });
     }
-}
-
-/// V (Σ A d n nᵀ)⁻¹ of each cell, the sum over its faces but the sides of wedges, d the distance of its centre from their planes. From
-/// one side of a wedge to the other nothing is recovered: there the gradient is the force.
-fn recovery(grid: &MeshGraph, wedge: &[bool]) -> Vec<Matrix3<f64>> {
-    if grid.orthogonal {
-        return Vec::new();
-    }
-    let mut inverse = vec![Matrix3::identity(); grid.cells()];
-    fill(&mut inverse, |cell| {
-        let mut sum = Matrix3::zeros();
-        let mut between = Vec3::zeros();
-        for link in grid.links(cell) {
-            let index = link.face as usize;
-            let face = &grid.faces[index];
-            if link.is_boundary() && wedge.get(index - grid.internal) == Some(&true) {
-                // The normals of the two sides are opposite but for the angle between them.
-                between = match between == Vec3::zeros() {
-                    true => face.normal,
-                    false => (between - face.normal).normalize(),
-                };
-                continue;
-            }
-            let distance = if link.sign > 0.0 {
-                face.owner_distance
-            } else {
-                face.neighbour_distance
-            };
-            sum += (face.area * distance) * face.normal * face.normal.transpose();
-        }
-        (sum / grid.volume[cell] + between * between.transpose())
-            .try_inverse()
-            .unwrap_or_else(Matrix3::identity)
-    });
-    inverse
 }
 
 /// What Σ S (x_f − x_P)ᵀ/V of each cell lacks of the identity, which it is where faces are flat; nothing where all are.

@@ -23,9 +23,7 @@ use super::tolerance::ScalarTolerance;
 use crate::numerics::convection::{beyond_upwind, limited, limiter};
 use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
-use crate::numerics::operators::{
-    conductance, displacement, face_values, follow, gradient, interpolate,
-};
+use crate::numerics::operators::{conductance, displacement, follow, gradients, interpolate};
 use crate::numerics::parallel::{fill, sums, update};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
@@ -235,10 +233,8 @@ impl SpeciesEquations {
             for (k, fractions) in self.fractions.iter().enumerate() {
                 let boundary =
                     |index: usize, inner: f64| inflow::face_fraction(frame, index, k, inner);
-                let gradients = &mut self.gradients[k];
-                face_values(grid, fractions, gradients, boundary, &mut self.faces);
-                let faces = &self.faces;
-                fill(gradients, |cell| gradient(grid, faces, cell));
+                let found = &mut self.gradients[k];
+                gradients(grid, fractions, boundary, found, &mut self.faces);
             }
         }
         let (fractions, gradients) = (&self.fractions, &self.gradients);
@@ -328,13 +324,11 @@ impl SpeciesEquations {
                 FaceCondition::Wall {
                     heat: HeatCondition::Temperature(temperature),
                     ..
-                } => temperature,
-                _ => inflow::face_heat(frame, index, inner, |gas| gas.temperature).unwrap_or(inner),
+                } => Some(temperature),
+                _ => inflow::face_heat(frame, index, inner, |gas| gas.temperature),
             };
-            let gradients = &mut self.temperature_gradients;
-            face_values(grid, &now.temperature, gradients, boundary, &mut self.faces);
-            let faces = &self.faces;
-            fill(gradients, |cell| gradient(grid, faces, cell));
+            let (found, faces) = (&mut self.temperature_gradients, &mut self.faces);
+            gradients(grid, &now.temperature, boundary, found, faces);
         }
         let mut carried = std::mem::take(&mut self.carried);
         fill(&mut carried, |index| {
@@ -364,7 +358,9 @@ impl SpeciesEquations {
             .flatten();
         let one = |k: usize| {
             let outer = given.map_or_else(|| self.fractions[k][face.neighbour], |y| y[k]);
-            let flow = self.diffusion[index] * (self.fractions[k][face.owner] - outer);
+            let fall = self.fractions[k][face.owner] - outer;
+            let flow =
+                self.diffusion[index] * (fall + displacement(frame.grid, face, &self.gradients[k]));
             flow * frame.properties.species_enthalpy(k, temperature)
         };
         (0..self.fractions.len()).map(one).sum()

@@ -17,9 +17,11 @@ use calcine_coupler::physics::Vec3;
 use nalgebra::Matrix3;
 
 use super::attempt::{AttemptFrame, CellProperties};
-use super::momentum::{Momentum, tensor};
+use super::momentum::{Momentum, given_velocity, tensor};
+use super::recovery::{Recovery, reach};
 use super::state::GasState;
-use crate::numerics::grid::Face;
+use crate::numerics::gradient::{self, Beside};
+use crate::numerics::grid::{Face, MeshGraph};
 use crate::numerics::parallel::fill;
 
 /// c of the half cells at each internal face, and what it needs.
@@ -31,6 +33,11 @@ pub struct FaceTransport {
     mass_velocity: Vec<Vec3>,
     /// Its gradient in kg/m³/s.
     gradients: Vec<Matrix3<f64>>,
+    /// What ρ ε u has at each face beyond its owner's and its neighbour's, along its normal, by their gradients; in kg/m²/s.
+    /// Empty where lines between centres are normal to faces.
+    pub reach: Vec<[f64; 2]>,
+    /// What a cell's value would be of the values that the cells give on its faces, less its own.
+    bent: Vec<Vec3>,
 }
 
 impl FaceTransport {
@@ -40,6 +47,8 @@ impl FaceTransport {
             force: vec![[0.0; 2]; faces],
             mass_velocity: vec![Vec3::zeros(); cells],
             gradients: vec![Matrix3::zeros(); cells],
+            reach: Vec::new(),
+            bent: Vec::new(),
         }
     }
 
@@ -49,25 +58,17 @@ impl FaceTransport {
         frame: &AttemptFrame<'_>,
         material: &CellProperties,
         momentum: &Momentum,
+        recovery: &Recovery,
         now: &GasState,
     ) {
         let grid = frame.grid;
         fill(&mut self.mass_velocity, |cell| {
             material.density[cell] * frame.void_fraction[cell] * now.velocity[cell]
         });
-        let mass_velocity = &self.mass_velocity;
-        // On the boundary the cell's own, its normal part that of the flux.
-        let value = |index: usize, face: &Face| {
-            let own = mass_velocity[face.owner];
-            if index < grid.internal {
-                let weight = face.owner_weight();
-                weight * own + (1.0 - weight) * mass_velocity[face.neighbour]
-            } else {
-                own + (now.flux[index] / face.area - own.dot(&face.normal)) * face.normal
-            }
-        };
-        fill(&mut self.gradients, |cell| tensor(grid, cell, value));
-        let gradients = &self.gradients;
+        let held = |cell: usize| material.density[cell] * frame.void_fraction[cell];
+        self.update_gradients(frame, held, &now.flux);
+        self.update_bent(frame, now, recovery);
+        let (gradients, mass_velocity, bent) = (&self.gradients, &self.mass_velocity, &self.bent);
         let per_flux = |cell: usize, normal: &Vec3| {
             let density = material.density[cell];
             let shares = frame.void_fraction[cell] * frame.pressure_share[cell];
@@ -81,17 +82,104 @@ impl FaceTransport {
             let along = |cell: usize| face.normal.dot(&(gradients[cell] * face.normal));
             let here = mass_velocity[own].dot(&face.normal);
             let there = mass_velocity[other].dot(&face.normal);
-            let bend = face.owner_distance * weight * (along(other) - along(own));
-            let mut mean = weight * here + (1.0 - weight) * there - bend;
-            if !grid.orthogonal {
-                let miss = weight * face.owner_skew - (1.0 - weight) * face.neighbour_skew;
-                let slope = gradients[own] * weight + gradients[other] * (1.0 - weight);
-                mean += face.normal.dot(&(slope * miss));
-            }
+            let mean = if grid.orthogonal {
+                let bend = face.owner_distance * weight * (along(other) - along(own));
+                weight * here + (1.0 - weight) * there - bend
+            } else {
+                let bend = weight * bent[own] + (1.0 - weight) * bent[other];
+                interpolated(grid, index, mass_velocity, gradients) - bend.dot(&face.normal)
+            };
             [
                 per_flux(own, &face.normal) * (mean - here),
                 per_flux(other, &face.normal) * (mean - there),
             ]
         });
     }
+
+    /// The reach of the old mass flux.
+    pub fn old_reach(&mut self, frame: &AttemptFrame<'_>) -> &[[f64; 2]] {
+        let (grid, old) = (frame.grid, frame.old);
+        fill(&mut self.mass_velocity, |cell| {
+            old.mass[cell] / grid.volume[cell] * old.velocity[cell]
+        });
+        let held = |cell: usize| old.mass[cell] / grid.volume[cell];
+        self.update_gradients(frame, held, &old.flux);
+        &self.reach
+    }
+
+    /// Gradients of ρ ε u, `held` being ρ ε of a cell.
+    fn update_gradients(
+        &mut self,
+        frame: &AttemptFrame<'_>,
+        held: impl Fn(usize) -> f64 + Sync,
+        flux: &[f64],
+    ) {
+        let grid = frame.grid;
+        let mass_velocity = &self.mass_velocity;
+        if grid.orthogonal {
+            // On the boundary the cell's own, its normal part that of the flux.
+            let value = |index: usize, face: &Face| {
+                let own = mass_velocity[face.owner];
+                if index < grid.internal {
+                    let weight = face.owner_weight();
+                    weight * own + (1.0 - weight) * mass_velocity[face.neighbour]
+                } else {
+                    own + (flux[index] / face.area - own.dot(&face.normal)) * face.normal
+                }
+            };
+            fill(&mut self.gradients, |cell| tensor(grid, cell, value));
+            return;
+        }
+        let boundary = |index: usize, own: Vec3| {
+            let face = &grid.faces[index];
+            let along = |velocity: Vec3| {
+                velocity + (flux[index] / face.area - velocity.dot(&face.normal)) * face.normal
+            };
+            match given_velocity(frame, index) {
+                Some(velocity) => Beside::AtFace(along(held(face.owner) * velocity)),
+                None => Beside::AtFoot(along(own)),
+            }
+        };
+        gradient::vector(grid, mass_velocity, boundary, &mut self.gradients);
+        let gradients = &self.gradients;
+        self.reach.resize(grid.faces.len(), [0.0; 2]);
+        fill(&mut self.reach, |index| reach(grid, index, gradients));
+    }
+
+    /// What smooth fields lose where cells take the mean of their faces, and faces that of cells, is lost twice by doing so once more.
+    fn update_bent(&mut self, frame: &AttemptFrame<'_>, now: &GasState, recovery: &Recovery) {
+        let grid = frame.grid;
+        if grid.orthogonal {
+            return;
+        }
+        let (mass_velocity, gradients, reach) = (&self.mass_velocity, &self.gradients, &self.reach);
+        self.bent.resize(grid.cells(), Vec3::zeros());
+        fill(&mut self.bent, |cell| {
+            let part = |index: usize, side: usize| {
+                let passing = if index < grid.internal {
+                    interpolated(grid, index, mass_velocity, gradients)
+                } else {
+                    now.flux[index] / grid.faces[index].area
+                };
+                passing - reach[index][side]
+            };
+            recovery.vector(grid, cell, part) - mass_velocity[cell]
+        });
+    }
+}
+
+/// ρ ε u·n at the centre of an internal face, exact for linear fields.
+#[inline]
+fn interpolated(
+    grid: &MeshGraph,
+    index: usize,
+    mass_velocity: &[Vec3],
+    gradients: &[Matrix3<f64>],
+) -> f64 {
+    let face = &grid.faces[index];
+    let (own, other, weight) = (face.owner, face.neighbour, face.owner_weight());
+    let mean = weight * mass_velocity[own] + (1.0 - weight) * mass_velocity[other];
+    let miss = weight * face.owner_skew - (1.0 - weight) * face.neighbour_skew;
+    let slope = gradients[own] * weight + gradients[other] * (1.0 - weight);
+    face.normal.dot(&(mean + slope * miss))
 }

@@ -6,6 +6,7 @@
 pub mod aggregate;
 pub mod amg;
 pub mod convection;
+pub mod gradient;
 pub mod grid;
 pub mod krylov;
 pub mod matrix;

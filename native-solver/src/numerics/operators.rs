@@ -5,6 +5,7 @@ use std::ops::{Add, Mul, Sub};
 
 use calcine_coupler::physics::Vec3;
 
+use super::gradient::{self, Beside};
 use super::grid::{Face, MeshGraph};
 use super::parallel::fill;
 
@@ -27,7 +28,7 @@ pub fn outflow(grid: &MeshGraph, flux: &[f64], cell: usize) -> f64 {
 
 /// The gradient of a cell from values on its faces (Gauss): Σ value S / V.
 #[inline]
-pub fn gradient(grid: &MeshGraph, face_values: &[f64], cell: usize) -> Vec3 {
+pub fn by_gauss(grid: &MeshGraph, face_values: &[f64], cell: usize) -> Vec3 {
     let mut sum = Vec3::zeros();
     for link in grid.links(cell) {
         let face = &grid.faces[link.face as usize];
@@ -36,29 +37,33 @@ pub fn gradient(grid: &MeshGraph, face_values: &[f64], cell: usize) -> Vec3 {
     sum / grid.volume[cell]
 }
 
-/// Values on all faces by linear interpolation, improved by a gradient where the line between the
-/// centres misses the face's centre; `boundary(face, owner value)` on the boundary.
-pub fn face_values(
+/// Gradients of cell values; `boundary(face, owner's value)` is the value on the boundary where one is given, and nothing where the
+/// slope along the normal is zero. By Gauss' theorem where lines between centres are normal to faces, elsewhere by least squares
+/// ([`super::gradient`]). `faces` is memory for values on faces.
+pub fn gradients(
     grid: &MeshGraph,
     values: &[f64],
-    gradients: &[Vec3],
-    boundary: impl Fn(usize, f64) -> f64 + Sync,
-    result: &mut [f64],
+    boundary: impl Fn(usize, f64) -> Option<f64> + Sync,
+    gradients: &mut [Vec3],
+    faces: &mut [f64],
 ) {
-    fill(result, |index| {
+    if !grid.orthogonal {
+        let beside = |index: usize, inner: f64| match boundary(index, inner) {
+            Some(value) => Beside::AtFace(value),
+            None => Beside::AtFoot(inner),
+        };
+        return gradient::scalar(grid, values, beside, gradients);
+    }
+    fill(faces, |index| {
         let face = &grid.faces[index];
         if index >= grid.internal {
-            return boundary(index, values[face.owner]);
+            let inner = values[face.owner];
+            return boundary(index, inner).unwrap_or(inner);
         }
-        let plain = interpolate(face, values);
-        if grid.orthogonal {
-            return plain;
-        }
-        let weight = face.owner_weight();
-        let miss = weight * face.owner_skew - (1.0 - weight) * face.neighbour_skew;
-        let mean = weight * gradients[face.owner] + (1.0 - weight) * gradients[face.neighbour];
-        plain + miss.dot(&mean)
+        interpolate(face, values)
     });
+    let faces = &*faces;
+    fill(gradients, |cell| by_gauss(grid, faces, cell));
 }
 
 /// Explicit part of n·∇ at a face, times the face's distance: what the plain difference across

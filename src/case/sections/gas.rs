@@ -140,6 +140,7 @@ fn vacuum(section: &TableReader<'_>) -> Option<GasRead> {
         pressure: 0.0,
         velocity: Vec3::zeros(),
         gravity: Vec3::from(gravity),
+        pressure_gradient: Vec3::zeros(),
         momentum: MomentumModel::default(),
         turbulence: Turbulence::Laminar,
         patches: Vec::new(),

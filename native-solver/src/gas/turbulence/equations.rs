@@ -27,7 +27,7 @@ use crate::gas::state::GasState;
 use crate::numerics::grid::{CellFace, MeshGraph};
 use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
-use crate::numerics::operators::{conductance, displacement, face_values, gradient, outflow};
+use crate::numerics::operators::{conductance, displacement, gradients, outflow};
 use crate::numerics::parallel::{fill, largest, update};
 use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 
@@ -467,11 +467,8 @@ impl KEpsilonEquations {
         if grid.orthogonal {
             return;
         }
-        let boundary = |index: usize, inner: f64| inlet(index).unwrap_or(inner);
-        let (gradients, faces) = (&mut self.gradients, &mut self.faces);
-        fill(gradients, |_| Vec3::zeros());
-        face_values(grid, old, gradients, boundary, faces);
-        fill(gradients, |cell| gradient(grid, faces, cell));
+        let boundary = |index: usize, _: f64| inlet(index);
+        gradients(grid, old, boundary, &mut self.gradients, &mut self.faces);
         let (gradients, diffusion) = (&self.gradients, &self.diffusion);
         fill(&mut self.along, |cell| {
             let one = |sum: f64, link: &CellFace| {
