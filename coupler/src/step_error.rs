@@ -96,7 +96,7 @@ impl StepHistory {
     }
 
     /// The error of a step to these fields, with gas of these volumes in m³ in the cells; `None` where too few windows have passed
-    /// since the start or the last jump. Of second order it needs three windows; with two it is that of implicit Euler.
+    /// since the start or the last jump, of second order one more.
     pub fn estimate(
         &self,
         fields: &GasFields<'_>,
@@ -105,7 +105,10 @@ impl StepHistory {
         order: StepOrder,
     ) -> Option<StepError> {
         let before = self.rates.first().filter(|_| !self.jumped)?;
-        let older = self.rates.get(1).filter(|_| order == StepOrder::Second);
+        let older = self.rates.get(1);
+        if order == StepOrder::Second && older.is_none() {
+            return None;
+        }
         let mut now = Vec::new();
         gather(fields, &mut now);
         if now.len() != self.last.len() {
@@ -121,21 +124,15 @@ impl StepHistory {
             let (h, h1) = (span(spans), span(before.spans));
             let rate = (now[place] - self.last[place]) / h;
             let change = rate - before.values[place];
-            if order == StepOrder::First {
+            let Some(older) = older.filter(|_| order == StepOrder::Second) else {
                 // The rate over a step of implicit Euler is that at its end, whatever the lengths of both.
                 return EULER * h * change;
-            }
+            };
             // Divided differences of Newton.
-            let second = change / (h + h1);
-            match older {
-                None => EULER * h * h * 2.0 * second,
-                Some(older) => {
-                    let h2 = span(older.spans);
-                    let earlier = (before.values[place] - older.values[place]) / (h1 + h2);
-                    let third = (second - earlier) / (h + h1 + h2);
-                    TWO_STAGES * h * h * h * 6.0 * third
-                }
-            }
+            let h2 = span(older.spans);
+            let earlier = (before.values[place] - older.values[place]) / (h1 + h2);
+            let third = (change / (h + h1) - earlier) / (h + h1 + h2);
+            TWO_STAGES * h * h * h * 6.0 * third
         };
         let whole: f64 = volume.iter().sum();
         let mean = |of: &dyn Fn(usize) -> f64| {
@@ -195,23 +192,26 @@ impl StepHistory {
         self.last = now;
     }
 
-    /// What a checkpoint holds of it; the gas of the last commit is in the gas' own.
+    /// What a checkpoint holds of it. A solver that reads its own checkpoint may differ in round-off from what it last told: the gas of the
+    /// last commit is kept as the estimates know it.
     pub fn record(&self, state: &mut StateFile) {
         let mut numbers = vec![self.speed, f64::from(u8::from(self.jumped))];
         for one in &self.rates {
             numbers.extend([one.spans.motion, one.spans.storage]);
         }
         state.set_f64s("step_error", &numbers);
+        state.set_f64s("step_gas", &self.last);
         for (name, place) in [("step_rates", 0), ("step_rates_before", 1)] {
             let values = self.rates.get(place).map_or(&[][..], |one| &one.values);
             state.set_f64s(name, values);
         }
     }
 
-    /// Takes up what a checkpoint holds, beside the gas as it was read.
+    /// Takes up what a checkpoint holds, for a gas with these fields.
     pub fn restore(fields: &GasFields<'_>, state: &StateFile) -> Result<Self, StateFileError> {
         let mut history = Self::begin(fields);
         if let [speed, jumped, spans @ ..] = state.f64s("step_error")? {
+            history.last = state.f64s_of("step_gas", history.last.len())?.to_vec();
             history.speed = *speed;
             history.jumped = *jumped != 0.0;
             let names = ["step_rates", "step_rates_before"];
