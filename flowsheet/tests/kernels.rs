@@ -59,7 +59,7 @@ fn batch(per_doubling: usize, low: i32, high: i32, spray: f64, processes: &[Proc
     let none = vec![0.0; grid.classes()];
     let before: f64 = content.iter().sum();
     let plant = tank(grid.clone(), &none, spray, make, content);
-    let mut run = PlantRun::new(&plant, Integrator::Explicit, 1e-6).unwrap();
+    let mut run = PlantRun::new(&plant, Integrator::Explicit, 1e-7).unwrap();
     run.advance(SPAN).unwrap();
     let masses = run.unit(plant.unit("bed").unwrap());
     let numbers: Vec<f64> = masses
