@@ -179,7 +179,7 @@ fn a_product_kernel_keeps_its_moments_before_it_gels() {
         let kernel = ProductKernel {
             rate: 0.25 / (COUNT * MEAN * MEAN * SPAN),
         };
-        let found = batch(per_doubling, -14, 9, 0.0, &[aggregation(kernel)]);
+        let found = batch(per_doubling, -18, 9, 0.0, &[aggregation(kernel)]);
         let [zeroth, second] = [found.moments[0] / 0.875 - 1.0, found.moments[2] / 2.0 - 1.0];
         println!(
             "product, {per_doubling} per doubling: M0 {zeroth:e}, M2 {second:e}, M1 {:e}",
