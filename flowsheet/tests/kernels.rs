@@ -59,7 +59,7 @@ fn batch(per_doubling: usize, low: i32, high: i32, spray: f64, processes: &[Proc
     let none = vec![0.0; grid.classes()];
     let before: f64 = content.iter().sum();
     let plant = tank(grid.clone(), &none, spray, make, content);
-    let mut run = PlantRun::new(&plant, Integrator::Explicit, 1e-6).unwrap();
+    let mut run = PlantRun::new(&plant, Integrator::Explicit, 1e-7).unwrap();
     run.advance(SPAN).unwrap();
     let masses = run.unit(plant.unit("bed").unwrap());
     let numbers: Vec<f64> = masses
@@ -179,7 +179,7 @@ fn a_product_kernel_keeps_its_moments_before_it_gels() {
         let kernel = ProductKernel {
             rate: 0.25 / (COUNT * MEAN * MEAN * SPAN),
         };
-        let found = batch(per_doubling, -14, 9, 0.0, &[aggregation(kernel)]);
+        let found = batch(per_doubling, -18, 9, 0.0, &[aggregation(kernel)]);
         let [zeroth, second] = [found.moments[0] / 0.875 - 1.0, found.moments[2] / 2.0 - 1.0];
         println!(
             "product, {per_doubling} per doubling: M0 {zeroth:e}, M2 {second:e}, M1 {:e}",

@@ -103,7 +103,8 @@ impl SizeProcess for Aggregation {
             let [j, k, into] = [pair.first, pair.second, pair.into].map(|k| k as usize);
             let (one, other) = (numbers[j], numbers[k]);
             let rate = pair.rate * one * other;
-            if rate == 0.0 {
+            // Masses below the normal range of numbers have no digits by which a mean could be taken.
+            if !(rate * self.particle[0]).is_normal() {
                 continue;
             }
             born[into] += rate;
