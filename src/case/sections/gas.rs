@@ -117,6 +117,7 @@ fn vacuum(section: &TableReader<'_>) -> Option<GasRead> {
         "species_data",
         "schmidt",
         "chemistry",
+        "pressure_gradient",
         "turbulence",
     ] {
         if section.has(key) {
