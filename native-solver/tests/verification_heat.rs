@@ -388,7 +388,7 @@ fn energy_closes_to_round_off_however_loosely_it_is_solved() {
         ("side", warm_wall(350.0)),
     ]);
     setup.controls.outer_tolerance = 1e-3;
-    setup.controls.linear_tolerance = 1e-5;
+    setup.controls.linear_tolerance = Some(1e-5);
     for scheme in [TimeScheme::ImplicitEuler, TimeScheme::Sdirk2] {
         setup.controls.time_scheme = scheme;
         let mut duct = Driver::new(&duct([0.02, 0.02, 0.1], [4, 4, 20]), &setup);

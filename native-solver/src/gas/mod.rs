@@ -39,7 +39,7 @@ use calcine_coupler::part::{
     Backflow, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
 };
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::setup::{GasSetup, Turbulence};
+use calcine_coupler::setup::{GasControls, GasSetup, Turbulence};
 use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::Window;
 
@@ -187,7 +187,11 @@ impl NativeGas {
             turbulence: &self.setup.turbulence,
             particles: &self.exchange.eddies,
             span: window.span.motion.seconds(),
-            tolerance: self.setup.controls.linear_tolerance,
+            tolerance: self
+                .setup
+                .controls
+                .linear_tolerance
+                .unwrap_or(GasControls::CLOSE),
             iterations,
         };
         eddies.advance(&step, &mut self.equations.krylov, &mut self.now)
@@ -435,7 +439,11 @@ fn check(setup: &GasSetup) -> Result<(), NativeError> {
         ("the start temperature", setup.temperature, "K"),
         ("the pressure", setup.pressure, "Pa"),
         ("the outer tolerance", setup.controls.outer_tolerance, ""),
-        ("the linear tolerance", setup.controls.linear_tolerance, ""),
+        (
+            "the linear tolerance",
+            setup.controls.linear_tolerance.unwrap_or(1.0),
+            "",
+        ),
     ] {
         if !(value.is_finite() && value > 0.0) {
             return Err(NativeError::Value {

@@ -16,7 +16,7 @@ use super::pace::Pace;
 use super::pressure::{self, Pressure};
 use super::species::SpeciesEquations;
 use super::state::GasState;
-use super::tolerance::ScalarTolerance;
+use super::tolerance::{self, ContinuityResidual, LinearTolerances, ScalarTolerance};
 use crate::numerics::grid::MeshGraph;
 use crate::numerics::krylov::Krylov;
 use crate::numerics::matrix::Matrix;
@@ -71,6 +71,8 @@ pub struct Equations {
     share: f64,
     /// Residual of momentum and continuity.
     flow: f64,
+    /// Continuity with the fluxes at hand.
+    continuity: ContinuityResidual,
 }
 
 impl Equations {
@@ -87,6 +89,7 @@ impl Equations {
             krylov: Krylov::default(),
             share: 1.0,
             flow: f64::INFINITY,
+            continuity: ContinuityResidual::default(),
         }
     }
 
@@ -123,13 +126,16 @@ impl Equations {
             // holds), as long as they are numbers; the last one must be one.
             guard::nonsense(now, &frame.grid.centre)?;
             convergence.residual = self.assess(frame, now)?;
-            if convergence.residual <= controls.outer_tolerance {
+            if convergence.residual <= controls.outer_tolerance
+                && self.volume_residual(frame, now) <= tolerance::volume_bound(controls)
+            {
                 convergence.converged = true;
                 break;
             }
             pace.judge(controls, outer, self.flow);
         }
-        convergence.linear_iterations += self.close(frame, controls.linear_tolerance, now);
+        let linear = LinearTolerances::new(controls, &self.continuity);
+        convergence.linear_iterations += self.close(frame, linear.scalars, now);
         guard::complaint(now, &frame.grid.centre)?;
         convergence.volume_residual = self.volume_residual(frame, now);
         if !frame.turbulence.is_laminar() {
@@ -149,7 +155,8 @@ impl Equations {
         self.enthalpy
             .assemble(frame, material, carried, self.share, now);
         let momentum = self.momentum.residual(frame, now);
-        let continuity = self.pressure.residual(frame, material, now);
+        self.continuity = self.pressure.residual(frame, material, now);
+        let continuity = self.continuity.share;
         let enthalpy = self.enthalpy.residual(now);
         let species = self.species.residual(frame, material, self.share, now);
         let change = self.chemistry.change;
@@ -169,25 +176,25 @@ impl Equations {
         corrections: u32,
         now: &mut GasState,
     ) -> Result<u32, GasFailure> {
-        let tolerance = controls.linear_tolerance;
+        let linear = LinearTolerances::new(controls, &self.continuity);
         let (krylov, material) = (&mut self.krylov, &self.material);
-        let mut iterations = self.momentum.predict(frame, krylov, tolerance, now);
+        let mut iterations = self.momentum.predict(frame, krylov, linear.terms, now);
 
         self.pressure.assemble(frame, material, &self.momentum, now);
         for _ in 0..corrections {
             iterations +=
                 self.pressure
-                    .correct(frame, material, &self.momentum, krylov, tolerance, now);
+                    .correct(frame, material, &self.momentum, krylov, &linear, now);
         }
         pressure::advance_mass(frame, now);
         let Some(gas) = frame.chemistry.reacting() else {
-            return Ok(iterations + self.scalars(frame, tolerance, SCALARS, now));
+            return Ok(iterations + self.scalars(frame, linear.scalars, SCALARS, now));
         };
         let enough = controls.outer_tolerance.max(CLOSER * self.flow);
         self.chemistry.follow(frame, now);
         for _ in 0..SWEEPS {
             self.chemistry.start(now);
-            iterations += self.conserve(frame, tolerance, now)?;
+            iterations += self.conserve(frame, linear.scalars, now)?;
             self.sweep(frame, gas, controls.outer_tolerance, now)?;
             if self.chemistry.change <= enough {
                 break;

@@ -25,6 +25,7 @@ use super::friction::{self, WallFriction};
 use super::momentum::Momentum;
 use super::opening::OuterPressure;
 use super::state::GasState;
+use super::tolerance::{ContinuityResidual, LinearTolerances};
 use super::transport::FaceTransport;
 use crate::numerics::amg::Multigrid;
 use crate::numerics::grid::{Face, MeshGraph};
@@ -230,7 +231,7 @@ impl Pressure {
         material: &CellProperties,
         momentum: &Momentum,
         krylov: &mut Krylov,
-        tolerance: f64,
+        tolerance: &LinearTolerances,
         now: &mut GasState,
     ) -> u32 {
         let grid = frame.grid;
@@ -258,8 +259,8 @@ impl Pressure {
             source
         });
         let target = SolveTolerance {
-            absolute: 0.0,
-            of_terms: tolerance,
+            absolute: tolerance.continuity,
+            of_terms: tolerance.terms,
             relative: CORRECTION,
             iterations: ITERATIONS,
         };
@@ -290,16 +291,15 @@ impl Pressure {
         missed
     }
 
-    /// Σ over cells of the mismatch of continuity, and what openings miss, relative to what the cells hold and what flows
-    /// through them.
+    /// Continuity with the fluxes at hand.
     pub fn residual(
         &self,
         frame: &AttemptFrame<'_>,
         material: &CellProperties,
         now: &GasState,
-    ) -> f64 {
+    ) -> ContinuityResidual {
         let grid = frame.grid;
-        let [error, terms] = sums(grid.cells(), |cell| {
+        let [error, through, held] = sums(grid.cells(), |cell| {
             let (mut net, mut through) = (0.0, 0.0);
             for link in grid.links(cell) {
                 let flux = now.flux[link.face as usize];
@@ -307,9 +307,14 @@ impl Pressure {
                 through += 0.5 * flux.abs();
             }
             let error = (target(frame, material, now, cell) - net).abs();
-            [error, frame.old.mass[cell] / frame.storage_span + through]
+            [error, through, frame.old.mass[cell] / frame.storage_span]
         });
-        (error + self.missed_at_openings(frame, now)) / terms
+        let terms = through + held;
+        ContinuityResidual {
+            share: (error + self.missed_at_openings(frame, now)) / terms,
+            terms,
+            renewals: through / held,
+        }
     }
 
     /// b of a cell along a face's normal, in s: with what walls without friction add to the diagonal there.
