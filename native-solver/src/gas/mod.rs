@@ -18,6 +18,7 @@ mod normal_friction;
 mod opening;
 mod outer;
 mod pace;
+mod phases;
 mod pressure;
 mod species;
 mod stages;
@@ -36,7 +37,8 @@ use calcine_coupler::boundary_value::BoundaryValue;
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::part::{
-    Backflow, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
+    Backflow, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, GasPhases, Part,
+    SolverInfo,
 };
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::{GasControls, GasSetup, Turbulence};
@@ -48,6 +50,7 @@ pub use error::NativeError;
 pub use failure::GasFailure;
 use failure::Place;
 use outer::Equations;
+use phases::Stopwatch;
 use stages::StageStates;
 use state::GasState;
 pub(crate) use state::{flat, vectors};
@@ -194,7 +197,10 @@ impl NativeGas {
                 .unwrap_or(GasControls::CLOSE),
             iterations,
         };
-        eddies.advance(&step, &mut self.equations.krylov, &mut self.now)
+        let mut watch = Stopwatch::new();
+        let advanced = eddies.advance(&step, &mut self.equations.krylov, &mut self.now);
+        watch.lap(&mut self.equations.phases.turbulence);
+        advanced
     }
 
     fn check_inputs(&self, bed: &Bed, exchange: &CellExchange) -> Result<(), GasFailure> {
@@ -344,6 +350,10 @@ impl Gas for NativeGas {
 
     fn backflow(&self) -> Option<Backflow> {
         self.backflow
+    }
+
+    fn phases(&self) -> Option<GasPhases> {
+        Some(self.equations.phases)
     }
 
     fn turbulence_residual(&self) -> Option<f64> {

@@ -81,6 +81,8 @@ pub struct Pressure {
     preconditioner: Approximation,
     /// ρ ε χ V/a of each cell in s.
     mobility: Vec<f64>,
+    /// b along the normal of each face, of its owner and its neighbour, in s.
+    along_normal: Vec<[f64; 2]>,
     /// F of each cell in N/m³.
     force: Vec<Vec3>,
     /// What inertia adds to the force on the half cells of each face's owner and neighbour, along
@@ -120,6 +122,7 @@ impl Pressure {
             preconditioner: Approximation::new(&matrix),
             matrix,
             mobility: vec![0.0; cells],
+            along_normal: vec![[0.0; 2]; faces],
             force: vec![Vec3::zeros(); cells],
             inertia: vec![[0.0; 2]; faces],
             across: Vec::new(),
@@ -189,14 +192,23 @@ impl Pressure {
             let index = grid.internal + face;
             OuterPressure::about(frame, index, now.flux[index])
         });
+        let mut along_normal = std::mem::take(&mut self.along_normal);
+        fill(&mut along_normal, |index| {
+            let face = &grid.faces[index];
+            let own = self.mobility_along(momentum, face.owner, face);
+            let inside = index < grid.internal;
+            let other = inside.then(|| self.mobility_along(momentum, face.neighbour, face));
+            [own, other.unwrap_or(f64::INFINITY)]
+        });
+        self.along_normal = along_normal;
         let mut conductance = std::mem::take(&mut self.conductance);
         let outer = &self.outer;
         fill(&mut conductance, |index| {
             let face = &grid.faces[index];
-            let mobility = |cell: usize| self.mobility_along(momentum, cell, face);
-            let resistance = face.owner_distance / mobility(face.owner);
+            let [own, other] = self.along_normal[index];
+            let resistance = face.owner_distance / own;
             if index < grid.internal {
-                face.area / (resistance + face.neighbour_distance / mobility(face.neighbour))
+                face.area / (resistance + face.neighbour_distance / other)
             } else if let Some(outer) = outer[index - grid.internal] {
                 face.area / (resistance + face.area * outer.slope)
             } else {
@@ -426,14 +438,15 @@ impl Pressure {
                 let index = link.face as usize;
                 let face = &grid.faces[index];
                 // To the face's plane along its normal by the half's slope, and along the face.
-                let [own, other] = self.beside(index);
-                let (out, beside, miss) = if link.sign > 0.0 {
-                    (face.owner_distance, own, face.owner_skew)
+                let ([own, other], mobility) = (self.beside(index), self.along_normal[index]);
+                let (out, beside, miss, mobility) = if link.sign > 0.0 {
+                    (face.owner_distance, own, face.owner_skew, mobility[0])
                 } else {
-                    (-face.neighbour_distance, other, -face.neighbour_skew)
+                    let out = -face.neighbour_distance;
+                    (out, other, -face.neighbour_skew, mobility[1])
                 };
                 let slope = self.force[cell].dot(&face.normal) + beside
-                    - now.flux[index] / (face.area * self.mobility_along(momentum, cell, face));
+                    - now.flux[index] / (face.area * mobility);
                 let beyond = out * slope + miss.dot(&last[cell]);
                 sum += (link.sign * face.area * beyond) * face.normal;
             }
@@ -461,14 +474,13 @@ impl Pressure {
             for link in grid.links(cell) {
                 let index = link.face as usize;
                 let face = &grid.faces[index];
-                let [own, other] = self.beside(index);
-                let (distance, beside) = if link.sign > 0.0 {
-                    (face.owner_distance, own)
+                let ([own, other], mobility) = (self.beside(index), self.along_normal[index]);
+                let (distance, beside, mobility) = if link.sign > 0.0 {
+                    (face.owner_distance, own, mobility[0])
                 } else {
-                    (face.neighbour_distance, other)
+                    (face.neighbour_distance, other, mobility[1])
                 };
-                let slope =
-                    face.area * beside - flux[index] / self.mobility_along(momentum, cell, face);
+                let slope = face.area * beside - flux[index] / mobility;
                 sum += (distance * slope) * face.normal;
             }
             sum / grid.volume[cell]
