@@ -76,7 +76,7 @@ fn the_summary_has_the_stable_names_of_the_design() {
         "/cells".into(),
         "/processor_time_s/gas".into(),
         "/processor_time_s/particles".into(),
-        "/gas_phases_s/pressure".into(),
+        "/gas_phases_s".into(),
         "/ledger/elements".into(),
     ];
     names.extend(

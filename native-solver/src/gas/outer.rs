@@ -17,7 +17,7 @@ use super::phases::Stopwatch;
 use super::pressure::{self, Pressure};
 use super::species::SpeciesEquations;
 use super::state::GasState;
-use super::tolerance::{self, ContinuityResidual, LinearTolerances, ScalarTolerance};
+use super::tolerance::{self, Assembled, ContinuityResidual, LinearTolerances, ScalarTolerance};
 use crate::numerics::grid::MeshGraph;
 use crate::numerics::krylov::Krylov;
 use crate::numerics::matrix::Matrix;
@@ -49,15 +49,6 @@ pub enum Begin {
     Stage,
     /// The same once more, from what the attempt before found.
     Again,
-}
-
-/// Whether the equations of scalars are those of the fields at hand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Assembled {
-    /// Since the fields were looked at last.
-    Yes,
-    /// They have to be assembled.
-    No,
 }
 
 /// The equations and their scratch memory, reused from window to window.

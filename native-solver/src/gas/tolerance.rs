@@ -25,6 +25,15 @@ pub struct ScalarTolerance {
     pub relative: f64,
 }
 
+/// Whether the equations of scalars are those of the fields at hand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Assembled {
+    /// Since the fields were looked at last.
+    Yes,
+    /// They have to be assembled.
+    No,
+}
+
 /// Continuity at hand.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ContinuityResidual {
