@@ -76,6 +76,7 @@ fn the_summary_has_the_stable_names_of_the_design() {
         "/cells".into(),
         "/processor_time_s/gas".into(),
         "/processor_time_s/particles".into(),
+        "/gas_phases_s".into(),
         "/ledger/elements".into(),
     ];
     names.extend(
@@ -194,6 +195,8 @@ fn after_a_kill_and_a_resume_all_files_are_those_of_the_uninterrupted_run() {
     twice.wall_time_s = Default::default();
     once.processor_time_s = Default::default();
     twice.processor_time_s = Default::default();
+    once.gas_phases_s = Default::default();
+    twice.gas_phases_s = Default::default();
     assert_eq!(once, twice);
     #[cfg(feature = "hdf5")]
     assert_eq!(datasets(&whole), datasets(&out));

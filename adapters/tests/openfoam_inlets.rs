@@ -47,7 +47,7 @@ fn fuelled(
     setup.velocity = Vec3::zeros();
     setup.controls.convection = convection;
     setup.controls.outer_tolerance = 1e-9;
-    setup.controls.linear_tolerance = 1e-14;
+    setup.controls.linear_tolerance = Some(1e-14);
     let mut duct = Duct::launch_on(mesh([1, 1, CELLS]), &setup, folder);
     let span = if velocity > 0.0 { SIDE / velocity } else { 1.0 };
     let ticks = Ticks::from_seconds(span).unwrap();

@@ -176,7 +176,7 @@ fn the_log_of_five_hundred_windows_stays_short() {
     let mut practical = setup();
     practical.controls.outer_iterations = 3;
     practical.controls.outer_tolerance = 1e-6;
-    practical.controls.linear_tolerance = 1e-10;
+    practical.controls.linear_tolerance = Some(1e-10);
     let mut duct = Duct::launch(&practical, folder.path());
     duct.advance(500, &bed(0.5), &heating());
     let log = std::fs::read_to_string(folder.path().join("log")).unwrap();

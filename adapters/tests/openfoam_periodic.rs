@@ -52,7 +52,7 @@ fn at_rest(patches: &[(&str, GasPatch)]) -> GasSetup {
         .collect();
     setup.controls.outer_iterations = 100;
     setup.controls.outer_tolerance = 1e-9;
-    setup.controls.linear_tolerance = 1e-12;
+    setup.controls.linear_tolerance = Some(1e-12);
     setup
 }
 

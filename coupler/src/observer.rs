@@ -11,7 +11,7 @@ use crate::findings::Finding;
 use crate::ledger::Ledger;
 use crate::mesh::Mesh;
 use crate::models::ParticleModels;
-use crate::part::{Bed, Convergence, GasFields, ParticleFields, SolverInfo};
+use crate::part::{Bed, Convergence, GasFields, GasPhases, ParticleFields, SolverInfo};
 use crate::step_error::StepError;
 use crate::time::{Clocks, Window};
 
@@ -34,6 +34,8 @@ pub struct Timing {
     pub output: Duration,
     /// Processor time of the gas: of this process while it waits for the gas.
     pub gas_processor: Duration,
+    /// Wall time of the gas' phases so far, where it tells.
+    pub gas_phases: Option<GasPhases>,
     /// The same, of processes of the gas' own; up to date at checkpoints and at the end.
     pub gas_processes: Duration,
     /// Processor time of this process while it waits for the particles.

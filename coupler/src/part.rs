@@ -245,6 +245,40 @@ pub struct Convergence {
     pub converged: bool,
 }
 
+/// Wall time that a gas has taken for the parts of its windows so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GasPhases {
+    /// Momentum equation: assembly, predictor, residual.
+    pub momentum: Duration,
+    /// Pressure equation with fluxes and velocities, and continuity.
+    pub pressure: Duration,
+    /// Enthalpy.
+    pub enthalpy: Duration,
+    /// Species without reactions.
+    pub species: Duration,
+    /// Reactions of the gas.
+    pub chemistry: Duration,
+    /// Eddies.
+    pub turbulence: Duration,
+    /// Density, viscosity, conductivity, heat capacity.
+    pub properties: Duration,
+}
+
+impl GasPhases {
+    /// Every phase with its name.
+    pub fn named(&self) -> [(&'static str, Duration); 7] {
+        [
+            ("momentum", self.momentum),
+            ("pressure", self.pressure),
+            ("enthalpy", self.enthalpy),
+            ("species", self.species),
+            ("chemistry", self.chemistry),
+            ("turbulence", self.turbulence),
+            ("properties", self.properties),
+        ]
+    }
+}
+
 /// Gas that comes back in through outlets for which no state of it is given, in that of the cell behind. It counts where it
 /// renews more of a cell's gas in a window than the share to which the gas is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -268,6 +302,11 @@ pub trait Gas: Part {
     /// True where the gas can begin a window again after an attempt that failed; a solver of its own process has ended by
     /// then.
     fn begins_again(&self) -> bool;
+
+    /// Wall time of each phase so far, where the gas tells.
+    fn phases(&self) -> Option<GasPhases> {
+        None
+    }
 
     /// Relative residual of the equations of turbulence where the last commit left them above their tolerance.
     fn turbulence_residual(&self) -> Option<f64>;

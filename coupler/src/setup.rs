@@ -78,8 +78,13 @@ pub struct GasControls {
     pub most_pressure_corrections: u32,
     /// The outer loop ends where scaled initial residuals fall below this.
     pub outer_tolerance: f64,
-    /// Tolerance of the linear solvers, relative to the throughput.
-    pub linear_tolerance: f64,
+    /// Tolerance of the linear solvers, relative to the throughput; nothing: that which the outer loop can make use of.
+    pub linear_tolerance: Option<f64>,
+}
+
+impl GasControls {
+    /// Tolerance of linear solvers that do not follow the outer loop.
+    pub const CLOSE: f64 = 1e-13;
 }
 
 /// How the gas is stepped over a window in which motion and process clock are one (AF 1); under time splitting it is implicit Euler

@@ -22,7 +22,7 @@ fn bed(cells: usize) -> Driver {
     ]);
     setup.controls.outer_iterations = 10;
     setup.controls.outer_tolerance = 1e-6;
-    setup.controls.linear_tolerance = 1e-10;
+    setup.controls.linear_tolerance = Some(1e-10);
     let mut driver = Driver::new(&mesh, &setup);
     let volume = mesh.cell_volume()[0];
     for (cell, share) in scatter(mesh.cells(), 3).into_iter().enumerate() {

@@ -33,7 +33,7 @@ fn fuelled(peclet: f64, scalars: InletScalars, convection: Convection) -> (Drive
     setup.composition = vec![0.0, 1.0];
     setup.schmidt = 0.7;
     setup.controls.convection = convection;
-    setup.controls.linear_tolerance = 1e-14;
+    setup.controls.linear_tolerance = Some(1e-14);
     let mesh = duct([HEIGHT, HEIGHT, 12.0 * HEIGHT], [1, 1, 12]);
     (Driver::new(&mesh, &setup), gas, velocity)
 }
@@ -136,7 +136,7 @@ fn reactor_error(peclet: f64, damkoehler: f64, cells: usize) -> f64 {
     setup.composition = TRACE.to_vec();
     setup.properties = gas;
     setup.controls.convection = Convection::VanLeer;
-    setup.controls.linear_tolerance = 1e-14;
+    setup.controls.linear_tolerance = Some(1e-14);
     let mesh = duct([0.1, 0.1, 1.0], [1, 1, cells]);
     let mut driver = Driver::new(&mesh, &setup);
     driver.exchange.species.reset(cells, 2);

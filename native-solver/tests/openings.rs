@@ -108,7 +108,7 @@ fn still_air_in_a_box_with_openings_at_any_height_stays_at_rest() {
     };
     let mut setup = setup(&[("west", opening()), ("side", no_slip()), ("top", elsewhere)]);
     setup.gravity = Vec3::new(0.0, 0.0, -GRAVITY);
-    setup.controls.linear_tolerance = 1e-14;
+    setup.controls.linear_tolerance = Some(1e-14);
     let mut driver = Driver::new(&mesh, &setup);
     for (cell, share) in scatter(mesh.cells(), 3).into_iter().enumerate() {
         driver.bed.void_fraction[cell] = 0.4 + 0.6 * share;

@@ -84,7 +84,7 @@ fn species_close_to_round_off_however_loosely_they_are_solved() {
         24,
         InletScalars::Flux,
     );
-    setup.controls.linear_tolerance = 1e-6;
+    setup.controls.linear_tolerance = Some(1e-6);
     setup.composition = vec![1e-4, 1.0 - 1e-4];
     let mut duct = Driver::new(&duct([0.01, 0.01, 0.12], [1, 1, 24]), &setup);
     let content = |duct: &Driver, k: usize| {

@@ -30,7 +30,7 @@ fn run(scheme: TimeScheme, windows: usize) -> Outcome {
     setup.controls.time_scheme = scheme;
     setup.controls.convection = Convection::Central(1.0);
     setup.controls.outer_tolerance = 1e-12;
-    setup.controls.linear_tolerance = 1e-14;
+    setup.controls.linear_tolerance = Some(1e-14);
     setup.properties = fluid(1.0, 1000.0, VISCOSITY, 1.0);
     let mut driver = Driver::new(&mesh, &setup);
     driver.gas.start_from(&GasStart {

@@ -83,7 +83,7 @@ fn tight(patches: &[(&str, GasPatch)], scheme: TimeScheme) -> GasSetup {
     setup.controls.time_scheme = scheme;
     setup.controls.convection = Convection::Central(1.0);
     setup.controls.outer_tolerance = 1e-11;
-    setup.controls.linear_tolerance = 1e-13;
+    setup.controls.linear_tolerance = Some(1e-13);
     setup
 }
 

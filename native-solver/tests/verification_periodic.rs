@@ -114,7 +114,7 @@ fn of_square(convection: Convection) -> GasSetup {
     setup.controls.time_scheme = TimeScheme::Sdirk2;
     setup.controls.outer_iterations = 100;
     setup.controls.outer_tolerance = 1e-10;
-    setup.controls.linear_tolerance = 1e-13;
+    setup.controls.linear_tolerance = Some(1e-13);
     setup
 }
 

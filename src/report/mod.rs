@@ -80,6 +80,10 @@ pub fn write(directory: &Path) -> Result<PathBuf, ResultsError> {
         &ledger(&summary),
     );
     page.section("Where the wall time went", "", &timing(&summary));
+    let phases = gas_phases(&summary);
+    if !phases.is_empty() {
+        page.section("Where the gas' wall time went", "", &phases);
+    }
     page.section(
         "Convergence of the gas",
         &converged(&summary),
@@ -319,6 +323,28 @@ fn timing(summary: &Summary) -> String {
         )
     };
     bars(&entries.iter().map(bar).collect::<Vec<_>>())
+}
+
+/// Wall time of the gas' phases, of each cell and window.
+fn gas_phases(summary: &Summary) -> String {
+    let steps = (summary.cells as u64 * summary.windows).max(1) as f64;
+    let taken = summary.gas_phases_s.iter().filter(|phase| *phase.1 > 0.0);
+    let mut phases: Vec<_> = taken.collect();
+    phases.sort_by(|a, b| b.1.total_cmp(a.1));
+    let bar = |(name, &seconds): (&String, &f64)| {
+        let each = figure(1e6 * seconds / steps, 2);
+        let text = format!("{} · {each} µs a cell and window", span(seconds));
+        (name.clone(), seconds, text)
+    };
+    let entries: Vec<(String, f64, String)> = phases.into_iter().map(bar).collect();
+    let entries = entries
+        .iter()
+        .map(|(name, s, text)| (&name[..], *s, text.clone()));
+    let entries: Vec<_> = entries.collect();
+    match entries.is_empty() {
+        true => String::new(),
+        false => bars(&entries),
+    }
 }
 
 fn converged(summary: &Summary) -> String {

@@ -1,5 +1,6 @@
 //! The recorder: the observer that writes the results of a run.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -62,6 +63,8 @@ pub struct Recorder {
     before: WallTimes,
     /// Their processor times.
     processor_before: ProcessorTimes,
+    /// Their wall times of the gas' phases.
+    gas_phases_before: BTreeMap<String, f64>,
     watch: Watch,
     open: Option<Open>,
     summary: Option<Summary>,
@@ -101,6 +104,7 @@ impl Recorder {
             resumed: resume.is_some(),
             before: counters.wall,
             processor_before: counters.processor,
+            gas_phases_before: counters.gas_phases.clone(),
             counters,
             watch: Watch::new(out, 0.0),
             open: None,
@@ -194,6 +198,7 @@ impl Recorder {
         let mut counters = self.counters.clone();
         counters.wall = self.wall(moment.timing);
         counters.processor = self.processor(moment.timing);
+        counters.gas_phases = self.gas_phases(moment.timing);
         resume::save(&self.directory, directory, &counters)?;
         self.summarise(moment, Verdict::Running)
     }
@@ -363,6 +368,17 @@ impl Recorder {
         }
     }
 
+    fn gas_phases(&self, timing: &Timing) -> BTreeMap<String, f64> {
+        let Some(phases) = timing.gas_phases else {
+            return self.gas_phases_before.clone();
+        };
+        let all = |(name, time): (&'static str, Duration)| {
+            let before = self.gas_phases_before.get(name).copied();
+            (name.into(), before.unwrap_or_default() + time.as_secs_f64())
+        };
+        phases.named().map(all).into()
+    }
+
     fn status(&self, moment: &CommittedState<'_>, verdict: Verdict) -> Status {
         let (now, end) = (moment.clocks.process, self.case.time.end);
         Status {
@@ -464,6 +480,7 @@ impl Recorder {
             },
             wall_time_s: self.wall(moment.timing),
             processor_time_s: self.processor(moment.timing),
+            gas_phases_s: self.gas_phases(moment.timing),
             quantities: captured.results(case, over),
             convergence: self.counters.convergence,
             steps: self.counters.steps,

@@ -1,5 +1,6 @@
 //! What the recorder leaves in a checkpoint, and how it goes on from one.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -61,6 +62,9 @@ pub(super) struct Counters {
     /// Processor times so far.
     #[serde(default)]
     pub processor: ProcessorTimes,
+    /// Wall times of the gas' phases so far.
+    #[serde(default)]
+    pub gas_phases: BTreeMap<String, f64>,
 }
 
 /// Name of a snapshot's gas file.

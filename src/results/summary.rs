@@ -96,6 +96,9 @@ pub struct Summary {
     /// Processor time of the two solvers in s, over all processes of the run.
     #[serde(default)]
     pub processor_time_s: ProcessorTimes,
+    /// Wall time of the phases of a gas that tells them in s, by name.
+    #[serde(default)]
+    pub gas_phases_s: BTreeMap<String, f64>,
     /// Quantities of interest by name.
     pub quantities: BTreeMap<String, QuantityResult>,
     /// Convergence of the gas, over the run.

@@ -212,7 +212,7 @@ fn gas_setup() -> GasSetup {
             time_scheme: Default::default(),
             most_pressure_corrections: 16,
             outer_tolerance: 1e-10,
-            linear_tolerance: 1e-12,
+            linear_tolerance: Some(1e-12),
         },
     }
 }

@@ -380,7 +380,7 @@ mod tests {
                 time_scheme: Default::default(),
                 most_pressure_corrections: 16,
                 outer_tolerance: 1e-6,
-                linear_tolerance: 1e-10,
+                linear_tolerance: Some(1e-10),
             },
         }
     }

@@ -5,8 +5,8 @@ use std::fmt::Write;
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::gas_model::GasModel;
 use calcine_coupler::setup::{
-    Convection, GasPatch, GasSetup, InletFlow, InletScalars, PatchGas, Schedule, TimeScheme,
-    Turbulence, WallHeat, WallVelocity,
+    Convection, GasControls, GasPatch, GasSetup, InletFlow, InletScalars, PatchGas, Schedule,
+    TimeScheme, Turbulence, WallHeat, WallVelocity,
 };
 use calcine_wire::Catalogue;
 
@@ -134,7 +134,7 @@ pub fn calcine(setup: &GasSetup, case_hash: &str, catalogue: &Catalogue) -> Stri
         controls.outer_iterations,
         controls.pressure_corrections,
         controls.outer_tolerance,
-        controls.linear_tolerance,
+        controls.linear_tolerance.unwrap_or(GasControls::CLOSE),
         controls.time_scheme == TimeScheme::Sdirk2
     );
     let names = setup.properties.species();

@@ -154,7 +154,7 @@ pub fn setup(mesh: &Mesh) -> GasSetup {
             time_scheme: Default::default(),
             most_pressure_corrections: 16,
             outer_tolerance: 1e-11,
-            linear_tolerance: 1e-13,
+            linear_tolerance: Some(1e-13),
         },
     }
 }

@@ -510,6 +510,7 @@ impl CoupledRun {
 
     /// What the solvers' own processes have used so far.
     fn note_processors(&mut self) {
+        self.meter.timing.gas_phases = self.parts.gas.phases();
         self.meter.timing.gas_processes = self.parts.gas.processor_time();
         self.meter.timing.particles_processes = self.parts.particles.processor_time();
     }

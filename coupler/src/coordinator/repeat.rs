@@ -7,7 +7,8 @@ use crate::boundary_value::BoundaryValue;
 use crate::error::PartError;
 use crate::gas_columns::GasColumns;
 use crate::part::{
-    Backflow, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
+    Backflow, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, GasPhases, Part,
+    SolverInfo,
 };
 use crate::supervisor::Supervisor;
 use crate::time::{Ticks, Window};
@@ -116,6 +117,10 @@ impl Gas for RepeatableGas {
             Some(committed) if self.back => committed.fields(),
             _ => self.gas.fields(),
         }
+    }
+
+    fn phases(&self) -> Option<GasPhases> {
+        self.gas.phases()
     }
 
     fn turbulence_residual(&self) -> Option<f64> {

@@ -18,6 +18,7 @@ mod normal_friction;
 mod opening;
 mod outer;
 mod pace;
+mod phases;
 mod pressure;
 mod recovery;
 mod species;
@@ -37,10 +38,11 @@ use calcine_coupler::boundary_value::BoundaryValue;
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::part::{
-    Backflow, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, Part, SolverInfo,
+    Backflow, Bed, CellExchange, CellReceived, Convergence, Gas, GasFields, GasPhases, Part,
+    SolverInfo,
 };
 use calcine_coupler::physics::Vec3;
-use calcine_coupler::setup::{GasSetup, Turbulence};
+use calcine_coupler::setup::{GasControls, GasSetup, Turbulence};
 use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::Window;
 
@@ -49,6 +51,7 @@ pub use error::NativeError;
 pub use failure::GasFailure;
 use failure::Place;
 use outer::Equations;
+use phases::Stopwatch;
 use stages::StageStates;
 use state::GasState;
 pub(crate) use state::{flat, vectors};
@@ -195,10 +198,17 @@ impl NativeGas {
             turbulence: &self.setup.turbulence,
             particles: &self.exchange.eddies,
             span: window.span.motion.seconds(),
-            tolerance: self.setup.controls.linear_tolerance,
+            tolerance: self
+                .setup
+                .controls
+                .linear_tolerance
+                .unwrap_or(GasControls::CLOSE),
             iterations,
         };
-        eddies.advance(&step, &mut self.equations.krylov, &mut self.now)
+        let mut watch = Stopwatch::new();
+        let advanced = eddies.advance(&step, &mut self.equations.krylov, &mut self.now);
+        watch.lap(&mut self.equations.phases.turbulence);
+        advanced
     }
 
     fn check_inputs(&self, bed: &Bed, exchange: &CellExchange) -> Result<(), GasFailure> {
@@ -350,6 +360,10 @@ impl Gas for NativeGas {
         self.backflow
     }
 
+    fn phases(&self) -> Option<GasPhases> {
+        Some(self.equations.phases)
+    }
+
     fn turbulence_residual(&self) -> Option<f64> {
         self.eddies.as_ref().and_then(KEpsilonEquations::unsolved)
     }
@@ -443,7 +457,11 @@ fn check(setup: &GasSetup) -> Result<(), NativeError> {
         ("the start temperature", setup.temperature, "K"),
         ("the pressure", setup.pressure, "Pa"),
         ("the outer tolerance", setup.controls.outer_tolerance, ""),
-        ("the linear tolerance", setup.controls.linear_tolerance, ""),
+        (
+            "the linear tolerance",
+            setup.controls.linear_tolerance.unwrap_or(1.0),
+            "",
+        ),
     ] {
         if !(value.is_finite() && value > 0.0) {
             return Err(NativeError::Value {

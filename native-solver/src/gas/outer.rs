@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use calcine_coupler::gas_chemistry::ReactingGas;
-use calcine_coupler::part::Convergence;
+use calcine_coupler::part::{Convergence, GasPhases};
 use calcine_coupler::setup::GasControls;
 
 use super::attempt::{AttemptFrame, CellProperties};
@@ -13,10 +13,11 @@ use super::failure::GasFailure;
 use super::guard;
 use super::momentum::Momentum;
 use super::pace::Pace;
+use super::phases::Stopwatch;
 use super::pressure::{self, Pressure};
 use super::species::SpeciesEquations;
 use super::state::GasState;
-use super::tolerance::ScalarTolerance;
+use super::tolerance::{self, Assembled, ContinuityResidual, LinearTolerances, ScalarTolerance};
 use crate::numerics::grid::MeshGraph;
 use crate::numerics::krylov::Krylov;
 use crate::numerics::matrix::Matrix;
@@ -36,7 +37,7 @@ const SWEEPS: u32 = 5;
 /// Solves at the end of an attempt by which fractions below zero are taken out of what reacts, at most.
 const CLOSINGS: u32 = 3;
 
-/// They need not change a value by less than this share of the residual of momentum and continuity, whose fluxes they take.
+/// Sweeps need not change a value by less than this share of the residual of momentum and continuity, whose fluxes they take.
 const CLOSER: f64 = 0.1;
 
 /// What an attempt begins with.
@@ -71,6 +72,12 @@ pub struct Equations {
     share: f64,
     /// Residual of momentum and continuity.
     flow: f64,
+    /// Continuity with the fluxes at hand.
+    continuity: ContinuityResidual,
+    /// By how much closer than usual continuity is solved.
+    closer: f64,
+    /// What they have taken so far.
+    pub phases: GasPhases,
 }
 
 impl Equations {
@@ -87,6 +94,9 @@ impl Equations {
             krylov: Krylov::default(),
             share: 1.0,
             flow: f64::INFINITY,
+            continuity: ContinuityResidual::default(),
+            closer: 1.0,
+            phases: GasPhases::default(),
         }
     }
 
@@ -110,7 +120,13 @@ impl Equations {
         }
         self.chemistry.begin(frame, begin != Begin::Window);
         self.share = 1.0;
-        self.assess(frame, now)?;
+        self.closer = 1.0;
+        if frame.grid.orthogonal {
+            self.assess_flow(frame, now);
+        } else {
+            // Twice, as gradients follow from the last ones.
+            self.assess(frame, now);
+        }
         let mut pace = Pace::new(controls, self.flow);
         for outer in 1..=controls.outer_iterations.max(1) {
             convergence.linear_iterations +=
@@ -122,14 +138,19 @@ impl Equations {
             // Early iterates may be no state of a gas (after a start from rest a cell may give more than it
             // holds), as long as they are numbers; the last one must be one.
             guard::nonsense(now, &frame.grid.centre)?;
-            convergence.residual = self.assess(frame, now)?;
+            convergence.residual = self.assess(frame, now);
             if convergence.residual <= controls.outer_tolerance {
-                convergence.converged = true;
-                break;
+                if self.volume_residual(frame, now) <= tolerance::volume_bound(controls) {
+                    convergence.converged = true;
+                    break;
+                }
+                // What is left of continuity is in few cells.
+                self.closer *= 0.1;
             }
             pace.judge(controls, outer, self.flow);
         }
-        convergence.linear_iterations += self.close(frame, controls.linear_tolerance, now);
+        let linear = LinearTolerances::new(controls, &self.continuity);
+        convergence.linear_iterations += self.close(frame, linear.scalars, now);
         guard::complaint(now, &frame.grid.centre)?;
         convergence.volume_residual = self.volume_residual(frame, now);
         if !frame.turbulence.is_laminar() {
@@ -138,27 +159,42 @@ impl Equations {
         Ok(convergence)
     }
 
-    /// Assembles momentum and enthalpy with the fields at hand; how far these are from solving
-    /// all equations at once: the largest scaled residual.
-    fn assess(&mut self, frame: &AttemptFrame<'_>, now: &mut GasState) -> Result<f64, GasFailure> {
+    /// Assembles momentum with the fields at hand; how far these are from solving it and continuity.
+    fn assess_flow(&mut self, frame: &AttemptFrame<'_>, now: &mut GasState) {
+        let mut watch = Stopwatch::new();
         self.material.update(frame, now);
-        self.react(frame);
+        watch.lap(&mut self.phases.properties);
         let material = &self.material;
         self.momentum.assemble(frame, material, self.share, now);
+        let momentum = self.momentum.residual(frame, now);
+        watch.lap(&mut self.phases.momentum);
+        self.continuity = self.pressure.residual(frame, material, now);
+        watch.lap(&mut self.phases.pressure);
+        let continuity = self.continuity.share;
+        tracing::debug!("residuals: momentum {momentum:.1e}, continuity {continuity:.1e}");
+        self.flow = momentum.max(continuity);
+    }
+
+    /// Assembles all equations with the fields at hand; how far these are from solving
+    /// them at once: the largest scaled residual.
+    fn assess(&mut self, frame: &AttemptFrame<'_>, now: &mut GasState) -> f64 {
+        self.assess_flow(frame, now);
+        self.react(frame);
+        let mut watch = Stopwatch::new();
+        let species = self
+            .species
+            .residual(frame, &self.material, self.share, now);
+        watch.lap(&mut self.phases.species);
         let carried = &self.species.carried;
         self.enthalpy
-            .assemble(frame, material, carried, self.share, now);
-        let momentum = self.momentum.residual(frame, now);
-        let continuity = self.pressure.residual(frame, material, now);
+            .assemble(frame, &self.material, carried, self.share, now);
         let enthalpy = self.enthalpy.residual(now);
-        let species = self.species.residual(frame, material, self.share, now);
+        watch.lap(&mut self.phases.enthalpy);
         let change = self.chemistry.change;
         tracing::debug!(
-            "residuals: momentum {momentum:.1e}, continuity {continuity:.1e}, enthalpy {enthalpy:.1e}, species \
-             {species:.1e}, sweep {change:.1e}"
+            "residuals: enthalpy {enthalpy:.1e}, species {species:.1e}, sweep {change:.1e}"
         );
-        self.flow = momentum.max(continuity);
-        Ok(self.flow.max(enthalpy).max(species).max(change))
+        self.flow.max(enthalpy).max(species).max(change)
     }
 
     /// One outer iteration, on the momentum equation as assembled; returns linear iterations.
@@ -169,26 +205,34 @@ impl Equations {
         corrections: u32,
         now: &mut GasState,
     ) -> Result<u32, GasFailure> {
-        let tolerance = controls.linear_tolerance;
+        let mut watch = Stopwatch::new();
+        let mut linear = LinearTolerances::new(controls, &self.continuity);
+        linear.continuity *= self.closer;
         let (krylov, material) = (&mut self.krylov, &self.material);
-        let mut iterations = self.momentum.predict(frame, krylov, tolerance, now);
-
+        let mut iterations = self.momentum.predict(frame, krylov, linear.terms, now);
+        watch.lap(&mut self.phases.momentum);
         self.pressure.assemble(frame, material, &self.momentum, now);
         for _ in 0..corrections {
             iterations +=
                 self.pressure
-                    .correct(frame, material, &self.momentum, krylov, tolerance, now);
+                    .correct(frame, material, &self.momentum, krylov, &linear, now);
         }
         pressure::advance_mass(frame, now);
+        watch.lap(&mut self.phases.pressure);
         let Some(gas) = frame.chemistry.reacting() else {
-            return Ok(iterations + self.scalars(frame, tolerance, SCALARS, now));
+            let goal = ScalarTolerance {
+                absolute: linear.scalars,
+                relative: SCALARS,
+            };
+            return Ok(iterations + self.scalars(frame, goal, Assembled::No, now));
         };
         let enough = controls.outer_tolerance.max(CLOSER * self.flow);
         self.chemistry.follow(frame, now);
         for _ in 0..SWEEPS {
             self.chemistry.start(now);
-            iterations += self.conserve(frame, tolerance, now)?;
+            iterations += self.conserve(frame, linear.scalars, now)?;
             self.sweep(frame, gas, controls.outer_tolerance, now)?;
+            watch.lap(&mut self.phases.chemistry);
             if self.chemistry.change <= enough {
                 break;
             }
@@ -269,37 +313,47 @@ impl Equations {
 
     /// Species and enthalpy once more to the linear tolerance, with the rates at hand.
     fn close(&mut self, frame: &AttemptFrame<'_>, tolerance: f64, now: &mut GasState) -> u32 {
-        let mut iterations = self.scalars(frame, tolerance, 0.0, now);
+        let goal = ScalarTolerance {
+            absolute: tolerance,
+            relative: 0.0,
+        };
+        let mut iterations = self.scalars(frame, goal, Assembled::Yes, now);
         for _ in 0..CLOSINGS {
             if !self.chemistry.keep_positive(self.species.matrix(), now) {
                 break;
             }
             self.react(frame);
-            iterations += self.scalars(frame, tolerance, 0.0, now);
+            iterations += self.scalars(frame, goal, Assembled::No, now);
         }
+        let mut watch = Stopwatch::new();
         self.species.carry_remainder(frame, now);
+        watch.lap(&mut self.phases.species);
         self.enthalpy.carry_remainder(frame, now);
+        watch.lap(&mut self.phases.enthalpy);
         iterations
     }
 
-    /// Species and enthalpy with the fluxes and masses at hand, to a tolerance relative to what moves or a
-    /// share of their initial residuals; returns linear iterations.
+    /// Species and enthalpy with the fluxes and masses at hand; returns linear iterations.
     fn scalars(
         &mut self,
         frame: &AttemptFrame<'_>,
-        absolute: f64,
-        relative: f64,
+        goal: ScalarTolerance,
+        assembled: Assembled,
         now: &mut GasState,
     ) -> u32 {
+        let mut watch = Stopwatch::new();
         let (krylov, material) = (&mut self.krylov, &self.material);
-        let goal = ScalarTolerance { absolute, relative };
-        let iterations = self
-            .species
-            .solve(frame, material, krylov, goal, self.share, now);
-        let carried = &self.species.carried;
-        self.enthalpy
-            .assemble(frame, material, carried, self.share, now);
-        iterations + self.enthalpy.solve(frame, krylov, goal, now)
+        let solve = (goal, self.share, assembled);
+        let iterations = self.species.solve(frame, material, krylov, solve, now);
+        watch.lap(&mut self.phases.species);
+        if assembled == Assembled::No || frame.species() > 0 {
+            let carried = &self.species.carried;
+            self.enthalpy
+                .assemble(frame, material, carried, self.share, now);
+        }
+        let iterations = iterations + self.enthalpy.solve(frame, krylov, goal, now);
+        watch.lap(&mut self.phases.enthalpy);
+        iterations
     }
 
     fn volume_residual(&self, frame: &AttemptFrame<'_>, now: &GasState) -> f64 {

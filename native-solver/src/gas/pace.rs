@@ -58,7 +58,7 @@ mod tests {
             time_scheme: Default::default(),
             most_pressure_corrections: 7,
             outer_tolerance: 1e-8,
-            linear_tolerance: 1e-13,
+            linear_tolerance: Some(1e-13),
         }
     }
 

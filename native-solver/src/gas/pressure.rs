@@ -26,6 +26,7 @@ use super::momentum::Momentum;
 use super::opening::OuterPressure;
 use super::recovery::Recovery;
 use super::state::GasState;
+use super::tolerance::{ContinuityResidual, LinearTolerances};
 use super::transport::FaceTransport;
 use crate::numerics::amg::Multigrid;
 use crate::numerics::grid::{Face, MeshGraph};
@@ -81,6 +82,8 @@ pub struct Pressure {
     preconditioner: Approximation,
     /// ρ ε χ V/a of each cell in s.
     mobility: Vec<f64>,
+    /// b along the normal of each face, of its owner and its neighbour, in s.
+    along_normal: Vec<[f64; 2]>,
     /// F of each cell in N/m³.
     force: Vec<Vec3>,
     /// What inertia adds to the force on the half cells of each face's owner and neighbour, along
@@ -121,6 +124,7 @@ impl Pressure {
             preconditioner: Approximation::new(&matrix),
             matrix,
             mobility: vec![0.0; cells],
+            along_normal: vec![[0.0; 2]; faces],
             force: vec![Vec3::zeros(); cells],
             inertia: vec![[0.0; 2]; faces],
             across: Vec::new(),
@@ -212,14 +216,23 @@ impl Pressure {
             let index = grid.internal + face;
             OuterPressure::about(frame, index, now.flux[index])
         });
+        let mut along_normal = std::mem::take(&mut self.along_normal);
+        fill(&mut along_normal, |index| {
+            let face = &grid.faces[index];
+            let own = self.mobility_along(momentum, face.owner, face);
+            let inside = index < grid.internal;
+            let other = inside.then(|| self.mobility_along(momentum, face.neighbour, face));
+            [own, other.unwrap_or(f64::INFINITY)]
+        });
+        self.along_normal = along_normal;
         let mut conductance = std::mem::take(&mut self.conductance);
         let outer = &self.outer;
         fill(&mut conductance, |index| {
             let face = &grid.faces[index];
-            let mobility = |cell: usize| self.mobility_along(momentum, cell, face);
-            let resistance = face.owner_distance / mobility(face.owner);
+            let [own, other] = self.along_normal[index];
+            let resistance = face.owner_distance / own;
             if index < grid.internal {
-                face.area / (resistance + face.neighbour_distance / mobility(face.neighbour))
+                face.area / (resistance + face.neighbour_distance / other)
             } else if let Some(outer) = outer[index - grid.internal] {
                 face.area / (resistance + face.area * outer.slope)
             } else {
@@ -254,7 +267,7 @@ impl Pressure {
         material: &CellProperties,
         momentum: &Momentum,
         krylov: &mut Krylov,
-        tolerance: f64,
+        tolerance: &LinearTolerances,
         now: &mut GasState,
     ) -> u32 {
         let grid = frame.grid;
@@ -283,8 +296,8 @@ impl Pressure {
             source
         });
         let target = SolveTolerance {
-            absolute: 0.0,
-            of_terms: tolerance,
+            absolute: tolerance.continuity,
+            of_terms: tolerance.terms,
             relative: CORRECTION,
             iterations: ITERATIONS,
         };
@@ -315,16 +328,15 @@ impl Pressure {
         missed
     }
 
-    /// Σ over cells of the mismatch of continuity, and what openings miss, relative to what the cells hold and what flows
-    /// through them.
+    /// Continuity with the fluxes at hand.
     pub fn residual(
         &self,
         frame: &AttemptFrame<'_>,
         material: &CellProperties,
         now: &GasState,
-    ) -> f64 {
+    ) -> ContinuityResidual {
         let grid = frame.grid;
-        let [error, terms] = sums(grid.cells(), |cell| {
+        let [error, through, held] = sums(grid.cells(), |cell| {
             let (mut net, mut through) = (0.0, 0.0);
             for link in grid.links(cell) {
                 let flux = now.flux[link.face as usize];
@@ -332,9 +344,14 @@ impl Pressure {
                 through += 0.5 * flux.abs();
             }
             let error = (target(frame, material, now, cell) - net).abs();
-            [error, frame.old.mass[cell] / frame.storage_span + through]
+            [error, through, frame.old.mass[cell] / frame.storage_span]
         });
-        (error + self.missed_at_openings(frame, now)) / terms
+        let terms = through + held;
+        ContinuityResidual {
+            share: (error + self.missed_at_openings(frame, now)) / terms,
+            terms,
+            renewals: through / held,
+        }
     }
 
     /// b of a cell along a face's normal, in s: with what walls without friction add to the diagonal there.
@@ -363,9 +380,8 @@ impl Pressure {
     /// What the slope of pressure in a half cell has along the face's normal beyond the cell's own force F, but for what the flux and the
     /// old one have there beyond the cell's by their gradients; in Pa/m.
     #[inline]
-    fn slope_beyond(&self, momentum: &Momentum, flux: &[f64], index: usize, side: usize) -> f64 {
+    fn slope_beyond(&self, flux: &[f64], index: usize, side: usize) -> f64 {
         let face = &self.matrix.grid().faces[index];
-        let cell = [face.owner, face.neighbour][side];
         let mut passing = flux[index] / face.area;
         let mut beside = self.beside(index)[side];
         if let (Some(reach), Some(old)) =
@@ -374,7 +390,7 @@ impl Pressure {
             passing -= reach[side];
             beside -= old[side];
         }
-        beside - passing / self.mobility_along(momentum, cell, face)
+        beside - passing / self.along_normal[index][side]
     }
 
     /// Force on the half cell of a face's owner along the face's normal, in N/m³.
@@ -472,7 +488,7 @@ impl Pressure {
                     true => last[cell].dot(&face.normal),
                     false => {
                         self.force[cell].dot(&face.normal)
-                            + self.slope_beyond(momentum, &now.flux, index, side)
+                            + self.slope_beyond(&now.flux, index, side)
                     }
                 };
                 let beyond = out * slope + miss.dot(&last[cell]);
@@ -498,7 +514,7 @@ impl Pressure {
         let flux = &now.flux;
         // What the slopes have beyond the cell's own force F.
         fill(&mut now.pressure_gradient, |cell| {
-            let slope = |index: usize, side: usize| self.slope_beyond(momentum, flux, index, side);
+            let slope = |index: usize, side: usize| self.slope_beyond(flux, index, side);
             self.force[cell] + self.recovery.vector(grid, cell, slope)
         });
         let gradients = &now.pressure_gradient;

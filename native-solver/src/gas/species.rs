@@ -19,7 +19,7 @@ use super::boundary::{FaceCondition, HeatCondition};
 use super::chemistry::ReactionSource;
 use super::inflow;
 use super::state::GasState;
-use super::tolerance::ScalarTolerance;
+use super::tolerance::{Assembled, ScalarTolerance};
 use crate::numerics::convection::{beyond_upwind, limited, limiter};
 use crate::numerics::krylov::{Krylov, SolveTolerance};
 use crate::numerics::matrix::Matrix;
@@ -105,25 +105,28 @@ impl SpeciesEquations {
         fill(&mut self.temperature_gradients, |_| Vec3::zeros());
     }
 
-    /// Assembles and solves the equations; returns the linear iterations.
+    /// Solves the equations, assembled anew where they are not those at hand; returns the linear iterations.
     pub fn solve(
         &mut self,
         frame: &AttemptFrame<'_>,
         material: &CellProperties,
         krylov: &mut Krylov,
-        goal: ScalarTolerance,
-        share: f64,
+        (goal, share, assembled): (ScalarTolerance, f64, Assembled),
         now: &mut GasState,
     ) -> u32 {
         let species = frame.species();
         if species == 0 {
             return 0;
         }
-        self.update_diffusion(frame, material);
-        self.assemble(frame, now, 0);
-        self.update_explicit(frame, share, now);
-        self.preconditioner.update(&self.matrix);
         let own = !frame.exchange.species.is_none();
+        if assembled == Assembled::No {
+            self.update_diffusion(frame, material);
+            self.update_explicit(frame, share, now);
+        }
+        if assembled == Assembled::No || own {
+            self.assemble(frame, now, 0);
+        }
+        self.preconditioner.update(&self.matrix);
         let mut iterations = 0;
         for k in 0..species - 1 {
             if own && k > 0 {

@@ -173,7 +173,7 @@ pub fn setup(patches: &[(&str, GasPatch)]) -> GasSetup {
             time_scheme: Default::default(),
             most_pressure_corrections: 16,
             outer_tolerance: 1e-9,
-            linear_tolerance: 1e-12,
+            linear_tolerance: Some(1e-12),
         },
     }
 }

@@ -319,7 +319,10 @@ fn controls(section: &TableReader<'_>) -> Option<GasControls> {
     let pressure_corrections = table.small_whole("pressure_corrections");
     let most_pressure_corrections = table.small_whole("most_pressure_corrections");
     let outer_tolerance = table.number("outer_tolerance");
-    let linear_tolerance = table.number("linear_tolerance");
+    let linear_tolerance = match table.has("linear_tolerance") {
+        true => table.number("linear_tolerance").map(Some),
+        false => Some(None),
+    };
     table.finish();
     Some(GasControls {
         outer_iterations: outer_iterations?,

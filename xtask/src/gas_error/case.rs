@@ -14,9 +14,6 @@ pub struct ErrorCase {
     /// End in s.
     pub end: f64,
     pub quantities: &'static [ErrorQuantity],
-    /// The finest mesh, as a multiple of the coarsest, that the native gas runs on with its default tolerances unless large
-    /// runs are asked for.
-    pub finest_strict: usize,
     /// The runs of all solvers.
     pub runs: &'static [Resolution],
     /// The same with `CALCINE_BENCH_LARGE`.
@@ -82,9 +79,7 @@ impl ErrorCase {
     /// a benchmark. Nothing where it takes no part.
     pub fn finest(&self, gas: &CoupledGas, large: bool) -> Option<usize> {
         match (gas.gas, gas.set.is_empty(), large) {
-            ("native", true, false) => Some(self.finest_strict),
-            ("native", true, true) => Some(4),
-            ("native", false, _) => Some(usize::MAX),
+            ("native", ..) => Some(usize::MAX),
             (_, true, false) => None,
             (_, true, true) => Some(2),
             (_, false, false) => Some(2),

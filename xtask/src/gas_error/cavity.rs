@@ -13,7 +13,6 @@ pub const CASE: ErrorCase = ErrorCase {
         openfoam: "U",
         level: 0.0,
     }],
-    finest_strict: 2,
     runs: &[
         at(1, 20.0),
         at(2, 20.0),

@@ -16,6 +16,8 @@ pub struct Done {
     pub cost: Cost,
     /// Processor time of the gas' phases in s, by the summary.
     pub gas: Option<f64>,
+    /// Outer and linear iterations of a window.
+    pub iterations: Option<[f64; 2]>,
     /// Its fields, where it came to its end.
     pub fields: Option<Vec<MeanField>>,
 }
@@ -80,11 +82,21 @@ pub fn run(
     }
     let (cost, success) = measured(&command, &log)?;
     let text = fs::read_to_string(folder.join("summary.json")).unwrap_or_default();
-    let time = Json::read(&text).and_then(|read| read.number(&["processor_time_s", "gas"]));
+    let summary = Json::read(&text);
+    let number = |path: &[&str]| summary.as_ref().and_then(|read| read.number(path));
+    let time = number(&["processor_time_s", "gas"]);
+    let a_window = |name: &str| {
+        let windows = number(&["windows"])?;
+        Some(number(&["convergence", name])? / windows)
+    };
+    let iterations = a_window("outer_iterations")
+        .zip(a_window("linear_iterations"))
+        .map(<[f64; 2]>::from);
     if !success {
         return Ok(Done {
             cost,
             gas: time,
+            iterations,
             fields: None,
         });
     }
@@ -96,6 +108,7 @@ pub fn run(
     Ok(Done {
         cost,
         gas: time,
+        iterations,
         fields: Some(fields?),
     })
 }

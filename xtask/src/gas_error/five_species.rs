@@ -22,7 +22,6 @@ pub const CASE: ErrorCase = ErrorCase {
             level: 0.0,
         },
     ],
-    finest_strict: 1,
     runs: &[
         at(1, 10.0),
         at(1, 5.0),

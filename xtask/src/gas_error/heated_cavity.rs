@@ -21,7 +21,6 @@ pub const CASE: ErrorCase = ErrorCase {
             level: 300.0,
         },
     ],
-    finest_strict: 2,
     runs: &[
         at(1, 40.0),
         at(1, 20.0),

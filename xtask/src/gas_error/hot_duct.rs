@@ -22,7 +22,6 @@ pub const CASE: ErrorCase = ErrorCase {
             level: 300.0,
         },
     ],
-    finest_strict: 2,
     runs: &[at(1, 10.0), at(1, 5.0), at(2, 5.0), at(2, 2.5), at(3, 2.5)],
     // Meshes on which the points of the zone fill all cells alike.
     large: &[

@@ -60,13 +60,21 @@ impl ErrorChoice {
 
 /// Gases of Calcine: as cases have them unless they say otherwise, and with tolerances near those of OpenFOAM's
 /// tutorials.
-const GASES: [(&str, CoupledGas); 5] = [
+const GASES: [(&str, CoupledGas); 6] = [
     (
         "native",
         CoupledGas {
             gas: "native",
             set: &[],
             longer: 1,
+        },
+    ),
+    (
+        "native, two stages",
+        CoupledGas {
+            gas: "native",
+            set: &["gas.controls.time_scheme=sdirk2"],
+            longer: LONGER,
         },
     ),
     (
@@ -180,12 +188,8 @@ impl<'a> Bench<'a> {
         };
         let cores = thread::available_parallelism().map_or(1, usize::from);
         let mut settings: Vec<(Resolution, usize)> = runs.iter().map(|&run| (run, 1)).collect();
-        // On two cores the last of the runs alone, and only where there is time.
-        settings.extend(
-            runs.last()
-                .filter(|_| large && cores > 1)
-                .map(|&run| (run, 2)),
-        );
+        // On two cores the last of the runs alone.
+        settings.extend(runs.last().filter(|_| cores > 1).map(|&run| (run, 2)));
         let mut rows = Vec::new();
         for (resolution, cores) in settings {
             rows.push(self.stock(&reference, resolution, cores)?);
@@ -219,6 +223,7 @@ impl<'a> Bench<'a> {
         let done = Done {
             cost,
             gas: None,
+            iterations: None,
             fields,
         };
         self.row(reference, (solver, resolution, cores), done)
@@ -324,12 +329,14 @@ impl<'a> Bench<'a> {
             |fields| self.case.errors(fields, reference),
         );
         let (cost, gas) = (done.cost, done.gas);
+        let iterations = done.iterations;
         Ok(ErrorRow {
             solver,
             resolution,
             cores,
             cost,
             gas,
+            iterations,
             fields,
             errors,
         })

@@ -16,6 +16,8 @@ pub struct ErrorRow {
     pub cost: Cost,
     /// Processor time in s of the gas' phases, where Calcine tells it.
     pub gas: Option<f64>,
+    /// Outer and linear iterations of a window, where Calcine tells them.
+    pub iterations: Option<[f64; 2]>,
     /// Fields on the coarsest mesh, where it came to its end.
     pub fields: Option<Vec<MeanField>>,
     /// Relative errors, one a quantity.
@@ -131,6 +133,7 @@ fn runs(case: &ErrorCase, rows: &[ErrorRow]) -> Table {
         "processor time",
         "of the gas",
         "wall time",
+        "outer and linear iterations a window",
     ]
     .map(str::to_owned)
     .to_vec();
@@ -148,6 +151,9 @@ fn runs(case: &ErrorCase, rows: &[ErrorRow]) -> Table {
             row.gas
                 .map_or_else(String::new, |time| format!("{}s", short(time))),
             format!("{}s", short(row.cost.wall)),
+            row.iterations.map_or_else(String::new, |[outer, linear]| {
+                format!("{outer:.1}, {linear:.0}")
+            }),
         ];
         cells.extend(row.errors.iter().map(|error| percent(*error)));
         cells.push(format!("{}B", short(row.cost.memory / (nx * ny) as f64)));
@@ -225,6 +231,7 @@ mod tests {
             cores: 1,
             cost: Cost::default(),
             gas: None,
+            iterations: None,
             fields: MeanField::new([1, 1], vec![value]).map(|field| vec![field]),
             errors: vec![0.0],
         }

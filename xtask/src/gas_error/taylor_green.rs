@@ -25,7 +25,6 @@ pub const CASE: ErrorCase = ErrorCase {
         openfoam: "U",
         level: 0.0,
     }],
-    finest_strict: 2,
     runs: &[at(1, 5.0), at(1, 2.5), at(2, 5.0), at(2, 2.5), at(3, 2.5)],
     large: &[
         at(1, 10.0),

@@ -130,7 +130,7 @@ impl ManufacturedCase {
                 time_scheme: Default::default(),
                 most_pressure_corrections: 16,
                 outer_tolerance: 1e-8,
-                linear_tolerance: 1e-11,
+                linear_tolerance: Some(1e-11),
             },
         }
     }

@@ -611,7 +611,7 @@ mod tests {
                 time_scheme: Default::default(),
                 most_pressure_corrections: 16,
                 outer_tolerance: 1e-9,
-                linear_tolerance: 1e-12,
+                linear_tolerance: Some(1e-12),
             },
         };
         let boundary = Boundaries::new(&mesh, &setup).unwrap();
