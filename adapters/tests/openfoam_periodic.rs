@@ -1,5 +1,6 @@
 //! calcineGasFoam in periodic, plane and axisymmetric domains (docs/theory.md, BND-2, BND-3), against exact solutions and the native
 //! gas' own discretisation of them.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::f64::consts::PI;
 use std::sync::Arc;

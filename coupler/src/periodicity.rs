@@ -21,6 +21,17 @@ impl PeriodicSpan {
     }
 }
 
+/// A face of a lower periodic plane and its partner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PeriodicFace {
+    /// Face on the lower plane.
+    pub face: usize,
+    /// Its partner on the upper plane.
+    pub partner: usize,
+    /// From the face to its partner, along a coordinate axis, in m.
+    pub translation: Vec3,
+}
+
 /// Periodic directions of a domain, by axis; none by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Periodicity {

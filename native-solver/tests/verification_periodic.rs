@@ -1,4 +1,5 @@
 //! Periodic, plane and axisymmetric flows against exact solutions (docs/theory.md, BND-2, BND-3).
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::f64::consts::PI;
 use std::sync::Arc;

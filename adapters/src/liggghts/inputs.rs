@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::motion::Motion;
 use calcine_coupler::periodic_motion;
-use calcine_coupler::periodicity::{PeriodicSpan, Periodicity};
+use calcine_coupler::periodicity::Periodicity;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 
@@ -182,7 +182,7 @@ impl Inputs<'_> {
         };
         let script = template
             .replace("{bins}", &format!("{bins:e}"))
-            .replace("{boundary}", &boundary(&self.periodicity()))
+            .replace("{boundary}", &moving::boundary(&self.periodicity()))
             .replace("{contacts}", &contacts)
             .replace("{processors}", &grid)
             .replace("{skin}", &format!("{skin:e}"))
@@ -288,12 +288,6 @@ impl Inputs<'_> {
         }
         (lower, upper)
     }
-}
-
-/// LIGGGHTS' words for the sides of its box.
-pub fn boundary(periodicity: &Periodicity) -> String {
-    let word = |span: &Option<PeriodicSpan>| if span.is_some() { "p" } else { "f" };
-    periodicity.axes.each_ref().map(word).join(" ")
 }
 
 fn unwritable(path: &Path, error: std::io::Error) -> PartError {

@@ -7,6 +7,7 @@ use std::fmt::Write;
 use calcine_coupler::motion::{
     Cohesion, ContactForce, Contacts, Pair, Rolling, Wall, WallMotion, WallShape,
 };
+use calcine_coupler::periodicity::{PeriodicSpan, Periodicity};
 use calcine_coupler::physics::Vec3;
 
 use super::facets;
@@ -428,4 +429,10 @@ fn moving_mesh(text: &mut String, index: usize, motion: &WallMotion) {
             );
         }
     }
+}
+
+/// LIGGGHTS' words for the sides of its box.
+pub fn boundary(periodicity: &Periodicity) -> String {
+    let word = |span: &Option<PeriodicSpan>| if span.is_some() { "p" } else { "f" };
+    periodicity.axes.each_ref().map(word).join(" ")
 }

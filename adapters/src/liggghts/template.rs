@@ -10,7 +10,7 @@ use calcine_coupler::periodicity::{PeriodicSpan, Periodicity};
 use calcine_coupler::physics::Vec3;
 use thiserror::Error;
 
-use super::{inputs, moving};
+use super::moving;
 
 /// Name of the data file.
 pub const DATA: &str = "particles.data";
@@ -259,7 +259,7 @@ impl ScriptTemplate {
         let mut add = |name: &str, value: String| all.push((format!("{PREFIX}{name}"), value));
         add("data", DATA.into());
         add("processors", values.processors.clone());
-        add("boundary", inputs::boundary(&contacts.periodicity));
+        add("boundary", moving::boundary(&contacts.periodicity));
         let (lower, upper) = values.corners;
         let numbers = [
             ("step", values.step),
@@ -309,7 +309,7 @@ impl ScriptTemplate {
     /// Sides of the box repeat themselves where those of the case do, and nowhere else. A script that says nothing of them
     /// has them all do so.
     fn check_boundary(&self, periodicity: &Periodicity) -> Result<(), ScriptTemplateError> {
-        let wanted = inputs::boundary(periodicity);
+        let wanted = moving::boundary(periodicity);
         let mut found = None;
         for command in &self.commands {
             let words = command.words();

@@ -2,63 +2,11 @@
 
 use super::CoupledRun;
 use super::error::RunError;
-use super::plan::Plan;
-use crate::checkpoint::{StateFile, StateFileError};
-use crate::part::{Gas as _, GasFields};
+use crate::part::Gas as _;
 use crate::setup::TimeScheme;
-use crate::step_error::{StepError, StepHistory, StepOrder, StepSpans};
+use crate::step_error::{StepOrder, StepSpans};
 use crate::time::{Ticks, Window};
-use crate::window_control::{WindowControl, WindowOutcome};
-
-/// What the windows so far say of the next one's length.
-pub(super) struct LengthStage {
-    history: StepHistory,
-    /// `None` where all windows are of one length.
-    control: Option<WindowControl>,
-    /// The estimated error of the last step; `None` where too few windows have passed.
-    pub error: Option<StepError>,
-    /// Largest Courant number at the end of the last window, over its motion time.
-    pub courant: Option<f64>,
-}
-
-impl LengthStage {
-    pub fn new(plan: &Plan, gas: &GasFields<'_>) -> Self {
-        let control = |bounds| WindowControl::new(bounds, plan.particle_step);
-        Self {
-            history: StepHistory::begin(gas),
-            control: plan.window_bounds.map(control),
-            error: None,
-            courant: None,
-        }
-    }
-
-    /// After something that jumps: errors are counted anew, from the shortest window.
-    pub fn jump(&mut self) {
-        self.history.jump();
-        if let Some(control) = &mut self.control {
-            control.restart();
-        }
-    }
-
-    pub fn record(&self, state: &mut StateFile) {
-        self.history.record(state);
-        if let Some(control) = &self.control {
-            control.record(state);
-        }
-    }
-
-    pub fn restore(
-        &mut self,
-        gas: &GasFields<'_>,
-        state: &StateFile,
-    ) -> Result<(), StateFileError> {
-        self.history = StepHistory::restore(gas, state)?;
-        match &mut self.control {
-            Some(control) => control.restore(state),
-            None => Ok(()),
-        }
-    }
-}
+use crate::window_control::WindowOutcome;
 
 impl CoupledRun {
     /// Full length of the next window on the motion clock, and the next process time at which it ends because a boundary

@@ -18,8 +18,7 @@ pub mod zone;
 use calcine_physics::Vec3;
 use thiserror::Error;
 
-use crate::periodicity::Periodicity;
-use periodic::PeriodicFace;
+use crate::periodicity::{PeriodicFace, Periodicity};
 
 /// A named set of boundary faces.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -5,23 +5,13 @@ use calcine_physics::Vec3;
 use thiserror::Error;
 
 use super::{Mesh, MeshError};
+pub use crate::periodicity::PeriodicFace;
 use crate::periodicity::{PeriodicSpan, Periodicity};
 
 /// A face and its partner may be off by this share of the face's extent, as OpenFOAM's `matchTolerance` has it.
 const MATCH: f64 = 1e-4;
 /// Sine of the angle by which a face may lean against its plane.
 const LEAN: f64 = 1e-6;
-
-/// A face of a lower periodic plane and its partner.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PeriodicFace {
-    /// Face on the lower plane.
-    pub face: usize,
-    /// Its partner on the upper plane.
-    pub partner: usize,
-    /// From the face to its partner, along a coordinate axis, in m.
-    pub translation: Vec3,
-}
 
 /// A cell beyond a face, and where it lies as seen through it.
 #[derive(Clone, Copy, Debug, PartialEq)]
