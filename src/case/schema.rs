@@ -319,7 +319,7 @@ mod tests {
         );
         let required = &at(&schema, "gas.patch.NAME")["oneOf"];
         assert_eq!(required[0], json!({"required": ["inlet"]}));
-        assert_eq!(required.as_array().unwrap().len(), 5);
+        assert_eq!(required.as_array().unwrap().len(), 8);
         let moving = at(&schema, "gas.patch.NAME.wall.velocity.moving");
         assert!(moving["pattern"].is_string());
         assert_eq!(schema["additionalProperties"], false);

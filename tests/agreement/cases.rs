@@ -54,7 +54,7 @@ box = {{ size = "20 20 60 mm", cells = [4, 4, 12], patches = ["side", "side", "s
 [gas]
 mixture = "air"
 initial = {{ temperature = "300 K", pressure = "1 atm", velocity = "0 0 0.3 m/s" }}
-controls = {{ outer_iterations = 60, outer_tolerance = 1e-7, convection = "{convection}" }}
+controls = {{ outer_iterations = 60, outer_tolerance = 1e-7, linear_tolerance = 1e-13, convection = "{convection}" }}
 [gas.patch.bottom]
 inlet = {{ mass_flow = [["0 s", "0.4 kg/h"], ["1 s", "0.8 kg/h"]], temperature = [["0 s", "300 K"], ["1 s", "400 K"]] }}
 [gas.patch.top]
@@ -83,7 +83,7 @@ box = {{ size = "100 20 100 mm", cells = [10, 2, 10], patches = ["west", "east",
 mixture = "air"
 gravity = "0 0 -9.81 m/s^2"
 initial = {{ temperature = "300 K", pressure = "1 atm" }}
-controls = {{ outer_iterations = 100, outer_tolerance = 1e-9, convection = "{convection}" }}
+controls = {{ outer_iterations = 100, outer_tolerance = 1e-9, linear_tolerance = 1e-13, convection = "{convection}" }}
 [gas.patch.west]
 {opening}
 [gas.patch.east]
@@ -123,7 +123,7 @@ mixture = "purge"
 species = ["H2", "N2", "CO2"]
 schmidt = 0.7
 initial = {{ temperature = "300 K", pressure = "1 atm", composition = {{ mole = {{ H2 = 1 }} }} }}
-controls = {{ outer_iterations = 60, outer_tolerance = 1e-7 }}
+controls = {{ outer_iterations = 60, outer_tolerance = 1e-7, linear_tolerance = 1e-13 }}
 [gas.patch.bottom]
 outlet = {{ pressure = "1 atm" }}
 [gas.patch.top]
@@ -154,7 +154,7 @@ mixture = "purge"
 species = ["N2", "H2", "CO2"]
 schmidt = 0.4
 initial = {{ temperature = "300 K", pressure = "1 atm", velocity = "0 0 0.1 m/s", composition = {{ mole = {{ CO2 = 1 }} }} }}
-controls = {{ outer_iterations = 80, outer_tolerance = 1e-8, convection = "{convection}" }}
+controls = {{ outer_iterations = 80, outer_tolerance = 1e-8, linear_tolerance = 1e-13, convection = "{convection}" }}
 [gas.patch.bottom]
 inlet = {{ superficial_velocity = "0.1 m/s", temperature = [["0 s", "300 K"], ["0.5 s", "400 K"]], composition = [["0 s", {{ mole = {{ CO2 = 1 }} }}], ["0.4 s", {{ mole = {{ H2 = 0.5, N2 = 0.5 }} }}]] }}
 [gas.patch.top]
@@ -182,7 +182,7 @@ cylinder = {{ diameter = "20 mm", length = "50 mm", cells = [6, 10], refine = [{
 [gas]
 mixture = "air"
 initial = {{ temperature = "300 K", pressure = "1 atm", velocity = "0 0 0.5 m/s" }}
-controls = {{ outer_iterations = 60, outer_tolerance = 1e-7 }}
+controls = {{ outer_iterations = 60, outer_tolerance = 1e-7, linear_tolerance = 1e-13 }}
 [gas.patch.bottom]
 inlet = {{ superficial_velocity = "0.5 m/s", temperature = [["0 s", "300 K"], ["1 s", "400 K"]] }}
 [gas.patch.top]
@@ -210,7 +210,7 @@ box = {{ size = "20 20 20 mm", cells = [5, 5, 5], patches = ["side", "side", "si
 mixture = "air"
 initial = {{ temperature = "300 K", pressure = "1 atm" }}
 gravity = "0 0 -9.81 m/s^2"
-controls = {{ outer_iterations = 60, outer_tolerance = 1e-8, convection = "{convection}" }}
+controls = {{ outer_iterations = 60, outer_tolerance = 1e-8, linear_tolerance = 1e-13, convection = "{convection}" }}
 [gas.patch.side]
 wall = {{ velocity = "{side}", heat = "adiabatic" }}
 [gas.patch.floor]
@@ -237,7 +237,7 @@ box = {{ size = "20 10 200 mm", cells = [6, 1, 24], patches = ["wall", "axis", "
 mixture = "air"
 initial = {{ temperature = "300 K", pressure = "1 atm", velocity = "0 0 8 m/s" }}
 turbulence = {{ model = "k-epsilon", initial = {{ energy = "0.5 m^2/s^2", length_scale = "2 mm" }} }}
-controls = {{ outer_iterations = 60, outer_tolerance = 1e-8, convection = "upwind" }}
+controls = {{ outer_iterations = 60, outer_tolerance = 1e-8, linear_tolerance = 1e-13, convection = "upwind" }}
 [gas.patch.bottom]
 inlet = {{ superficial_velocity = "8 m/s", temperature = [["0 s", "300 K"], ["0.1 s", "400 K"]], turbulence = {{ intensity = 0.1, length_scale = "2 mm" }} }}
 [gas.patch.top]
@@ -277,7 +277,7 @@ species = ["CH4", "O2", "CO", "H2", "CO2", "H2O", "N2"]
 schmidt = 0.7
 initial = {{ temperature = "1300 K", pressure = "1 atm", velocity = "0 0 8 m/s", composition = {{ mole = {{ CH4 = 0.05, O2 = 0.19, N2 = 0.76 }} }} }}
 turbulence = {{ model = "k-epsilon", initial = {{ energy = "1 m^2/s^2", length_scale = "2 mm" }} }}
-controls = {{ outer_iterations = 60, outer_tolerance = 1e-7, convection = "upwind" }}
+controls = {{ outer_iterations = 60, outer_tolerance = 1e-7, linear_tolerance = 1e-13, convection = "upwind" }}
 chemistry = {{ mechanism = "jones-lindstedt", {model} }}
 [gas.patch.bottom]
 inlet = {{ superficial_velocity = "8 m/s", temperature = "1300 K", composition = {{ mole = {{ CH4 = 0.05, O2 = 0.19, N2 = 0.76 }} }}, turbulence = {{ intensity = 0.1, length_scale = "2 mm" }} }}
@@ -323,7 +323,7 @@ species = ["CH4", "O2", "CO", "H2", "CO2", "H2O", "N2"]
 schmidt = 0.7
 initial = {{ temperature = "1800 K", pressure = "1 atm", velocity = "0 0 2 m/s", composition = {{ mole = {{ O2 = 0.0998, CO2 = 0.0499, H2O = 0.0998, N2 = 0.7505 }} }} }}
 turbulence = {{ model = "k-epsilon", initial = {{ energy = "0.1 m^2/s^2", length_scale = "2 mm" }}, bed = {{ law = "{law}" }} }}
-controls = {{ outer_iterations = 60, outer_tolerance = 1e-7, convection = "upwind" }}
+controls = {{ outer_iterations = 60, outer_tolerance = 1e-7, linear_tolerance = 1e-13, convection = "upwind" }}
 chemistry = {{ mechanism = "jones-lindstedt", model = "pasr" }}
 [gas.patch.bottom]
 inlet = {{ superficial_velocity = "2 m/s", temperature = "300 K", composition = {{ mole = {{ CH4 = 0.08717, O2 = 0.19177, N2 = 0.72106 }} }}, turbulence = {{ intensity = 0.05, length_scale = "0.7 mm" }} }}
@@ -365,7 +365,7 @@ mixture = "methane and air"
 species = ["CH4", "O2", "CO", "H2", "CO2", "H2O", "N2"]
 schmidt = 0.7
 initial = {{ temperature = "1800 K", pressure = "1 atm", velocity = "0 0 2 m/s", composition = {{ mole = {{ O2 = 0.0998, CO2 = 0.0499, H2O = 0.0998, N2 = 0.7505 }} }} }}
-controls = {{ outer_iterations = 10, outer_tolerance = 1e-7, convection = "upwind" }}
+controls = {{ outer_iterations = 10, outer_tolerance = 1e-7, linear_tolerance = 1e-13, convection = "upwind" }}
 chemistry = {{ mechanism = "jones-lindstedt" }}
 [gas.patch.bottom]
 inlet = {{ superficial_velocity = "2 m/s", temperature = "300 K", composition = {{ mole = {{ CH4 = 0.08717, O2 = 0.19177, N2 = 0.72106 }} }} }}

@@ -33,7 +33,8 @@ pub(super) fn boundary(
         }
         reader.finish();
     }
-    partners(&table, &mut made, &mut complete);
+    let stated: Vec<&str> = named.iter().map(|(name, _)| name.as_str()).collect();
+    partners(&table, &stated, &mut made, &mut complete);
     if let Some(known) = patches(mesh) {
         for (name, _) in &named {
             if !known.contains(&name.as_str()) {
@@ -80,7 +81,12 @@ pub(super) fn boundary(
 }
 
 /// Gives each periodic patch's partner its side, where the file states one of the two, and compares them where it states both.
-fn partners(table: &TableReader<'_>, made: &mut Vec<(String, GasPatch)>, complete: &mut bool) {
+fn partners(
+    table: &TableReader<'_>,
+    stated: &[&str],
+    made: &mut Vec<(String, GasPatch)>,
+    complete: &mut bool,
+) {
     let pairs: Vec<(String, String)> = made
         .iter()
         .filter_map(|(name, patch)| match patch {
@@ -100,7 +106,7 @@ fn partners(table: &TableReader<'_>, made: &mut Vec<(String, GasPatch)>, complet
         }
         let partner = made.iter().find(|(other, _)| *other == with);
         match partner.map(|(_, patch)| patch) {
-            None if table.has(&with) => *complete = false,
+            None if stated.contains(&with.as_str()) => *complete = false,
             None => {
                 let with_this = GasPatch::Periodic { with: name };
                 made.push((with, with_this));
