@@ -206,7 +206,7 @@ fn iterations_that_end_at_their_limits_are_counted_over_a_resume_and_told_of_onc
         assert_eq!(log.matches(&warning.message).count(), 1, "{kind}: {log}");
     }
     assert_eq!(summary.warnings["exchange_attempts"].limit, Some(1e-12));
-    assert_eq!(summary.warnings["gas_iterations"].limit, Some(1e-5));
+    assert_eq!(summary.warnings["gas_iterations"].limit, Some(1e-8));
     assert_eq!(exit::complete(summary, false), exit::OK);
     assert_eq!(exit::complete(summary, true), exit::WARNINGS);
 }

@@ -40,7 +40,6 @@ mod moving_pairings;
 mod moving_reactions;
 mod moving_single;
 mod openfoam_models;
-mod periodic_chute;
 mod prescribed_temperature;
 mod reactions;
 mod readers;

@@ -35,6 +35,7 @@ mixture = "water"
 initial = {{ temperature = "300 K", pressure = "1 atm", velocity = "0 0 0.1 m/s" }}
 constant = {{ density = "998 kg/m^3", heat_capacity = "4.18 kJ/kg/K", viscosity = "1e-3 Pa s", conductivity = "0.6 W/m/K" }}
 gravity = "0 0 -9.81 m/s^2"
+controls = {{ linear_tolerance = 1e-13 }}
 [gas.patch.bottom]
 inlet = {{ superficial_velocity = "0.1 m/s", temperature = "300 K" }}
 [gas.patch.top]

@@ -23,9 +23,9 @@ fn the_report_is_one_page_that_loads_nothing() {
     // Five views of two columns of twelve cells and ten particles each.
     assert_eq!(page.matches("<polygon").count(), 5 * 24);
     assert_eq!(page.matches("class=\"sphere\"").count(), 5 * 10);
-    // The curves: ten particles, three quantities, two residuals, two iterations; four fields of the
+    // The curves: ten particles, three quantities, two residuals, two iterations, two errors of steps; four fields of the
     // gas and two of the particles along the probe at five times.
-    assert_eq!(page.matches("class=\"curve\"").count(), 17 + 6 * 5);
+    assert_eq!(page.matches("class=\"curve\"").count(), 19 + 6 * 5);
     assert!(!page.contains("NaN"));
 }
 
