@@ -10,6 +10,9 @@ use std::path::Path;
 use calcine_coupler::mesh::{Mesh, Patch, Topology, polymesh};
 use calcine_coupler::physics::Vec3;
 
+/// Whether a cell with a centre is meant.
+pub type Choice = dyn Fn([f64; 3]) -> bool;
+
 /// A block.
 pub struct Block<'a> {
     /// Levels of the points along each axis, before they are moved.
@@ -17,7 +20,7 @@ pub struct Block<'a> {
     /// Patches of x−, x+, y−, y+, z−, z+; equal names make one patch.
     pub patches: [&'a str; 6],
     /// A patch, and whether the cell with a centre, before points are moved, is left out and leaves faces of it.
-    pub hole: Option<(&'a str, &'a dyn Fn([f64; 3]) -> bool)>,
+    pub hole: Option<(&'a str, &'a Choice)>,
     /// Where a point goes, in m.
     pub shape: &'a dyn Fn([f64; 3]) -> [f64; 3],
 }
