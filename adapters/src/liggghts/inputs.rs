@@ -89,6 +89,13 @@ impl Inputs<'_> {
                 return refuse(reason);
             }
             let largest = setup.radius.iter().copied().fold(0.0, f64::max);
+            if !contacts.periodicity.is_none() {
+                return refuse(
+                    "the domain has periodic patches, and LIGGGHTS' processes may end while particles cross them; move the particles \
+                     natively (`--particles native`)"
+                        .into(),
+                );
+            }
             if let Err(error) = periodic_motion::check(contacts, largest) {
                 return refuse(format!("{error}; {}", error.remedy()));
             }
