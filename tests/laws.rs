@@ -279,7 +279,7 @@ fn a_rate_law_of_another_program_is_in_schema_and_reference_with_its_nested_tabl
         factor.contains("With `halved-core`: Before it is slowed."),
         "{factor}"
     );
-    let schema = schema::schema(&laws);
+    let schema = schema::schema(&keys::KINDS[0], &laws);
     let reaction = &schema["properties"]["reactions"]["items"]["properties"];
     let names = reaction["law"]["enum"].as_array().unwrap();
     assert!(names.iter().any(|name| name == "halved-core"));
