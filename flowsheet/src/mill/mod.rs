@@ -12,7 +12,19 @@ pub use bond_normal::BondNormal;
 pub use cone::ConeMill;
 pub use constant::ConstantMill;
 
+use calcine_physics::law::LawEntry;
+
 use crate::{PlantError, SizeGrid, Transformation};
+
+/// The laws of mills that a case may choose. A new one is a file beside these, declared above and listed here.
+pub static MILL_LAWS: &[&LawEntry<dyn MillLaw>] = &[
+    &bond_normal::LAW,
+    &bond_normal::IN_MILLIMETRES,
+    &bimodal::LAW,
+    &bimodal::IN_MILLIMETRES,
+    &cone::LAW,
+    &constant::LAW,
+];
 
 /// What a mill makes of a distribution.
 pub trait MillLaw: Send + Sync {

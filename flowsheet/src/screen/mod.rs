@@ -10,6 +10,16 @@ pub use plitt::Plitt;
 pub use probability::ProbabilityScreen;
 pub use teipel_hennig::TeipelHennig;
 
+use calcine_physics::law::LawEntry;
+
+/// The laws of screens that a case may choose. A new one is a file beside these, declared above and listed here.
+pub static SCREEN_LAWS: &[&LawEntry<dyn ScreenLaw>] = &[
+    &plitt::LAW,
+    &molerus_hoffmann::LAW,
+    &teipel_hennig::LAW,
+    &probability::LAW,
+];
+
 /// Which share of a size a screen sends to its coarse side.
 pub trait ScreenLaw: Send + Sync {
     /// Share of mass of diameter `d` in m that is coarse, 0 to 1.
