@@ -3,7 +3,8 @@
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
-use super::{BondLaw, BondLength, MillLaw};
+use super::model::MillLaw;
+use super::{BondLaw, BondLength};
 use crate::distribution::quantile;
 use crate::{PlantError, SizeGrid, Transformation};
 

@@ -3,7 +3,7 @@
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
-use super::MillLaw;
+use super::model::MillLaw;
 use crate::distribution::normal_shares;
 use crate::{PlantError, SizeGrid, Transformation};
 

@@ -1,10 +1,12 @@
 //! Laws of screens: which share of a size goes to the coarse side. One law a file.
 
+mod model;
 mod molerus_hoffmann;
 mod plitt;
 mod probability;
 mod teipel_hennig;
 
+pub use model::ScreenLaw;
 pub use molerus_hoffmann::MolerusHoffmann;
 pub use plitt::Plitt;
 pub use probability::ProbabilityScreen;
@@ -19,21 +21,3 @@ pub static SCREEN_LAWS: &[&LawEntry<dyn ScreenLaw>] = &[
     &teipel_hennig::LAW,
     &probability::LAW,
 ];
-
-/// Which share of a size a screen sends to its coarse side.
-pub trait ScreenLaw: Send + Sync {
-    /// Share of mass of diameter `d` in m that is coarse, 0 to 1.
-    fn coarse_share(&self, d: f64) -> f64;
-
-    /// Which of its numbers it cannot have, with the value and what it may be.
-    fn refused(&self) -> Option<(&'static str, f64, &'static str)>;
-}
-
-/// The first of some numbers that is not above zero and finite.
-fn not_positive(numbers: &[(&'static str, f64)]) -> Option<(&'static str, f64, &'static str)> {
-    let bad = |(_, value): &&(_, f64)| !(value.is_finite() && *value > 0.0);
-    numbers
-        .iter()
-        .find(bad)
-        .map(|(name, value)| (*name, *value, "it is above zero"))
-}

@@ -3,7 +3,7 @@
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
-use super::{ScreenLaw, not_positive};
+use super::model::{ScreenLaw, not_positive};
 
 /// Plitt's separation curve, after Rosin and Rammler.
 ///

@@ -3,7 +3,7 @@
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
-use super::{ScreenLaw, not_positive};
+use super::model::{ScreenLaw, not_positive};
 
 /// Separation curve of Teipel and Hennig, with a share of the fines that sticks to the coarse side.
 ///
