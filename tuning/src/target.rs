@@ -1,7 +1,7 @@
 //! Curves that models are compared with.
 
 use crate::TuningError;
-use crate::law::ConversionLaw;
+use crate::law::KineticLaw;
 use crate::model::{HeatingRun, PreparedSample, SampleModel, SampleResponse};
 use crate::problem::TuningProblem;
 use crate::programme::RateQuadrature;
@@ -184,7 +184,7 @@ impl SampleProblem {
     /// Adds guesses: places at which a law of one reaction is half done when the measured curves are, for energies all over
     /// the bounds. `factor` and `energy` are the names of the reaction's numbers; where neither is tuned, nothing is added.
     /// Other parameters stand in the middle.
-    pub fn guess_by(&mut self, law: &dyn ConversionLaw, model: &dyn SampleModel, names: [&str; 2]) {
+    pub fn guess_by(&mut self, law: &dyn KineticLaw, model: &dyn SampleModel, names: [&str; 2]) {
         let numbers = model.parameters();
         let Some(energy) = numbers.iter().position(|one| one.name == names[1]) else {
             return;

@@ -1,6 +1,6 @@
 use calcine_physics::law::LawEntry;
 
-use super::ConversionLaw;
+use super::conversion::KineticLaw;
 
 /// A front that moves at a constant speed through a disc or cylinder (n = 2, `R2`) or a sphere (n = 3, `R3`):
 /// α = 1 − (1 − x)^n up to x = 1, f = n (1 − α)^(1 − 1/n).
@@ -13,7 +13,7 @@ struct ContractingBody {
     dimensions: i32,
 }
 
-impl ConversionLaw for ContractingBody {
+impl KineticLaw for ContractingBody {
     fn name(&self) -> &'static str {
         self.name
     }
@@ -38,7 +38,7 @@ impl ConversionLaw for ContractingBody {
 }
 
 /// Contracting area, `R2`.
-pub static CONTRACTING_AREA: LawEntry<dyn ConversionLaw> = LawEntry {
+pub static CONTRACTING_AREA: LawEntry<dyn KineticLaw> = LawEntry {
     name: "R2",
     summary: "Contracting area: f = 2 (1 - a)^(1/2).",
     source: "Khawam and Flanagan, J. Phys. Chem. B 110 (2006) 17315, doi 10.1021/jp062746a",
@@ -53,7 +53,7 @@ pub static CONTRACTING_AREA: LawEntry<dyn ConversionLaw> = LawEntry {
 };
 
 /// Contracting volume, `R3`.
-pub static CONTRACTING_VOLUME: LawEntry<dyn ConversionLaw> = LawEntry {
+pub static CONTRACTING_VOLUME: LawEntry<dyn KineticLaw> = LawEntry {
     name: "R3",
     summary: "Contracting volume: f = 3 (1 - a)^(2/3).",
     source: "Khawam and Flanagan, J. Phys. Chem. B 110 (2006) 17315, doi 10.1021/jp062746a",

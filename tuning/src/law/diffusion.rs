@@ -1,6 +1,6 @@
 use calcine_physics::law::LawEntry;
 
-use super::ConversionLaw;
+use super::conversion::KineticLaw;
 
 /// Diffusion through the product: α and its derivatives follow from the integral form g(α) by its inverse,
 /// dα/dx = 1/g′, d²α/dx² = −g″/g′³. At x = 0 the slope is infinite.
@@ -107,7 +107,7 @@ impl ProductDiffusion {
     }
 }
 
-impl ConversionLaw for ProductDiffusion {
+impl KineticLaw for ProductDiffusion {
     fn name(&self) -> &'static str {
         self.name
     }
@@ -135,7 +135,7 @@ impl ConversionLaw for ProductDiffusion {
 macro_rules! diffusion {
     ($entry:ident, $name:literal, $geometry:ident, $summary:literal) => {
         #[doc = concat!("`", $name, "`: ", $summary)]
-        pub static $entry: LawEntry<dyn ConversionLaw> = LawEntry {
+        pub static $entry: LawEntry<dyn KineticLaw> = LawEntry {
             name: $name,
             summary: $summary,
             source: "Khawam and Flanagan, J. Phys. Chem. B 110 (2006) 17315, doi 10.1021/jp062746a",

@@ -4,6 +4,7 @@
 //! form g(α) = x, so that no law needs a seed at α = 0 and none is stiff at its end.
 
 mod contracting;
+mod conversion;
 mod diffusion;
 mod nucleation;
 mod order;
@@ -11,6 +12,7 @@ mod power;
 mod random_pore;
 
 pub use contracting::{CONTRACTING_AREA, CONTRACTING_VOLUME};
+pub use conversion::KineticLaw;
 pub use diffusion::{DIFFUSION_1, DIFFUSION_2, DIFFUSION_3, DIFFUSION_4};
 pub use nucleation::{AVRAMI, AVRAMI_2, AVRAMI_3};
 pub use order::{FIRST_ORDER, REACTION_ORDER};
@@ -19,27 +21,8 @@ pub use random_pore::RANDOM_PORE;
 
 use calcine_physics::law::{LawEntry, LawValues};
 
-/// How far a solid has reacted as a function of reduced time.
-pub trait ConversionLaw: Send + Sync + std::fmt::Debug {
-    /// Its name in case files.
-    fn name(&self) -> &'static str;
-
-    /// α(x) with its first two derivatives at the reduced time x ≥ 0. The first derivative is the differential form
-    /// f(α) = dα/dx. Beyond the end of a law that ends, α is one and the derivatives are zero. A derivative that is
-    /// infinite at x = 0 is given as zero there.
-    fn at(&self, x: f64) -> [f64; 3];
-
-    /// α(x) alone.
-    fn conversion(&self, x: f64) -> f64 {
-        self.at(x)[0]
-    }
-
-    /// The integral form g(α) = x for 0 ≤ α < 1.
-    fn reduced_time(&self, conversion: f64) -> f64;
-}
-
 /// All kinetic laws by their names.
-pub const CONVERSION_LAWS: &[&LawEntry<dyn ConversionLaw>] = &[
+pub const CONVERSION_LAWS: &[&LawEntry<dyn KineticLaw>] = &[
     &FIRST_ORDER,
     &REACTION_ORDER,
     &CONTRACTING_AREA,
@@ -56,19 +39,19 @@ pub const CONVERSION_LAWS: &[&LawEntry<dyn ConversionLaw>] = &[
 ];
 
 /// A law by its name; `None` where there is none of that name. `A1` is `F1`.
-pub fn conversion_law(name: &str) -> Option<&'static LawEntry<dyn ConversionLaw>> {
+pub fn conversion_law(name: &str) -> Option<&'static LawEntry<dyn KineticLaw>> {
     let name = if name == "A1" { "F1" } else { name };
     CONVERSION_LAWS.iter().find(|law| law.name == name).copied()
 }
 
 /// Values of a law's own numbers where a case states none.
-pub fn law_defaults(law: &LawEntry<dyn ConversionLaw>) -> Vec<f64> {
+pub fn law_defaults(law: &LawEntry<dyn KineticLaw>) -> Vec<f64> {
     let numbers = law.parameters.iter();
     numbers.map(|one| one.default.unwrap_or(1.0)).collect()
 }
 
 /// A law with the defaults of its numbers.
-pub fn default_law(name: &str) -> Option<Box<dyn ConversionLaw>> {
+pub fn default_law(name: &str) -> Option<Box<dyn KineticLaw>> {
     let law = conversion_law(name)?;
     Some((law.make)(&LawValues::from(law_defaults(law))))
 }

@@ -1,7 +1,7 @@
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
-use super::ConversionLaw;
+use super::conversion::KineticLaw;
 
 /// Nucleation and growth of Avrami and Erofeev, α = 1 − exp(−x^n): f = n (1 − α) [−ln(1 − α)]^(1 − 1/n). `A1` is first order.
 ///
@@ -12,7 +12,7 @@ struct Avrami {
     exponent: f64,
 }
 
-impl ConversionLaw for Avrami {
+impl KineticLaw for Avrami {
     fn name(&self) -> &'static str {
         self.name
     }
@@ -47,7 +47,7 @@ impl ConversionLaw for Avrami {
 }
 
 /// Exponent 2, `A2`.
-pub static AVRAMI_2: LawEntry<dyn ConversionLaw> = LawEntry {
+pub static AVRAMI_2: LawEntry<dyn KineticLaw> = LawEntry {
     name: "A2",
     summary: "Nucleation and growth, n = 2: f = 2 (1 - a) [-ln(1 - a)]^(1/2).",
     source: "Avrami, J. Chem. Phys. 7 (1939) 1103, doi 10.1063/1.1750380",
@@ -62,7 +62,7 @@ pub static AVRAMI_2: LawEntry<dyn ConversionLaw> = LawEntry {
 };
 
 /// Exponent 3, `A3`.
-pub static AVRAMI_3: LawEntry<dyn ConversionLaw> = LawEntry {
+pub static AVRAMI_3: LawEntry<dyn KineticLaw> = LawEntry {
     name: "A3",
     summary: "Nucleation and growth, n = 3: f = 3 (1 - a) [-ln(1 - a)]^(2/3).",
     source: "Avrami, J. Chem. Phys. 7 (1939) 1103, doi 10.1063/1.1750380",
@@ -77,7 +77,7 @@ pub static AVRAMI_3: LawEntry<dyn ConversionLaw> = LawEntry {
 };
 
 /// Any exponent, `An`.
-pub static AVRAMI: LawEntry<dyn ConversionLaw> = LawEntry {
+pub static AVRAMI: LawEntry<dyn KineticLaw> = LawEntry {
     name: "An",
     summary: "Nucleation and growth with any exponent n: f = n (1 - a) [-ln(1 - a)]^(1 - 1/n).",
     source: "Avrami, J. Chem. Phys. 7 (1939) 1103, doi 10.1063/1.1750380",

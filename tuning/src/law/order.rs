@@ -1,7 +1,7 @@
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
-use super::ConversionLaw;
+use super::conversion::KineticLaw;
 
 /// Reaction of order n in what is left, f = (1 − α)^n: 1 − α = (1 + (n − 1) x)^(−1/(n − 1)), which is e^(−x) at n = 1. Below
 /// n = 1 it ends at x = 1/(1 − n).
@@ -16,7 +16,7 @@ struct ReactionOrder {
 /// Below this |(n − 1) x| the logarithm is that of its series, exact to round-off.
 const SERIES: f64 = 1e-6;
 
-impl ConversionLaw for ReactionOrder {
+impl KineticLaw for ReactionOrder {
     fn name(&self) -> &'static str {
         self.name
     }
@@ -52,7 +52,7 @@ impl ConversionLaw for ReactionOrder {
 }
 
 /// First order, `F1`; the first law of Avrami and Erofeev is the same.
-pub static FIRST_ORDER: LawEntry<dyn ConversionLaw> = LawEntry {
+pub static FIRST_ORDER: LawEntry<dyn KineticLaw> = LawEntry {
     name: "F1",
     summary: "First order: f = 1 - a.",
     source: "Khawam and Flanagan, J. Phys. Chem. B 110 (2006) 17315, doi 10.1021/jp062746a",
@@ -67,7 +67,7 @@ pub static FIRST_ORDER: LawEntry<dyn ConversionLaw> = LawEntry {
 };
 
 /// Order n, `Fn`.
-pub static REACTION_ORDER: LawEntry<dyn ConversionLaw> = LawEntry {
+pub static REACTION_ORDER: LawEntry<dyn KineticLaw> = LawEntry {
     name: "Fn",
     summary: "Order n: f = (1 - a)^n.",
     source: "Khawam and Flanagan, J. Phys. Chem. B 110 (2006) 17315, doi 10.1021/jp062746a",

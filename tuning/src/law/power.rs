@@ -1,7 +1,7 @@
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
-use super::ConversionLaw;
+use super::conversion::KineticLaw;
 
 /// Power law of nucleation, α = x^n up to x = 1: f = n α^(1 − 1/n).
 ///
@@ -11,7 +11,7 @@ struct PowerLawOfNuclei {
     exponent: f64,
 }
 
-impl ConversionLaw for PowerLawOfNuclei {
+impl KineticLaw for PowerLawOfNuclei {
     fn name(&self) -> &'static str {
         POWER_LAW.name
     }
@@ -38,7 +38,7 @@ impl ConversionLaw for PowerLawOfNuclei {
 }
 
 /// Power law, `Pn`.
-pub static POWER_LAW: LawEntry<dyn ConversionLaw> = LawEntry {
+pub static POWER_LAW: LawEntry<dyn KineticLaw> = LawEntry {
     name: "Pn",
     summary: "Power law of nucleation: f = n a^(1 - 1/n).",
     source: "Khawam and Flanagan, J. Phys. Chem. B 110 (2006) 17315, doi 10.1021/jp062746a",

@@ -1,7 +1,7 @@
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
-use super::ConversionLaw;
+use super::conversion::KineticLaw;
 
 /// Random pores with the structural parameter ψ, f = (1 − α) √(1 − ψ ln(1 − α)): α = 1 − exp(−x (1 + ψ x/4)). With ψ = 0 it is
 /// first order.
@@ -12,7 +12,7 @@ struct RandomPore {
     structure: f64,
 }
 
-impl ConversionLaw for RandomPore {
+impl KineticLaw for RandomPore {
     fn name(&self) -> &'static str {
         RANDOM_PORE.name
     }
@@ -40,7 +40,7 @@ impl ConversionLaw for RandomPore {
 }
 
 /// Random pores, `RPM`.
-pub static RANDOM_PORE: LawEntry<dyn ConversionLaw> = LawEntry {
+pub static RANDOM_PORE: LawEntry<dyn KineticLaw> = LawEntry {
     name: "RPM",
     summary: "Random pores: f = (1 - a) (1 - psi ln(1 - a))^(1/2).",
     source: "Bhatia and Perlmutter, AIChE J. 26 (1980) 379, doi 10.1002/aic.690260308",

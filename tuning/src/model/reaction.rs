@@ -2,7 +2,7 @@ use calcine_physics::dimension::Dimension;
 use calcine_physics::gas::GAS_CONSTANT;
 use calcine_physics::law::{LawEntry, LawValues};
 
-use crate::law::ConversionLaw;
+use crate::law::KineticLaw;
 
 /// A number of a model.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +44,7 @@ pub struct SampleReaction {
     /// Its name; empty where it is the only one.
     pub name: String,
     /// Its kinetic law.
-    pub law: &'static LawEntry<dyn ConversionLaw>,
+    pub law: &'static LawEntry<dyn KineticLaw>,
     /// Values of the law's own numbers.
     pub law_numbers: Vec<f64>,
     /// A in 1/s.
@@ -72,7 +72,7 @@ pub struct ReactionSet {
 #[derive(Debug)]
 pub(super) struct RunningReaction {
     /// Its law.
-    pub law: Box<dyn ConversionLaw>,
+    pub law: Box<dyn KineticLaw>,
     /// A in 1/s.
     pub factor: f64,
     /// E/R in K.
