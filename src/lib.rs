@@ -8,6 +8,7 @@ mod error_chain;
 pub mod exit;
 pub mod laws;
 pub mod mechanism;
+pub mod plant;
 mod progress;
 pub mod report;
 pub mod results;

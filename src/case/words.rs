@@ -26,6 +26,8 @@ macro_rules! case_words {
     };
 }
 
+pub(super) use case_words;
+
 /// `gas.chemistry.model`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum CombustionModel {

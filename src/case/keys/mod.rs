@@ -9,6 +9,7 @@ mod coupling;
 mod describe;
 mod docs;
 mod external;
+mod flowsheet;
 mod gas;
 mod key;
 mod kinds;

@@ -36,10 +36,8 @@ use std::path::Path;
 
 use self::gas::GasRead;
 use super::model::Case;
+use super::parse::FORMAT;
 use super::table::TableReader;
-
-/// Version of the format that this reader knows.
-const FORMAT: u64 = 1;
 
 /// Reads all sections; `None` where one could not be read (its problems are recorded).
 pub(super) fn case(
