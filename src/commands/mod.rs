@@ -13,6 +13,7 @@ mod inputs;
 mod kinds;
 mod new;
 mod parallel;
+mod plant;
 mod prepare;
 #[cfg(test)]
 mod reference;
@@ -20,6 +21,7 @@ mod report;
 mod run;
 mod schema;
 mod shell;
+mod signals;
 mod sweep;
 
 use std::os::unix::process::CommandExt;

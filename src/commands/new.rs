@@ -34,6 +34,10 @@ enum Shipped {
     PackedColumn,
     /// Carbon dioxide purged from a warm bed by nitrogen.
     PurgedBed,
+    /// Plant: spray granulation with two screens, a mill and a recycle.
+    GranulationPlant,
+    /// Plant: a granulator and a mill that oscillate.
+    GranulationOscillation,
 }
 
 impl Shipped {
@@ -43,6 +47,17 @@ impl Shipped {
             Shipped::HeatedBed => include_str!("../../cases/heated-bed.toml"),
             Shipped::PackedColumn => include_str!("../../cases/packed-column.toml"),
             Shipped::PurgedBed => include_str!("../../cases/purged-bed.toml"),
+            Shipped::GranulationPlant => include_str!("../../cases/granulation-plant.toml"),
+            Shipped::GranulationOscillation => {
+                include_str!("../../cases/granulation-oscillation.toml")
+            }
+        }
+    }
+
+    fn kind(self) -> &'static str {
+        match self {
+            Shipped::GranulationPlant | Shipped::GranulationOscillation => "flowsheet",
+            _ => "bed",
         }
     }
 }
@@ -60,10 +75,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let file = folder.join(stem).with_extension("toml");
     let failed = |cause: std::io::Error| Failure::unwritable(&file, "NAME", &cause);
     std::fs::create_dir_all(folder).map_err(failed)?;
-    let text = with_laws(arguments.like.text());
+    let kind = arguments.like.kind();
+    let text = match kind {
+        "bed" => with_laws(arguments.like.text()),
+        _ => arguments.like.text().to_owned(),
+    };
     let text = format!("#:schema {SCHEMA}\n{text}");
     std::fs::write(&file, text).map_err(failed)?;
-    std::fs::write(folder.join(SCHEMA), schema::text("bed")).map_err(failed)?;
+    std::fs::write(folder.join(SCHEMA), schema::text(kind)).map_err(failed)?;
     say(format_args!(
         "{}: change it, then\n  calcine check {0}\n  calcine run {0}",
         file.display()
