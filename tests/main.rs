@@ -40,6 +40,7 @@ mod moving_pairings;
 mod moving_reactions;
 mod moving_single;
 mod openfoam_models;
+mod plants;
 mod prescribed_temperature;
 mod reactions;
 mod readers;
