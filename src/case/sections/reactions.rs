@@ -215,6 +215,34 @@ fn rate(
             rate_constant,
             diffusivity,
         }),
+        RateLaw::EquilibriumPressure {
+            rate_constant,
+            grains,
+        } => Some(Rate::Grains {
+            rate_constant,
+            grains,
+        }),
+        RateLaw::Conversion {
+            rate_constant,
+            conversion,
+            orders,
+        } => {
+            let [solids, gases] = match orders.is_empty() {
+                true => Default::default(),
+                false => placed(table, orders, known, equation)?,
+            };
+            if let Some((s, _)) = solids.first() {
+                let help = "leave it out: the law says how the rate follows its solid";
+                let rule = format!("gives {} an order", known.solids[*s].name());
+                table.fail("rate", rule, help);
+                return None;
+            }
+            Some(Rate::Conversion {
+                rate_constant,
+                conversion,
+                gases,
+            })
+        }
         RateLaw::PowerLaw {
             rate_constant,
             in_series,
