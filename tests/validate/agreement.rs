@@ -25,6 +25,7 @@ const fn whole(name: &'static str) -> Compared {
 /// 600 s in `shaft-flames`.
 const CASES: [Compared; 11] = [
     whole("lime-burning"),
+    whole("calcining-stone"),
     whole("ore-reduction"),
     whole("dri-self-heating"),
     whole("purged-bed"),

@@ -1,5 +1,6 @@
-//! What particles with shells are as a whole. Exact solutions are in `verification.rs`.
+//! Particles with shells as a whole.
 
 mod conservation;
+mod limits;
 mod support;
 mod verification;

@@ -12,7 +12,7 @@ use super::support::*;
 use crate::radial::{PoreGas, PorousSolid, Radial, RadialNumerics, ShellGrid};
 use crate::reacting::{Rate, Reaction, SolidChemistry};
 
-const RADIUS: f64 = 10e-3;
+pub const RADIUS: f64 = 10e-3;
 
 /// Centre, surface and mean of a sphere that is cooled, at Fo = 0.2.
 fn cooled(biot: f64, shells: usize, steps: usize) -> [f64; 3] {
@@ -73,7 +73,7 @@ fn conduction_is_of_second_order_in_shells_and_in_steps() {
 }
 
 /// A pellet of one solid in two gases of about one mass, of which the first, dilute, becomes the second.
-fn pellet(rate: Rate, solids: Vec<(usize, f64)>, porous: PorousSolid, grid: ShellGrid) -> Radial {
+pub fn pellet(rate: Rate, solids: Vec<(usize, f64)>, porous: PorousSolid, grid: ShellGrid) -> Radial {
     let two = ["one", "other"].map(|name| {
         SolidSpecies::new(name, "C", 0.0, 1.0, HeatCapacity::constant(1000.0)).unwrap()
     });
@@ -98,11 +98,11 @@ fn pellet(rate: Rate, solids: Vec<(usize, f64)>, porous: PorousSolid, grid: Shel
     Radial::new(chemistry, &[1.0, 0.0], porous, pores, numerics).unwrap()
 }
 
-const DILUTE: f64 = 1e-4;
-const KELVIN: f64 = 800.0;
+pub const DILUTE: f64 = 1e-4;
+pub const KELVIN: f64 = 800.0;
 
 /// Wide pores, ε/τ = 0.25.
-fn wide() -> PorousSolid {
+pub fn wide() -> PorousSolid {
     PorousSolid {
         pore_diameter: 1.0,
         permeability: Permeability::Constant(1e-8),
@@ -110,13 +110,13 @@ fn wide() -> PorousSolid {
     }
 }
 
-fn diffusivity() -> f64 {
+pub fn diffusivity() -> f64 {
     let gas = Mixture::new(["CO", "N2"]).unwrap();
     0.25 * gas.pair_diffusivity((0, 1), 1e5, KELVIN)
 }
 
 /// Gas about it, with a Biot number of the film.
-fn dilute_gas(biot: f64) -> Still {
+pub fn dilute_gas(biot: f64) -> Still {
     Still {
         temperature: KELVIN,
         pressure: 1e5,
