@@ -8,5 +8,7 @@ mod kernels;
 mod loops;
 mod methods;
 mod oscillation;
+mod plants;
+mod sensitivities;
 mod support;
 mod units;
