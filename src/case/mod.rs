@@ -26,7 +26,6 @@ mod place_error;
 mod problem;
 mod ranges;
 mod reach_cautions;
-mod resolved;
 mod schedules;
 pub mod schema;
 mod sections;
