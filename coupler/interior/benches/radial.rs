@@ -2,7 +2,7 @@
 //!
 //! `cargo bench -p calcine-interior --bench radial`
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
 use std::time::Instant;
 
