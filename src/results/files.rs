@@ -49,17 +49,6 @@ pub(crate) fn replace_json(path: &Path, value: &impl Serialize) -> Result<(), Re
     replace(path, text.as_bytes())
 }
 
-/// Copies a file so that the copy appears whole, and survives a power cut once this returns.
-pub(crate) fn copy(from: &Path, to: &Path) -> Result<(), ResultsError> {
-    let mut draft = to.as_os_str().to_owned();
-    draft.push(".new");
-    let draft = Path::new(&draft);
-    fs::copy(from, draft)
-        .and_then(|_| File::open(draft)?.sync_all())
-        .map_err(ResultsError::file("copy", from))?;
-    fs::rename(draft, to).map_err(ResultsError::file("replace", to))
-}
-
 /// Creates a directory with its parents.
 pub(crate) fn directory(path: &Path) -> Result<(), ResultsError> {
     fs::create_dir_all(path).map_err(ResultsError::file("create", path))
