@@ -13,6 +13,7 @@ mod dem_impacts;
 mod dem_momentum;
 mod dem_periodic;
 mod dem_restart;
+mod dem_servo;
 mod dem_single;
 mod dem_walls;
 mod flame;

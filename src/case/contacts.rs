@@ -244,7 +244,8 @@ fn walls(case: &Case, mut factors: impl Iterator<Item = f64>) -> Result<Vec<Wall
     let changes = factors.any(|one| one != factor);
     let quicker = |wall: &Wall| {
         let motion = match &wall.motion {
-            WallMotion::Still => WallMotion::Still,
+            // A servo follows the particles, on whatever clock they move.
+            WallMotion::Still | WallMotion::Servo { .. } => wall.motion.clone(),
             WallMotion::Scheduled { .. } | WallMotion::Oscillating { .. } if held => {
                 let wall = wall.name.clone();
                 return Err(ContactsError::Held { wall });
