@@ -11,10 +11,10 @@ mod kernels;
 pub use aggregation::Aggregation;
 pub use breakage::ParticleBreakage;
 pub use dyssol::dyssol_growth;
-pub use fragments::{BreakageLaw, RandomBinary};
+pub use fragments::{BREAKAGE_LAWS, BreakageLaw, RandomBinary};
 pub use growth::{GrowthScheme, SizeFluxes};
 pub use growth_law::{GrowthLaw, LinearGrowth, TabulatedGrowth, UniformGrowth};
-pub use kernels::{AggregationKernel, ConstantKernel, ProductKernel, SumKernel};
+pub use kernels::{AGGREGATION_LAWS, AggregationKernel, ConstantKernel, ProductKernel, SumKernel};
 
 /// Something that moves the solids of a bed between size classes and conserves them.
 pub trait SizeProcess: Send + Sync {
