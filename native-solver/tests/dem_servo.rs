@@ -38,7 +38,7 @@ fn plate(bed: &Bed) -> calcine_native::particles::dem::ServoState {
 
 #[test]
 fn a_plate_presses_a_sphere_with_its_force() {
-    let contacts = pressed(2e-6, 2.4e-3, 0.05);
+    let contacts = pressed(2e-6, 2.4e-3, 1.0);
     let centre = Vec3::new(5e-3, 5e-3, RADIUS);
     let mut bed = Bed::new(contacts, &[sphere(1, centre, Vec3::zeros(), RADIUS)]);
     bed.run(200_000);
