@@ -8,5 +8,6 @@ mod kernels;
 mod loops;
 mod methods;
 mod oscillation;
+mod plants;
 mod support;
 mod units;

@@ -52,11 +52,11 @@ fn a_bunker_empties_by_its_residence_time() {
         discharge: Discharge::Residence(20.0),
     };
     let plant = alone(layout, bunker, vec![PlantInlet::new(feed, steps)]);
+    let after = |from: f64, flow: f64| flow * 20.0 + (from - flow * 20.0) * (-2.5f64).exp();
+    let expected = after(after(10.0, 0.5), 2.0);
     for integrator in [Integrator::Explicit, Integrator::Stiff] {
         let mut run = PlantRun::new(&plant, integrator, 1e-10).unwrap();
         run.advance(100.0).unwrap();
-        let after = |from: f64, flow: f64| flow * 20.0 + (from - flow * 20.0) * (-2.5f64).exp();
-        let expected = after(after(10.0, 0.5), 2.0);
         let found = plant.layout().mass_flow(run.unit(0));
         assert!(
             (found / expected - 1.0).abs() < 1e-8,
@@ -64,6 +64,15 @@ fn a_bunker_empties_by_its_residence_time() {
         );
         assert!(run.ledger().worst() < 1e-12, "{:?}", run.ledger());
     }
+    // Of second order an error of a step is as its third power, what a run sums of them as the tolerance to two thirds.
+    let [rough, fine] = [1e-5, 1e-8].map(|tolerance| {
+        let mut run = PlantRun::new(&plant, Integrator::Stabilised, tolerance).unwrap();
+        run.advance(100.0).unwrap();
+        assert!(run.ledger().worst() < 1e-12, "{:?}", run.ledger());
+        (plant.layout().mass_flow(run.unit(0)) / expected - 1.0).abs()
+    });
+    println!("stabilised: {rough:e}, {fine:e}");
+    assert!(rough < 2e-4 && (50.0..200.0).contains(&(rough / fine)));
 }
 
 /// A bunker with a rate holds the integral of feed less rate, and one that is level keeps its mass.

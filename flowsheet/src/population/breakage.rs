@@ -80,4 +80,10 @@ impl SizeProcess for ParticleBreakage {
             }
         }
     }
+
+    fn fastest(&self, _inner: usize, _masses: &[f64]) -> f64 {
+        let count = self.moves.len().isqrt();
+        let own = (0..count).map(|class| -self.moves[class * count + class]);
+        own.fold(0.0, f64::max)
+    }
 }

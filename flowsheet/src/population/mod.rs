@@ -28,4 +28,12 @@ pub trait SizeProcess: Send + Sync {
 
     /// Adds its rates in kg/s to those of the masses in kg: size classes of `inner` numbers each.
     fn add(&self, inner: usize, masses: &[f64], rates: &mut [f64]);
+
+    /// A bound of how fast small deviations of the masses fade, in 1/s.
+    fn fastest(&self, inner: usize, masses: &[f64]) -> f64;
+
+    /// Degree of homogeneity of a kernel by which a finite mass becomes infinitely large in finite time: above 1.
+    fn gels(&self) -> Option<f64> {
+        None
+    }
 }

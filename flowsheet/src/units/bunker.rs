@@ -118,6 +118,10 @@ impl ProcessUnit for Bunker {
         scales[layout.enthalpy()] *= 1e5;
     }
 
+    fn fastest(&self, view: &UnitView<'_>, _out: &[f64]) -> f64 {
+        self.flow(view).unwrap_or(0.0)
+    }
+
     fn next_break(&self, time: f64) -> Option<f64> {
         match &self.discharge {
             Discharge::Rate(rate) => rate.next_break(time),
