@@ -8,6 +8,7 @@ mod column;
 mod common;
 mod conformance;
 mod dem_beds;
+mod dem_chute;
 mod dem_drag;
 mod dem_impacts;
 mod dem_momentum;

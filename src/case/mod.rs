@@ -36,6 +36,7 @@ mod span;
 mod splitting;
 mod step;
 mod stl;
+mod surface_holes;
 mod syntax;
 mod table;
 mod temperature_cautions;
