@@ -122,7 +122,7 @@ const BULK: std::ops::Range<usize> = 1..4;
 /// The largest differences of velocities over the largest one, and of solid fractions.
 fn apart(one: &Profile, other: &Profile) -> [f64; 2] {
     let most = |a: &[f64], b: &[f64]| {
-        let each = BULK.map(|slab| (a[slab] - b[slab]).abs());
+        let each = BULK.into_iter().map(|slab| (a[slab] - b[slab]).abs());
         each.fold(0.0, f64::max)
     };
     let fastest = one.velocity.iter().copied().fold(0.0, f64::max);
@@ -161,7 +161,8 @@ fn a_periodic_chute_flows_alike_wherever_its_planes_cut() {
         "{velocity:?}"
     );
     assert!(
-        BULK.all(|slab| (0.4..0.62).contains(&solid[slab])),
+        BULK.into_iter()
+            .all(|slab| (0.4..0.62).contains(&solid[slab])),
         "{solid:?}"
     );
     // What two runs of these lengths differ by.

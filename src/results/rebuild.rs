@@ -244,3 +244,82 @@ fn vectors(values: &[f64]) -> Vec<Vec3> {
     let triples = values.as_chunks::<3>().0.iter();
     triples.map(|&[x, y, z]| Vec3::new(x, y, z)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::vtk;
+
+    fn field<'a>(name: &'a str, values: Values<'a>) -> Field<'a> {
+        Field {
+            name,
+            unit: "1",
+            description: "as a test has it",
+            values,
+        }
+    }
+
+    /// Values of a field as text that tells types, lengths and bits.
+    fn shown(field: &Field<'_>) -> String {
+        match field.values {
+            Values::Scalar(list) => {
+                let bits: Vec<u64> = list.iter().map(|value| value.to_bits()).collect();
+                format!("{} {bits:?}", field.name)
+            }
+            other => format!("{} {other:?}", field.name),
+        }
+    }
+
+    #[test]
+    fn fields_of_every_type_come_back_to_the_bit() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("particles_0000.vtp");
+        let points = [Vec3::new(0.1, -0.0, 1e-310), Vec3::new(0.2, 3.0, 4.0)];
+        let mut real = Ragged::new(ColumnKind::Real);
+        real.push_reals(&[0.1, 0.2, 0.3]);
+        real.push_reals(&[]);
+        let mut count = Ragged::new(ColumnKind::Count);
+        count.push_counts(&[7]);
+        count.push_counts(&[8, 9]);
+        let fields = [
+            field("id", Values::Whole(&[1, (1 << 60) + 1])),
+            field("population", Values::Small(&[0, 3])),
+            field("radius", Values::Scalar(&[f64::NAN, -0.0])),
+            field("velocity", Values::Vector(&points)),
+            field("layers", Values::Ragged(&real)),
+            field("parts", Values::Ragged(&count)),
+        ];
+        vtk::write_particles(&path, &points, 1.5, &fields).unwrap();
+        // As the run that goes on has them: all of one value now.
+        let (ones, whole) = (Ragged::scalars(vec![1.0; 2]), [1, 2]);
+        let now = fields.map(|one| match one.name {
+            "layers" => Field {
+                values: Values::Ragged(&ones),
+                ..one
+            },
+            "parts" => Field {
+                values: Values::Whole(&whole),
+                ..one
+            },
+            _ => one,
+        });
+        let read_back = read(&path, "PointData", &now).unwrap();
+        assert_eq!(read_back.points, points);
+        let found: Vec<String> = read_back
+            .fields
+            .iter()
+            .map(|one| shown(&one.field()))
+            .collect();
+        let wanted: Vec<String> = fields.iter().map(shown).collect();
+        assert_eq!(found, wanted);
+        // A column that the run does not write is told.
+        let error = read(&path, "PointData", &now[..5])
+            .err()
+            .unwrap()
+            .to_string();
+        assert!(
+            error.contains("an array `parts`, which this run does not write"),
+            "{error}"
+        );
+    }
+}
