@@ -9,5 +9,6 @@ mod loops;
 mod methods;
 mod oscillation;
 mod plants;
+mod sensitivities;
 mod support;
 mod units;
