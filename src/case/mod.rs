@@ -29,6 +29,7 @@ mod reach_cautions;
 mod schedules;
 pub mod schema;
 mod sections;
+mod servo_cautions;
 mod set;
 mod size_cautions;
 pub mod sizes;

@@ -60,8 +60,8 @@ pub struct Recorder {
     info: RunInfo,
     directory: PathBuf,
     resumed: bool,
-    /// False where `results.h5` of the run to go on with has to be made anew.
-    store_is_whole: bool,
+    /// False where `results.h5` of the run to go on with may be in the middle of a change.
+    store_is_closed: bool,
     counters: Counters,
     /// Snapshots whose files are on the disk.
     flushed: usize,
@@ -102,7 +102,7 @@ impl Recorder {
                     captured: Captured::new(case.quantities.len()),
                     ..Counters::default()
                 },
-                store_is_whole: false,
+                store_is_closed: false,
             },
         };
         let counters = restored.counters;
@@ -112,7 +112,7 @@ impl Recorder {
             info,
             directory: out.to_owned(),
             resumed: resume.is_some(),
-            store_is_whole: restored.store_is_whole,
+            store_is_closed: restored.store_is_closed,
             flushed: counters.snapshots.len(),
             before: counters.wall,
             processor_before: counters.processor,
@@ -131,6 +131,8 @@ impl Recorder {
 
     /// Says in summary and status that the run stopped early: on an interrupt, or with an error.
     pub fn stopped(&mut self, failure: Option<RunFailure>) -> Result<(), ResultsError> {
+        // Closed before the summary says so.
+        self.open = None;
         let Some(summary) = &mut self.summary else {
             return Ok(());
         };
@@ -181,7 +183,7 @@ impl Recorder {
         self.summarise(moment, Verdict::Running)
     }
 
-    /// `results.h5` of the run that goes on: as it is where it was closed at the checkpoint, else made anew.
+    /// `results.h5` of the run that goes on: as it is where it was closed with the rows and snapshots of the checkpoint, else made anew.
     fn store(
         &self,
         moment: &CommittedState<'_>,
@@ -190,7 +192,7 @@ impl Recorder {
     ) -> Result<Store, ResultsError> {
         let counters = &self.counters;
         let (rows, snapshots) = (counters.rows, &counters.snapshots);
-        if self.store_is_whole {
+        if self.store_is_closed {
             let path = self.directory.join(STORE);
             if let Ok(store) = Store::resume(&path, columns, rows, snapshots.len()) {
                 return Ok(store);

@@ -2,9 +2,8 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::{self, ErrorKind};
+use std::io::ErrorKind;
 use std::path::Path;
-use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 
@@ -35,9 +34,6 @@ pub(super) struct Counters {
     /// How far `series.csv` was.
     #[serde(default)]
     pub series: SeriesMark,
-    /// How `results.h5` was.
-    #[serde(default)]
-    pub store: StoreMark,
     /// Hash of the case.
     pub case_hash: String,
     /// The run that this one continued from.
@@ -99,25 +95,6 @@ pub(super) fn probe_file(number: usize) -> String {
     format!("probes/probes_{number:04}.csv")
 }
 
-/// Length and time of change of `results.h5`, by which a file is known that was not written to since.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct StoreMark {
-    /// Its length in bytes.
-    bytes: u64,
-    /// When it was changed last.
-    modified: Option<SystemTime>,
-}
-
-impl StoreMark {
-    fn of(results: &Path) -> io::Result<Self> {
-        let data = fs::metadata(results.join(STORE))?;
-        Ok(Self {
-            bytes: data.len(),
-            modified: Some(data.modified()?),
-        })
-    }
-}
-
 /// Flushes a result directory's files to the disk, those of the snapshots from a number on, and writes the counters into a checkpoint
 /// directory. What this takes does not depend on how much the results are.
 pub(super) fn save(
@@ -135,15 +112,11 @@ pub(super) fn save(
         flush(&results.join(gas_file(number)))?;
         flush(&results.join(particle_file(number)))?;
     }
-    let mut store = StoreMark::default();
     if cfg!(feature = "hdf5") {
-        let path = results.join(STORE);
-        flush(&path)?;
-        store = StoreMark::of(results).map_err(ResultsError::file("look at", &path))?;
+        flush(&results.join(STORE))?;
     }
     let counters = Counters {
         format: FORMAT,
-        store,
         ..counters
     };
     files::replace_json(&checkpoint.join(COUNTERS), &counters)
@@ -153,8 +126,8 @@ pub(super) fn save(
 pub(super) struct Restored {
     /// Where the recorder stood.
     pub counters: Counters,
-    /// False where `results.h5` has to be made anew.
-    pub store_is_whole: bool,
+    /// False where `results.h5` may be in the middle of a change.
+    pub store_is_closed: bool,
 }
 
 /// Brings a result directory back to where a checkpoint stands: cuts the series and removes later snapshots. Nothing is changed where what
@@ -193,10 +166,8 @@ pub(super) fn restore(
         }
     }
     counters.series.check(results)?;
-    // A run that was stopped closed the file after this checkpoint; one that was killed may have left it in the middle.
-    let in_order = Summary::read(results).is_ok_and(|summary| summary.verdict != Verdict::Running);
-    let mark = StoreMark::of(results).ok();
-    let store_is_whole = cfg!(not(feature = "hdf5")) || (in_order && mark == Some(counters.store));
+    // A run that was stopped has closed the file; one that was killed may have left it in the middle.
+    let is_closed = Summary::read(results).is_ok_and(|summary| summary.verdict != Verdict::Running);
     counters.series.cut(results)?;
     for folder in ["gas", "particles", "probes"] {
         let folder = results.join(folder);
@@ -207,7 +178,7 @@ pub(super) fn restore(
     remove(&results.join(DRAFT))?;
     Ok(Restored {
         counters,
-        store_is_whole,
+        store_is_closed: is_closed || cfg!(not(feature = "hdf5")),
     })
 }
 

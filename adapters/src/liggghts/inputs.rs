@@ -298,7 +298,7 @@ fn unwritable(path: &Path, error: std::io::Error) -> PartError {
 #[cfg(test)]
 mod tests {
     use calcine_coupler::conformance::particles::soft_spheres;
-    use calcine_coupler::motion::{Wall, WallMotion, WallShape};
+    use calcine_coupler::motion::{Contacts, Wall, WallMotion, WallShape};
     use calcine_coupler::periodicity::{PeriodicSpan, Periodicity};
 
     use super::*;
