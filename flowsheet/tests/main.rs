@@ -2,6 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 mod dyssol;
+mod dyssol_units;
 mod granulation;
 mod growth;
 mod kernels;
