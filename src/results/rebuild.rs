@@ -10,10 +10,10 @@ use calcine_coupler::interior::{ColumnKind, ColumnValues, Ragged};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::physics::Vec3;
 
+use super::files::{DRAFT, gas_file, particle_file};
 use super::moment::SnapshotMoment;
 use super::probe::{self, Site};
 use super::read::Series;
-use super::resume::{gas_file, particle_file};
 use super::series::{Column, Row};
 use super::snapshot::{Field, Values, lengths_of};
 use super::store::Store;
@@ -76,9 +76,6 @@ pub(super) fn rebuild(directory: &Path, source: &Source<'_>) -> Result<Store, Re
     store.rename(&path)?;
     Ok(store)
 }
-
-/// Name of the file that is being made.
-pub(super) const DRAFT: &str = "results.h5.new";
 
 fn append_rows(
     directory: &Path,

@@ -360,14 +360,14 @@ impl Recorder {
         let Some(open) = &mut self.open else {
             return Ok(());
         };
-        let path = self.directory.join(resume::gas_file(number));
+        let path = self.directory.join(files::gas_file(number));
         vtk::write_gas(&path, moment.mesh, &open.cells, now.seconds(), &gas)?;
-        let path = self.directory.join(resume::particle_file(number));
+        let path = self.directory.join(files::particle_file(number));
         vtk::write_particles(&path, moment.particles.position, now.seconds(), &particles)?;
         let bed = moment.particles;
         let samples = probe::samples(&open.sites, &gas, &particles, bed.position, bed.radius);
         if !samples.is_empty() {
-            let path = self.directory.join(resume::probe_file(number));
+            let path = self.directory.join(files::probe_file(number));
             probe::write(&path, &samples)?;
         }
         let at = SnapshotMoment::of(moment);
@@ -389,9 +389,9 @@ impl Recorder {
                 .collect()
         };
         let gas = self.directory.join("gas.pvd");
-        vtk::write_collection(&gas, &entries(resume::gas_file))?;
+        vtk::write_collection(&gas, &entries(files::gas_file))?;
         let particles = self.directory.join("particles.pvd");
-        vtk::write_collection(&particles, &entries(resume::particle_file))?;
+        vtk::write_collection(&particles, &entries(files::particle_file))?;
         Ok(())
     }
 

@@ -8,10 +8,10 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::difference;
+use super::files::{DRAFT, gas_file, particle_file};
 use super::inertial_number::InertialNumberStatistics;
 use super::moment::SnapshotMoment;
 use super::quantities::Captured;
-use super::rebuild::DRAFT;
 use super::series::SeriesMark;
 use super::steps::StepSummary;
 use super::summary::{ConvergenceSummary, ProcessorTimes, Provenance, Summary, Verdict, WallTimes};
@@ -78,21 +78,6 @@ pub(super) struct Counters {
     /// Wall times of the gas' phases so far.
     #[serde(default)]
     pub gas_phases: BTreeMap<String, f64>,
-}
-
-/// Name of a snapshot's gas file.
-pub(super) fn gas_file(number: usize) -> String {
-    format!("gas/gas_{number:04}.vtu")
-}
-
-/// Name of a snapshot's particle file.
-pub(super) fn particle_file(number: usize) -> String {
-    format!("particles/particles_{number:04}.vtp")
-}
-
-/// Name of a snapshot's file of probes.
-pub(super) fn probe_file(number: usize) -> String {
-    format!("probes/probes_{number:04}.csv")
 }
 
 /// Flushes a result directory's files to the disk, those of the snapshots from a number on, and writes the counters into a checkpoint
