@@ -39,7 +39,9 @@ fn with_energy(case: &Case, of_gas: bool, is: impl Fn(f64) -> bool) -> Vec<&str>
     let so = |constant: &Arrhenius| is(constant.activation_energy);
     let solid = |rate: &Rate| match rate {
         Rate::Power(law) => so(&law.rate_constant) || law.in_series.as_ref().is_some_and(so),
-        Rate::Core { rate_constant, .. } => so(rate_constant),
+        Rate::Core { rate_constant, .. }
+        | Rate::Conversion { rate_constant, .. }
+        | Rate::Grains { rate_constant, .. } => so(rate_constant),
     };
     let gas = |rate: &RateConstant| match rate {
         RateConstant::Arrhenius(constant) => so(constant),

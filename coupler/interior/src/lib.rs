@@ -5,6 +5,7 @@ mod error;
 mod model;
 mod network;
 mod prescribed;
+pub mod radial;
 pub mod reacting;
 mod thin;
 
@@ -19,6 +20,7 @@ pub use network::{
     NetworkSurroundings, RowImbalance, ThermalProperties,
 };
 pub use prescribed::PrescribedTemperature;
+pub use radial::Radial;
 pub use reacting::Reacting;
 pub use thin::{TEMPERATURE, Thin};
 

@@ -18,6 +18,7 @@ pub mod local;
 pub mod mass_transfer;
 pub mod numbers;
 pub mod points;
+pub mod pores;
 pub mod pressure_drop;
 pub mod quadrature;
 pub mod radiation;

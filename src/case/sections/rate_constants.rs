@@ -29,6 +29,9 @@ pub(super) fn possible(reaction: &TableReader<'_>, rate: &Rate) {
             let why = "above 1e30 m/s, where molecules meet a surface at 1400 m/s at most";
             within(&table, rate_constant, FASTEST_SURFACE, (" m/s", why));
         }
+        Rate::Conversion { rate_constant, .. } | Rate::Grains { rate_constant, .. } => {
+            within(&table, rate_constant, FASTEST_VOLUME, WORDS);
+        }
         Rate::Power(law) => {
             within(&table, &law.rate_constant, FASTEST_VOLUME, WORDS);
             if let (Some(constant), Some(table)) = (&law.in_series, table.table("in_series")) {

@@ -215,6 +215,15 @@ fn rate(
             rate_constant,
             diffusivity,
         }),
+        RateLaw::EquilibriumPressure { .. } | RateLaw::Conversion { .. } => {
+            let help = "choose shrinking-core or power-law";
+            table.fail(
+                "law",
+                "needs particles with shells, which cases have not yet",
+                help,
+            );
+            None
+        }
         RateLaw::PowerLaw {
             rate_constant,
             in_series,

@@ -49,6 +49,7 @@ impl SolidChemistry {
         let key = reactions.iter().map(|reaction| match &reaction.rate {
             Rate::Core { .. } => gases(reaction).map(|(key, _)| Some(key)),
             Rate::Power(law) => Ok(key_of(law, reaction)),
+            Rate::Conversion { .. } | Rate::Grains { .. } => Ok(None),
         });
         let key = key.collect::<Result<_, _>>()?;
         let mut made = Self {
@@ -94,7 +95,7 @@ impl SolidChemistry {
         for (index, reaction) in self.reactions.iter().enumerate() {
             let direction = self.key[index].map(|key| match &reaction.rate {
                 Rate::Core { .. } => gases(reaction).unwrap_or((key, None)),
-                Rate::Power(_) => (key, None),
+                _ => (key, None),
             });
             if let Some(one) = direction.filter(|one| !self.directions.contains(one)) {
                 self.directions.push(one);

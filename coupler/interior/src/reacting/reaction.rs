@@ -3,7 +3,8 @@
 use calcine_physics::law::LawEntry;
 pub use calcine_physics::reaction::LayerDiffusivity;
 use calcine_physics::reaction::{
-    Arrhenius, Equilibrium, PowerLaw, RateLaw, power_law, shrinking_core,
+    Arrhenius, Conversion, Equilibrium, GrainSurface, PowerLaw, RateLaw, conversion, power_law,
+    shrinking_core,
 };
 
 /// A reaction of solids, and of gases where it is heterogeneous.
@@ -33,6 +34,22 @@ pub enum Rate {
         /// Of the gas in the layer that the reaction leaves.
         diffusivity: LayerDiffusivity,
     },
+    /// In the whole of a porous solid, by what is left of it; of particles with shells alone.
+    Conversion {
+        /// k in (mol/m³)^(−Σ n)/s.
+        rate_constant: Arrhenius,
+        /// f(w).
+        conversion: Conversion,
+        /// Order of each gas, by its index.
+        gases: Vec<(usize, f64)>,
+    },
+    /// At the surface of grains, by what the pressure of a gas lacks of its equilibrium; of particles with shells alone.
+    Grains {
+        /// k in mol/m²/s/Pa.
+        rate_constant: Arrhenius,
+        /// The grains.
+        grains: GrainSurface,
+    },
 }
 
 impl Rate {
@@ -41,6 +58,19 @@ impl Rate {
         match self {
             Self::Power(_) => &power_law::LAW,
             Self::Core { .. } => &shrinking_core::LAW,
+            Self::Grains { .. } => &conversion::EQUILIBRIUM_PRESSURE,
+            Self::Conversion { conversion, .. } => match conversion {
+                Conversion::FirstOrder(_) => &conversion::FIRST_ORDER,
+                Conversion::ContractingArea(_) => &conversion::CONTRACTING_AREA,
+                Conversion::ContractingVolume(_) => &conversion::CONTRACTING_VOLUME,
+                Conversion::Nucleation(_) => &conversion::NUCLEATION,
+                Conversion::RandomPore(_) => &conversion::RANDOM_PORE,
+            },
         }
+    }
+
+    /// True where only particles with shells know the law: it needs the pores.
+    pub fn needs_shells(&self) -> bool {
+        matches!(self, Self::Conversion { .. } | Self::Grains { .. })
     }
 }

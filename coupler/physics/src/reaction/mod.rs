@@ -1,6 +1,7 @@
 //! Reactions: equations, rate constants, equilibria, and the laws by which particles react.
 
 pub mod arrhenius;
+pub mod conversion;
 pub mod equation;
 pub mod equilibrium;
 pub mod formula;
@@ -10,6 +11,7 @@ pub mod rate_law;
 pub mod shrinking_core;
 
 pub use arrhenius::Arrhenius;
+pub use conversion::{Conversion, GrainSurface};
 pub use equation::{Equation, EquationError, imbalance};
 pub use equilibrium::Equilibrium;
 pub use layer_diffusivity::LayerDiffusivity;
@@ -21,3 +23,13 @@ use crate::law::LawEntry;
 
 /// The laws by which a case may let particles react.
 pub static RATE_LAWS: &[&LawEntry<RateLaw>] = &[&shrinking_core::LAW, &power_law::LAW];
+
+/// Those that only particles with shells know, beside the power law.
+pub static SHELL_RATE_LAWS: &[&LawEntry<RateLaw>] = &[
+    &conversion::FIRST_ORDER,
+    &conversion::CONTRACTING_AREA,
+    &conversion::CONTRACTING_VOLUME,
+    &conversion::NUCLEATION,
+    &conversion::RANDOM_PORE,
+    &conversion::EQUILIBRIUM_PRESSURE,
+];

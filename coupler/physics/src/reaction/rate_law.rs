@@ -1,6 +1,7 @@
 //! Which law the rate of a reaction of particles follows.
 
 use super::arrhenius::Arrhenius;
+use super::conversion::{Conversion, GrainSurface};
 use super::layer_diffusivity::LayerDiffusivity;
 
 /// Where in a particle a reaction takes place, and what its rate goes by, as a case states it.
@@ -21,5 +22,21 @@ pub enum RateLaw {
         in_series: Option<Arrhenius>,
         /// Order of each gas and solid, by its name.
         orders: Vec<(String, f64)>,
+    },
+    /// In the whole of a porous solid, by what is left of it, see [`super::conversion`].
+    Conversion {
+        /// k in (mol/m³)^(−Σ n)/s.
+        rate_constant: Arrhenius,
+        /// f(w).
+        conversion: Conversion,
+        /// Order of each gas, by its name.
+        orders: Vec<(String, f64)>,
+    },
+    /// At the surface of grains, by what the pressure of a gas lacks of its equilibrium.
+    EquilibriumPressure {
+        /// k in mol/m²/s/Pa.
+        rate_constant: Arrhenius,
+        /// The grains.
+        grains: GrainSurface,
     },
 }

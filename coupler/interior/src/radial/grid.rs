@@ -1,0 +1,136 @@
+//! The shells of a particle as a grid of finite volumes.
+
+use std::f64::consts::PI;
+
+use calcine_physics::sphere;
+
+/// How a sphere is cut into shells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShellGrid {
+    /// Number of shells.
+    pub shells: usize,
+    /// How many times as thick as the outermost shell the innermost one is; the thicknesses follow a geometric series.
+    pub grading: f64,
+}
+
+impl ShellGrid {
+    /// The share of each shell in the volume, from the centre outwards.
+    pub fn shares(&self) -> Vec<f64> {
+        let last = (self.shells.max(2) - 1) as f64;
+        let ratio = self.grading.powf(-1.0 / last);
+        let thickness: Vec<f64> = (0..self.shells).map(|k| ratio.powi(k as i32)).collect();
+        let all: f64 = thickness.iter().sum();
+        let mut inner = 0.0;
+        let mut shares: Vec<f64> = Vec::with_capacity(self.shells);
+        for (k, own) in thickness.iter().enumerate() {
+            let outer: f64 = if k + 1 == self.shells {
+                1.0
+            } else {
+                inner + own / all
+            };
+            shares.push(outer.powi(3) - f64::powi(inner, 3));
+            inner = outer;
+        }
+        shares
+    }
+}
+
+/// Where the shells of a particle lie.
+///
+/// Values of a shell stand at the radius whose square is the mean of r² over the shell, and gradients are taken in r²,
+/// ∂f/∂r = 2 r ∂f/∂(r²): a parabola, which is what steady conduction with a source has, is then exact, and a single shell has the
+/// resistance R/5 between its mean and its surface.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ShellGeometry {
+    /// Radius of the outer face of each shell in m.
+    pub face: Vec<f64>,
+    /// Area of that face in m².
+    pub area: Vec<f64>,
+    /// Distance in m from the value of each shell to its outer face, as resistances count it.
+    pub outwards: Vec<f64>,
+    /// Distance in m from that face to the value of the next shell; zero of the last one, whose face is the surface.
+    pub beyond: Vec<f64>,
+}
+
+impl ShellGeometry {
+    /// Makes room for so many shells.
+    pub fn resize(&mut self, shells: usize) {
+        for list in [
+            &mut self.face,
+            &mut self.area,
+            &mut self.outwards,
+            &mut self.beyond,
+        ] {
+            list.resize(shells, 0.0);
+        }
+    }
+
+    /// Finds it from the volumes of the shells in m³.
+    pub fn measure(&mut self, volumes: &[f64]) {
+        let (mut within, mut inner) = (0.0, 0.0_f64);
+        for (k, volume) in volumes.iter().enumerate() {
+            within += volume;
+            let outer: f64 = sphere::radius_of(within);
+            // 4 π/5 (b⁵ − a⁵) over the volume; of a thin shell between its faces without a difference.
+            let square = mean_square(inner, outer);
+            self.face[k] = outer;
+            self.area[k] = 4.0 * PI * outer * outer;
+            self.outwards[k] = (outer * outer - square) / (2.0 * outer);
+            self.beyond[k] = 0.0;
+            if k > 0 {
+                self.beyond[k - 1] = (square - inner * inner) / (2.0 * inner);
+            }
+            inner = outer;
+        }
+    }
+
+    /// Radius of the surface in m.
+    pub fn radius(&self) -> f64 {
+        self.face.last().copied().unwrap_or_default()
+    }
+}
+
+/// The mean of r² over a shell between two radii in m: 3/5 (b⁵ − a⁵)/(b³ − a³).
+fn mean_square(a: f64, b: f64) -> f64 {
+    let fifth = b.powi(4) + b.powi(3) * a + b * b * a * a + b * a.powi(3) + a.powi(4);
+    let third = b * b + b * a + a * a;
+    0.6 * fifth / third
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_fill_the_sphere_and_are_graded_as_asked() {
+        let grid = ShellGrid {
+            shells: 20,
+            grading: 4.0,
+        };
+        let shares = grid.shares();
+        assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+        let mut geometry = ShellGeometry::default();
+        geometry.resize(20);
+        geometry.measure(&shares);
+        let thick = |k: usize| {
+            let inner = if k == 0 { 0.0 } else { geometry.face[k - 1] };
+            geometry.face[k] - inner
+        };
+        assert!((thick(0) / thick(19) - 4.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn one_shell_has_the_resistance_of_a_fifth_of_its_radius() {
+        let mut geometry = ShellGeometry::default();
+        geometry.resize(1);
+        geometry.measure(&[sphere::volume(3.0)]);
+        assert!((geometry.outwards[0] - 0.6).abs() < 1e-14);
+    }
+
+    #[test]
+    fn the_mean_square_is_the_integral() {
+        // ∫ r⁴ dr/∫ r² dr from 1 to 2: (31/5)/(7/3).
+        assert!((mean_square(1.0, 2.0) - 31.0 / 5.0 * 3.0 / 7.0).abs() < 1e-14);
+        assert!((mean_square(0.0, 1.0) - 0.6).abs() < 1e-15);
+    }
+}

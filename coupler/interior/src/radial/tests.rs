@@ -1,0 +1,6 @@
+//! Particles with shells as a whole.
+
+mod conservation;
+mod limits;
+mod support;
+mod verification;

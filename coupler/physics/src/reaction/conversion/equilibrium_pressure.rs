@@ -1,0 +1,85 @@
+//! The surface of grains that gives off a gas below its equilibrium pressure.
+
+use super::table::RATE;
+use crate::dimension::Dimension;
+use crate::law::{Bound, LawEntry, LawParameter, LawTable};
+use crate::reaction::arrhenius::{ACTIVATION_ENERGY, Arrhenius, EXPONENT};
+use crate::reaction::rate_law::RateLaw;
+
+/// Its entry in a case file.
+pub static EQUILIBRIUM_PRESSURE: LawEntry<RateLaw> = LawEntry {
+    name: "equilibrium-pressure",
+    summary: "At the surface of the grains of a particle, in proportion to what the pressure of the gas that they give off lacks \
+              of its equilibrium.",
+    source: "docs/theory.md, XDP-9",
+    parameters: &[LawParameter {
+        name: "grain_diameter",
+        dimension: Dimension::LENGTH,
+        bound: Bound::Positive,
+        default: None,
+        needed_with: None,
+        meaning: "Diameter of the grains at the start.",
+        example: "\"10 um\"",
+    }],
+    tables: &[SURFACE_RATE],
+    make: |values| {
+        let rate = values.table(0).cloned().unwrap_or_default();
+        Box::new(RateLaw::EquilibriumPressure {
+            rate_constant: Arrhenius::from_values(&rate),
+            grains: GrainSurface {
+                diameter: values[0],
+            },
+        })
+    },
+};
+
+const SURFACE_RATE: LawTable = LawTable {
+    name: "rate",
+    meaning: "Rate constant k = factor T^exponent exp(-activation_energy/RT), by the surface of the grains and the pressure that lacks.",
+    example: "{ factor = 1e-6, activation_energy = \"60 kJ/mol\" }",
+    parameters: &[
+        LawParameter {
+            name: "factor",
+            dimension: Dimension::NONE,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "A number in mol/m^2/s/Pa.",
+            example: "1e-6",
+        },
+        EXPONENT,
+        ACTIVATION_ENERGY,
+    ],
+    tables: &[],
+    ..RATE
+};
+
+/// r = k S (p_eq − p) in mol/s, with the surface S = 6 V₀ w^2/3/d of spherical grains that shrink, V₀ the volume of the solid
+/// itself at the start.
+///
+/// Source: the surface decomposition of CaCO3 of Borgwardt, AIChE J. 31 (1985) 103, doi 10.1002/aic.690310112, with the pressure that
+/// lacks, as Silcox, Kramlich and Pershing, Ind. Eng. Chem. Res. 28 (1989) 155, doi 10.1021/ie00086a005, have it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GrainSurface {
+    /// Diameter d of the grains at the start in m.
+    pub diameter: f64,
+}
+
+impl GrainSurface {
+    /// The surface in m² of grains of a volume in m³ at the start, of which nothing has reacted.
+    pub fn at_start(&self, volume: f64) -> f64 {
+        6.0 * volume / self.diameter
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ball_has_its_own_surface() {
+        let ball = GrainSurface { diameter: 2.0 };
+        let pi = std::f64::consts::PI;
+        assert!((ball.at_start(4.0 / 3.0 * pi) - 4.0 * pi).abs() < 1e-14);
+    }
+}
