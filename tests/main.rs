@@ -46,6 +46,7 @@ mod reactions;
 mod readers;
 mod results;
 mod results_pages;
+mod results_rebuilt;
 mod resume;
 mod resume_facets;
 mod resume_ranks;

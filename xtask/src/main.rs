@@ -54,8 +54,8 @@ usage: cargo xtask TASK
         [--seed S]        random moment and check that it is named, that everything ends and
         [--from K]        that nothing is left (default: 500 trials)
   validate [NAME …]       long validations, all by default: agreement, backward-step,
-                          checkpoint-faults, elastic-box, flame, fluidised-bed, hopper,
-                          load, moving-bed, repose, restarts, shaft-choices, shaft-flames,
+                          checkpoint-faults, elastic-box, external-restarts, flame,
+                          fluidised-bed, hopper, load, moving-bed, repose, restarts, shaft-choices, shaft-flames,
                           shaft-furnace, skewed-cavity, skewed-meshes, spouted-bed,
                           square-cylinder, voids";
 

@@ -89,13 +89,6 @@ impl Inputs<'_> {
                 return refuse(reason);
             }
             let largest = setup.radius.iter().copied().fold(0.0, f64::max);
-            if !contacts.periodicity.is_none() {
-                return refuse(
-                    "the domain has periodic patches, and LIGGGHTS' processes may end while particles cross them; move the particles \
-                     natively (`--particles native`)"
-                        .into(),
-                );
-            }
             if let Err(error) = periodic_motion::check(contacts, largest) {
                 return refuse(format!("{error}; {}", error.remedy()));
             }
@@ -304,6 +297,10 @@ fn unwritable(path: &Path, error: std::io::Error) -> PartError {
 
 #[cfg(test)]
 mod tests {
+    use calcine_coupler::conformance::particles::soft_spheres;
+    use calcine_coupler::motion::{Contacts, Wall, WallMotion, WallShape};
+    use calcine_coupler::periodicity::{PeriodicSpan, Periodicity};
+
     use super::*;
 
     fn setup() -> ParticleSetup {
@@ -377,5 +374,76 @@ mod tests {
             ..inputs(&fine)
         };
         assert!(still.check().unwrap_err().to_string().contains("0 s"));
+    }
+
+    /// What LIGGGHTS does not have is refused before a process is started, not left out.
+    #[test]
+    fn periodic_patches_and_walls_that_it_does_not_move_are_refused_with_the_remedy() {
+        let wall = |motion| Wall {
+            name: "lid".into(),
+            material: 0,
+            shape: WallShape::Plane {
+                point: Vec3::zeros(),
+                normal: Vec3::z(),
+            },
+            motion,
+        };
+        let span = PeriodicSpan {
+            low: 0.0,
+            high: 0.1,
+        };
+        let along = Periodicity {
+            axes: [Some(span), None, None],
+        };
+        let direction = Vec3::z();
+        let scheduled = WallMotion::Scheduled {
+            direction,
+            distance: vec![(0.0, 0.0), (1.0, 0.1)],
+        };
+        let oscillating = WallMotion::Oscillating {
+            amplitude: direction,
+            period: 0.1,
+        };
+        let servo = WallMotion::Servo {
+            direction,
+            force: 1.0,
+            mass: 1.0,
+            damping: 0.0,
+        };
+        let none = Periodicity::default();
+        for (periodicity, walls, words) in [
+            (along, vec![], ["LIGGGHTS' processes may end", "native"]),
+            (
+                none,
+                vec![wall(scheduled)],
+                ["`moved` of the wall \"lid\"", "native particles"],
+            ),
+            (
+                none,
+                vec![wall(oscillating)],
+                ["`oscillating` of the wall \"lid\"", "native particles"],
+            ),
+            (
+                none,
+                vec![wall(servo)],
+                ["`servo` of the wall \"lid\"", "native particles"],
+            ),
+        ] {
+            let contacts = Contacts {
+                periodicity,
+                walls,
+                material_of: vec![0, 0],
+                held: vec![false, false],
+                ..soft_spheres(1e-5, 1e7)
+            };
+            let moving = ParticleSetup {
+                motion: Motion::Free(Box::new(contacts)),
+                ..setup()
+            };
+            let error = inputs(&moving).check().unwrap_err().to_string();
+            for word in words {
+                assert!(error.contains(word), "{error}");
+            }
+        }
     }
 }
