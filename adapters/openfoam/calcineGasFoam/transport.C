@@ -105,7 +105,7 @@ void Foam::calcine::gas::updateTransport(const scalarField& density)
 
 
 // Half of each cell's gradient and half of the mean of those of the cells beside it, which keeps what is fed back bounded on tetrahedra (native
-// gas, docs/theory.md, MSH-4).
+// gas, docs/theory.md).
 Foam::tensorField Foam::calcine::gas::besideToo(const tensorField& gradient) const
 {
     const tensorField beyond(shared_.beyond(gradient));
