@@ -14,6 +14,7 @@ use calcine_coupler::physics::law::{LawEntry, LawSummary};
 use calcine_coupler::physics::reaction::{RATE_LAWS, RateLaw};
 use calcine_coupler::physics::turbulence::{BED_EDDY_LAWS, BedEddies};
 use calcine_coupler::view_factors::{RADIATION_LAWS, RadiationLaw};
+use calcine_tuning::law::CONVERSION_LAWS;
 
 use crate::case::model::{Case, ConductionArea};
 
@@ -97,6 +98,13 @@ impl LawCatalogue {
             ("motion.rolling", summaries(&self.rolling)),
             ("motion.cohesion", summaries(&self.cohesion)),
         ]
+    }
+}
+
+impl LawCatalogue {
+    /// Families of laws that a tuning chooses from; their numbers are keys of its reactions.
+    pub fn tuning_families(&self) -> Vec<(&'static str, Vec<LawSummary>)> {
+        vec![("reactions.laws", summaries(CONVERSION_LAWS))]
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use calcine_wire::SolverNetwork;
 
 use super::failure::Failure;
-use super::{check, compare, report, run, sweep};
+use super::{check, compare, report, run, sweep, tune};
 use crate::case::kind_of;
 use crate::exit;
 use crate::results::ResultsError;
@@ -34,14 +34,33 @@ struct KindCommands {
 }
 
 /// All kinds; the first is that of cases and results that state none.
-static COMMANDS: &[KindCommands] = &[KindCommands {
-    kind: "bed",
-    run: run::run,
-    check: check::run,
-    compare: Some(compare::run),
-    sweep: Some(sweep::run),
-    report: crate::report::write,
-}];
+static COMMANDS: &[KindCommands] = &[
+    KindCommands {
+        kind: "bed",
+        run: run::run,
+        check: check::run,
+        compare: Some(compare::run),
+        sweep: Some(sweep::run),
+        report: crate::report::write,
+    },
+    KindCommands {
+        kind: "tuning",
+        run: |arguments, case, _, _| {
+            run::use_threads(arguments.threads.map(usize::from))?;
+            tune::tune(&tune::Tuning {
+                case,
+                set: &arguments.set,
+                out: arguments.out.as_deref(),
+                resume: arguments.resume.is_some(),
+                quiet: arguments.quiet,
+            })
+        },
+        check: |arguments| tune::check(&arguments.case, &arguments.set),
+        compare: None,
+        sweep: None,
+        report: tune::page,
+    },
+];
 
 /// The commands of a case's kind.
 fn commands(case: &Path, set: &[String]) -> Result<&'static KindCommands, Failure> {

@@ -33,14 +33,14 @@ pub(super) struct Arguments {
     parallel: Parallel,
     /// Results folder [default: results/NAME].
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
     /// Changes a key of the case, for example `--set time.acceleration=200`.
     #[arg(long, value_name = "KEY=VALUE")]
     pub(super) set: Vec<String>,
     /// Continues from the last checkpoint in the results folder; a run that was stopped before its first one starts again.
     /// `--resume DIR` alone takes case, `--set` and solvers from the run in DIR.
     #[arg(long, value_name = "DIR", num_args = 0..=1)]
-    resume: Option<Option<PathBuf>>,
+    pub(super) resume: Option<Option<PathBuf>>,
     /// Starts from the last checkpoint of another run on the same mesh, with this
     /// case's settings and clocks at zero.
     #[arg(long, value_name = "DIR")]
@@ -48,10 +48,10 @@ pub(super) struct Arguments {
     /// Threads of Calcine's own solvers and of the coupling [default: one a core]. Results do not
     /// depend on their number.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
+    pub(super) threads: Option<u16>,
     /// Shows no progress bar.
     #[arg(long)]
-    quiet: bool,
+    pub(super) quiet: bool,
     /// Writes a checkpoint and stops after this wall time, for example `23h30m`, `90 s`, or a plain number of seconds.
     #[arg(long, value_name = "TIME", value_parser = wall_time)]
     stop_after: Option<Duration>,
@@ -203,7 +203,7 @@ pub(super) fn run(
 }
 
 /// Starts the threads; this one is one of them, so that no loop is handed over from thread to thread.
-fn use_threads(threads: Option<usize>) -> Result<(), Failure> {
+pub(super) fn use_threads(threads: Option<usize>) -> Result<(), Failure> {
     let threads =
         threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
     let pool = rayon::ThreadPoolBuilder::new();

@@ -4,6 +4,7 @@ use calcine_coupler::physics::law::LawSummary;
 
 use super::key::Key;
 use super::root::BED;
+use super::tuning::TUNING;
 use crate::laws::LawCatalogue;
 
 /// A kind of case. A new one is an entry of [`KINDS`], and its commands are one of the list in
@@ -22,13 +23,22 @@ pub struct CaseKind {
 }
 
 /// All kinds; a case that states none is of the first.
-pub static KINDS: &[CaseKind] = &[CaseKind {
-    name: "bed",
-    summary: "a reactive granular bed, gas coupled with particles",
-    keys: BED,
-    families: LawCatalogue::families,
-    page: "docs/reference/case-file.md",
-}];
+pub static KINDS: &[CaseKind] = &[
+    CaseKind {
+        name: "bed",
+        summary: "a reactive granular bed, gas coupled with particles",
+        keys: BED,
+        families: LawCatalogue::families,
+        page: "docs/reference/case-file.md",
+    },
+    CaseKind {
+        name: "tuning",
+        summary: "a model whose parameters are tuned to curves",
+        keys: TUNING,
+        families: LawCatalogue::tuning_families,
+        page: "docs/reference/tuning-file.md",
+    },
+];
 
 /// The kind of this name.
 pub fn kind_named(name: &str) -> Option<&'static CaseKind> {

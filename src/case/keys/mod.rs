@@ -25,6 +25,7 @@ mod prelude;
 mod quantities;
 mod reactions;
 mod root;
+mod tuning;
 mod walls;
 mod zone;
 
