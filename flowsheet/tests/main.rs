@@ -2,6 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 mod dyssol;
+mod dyssol_units;
 mod granulation;
 mod growth;
 mod kernels;
@@ -9,5 +10,6 @@ mod loops;
 mod methods;
 mod oscillation;
 mod plants;
+mod sensitivities;
 mod support;
 mod units;

@@ -5,7 +5,7 @@ use calcine_flowsheet::mill::{BondBimodal, BondLaw, BondLength};
 use calcine_flowsheet::population::{Aggregation, ConstantKernel};
 use calcine_flowsheet::units::{
     BedHeat, BedLevel, Bunker, Discharge, Dryer, Granulator, Mill, Overspray, PlantInlet,
-    PlantOutlet, Splitter,
+    PlantOutlet, Splitter, TimeDelay,
 };
 use calcine_flowsheet::{
     Attribute, Connection, Integrator, Plant, PlantRun, ProcessUnit, SizeGrid, StreamLayout,
@@ -108,6 +108,35 @@ fn a_bunker_follows_its_rate_or_stays_level() {
     assert!((found - 100.0).abs() < 1e-9, "{found}");
     let old = run.unit(0)[1] / 100.0;
     assert!((old - (-1.2f64).exp()).abs() < 1e-8, "{old}");
+}
+
+/// A step of the feed comes out as 1 − exp(−x) Σ xᵏ/k!, x = n t/τ (Erlang), and nothing of it is lost on the way.
+#[test]
+fn a_delay_passes_a_step_on_after_its_time() {
+    let layout = plain(SizeGrid::uniform(4, 0.0, 4e-3).unwrap());
+    let feed = solids(&layout, &[0.0, 0.25, 0.75, 0.0], 2.0);
+    let delay = TimeDelay {
+        time: 60.0,
+        stages: 12,
+        content: Vec::new(),
+    };
+    let plant = alone(layout, delay, vec![always(feed)]);
+    for time in [30.0, 60.0, 90.0] {
+        let mut run = PlantRun::new(&plant, Integrator::Explicit, 1e-10).unwrap();
+        run.advance(time).unwrap();
+        let x = 12.0 * time / 60.0;
+        let terms = (0..12).scan(1.0, |term, k| {
+            let own = *term;
+            *term *= x / f64::from(k + 1);
+            Some(own)
+        });
+        let expected = 2.0 * (1.0 - f64::exp(-x) * terms.sum::<f64>());
+        let out = flow(&plant, &run, "out");
+        let found = plant.layout().mass_flow(&out);
+        assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected}");
+        assert!((out[2] / out[1] - 3.0).abs() < 1e-12);
+        assert!(run.ledger().worst() < 1e-13);
+    }
 }
 
 #[test]

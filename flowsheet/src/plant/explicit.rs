@@ -96,7 +96,7 @@ impl StepMethod for DormandPrince {
                     worst(self.place.iter().copied(), &self.sizes)
                 }
             };
-            if error <= 1.0 {
+            if error <= 1.0 || (span.forced && error.is_finite()) {
                 add_weighted(&mut now.y, 0, h, &self.stages, &A[5]);
                 add_weighted(&mut now.totals, n, h, &self.stages, &A[5]);
                 self.stages.swap(0, 6);

@@ -130,7 +130,7 @@ impl StepMethod for ImplicitRungeKutta {
             self.algebra.solve(error);
             let error = worst(error.iter().copied(), &memory.sizes);
             let factor = 0.9 * error.max(1e-10).powf(-0.25);
-            if error <= 1.0 {
+            if error <= 1.0 || (span.forced && error.is_finite()) {
                 let weights: [f64; STAGES] = std::array::from_fn(Self::weight);
                 memory.known.copy_from_slice(&now.y);
                 add_weighted(&mut now.y, 0, h, &self.stages, &weights);

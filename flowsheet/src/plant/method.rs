@@ -15,6 +15,8 @@ pub(super) struct Span<'a> {
     pub(super) tolerance: f64,
     /// Where something jumped: nothing of the step before holds.
     pub(super) fresh: bool,
+    /// Where the step has to have the length that is set, whatever its error.
+    pub(super) forced: bool,
 }
 
 /// What is integrated, and memory for the streams.

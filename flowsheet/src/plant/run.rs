@@ -120,40 +120,50 @@ impl<'a> PlantRun<'a> {
 
     /// Advances to a time in s.
     pub fn advance(&mut self, until: f64) -> Result<(), PlantError> {
+        self.go(until, |_| ())
+    }
+
+    /// [`Self::advance`], and the lengths in s of the steps that it took.
+    pub(super) fn advance_and_tell(&mut self, until: f64) -> Result<Vec<f64>, PlantError> {
+        let mut steps = Vec::new();
+        self.go(until, |took| steps.push(took))?;
+        Ok(steps)
+    }
+
+    /// [`Self::advance`] by steps of given lengths in s.
+    pub(super) fn advance_by(&mut self, until: f64, steps: &[f64]) -> Result<(), PlantError> {
+        let mut steps = steps.iter();
         while self.time < until {
             let end = self.plant.next_break(self.time).min(until);
-            self.follow(end)?;
+            let mut fresh = true;
+            while let (true, Some(step)) = (self.time < end, steps.next()) {
+                self.method.set_step(*step);
+                self.step_towards(end, fresh, true)?;
+                fresh = false;
+            }
             self.time = end;
             self.settle()?;
         }
         Ok(())
     }
 
-    /// Steps from the present time to `end`, between which nothing jumps.
-    pub(super) fn follow(&mut self, end: f64) -> Result<(), PlantError> {
+    fn go(&mut self, until: f64, mut tell: impl FnMut(f64)) -> Result<(), PlantError> {
+        while self.time < until {
+            let end = self.plant.next_break(self.time).min(until);
+            self.follow(end, &mut tell)?;
+            self.time = end;
+            self.settle()?;
+        }
+        Ok(())
+    }
+
+    /// Steps from the present time to `end`, between which nothing jumps; tells the length of each step in s.
+    pub(super) fn follow(&mut self, end: f64, mut tell: impl FnMut(f64)) -> Result<(), PlantError> {
         for step in 0..MOST_STEPS {
-            let at = Moment {
-                time: self.time,
-                end,
-            };
-            let span = Span {
-                plant: self.plant,
-                at,
-                scales: &self.scales,
-                tolerance: self.tolerance,
-                fresh: step == 0,
-            };
-            let took = self.method.advance(&span, &mut self.now)?;
-            // The last stage is at the end of the step.
-            self.closure = self.closure.max(self.now.work.closure);
-            self.time += took;
-            let now = Moment {
-                time: self.time,
-                end,
-            };
-            self.plant
-                .verify(now, &self.now.y, &self.now.work.streams)?;
-            if took >= end - at.time {
+            let left = end - self.time;
+            let took = self.step_towards(end, step == 0, false)?;
+            tell(took);
+            if took >= left {
                 return Ok(());
             }
         }
@@ -161,6 +171,33 @@ impl<'a> PlantRun<'a> {
             reached: self.time,
             cause: "it took too many steps; let the `stiff` integrator follow it, or raise the tolerance",
         })
+    }
+
+    /// One step; what it took in s.
+    fn step_towards(&mut self, end: f64, fresh: bool, forced: bool) -> Result<f64, PlantError> {
+        let at = Moment {
+            time: self.time,
+            end,
+        };
+        let span = Span {
+            plant: self.plant,
+            at,
+            scales: &self.scales,
+            tolerance: self.tolerance,
+            fresh,
+            forced,
+        };
+        let took = self.method.advance(&span, &mut self.now)?;
+        // The last stage is at the end of the step.
+        self.closure = self.closure.max(self.now.work.closure);
+        self.time += took;
+        let now = Moment {
+            time: self.time,
+            end,
+        };
+        self.plant
+            .verify(now, &self.now.y, &self.now.work.streams)?;
+        Ok(took)
     }
 
     /// What a window begins with.

@@ -164,7 +164,7 @@ impl StepMethod for Chebyshev {
                     worst(errors, &self.sizes)
                 }
             };
-            if error <= 1.0 {
+            if error <= 1.0 || (span.forced && error.is_finite()) {
                 now.y.copy_from_slice(&self.stages[1][..n]);
                 now.totals.copy_from_slice(&self.stages[1][n..]);
                 std::mem::swap(&mut self.first, &mut self.rates);

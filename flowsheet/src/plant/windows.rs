@@ -85,9 +85,9 @@ impl PlantRun<'_> {
                 // Halfway between nodes the polynomial is compared with what it became, too.
                 if k > 0 {
                     let middle = 0.5 * (self.time + time);
-                    self.follow(middle)?;
+                    self.follow(middle, |_| ())?;
                     bend = bend.max(self.torn_difference(middle, end)?);
-                    self.follow(time)?;
+                    self.follow(time, |_| ())?;
                 }
                 closure = closure.max(self.torn_difference(time, end)?);
                 x.extend_from_slice(&wave.values[k]);

@@ -32,6 +32,14 @@ impl SizeProcess for ParticleBreakage {
         particle: &[f64],
         place: &str,
     ) -> Result<(), PlantError> {
+        if let Some((quantity, value, allowed)) = self.law.refused() {
+            return Err(PlantError::Value {
+                place: place.to_owned(),
+                quantity,
+                value,
+                allowed,
+            });
+        }
         let count = grid.classes();
         let volumes: Vec<f64> = grid
             .diameters()

@@ -3,6 +3,8 @@
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
+use super::power_fragments::POWER;
+
 /// Breakage of particles of volume v in m³.
 pub trait BreakageLaw: Send + Sync {
     /// Rate S at which a particle of volume v breaks, in 1/s.
@@ -11,6 +13,11 @@ pub trait BreakageLaw: Send + Sync {
     /// Number of fragments of a particle of volume v that are smaller than u ≤ v, and their volume in m³. Of all fragments
     /// the volume is v.
     fn below(&self, u: f64, v: f64) -> [f64; 2];
+
+    /// Which of its numbers it cannot have, with the value and what it may be.
+    fn refused(&self) -> Option<(&'static str, f64, &'static str)> {
+        None
+    }
 }
 
 /// Random binary breakage at a rate in proportion to volume.
@@ -53,4 +60,4 @@ static RANDOM_BINARY: LawEntry<dyn BreakageLaw> = LawEntry {
 };
 
 /// The laws of breakage that a case may choose. A new one is declared and listed here.
-pub static BREAKAGE_LAWS: &[&LawEntry<dyn BreakageLaw>] = &[&RANDOM_BINARY];
+pub static BREAKAGE_LAWS: &[&LawEntry<dyn BreakageLaw>] = &[&RANDOM_BINARY, &POWER];

@@ -7,6 +7,7 @@ mod fragments;
 mod growth;
 mod growth_law;
 mod kernels;
+mod power_fragments;
 
 pub use aggregation::Aggregation;
 pub use breakage::ParticleBreakage;
@@ -14,7 +15,11 @@ pub use dyssol::dyssol_growth;
 pub use fragments::{BREAKAGE_LAWS, BreakageLaw, RandomBinary};
 pub use growth::{GrowthScheme, SizeFluxes};
 pub use growth_law::{GrowthLaw, LinearGrowth, TabulatedGrowth, UniformGrowth};
-pub use kernels::{AGGREGATION_LAWS, AggregationKernel, ConstantKernel, ProductKernel, SumKernel};
+pub use kernels::{
+    AGGREGATION_LAWS, AggregationKernel, BrownianKernel, ConstantKernel, EquipartitionKernel,
+    KapurKernel, ProductKernel, SettlingKernel, ShearKernel, SumKernel, TabulatedKernel,
+};
+pub use power_fragments::PowerBreakage;
 
 /// Something that moves the solids of a bed between size classes and conserves them.
 pub trait SizeProcess: Send + Sync {
