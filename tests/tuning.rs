@@ -196,11 +196,6 @@ fn bad_tuning_files_are_refused_at_their_line() {
             &["sample_mass", "missing"],
         ),
         (
-            "type = \"kinetic\"",
-            "type = \"case\"",
-            &["model.case` is missing"],
-        ),
-        (
             "file = \"a.csv\"",
             "file = \"b.csv\"",
             &["cannot be read", "relative to the case file"],

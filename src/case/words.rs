@@ -29,8 +29,6 @@ pub(super) enum TunedModel {
     Lumped,
     /// A sample of a known temperature.
     Kinetic,
-    /// A case of another kind.
-    Case,
 }
 
 /// `model.heat_capacity` of a tuning: true where it follows the composition.
@@ -141,7 +139,7 @@ pub(super) struct GasField(pub &'static str);
 pub(super) struct ParticleField(pub &'static str);
 
 case_words! {
-    TunedModel { "lumped" => TunedModel::Lumped, "kinetic" => TunedModel::Kinetic, "case" => TunedModel::Case }
+    TunedModel { "lumped" => TunedModel::Lumped, "kinetic" => TunedModel::Kinetic }
     SampleCapacity { "constant" => SampleCapacity(false), "composition" => SampleCapacity(true) }
     ReactionHeat { "constant" => ReactionHeat(false), "kirchhoff" => ReactionHeat(true) }
     ParameterScale { "linear" => ParameterScale(false), "logarithmic" => ParameterScale(true) }

@@ -18,7 +18,7 @@ use crate::case::units::short;
 use crate::exit;
 use crate::report::number::figure;
 use crate::results::{ResultsError, files};
-use crate::tuning::case::{ModelSpec, TuningCase};
+use crate::tuning::case::TuningCase;
 use crate::tuning::outcome::TuningOutcome;
 use crate::tuning::page::write_page;
 use crate::tuning::tune::{TuningObserver, tune_sample};
@@ -132,13 +132,7 @@ pub(super) fn tune(line: &Tuning<'_>) -> Result<u8, Failure> {
     watcher
         .log
         .name(names.collect(), vec!["the compared quantities".into()]);
-    let found = match &case.model {
-        ModelSpec::Sample(spec) => tune_sample(&case, spec, &stop, &mut watcher),
-        ModelSpec::Case(_) => {
-            let message = "`model.type = \"case\"` is not built yet";
-            return Err(Failure::new(exit::CASE, message));
-        }
-    };
+    let found = tune_sample(&case, &stop, &mut watcher);
     if let Some(error) = watcher.wrong {
         return Err(failed(error));
     }
@@ -300,12 +294,10 @@ pub(super) fn check(path: &Path, set: &[String]) -> Result<u8, Failure> {
             60.0 * target.run.programme.heating_rate()
         );
     }
-    if let ModelSpec::Sample(spec) = &case.model {
-        let laws: Vec<&str> = spec.laws.iter().map(|one| one.law.name).collect();
-        text += &format!("    laws: {}\n", laws.join(", "));
-        if let [only] = &spec.reactions[..] {
-            text += &format!("    mass loss of the reactant: {:.4}\n", only.mass_loss);
-        }
+    let laws = case.model.laws.iter().map(|one| one.law.name);
+    text += &format!("    laws: {}\n", laws.collect::<Vec<_>>().join(", "));
+    if let [only] = &case.model.reactions[..] {
+        text += &format!("    mass loss of the reactant: {:.4}\n", only.mass_loss);
     }
     say(text.trim_end())?;
     Ok(exit::OK)

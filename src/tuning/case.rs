@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use calcine_coupler::physics::dimension::Dimension;
 use calcine_coupler::physics::law::LawEntry;
 use calcine_tuning::law::KineticLaw;
 use calcine_tuning::model::{
@@ -21,17 +20,17 @@ pub struct TuningCase {
     pub hash: String,
     /// The file.
     pub path: PathBuf,
-    /// Files that it names: curves, a case.
+    /// Files of curves that it names.
     pub files: Vec<PathBuf>,
     /// Its text with `--set` applied.
     pub effective: String,
     /// What `--set` changed, in words.
     pub changes: Vec<String>,
     /// What is tuned.
-    pub model: ModelSpec,
+    pub model: SampleSpec,
     /// The parameters.
     pub parameters: Vec<TunedParameter>,
-    /// The curves; none of whole cases.
+    /// The curves.
     pub targets: Vec<TargetCurve>,
     /// How it is tuned.
     pub method: MethodSpec,
@@ -39,15 +38,6 @@ pub struct TuningCase {
     pub intervals: IntervalSpec,
     /// What is to be told before it begins.
     pub warnings: Vec<String>,
-}
-
-/// What is tuned.
-#[derive(Clone, Debug)]
-pub enum ModelSpec {
-    /// A sample.
-    Sample(SampleSpec),
-    /// A whole case.
-    Case(WholeCaseSpec),
 }
 
 /// A model of a sample.
@@ -90,34 +80,6 @@ impl SampleSpec {
             }
         }
     }
-}
-
-/// A case of another kind that is run whole.
-#[derive(Clone, Debug)]
-pub struct WholeCaseSpec {
-    /// Its file.
-    pub path: PathBuf,
-    /// Key that each parameter sets, in their order.
-    pub keys: Vec<String>,
-    /// How many runs are made side by side.
-    pub jobs: usize,
-    /// What is compared.
-    pub targets: Vec<QuantityTarget>,
-}
-
-/// Values over time that a quantity of a run is compared with.
-#[derive(Clone, Debug, PartialEq)]
-pub struct QuantityTarget {
-    /// Name in results.
-    pub name: String,
-    /// Name of the quantity.
-    pub quantity: String,
-    /// Dimension of the values.
-    pub dimension: Dimension,
-    /// Times in s.
-    pub time: Vec<f64>,
-    /// Values in SI.
-    pub value: Vec<f64>,
 }
 
 /// How parameters are searched for.

@@ -14,7 +14,7 @@ use calcine_tuning::search::{
 };
 use calcine_tuning::{ComparedQuantity, ParameterSpace, SampleProblem, TuningError, TuningProblem};
 
-use super::case::{LawCandidate, SampleSpec, TuningCase};
+use super::case::{LawCandidate, TuningCase};
 use super::outcome::{
     FittedCurve, FoundParameter, LawFit, LawFreeEnergies, TuningOutcome, unit_of,
 };
@@ -282,12 +282,8 @@ fn percentiles(drawn: &[Vec<f64>], parameter: usize, level: f64) -> Option<[f64;
 }
 
 /// The problem of a sample with one of its laws.
-fn problem_of(
-    case: &TuningCase,
-    spec: &SampleSpec,
-    candidate: &LawCandidate,
-) -> Result<SampleProblem, TuningError> {
-    let model = spec.model(candidate);
+fn problem_of(case: &TuningCase, candidate: &LawCandidate) -> Result<SampleProblem, TuningError> {
+    let model = case.model.model(candidate);
     let space = case.space_of(&*model)?;
     let mut problem = SampleProblem::new(
         &*model,
@@ -295,7 +291,7 @@ fn problem_of(
         case.targets.clone(),
         case.method.differences,
     )?;
-    if let [only] = &spec.reactions[..]
+    if let [only] = &case.model.reactions[..]
         && only.name.is_empty()
     {
         let law = (candidate.law.make)(&candidate.numbers.clone().into());
@@ -307,7 +303,6 @@ fn problem_of(
 /// Tunes a model of a sample.
 pub fn tune_sample(
     case: &TuningCase,
-    spec: &SampleSpec,
     stop: &AtomicBool,
     observer: &mut dyn TuningObserver,
 ) -> Result<TuningOutcome, TuningError> {
@@ -317,8 +312,8 @@ pub fn tune_sample(
         count: AtomicUsize::new(0),
     };
     let mut fits = Vec::new();
-    for candidate in &spec.laws {
-        let problem = problem_of(case, spec, candidate)?;
+    for candidate in &case.model.laws {
+        let problem = problem_of(case, candidate)?;
         observer.stage(&format!("law {}", candidate.law.name));
         let search = bench.search(&problem, candidate.law.name, observer)?;
         fits.push((candidate.law.name, problem, search));

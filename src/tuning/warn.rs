@@ -4,7 +4,7 @@ use calcine_tuning::ParameterSpace;
 use calcine_tuning::interval::ParameterPair;
 use calcine_tuning::least_squares::FittedPlaces;
 
-use super::case::{ModelSpec, TuningCase};
+use super::case::TuningCase;
 use super::outcome::{FoundParameter, LawFit, LawFreeEnergies};
 use crate::case::units::short3;
 
@@ -94,9 +94,6 @@ pub(super) fn one_rate(
     chosen: usize,
     found: &[FoundParameter],
 ) -> Option<String> {
-    let ModelSpec::Sample(spec) = &case.model else {
-        return None;
-    };
     let tuned = |end: &str| found.iter().find(|one| one.name.ends_with(end));
     let energy = tuned("activation_energy")?;
     tuned("pre_exponential")?;
@@ -141,7 +138,6 @@ pub(super) fn one_rate(
         text.push_str(&format!(" ({})", others.join(", ")));
     }
     text.push_str("; measure three heating rates or more");
-    let _ = spec;
     Some(text)
 }
 

@@ -4,7 +4,7 @@ use super::prelude::*;
 
 #[rustfmt::skip]
 const MODEL: &[Key] = &[
-    key("type", Choice(words::<TunedModel>), Required, "What is tuned: `lumped` is a sample in a crucible with two temperatures, `kinetic` a sample that has the temperature of the target, `case` a case of another kind that is run whole.", "\"lumped\""),
+    key("type", Choice(words::<TunedModel>), Required, "What is tuned: `lumped` is a sample in a crucible with two temperatures, `kinetic` is a sample that has the temperature of the target.", "\"lumped\""),
     key("contact_transfer", Number(D::HEAT_TRANSFER, Positive), Default("100 W/m^2/K"), "Heat transfer coefficient h2 between crucible and sample (lumped).", "\"100 W/m^2/K\""),
     key("gas_transfer", Number(D::HEAT_TRANSFER, NotNegative), Default("20 W/m^2/K"), "Heat transfer coefficient h1 between gas and crucible (lumped).", "\"20 W/m^2/K\""),
     key("emissivity", Number(D::NONE, Between(0.0, 1.0)), Default("0.15"), "Emissivity of the crucible (lumped).", "0.15"),
@@ -17,8 +17,6 @@ const MODEL: &[Key] = &[
     key("released_heat_capacity", Number(D::HEAT_CAPACITY, Positive), Default("1150 J/kg/K"), "Specific heat capacity of the gas that is released (lumped, with `reaction_heat = \"kirchhoff\"`).", "\"1150 J/kg/K\""),
     key("heat_capacity", Choice(words::<SampleCapacity>), Default("constant"), "Heat capacity of the sample: that of the fresh one, or of its composition (lumped).", "\"composition\""),
     key("reaction_heat", Choice(words::<ReactionHeat>), Default("constant"), "Reaction enthalpy: that at 298.15 K, or at the temperature of the sample by Kirchhoff's law (lumped).", "\"kirchhoff\""),
-    key("case", Path, Without("required with `type = \"case\"`"), "The case that is run.", "\"heated-column.toml\""),
-    key("jobs", Whole(1, 1024), Default("1"), "How many runs of the case are made side by side, each on its own share of the threads.", "2"),
 ];
 
 #[rustfmt::skip]
@@ -40,7 +38,6 @@ const TUNED: &[Key] = &[
     key("low", Measured, Required, "Lower bound, in the unit of the parameter.", "\"50 W/m^2/K\""),
     key("high", Measured, Required, "Upper bound.", "\"150 W/m^2/K\""),
     key("scale", Choice(words::<ParameterScale>), Without("logarithmic for `pre_exponential`, linear for others"), "How the search goes from bound to bound.", "\"logarithmic\""),
-    key("key", Text, Without("required with `model.type = \"case\"`"), "Key of the case that is set to the value, as `--set` takes it.", "\"materials.glass.conductivity\""),
 ];
 
 #[rustfmt::skip]
@@ -50,7 +47,6 @@ const TARGET_COLUMNS: &[Key] = &[
     key("mass", Text, Without("recognised"), "Heading of the column of masses.", "\"Weight\""),
     key("loss_rate", Text, Without("recognised"), "Heading of the column of rates of loss.", "\"DTG\""),
     key("run", Text, Without("recognised"), "Heading of the column that tells several runs of a file apart.", "\"run\""),
-    key("value", Text, Without("required with `quantity`"), "Heading of the column that a quantity of a run is compared with.", "\"T_out\""),
 ];
 
 #[rustfmt::skip]
@@ -59,7 +55,6 @@ const TARGET_UNITS: &[Key] = &[
     key("temperature", Text, Without("that of the heading"), "Unit of the temperatures: degC, K.", "\"degC\""),
     key("mass", Text, Without("that of the heading"), "Unit of the masses: %, mg, g, or 1 for a share.", "\"%\""),
     key("loss_rate", Text, Without("that of the heading"), "Unit of the rates: %/min, mg/min, 1/s.", "\"%/min\""),
-    key("value", Text, Without("that of the heading"), "Unit of the values.", "\"K\""),
 ];
 
 #[rustfmt::skip]
@@ -76,7 +71,6 @@ const TARGETS: &[Key] = &[
     key("start_temperature", Number(D::TEMPERATURE, Positive), Default("293.15 K"), "Temperature at the first time, with `heating_rate`.", "\"20 degC\""),
     key("conversion", Numbers(2), Without("all of the curve"), "Range of the conversion that counts.", "[0.001, 0.999]"),
     key("largest_rise", Number(D::NONE, Between(0.0, 10.0)), Default("5 %"), "Largest rise of the mass that is let pass, as a share of its whole fall.", "\"5 %\""),
-    key("quantity", Text, Without("required with `model.type = \"case\"`"), "Quantity of the case that the column `value` is compared with, over time.", "\"outlet_temperature\""),
 ];
 
 #[rustfmt::skip]
@@ -111,7 +105,7 @@ pub(super) const TUNING: &[Key] = &[
     key("format", Whole(0, MOST), Required, "Version of the format; 1 is the only one.", "1"),
     key("title", Text, Required, "Title for people.", "\"Calcite, three heating rates\""),
     key("model", Table(MODEL), Required, "What is tuned.", "[model]"),
-    key("reactions", Tables(TUNED_REACTIONS), Without("required unless `model.type = \"case\"`"), "Reactions of the sample, side by side.", "[[reactions]]"),
+    key("reactions", Tables(TUNED_REACTIONS), Required, "Reactions of the sample, side by side.", "[[reactions]]"),
     key("parameters", Named(TUNED), Required, "Parameters that are tuned, by their names: numbers of the model and of its reactions.", "[parameters.activation_energy]"),
     key("targets", Tables(TARGETS), Required, "Curves that the model is to follow.", "[[targets]]"),
     key("method", Table(METHOD), Without("its defaults"), "How the parameters are searched for.", "[method]"),

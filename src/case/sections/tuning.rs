@@ -10,18 +10,14 @@ use calcine_tuning::model::{
 use calcine_tuning::{ComparedQuantity, TargetCurve, TemperatureProgramme, TunedParameter};
 
 use crate::case::table::TableReader;
-use crate::case::units::{quantities, shown};
+use crate::case::units::shown;
 use crate::case::words::{
     DecimalName, DelimiterName, DifferenceName, ParameterScale, ReactionHeat, SampleCapacity,
     TunedModel, TuningAlgorithm,
 };
-use crate::tuning::case::{
-    IntervalSpec, LawCandidate, MethodSpec, ModelSpec, QuantityTarget, SampleSpec, TuningCase,
-    WholeCaseSpec,
-};
+use crate::tuning::case::{IntervalSpec, LawCandidate, MethodSpec, SampleSpec, TuningCase};
 use crate::tuning::curves::{
-    ColumnChoice, CurveColumn, CurveFile, CurveFileError, CurveRules, MeasuredRun, SheetForm,
-    read_curves, read_values,
+    CurveColumn, CurveFile, CurveFileError, CurveRules, MeasuredRun, SheetForm, read_curves,
 };
 
 /// Version of the format that this reader knows.
@@ -51,50 +47,23 @@ pub(in crate::case) fn tuning(
         .and_then(|table| table.choice::<TunedModel>("type"));
     let numbers = model.as_ref().map(lumped_numbers);
     let settings = model.as_ref().map(settings);
-    let whole = model
-        .as_ref()
-        .map(|table| (table.text("case"), table.whole("jobs")));
     if let Some(table) = &model {
         table.finish();
     }
     let method = method(&root.table_or_empty("method")?);
     let intervals = intervals(&root.table_or_empty("intervals")?);
-    let reactions = reactions(root, of);
+    let reactions = reactions(root);
     let read = Targets::read(root, folder, of);
     let loss = read.measured_loss();
-    let (model, keys) = match of? {
-        TunedModel::Case => {
-            let (file, jobs) = whole?;
-            let Some(file) = file else {
-                root.table("model")?.missing("case");
-                return None;
-            };
-            let spec = WholeCaseSpec {
-                path: folder.join(file),
-                keys: Vec::new(),
-                jobs: usize::try_from(jobs?).ok()?,
-                targets: read.quantities,
-            };
-            (ModelSpec::Case(spec), None)
-        }
-        kind => {
-            let (reactions, laws) = reactions?;
-            let crucible = (kind == TunedModel::Lumped).then_some((settings?, numbers?));
-            let mut spec = SampleSpec {
-                crucible,
-                reactions,
-                laws,
-            };
-            take_loss(root, &mut spec, loss)?;
-            let known = known_parameters(&spec);
-            (ModelSpec::Sample(spec), Some(known))
-        }
+    let (reactions, laws) = reactions?;
+    let crucible = (of? == TunedModel::Lumped).then_some((settings?, numbers?));
+    let mut model = SampleSpec {
+        crucible,
+        reactions,
+        laws,
     };
-    let (parameters, set) = parameters(root, keys.as_deref());
-    let mut model = model;
-    if let ModelSpec::Case(spec) = &mut model {
-        spec.keys = set;
-    }
+    take_loss(root, &mut model, loss)?;
+    let parameters = parameters(root, &known_parameters(&model));
     let name = path
         .file_stem()
         .map(|stem| stem.to_string_lossy().into_owned());
@@ -136,7 +105,7 @@ fn lumped_numbers(table: &TableReader<'_>) -> Vec<(&'static str, f64)> {
 
 type Reactions = (Vec<SampleReaction>, Vec<LawCandidate>);
 
-fn reactions(root: &TableReader<'_>, of: Option<TunedModel>) -> Option<Reactions> {
+fn reactions(root: &TableReader<'_>) -> Option<Reactions> {
     let tables = root.tables("reactions");
     let several = tables.len() > 1;
     let (mut reactions, mut laws): (Vec<SampleReaction>, _) = (Vec::new(), Vec::new());
@@ -193,8 +162,7 @@ fn reactions(root: &TableReader<'_>, of: Option<TunedModel>) -> Option<Reactions
         );
         root.fail("reactions", rule, "they are 1 at most");
     }
-    if tables.is_empty() && of.is_some_and(|of| of != TunedModel::Case) {
-        root.missing("reactions");
+    if tables.is_empty() {
         return None;
     }
     complete.then_some((reactions, laws))
@@ -274,53 +242,44 @@ fn known_parameters(spec: &SampleSpec) -> Vec<ModelParameter> {
     all
 }
 
-/// The parameters, and the key that each sets.
-fn parameters(
-    root: &TableReader<'_>,
-    known: Option<&[ModelParameter]>,
-) -> (Vec<TunedParameter>, Vec<String>) {
+/// The parameters.
+fn parameters(root: &TableReader<'_>, known: &[ModelParameter]) -> Vec<TunedParameter> {
     let Some(table) = root.table("parameters") else {
-        return Default::default();
+        return Vec::new();
     };
-    let (mut all, mut keys) = (Vec::new(), Vec::new());
+    let mut all = Vec::new();
     for (name, one) in table.named() {
-        let own = known.and_then(|known| known.iter().find(|own| own.name == name));
-        if let (Some(known), None) = (known, own) {
+        let own = known.iter().find(|own| own.name == name);
+        if own.is_none() {
             let names: Vec<&str> = known.iter().map(|one| one.name.as_str()).collect();
             let help = format!("its parameters are {}", names.join(", "));
             one.fail_whole("is not a parameter of this model", &help);
         }
-        let dimension = own
-            .map(|own| own.dimension)
-            .or_else(|| any_dimension(&one, "low"));
-        let low = dimension.and_then(|dimension| one.number_as("low", dimension));
-        let high = dimension.and_then(|dimension| one.number_as("high", dimension));
+        let bound = |key: &str| {
+            let dimension = own?.dimension;
+            let item = one.raw(key)?;
+            if (item.is_float() || item.is_integer()) && dimension == Dimension::ANGULAR_VELOCITY {
+                let rule = "needs a unit, for example \"1e10 1/s\"";
+                one.fail(key, rule, "write it in quotes with 1/s or 1/min");
+                return None;
+            }
+            one.number_as(key, dimension)
+        };
+        let (low, high) = (bound("low"), bound("high"));
         for key in ["low", "high"] {
             one.need(key);
         }
         let scale = one.choice::<ParameterScale>("scale").map(|scale| scale.0);
-        let key = one.text("key");
-        match (known, key) {
-            (None, None) => one.missing("key"),
-            (Some(_), Some(_)) => one.fail(
-                "key",
-                "has no effect here",
-                "remove it: it goes with model.type = \"case\"",
-            ),
-            _ => {}
-        }
         one.finish();
-        let (Some(low), Some(high), Some(dimension)) = (low, high, dimension) else {
+        let (Some(low), Some(high), Some(own)) = (low, high, own) else {
             continue;
         };
-        let logarithmic = scale.unwrap_or(own.is_some_and(|own| own.logarithmic));
+        let dimension = own.dimension;
+        let logarithmic = scale.unwrap_or(own.logarithmic);
         if low >= high {
             let rule = format!("is {} {}, not below `high`", shown(low), dimension.unit());
-            one.fail(
-                "low",
-                rule.replace(" ,", ","),
-                "the lower bound comes first: exchange them",
-            );
+            let help = "the lower bound comes first: exchange them";
+            one.fail("low", rule.replace(" ,", ","), help);
             continue;
         }
         if logarithmic && low <= 0.0 {
@@ -332,7 +291,6 @@ fn parameters(
             );
             continue;
         }
-        keys.push(key.unwrap_or_default().to_owned());
         all.push(TunedParameter {
             name,
             dimension,
@@ -343,21 +301,10 @@ fn parameters(
     }
     table.finish();
     if all.is_empty() {
-        table.fail_whole(
-            "names no parameter that can be tuned",
-            "add one: [parameters.activation_energy]",
-        );
+        let help = "add one: [parameters.activation_energy]";
+        table.fail_whole("names no parameter that can be tuned", help);
     }
-    (all, keys)
-}
-
-/// The dimension of what a key states.
-fn any_dimension(table: &TableReader<'_>, key: &str) -> Option<Dimension> {
-    let item = table.raw(key)?;
-    match item.as_str() {
-        Some(text) => quantities(text).ok().map(|(_, dimension)| dimension),
-        None => Some(Dimension::NONE),
-    }
+    all
 }
 
 fn method(table: &TableReader<'_>) -> Option<MethodSpec> {
@@ -410,13 +357,8 @@ fn chosen_is_compared(root: &TableReader<'_>, case: &TuningCase) {
     let Some(chosen) = &case.method.choose else {
         return;
     };
-    let mut names: Vec<&str> = match &case.model {
-        ModelSpec::Case(spec) => spec.targets.iter().map(|one| one.name.as_str()).collect(),
-        ModelSpec::Sample(_) => {
-            let all = case.targets.iter().flat_map(|target| &target.values);
-            all.map(|(quantity, _)| quantity.name()).collect()
-        }
-    };
+    let all = case.targets.iter().flat_map(|target| &target.values);
+    let mut names: Vec<&str> = all.map(|(quantity, _)| quantity.name()).collect();
     names.sort_unstable();
     names.dedup();
     if !names.is_empty()
@@ -437,7 +379,6 @@ fn chosen_is_compared(root: &TableReader<'_>, case: &TuningCase) {
 struct Targets {
     files: Vec<PathBuf>,
     curves: Vec<TargetCurve>,
-    quantities: Vec<QuantityTarget>,
 }
 
 impl Targets {
@@ -446,12 +387,8 @@ impl Targets {
         for table in &root.tables("targets") {
             let mut target = Target::of(table, folder);
             read.files.extend(target.path.clone());
-            if of == Some(TunedModel::Case) {
-                read.quantities.extend(target.quantity());
-            } else {
-                target.lumped = of == Some(TunedModel::Lumped);
-                read.curves.extend(target.curves().unwrap_or_default());
-            }
+            target.lumped = of == Some(TunedModel::Lumped);
+            read.curves.extend(target.curves().unwrap_or_default());
             table.finish();
         }
         let mut names: Vec<String> = Vec::new();
@@ -487,25 +424,21 @@ struct Target<'t, 'a> {
     path: Option<PathBuf>,
     name: Option<String>,
     file: CurveFile,
-    value: ColumnChoice,
     compare: Option<Vec<String>>,
     sample_mass: Option<f64>,
     heating_rate: Option<f64>,
     start_temperature: Option<f64>,
     conversion: Option<[f64; 2]>,
-    quantity: Option<String>,
     lumped: bool,
 }
 
 impl<'t, 'a> Target<'t, 'a> {
     fn of(table: &'t TableReader<'a>, folder: &Path) -> Self {
         let mut file = CurveFile::default();
-        let mut value = ColumnChoice::default();
         if let Some(columns) = table.table_or_empty("columns") {
             for (choice, column) in file.columns.iter_mut().zip(CurveColumn::ALL) {
                 choice.heading = columns.text(column.key()).map(str::to_owned);
             }
-            value.heading = columns.text("value").map(str::to_owned);
             columns.finish();
         }
         if let Some(units) = table.table_or_empty("units") {
@@ -514,7 +447,6 @@ impl<'t, 'a> Target<'t, 'a> {
                     choice.unit = units.text(column.key()).map(str::to_owned);
                 }
             }
-            value.unit = units.text("value").map(str::to_owned);
             units.finish();
         }
         file.form = SheetForm {
@@ -532,7 +464,6 @@ impl<'t, 'a> Target<'t, 'a> {
             path: table.text("file").map(|file| folder.join(file)),
             name: table.text("name").map(str::to_owned),
             file,
-            value,
             compare: table
                 .has("compare")
                 .then(|| table.choices("compare"))
@@ -541,7 +472,6 @@ impl<'t, 'a> Target<'t, 'a> {
             heating_rate,
             start_temperature: table.number("start_temperature"),
             conversion: range(table),
-            quantity: table.text("quantity").map(str::to_owned),
             lumped: false,
             table,
         }
@@ -555,35 +485,7 @@ impl<'t, 'a> Target<'t, 'a> {
         );
     }
 
-    fn quantity(&self) -> Option<QuantityTarget> {
-        let Some(quantity) = self.quantity.clone() else {
-            self.table.missing("quantity");
-            return None;
-        };
-        let read = read_values(self.path.as_ref()?, &self.file, &self.value);
-        match read {
-            Ok((time, value, dimension)) => Some(QuantityTarget {
-                name: self.name.clone().unwrap_or_else(|| quantity.clone()),
-                quantity,
-                dimension,
-                time,
-                value,
-            }),
-            Err(error) => {
-                self.refused(&error);
-                None
-            }
-        }
-    }
-
     fn curves(&self) -> Option<Vec<TargetCurve>> {
-        if self.quantity.is_some() {
-            self.table.fail(
-                "quantity",
-                "has no effect here",
-                "remove it: it goes with model.type = \"case\"",
-            );
-        }
         let path = self.path.as_ref()?;
         let runs = match read_curves(path, &self.file) {
             Ok(runs) => runs,

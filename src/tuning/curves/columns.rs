@@ -192,45 +192,6 @@ fn parted(heading: &str) -> (String, Option<String>) {
     (text.to_owned(), None)
 }
 
-/// Place and unit of a column that a case names by its heading or its number; the unit is empty where it has none.
-pub(super) fn heading(
-    path: &Path,
-    sheet: &Sheet,
-    choice: &ColumnChoice,
-) -> Result<(usize, String), CurveFileError> {
-    let names: Vec<String> = sheet
-        .headings
-        .iter()
-        .map(|name| format!("\"{name}\""))
-        .collect();
-    let help = format!(
-        "its columns are {}: name one of them as `columns.value`",
-        names.join(", ")
-    );
-    let Some(wanted) = &choice.heading else {
-        let fact = "which column is compared is not stated";
-        return Err(CurveFileError::new(path, sheet.heading_line, fact, help));
-    };
-    let Some(place) = named(sheet, wanted) else {
-        let fact = format!("no column is called \"{wanted}\"");
-        return Err(CurveFileError::new(path, sheet.heading_line, fact, help));
-    };
-    let text = sheet.headings[place].trim();
-    let bracket = text
-        .rsplit_once(['(', '['])
-        .and_then(|(_, rest)| rest.split_once([')', ']']));
-    let own = bracket.map(|(unit, _)| unit.to_owned());
-    let below = sheet
-        .units
-        .get(place)
-        .filter(|unit| !unit.is_empty())
-        .cloned();
-    Ok((
-        place,
-        choice.unit.clone().or(own).or(below).unwrap_or_default(),
-    ))
-}
-
 /// Place of the column of a heading, its unit left out or not, or of a number from 1.
 fn named(sheet: &Sheet, wanted: &str) -> Option<usize> {
     let wanted = wanted.trim();

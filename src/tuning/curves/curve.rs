@@ -3,9 +3,8 @@
 use std::path::Path;
 
 use super::CurveFileError;
-use super::columns::{ColumnChoice, CurveColumn, FoundColumn, find, heading};
+use super::columns::{ColumnChoice, CurveColumn, FoundColumn, find};
 use super::sheet::{Sheet, SheetForm, decode, sheet};
-use crate::case::units::{Dimension, quantities};
 
 /// How a file of curves is read.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -108,57 +107,6 @@ pub fn parse_curves(
         .into_iter()
         .map(|(label, rows)| columns.run(path, &sheet, label, &rows, &file.rules));
     runs.collect()
-}
-
-/// Times in s and values in SI, with their dimension, of the column that `value` names.
-pub fn read_values(
-    path: &Path,
-    file: &CurveFile,
-    value: &ColumnChoice,
-) -> Result<(Vec<f64>, Vec<f64>, Dimension), CurveFileError> {
-    let bytes = std::fs::read(path).map_err(|cause| {
-        let help = "paths are relative to the case file";
-        CurveFileError::new(path, None, format!("it cannot be read: {cause}"), help)
-    })?;
-    let sheet = sheet(path, &decode(path, &bytes)?, file.form)?;
-    let [time, ..] = &file.columns;
-    let Some(time) = find(path, &sheet, CurveColumn::Time, time)? else {
-        return Err(no_column(path, &sheet, CurveColumn::Time));
-    };
-    let (place, unit) = heading(path, &sheet, value)?;
-    let scale = |number: f64| match unit.is_empty() {
-        true => Some((number, Dimension::NONE)),
-        false => {
-            let (numbers, dimension) = quantities(&format!("{number:e} {unit}")).ok()?;
-            Some((*numbers.first()?, dimension))
-        }
-    };
-    let (mut times, mut values, mut dimension) = (Vec::new(), Vec::new(), Dimension::NONE);
-    for (row, &line) in sheet.rows.iter().zip(&sheet.lines) {
-        let Some((number, of)) = scale(row[place]) else {
-            let fact = format!("the unit \"{unit}\" of the values is not known");
-            return Err(CurveFileError::new(
-                path,
-                sheet.heading_line,
-                fact,
-                "state `units.value` of the target",
-            ));
-        };
-        dimension = of;
-        let now = row[time.place] * time.factor + time.offset;
-        if times.last().is_some_and(|before| now <= *before) {
-            let fact = "the time does not go on";
-            return Err(CurveFileError::new(
-                path,
-                Some(line),
-                fact,
-                "sort the rows, and remove those that stand twice",
-            ));
-        }
-        times.push(now);
-        values.push(number);
-    }
-    Ok((times, values, dimension))
 }
 
 fn no_column(path: &Path, sheet: &Sheet, column: CurveColumn) -> CurveFileError {
@@ -283,8 +231,12 @@ impl Columns {
             let weighed = CurveColumn::Mass.is_weighed(&found.unit);
             let start = match (weighed, rules.initial_mass) {
                 (true, Some(stated)) => stated,
+                // The noise of a few values averages out: an error of this one would shift the whole curve.
+                (true, None) => {
+                    let few = (mass.len() / 50).max(1);
+                    mass[..few].iter().sum::<f64>() / few as f64
+                }
                 // Shares are of the mass at the start; files whose first value is not 100 % have lost something before.
-                (true, None) => mass[0],
                 (false, _) => 1.0,
             };
             if !(start > 0.0 && mass[0] > 0.0) {

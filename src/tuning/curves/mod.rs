@@ -12,7 +12,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 pub use columns::{ColumnChoice, CurveColumn};
-pub use curve::{CurveFile, CurveRules, MeasuredRun, parse_curves, read_curves, read_values};
+pub use curve::{CurveFile, CurveRules, MeasuredRun, parse_curves, read_curves};
 pub use sheet::{Delimiter, SheetForm};
 
 /// What is wrong with a file of curves: the fact, where it stands, what to do.
