@@ -152,7 +152,11 @@ fn bad_curves_are_refused_with_line_fact_and_remedy() {
             curve("Time (min) Temp (degC) Mass (%)", |t, temp, m| {
                 comma(&format!("{t:.1} {temp:.1} {m:.1}"))
             }),
-            ["a.csv", "can be parted by", "`decimal`"],
+            [
+                "a.csv",
+                "no column was recognised as the time",
+                "`columns.time`",
+            ],
         ),
     ];
     for (csv, words) in cases {
