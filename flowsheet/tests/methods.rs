@@ -47,3 +47,18 @@ fn a_resumed_window_has_the_same_bits() {
     other.advance_by_windows(40.0, &settings).unwrap();
     assert_eq!(run.checkpoint(), other.checkpoint());
 }
+
+/// The same of a run by stabilised steps, whose number of stages is found anew.
+#[test]
+fn a_resumed_stabilised_run_has_the_same_bits() {
+    let plant = plant(40, 1.0);
+    let mut run = PlantRun::new(&plant, Integrator::Stabilised, 1e-4).unwrap();
+    run.advance(300.0).unwrap();
+    let saved = run.checkpoint();
+    run.advance(900.0).unwrap();
+    assert!(run.ledger().closure <= 1e-12 && run.ledger().worst() < 1e-11);
+    let mut other = PlantRun::new(&plant, Integrator::Stabilised, 1e-4).unwrap();
+    other.resume(saved);
+    other.advance(900.0).unwrap();
+    assert_eq!(run.checkpoint(), other.checkpoint());
+}

@@ -26,6 +26,22 @@ fn steady(sharpness: f64) -> (Plant, SteadyState) {
     (plant, found)
 }
 
+/// From the steady state of α = 6 to that of α = 8.
+#[test]
+fn newtons_iteration_goes_on_from_a_neighbour() {
+    let (_, before) = steady(6.0);
+    let plant = plant(8.0);
+    let started = std::time::Instant::now();
+    let found = plant.steady(&before.unknowns, 0.0).unwrap();
+    println!(
+        "from 6 to 8 in {:?}, {} iterations, residual {:e}",
+        started.elapsed(),
+        found.iterations,
+        found.residual
+    );
+    assert!(found.residual < 1e-11 && found.iterations <= 20);
+}
+
 /// α = 8 decays at 1.98e-3/s.
 #[test]
 fn a_flat_screen_damps() {

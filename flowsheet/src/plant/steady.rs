@@ -9,6 +9,11 @@ use crate::PlantError;
 /// Most iterations of Newton's method.
 const MOST_ITERATIONS: usize = 200;
 
+/// Rates in sizes per second below which differences are taken over a smaller share of the sizes: within a class that is almost empty a
+/// larger one passes a kink of the limiter, and the iteration crawls.
+const NEAR: f64 = 1e-8;
+const FINE: f64 = 1e-4;
+
 /// One mode of small deviations from a steady state: exp((rate + i frequency) t).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mode {
@@ -75,6 +80,7 @@ impl Plant {
         let (mut step, mut stalled) = (if residual > 0.0 { 1.0 / residual } else { 1.0 }, 0);
         let mut best = residual;
         let mut entries = Vec::new();
+        let fine: Vec<f64> = scales.iter().map(|scale| FINE * scale).collect();
         for iteration in 0..MOST_ITERATIONS {
             // Round-off is reached when the residual no longer falls.
             if residual < 1e-15 || (residual < 1e-11 && stalled >= 2) {
@@ -85,7 +91,8 @@ impl Plant {
                     iterations: iteration,
                 });
             }
-            self.jacobian(at, &y, &rates, &scales, &mut work, &mut entries, false)?;
+            let sizes = if residual < NEAR { &fine } else { &scales };
+            self.jacobian(at, &y, &rates, sizes, &mut work, &mut entries, false)?;
             let mut jacobian = DMatrix::from_row_slice(self.unknowns, self.unknowns, &entries);
             jacobian.neg_mut();
             for k in 0..self.unknowns {
