@@ -61,6 +61,7 @@ mod support;
 mod test_programs;
 mod time_splitting;
 mod told;
+mod tuning;
 mod vacuum;
 mod verification_beds;
 mod warned_and_refused;

@@ -28,6 +28,7 @@ mod sizes;
 mod solids;
 mod species_data;
 mod time;
+pub(super) mod tuning;
 mod turbulence;
 mod walls;
 mod zone;
