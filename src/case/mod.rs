@@ -17,6 +17,7 @@ mod mesh_shape;
 mod meshing;
 pub mod model;
 mod moving;
+pub mod parcels;
 mod overlap;
 pub mod packed;
 mod patch_cautions;
