@@ -30,6 +30,8 @@ use crate::numerics::preconditioner::{Incomplete, Preconditioner};
 const ITERATIONS: u32 = 80;
 /// Residual of a cell as a solid fraction at which they end.
 const RESIDUAL: f64 = 1e-9;
+/// Σ cos² of the directions to the neighbours of a cell against one direction, above which they tell how the stress changes along it.
+const FACING: f64 = 0.01;
 /// Share of the distance between two centres that a parcel is moved by the stress in a step at most.
 const FARTHEST: f64 = 0.5;
 
@@ -327,7 +329,7 @@ impl Packer {
             above += weight * along * (stress[link.other as usize] - stress[cell]);
             below += weight * along * along;
         }
-        if below > 0.0 { above / below } else { 0.0 }
+        if below > FACING { above / below } else { 0.0 }
     }
 
     /// Velocity in m/s with which parcels pass each face of the grid because of the stress, out of its owner: the volume that
