@@ -17,7 +17,7 @@ use imports::{Modules, circles};
 
 /// All arrows there may be: a crate and the crates of this workspace that it may use. Another
 /// arrow is a change of the design (CONTRIBUTING.md), not of this table alone.
-const ARROWS: [(&str, &[&str]); 12] = [
+const ARROWS: [(&str, &[&str]); 13] = [
     (
         "calcine",
         &[
@@ -26,6 +26,7 @@ const ARROWS: [(&str, &[&str]); 12] = [
             "calcine-interior",
             "calcine-native",
             "calcine-physics",
+            "calcine-tuning",
             "calcine-wire",
         ],
     ),
@@ -45,6 +46,7 @@ const ARROWS: [(&str, &[&str]); 12] = [
     ("calcine-native", &["calcine-coupler"]),
     ("calcine-numerics", &[]),
     ("calcine-physics", &["calcine-numerics"]),
+    ("calcine-tuning", &["calcine-numerics", "calcine-physics"]),
     ("calcine-wire", &[]),
     ("xtask", &[]),
 ];

@@ -6,10 +6,12 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use calcine::case::{parse, read};
+use calcine::case::keys::KINDS;
+use calcine::case::{kind_of, parse, read};
 use calcine::laws::LawCatalogue;
 use proptest::prelude::*;
 
+/// Cases of beds in a folder.
 fn files(folder: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let mut found: Vec<PathBuf> = fs::read_dir(&folder)
@@ -19,9 +21,15 @@ fn files(folder: &str) -> Vec<PathBuf> {
             path.extension()
                 .is_some_and(|extension| extension == "toml")
         })
+        .filter(|path| kind(path) == "bed")
         .collect();
     found.sort();
     found
+}
+
+/// The kind of a case; errors of beds are those of a case whose kind is wrong.
+fn kind(path: &Path) -> &'static str {
+    kind_of(path, &[]).map_or("bed", |kind| kind.name)
 }
 
 /// (line, message) of each `#^`, which stands under its line or under another `#^`.
@@ -341,7 +349,7 @@ fn keys(table: &toml::Table, place: &str, found: &mut Vec<String>) {
 #[test]
 fn every_key_of_the_shipped_and_good_cases_is_documented() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let docs = fs::read_to_string(folder.join("docs/reference/case-file.md")).unwrap();
+    let docs = fs::read_to_string(folder.join(KINDS[0].page)).unwrap();
     let mut found = Vec::new();
     for path in [files("cases"), files("tests/inputs/good")].concat() {
         keys(
@@ -429,7 +437,7 @@ fn places(
 #[test]
 fn every_documented_key_occurs_in_a_good_case_and_refuses_a_value_of_a_wrong_kind() {
     let mut missing: std::collections::BTreeSet<String> =
-        calcine::case::keys::keys(&LawCatalogue::default())
+        calcine::case::keys::keys(&KINDS[0], &LawCatalogue::default())
             .into_iter()
             .map(|key| key.place)
             .collect();

@@ -103,13 +103,13 @@ fn a_law_of_another_program_is_read_and_run_like_calcine_s_own() {
 
 #[test]
 fn a_law_of_another_program_is_in_schema_and_reference_with_its_keys() {
-    let placed = keys::keys(&laws());
+    let placed = keys::keys(&keys::KINDS[0], &laws());
     let factor = placed.iter().find(|key| key.place == "laws.drag.factor");
     assert_eq!(
         factor.unwrap().meaning(),
         "What the drag of a lone sphere is multiplied by. Of `stokes`."
     );
-    let schema = schema::schema(&laws());
+    let schema = schema::schema(&keys::KINDS[0], &laws());
     let drag = &schema["properties"]["laws"]["properties"]["drag"]["properties"];
     let names = drag["law"]["enum"].as_array().unwrap();
     assert!(names.iter().any(|name| name == "stokes"));
@@ -258,7 +258,7 @@ fn a_rate_law_of_another_program_is_read_with_its_nested_tables() {
 #[test]
 fn a_rate_law_of_another_program_is_in_schema_and_reference_with_its_nested_tables() {
     let laws = LawCatalogue::default().with_rate(&HALVED);
-    let placed = keys::keys(&laws);
+    let placed = keys::keys(&keys::KINDS[0], &laws);
     let meaning = |place: &str| {
         placed
             .iter()
@@ -279,7 +279,7 @@ fn a_rate_law_of_another_program_is_in_schema_and_reference_with_its_nested_tabl
         factor.contains("With `halved-core`: Before it is slowed."),
         "{factor}"
     );
-    let schema = schema::schema(&laws);
+    let schema = schema::schema(&keys::KINDS[0], &laws);
     let reaction = &schema["properties"]["reactions"]["items"]["properties"];
     let names = reaction["law"]["enum"].as_array().unwrap();
     assert!(names.iter().any(|name| name == "halved-core"));

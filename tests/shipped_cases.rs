@@ -19,6 +19,7 @@ fn shipped() -> Vec<PathBuf> {
             path.extension()
                 .is_some_and(|extension| extension == "toml")
         })
+        .filter(|path| calcine::case::kind_of(path, &[]).unwrap().name == "bed")
         .collect();
     found.sort();
     assert!(found.len() >= 2, "{found:?}");

@@ -34,6 +34,20 @@ pub enum PlantError {
         /// Last edge of the grid in m.
         to: f64,
     },
+    /// Aggregation that has reached the end of the grid by a kernel that gels.
+    #[error(
+        "{place} at {time} s: {share:.3e} of the mass has grown into the last size class by a kernel of degree {degree:.3}, which gels: above degree 1 particles become infinitely large in finite time; end the run before, lower the kernel, or take one of degree 1 or less"
+    )]
+    Gels {
+        /// Unit.
+        place: String,
+        /// Time in s.
+        time: f64,
+        /// Share of the mass in the last class.
+        share: f64,
+        /// Degree of homogeneity of the kernel.
+        degree: f64,
+    },
     /// Two units of one name.
     #[error("two units are named \"{0}\"; rename one of them")]
     DuplicateUnit(String),

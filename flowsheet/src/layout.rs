@@ -1,5 +1,6 @@
 //! What a stream is made of: a row of extensive numbers whose places the layout gives.
 
+use crate::sums::{add_in_turns, sum};
 use crate::{PlantError, SizeGrid};
 
 /// Temperature of zero sensible enthalpy in K.
@@ -143,12 +144,12 @@ impl StreamLayout {
 
     /// Solids of a stream in kg/s.
     pub fn solid_flow(&self, stream: &[f64]) -> f64 {
-        stream[..self.solids()].iter().sum()
+        sum(&stream[..self.solids()])
     }
 
     /// All mass of a stream in kg/s.
     pub fn mass_flow(&self, stream: &[f64]) -> f64 {
-        stream[..self.enthalpy()].iter().sum()
+        sum(&stream[..self.enthalpy()])
     }
 
     /// Mass of one compound in all phases in kg/s.
@@ -162,14 +163,15 @@ impl StreamLayout {
     pub fn kinds(&self, stream: &[f64], to: &mut [f64]) {
         let count = self.compounds.len();
         to.fill(0.0);
-        for class in stream[..self.enthalpy()].chunks_exact(count) {
-            to.iter_mut().zip(class).for_each(|(t, mass)| *t += mass);
-        }
+        add_in_turns(&stream[..self.enthalpy()], &mut to[..count]);
         to[count] = stream[self.enthalpy()];
     }
 
     /// Mass of each size class in kg/s.
     pub fn by_size(&self, stream: &[f64]) -> Vec<f64> {
+        if self.inner == 1 {
+            return stream[..self.solids()].to_vec();
+        }
         let classes = stream[..self.solids()].chunks_exact(self.inner);
         classes.map(|class| class.iter().sum()).collect()
     }
@@ -178,12 +180,19 @@ impl StreamLayout {
     pub fn heat_capacity(&self, stream: &[f64]) -> (f64, f64) {
         let count = self.compounds.len();
         let (mut capacity, mut latent) = (0.0, 0.0);
-        for cell in stream[..self.solids()].chunks_exact(count) {
-            for (mass, compound) in cell.iter().zip(&self.compounds) {
-                capacity += mass * compound.solid_heat_capacity;
+        let solids = &stream[..self.solids()];
+        let mut few = [0.0; 8];
+        let mut many = Vec::new();
+        let by_compound = match few.get_mut(..count) {
+            Some(few) => few,
+            None => {
+                many.resize(count, 0.0);
+                &mut many[..]
             }
-        }
+        };
+        add_in_turns(solids, by_compound);
         for (k, compound) in self.compounds.iter().enumerate() {
+            capacity += by_compound[k] * compound.solid_heat_capacity;
             let vapour = stream[self.vapour(k)];
             capacity += stream[self.liquid(k)] * compound.liquid_heat_capacity;
             capacity += vapour * compound.vapour_heat_capacity;

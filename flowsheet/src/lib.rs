@@ -17,6 +17,7 @@ pub mod mill;
 mod plant;
 pub mod population;
 pub mod screen;
+mod sums;
 mod timetable;
 mod transformation;
 mod unit;

@@ -1,6 +1,7 @@
 //! What moves particles between size classes without losing what else is known of them.
 
 use crate::StreamLayout;
+use crate::sums::add_in_turns;
 
 /// How a unit moves the mass of size classes (docs/theory.md, FLS-2): out_j = Σ_i T_ij in_i for every attribute class and
 /// compound alike, so that what is red and large stays red where it is large. Rows that sum to 1 conserve mass.
@@ -31,6 +32,11 @@ impl Transformation {
     /// Adds what it makes of the solids of a stream to those of another.
     pub fn apply(&self, layout: &StreamLayout, from: &[f64], to: &mut [f64]) {
         let inner = layout.inner();
+        if let (Self::Diagonal(shares), 1) = (self, inner) {
+            let pairs = to[..layout.solids()].iter_mut().zip(from).zip(shares);
+            pairs.for_each(|((made, own), share)| *made += share * own);
+            return;
+        }
         let classes = from[..layout.solids()].chunks_exact(inner);
         match self {
             Self::Diagonal(shares) => {
@@ -41,7 +47,7 @@ impl Transformation {
             }
             Self::Uniform(shares) => {
                 let mut all = vec![0.0; inner];
-                classes.for_each(|own| add(&mut all, 1.0, own));
+                add_in_turns(&from[..layout.solids()], &mut all);
                 let to = to[..layout.solids()].chunks_exact_mut(inner);
                 for (made, share) in to.zip(shares) {
                     add(made, *share, &all);

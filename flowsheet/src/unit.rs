@@ -85,6 +85,12 @@ pub trait ProcessUnit: Send + Sync {
     /// Error of the unknowns that counts as none, relative to the plant's tolerance: their size.
     fn scales(&self, _layout: &StreamLayout, _scales: &mut [f64]) {}
 
+    /// A bound of how fast small deviations of the unknowns fade, in 1/s, from which stabilised steps have their stages; an
+    /// estimate that is too low costs repeated steps.
+    fn fastest(&self, _view: &UnitView<'_>, _out: &[f64]) -> f64 {
+        0.0
+    }
+
     /// Puts back what the unknowns have to fulfil at any time (a fixed hold-up), after a step of Newton's iteration.
     fn constrain(&self, _layout: &StreamLayout, _state: &mut [f64]) {}
 

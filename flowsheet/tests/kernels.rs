@@ -1,11 +1,11 @@
 //! Aggregation and breakage against closed forms (docs/theory.md, PBM-6).
 
 use calcine_flowsheet::population::{
-    Aggregation, AggregationKernel, ConstantKernel, ParticleBreakage, ProductKernel, RandomBinary,
-    SizeProcess, SumKernel,
+    Aggregation, AggregationKernel, ConstantKernel, ParticleBreakage, PowerBreakage, ProductKernel,
+    RandomBinary, SizeProcess, SumKernel, TabulatedKernel,
 };
 use calcine_flowsheet::units::{BedLevel, Granulator};
-use calcine_flowsheet::{Integrator, PlantRun, SizeGrid};
+use calcine_flowsheet::{Integrator, Plant, PlantError, PlantRun, SizeGrid};
 use calcine_physics::sphere::volume_of_diameter;
 
 use crate::growth::{DENSITY, tank};
@@ -27,8 +27,14 @@ struct Found {
     mass_error: f64,
 }
 
-/// What becomes of an exponential distribution of volumes between 2^low and 2^high mean volumes.
-fn batch(per_doubling: usize, low: i32, high: i32, spray: f64, processes: &[Process]) -> Found {
+/// A bed of an exponential distribution of volumes between 2^low and 2^high mean volumes, and its numbers at the start.
+fn filled(
+    per_doubling: usize,
+    low: i32,
+    high: i32,
+    spray: f64,
+    processes: &[Process],
+) -> (Plant, Vec<f64>) {
     let doublings = usize::try_from(high - low).unwrap();
     let diameter = |power: i32| (6.0 / std::f64::consts::PI * MEAN * 2f64.powi(power)).cbrt();
     let grid =
@@ -57,8 +63,23 @@ fn batch(per_doubling: usize, low: i32, high: i32, spray: f64, processes: &[Proc
             .fold(bed, |bed, process| bed.with_process(process()))
     };
     let none = vec![0.0; grid.classes()];
-    let before: f64 = content.iter().sum();
-    let plant = tank(grid.clone(), &none, spray, make, content);
+    (tank(grid.clone(), &none, spray, make, content), start)
+}
+
+/// What becomes of it.
+fn batch(per_doubling: usize, low: i32, high: i32, spray: f64, processes: &[Process]) -> Found {
+    let (plant, start) = filled(per_doubling, low, high, spray, processes);
+    let grid = plant.layout().grid().clone();
+    let volumes: Vec<f64> = grid
+        .diameters()
+        .iter()
+        .map(|d| volume_of_diameter(*d))
+        .collect();
+    let before: f64 = start
+        .iter()
+        .zip(&volumes)
+        .map(|(n, v)| n * v * DENSITY)
+        .sum();
     let mut run = PlantRun::new(&plant, Integrator::Explicit, 1e-7).unwrap();
     run.advance(SPAN).unwrap();
     let masses = run.unit(plant.unit("bed").unwrap());
@@ -212,6 +233,66 @@ fn random_binary_breakage_makes_a_narrower_exponential_distribution() {
     );
     assert!(number.abs() < 1e-2 && off < 1e-2);
     assert!(found.mass_error < 1e-12);
+}
+
+/// Three fragments a breakage at a rate in proportion to volume: N = N₀ (1 + 2 S₀ t v₀/v_reference).
+#[test]
+fn breakage_into_three_makes_two_particles_more_each_time() {
+    let law = PowerBreakage {
+        rate: 3.0 / SPAN,
+        reference: (6.0 / std::f64::consts::PI * MEAN).cbrt(),
+        power: 1.0,
+        fragments: 1.5,
+    };
+    let process =
+        move || -> Box<dyn SizeProcess> { Box::new(ParticleBreakage::new(Box::new(law))) };
+    let found = batch(8, -24, 6, 0.0, &[Box::new(process)]);
+    let number = found.moments[0] / 7.0 - 1.0;
+    println!(
+        "breakage into three: M0 {number:e}, M1 {:e}",
+        found.mass_error
+    );
+    assert!(number.abs() < 1e-2 && found.mass_error < 1e-12);
+}
+
+/// A table of the sum kernel does what the sum kernel does.
+#[test]
+fn a_kernel_by_a_table_does_what_its_law_does() {
+    let rate = 1.0 / (COUNT * MEAN * SPAN);
+    let ends = [-14, 10].map(|power| (6.0 / std::f64::consts::PI * MEAN * 2f64.powi(power)).cbrt());
+    let points = SizeGrid::geometric(200, ends[0], ends[1])
+        .unwrap()
+        .edges()
+        .to_vec();
+    let law = SumKernel { rate };
+    let volumes: Vec<f64> = points.iter().map(|d| volume_of_diameter(*d)).collect();
+    let rates = volumes
+        .iter()
+        .flat_map(|u| volumes.iter().map(|v| law.rate(*u, *v)));
+    let table = TabulatedKernel::new(points.clone(), rates.collect(), "bed").unwrap();
+    let by_law = batch(4, -14, 10, 0.0, &[aggregation(law)]);
+    let by_table = batch(4, -14, 10, 0.0, &[aggregation(table)]);
+    for (a, b) in by_law.moments.iter().zip(&by_table.moments) {
+        println!("by law {a}, by table {b}");
+        assert!((a / b - 1.0).abs() < 3e-3, "{a} {b}");
+    }
+}
+
+/// Past τ = ½ a product kernel has no distribution: the run ends with a message that names the kernel's degree.
+#[test]
+fn a_kernel_that_gels_is_told() {
+    let kernel = ProductKernel {
+        rate: 1.0 / (COUNT * MEAN * MEAN * SPAN),
+    };
+    let (plant, _) = filled(4, -14, 9, 0.0, &[aggregation(kernel)]);
+    let mut run = PlantRun::new(&plant, Integrator::Explicit, 1e-6).unwrap();
+    let told = run.advance(SPAN).unwrap_err();
+    println!("at {} s: {told}", run.time());
+    assert!((0.4..0.75).contains(&(run.time() / SPAN)), "{}", run.time());
+    let PlantError::Gels { degree, .. } = &told else {
+        panic!("{told}");
+    };
+    assert!((degree - 2.0).abs() < 1e-12, "{told}");
 }
 
 /// N∞ = √(2 S₀ M₁/β₀).

@@ -2,11 +2,14 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 mod dyssol;
+mod dyssol_units;
 mod granulation;
 mod growth;
 mod kernels;
 mod loops;
 mod methods;
 mod oscillation;
+mod plants;
+mod sensitivities;
 mod support;
 mod units;

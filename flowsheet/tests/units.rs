@@ -5,7 +5,7 @@ use calcine_flowsheet::mill::{BondBimodal, BondLaw, BondLength};
 use calcine_flowsheet::population::{Aggregation, ConstantKernel};
 use calcine_flowsheet::units::{
     BedHeat, BedLevel, Bunker, Discharge, Dryer, Granulator, Mill, Overspray, PlantInlet,
-    PlantOutlet, Splitter,
+    PlantOutlet, Splitter, TimeDelay,
 };
 use calcine_flowsheet::{
     Attribute, Connection, Integrator, Plant, PlantRun, ProcessUnit, SizeGrid, StreamLayout,
@@ -52,11 +52,11 @@ fn a_bunker_empties_by_its_residence_time() {
         discharge: Discharge::Residence(20.0),
     };
     let plant = alone(layout, bunker, vec![PlantInlet::new(feed, steps)]);
+    let after = |from: f64, flow: f64| flow * 20.0 + (from - flow * 20.0) * (-2.5f64).exp();
+    let expected = after(after(10.0, 0.5), 2.0);
     for integrator in [Integrator::Explicit, Integrator::Stiff] {
         let mut run = PlantRun::new(&plant, integrator, 1e-10).unwrap();
         run.advance(100.0).unwrap();
-        let after = |from: f64, flow: f64| flow * 20.0 + (from - flow * 20.0) * (-2.5f64).exp();
-        let expected = after(after(10.0, 0.5), 2.0);
         let found = plant.layout().mass_flow(run.unit(0));
         assert!(
             (found / expected - 1.0).abs() < 1e-8,
@@ -64,6 +64,15 @@ fn a_bunker_empties_by_its_residence_time() {
         );
         assert!(run.ledger().worst() < 1e-12, "{:?}", run.ledger());
     }
+    // Of second order an error of a step is as its third power, what a run sums of them as the tolerance to two thirds.
+    let [rough, fine] = [1e-5, 1e-8].map(|tolerance| {
+        let mut run = PlantRun::new(&plant, Integrator::Stabilised, tolerance).unwrap();
+        run.advance(100.0).unwrap();
+        assert!(run.ledger().worst() < 1e-12, "{:?}", run.ledger());
+        (plant.layout().mass_flow(run.unit(0)) / expected - 1.0).abs()
+    });
+    println!("stabilised: {rough:e}, {fine:e}");
+    assert!(rough < 2e-4 && (50.0..200.0).contains(&(rough / fine)));
 }
 
 /// A bunker with a rate holds the integral of feed less rate, and one that is level keeps its mass.
@@ -99,6 +108,35 @@ fn a_bunker_follows_its_rate_or_stays_level() {
     assert!((found - 100.0).abs() < 1e-9, "{found}");
     let old = run.unit(0)[1] / 100.0;
     assert!((old - (-1.2f64).exp()).abs() < 1e-8, "{old}");
+}
+
+/// A step of the feed comes out as 1 − exp(−x) Σ xᵏ/k!, x = n t/τ (Erlang), and nothing of it is lost on the way.
+#[test]
+fn a_delay_passes_a_step_on_after_its_time() {
+    let layout = plain(SizeGrid::uniform(4, 0.0, 4e-3).unwrap());
+    let feed = solids(&layout, &[0.0, 0.25, 0.75, 0.0], 2.0);
+    let delay = TimeDelay {
+        time: 60.0,
+        stages: 12,
+        content: Vec::new(),
+    };
+    let plant = alone(layout, delay, vec![always(feed)]);
+    for time in [30.0, 60.0, 90.0] {
+        let mut run = PlantRun::new(&plant, Integrator::Explicit, 1e-10).unwrap();
+        run.advance(time).unwrap();
+        let x = 12.0 * time / 60.0;
+        let terms = (0..12).scan(1.0, |term, k| {
+            let own = *term;
+            *term *= x / f64::from(k + 1);
+            Some(own)
+        });
+        let expected = 2.0 * (1.0 - f64::exp(-x) * terms.sum::<f64>());
+        let out = flow(&plant, &run, "out");
+        let found = plant.layout().mass_flow(&out);
+        assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected}");
+        assert!((out[2] / out[1] - 3.0).abs() < 1e-12);
+        assert!(run.ledger().worst() < 1e-13);
+    }
 }
 
 #[test]

@@ -12,6 +12,7 @@ mod flow_time;
 mod impact;
 pub mod in_wall;
 pub mod keys;
+mod kind;
 mod located;
 mod mesh_shape;
 mod meshing;
@@ -55,6 +56,7 @@ use toml_edit::{Item, Value};
 
 pub use boundaries::mesh_of;
 pub use check::check_report;
+pub use kind::{kind_of, kind_of_text};
 pub use located::located;
 pub use meshing::{MeshingError, mesh};
 pub use place::{InitialParticles, particles};
@@ -77,6 +79,11 @@ pub fn read(path: &Path, set: &[String]) -> Result<Case, CaseErrors> {
 
 /// Reads a case file that may choose among these laws.
 pub fn read_with(path: &Path, set: &[String], laws: &LawCatalogue) -> Result<Case, CaseErrors> {
+    parse_with(path, &text_of(path)?, set, laws)
+}
+
+/// The text of a case file.
+fn text_of(path: &Path) -> Result<String, CaseErrors> {
     let bytes = std::fs::read(path).map_err(|cause| {
         one(
             path,
@@ -86,8 +93,7 @@ pub fn read_with(path: &Path, set: &[String], laws: &LawCatalogue) -> Result<Cas
             &table::instead_of_file(path),
         )
     })?;
-    let text = String::from_utf8(bytes).map_err(|error| not_utf8(path, &error))?;
-    parse_with(path, &text, set, laws)
+    String::from_utf8(bytes).map_err(|error| not_utf8(path, &error))
 }
 
 /// A case file in another encoding: the first byte that is wrong, with its line.
@@ -121,12 +127,37 @@ pub fn parse_with(
     set: &[String],
     laws: &LawCatalogue,
 ) -> Result<Case, CaseErrors> {
+    let (mut case, changes) = parse_as(
+        path,
+        text,
+        set,
+        &keys::KINDS[0],
+        laws,
+        |root, effective, hash| sections::case(root, path, effective, hash),
+    )?;
+    case.hash = with_files(&case);
+    case.changes = changes;
+    Ok(case)
+}
+
+/// Checks the text of a case file of a kind by the reader of that kind, which is given the root table, the text with
+/// `--set` applied and the hash of its values; what it makes, and the changes by `--set` in words.
+fn parse_as<C>(
+    path: &Path,
+    text: &str,
+    set: &[String],
+    kind: &keys::CaseKind,
+    laws: &LawCatalogue,
+    read: impl FnOnce(&TableReader<'_>, &str, String) -> Option<C>,
+) -> Result<(C, Vec<String>), CaseErrors> {
+    kind::same_kind(path, text, set, kind)?;
     let (effective, changes) = set::apply(path, text, set)?;
     let document = syntax(path, &effective)?;
     let problems = Problems::default();
     problems.not_finite("", document.as_table());
-    let root = TableReader::root(&problems, laws, document.as_table());
-    let case = sections::case(&root, path, &effective, hash(document.as_table()));
+    let root = TableReader::root(&problems, kind, laws, document.as_table());
+    root.has("kind");
+    let case = read(&root, &effective, hash(document.as_table()));
     root.finish();
     let mut problems = problems.take();
     for problem in &mut problems {
@@ -136,10 +167,8 @@ pub fn parse_with(
         }
     }
     match case {
-        Some(mut case) if problems.is_empty() => {
-            case.hash = with_files(&case);
-            case.changes = changes.iter().map(set::Change::line).collect();
-            Ok(case)
+        Some(case) if problems.is_empty() => {
+            Ok((case, changes.iter().map(set::Change::line).collect()))
         }
         _ if problems.is_empty() => {
             let message = "the case could not be read, but nothing says why".into();

@@ -4,16 +4,16 @@ use std::str::FromStr;
 
 use serde_json::{Map, Value, json};
 
-use super::keys::{Key, KeyPresence, KeyValue, ROOT, number_words};
+use super::keys::{CaseKind, Key, KeyPresence, KeyValue, number_words};
 use super::units::{self, Dimension};
 use crate::laws::LawCatalogue;
 
 /// A number as a quantity writes it.
 const NUMBER: &str = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?";
 
-/// The schema, draft 2020-12, of cases that choose among these laws.
-pub fn schema(laws: &LawCatalogue) -> Value {
-    let mut schema = object(ROOT, laws);
+/// The schema, draft 2020-12, of cases of a kind that choose among these laws.
+pub fn schema(kind: &CaseKind, laws: &LawCatalogue) -> Value {
+    let mut schema = object(kind.keys, laws);
     let head = [
         ("$schema", "https://json-schema.org/draft/2020-12/schema"),
         ("title", "A case of Calcine"),
@@ -280,6 +280,7 @@ fn json_of(value: &toml_edit::Value) -> Option<Value> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::keys::KINDS;
 
     /// The schema of a dotted key, through lists and whatever a name of the user's stands for.
     fn at<'s>(schema: &'s Value, path: &str) -> &'s Value {
@@ -298,7 +299,7 @@ mod tests {
 
     #[test]
     fn a_key_has_its_form_its_default_its_example_and_what_it_means() {
-        let schema = schema(&LawCatalogue::default());
+        let schema = schema(&KINDS[0], &LawCatalogue::default());
         let storage = at(&schema, "time.gas_storage");
         assert_eq!(storage["enum"], json!(["process", "accelerated"]));
         assert_eq!(storage["default"], "process");
@@ -331,7 +332,7 @@ mod tests {
 
     #[test]
     fn laws_and_their_keys_come_from_where_the_laws_are() {
-        let schema = schema(&LawCatalogue::default());
+        let schema = schema(&KINDS[0], &LawCatalogue::default());
         let laws = at(&schema, "laws.drag.law")["enum"].as_array().unwrap();
         assert!(laws.contains(&json!("tenneti")) && laws.contains(&json!("none")));
         assert_eq!(at(&schema, "laws.conduction.gap.cone")["default"], 0.66);

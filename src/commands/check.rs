@@ -16,7 +16,7 @@ use crate::valid::ValidCase;
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The case file.
-    case: PathBuf,
+    pub(super) case: PathBuf,
     /// Whose gas is to run it.
     #[arg(long, value_enum, default_value_t)]
     gas: GasBackend,
@@ -25,7 +25,7 @@ pub(super) struct Arguments {
     particles: ParticleBackend,
     /// Changes a key of the case, for example `--set time.acceleration=200`.
     #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    pub(super) set: Vec<String>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {

@@ -20,7 +20,7 @@ use crate::valid::ValidCase;
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The case file.
-    case: PathBuf,
+    pub(super) case: PathBuf,
     /// Pairings of gas and particles such as `native+native,openfoam+liggghts`, or `all`: those that can run here.
     #[arg(long, default_value = "all", value_parser = pairings)]
     pairings: Chosen,
@@ -29,7 +29,7 @@ pub(super) struct Arguments {
     out: Option<PathBuf>,
     /// Changes a key of the case, for example `--set time.acceleration=200`.
     #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    pub(super) set: Vec<String>,
     /// Shows no progress bar.
     #[arg(long)]
     quiet: bool,

@@ -10,6 +10,7 @@ pub mod doctor;
 mod execute;
 mod failure;
 mod inputs;
+mod kinds;
 mod new;
 mod parallel;
 mod prepare;
@@ -68,12 +69,12 @@ pub fn main() -> ExitCode {
 pub fn run_line(network: Option<&Arc<dyn SolverNetwork>>) -> u8 {
     let arguments = Arguments::parse();
     let outcome = match &arguments.command {
-        Command::Run(arguments) => run::run(arguments, network, become_mpi),
-        Command::Check(arguments) => check::run(arguments),
-        Command::Compare(arguments) => compare::run(arguments),
-        Command::Sweep(arguments) => sweep::run(arguments),
+        Command::Run(arguments) => kinds::run(arguments, network, become_mpi),
+        Command::Check(arguments) => kinds::check(arguments),
+        Command::Compare(arguments) => kinds::compare(arguments),
+        Command::Sweep(arguments) => kinds::sweep(arguments),
         Command::Conform(arguments) => conform::run(arguments),
-        Command::Report(arguments) => report::run(arguments),
+        Command::Report(arguments) => kinds::report(arguments),
         Command::Prepare(arguments) => prepare::run(arguments),
         Command::New(arguments) => new::run(arguments),
         Command::Schema(arguments) => schema::run(arguments),

@@ -63,7 +63,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let text = with_laws(arguments.like.text());
     let text = format!("#:schema {SCHEMA}\n{text}");
     std::fs::write(&file, text).map_err(failed)?;
-    std::fs::write(folder.join(SCHEMA), schema::text()).map_err(failed)?;
+    std::fs::write(folder.join(SCHEMA), schema::text("bed")).map_err(failed)?;
     say(format_args!(
         "{}: change it, then\n  calcine check {0}\n  calcine run {0}",
         file.display()

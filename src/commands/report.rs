@@ -1,6 +1,6 @@
 //! `calcine report DIR`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -16,8 +16,12 @@ pub(super) struct Arguments {
     dir: PathBuf,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
-    let page = crate::report::write(&arguments.dir).map_err(|error| {
+/// Writes the page with `write`.
+pub(super) fn run(
+    arguments: &Arguments,
+    write: fn(&Path) -> Result<PathBuf, ResultsError>,
+) -> Result<u8, Failure> {
+    let page = write(&arguments.dir).map_err(|error| {
         let code = match error {
             ResultsError::NoResults { .. } => exit::CASE,
             _ => exit::OTHER,

@@ -36,7 +36,7 @@ pub(super) struct Arguments {
     out: Option<PathBuf>,
     /// Changes a key of the case, for example `--set time.acceleration=200`.
     #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    pub(super) set: Vec<String>,
     /// Continues from the last checkpoint in the results folder; a run that was stopped before its first one starts again.
     /// `--resume DIR` alone takes case, `--set` and solvers from the run in DIR.
     #[arg(long, value_name = "DIR", num_args = 0..=1)]
@@ -69,7 +69,7 @@ impl Arguments {
     }
 
     /// The arguments with what `--resume DIR` stands for, and the case.
-    fn completed(&self) -> Result<(Self, PathBuf), Failure> {
+    pub(super) fn completed(&self) -> Result<(Self, PathBuf), Failure> {
         let refused = |message: String| Err(Failure::new(exit::CASE, message));
         match (&self.case, &self.resume) {
             (Some(case), Some(Some(folder))) => {
@@ -139,13 +139,14 @@ struct RecordedLine {
     arguments: Arguments,
 }
 
-/// Runs a case. Without a network, one whose solvers talk over MPI is handed over.
+/// Runs the case of a bed, with [`Arguments::completed`] arguments. Without a network, one whose solvers talk over MPI is
+/// handed over.
 pub(super) fn run(
     arguments: &Arguments,
+    case_file: &Path,
     network: Option<&Arc<dyn SolverNetwork>>,
-    hand_over: impl FnOnce() -> Failure,
+    hand_over: fn() -> Failure,
 ) -> Result<u8, Failure> {
-    let (arguments, case_file) = &arguments.completed()?;
     if network.is_none() && arguments.needs_mpi() {
         return Err(hand_over());
     }

@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::console::say;
 use super::failure::Failure;
+use crate::case::keys::{KINDS, kind_named, kind_names};
 use crate::case::schema::schema;
 use crate::exit;
 use crate::laws::LawCatalogue;
@@ -13,13 +14,25 @@ use crate::laws::LawCatalogue;
 /// Prints the JSON schema of case files, for completion and checks in editors.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
+    /// Kind of case, the word of its key `kind`.
+    #[arg(long, value_name = "KIND", default_value = "bed", value_parser = kind)]
+    kind: Named,
     /// Writes the schema to this file instead.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
 
+/// A kind that is named on the command line.
+#[derive(Clone, Debug)]
+struct Named(&'static str);
+
+fn kind(name: &str) -> Result<Named, String> {
+    let found = kind_named(name).map(|kind| Named(kind.name));
+    found.ok_or_else(|| format!("it may be {}", kind_names().join(", ")))
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
-    let text = text();
+    let text = text(arguments.kind.0);
     let Some(file) = &arguments.out else {
         say(text.trim_end())?;
         return Ok(exit::OK);
@@ -32,7 +45,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     Ok(exit::OK)
 }
 
-/// The schema as it stands in a file.
-pub(super) fn text() -> String {
-    format!("{:#}\n", schema(&LawCatalogue::default()))
+/// The schema of a kind of case as it stands in a file.
+pub(super) fn text(kind: &str) -> String {
+    let kind = kind_named(kind).unwrap_or(&KINDS[0]);
+    format!("{:#}\n", schema(kind, &LawCatalogue::default()))
 }

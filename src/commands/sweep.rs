@@ -24,7 +24,7 @@ use crate::results::{ResultsError, Summary, Verdict, unoccupied};
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The case file.
-    case: PathBuf,
+    pub(super) case: PathBuf,
     /// Solver of the gas.
     #[arg(long, value_enum, default_value_t)]
     gas: GasBackend,

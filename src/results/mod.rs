@@ -37,7 +37,7 @@ pub use error::ResultsError;
 pub use files::{CASE, SERIES, STATUS, STORE, SUMMARY};
 pub use recorder::{Recorder, RunInfo, unoccupied};
 pub use resume::{clear_start, may_start_again};
-pub use summary::{Summary, Verdict};
+pub use summary::{Summary, Verdict, kind};
 
 /// Refuses probes outside a mesh, and quantities of patches that it lacks.
 pub fn fits(case: &Case, mesh: &Mesh) -> Result<(), ResultsError> {

@@ -393,6 +393,13 @@ pub struct SmootherSummary {
     pub largest_moved_share: f64,
 }
 
+/// The kind of case whose results a folder holds; "bed" where it holds none, or states none.
+pub fn kind(directory: &Path) -> String {
+    let text = std::fs::read_to_string(directory.join(SUMMARY)).unwrap_or_default();
+    let summary: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    summary["kind"].as_str().unwrap_or("bed").to_owned()
+}
+
 impl Summary {
     /// Reads the summary of a result directory.
     pub fn read(directory: &Path) -> Result<Self, ResultsError> {

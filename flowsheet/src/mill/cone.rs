@@ -1,6 +1,9 @@
 //! A cone crusher.
 
-use super::MillLaw;
+use calcine_physics::dimension::Dimension;
+use calcine_physics::law::{Bound, LawEntry, LawParameter};
+
+use super::model::MillLaw;
 use crate::{PlantError, SizeGrid, Transformation};
 
 /// A cone crusher: King's selection, Vogel and Peukert's breakage.
@@ -91,6 +94,80 @@ impl MillLaw for ConeMill {
         Ok(Transformation::Full(matrix))
     }
 }
+
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn MillLaw> = LawEntry {
+    name: "cone",
+    summary: "A cone crusher: King's selection, Vogel and Peukert's breakage.",
+    source: "King, Modeling and Simulation of Mineral Processing Systems (2001), chapter 5; Vogel and Peukert, Powder Technol. 129 (2003) 101, doi 10.1016/S0032-5910(02)00217-8",
+    parameters: &[
+        LawParameter {
+            name: "closed_side_setting",
+            dimension: Dimension::LENGTH,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Closed-side setting.",
+            example: "\"40 mm\"",
+        },
+        LawParameter {
+            name: "lower",
+            dimension: Dimension::NONE,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Selected is nothing below so many closed-side settings.",
+            example: "0.6",
+        },
+        LawParameter {
+            name: "upper",
+            dimension: Dimension::NONE,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Selected is all above so many closed-side settings.",
+            example: "2",
+        },
+        LawParameter {
+            name: "selection_power",
+            dimension: Dimension::NONE,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Power of the selection between both.",
+            example: "2",
+        },
+        LawParameter {
+            name: "smallest_fragment",
+            dimension: Dimension::LENGTH,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Size below which there are few fragments.",
+            example: "\"3 mm\"",
+        },
+        LawParameter {
+            name: "breakage_power",
+            dimension: Dimension::NONE,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Power of the fragments' distribution.",
+            example: "0.55",
+        },
+    ],
+    tables: &[],
+    make: |values| {
+        Box::new(ConeMill {
+            closed_side_setting: values[0],
+            lower: values[1],
+            upper: values[2],
+            power: values[3],
+            smallest_fragment: values[4],
+            breakage_power: values[5],
+        })
+    },
+};
 
 #[cfg(test)]
 mod tests {

@@ -1,6 +1,9 @@
 //! A product that does not depend on the feed.
 
-use super::MillLaw;
+use calcine_physics::dimension::Dimension;
+use calcine_physics::law::{Bound, LawEntry, LawParameter};
+
+use super::model::MillLaw;
 use crate::distribution::normal_shares;
 use crate::{PlantError, SizeGrid, Transformation};
 
@@ -38,3 +41,32 @@ impl MillLaw for ConstantMill {
         Ok(Transformation::Uniform(self.row.clone()))
     }
 }
+
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn MillLaw> = LawEntry {
+    name: "constant",
+    summary: "One normal distribution, whatever is fed.",
+    source: "as the crusher of Dyssol, SoftwareX 12 (2020) 100572, doi 10.1016/j.softx.2020.100572",
+    parameters: &[
+        LawParameter {
+            name: "mean",
+            dimension: Dimension::LENGTH,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Mean diameter of the product.",
+            example: "\"1 mm\"",
+        },
+        LawParameter {
+            name: "deviation",
+            dimension: Dimension::LENGTH,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Standard deviation of the product.",
+            example: "\"0.1 mm\"",
+        },
+    ],
+    tables: &[],
+    make: |values| Box::new(ConstantMill::new(values[0], values[1])),
+};

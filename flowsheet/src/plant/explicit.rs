@@ -1,7 +1,6 @@
 //! Dormand and Prince's method.
 
-use super::flows::{FlowWorkspace, Moment};
-use super::topology::Plant;
+use super::method::{Followed, Span, StepMethod, add_weighted, weighted, worst};
 use crate::PlantError;
 
 const A: [[f64; 6]; 6] = [
@@ -50,115 +49,83 @@ const E: [f64; 7] = [
 ///
 /// Source: Dormand and Prince, J. Comput. Appl. Math. 6 (1980) 19, doi 10.1016/0771-050X(80)90013-3.
 #[derive(Clone, Debug, Default)]
-pub struct DormandPrince {
+pub(super) struct DormandPrince {
     stages: Vec<Vec<f64>>,
     place: Vec<f64>,
-    /// Length of the next step in s; zero before the first.
-    pub step: f64,
+    sizes: Vec<f64>,
+    step: f64,
 }
 
 impl DormandPrince {
-    /// Advances unknowns and totals by one step that ends at `at.end` at the latest; the time it took. `fresh` where the
-    /// rates at the start are not those of the last stage before (something jumped).
-    #[expect(clippy::too_many_arguments, reason = "state and memory of one step")]
-    pub fn advance(
-        &mut self,
-        plant: &Plant,
-        at: Moment,
-        y: &mut [f64],
-        totals: &mut [f64],
-        scales: &[f64],
-        tolerance: f64,
-        fresh: bool,
-        work: &mut FlowWorkspace,
-        steps: &mut [usize; 2],
-    ) -> Result<f64, PlantError> {
-        let (n, width) = (y.len(), y.len() + totals.len());
+    /// All stages of a step; the result stands in `place`.
+    fn stages(&mut self, span: &Span<'_>, h: f64, now: &mut Followed) -> Result<(), PlantError> {
+        for (stage, (row, c)) in A.iter().zip(C).enumerate() {
+            weighted(&mut self.place, &now.y, h, &self.stages, &row[..=stage]);
+            let to = &mut self.stages[stage + 1];
+            let at = span.moment(c, h);
+            span.plant.rates(at, &self.place, &mut now.work, to)?;
+        }
+        Ok(())
+    }
+}
+
+impl StepMethod for DormandPrince {
+    fn advance(&mut self, span: &Span<'_>, now: &mut Followed) -> Result<f64, PlantError> {
+        let (n, width) = (now.y.len(), now.y.len() + now.totals.len());
         if self.stages.len() != 7 || self.stages[0].len() != width {
             self.stages = vec![vec![0.0; width]; 7];
         }
         self.place.resize(n, 0.0);
-        if fresh {
-            plant.rates(at, y, work, &mut self.stages[0])?;
+        if span.fresh {
+            let first = &mut self.stages[0];
+            span.plant.rates(span.at, &now.y, &mut now.work, first)?;
         }
-        let left = at.end - at.time;
         if self.step <= 0.0 {
-            self.step = self.first(y, scales, tolerance).min(left);
+            self.step = span.first_step(&now.y, &self.stages[0], 5);
         }
+        span.sizes(&now.y, &mut self.sizes);
+        let before = now.work.streams.clone();
         loop {
-            let ends = self.step >= 0.999 * left;
-            let h = if ends { left } else { self.step };
-            for (stage, (row, c)) in A.iter().zip(C).enumerate() {
-                self.place.copy_from_slice(y);
-                for (rates, a) in self.stages[..=stage]
-                    .iter()
-                    .zip(row)
-                    .filter(|(_, a)| **a != 0.0)
-                {
-                    let pairs = self.place.iter_mut().zip(&rates[..n]);
-                    pairs.for_each(|(x, k)| *x += h * a * k);
+            let (h, ends) = span.cut(self.step);
+            let failed = self.stages(span, h, now).err();
+            let error = match &failed {
+                Some(_) => f64::INFINITY,
+                None => {
+                    self.place.fill(0.0);
+                    add_weighted(&mut self.place, 0, h, &self.stages, &E);
+                    worst(self.place.iter().copied(), &self.sizes)
                 }
-                let moment = Moment {
-                    time: at.time + c * h,
-                    end: at.end,
-                };
-                plant.rates(moment, &self.place, work, &mut self.stages[stage + 1])?;
-            }
-            let mut error = 0.0f64;
-            for k in 0..n {
-                let sum: f64 = self
-                    .stages
-                    .iter()
-                    .zip(E)
-                    .map(|(rates, e)| e * rates[k])
-                    .sum();
-                let size = tolerance * (scales[k] + y[k].abs());
-                error = error.max((h * sum / size).abs());
-                if sum.is_nan() {
-                    error = f64::INFINITY;
-                }
-            }
-            if error <= 1.0 {
-                for (k, total) in totals.iter_mut().enumerate() {
-                    let weighted = self.stages.iter().zip(&A[5]).map(|(r, b)| b * r[n + k]);
-                    *total += h * weighted.sum::<f64>();
-                }
-                y.copy_from_slice(&self.place);
+            };
+            if error <= 1.0 || (span.forced && error.is_finite()) {
+                add_weighted(&mut now.y, 0, h, &self.stages, &A[5]);
+                add_weighted(&mut now.totals, n, h, &self.stages, &A[5]);
                 self.stages.swap(0, 6);
-                steps[0] += 1;
-                let factor = 0.9 * error.max(1e-10).powf(-0.2);
-                if !ends || factor < 1.0 {
-                    self.step = h * factor.clamp(0.2, 5.0);
+                now.steps[0] += 1;
+                let factor = (0.9 * error.max(1e-10).powf(-0.2)).clamp(0.2, 5.0);
+                self.step = if ends && factor >= 1.0 {
+                    self.step.max(h * factor)
                 } else {
-                    self.step = self.step.max(h * factor.clamp(0.2, 5.0).min(5.0));
-                }
+                    h * factor
+                };
                 return Ok(h);
             }
-            steps[1] += 1;
-            let factor = if error.is_finite() {
-                0.9 * error.powf(-0.2)
-            } else {
-                0.1
-            };
+            now.steps[1] += 1;
+            now.work.streams.copy_from_slice(&before);
+            let factor = 0.9 * error.min(1e6).powf(-0.2);
             self.step = h * factor.clamp(0.1, 0.9);
-            if at.time + self.step <= at.time {
-                return Err(PlantError::Steps {
-                    reached: at.time,
-                    cause: "its steps became too small to add up; let the `stiff` integrator follow it",
-                });
-            }
+            span.too_short(
+                self.step,
+                failed,
+                "its steps became too small to add up; let the `stiff` integrator follow it",
+            )?;
         }
     }
 
-    /// A first step by which unknowns change by a hundredth of what the tolerance's fifth root allows.
-    fn first(&self, y: &[f64], scales: &[f64], tolerance: f64) -> f64 {
-        let rates = &self.stages[0];
-        let rate = (0..y.len()).map(|k| (rates[k] / (scales[k] + y[k].abs())).abs());
-        let fastest = rate.fold(0.0, f64::max);
-        if fastest > 0.0 {
-            0.1 * tolerance.powf(0.2) / fastest
-        } else {
-            f64::INFINITY
-        }
+    fn step(&self) -> f64 {
+        self.step
+    }
+
+    fn set_step(&mut self, step: f64) {
+        self.step = step;
     }
 }

@@ -1,16 +1,16 @@
 //! Streams at a time, recycles included.
 
-use calcine_numerics::Anderson;
-
 use super::order::UnitBlock;
+use super::tear::TearIteration;
 use super::topology::Plant;
 use super::waveform::Waveform;
+use crate::sums::{sum, sum_of_differences, sum_of_sizes};
 use crate::{PlantError, UnitView};
 
 /// What a tear stream may differ from itself after one way round, relative to its flow.
 pub const LOOP_CLOSURE: f64 = 1e-13;
 /// Most ways round.
-const MOST_ROUNDS: usize = 400;
+const MOST_ROUNDS: usize = 150;
 /// Most that may go round a recycle, relative to what enters it.
 const MOST_FLOW: f64 = 1e9;
 /// Enthalpies among the numbers of a tear stream count in MW, so that they weigh as masses do.
@@ -26,6 +26,10 @@ pub struct FlowWorkspace {
     /// Ways round the recycles, all in all.
     pub rounds: usize,
     made: Vec<f64>,
+    /// Tear streams of a recycle, what they become, and the iteration between them.
+    torn: Vec<f64>,
+    new: Vec<f64>,
+    iteration: TearIteration,
     /// Tear streams that are given, and what they became.
     pub(super) given: Option<Waveform>,
     pub(super) became: Vec<f64>,
@@ -192,67 +196,105 @@ impl Plant {
         y: &[f64],
         work: &mut FlowWorkspace,
     ) -> Result<(), PlantError> {
-        let (width, enthalpy) = (self.layout.width(), self.layout.enthalpy());
-        let mut x = Vec::with_capacity(block.tears.len() * width);
+        let mut x = std::mem::take(&mut work.torn);
+        let mut new = std::mem::take(&mut work.new);
+        let mut iteration = std::mem::take(&mut work.iteration);
+        let done = self.go_round(block, at, y, work, &mut iteration, [&mut x, &mut new]);
+        (work.torn, work.new, work.iteration) = (x, new, iteration);
+        done
+    }
+
+    /// [`Self::close`] with memory for its vectors.
+    fn go_round(
+        &self,
+        block: &UnitBlock,
+        at: Moment,
+        y: &[f64],
+        work: &mut FlowWorkspace,
+        iteration: &mut TearIteration,
+        [x, new]: [&mut Vec<f64>; 2],
+    ) -> Result<(), PlantError> {
+        let width = self.layout.width();
+        x.clear();
         for tear in &block.tears {
             x.extend_from_slice(&work.streams[tear * width..(tear + 1) * width]);
         }
+        new.clear();
+        new.resize(x.len(), 0.0);
+        iteration.restart();
         let inflow = self.inflow(block, &work.streams);
-        let mut new = vec![0.0; x.len()];
-        let mut anderson = Anderson::default();
         let mut closure = f64::INFINITY;
         for _ in 0..MOST_ROUNDS {
             for unit in &block.units {
                 self.produce(*unit, at, y, work)?;
-                self.put(*unit, &block.tears, work, &mut new);
+                self.put(*unit, &block.tears, work, new);
             }
             work.rounds += 1;
-            if let Some(bad) = new.iter().position(|flow| !flow.is_finite()) {
+            closure = self.difference(x, new);
+            if !closure.is_finite() {
+                let bad = new.iter().position(|flow| !flow.is_finite());
                 return Err(PlantError::NotFinite {
-                    place: format!("stream \"{}\"", self.names[block.tears[bad / width]]),
+                    place: format!(
+                        "stream \"{}\"",
+                        self.names[block.tears[bad.unwrap_or(0) / width]]
+                    ),
                     quantity: "a flow",
                     time: at.time,
                 });
             }
-            closure = self.difference(&x, &new);
             // A flow beyond all bounds is closed relative to itself, not relative to what enters.
-            let bounded = x.iter().map(|flow| flow.abs()).sum::<f64>() < MOST_FLOW * inflow;
+            let bounded = sum_of_sizes(x) < MOST_FLOW * inflow;
             if closure <= LOOP_CLOSURE && (bounded || inflow == 0.0) {
                 work.closure = work.closure.max(closure);
                 return Ok(());
             }
-            let plain = new.clone();
-            self.weigh_heat(&mut x, true);
-            self.weigh_heat(&mut new, true);
-            anderson.accelerate(&x, &mut new);
-            self.weigh_heat(&mut new, false);
-            // A flow that would turn round is no guess: the iteration goes its own way there.
-            let total: f64 = plain.iter().map(|flow| flow.abs()).sum();
-            let masses = |k: usize| k % width != enthalpy;
-            if (0..new.len()).any(|k| masses(k) && new[k] < -1e-9 * total) {
-                new.copy_from_slice(&plain);
+            iteration.next(self, x, new);
+            if self.turns(new, &iteration.plain) {
+                new.copy_from_slice(&iteration.plain);
             }
             for (tear, own) in block.tears.iter().zip(new.chunks_exact(width)) {
                 work.streams[tear * width..(tear + 1) * width].copy_from_slice(own);
             }
-            std::mem::swap(&mut x, &mut new);
+            std::mem::swap(x, new);
         }
-        let names = block
-            .tears
-            .iter()
-            .map(|tear| format!("\"{}\"", self.names[*tear]));
+        Err(self.does_not_close(block, at.time, closure, x, new))
+    }
+
+    /// Whether a guess has flows that run backwards where those of a plain way round do not.
+    fn turns(&self, guess: &[f64], plain: &[f64]) -> bool {
+        let width = self.layout.width();
+        let least = |stream: &[f64]| {
+            let masses = &stream[..width - 1];
+            masses.iter().copied().fold(0.0, f64::min) / sum_of_sizes(masses)
+        };
+        let mut pairs = guess.chunks_exact(width).zip(plain.chunks_exact(width));
+        pairs.any(|(guess, plain)| least(guess) < 2.0 * least(plain) - 1e-9)
+    }
+
+    /// Which stream, and what of it, does not agree with itself.
+    fn does_not_close(
+        &self,
+        block: &UnitBlock,
+        time: f64,
+        residual: f64,
+        x: &[f64],
+        new: &[f64],
+    ) -> PlantError {
+        let (width, enthalpy) = (self.layout.width(), self.layout.enthalpy());
+        let names = block.tears.iter();
+        let names = names.map(|tear| format!("\"{}\"", self.names[*tear]));
         let grows = (0..x.len()).max_by(|a, b| {
-            let size =
-                |k: usize| (new[k] - x[k]).abs() * if k % width == enthalpy { 1e-6 } else { 1.0 };
+            let heat = |k: usize| k % width == enthalpy;
+            let size = |k: usize| (new[k] - x[k]).abs() * if heat(k) { 1e-6 } else { 1.0 };
             size(*a).total_cmp(&size(*b))
         });
-        Err(PlantError::Recycle {
+        PlantError::Recycle {
             stream: names.collect::<Vec<_>>().join(", "),
-            time: at.time,
-            residual: closure,
+            time,
+            residual,
             iterations: MOST_ROUNDS,
             grows: self.place_name(grows.unwrap_or(0) % width),
-        })
+        }
     }
 
     /// Mass and weighted enthalpy that enter the units of a recycle from outside.
@@ -263,7 +305,7 @@ impl Plant {
         let inside = self.ends.iter().zip(streams.chunks_exact(width));
         let flows = inside
             .filter(|(ends, _)| enters(ends))
-            .map(|(_, stream)| stream[..enthalpy].iter().sum::<f64>() + stream[enthalpy].abs());
+            .map(|(_, stream)| sum(&stream[..enthalpy]) + stream[enthalpy].abs());
         flows.sum()
     }
 
@@ -273,18 +315,18 @@ impl Plant {
         let (width, enthalpy) = (self.layout.width(), self.layout.enthalpy());
         let mut largest = 0.0f64;
         for (x, new) in x.chunks_exact(width).zip(new.chunks_exact(width)) {
-            let pairs = x[..enthalpy].iter().zip(&new[..enthalpy]);
-            let (mut apart, mut size) = (0.0, 0.0);
-            for (old, new) in pairs {
-                apart += (new - old).abs();
-                size += new.abs();
-            }
+            let apart = sum_of_differences(&x[..enthalpy], &new[..enthalpy]);
+            let size = sum_of_sizes(&new[..enthalpy]);
             let (capacity, latent) = self.layout.heat_capacity(new);
             let heat = (new[enthalpy] - x[enthalpy]).abs();
             let carried = 100.0 * capacity + latent + new[enthalpy].abs();
             for (apart, size) in [(apart, size), (heat, carried)] {
                 if apart != 0.0 {
-                    largest = largest.max(apart / size);
+                    // NaN counts as the largest.
+                    let relative = apart / size;
+                    if relative > largest || relative.is_nan() {
+                        largest = relative;
+                    }
                 }
             }
         }
@@ -335,6 +377,17 @@ impl Plant {
             self.layout.kinds(stream, to);
         }
         Ok(())
+    }
+
+    /// A bound of how fast small deviations of the unknowns fade, in 1/s.
+    pub(super) fn fastest(&self, at: Moment, y: &[f64], work: &FlowWorkspace) -> f64 {
+        let width = self.layout.width();
+        let each = self.units.iter().enumerate().map(|(index, unit)| {
+            let out = &work.streams[unit.outlets.start * width..unit.outlets.end * width];
+            unit.unit
+                .fastest(&self.view(index, at, y, &work.streams), out)
+        });
+        each.fold(0.0, f64::max)
     }
 
     /// Number of totals: of each stream the mass of each compound and the enthalpy, of each unit the heat.

@@ -2,8 +2,7 @@
 
 use calcine_numerics::{DenseMatrix, LinearAlgebra};
 
-use super::flows::{FlowWorkspace, Moment};
-use super::topology::Plant;
+use super::method::{Followed, Span, StepMethod, add_weighted, weighted, worst};
 use crate::PlantError;
 
 const GAMMA: f64 = 0.25;
@@ -49,6 +48,8 @@ const MOST_ITERATIONS: usize = 10;
 const NEWTON: f64 = 1e-2;
 /// Steps with one Jacobian.
 const JACOBIAN_STEPS: usize = 40;
+/// Steps that do not grow after one whose stages were not found.
+const HELD_STEPS: usize = 5;
 
 /// ESDIRK4(3)6L: fourth order with an error estimate of third, six stages of which five are implicit, L-stable, stiffly
 /// accurate.
@@ -58,7 +59,7 @@ const JACOBIAN_STEPS: usize = 40;
 ///
 /// Source: Kennedy and Carpenter, Appl. Numer. Math. 44 (2003) 139, doi 10.1016/S0168-9274(02)00138-1.
 #[derive(Clone, Debug, Default)]
-pub struct ImplicitRungeKutta {
+pub(super) struct ImplicitRungeKutta {
     stages: Vec<Vec<f64>>,
     jacobian: Vec<f64>,
     /// Steps since the Jacobian; none before the first.
@@ -66,128 +67,135 @@ pub struct ImplicitRungeKutta {
     algebra: DenseMatrix,
     /// 1/(γ h) of the factors.
     factored: f64,
-    /// Length of the next step in s; zero before the first.
-    pub step: f64,
+    /// Steps that must not grow.
+    held: usize,
+    /// Change of the unknowns in 1/s over the step before; empty before the first.
+    slope: Vec<f64>,
+    memory: StageMemory,
+    step: f64,
 }
 
-impl ImplicitRungeKutta {
-    /// Advances unknowns and totals by one step that ends at `at.end` at the latest; the time it took. `fresh` where
-    /// something jumped: rates and Jacobian are computed anew.
-    #[expect(clippy::too_many_arguments, reason = "state and memory of one step")]
-    pub fn advance(
-        &mut self,
-        plant: &Plant,
-        at: Moment,
-        y: &mut [f64],
-        totals: &mut [f64],
-        scales: &[f64],
-        tolerance: f64,
-        fresh: bool,
-        work: &mut FlowWorkspace,
-        steps: &mut [usize; 2],
-    ) -> Result<f64, PlantError> {
-        let (n, width) = (y.len(), y.len() + totals.len());
+/// Vectors of the stages' iteration.
+#[derive(Clone, Debug, Default)]
+struct StageMemory {
+    known: Vec<f64>,
+    place: Vec<f64>,
+    change: Vec<f64>,
+    sizes: Vec<f64>,
+}
+
+impl StepMethod for ImplicitRungeKutta {
+    fn advance(&mut self, span: &Span<'_>, now: &mut Followed) -> Result<f64, PlantError> {
+        let (n, width) = (now.y.len(), now.y.len() + now.totals.len());
         if self.stages.len() != STAGES || self.stages[0].len() != width {
             self.stages = vec![vec![0.0; width]; STAGES];
             self.algebra.resize(n);
         }
-        if fresh {
+        if span.fresh {
             self.age = None;
-            plant.rates(at, y, work, &mut self.stages[0])?;
+            self.held = 0;
+            self.slope.clear();
+            let first = &mut self.stages[0];
+            span.plant.rates(span.at, &now.y, &mut now.work, first)?;
         }
-        let left = at.end - at.time;
         if self.step <= 0.0 {
-            let fastest = (0..n).map(|k| (self.stages[0][k] / (scales[k] + y[k].abs())).abs());
-            let fastest = fastest.fold(0.0, f64::max);
-            let guess = 0.1 * tolerance.powf(0.25) / fastest;
-            self.step = if fastest > 0.0 { guess.min(left) } else { left };
+            self.step = span.first_step(&now.y, &self.stages[0], 4);
         }
-        let sizes: Vec<f64> = (0..n)
-            .map(|k| tolerance * (scales[k] + y[k].abs()))
-            .collect();
-        loop {
-            let ends = self.step >= 0.999 * left;
-            let h = if ends { left } else { self.step };
-            let before = work.streams.clone();
-            if !self.solve(plant, at, y, scales, &sizes, h, work)? {
-                steps[1] += 1;
-                work.streams = before;
+        let mut memory = std::mem::take(&mut self.memory);
+        span.sizes(&now.y, &mut memory.sizes);
+        let before = now.work.streams.clone();
+        let took = loop {
+            let (h, ends) = span.cut(self.step);
+            if !self.solve(span, h, now, &mut memory)? {
+                now.steps[1] += 1;
+                now.work.streams.copy_from_slice(&before);
                 // With an old Jacobian the same step again, else a shorter one.
                 if self.age == Some(0) {
-                    self.step = 0.25 * h;
-                    if at.time + self.step <= at.time {
-                        return Err(PlantError::Steps {
-                            reached: at.time,
-                            cause: "its steps became too small to add up",
-                        });
+                    self.step = 0.4 * h;
+                    self.held = HELD_STEPS;
+                    let cause = "its steps became too small to add up";
+                    if let Err(told) = span.too_short(self.step, None, cause) {
+                        break Err(told);
                     }
                 } else {
                     self.age = None;
                 }
                 continue;
             }
-            let mut error: Vec<f64> = vec![0.0; n];
-            for (stage, rates) in self.stages.iter().enumerate() {
-                let weight = Self::weight(stage) - LOWER[stage];
-                let pairs = error.iter_mut().zip(rates);
-                pairs.for_each(|(e, k)| *e += weight * k / GAMMA);
-            }
-            self.algebra.solve(&mut error);
-            let worst = error.iter().zip(&sizes).map(|(e, size)| (e / size).abs());
-            let worst = worst.fold(0.0, f64::max).max(1e-10);
-            let factor = 0.9 * worst.powf(-0.25);
-            if worst <= 1.0 {
-                for (stage, rates) in self.stages.iter().enumerate() {
-                    let weight = h * Self::weight(stage);
-                    let both = y.iter_mut().chain(totals.iter_mut());
-                    both.zip(rates).for_each(|(x, k)| *x += weight * k);
-                }
+            let error = &mut memory.change;
+            error.fill(0.0);
+            let weights: [f64; STAGES] =
+                std::array::from_fn(|stage| (Self::weight(stage) - LOWER[stage]) / GAMMA);
+            add_weighted(error, 0, 1.0, &self.stages, &weights);
+            self.algebra.solve(error);
+            let error = worst(error.iter().copied(), &memory.sizes);
+            let factor = 0.9 * error.max(1e-10).powf(-0.25);
+            if error <= 1.0 || (span.forced && error.is_finite()) {
+                let weights: [f64; STAGES] = std::array::from_fn(Self::weight);
+                memory.known.copy_from_slice(&now.y);
+                add_weighted(&mut now.y, 0, h, &self.stages, &weights);
+                add_weighted(&mut now.totals, n, h, &self.stages, &weights);
+                self.slope.clear();
+                let moved = now.y.iter().zip(&memory.known);
+                self.slope.extend(moved.map(|(new, old)| (new - old) / h));
                 self.stages.swap(0, STAGES - 1);
-                steps[0] += 1;
+                now.steps[0] += 1;
                 self.age = self.age.map(|age| age + 1);
+                let most = if self.held > 0 { 1.0 } else { 2.5 };
+                self.held = self.held.saturating_sub(1);
                 // Small changes of the step are not worth new factors.
                 let grown = if (0.8..1.3).contains(&factor) {
                     1.0
                 } else {
-                    factor.clamp(0.2, 4.0)
+                    factor.clamp(0.2, most)
                 };
-                self.step = if ends {
+                self.step = if ends && grown >= 1.0 {
                     self.step.max(h * grown)
                 } else {
                     h * grown
                 };
-                return Ok(h);
+                break Ok(h);
             }
-            steps[1] += 1;
-            work.streams = before;
+            now.steps[1] += 1;
+            now.work.streams.copy_from_slice(&before);
             self.step = h * factor.clamp(0.1, 0.9);
-        }
+        };
+        self.memory = memory;
+        took
     }
 
+    fn step(&self) -> f64 {
+        self.step
+    }
+
+    fn set_step(&mut self, step: f64) {
+        self.step = step;
+    }
+}
+
+impl ImplicitRungeKutta {
     fn weight(stage: usize) -> f64 {
         A[4].get(stage).copied().unwrap_or(GAMMA)
     }
 
     /// All stages of a step; false where Newton's iteration does not converge.
-    #[expect(clippy::too_many_arguments, reason = "state and memory of one step")]
     fn solve(
         &mut self,
-        plant: &Plant,
-        at: Moment,
-        y: &[f64],
-        scales: &[f64],
-        sizes: &[f64],
+        span: &Span<'_>,
         h: f64,
-        work: &mut FlowWorkspace,
+        now: &mut Followed,
+        memory: &mut StageMemory,
     ) -> Result<bool, PlantError> {
+        let Followed { y, work, .. } = now;
         let n = y.len();
         if self.age.is_none_or(|age| age >= JACOBIAN_STEPS) {
             let streams = work.streams.clone();
-            plant.jacobian(
-                at,
+            let rates = &self.stages[0];
+            span.plant.jacobian(
+                span.at,
                 y,
-                &self.stages[0],
-                scales,
+                rates,
+                span.scales,
                 work,
                 &mut self.jacobian,
                 false,
@@ -203,56 +211,55 @@ impl ImplicitRungeKutta {
             }
             self.factored = diagonal;
         }
-        let mut known = vec![0.0; n];
-        let mut place = vec![0.0; n];
-        let mut change = vec![0.0; n];
+        let StageMemory {
+            known,
+            place,
+            change,
+            sizes,
+        } = memory;
+        for row in [&mut *known, &mut *place, &mut *change] {
+            row.resize(n, 0.0);
+        }
+        place.copy_from_slice(y);
+        let mut before = 0.0;
         for stage in 1..STAGES {
-            known.copy_from_slice(y);
-            for (rates, a) in self.stages[..stage].iter().zip(A[stage - 1]) {
-                known
-                    .iter_mut()
-                    .zip(rates)
-                    .for_each(|(x, k)| *x += h * a * k);
+            weighted(known, y, h, &self.stages[..stage], &A[stage - 1]);
+            // The first guess is on the line through what is known, not by the rates, whose fast part would end within the step.
+            let next = C[stage - 1];
+            let ahead = (next - before) * h;
+            if stage == 1 {
+                let pairs = place.iter_mut().zip(&self.slope);
+                pairs.for_each(|(x, slope)| *x += ahead * slope);
+            } else {
+                let pairs = place.iter_mut().zip(&*y);
+                pairs.for_each(|(x, y)| *x += (*x - y) / (before * h) * ahead);
             }
-            let guess = &self.stages[stage - 1];
-            for ((x, known), rate) in place.iter_mut().zip(&known).zip(guess) {
-                *x = known + h * GAMMA * rate;
-            }
-            let moment = Moment {
-                time: at.time + C[stage - 1] * h,
-                end: at.end,
-            };
+            before = next;
+            let moment = span.moment(next, h);
+            let rates = &mut self.stages[stage];
             let mut last = f64::INFINITY;
             let mut converged = false;
             for iteration in 0..MOST_ITERATIONS {
                 // A state that units refuse is no failure of the plant: a shorter step may keep away from it.
-                if plant
-                    .rates(moment, &place, work, &mut self.stages[stage])
-                    .is_err()
-                {
+                if span.plant.rates(moment, place, work, rates).is_err() {
                     return Ok(false);
                 }
                 for (k, change) in change.iter_mut().enumerate() {
-                    *change = diagonal * (known[k] - place[k]) + self.stages[stage][k];
+                    *change = diagonal * (known[k] - place[k]) + rates[k];
                 }
-                self.algebra.solve(&mut change);
-                let size = change.iter().zip(sizes).map(|(c, s)| (c / s).abs());
-                let size = size.fold(0.0, f64::max);
+                self.algebra.solve(change);
+                let size = worst(change.iter().copied(), sizes);
                 if !size.is_finite() || (iteration > 1 && size > 0.9 * last) {
                     break;
                 }
-                place.iter_mut().zip(&change).for_each(|(x, c)| *x += c);
+                place.iter_mut().zip(&*change).for_each(|(x, c)| *x += c);
                 if size <= NEWTON {
                     converged = true;
                     break;
                 }
                 last = size;
             }
-            if !converged
-                || plant
-                    .rates(moment, &place, work, &mut self.stages[stage])
-                    .is_err()
-            {
+            if !converged || span.plant.rates(moment, place, work, rates).is_err() {
                 return Ok(false);
             }
         }

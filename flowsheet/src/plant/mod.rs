@@ -1,22 +1,31 @@
 //! Units and streams together.
 
 mod continuation;
+mod estimation;
 mod explicit;
 mod flows;
 mod implicit;
 mod jacobian;
 mod ledger;
+mod method;
 mod order;
 mod run;
+mod sensitivity;
+mod stabilised;
 mod steady;
+mod tear;
 mod topology;
 mod waveform;
 mod windows;
 
 pub use continuation::{Continuation, ContinuationPoint};
+pub use estimation::{
+    MeasuredDistribution, MeasuredPlace, MeasuredState, PlantEstimation, PlantResiduals,
+};
 pub use flows::{FlowWorkspace, LOOP_CLOSURE};
 pub use ledger::{LedgerLine, PlantLedger};
 pub use run::{Integrator, PlantRun, PlantStep};
+pub use sensitivity::{Derivatives, PlantFamily};
 pub use steady::{Mode, Stability, SteadyState};
 pub use topology::{Connection, Plant, PlantUnit};
 pub use waveform::{TearAcceleration, Waveform, WaveformSettings};

@@ -4,65 +4,24 @@ use super::explicit::DormandPrince;
 use super::flows::{FlowWorkspace, Moment};
 use super::implicit::ImplicitRungeKutta;
 use super::ledger::PlantLedger;
+use super::method::{Followed, Span, StepMethod};
+use super::stabilised::Chebyshev;
 use super::topology::Plant;
 use crate::PlantError;
 
 /// How a plant is followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Integrator {
-    /// Dormand and Prince's explicit pair: cheap steps, of which fast exchange takes many.
+    /// Dormand and Prince's explicit pair of fifth order: cheap steps, of which fast exchange takes many.
     Explicit,
+    /// Runge–Kutta–Chebyshev, explicit and of second order: as many stages as fast exchange asks for.
+    Stabilised,
     /// Kennedy and Carpenter's ESDIRK4(3)6L, with a Jacobian by differences.
     Stiff,
 }
 
 /// Most steps between two times that are asked for.
 const MOST_STEPS: usize = 2_000_000;
-
-#[derive(Clone, Debug)]
-enum Method {
-    Explicit(DormandPrince),
-    Stiff(ImplicitRungeKutta),
-}
-
-impl Method {
-    #[expect(clippy::too_many_arguments, reason = "state and memory of one step")]
-    fn advance(
-        &mut self,
-        plant: &Plant,
-        at: Moment,
-        y: &mut [f64],
-        totals: &mut [f64],
-        scales: &[f64],
-        tolerance: f64,
-        fresh: bool,
-        work: &mut FlowWorkspace,
-        steps: &mut [usize; 2],
-    ) -> Result<f64, PlantError> {
-        match self {
-            Self::Explicit(method) => {
-                method.advance(plant, at, y, totals, scales, tolerance, fresh, work, steps)
-            }
-            Self::Stiff(method) => {
-                method.advance(plant, at, y, totals, scales, tolerance, fresh, work, steps)
-            }
-        }
-    }
-
-    fn step(&self) -> f64 {
-        match self {
-            Self::Explicit(method) => method.step,
-            Self::Stiff(method) => method.step,
-        }
-    }
-
-    fn set_step(&mut self, step: f64) {
-        match self {
-            Self::Explicit(method) => method.step = step,
-            Self::Stiff(method) => method.step = step,
-        }
-    }
-}
 
 /// What decides how a run goes on: with the plant itself, all of a checkpoint.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,19 +47,15 @@ pub struct PlantStep {
 /// A plant that is followed in time, with all recycles closed at every evaluation (docs/theory.md, FLS-4).
 pub struct PlantRun<'a> {
     pub(super) plant: &'a Plant,
-    method: Method,
+    method: Box<dyn StepMethod>,
     pub(super) tolerance: f64,
     pub(super) time: f64,
-    pub(super) y: Vec<f64>,
-    totals: Vec<f64>,
+    pub(super) now: Followed,
     scales: Vec<f64>,
     held: Vec<Vec<f64>>,
     pub(super) closure: f64,
-    pub(super) work: FlowWorkspace,
     /// Length of the next window of waveform relaxation in s; zero before the first.
     pub(super) window: f64,
-    /// Steps, and steps that were repeated.
-    steps: [usize; 2],
 }
 
 impl<'a> PlantRun<'a> {
@@ -131,19 +86,22 @@ impl<'a> PlantRun<'a> {
         let mut run = Self {
             plant,
             method: match integrator {
-                Integrator::Explicit => Method::Explicit(DormandPrince::default()),
-                Integrator::Stiff => Method::Stiff(ImplicitRungeKutta::default()),
+                Integrator::Explicit => Box::new(DormandPrince::default()),
+                Integrator::Stabilised => Box::new(Chebyshev::default()),
+                Integrator::Stiff => Box::new(ImplicitRungeKutta::default()),
             },
             tolerance,
             time: 0.0,
             held: plant.held(&y),
-            totals: vec![0.0; plant.totals()],
             scales: plant.scales(),
-            y,
+            now: Followed {
+                y,
+                totals: vec![0.0; plant.totals()],
+                work: FlowWorkspace::new(plant),
+                steps: [0; 2],
+            },
             closure: 0.0,
             window: 0.0,
-            work: FlowWorkspace::new(plant),
-            steps: [0; 2],
         };
         run.settle()?;
         Ok(run)
@@ -155,49 +113,57 @@ impl<'a> PlantRun<'a> {
             time: self.time,
             end: f64::INFINITY,
         };
-        self.plant.flows(at, &self.y, &mut self.work)?;
-        self.closure = self.closure.max(self.work.closure);
-        self.plant.verify(at, &self.y, &self.work.streams)
+        self.plant.flows(at, &self.now.y, &mut self.now.work)?;
+        self.closure = self.closure.max(self.now.work.closure);
+        self.plant.verify(at, &self.now.y, &self.now.work.streams)
     }
 
     /// Advances to a time in s.
     pub fn advance(&mut self, until: f64) -> Result<(), PlantError> {
+        self.go(until, |_| ())
+    }
+
+    /// [`Self::advance`], and the lengths in s of the steps that it took.
+    pub(super) fn advance_and_tell(&mut self, until: f64) -> Result<Vec<f64>, PlantError> {
+        let mut steps = Vec::new();
+        self.go(until, |took| steps.push(took))?;
+        Ok(steps)
+    }
+
+    /// [`Self::advance`] by steps of given lengths in s.
+    pub(super) fn advance_by(&mut self, until: f64, steps: &[f64]) -> Result<(), PlantError> {
+        let mut steps = steps.iter();
         while self.time < until {
             let end = self.plant.next_break(self.time).min(until);
-            self.follow(end)?;
+            let mut fresh = true;
+            while let (true, Some(step)) = (self.time < end, steps.next()) {
+                self.method.set_step(*step);
+                self.step_towards(end, fresh, true)?;
+                fresh = false;
+            }
             self.time = end;
             self.settle()?;
         }
         Ok(())
     }
 
-    /// Steps from the present time to `end`, between which nothing jumps.
-    pub(super) fn follow(&mut self, end: f64) -> Result<(), PlantError> {
+    fn go(&mut self, until: f64, mut tell: impl FnMut(f64)) -> Result<(), PlantError> {
+        while self.time < until {
+            let end = self.plant.next_break(self.time).min(until);
+            self.follow(end, &mut tell)?;
+            self.time = end;
+            self.settle()?;
+        }
+        Ok(())
+    }
+
+    /// Steps from the present time to `end`, between which nothing jumps; tells the length of each step in s.
+    pub(super) fn follow(&mut self, end: f64, mut tell: impl FnMut(f64)) -> Result<(), PlantError> {
         for step in 0..MOST_STEPS {
-            let at = Moment {
-                time: self.time,
-                end,
-            };
-            let took = self.method.advance(
-                self.plant,
-                at,
-                &mut self.y,
-                &mut self.totals,
-                &self.scales,
-                self.tolerance,
-                step == 0,
-                &mut self.work,
-                &mut self.steps,
-            )?;
-            // The last stage is at the end of the step.
-            self.closure = self.closure.max(self.work.closure);
-            self.time += took;
-            let now = Moment {
-                time: self.time,
-                end,
-            };
-            self.plant.verify(now, &self.y, &self.work.streams)?;
-            if took >= end - at.time {
+            let left = end - self.time;
+            let took = self.step_towards(end, step == 0, false)?;
+            tell(took);
+            if took >= left {
                 return Ok(());
             }
         }
@@ -207,17 +173,44 @@ impl<'a> PlantRun<'a> {
         })
     }
 
+    /// One step; what it took in s.
+    fn step_towards(&mut self, end: f64, fresh: bool, forced: bool) -> Result<f64, PlantError> {
+        let at = Moment {
+            time: self.time,
+            end,
+        };
+        let span = Span {
+            plant: self.plant,
+            at,
+            scales: &self.scales,
+            tolerance: self.tolerance,
+            fresh,
+            forced,
+        };
+        let took = self.method.advance(&span, &mut self.now)?;
+        // The last stage is at the end of the step.
+        self.closure = self.closure.max(self.now.work.closure);
+        self.time += took;
+        let now = Moment {
+            time: self.time,
+            end,
+        };
+        self.plant
+            .verify(now, &self.now.y, &self.now.work.streams)?;
+        Ok(took)
+    }
+
     /// What a window begins with.
     pub(super) fn clone_state(&self) -> (f64, Vec<f64>, Vec<f64>, f64) {
-        let (y, totals) = (self.y.clone(), self.totals.clone());
+        let (y, totals) = (self.now.y.clone(), self.now.totals.clone());
         (self.time, y, totals, self.method.step())
     }
 
     /// Back to what a window began with.
     pub(super) fn restore(&mut self, to: &(f64, Vec<f64>, Vec<f64>, f64)) {
         self.time = to.0;
-        self.y.copy_from_slice(&to.1);
-        self.totals.copy_from_slice(&to.2);
+        self.now.y.copy_from_slice(&to.1);
+        self.now.totals.copy_from_slice(&to.2);
         self.method.set_step(to.3);
     }
 
@@ -228,43 +221,43 @@ impl<'a> PlantRun<'a> {
 
     /// Unknowns.
     pub fn unknowns(&self) -> &[f64] {
-        &self.y
+        &self.now.y
     }
 
     /// Unknowns of a unit.
     pub fn unit(&self, index: usize) -> &[f64] {
-        &self.y[self.plant.units[index].state.clone()]
+        &self.now.y[self.plant.units[index].state.clone()]
     }
 
     /// A stream.
     pub fn stream(&self, index: usize) -> &[f64] {
-        self.work.stream(self.plant, index)
+        self.now.work.stream(self.plant, index)
     }
 
     /// Steps, and steps that were repeated.
     pub fn steps(&self) -> [usize; 2] {
-        self.steps
+        self.now.steps
     }
 
     /// Ways round the recycles, all in all.
     pub fn rounds(&self) -> usize {
-        self.work.rounds
+        self.now.work.rounds
     }
 
     /// Balances since the start.
     pub fn ledger(&self) -> PlantLedger {
-        let now = self.plant.held(&self.y);
+        let now = self.plant.held(&self.now.y);
         self.plant
-            .ledger(&self.held, &now, &self.totals, self.closure)
+            .ledger(&self.held, &now, &self.now.totals, self.closure)
     }
 
     /// All that decides how the run goes on.
     pub fn checkpoint(&self) -> PlantStep {
         PlantStep {
             time: self.time,
-            unknowns: self.y.clone(),
-            totals: self.totals.clone(),
-            streams: self.work.streams.clone(),
+            unknowns: self.now.y.clone(),
+            totals: self.now.totals.clone(),
+            streams: self.now.work.streams.clone(),
             step: self.method.step(),
             window: self.window,
             closure: self.closure,
@@ -275,9 +268,9 @@ impl<'a> PlantRun<'a> {
     /// Goes on from a checkpoint of the same plant: the same bits as without.
     pub fn resume(&mut self, from: PlantStep) {
         self.time = from.time;
-        self.y = from.unknowns;
-        self.totals = from.totals;
-        self.work.streams = from.streams;
+        self.now.y = from.unknowns;
+        self.now.totals = from.totals;
+        self.now.work.streams = from.streams;
         self.method.set_step(from.step);
         self.window = from.window;
         self.closure = from.closure;

@@ -65,14 +65,14 @@ impl PlantRun<'_> {
         let from = self.time;
         // The streams of now, closed at once, are the first guess of all nodes.
         let at = Moment { time: from, end };
-        self.work.given = None;
-        self.plant.flows(at, &self.y, &mut self.work)?;
-        let mut wave = Waveform::constant(from, span, &self.plant.torn(&self.work));
+        self.now.work.given = None;
+        self.plant.flows(at, &self.now.y, &mut self.now.work)?;
+        let mut wave = Waveform::constant(from, span, &self.plant.torn(&self.now.work));
         let size = wave.values[0].len();
         let mut iteration = NodeIteration::new();
         for count in 1..=settings.most {
             self.restore(&start);
-            self.work.given = Some(wave.clone());
+            self.now.work.given = Some(wave.clone());
             let mut x = Vec::with_capacity(NODES * size);
             let mut made = Vec::with_capacity(NODES * size);
             let (mut closure, mut bend) = (0.0f64, 0.0f64);
@@ -85,30 +85,31 @@ impl PlantRun<'_> {
                 // Halfway between nodes the polynomial is compared with what it became, too.
                 if k > 0 {
                     let middle = 0.5 * (self.time + time);
-                    self.follow(middle)?;
+                    self.follow(middle, |_| ())?;
                     bend = bend.max(self.torn_difference(middle, end)?);
-                    self.follow(time)?;
+                    self.follow(time, |_| ())?;
                 }
                 closure = closure.max(self.torn_difference(time, end)?);
                 x.extend_from_slice(&wave.values[k]);
-                made.extend_from_slice(&self.work.became);
+                made.extend_from_slice(&self.now.work.became);
             }
             if closure <= LOOP_CLOSURE * 10.0 {
                 if bend > BEND * self.tolerance.max(LOOP_CLOSURE * 100.0)
                     && span > settings.shortest
                 {
-                    self.work.given = None;
+                    self.now.work.given = None;
                     self.restore(&start);
                     return Ok(None);
                 }
                 self.time = from + span;
-                self.work.given = None;
+                self.now.work.given = None;
                 self.closure = self.closure.max(closure);
                 let now = Moment {
                     time: self.time,
                     end,
                 };
-                self.plant.verify(now, &self.y, &self.work.streams)?;
+                self.plant
+                    .verify(now, &self.now.y, &self.now.work.streams)?;
                 return Ok(Some(count));
             }
             self.plant.weigh_heat(&mut x, true);
@@ -119,7 +120,7 @@ impl PlantRun<'_> {
                 values.copy_from_slice(new);
             }
         }
-        self.work.given = None;
+        self.now.work.given = None;
         self.restore(&start);
         Ok(None)
     }
@@ -127,8 +128,8 @@ impl PlantRun<'_> {
     /// What the tear streams became at the present unknowns, against what they were.
     fn torn_difference(&mut self, time: f64, end: f64) -> Result<f64, PlantError> {
         let at = Moment { time, end };
-        self.plant.flows(at, &self.y, &mut self.work)?;
-        let were = self.plant.torn(&self.work);
-        Ok(self.plant.difference(&were, &self.work.became))
+        self.plant.flows(at, &self.now.y, &mut self.now.work)?;
+        let were = self.plant.torn(&self.now.work);
+        Ok(self.plant.difference(&were, &self.now.work.became))
     }
 }

@@ -32,6 +32,14 @@ impl SizeProcess for ParticleBreakage {
         particle: &[f64],
         place: &str,
     ) -> Result<(), PlantError> {
+        if let Some((quantity, value, allowed)) = self.law.refused() {
+            return Err(PlantError::Value {
+                place: place.to_owned(),
+                quantity,
+                value,
+                allowed,
+            });
+        }
         let count = grid.classes();
         let volumes: Vec<f64> = grid
             .diameters()
@@ -79,5 +87,11 @@ impl SizeProcess for ParticleBreakage {
                 rates.iter_mut().zip(own).for_each(|(r, m)| *r += share * m);
             }
         }
+    }
+
+    fn fastest(&self, _inner: usize, _masses: &[f64]) -> f64 {
+        let count = self.moves.len().isqrt();
+        let own = (0..count).map(|class| -self.moves[class * count + class]);
+        own.fold(0.0, f64::max)
     }
 }

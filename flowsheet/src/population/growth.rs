@@ -27,30 +27,30 @@ pub enum GrowthScheme {
 pub struct SizeFluxes {
     scheme: GrowthScheme,
     widths: Vec<f64>,
-    /// Distances between the middles of classes.
-    gaps: Vec<f64>,
+    /// 1/distance between the middles of classes.
+    inverse_gaps: Vec<f64>,
 }
 
 impl SizeFluxes {
     /// Fluxes over size classes.
     pub fn new(grid: &SizeGrid, scheme: GrowthScheme) -> Self {
         let widths = (0..grid.classes()).map(|k| grid.width(k)).collect();
-        let gaps = grid.diameters().windows(2).map(|d| d[1] - d[0]).collect();
+        let gaps = grid.diameters().windows(2);
+        let inverse_gaps = gaps.map(|d| 1.0 / (d[1] - d[0])).collect();
         Self {
             scheme,
             widths,
-            gaps,
+            inverse_gaps,
         }
     }
 
     /// Slope of the number density in a class, limited; `forward` where particles grow.
-    fn slope(&self, numbers: &[f64], class: usize, forward: bool) -> f64 {
-        if class == 0 || class + 1 == numbers.len() || self.scheme == GrowthScheme::Upwind {
+    fn slope(&self, densities: &[f64], class: usize, forward: bool) -> f64 {
+        if class == 0 || class + 1 == densities.len() || self.scheme == GrowthScheme::Upwind {
             return 0.0;
         }
-        let density = |k: usize| numbers[k] / self.widths[k];
-        let before = (density(class) - density(class - 1)) / self.gaps[class - 1];
-        let after = (density(class + 1) - density(class)) / self.gaps[class];
+        let before = (densities[class] - densities[class - 1]) * self.inverse_gaps[class - 1];
+        let after = (densities[class + 1] - densities[class]) * self.inverse_gaps[class];
         if before * after <= 0.0 {
             return 0.0;
         }
@@ -69,20 +69,28 @@ impl SizeFluxes {
         2.0 * before * after / (before + after)
     }
 
+    /// Number density in 1/m of each class.
+    pub fn densities(&self, numbers: &[f64]) -> Vec<f64> {
+        let pairs = numbers.iter().zip(&self.widths);
+        pairs.map(|(number, width)| number / width).collect()
+    }
+
     /// Number density in 1/m at the face above each class but the last, as growing particles bring it.
     pub fn growing(&self, numbers: &[f64], faces: &mut [f64]) {
+        let densities = self.densities(numbers);
         for (class, face) in faces.iter_mut().enumerate() {
             let half = 0.5 * self.widths[class];
-            *face = numbers[class] / self.widths[class] + half * self.slope(numbers, class, true);
+            *face = densities[class] + half * self.slope(&densities, class, true);
         }
     }
 
     /// The same, as shrinking particles bring it.
     pub fn shrinking(&self, numbers: &[f64], faces: &mut [f64]) {
+        let densities = self.densities(numbers);
         for (below, face) in faces.iter_mut().enumerate() {
             let class = below + 1;
             let half = 0.5 * self.widths[class];
-            *face = numbers[class] / self.widths[class] - half * self.slope(numbers, class, false);
+            *face = densities[class] - half * self.slope(&densities, class, false);
         }
     }
 }

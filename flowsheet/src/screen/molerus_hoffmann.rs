@@ -1,6 +1,9 @@
 //! Molerus and Hoffmann.
 
-use super::{ScreenLaw, not_positive};
+use calcine_physics::dimension::Dimension;
+use calcine_physics::law::{Bound, LawEntry, LawParameter};
+
+use super::model::{ScreenLaw, not_positive};
 
 /// Separation curve of Molerus and Hoffmann.
 ///
@@ -28,6 +31,40 @@ impl ScreenLaw for MolerusHoffmann {
         not_positive(&[("cut size", self.cut), ("sharpness", self.sharpness)])
     }
 }
+
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn ScreenLaw> = LawEntry {
+    name: "molerus-hoffmann",
+    summary: "The curve of Molerus and Hoffmann.",
+    source: "Molerus and Hoffmann, Chem. Ing. Tech. 41 (1969) 340, doi 10.1002/cite.330410522",
+    parameters: &[
+        LawParameter {
+            name: "cut",
+            dimension: Dimension::LENGTH,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Cut size.",
+            example: "\"2 mm\"",
+        },
+        LawParameter {
+            name: "sharpness",
+            dimension: Dimension::NONE,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Sharpness of the cut.",
+            example: "4",
+        },
+    ],
+    tables: &[],
+    make: |values| {
+        Box::new(MolerusHoffmann {
+            cut: values[0],
+            sharpness: values[1],
+        })
+    },
+};
 
 #[cfg(test)]
 mod tests {

@@ -1,6 +1,9 @@
 //! Plitt.
 
-use super::{ScreenLaw, not_positive};
+use calcine_physics::dimension::Dimension;
+use calcine_physics::law::{Bound, LawEntry, LawParameter};
+
+use super::model::{ScreenLaw, not_positive};
 
 /// Plitt's separation curve, after Rosin and Rammler.
 ///
@@ -27,6 +30,40 @@ impl ScreenLaw for Plitt {
         not_positive(&[("cut size", self.cut), ("sharpness", self.sharpness)])
     }
 }
+
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn ScreenLaw> = LawEntry {
+    name: "plitt",
+    summary: "Plitt's curve, after Rosin and Rammler.",
+    source: "Plitt, CIM Bulletin 69 (1976) 114",
+    parameters: &[
+        LawParameter {
+            name: "cut",
+            dimension: Dimension::LENGTH,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Cut size.",
+            example: "\"2 mm\"",
+        },
+        LawParameter {
+            name: "sharpness",
+            dimension: Dimension::NONE,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Sharpness of the cut.",
+            example: "4",
+        },
+    ],
+    tables: &[],
+    make: |values| {
+        Box::new(Plitt {
+            cut: values[0],
+            sharpness: values[1],
+        })
+    },
+};
 
 #[cfg(test)]
 mod tests {

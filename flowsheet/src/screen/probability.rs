@@ -1,6 +1,9 @@
 //! A cumulative normal distribution.
 
-use super::{ScreenLaw, not_positive};
+use calcine_physics::dimension::Dimension;
+use calcine_physics::law::{Bound, LawEntry, LawParameter};
+
+use super::model::{ScreenLaw, not_positive};
 use crate::distribution::normal_below;
 
 /// A separation curve that is a cumulative normal distribution of the cut size.
@@ -29,6 +32,40 @@ impl ScreenLaw for ProbabilityScreen {
         ])
     }
 }
+
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn ScreenLaw> = LawEntry {
+    name: "probability",
+    summary: "A cumulative normal distribution of the cut size.",
+    source: "as the screen of Dyssol, SoftwareX 12 (2020) 100572, doi 10.1016/j.softx.2020.100572",
+    parameters: &[
+        LawParameter {
+            name: "mean",
+            dimension: Dimension::LENGTH,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Mean cut size.",
+            example: "\"1 mm\"",
+        },
+        LawParameter {
+            name: "deviation",
+            dimension: Dimension::LENGTH,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Standard deviation of the cut size.",
+            example: "\"0.1 mm\"",
+        },
+    ],
+    tables: &[],
+    make: |values| {
+        Box::new(ProbabilityScreen {
+            mean: values[0],
+            deviation: values[1],
+        })
+    },
+};
 
 #[cfg(test)]
 mod tests {

@@ -1,6 +1,9 @@
 //! Teipel and Hennig.
 
-use super::{ScreenLaw, not_positive};
+use calcine_physics::dimension::Dimension;
+use calcine_physics::law::{Bound, LawEntry, LawParameter};
+
+use super::model::{ScreenLaw, not_positive};
 
 /// Separation curve of Teipel and Hennig, with a share of the fines that sticks to the coarse side.
 ///
@@ -39,6 +42,60 @@ impl ScreenLaw for TeipelHennig {
         ])
     }
 }
+
+/// Its entry in a case file.
+pub(super) static LAW: LawEntry<dyn ScreenLaw> = LawEntry {
+    name: "teipel-hennig",
+    summary: "The curve of Teipel and Hennig, with a share of the fines that is coarse.",
+    source: "Hennig and Teipel, Chem. Ing. Tech. 83 (2011) 1107, doi 10.1002/cite.201000208",
+    parameters: &[
+        LawParameter {
+            name: "cut",
+            dimension: Dimension::LENGTH,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Cut size.",
+            example: "\"2 mm\"",
+        },
+        LawParameter {
+            name: "sharpness",
+            dimension: Dimension::NONE,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Sharpness of the cut.",
+            example: "4",
+        },
+        LawParameter {
+            name: "second_sharpness",
+            dimension: Dimension::NONE,
+            bound: Bound::Positive,
+            default: None,
+            needed_with: None,
+            meaning: "Second sharpness of the cut.",
+            example: "0.5",
+        },
+        LawParameter {
+            name: "offset",
+            dimension: Dimension::NONE,
+            bound: Bound::Between(0.0, 1.0),
+            default: Some(0.0),
+            needed_with: None,
+            meaning: "Share of the fines that is coarse.",
+            example: "0.1",
+        },
+    ],
+    tables: &[],
+    make: |values| {
+        Box::new(TeipelHennig {
+            cut: values[0],
+            sharpness: values[1],
+            second_sharpness: values[2],
+            offset: values[3],
+        })
+    },
+};
 
 #[cfg(test)]
 mod tests {

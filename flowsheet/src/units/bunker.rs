@@ -9,6 +9,12 @@ pub enum Discharge {
     Level,
     /// Mass divided by a residence time in s.
     Residence(f64),
+    /// What enters times (2 m/(m + m_target))²: less where there is less than the target, up to four times as much where there is
+    /// more. The target in kg.
+    ///
+    /// Source: the unit "Solids bunker" of Dyssol, model "Adaptive" (SoftwareX 12 (2020) 100572,
+    /// doi 10.1016/j.softx.2020.100572).
+    Adaptive(f64),
     /// A mass flow in kg/s over time. It ends when the bunker is empty: by an error, as a rate needs something to move.
     Rate(Timetable),
 }
@@ -28,6 +34,10 @@ impl Bunker {
         Ok(match &self.discharge {
             Discharge::Level => view.layout.mass_flow(view.inlet(0)) / mass,
             Discharge::Residence(time) => 1.0 / time,
+            Discharge::Adaptive(target) => {
+                let level = 2.0 * mass / (mass + target);
+                view.layout.mass_flow(view.inlet(0)) * level * level / mass
+            }
             Discharge::Rate(rate) => {
                 if mass <= 0.0 {
                     return Err(PlantError::Value {
@@ -72,8 +82,13 @@ impl ProcessUnit for Bunker {
             return Err(refuse("mass in kg", mass, "it is finite and not negative"));
         }
         match &self.discharge {
-            Discharge::Level if mass == 0.0 => {
-                Err(refuse("mass in kg", mass, "`level` needs a content"))
+            Discharge::Level | Discharge::Adaptive(_) if mass == 0.0 => Err(refuse(
+                "mass in kg",
+                mass,
+                "`level` and `adaptive` need a content",
+            )),
+            Discharge::Adaptive(target) if !(*target > 0.0 && target.is_finite()) => {
+                Err(refuse("target mass in kg", *target, "it is above zero"))
             }
             Discharge::Residence(time) if !(*time > 0.0 && time.is_finite()) => {
                 Err(refuse("residence time in s", *time, "it is above zero"))
@@ -91,7 +106,7 @@ impl ProcessUnit for Bunker {
     }
 
     fn passes_through(&self) -> bool {
-        self.discharge == Discharge::Level
+        matches!(self.discharge, Discharge::Level | Discharge::Adaptive(_))
     }
 
     fn produce(&self, view: &UnitView<'_>, out: &mut [f64]) -> Result<(), PlantError> {
@@ -116,6 +131,10 @@ impl ProcessUnit for Bunker {
     fn scales(&self, layout: &StreamLayout, scales: &mut [f64]) {
         scales.fill(layout.mass_flow(&self.content).max(1.0));
         scales[layout.enthalpy()] *= 1e5;
+    }
+
+    fn fastest(&self, view: &UnitView<'_>, _out: &[f64]) -> f64 {
+        self.flow(view).unwrap_or(0.0)
     }
 
     fn next_break(&self, time: f64) -> Option<f64> {

@@ -1,6 +1,7 @@
 //! A mill.
 
 use crate::mill::MillLaw;
+use crate::sums::sum;
 use crate::{PlantError, ProcessUnit, StreamLayout, UnitView};
 
 /// A mill: its law moves the solids between classes; liquids and vapours pass; the power drawn becomes heat.
@@ -32,15 +33,14 @@ impl ProcessUnit for Mill {
         let layout = view.layout;
         let feed = view.inlet(0);
         let sizes = layout.by_size(feed);
-        if sizes.iter().sum::<f64>() > 0.0 {
-            let moved = self.law.transformation(layout.grid(), &sizes, view.name)?;
-            moved.apply(layout, feed, out);
-        } else if self.law.needs_feed() {
+        if self.law.needs_feed() && sum(&sizes) <= 0.0 {
             return Err(PlantError::IdleMill {
                 unit: view.name.to_owned(),
                 time: view.time,
             });
         }
+        let moved = self.law.transformation(layout.grid(), &sizes, view.name)?;
+        moved.apply(layout, feed, out);
         let rest = layout.solids()..layout.width();
         out[rest.clone()].copy_from_slice(&feed[rest]);
         out[layout.enthalpy()] += self.law.power();

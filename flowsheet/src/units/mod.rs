@@ -2,6 +2,7 @@
 
 mod bunker;
 mod cyclone;
+mod delay;
 mod dryer;
 mod granulator;
 mod inlet;
@@ -13,6 +14,7 @@ mod splitter;
 
 pub use bunker::{Bunker, Discharge};
 pub use cyclone::Cyclone;
+pub use delay::TimeDelay;
 pub use dryer::Dryer;
 pub use granulator::{BedHeat, BedLevel, Granulator, Overspray};
 pub use inlet::PlantInlet;

@@ -1,13 +1,14 @@
-//! The reference part of `docs/reference/case-file.md`, made from the keys and the laws.
+//! The reference part of the docs' page of a kind of case, made from the keys and the laws.
 
 use calcine_coupler::physics::law::{LawParameter, LawSummary, LawTable};
 
 use super::describe::number_words;
 use super::key::{KeyPresence, KeyValue};
+use super::kinds::CaseKind;
 use super::placed::{PlacedKey, keys};
 use crate::laws::LawCatalogue;
 
-/// Where the part of `docs/reference/case-file.md` that is made from the keys begins.
+/// Where the part of a page that is made from the keys begins.
 pub const BEGIN: &str = "## All keys\n";
 
 const HEAD: &str = "
@@ -25,13 +26,13 @@ const LAWS: &str = "
 What a case may choose by `law`, and the keys that go with it.
 ";
 
-/// The last part of `docs/reference/case-file.md`, from [`BEGIN`] on.
-pub fn markdown() -> String {
+/// The last part of a kind's page, from [`BEGIN`] on.
+pub fn markdown(kind: &CaseKind) -> String {
     let laws = &LawCatalogue::default();
     let mut text = format!("{BEGIN}{HEAD}");
     text.push_str("\n### The file\n\n");
     text.push_str(TABLE);
-    for placed in &keys(laws) {
+    for placed in &keys(kind, laws) {
         let PlacedKey { place, key, .. } = placed;
         let section = !place.contains('.') && !key.below(laws).is_empty();
         if section {
@@ -46,7 +47,7 @@ pub fn markdown() -> String {
         ));
     }
     text.push_str(LAWS);
-    for (family, entries) in laws.families() {
+    for (family, entries) in (kind.families)(laws) {
         text.push_str(&format!(
             "\n#### `{family}`\n\n| Law | What | Keys | Source |\n|---|---|---|---|\n"
         ));

@@ -11,6 +11,7 @@ mod docs;
 mod external;
 mod gas;
 mod key;
+mod kinds;
 mod law_path;
 mod laws;
 mod materials;
@@ -30,9 +31,9 @@ mod zone;
 pub(super) use describe::{number_words, parse_number};
 pub use docs::{BEGIN, markdown};
 pub use key::{Key, KeyPresence, KeyValue, MOST};
+pub use kinds::{CaseKind, KINDS, kind_named, kind_names};
 pub use law_path::{LawFamily, LawPath};
 pub use placed::{PlacedKey, keys};
-pub(super) use root::ROOT;
 
 #[cfg(test)]
 mod tests;

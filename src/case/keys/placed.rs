@@ -1,9 +1,9 @@
 //! All keys of a case file with their places.
 
 use super::key::{Key, KeyValue};
+use super::kinds::CaseKind;
 use super::law_path::{LawFamily, LawPath};
 use super::of_laws;
-use super::root::ROOT;
 use crate::laws::LawCatalogue;
 
 /// A key with its dotted place.
@@ -40,10 +40,10 @@ impl PlacedKey {
     }
 }
 
-/// All keys in the order of a case file.
-pub fn keys(laws: &LawCatalogue) -> Vec<PlacedKey> {
+/// All keys of a kind of case, in the order of its file.
+pub fn keys(kind: &CaseKind, laws: &LawCatalogue) -> Vec<PlacedKey> {
     let mut all = Vec::new();
-    place("", ROOT, None, laws, &mut all);
+    place("", kind.keys, None, laws, &mut all);
     all
 }
 

@@ -16,9 +16,10 @@ use super::quantities::QUANTITIES;
 use super::reactions::REACTIONS;
 use super::walls::WALLS;
 
-/// The keys of the file itself.
+/// The keys of the file of a bed.
 #[rustfmt::skip]
-pub(in crate::case) const ROOT: &[Key] = &[
+pub(super) const BED: &[Key] = &[
+    key("kind", Choice(|| vec!["bed"]), Default("bed"), "What the file describes; without it a bed.", "\"bed\""),
     key("format", Whole(0, MOST), Required, "Version of the format; 1 is the only one.", "1"),
     key("title", Text, Required, "Title for people.", "\"Hot air heats a column\""),
     key("time", Table(TIME), Required, "Clocks. All times are process time, save `motion_window` (motion time).", "[time]"),

@@ -7,38 +7,55 @@ use super::*;
 use crate::case::table::{Problems, TableReader};
 use crate::laws::LawCatalogue;
 
+/// Reads a case of a kind for the keys that its reader asks for.
+fn ask(kind: &CaseKind, root: &TableReader<'_>, path: &Path, text: &str) {
+    root.has("kind");
+    match kind.name {
+        "bed" => {
+            crate::case::sections::case(root, path, text, String::new());
+        }
+        other => panic!("which reader takes a case of kind \"{other}\"?"),
+    }
+}
+
 #[test]
 fn the_keys_that_are_declared_are_exactly_those_that_the_reader_asks_for() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let laws = LawCatalogue::default();
-    let mut asked = BTreeSet::new();
-    for folder in ["cases", "tests/inputs/good"] {
-        for entry in std::fs::read_dir(root.join(folder)).unwrap() {
-            let path = entry.unwrap().path();
-            if path.extension().is_none_or(|extension| extension != "toml") {
-                continue;
+    for kind in KINDS {
+        let mut asked = BTreeSet::new();
+        for folder in ["cases", "tests/inputs/good"] {
+            for entry in std::fs::read_dir(root.join(folder)).unwrap() {
+                let path = entry.unwrap().path();
+                if path.extension().is_none_or(|extension| extension != "toml") {
+                    continue;
+                }
+                let text = std::fs::read_to_string(&path).unwrap();
+                if crate::case::kind_of_text(&path, &text, &[]).unwrap().name != kind.name {
+                    continue;
+                }
+                let document = toml_edit::Document::parse(text.as_str()).unwrap();
+                let problems = Problems::default();
+                let reader = TableReader::root(&problems, kind, &laws, document.as_table());
+                ask(kind, &reader, &path, &text);
+                asked.append(&mut problems.asked());
             }
-            let text = std::fs::read_to_string(&path).unwrap();
-            let document = toml_edit::Document::parse(text.as_str()).unwrap();
-            let problems = Problems::default();
-            let reader = TableReader::root(&problems, &laws, document.as_table());
-            crate::case::sections::case(&reader, &path, &text, String::new());
-            asked.append(&mut problems.asked());
         }
+        let all = keys(kind, &laws);
+        let known: BTreeSet<String> = all.iter().map(|key| key.place.clone()).collect();
+        assert_eq!(known.len(), all.len(), "a key is declared twice");
+        let missing: Vec<_> = asked.difference(&known).collect();
+        let never: Vec<_> = known.difference(&asked).collect();
+        let name = kind.name;
+        assert!(missing.is_empty(), "{name}: not declared: {missing:?}");
+        assert!(never.is_empty(), "{name}: never asked for: {never:?}");
     }
-    let all = keys(&laws);
-    let known: BTreeSet<String> = all.iter().map(|key| key.place.clone()).collect();
-    assert_eq!(known.len(), all.len(), "a key is declared twice");
-    let missing: Vec<_> = asked.difference(&known).collect();
-    let never: Vec<_> = known.difference(&asked).collect();
-    assert!(missing.is_empty(), "not declared: {missing:?}");
-    assert!(never.is_empty(), "the reader never asks for: {never:?}");
 }
 
 #[test]
 fn every_example_is_toml_and_every_default_a_value_of_its_key() {
     let laws = LawCatalogue::default();
-    for placed in keys(&laws) {
+    for placed in KINDS.iter().flat_map(|kind| keys(kind, &laws)) {
         let example = placed.example(&laws);
         let heading = example.starts_with('[') && !example.contains(['"', ',', '{']);
         let text = match heading {
@@ -73,18 +90,21 @@ fn every_example_is_toml_and_every_default_a_value_of_its_key() {
 
 #[test]
 fn the_page_of_the_docs_is_made_from_the_table() {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/reference/case-file.md");
-    let mut written = std::fs::read_to_string(&page).unwrap();
-    let begin = written.find(BEGIN).unwrap_or(written.len());
-    if std::env::var_os("CALCINE_WRITE_DOCS").is_some() {
-        let prose = written[..begin].trim_end();
-        std::fs::write(&page, format!("{prose}\n\n{}", markdown())).unwrap();
-        written = std::fs::read_to_string(&page).unwrap();
+    for kind in KINDS {
+        let page = Path::new(env!("CARGO_MANIFEST_DIR")).join(kind.page);
+        let mut written = std::fs::read_to_string(&page).unwrap();
+        let begin = written.find(BEGIN).unwrap_or(written.len());
+        if std::env::var_os("CALCINE_WRITE_DOCS").is_some() {
+            let prose = written[..begin].trim_end();
+            std::fs::write(&page, format!("{prose}\n\n{}", markdown(kind))).unwrap();
+            written = std::fs::read_to_string(&page).unwrap();
+        }
+        let begin = written.find(BEGIN).unwrap_or(written.len());
+        assert_eq!(
+            &written[begin..],
+            markdown(kind),
+            "set CALCINE_WRITE_DOCS=1 and run this test again to write {}",
+            kind.page
+        );
     }
-    let begin = written.find(BEGIN).unwrap_or(written.len());
-    assert_eq!(
-        &written[begin..],
-        markdown(),
-        "set CALCINE_WRITE_DOCS=1 and run this test again to write docs/reference/case-file.md"
-    );
 }

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use toml_edit::{Item, TableLike, Value};
 
-use super::keys::{Key, KeyPresence, KeyValue, ROOT};
+use super::keys::{CaseKind, Key, KeyPresence, KeyValue};
 use super::problem::Problem;
 use crate::laws::LawCatalogue;
 
@@ -156,6 +156,8 @@ pub struct TableReader<'a> {
     problems: &'a Problems,
     laws: &'a LawCatalogue,
     table: &'a dyn TableLike,
+    /// The keys of the whole file.
+    file: &'static [Key],
     keys: Cow<'static, [Key]>,
     place: String,
     /// The place as the declarations have it: `materials.NAME`, `particles`.
@@ -165,13 +167,19 @@ pub struct TableReader<'a> {
 }
 
 impl<'a> TableReader<'a> {
-    /// The whole file, for a case that may choose among these laws.
-    pub fn root(problems: &'a Problems, laws: &'a LawCatalogue, table: &'a dyn TableLike) -> Self {
+    /// The whole file, for a case of a kind that may choose among these laws.
+    pub fn root(
+        problems: &'a Problems,
+        kind: &CaseKind,
+        laws: &'a LawCatalogue,
+        table: &'a dyn TableLike,
+    ) -> Self {
         Self {
             problems,
             laws,
             table,
-            keys: Cow::Borrowed(ROOT),
+            file: kind.keys,
+            keys: Cow::Borrowed(kind.keys),
             place: String::new(),
             pattern: String::new(),
             span: 0..0,
@@ -419,7 +427,7 @@ impl<'a> TableReader<'a> {
     fn elsewhere(&self, key: &str) -> Option<String> {
         let misspelt = nearest(key, self.keys.iter().map(|one| one.name)).is_some();
         let mut places = Vec::new();
-        for section in ROOT {
+        for section in self.file {
             if section.name == key {
                 places.push(key.to_owned());
             }

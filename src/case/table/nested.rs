@@ -247,6 +247,7 @@ impl<'a> TableReader<'a> {
             problems: self.problems,
             laws: self.laws,
             table,
+            file: self.file,
             keys: Cow::Borrowed(&[]),
             place,
             pattern,

@@ -8,6 +8,7 @@ use sizes::{BedSizes, Turnover};
 
 use crate::distribution::OUTSIDE;
 use crate::population::{GrowthLaw, GrowthScheme, SizeProcess};
+use crate::sums::{add_in_turns, sum};
 use crate::{PlantError, ProcessUnit, StreamLayout, UnitView};
 
 /// How much a granulator holds.
@@ -135,12 +136,7 @@ impl Granulator {
         let compounds = layout.compounds();
         let spray = view.inlet(SPRAY);
         let mut sprayed = vec![0.0; compounds.len()];
-        for cell in spray[..layout.solids()].chunks_exact(compounds.len()) {
-            sprayed
-                .iter_mut()
-                .zip(cell)
-                .for_each(|(s, flow)| *s += flow);
-        }
+        add_in_turns(&spray[..layout.solids()], &mut sprayed);
         for (k, compound) in compounds.iter().enumerate() {
             if !compound.volatile {
                 let inlets = view.all_inlets();
@@ -155,7 +151,7 @@ impl Granulator {
         let lost: f64 = worn.iter().sum();
         let returned = self.sizes.overspray.returned * (dust.iter().sum::<f64>() + lost);
         let enters = Self::feed(view) + deposited + returned - lost;
-        let mass: f64 = view.state[..layout.solids()].iter().sum();
+        let mass = sum(&view.state[..layout.solids()]);
         let product = match self.level {
             BedLevel::Fixed => enters,
             BedLevel::Residence(time) => mass / time,
@@ -241,7 +237,7 @@ impl ProcessUnit for Granulator {
         let layout = view.layout;
         let turnover = self.turnover(view);
         let (product, exhaust) = out.split_at_mut(layout.width());
-        let mass: f64 = view.state[..layout.solids()].iter().sum();
+        let mass = sum(&view.state[..layout.solids()]);
         let share = turnover.product / mass;
         let solids = product.iter_mut().zip(&view.state[..layout.solids()]);
         solids.for_each(|(p, held)| *p = share * held);
@@ -330,7 +326,7 @@ impl ProcessUnit for Granulator {
         let mut own = vec![0.0; layout.width()];
         own[..layout.solids()].copy_from_slice(&state[..layout.solids()]);
         if let Some(k) = self.moisture(layout) {
-            let mass: f64 = state[..layout.solids()].iter().sum();
+            let mass = sum(&state[..layout.solids()]);
             own[layout.liquid(k)] = self.moisture * mass;
         }
         match self.heat {
@@ -357,6 +353,12 @@ impl ProcessUnit for Granulator {
         }
     }
 
+    fn fastest(&self, view: &UnitView<'_>, _out: &[f64]) -> f64 {
+        let turnover = self.turnover(view);
+        let mass = sum(&view.state[..view.layout.solids()]);
+        turnover.product / mass + self.sizes.fastest(view.layout, view.state, &turnover)
+    }
+
     fn invariants(&self) -> usize {
         usize::from(self.level == BedLevel::Fixed && self.sizes.scheme != GrowthScheme::Dyssol)
     }
@@ -367,6 +369,14 @@ impl ProcessUnit for Granulator {
         let all: f64 = masses.iter().sum();
         let last = masses[masses.len() - 1] / all;
         if last > OUTSIDE.sqrt() || !last.is_finite() {
+            if let Some(degree) = self.sizes.processes.iter().find_map(|p| p.gels()) {
+                return Err(PlantError::Gels {
+                    place: format!("granulator \"{}\"", view.name),
+                    time: view.time,
+                    share: last,
+                    degree,
+                });
+            }
             let (from, to) = layout.grid().range();
             return Err(PlantError::OutsideGrid {
                 place: format!(

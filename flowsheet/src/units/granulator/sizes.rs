@@ -7,6 +7,9 @@ use crate::population::{
 };
 use crate::{PlantError, StreamLayout};
 
+/// The fastest mode of limited fluxes between classes, in passages of a class per second.
+const LIMITED: f64 = 3.0;
+
 /// Spray that dries before it hits a particle, and dust that particles wear off.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Overspray {
@@ -160,6 +163,10 @@ impl BedSizes {
     }
 
     fn numbers(&self, layout: &StreamLayout, state: &[f64]) -> Vec<f64> {
+        if layout.inner() == 1 {
+            let pairs = state.iter().zip(&self.particle);
+            return pairs.map(|(mass, particle)| mass / particle).collect();
+        }
         let classes = state[..layout.solids()].chunks_exact(layout.inner());
         let number = |(class, m): (&[f64], &f64)| class.iter().sum::<f64>() / m;
         classes.zip(&self.particle).map(number).collect()
@@ -205,6 +212,43 @@ impl BedSizes {
         }
     }
 
+    /// Number density times relative growth at the face above each class but the last, and what passes there gains per
+    /// unit of growth, in kg/m.
+    fn faces(&self, fluxes: &SizeFluxes, numbers: &[f64]) -> (Vec<f64>, f64) {
+        let mut faces = vec![0.0; numbers.len() - 1];
+        fluxes.growing(numbers, &mut faces);
+        let mut gain = 0.0;
+        for ((face, g), pair) in faces
+            .iter_mut()
+            .zip(&self.growth)
+            .zip(self.particle.windows(2))
+        {
+            *face *= g;
+            gain += *face * (pair[1] - pair[0]);
+        }
+        (faces, gain)
+    }
+
+    /// A bound of how fast small deviations between classes fade, in 1/s.
+    pub(super) fn fastest(&self, layout: &StreamLayout, state: &[f64], turnover: &Turnover) -> f64 {
+        let Some(fluxes) = &self.fluxes else {
+            return 0.0;
+        };
+        let (_, gain) = self.faces(fluxes, &self.numbers(layout, state));
+        let speed = if turnover.deposited == 0.0 {
+            0.0
+        } else {
+            turnover.deposited / gain
+        };
+        let grid = layout.grid();
+        let passed = self.growth.iter().enumerate();
+        let passed = passed.map(|(class, g)| (speed * g + self.wear) / grid.width(class));
+        let masses = &state[..layout.solids()];
+        let processes = self.processes.iter();
+        let processes: f64 = processes.map(|p| p.fastest(layout.inner(), masses)).sum();
+        LIMITED * passed.fold(0.0, f64::max) + processes
+    }
+
     /// Adds growth: number passes from class to class, and the spray's mass with it.
     fn grow(&self, layout: &StreamLayout, state: &[f64], turnover: &Turnover, rates: &mut [f64]) {
         let Some(fluxes) = &self.fluxes else { return };
@@ -232,17 +276,16 @@ impl BedSizes {
             }
             return;
         }
-        let mut faces = vec![0.0; numbers.len() - 1];
-        fluxes.growing(&numbers, &mut faces);
-        let gained = |class: usize| self.particle[class + 1] - self.particle[class];
-        let weighted = faces.iter_mut().zip(&self.growth).enumerate();
-        let gain: f64 = weighted
-            .map(|(class, (face, g))| {
-                *face *= g;
-                *face * gained(class)
-            })
-            .sum();
+        let (faces, gain) = self.faces(fluxes, &numbers);
         let speed = turnover.deposited / gain;
+        let gained = |class: usize| self.particle[class + 1] - self.particle[class];
+        if inner == 1 {
+            for (class, face) in faces.iter().enumerate() {
+                rates[class] -= speed * face * self.particle[class];
+                rates[class + 1] += speed * face * self.particle[class + 1];
+            }
+            return;
+        }
         for (class, face) in faces.iter().enumerate() {
             let flux = speed * face;
             let own = &state[class * inner..(class + 1) * inner];
@@ -273,6 +316,9 @@ impl BedSizes {
         share: f64,
         out: &mut [f64],
     ) {
+        if turnover.worn.is_empty() && turnover.dust.iter().all(|flow| *flow == 0.0) {
+            return;
+        }
         let (inner, compounds) = (layout.inner(), layout.compounds().len());
         let mut dust = turnover.dust.clone();
         for (place, worn) in turnover.worn.iter().enumerate() {

@@ -1,0 +1,247 @@
+//! Laws, energies and intervals from noisy curves at several heating rates.
+
+use std::sync::atomic::AtomicBool;
+
+use calcine_physics::dimension::Dimension;
+use calcine_tuning::analysis::{
+    SmoothedRun, friedman, kissinger, kissinger_temperature, ozawa_flynn_wall,
+};
+use calcine_tuning::information::{akaike, choose};
+use calcine_tuning::interval::{BootstrapSettings, bootstrap, profile};
+use calcine_tuning::law::{CONVERSION_LAWS, conversion_law, default_law, law_defaults};
+use calcine_tuning::least_squares::{FitChoice, FittedPlaces};
+use calcine_tuning::model::{
+    HeatingRun, KineticModel, ReactionSet, SampleModel, SampleReaction, SampleResponse,
+};
+use calcine_tuning::search::{StartSettings, fit_globally};
+use calcine_tuning::{
+    ComparedQuantity, DifferenceForm, ParameterSpace, SampleProblem, SearchRandom, TargetCurve,
+    TemperatureProgramme, TunedParameter, TuningProblem,
+};
+
+/// Contracting area of calcite, Crystals 10(9) 849: requirements DEC-T15.
+const ENERGY: f64 = 235.78e3;
+const FACTOR: f64 = 1.13e11;
+const LOSS: f64 = 0.4397;
+
+fn reaction(law: &str, factor: f64, energy: f64) -> SampleReaction {
+    let law = conversion_law(law).unwrap();
+    SampleReaction {
+        name: String::new(),
+        law,
+        law_numbers: law_defaults(law),
+        pre_exponential: factor,
+        activation_energy: energy,
+        reactant: 1.0,
+        mass_loss: LOSS,
+        enthalpy: 0.0,
+    }
+}
+
+fn model(law: &str, factor: f64, energy: f64) -> KineticModel {
+    KineticModel::new(ReactionSet::new(vec![reaction(law, factor, energy)]))
+}
+
+fn respond(model: &KineticModel, run: &HeatingRun) -> SampleResponse {
+    let values: Vec<f64> = model.parameters().iter().map(|one| one.value).collect();
+    let mut out = SampleResponse::default();
+    model.prepare(run).respond(&values, &mut out).unwrap();
+    out
+}
+
+/// A curve at a heating rate in K/min from 400 to 900 °C, 251 values, with noise of the mass as a share of the loss.
+fn curve(truth: &KineticModel, rate: f64, noise: f64, random: &mut SearchRandom) -> TargetCurve {
+    let (start, span) = (673.15, 500.0);
+    let end = span / rate * 60.0;
+    let run = HeatingRun {
+        programme: TemperatureProgramme::heating(start, rate / 60.0, end).unwrap(),
+        sample_mass: 5e-6,
+        times: (0..=250).map(|k| end * f64::from(k) / 250.0).collect(),
+    };
+    let mass = respond(truth, &run).mass;
+    let mass = mass
+        .iter()
+        .map(|m| m + noise * LOSS * random.normal())
+        .collect();
+    TargetCurve {
+        name: format!("{rate} K/min"),
+        run,
+        values: vec![(ComparedQuantity::Mass, mass)],
+        counted: Vec::new(),
+    }
+}
+
+fn curves(rates: &[f64], noise: f64, seed: u64) -> Vec<TargetCurve> {
+    let truth = model("R2", FACTOR, ENERGY);
+    let mut random = SearchRandom::new(seed);
+    rates
+        .iter()
+        .map(|&rate| curve(&truth, rate, noise, &mut random))
+        .collect()
+}
+
+fn problem(law: &str, targets: Vec<TargetCurve>) -> SampleProblem {
+    let parameter = |name: &str, dimension, low, high, logarithmic| TunedParameter {
+        name: name.into(),
+        dimension,
+        low,
+        high,
+        logarithmic,
+    };
+    let mut tuned = vec![
+        parameter(
+            "pre_exponential",
+            Dimension::ANGULAR_VELOCITY,
+            1e2,
+            1e25,
+            true,
+        ),
+        parameter(
+            "activation_energy",
+            Dimension::MOLAR_ENERGY,
+            50e3,
+            500e3,
+            false,
+        ),
+    ];
+    for own in conversion_law(law).unwrap().parameters {
+        let (low, high) = match own.name {
+            "structure" => (0.0, 100.0),
+            _ => (0.5, 4.0),
+        };
+        tuned.push(parameter(own.name, own.dimension, low, high, false));
+    }
+    let model = model(law, 1e10, 2e5);
+    let space = ParameterSpace::new(tuned).unwrap();
+    let mut made = SampleProblem::new(&model, space, targets, DifferenceForm::Absolute).unwrap();
+    let law = default_law(law).unwrap();
+    made.guess_by(&*law, &model, ["pre_exponential", "activation_energy"]);
+    made
+}
+
+fn best(problem: &SampleProblem) -> FittedPlaces {
+    let settings = StartSettings {
+        samples: 20,
+        starts: 4,
+        seed: 1,
+    };
+    fit_globally(
+        problem,
+        &FitChoice::default(),
+        &settings,
+        &AtomicBool::new(false),
+    )
+    .unwrap()
+}
+
+fn energy(problem: &SampleProblem, fitted: &FittedPlaces) -> f64 {
+    problem.space().values(&fitted.places)[1]
+}
+
+const RATES: [f64; 4] = [3.0, 6.0, 9.0, 12.0];
+
+#[test]
+fn first_order_without_lag_peaks_where_kissinger_has_it() {
+    // Requirements: 0.05 K. Curves of 0.02 K, and the model's own rate.
+    let first = model("F1", 1.235e15, 325.1e3);
+    for rate in [3.0, 6.0, 9.0, 12.0, 15.0] {
+        let end = 200.0 / rate * 60.0;
+        let run = HeatingRun {
+            programme: TemperatureProgramme::heating(873.15, rate / 60.0, end).unwrap(),
+            sample_mass: 1e-6,
+            times: (0..=10_000).map(|k| end * f64::from(k) / 1e4).collect(),
+        };
+        let response = respond(&first, &run);
+        let peak = response.loss_rate.iter().enumerate();
+        let peak = peak.max_by(|a, b| a.1.total_cmp(b.1)).unwrap().0;
+        let expected = kissinger_temperature(1.235e15, 325.1e3, rate / 60.0);
+        let off = response.temperature[peak] - expected;
+        assert!(off.abs() < 0.05, "{rate} K/min: {off} K");
+    }
+}
+
+#[test]
+fn the_law_behind_noisy_curves_is_chosen_and_its_energy_found() {
+    for seed in [11, 12, 13] {
+        let targets = curves(&RATES, 0.005, seed);
+        let fits = CONVERSION_LAWS.iter().map(|law| {
+            let problem = problem(law.name, targets.clone());
+            let fitted = best(&problem);
+            let (values, count) = (fitted.counts.iter().sum(), problem.space().len());
+            let criterion = akaike(fitted.deviance(), values, count + 1);
+            ((criterion, count), energy(&problem, &fitted))
+        });
+        let (fits, energies): (Vec<(f64, usize)>, Vec<f64>) = fits.unzip();
+        let chosen = choose(&fits).unwrap();
+        assert_eq!(CONVERSION_LAWS[chosen].name, "R2", "seed {seed}");
+        let off = energies[chosen] / ENERGY - 1.0;
+        assert!(off.abs() < 0.02, "seed {seed}: {off}");
+    }
+}
+
+#[test]
+fn one_heating_rate_by_first_order_is_far_from_the_energy() {
+    // Requirements DEC-T15: 292.5 kJ/mol, +24 %, by least squares of the mass over 0.001 < X < 0.999 without noise.
+    for rate in RATES {
+        let mut targets = curves(&[rate], 0.0, 1);
+        targets
+            .iter_mut()
+            .for_each(|target| target.count_within(0.001, 0.999));
+        let problem = problem("F1", targets);
+        let found = energy(&problem, &best(&problem));
+        assert!(found / ENERGY - 1.0 > 0.2, "{rate}: {found}");
+    }
+}
+
+#[test]
+fn energies_without_a_law_are_those_of_the_data() {
+    // Kissinger's intercept and slope are those of first order (237.6 kJ/mol of these data by requirements DEC-T15), Ozawa's
+    // are Doyle's: both are off by up to 2 % without noise.
+    for (noise, within) in [(0.0, 0.02), (0.005, 0.04)] {
+        let runs: Vec<SmoothedRun> = curves(&RATES, noise, 5)
+            .iter()
+            .map(|target| SmoothedRun::of(target).unwrap())
+            .collect();
+        let found = kissinger(&runs).unwrap();
+        assert!((found.energy / ENERGY - 1.0).abs() < within, "{found:?}");
+        for list in [friedman(&runs).unwrap(), ozawa_flynn_wall(&runs).unwrap()] {
+            let inner = list
+                .iter()
+                .filter(|one| (0.2..0.81).contains(&one.conversion));
+            let inner: Vec<f64> = inner.map(|one| one.energy).collect();
+            let mean = inner.iter().sum::<f64>() / inner.len() as f64;
+            assert!((mean / ENERGY - 1.0).abs() < within, "{noise}: {list:?}");
+            let worst = inner.iter().map(|energy| (energy / ENERGY - 1.0).abs());
+            assert!(
+                worst.fold(0.0, f64::max) < 2.0 * within + noise * 10.0,
+                "{list:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn intervals_hold_the_truth_as_often_as_they_say() {
+    let (mut by_profile, mut by_bootstrap) = (0, 0);
+    for set in 0..100 {
+        let problem = problem("R2", curves(&RATES, 0.005, 1000 + set));
+        let fitted = best(&problem);
+        let truth = problem.space().place(1, ENERGY);
+        let choice = FitChoice::default();
+        let found = profile(&problem, &fitted, &choice, 1, 0.95).unwrap();
+        assert!(!found.low.at_bound && !found.high.at_bound);
+        by_profile += i32::from(found.low.place < truth && truth < found.high.place);
+        let settings = BootstrapSettings {
+            replicates: 100,
+            block: 1,
+            seed: set,
+        };
+        let sets = bootstrap(&problem, &fitted.places, &choice, &settings).unwrap();
+        let mut places: Vec<f64> = sets.iter().map(|places| places[1]).collect();
+        places.sort_by(f64::total_cmp);
+        assert_eq!(places.len(), 100);
+        by_bootstrap += i32::from(places[2] < truth && truth < places[97]);
+    }
+    assert!((90..=99).contains(&by_profile), "{by_profile}");
+    assert!((90..=99).contains(&by_bootstrap), "{by_bootstrap}");
+}
