@@ -14,13 +14,17 @@ use super::step::FlyingParcel;
 /// Averages of a cell over the parcels in it.
 #[derive(Clone, Copy, Debug, Default)]
 struct CellMotion {
+    /// Mass in kg.
     mass: f64,
+    /// Mean velocity ū in m/s.
     mean: Vec3,
     /// Σ m |u − ū|² in J.
     energy: f64,
-    /// Number of real particles, their surface and three times their volume over r: Sauter's radius is 3 V/A.
+    /// Number of real particles.
     particles: f64,
+    /// Their surface in m².
     surface: f64,
+    /// Their volume in m³.
     volume: f64,
     /// Σ of 3/4 α/r³ (r_p + r)² |u_p − ū| over the particles, without α/r³.
     meetings: f64,
