@@ -18,6 +18,7 @@ mod mesh_shape;
 mod meshing;
 pub mod model;
 mod moving;
+pub mod parcels;
 mod overlap;
 pub mod packed;
 mod parse;

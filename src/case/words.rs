@@ -128,6 +128,17 @@ pub(super) struct Adiabatic;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Closed;
 
+/// `motion.parcels.packing`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum PackingScheme {
+    /// The solid fraction at the end of the step is solved for.
+    Implicit,
+    /// The gradient of the stress at its start, limited as Snider does.
+    Explicit,
+    /// No stress.
+    None,
+}
+
 /// A field of the gas whose difference between patches is measured.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DifferenceField(pub &'static str);
@@ -175,7 +186,12 @@ case_words! {
     TimeScheme { "euler" => TimeScheme::ImplicitEuler, "sdirk2" => TimeScheme::Sdirk2 }
     InletScalars { "flux" => InletScalars::Flux, "value" => InletScalars::Value }
     Share { "number" => Share::Number, "mass" => Share::Mass }
-    MotionSpec { "frozen" => MotionSpec::Frozen, "free" => MotionSpec::Free }
+    MotionSpec { "frozen" => MotionSpec::Frozen, "free" => MotionSpec::Free, "parcels" => MotionSpec::Parcels }
+    PackingScheme {
+        "implicit" => PackingScheme::Implicit,
+        "explicit" => PackingScheme::Explicit,
+        "none" => PackingScheme::None,
+    }
     PackingName {
         "random" => PackingName(None),
         "simple-cubic" => PackingName(Some(Lattice::SimpleCubic)),

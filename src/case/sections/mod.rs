@@ -18,6 +18,7 @@ mod mesh;
 mod motion;
 mod output;
 mod packing;
+mod parcels;
 mod particles;
 mod place;
 mod probes;
@@ -140,6 +141,7 @@ pub(super) fn case(
     }
     if let (Some((time, _)), Some(particles)) = (&time, &particles) {
         motion::fits(root, motion.as_ref(), time, particles);
+        parcels::fits(root, (motion.as_ref(), coupling.as_ref()), particles);
         if let Some(motion) = &motion {
             let meeting = motion::Meeting {
                 motion,
