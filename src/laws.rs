@@ -19,6 +19,7 @@ use calcine_flowsheet::population::{
     AGGREGATION_LAWS, AggregationKernel, BREAKAGE_LAWS, BreakageLaw,
 };
 use calcine_flowsheet::screen::{SCREEN_LAWS, ScreenLaw};
+use calcine_tuning::law::CONVERSION_LAWS;
 
 use crate::case::model::{Case, ConductionArea};
 
@@ -127,6 +128,13 @@ impl LawCatalogue {
             ("motion.rolling", summaries(&self.rolling)),
             ("motion.cohesion", summaries(&self.cohesion)),
         ]
+    }
+}
+
+impl LawCatalogue {
+    /// Families of laws that a tuning chooses from; their numbers are keys of its reactions.
+    pub fn tuning_families(&self) -> LawFamilies {
+        vec![("reactions.laws", summaries(CONVERSION_LAWS))]
     }
 }
 

@@ -13,5 +13,6 @@ mod progress;
 pub mod report;
 pub mod results;
 pub mod simulation;
+pub mod tuning;
 pub mod valid;
 mod vtk_xml;

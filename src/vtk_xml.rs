@@ -217,7 +217,32 @@ impl DataArray {
     }
 }
 
+impl DataArray {
+    /// True where its values are whole numbers of 64 bits.
+    pub fn is_whole(&self) -> bool {
+        matches!(self.kind.as_str(), "Int64" | "UInt64")
+    }
+}
+
 impl VtkFile<'_> {
+    /// The bytes of an appended array of numbers of 64 bits.
+    pub fn bytes(&self, array: &DataArray) -> Result<&[u8], VtkError> {
+        let wrong = |what: &str| VtkError::Array {
+            name: array.name.clone(),
+            what: what.to_owned(),
+        };
+        let block = match array.store.as_ref().map_err(|what| wrong(what))? {
+            Store::Inline(_) => return Err(wrong("is not appended")),
+            Store::Appended(offset) => self.appended.block(*offset),
+        };
+        let block = block.ok_or_else(|| wrong("lies beyond the end of the file"))?;
+        let wide = array.is_whole() || array.kind == "Float64";
+        if !wide || !block.len().is_multiple_of(8 * array.components) {
+            return Err(wrong("does not hold whole tuples of 64 bits"));
+        }
+        Ok(block)
+    }
+
     /// The values of an array, whole tuples; whole numbers too.
     pub fn values(&self, array: &DataArray) -> Result<Vec<f64>, VtkError> {
         let wrong = |what: &str| VtkError::Array {

@@ -8,6 +8,7 @@ use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 use calcine_physics::points::linear;
 
+use crate::parcels::ParcelMotion;
 use crate::periodicity::Periodicity;
 
 /// How the particles of a run move.
@@ -18,6 +19,8 @@ pub enum Motion {
     Frozen,
     /// They move freely under gravity, contacts and the force of the gas.
     Free(Box<Contacts>),
+    /// Each stands for many, and moves under gravity, the force of the gas and the stress of the solid.
+    Parcels(Box<ParcelMotion>),
 }
 
 impl Motion {
@@ -348,13 +351,27 @@ pub enum WallMotion {
         /// Period T in s.
         period: f64,
     },
+    /// It is moved along a line to hold a force: m dv/dt = F − c v − what the particles press against it, from rest.
+    Servo {
+        /// Unit vector along the line, in which the force presses.
+        direction: Vec3,
+        /// Force F in N that it holds, its weight included.
+        force: f64,
+        /// Mass m in kg.
+        mass: f64,
+        /// Damping c in N s/m.
+        damping: f64,
+    },
 }
 
 impl WallMotion {
     /// Displacement in m at a motion time in s of a wall that does not turn, and its velocity in m/s; at a kink that of what follows.
+    /// None of a wall that follows the particles.
     pub fn displacement(&self, time: f64) -> (Vec3, Vec3) {
         match self {
-            Self::Still | Self::Rotating { .. } => (Vec3::zeros(), Vec3::zeros()),
+            Self::Still | Self::Rotating { .. } | Self::Servo { .. } => {
+                (Vec3::zeros(), Vec3::zeros())
+            }
             Self::Translating(velocity) => (velocity * time, *velocity),
             Self::Scheduled {
                 direction,
@@ -373,10 +390,10 @@ impl WallMotion {
         }
     }
 
-    /// Largest speed in m/s of a wall that does not turn.
+    /// Largest speed in m/s of a wall that does not turn, as far as it is known ahead.
     pub fn largest_speed(&self) -> f64 {
         match self {
-            Self::Still | Self::Rotating { .. } => 0.0,
+            Self::Still | Self::Rotating { .. } | Self::Servo { .. } => 0.0,
             Self::Translating(velocity) => velocity.norm(),
             Self::Scheduled { distance, .. } => {
                 let legs = distance.windows(2);

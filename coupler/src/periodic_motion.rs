@@ -145,6 +145,7 @@ fn wall(wall: &Wall, axis: usize, span: &PeriodicSpan) -> Result<(), PeriodicMot
         } if !is_along(angular_velocity) => Err(refuse("which turns about another direction")),
         WallMotion::Translating(way)
         | WallMotion::Scheduled { direction: way, .. }
+        | WallMotion::Servo { direction: way, .. }
         | WallMotion::Oscillating { amplitude: way, .. }
             if moves_along(way) =>
         {

@@ -15,6 +15,7 @@ use thiserror::Error;
 use super::impact;
 use super::model::{Case, FreeMotion, MaterialSpec, MotionKind, MotionSpec};
 use super::moving::moving_spheres;
+use super::servo_cautions;
 use super::touching::{Touching, touching};
 use super::units::shown;
 
@@ -244,7 +245,8 @@ fn walls(case: &Case, mut factors: impl Iterator<Item = f64>) -> Result<Vec<Wall
     let changes = factors.any(|one| one != factor);
     let quicker = |wall: &Wall| {
         let motion = match &wall.motion {
-            WallMotion::Still => WallMotion::Still,
+            // A servo follows the particles, on whatever clock they move.
+            WallMotion::Still | WallMotion::Servo { .. } => wall.motion.clone(),
             WallMotion::Scheduled { .. } | WallMotion::Oscillating { .. } if held => {
                 let wall = wall.name.clone();
                 return Err(ContactsError::Held { wall });
@@ -387,7 +389,8 @@ pub(super) fn warnings(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Vec<S
     let step = limits(case, motion, mesh, setup).warning(contacts.step);
     let impacts = impact::hardest(case, motion, setup, fastest(case, mesh, setup));
     let impact = impacts.and_then(|impacts| impacts.warning());
-    impact.into_iter().chain(step).collect()
+    let servos = servo_cautions::all(case, mesh, setup);
+    impact.into_iter().chain(step).chain(servos).collect()
 }
 
 #[cfg(test)]

@@ -18,6 +18,7 @@ mod mesh_shape;
 mod meshing;
 pub mod model;
 mod moving;
+pub mod parcels;
 mod overlap;
 pub mod packed;
 mod parse;
@@ -31,6 +32,7 @@ mod reach_cautions;
 mod schedules;
 pub mod schema;
 mod sections;
+mod servo_cautions;
 mod set;
 mod size_cautions;
 pub mod sizes;
@@ -38,6 +40,7 @@ mod span;
 mod splitting;
 mod step;
 mod stl;
+mod surface_holes;
 mod syntax;
 mod table;
 mod temperature_cautions;
@@ -70,6 +73,7 @@ use model::Case;
 use parse::{parse_as, text_of};
 
 use crate::laws::LawCatalogue;
+use crate::tuning::case::TuningCase;
 
 /// Reads and checks a case file with `--set key=value` applied; all its errors at once.
 pub fn read(path: &Path, set: &[String]) -> Result<Case, CaseErrors> {
@@ -103,6 +107,29 @@ pub fn parse_with(
     )?;
     case.hash = with_files(&case);
     case.changes = changes;
+    Ok(case)
+}
+
+/// Reads and checks a tuning with `--set key=value` applied; all its errors at once.
+pub fn read_tuning(path: &Path, set: &[String]) -> Result<TuningCase, CaseErrors> {
+    parse_tuning(path, &text_of(path)?, set)
+}
+
+/// Checks the text of a tuning; `path` places relative paths and messages.
+pub fn parse_tuning(path: &Path, text: &str, set: &[String]) -> Result<TuningCase, CaseErrors> {
+    let kind = keys::kind_named("tuning").unwrap_or(&keys::KINDS[0]);
+    let laws = LawCatalogue::default();
+    let (mut case, changes) = parse_as(path, text, set, kind, &laws, |root, effective, hash| {
+        sections::tuning::tuning(root, path, effective, hash)
+    })?;
+    case.changes = changes;
+    let mut digest = Sha256::new();
+    digest.update(case.hash.as_bytes());
+    for file in &case.files {
+        digest.update(std::fs::read(file).unwrap_or_default());
+    }
+    let bytes = digest.finalize();
+    case.hash = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
     Ok(case)
 }
 

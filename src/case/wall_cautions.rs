@@ -5,6 +5,7 @@ use calcine_coupler::motion::{WallMotion, WallShape};
 use calcine_coupler::physics::Vec3;
 
 use super::model::{Case, MeshSpec, MotionSpec};
+use super::surface_holes::holes;
 use super::units::shown;
 
 /// Ratio of the sizes of a wall and of the mesh beyond which a unit of length is likely wrong: between m and mm it is 1000.
@@ -35,8 +36,31 @@ pub(super) fn all(case: &Case) -> Vec<String> {
                 wall.name
             ));
         }
+        all.extend(open_surface(case, &wall.name, triangles, size));
     }
     all
+}
+
+/// Warns of holes in a surface through which the smallest particles that move may pass.
+fn open_surface(case: &Case, name: &str, triangles: &[[Vec3; 3]], extent: f64) -> Option<String> {
+    let moving = case.particles.iter();
+    let moving = moving.filter(|one| one.motion == MotionSpec::Free);
+    let smallest = moving.map(|one| one.sizes.smallest()).reduce(f64::min)?;
+    let mut holes = holes(triangles, extent);
+    holes.retain(|hole| hole.width > smallest);
+    let widest = holes.iter().max_by(|a, b| a.width.total_cmp(&b.width))?;
+    let [x, y, z] = [0, 1, 2].map(|axis| shown(widest.centre[axis]));
+    let many = match holes.len() {
+        1 => "a hole".to_owned(),
+        count => format!("{count} holes"),
+    };
+    Some(format!(
+        "the surface of the wall `{name}` has {many} through which particles of {} m pass; the widest one, of {} edges, is {} m wide, at ({x}, {y}, {z}) m: \
+         close it in the file, unless it is an outlet",
+        shown(smallest),
+        widest.edges,
+        shown(widest.width)
+    ))
 }
 
 /// True of triangles that all lie beside a mesh that the case states.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use calcine_wire::SolverNetwork;
 
 use super::failure::Failure;
-use super::{check, compare, plant, report, run, sweep};
+use super::{check, compare, plant, report, run, sweep, tune};
 use crate::case::kind_of;
 use crate::exit;
 use crate::results::ResultsError;
@@ -56,6 +56,23 @@ static COMMANDS: &[KindCommands] = &[
         compare: Some(plant::compare),
         sweep: Some(plant::sweep),
         report: crate::plant::write_plant_report,
+    },
+    KindCommands {
+        kind: "tuning",
+        run: |arguments, case, _, _| {
+            run::use_threads(arguments.threads.map(usize::from))?;
+            tune::tune(&tune::Tuning {
+                case,
+                set: &arguments.set,
+                out: arguments.out.as_deref(),
+                resume: arguments.resume.is_some(),
+                quiet: arguments.quiet,
+            })
+        },
+        check: |arguments| tune::check(&arguments.case, &arguments.set),
+        compare: None,
+        sweep: None,
+        report: tune::page,
     },
 ];
 

@@ -23,6 +23,7 @@ mod schema;
 mod shell;
 mod signals;
 mod sweep;
+mod tune;
 
 use std::os::unix::process::CommandExt;
 use std::process::{self, ExitCode};
@@ -52,6 +53,7 @@ enum Command {
     Check(check::Arguments),
     Compare(compare::Arguments),
     Sweep(sweep::Arguments),
+    Tune(tune::Arguments),
     Conform(conform::Arguments),
     Report(report::Arguments),
     Prepare(prepare::Arguments),
@@ -75,6 +77,7 @@ pub fn run_line(network: Option<&Arc<dyn SolverNetwork>>) -> u8 {
         Command::Check(arguments) => kinds::check(arguments),
         Command::Compare(arguments) => kinds::compare(arguments),
         Command::Sweep(arguments) => kinds::sweep(arguments),
+        Command::Tune(arguments) => tune::run(arguments),
         Command::Conform(arguments) => conform::run(arguments),
         Command::Report(arguments) => kinds::report(arguments),
         Command::Prepare(arguments) => prepare::run(arguments),

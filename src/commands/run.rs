@@ -48,7 +48,7 @@ pub(super) struct Arguments {
     /// Threads of Calcine's own solvers and of the coupling [default: one a core]. Results do not
     /// depend on their number.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
+    pub(super) threads: Option<u16>,
     /// Shows no progress bar.
     #[arg(long)]
     pub(super) quiet: bool,
@@ -215,7 +215,7 @@ pub(super) fn run(
 }
 
 /// Starts the threads; this one is one of them, so that no loop is handed over from thread to thread.
-fn use_threads(threads: Option<usize>) -> Result<(), Failure> {
+pub(super) fn use_threads(threads: Option<usize>) -> Result<(), Failure> {
     let threads =
         threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
     let pool = rayon::ThreadPoolBuilder::new();

@@ -73,6 +73,18 @@ pub enum ResultsError {
         /// What is wrong.
         fact: String,
     },
+    /// A file that is not as it was when the checkpoint was written.
+    #[error("{} is not as the run left it at its checkpoint: {fact}", path.display())]
+    #[diagnostic(help(
+        "put the file back as it was, or begin a run of its own from the checkpoint with `--from` and another `--out`; \
+         nothing that the checkpoint counts on was changed"
+    ))]
+    Behind {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        fact: String,
+    },
     /// A probe with no point in the gas mesh.
     #[error("no point of the probe `{probe}` lies inside the gas mesh")]
     #[diagnostic(help("move the points of the probe into the mesh"))]
@@ -123,6 +135,14 @@ impl ResultsError {
             action,
             path,
             source,
+        }
+    }
+
+    /// A file that lacks what a checkpoint counts on.
+    pub(crate) fn behind(path: &Path, fact: impl Into<String>) -> Self {
+        Self::Behind {
+            path: path.to_owned(),
+            fact: fact.into(),
         }
     }
 

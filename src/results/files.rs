@@ -23,6 +23,24 @@ pub const COMMAND: &str = "command.json";
 /// Name of the effective case, `--set` applied.
 pub const CASE: &str = "case.toml";
 
+/// Name of the HDF5 file while it is made anew.
+pub(super) const DRAFT: &str = "results.h5.new";
+
+/// Name of a snapshot's gas file.
+pub(super) fn gas_file(number: usize) -> String {
+    format!("gas/gas_{number:04}.vtu")
+}
+
+/// Name of a snapshot's particle file.
+pub(super) fn particle_file(number: usize) -> String {
+    format!("particles/particles_{number:04}.vtp")
+}
+
+/// Name of a snapshot's file of probes.
+pub(super) fn probe_file(number: usize) -> String {
+    format!("probes/probes_{number:04}.csv")
+}
+
 /// A number, or NaN for the `null` that JSON has in its place.
 pub(super) fn number<'de, D: Deserializer<'de>>(source: D) -> Result<f64, D::Error> {
     Ok(Option::<f64>::deserialize(source)?.unwrap_or(f64::NAN))
@@ -47,17 +65,6 @@ pub(crate) fn replace_json(path: &Path, value: &impl Serialize) -> Result<(), Re
         .map_err(|error| ResultsError::content(path, error.to_string()))?;
     text.push('\n');
     replace(path, text.as_bytes())
-}
-
-/// Copies a file so that the copy appears whole, and survives a power cut once this returns.
-pub(crate) fn copy(from: &Path, to: &Path) -> Result<(), ResultsError> {
-    let mut draft = to.as_os_str().to_owned();
-    draft.push(".new");
-    let draft = Path::new(&draft);
-    fs::copy(from, draft)
-        .and_then(|_| File::open(draft)?.sync_all())
-        .map_err(ResultsError::file("copy", from))?;
-    fs::rename(draft, to).map_err(ResultsError::file("replace", to))
 }
 
 /// Creates a directory with its parents.

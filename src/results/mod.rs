@@ -11,9 +11,11 @@ pub(crate) mod files;
 // Only HDF5 holds descriptions.
 #[cfg_attr(not(feature = "hdf5"), allow(dead_code))]
 pub mod inertial_number;
+mod moment;
 mod probe;
 pub mod quantities;
 pub mod read;
+mod rebuild;
 mod recorder;
 mod resume;
 mod series;

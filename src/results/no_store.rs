@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use calcine_coupler::mesh::Mesh;
-use calcine_coupler::observer::CommittedState;
+use calcine_coupler::physics::Vec3;
 
 use super::ResultsError;
+use super::moment::SnapshotMoment;
 use super::probe::{Sample, Site};
 use super::series::{Column, Row};
 use super::snapshot::Field;
@@ -28,7 +29,12 @@ impl Store {
     }
 
     /// Opens nothing.
-    pub fn resume(_path: &Path, _columns: &[Column], _rows: usize) -> Result<Self, ResultsError> {
+    pub fn resume(
+        _path: &Path,
+        _columns: &[Column],
+        _rows: usize,
+        _snapshots: usize,
+    ) -> Result<Self, ResultsError> {
         Ok(Self)
     }
 
@@ -41,11 +47,17 @@ impl Store {
     pub fn snapshot(
         &mut self,
         _number: usize,
-        _moment: &CommittedState<'_>,
+        _moment: &SnapshotMoment,
+        _positions: &[Vec3],
         _gas: &[Field<'_>],
         _particles: &[Field<'_>],
         _samples: &[Sample<'_>],
     ) -> Result<(), ResultsError> {
+        Ok(())
+    }
+
+    /// Renames nothing.
+    pub fn rename(&mut self, _to: &Path) -> Result<(), ResultsError> {
         Ok(())
     }
 

@@ -9,9 +9,11 @@ use calcine_coupler::observer::{CommittedState, CutNotice, Observer, ObserverErr
 use calcine_coupler::part::SolverInfo;
 use calcine_coupler::time::{Ticks, Window};
 
+use super::moment::SnapshotMoment;
 use super::probe::{self, Site};
 use super::quantities::{self, Captured};
-use super::resume::{self, Counters};
+use super::rebuild::{self, rebuild};
+use super::resume::{self, Counters, Restored};
 use super::series::{self, Row, TRACKED_PARTICLES, Table};
 use super::status::{Status, Watch};
 use super::store::Store;
@@ -22,7 +24,7 @@ use super::summary::{
 };
 use super::vtk::{self, Cells};
 use super::{
-    CASE, ResultsError, STORE, SUMMARY, files, inertial_number, snapshot, voids, warnings,
+    CASE, ResultsError, SERIES, STORE, SUMMARY, files, inertial_number, snapshot, voids, warnings,
 };
 use crate::case::model::Case;
 
@@ -58,7 +60,11 @@ pub struct Recorder {
     info: RunInfo,
     directory: PathBuf,
     resumed: bool,
+    /// False where `results.h5` of the run to go on with may be in the middle of a change.
+    store_is_closed: bool,
     counters: Counters,
+    /// Snapshots whose files are on the disk.
+    flushed: usize,
     /// Wall times of the processes before this one.
     before: WallTimes,
     /// Their processor times.
@@ -87,21 +93,27 @@ impl Recorder {
         for folder in ["gas", "particles"].into_iter().chain(probes) {
             files::directory(&out.join(folder))?;
         }
-        let counters = match resume {
+        let restored = match resume {
             Some(checkpoint) => resume::restore(checkpoint, out, case)?,
-            None => Counters {
-                case_hash: case.hash.clone(),
-                from: info.from.clone(),
-                captured: Captured::new(case.quantities.len()),
-                ..Counters::default()
+            None => Restored {
+                counters: Counters {
+                    case_hash: case.hash.clone(),
+                    from: info.from.clone(),
+                    captured: Captured::new(case.quantities.len()),
+                    ..Counters::default()
+                },
+                store_is_closed: false,
             },
         };
+        let counters = restored.counters;
         files::replace(&out.join(CASE), case.effective.as_bytes())?;
         Ok(Self {
             case: case.clone(),
             info,
             directory: out.to_owned(),
             resumed: resume.is_some(),
+            store_is_closed: restored.store_is_closed,
+            flushed: counters.snapshots.len(),
             before: counters.wall,
             processor_before: counters.processor,
             gas_phases_before: counters.gas_phases.clone(),
@@ -119,6 +131,8 @@ impl Recorder {
 
     /// Says in summary and status that the run stopped early: on an interrupt, or with an error.
     pub fn stopped(&mut self, failure: Option<RunFailure>) -> Result<(), ResultsError> {
+        // Closed before the summary says so.
+        self.open = None;
         let Some(summary) = &mut self.summary else {
             return Ok(());
         };
@@ -146,10 +160,10 @@ impl Recorder {
         } else {
             Table::create(&self.directory, &columns, tracked)?
         };
-        let path = self.directory.join(STORE);
         let store = if self.resumed {
-            Store::resume(&path, &columns, self.counters.rows)?
+            self.store(moment, &columns, &sites)?
         } else {
+            let path = self.directory.join(STORE);
             Store::create(&path, &self.case, moment.mesh, &columns, tracked, &sites)?
         };
         self.open = Some(Open {
@@ -167,6 +181,43 @@ impl Recorder {
         }
         self.flush()?;
         self.summarise(moment, Verdict::Running)
+    }
+
+    /// `results.h5` of the run that goes on: as it is where it was closed with the rows and snapshots of the checkpoint, else made anew.
+    fn store(
+        &self,
+        moment: &CommittedState<'_>,
+        columns: &[series::Column],
+        sites: &[Site],
+    ) -> Result<Store, ResultsError> {
+        let counters = &self.counters;
+        let (rows, snapshots) = (counters.rows, &counters.snapshots);
+        if self.store_is_closed {
+            let path = self.directory.join(STORE);
+            if let Ok(store) = Store::resume(&path, columns, rows, snapshots.len()) {
+                return Ok(store);
+            }
+        }
+        tracing::info!(
+            "{STORE} is made anew from {SERIES} and {} snapshots",
+            snapshots.len()
+        );
+        let output = &self.case.output;
+        let inside = snapshot::inside(output, moment);
+        rebuild(
+            &self.directory,
+            &rebuild::Source {
+                case: &self.case,
+                mesh: moment.mesh,
+                columns,
+                tracked: &counters.tracked,
+                sites,
+                rows,
+                snapshots,
+                gas: &snapshot::gas_fields(output, self.case.gas.properties.species(), moment),
+                particles: &snapshot::particle_fields(output, &inside, moment),
+            },
+        )
     }
 
     fn advance(&mut self, moment: &CommittedState<'_>) -> Result<(), ResultsError> {
@@ -196,10 +247,14 @@ impl Recorder {
     fn save(&mut self, moment: &CommittedState<'_>, directory: &Path) -> Result<(), ResultsError> {
         self.flush()?;
         let mut counters = self.counters.clone();
+        if let Some(open) = &mut self.open {
+            counters.series = open.table.mark()?;
+        }
         counters.wall = self.wall(moment.timing);
         counters.processor = self.processor(moment.timing);
         counters.gas_phases = self.gas_phases(moment.timing);
-        resume::save(&self.directory, directory, &counters)?;
+        resume::save(&self.directory, directory, counters, self.flushed)?;
+        self.flushed = self.counters.snapshots.len();
         self.summarise(moment, Verdict::Running)
     }
 
@@ -305,19 +360,20 @@ impl Recorder {
         let Some(open) = &mut self.open else {
             return Ok(());
         };
-        let path = self.directory.join(resume::gas_file(number));
+        let path = self.directory.join(files::gas_file(number));
         vtk::write_gas(&path, moment.mesh, &open.cells, now.seconds(), &gas)?;
-        let path = self.directory.join(resume::particle_file(number));
+        let path = self.directory.join(files::particle_file(number));
         vtk::write_particles(&path, moment.particles.position, now.seconds(), &particles)?;
         let bed = moment.particles;
         let samples = probe::samples(&open.sites, &gas, &particles, bed.position, bed.radius);
         if !samples.is_empty() {
-            let path = self.directory.join(resume::probe_file(number));
+            let path = self.directory.join(files::probe_file(number));
             probe::write(&path, &samples)?;
         }
+        let at = SnapshotMoment::of(moment);
         open.store
-            .snapshot(number, moment, &gas, &particles, &samples)?;
-        self.counters.snapshots.push(now.seconds());
+            .snapshot(number, &at, bed.position, &gas, &particles, &samples)?;
+        self.counters.snapshots.push(at);
         self.counters.last_snapshot = Some(now.count());
         self.counters.next_snapshot = following(now, self.case.output.every);
         self.collect()?;
@@ -328,12 +384,14 @@ impl Recorder {
     fn collect(&self) -> Result<(), ResultsError> {
         let entries = |file: fn(usize) -> String| -> Vec<_> {
             let times = self.counters.snapshots.iter().enumerate();
-            times.map(|(number, &time)| (time, file(number))).collect()
+            times
+                .map(|(number, at)| (at.process_time, file(number)))
+                .collect()
         };
         let gas = self.directory.join("gas.pvd");
-        vtk::write_collection(&gas, &entries(resume::gas_file))?;
+        vtk::write_collection(&gas, &entries(files::gas_file))?;
         let particles = self.directory.join("particles.pvd");
-        vtk::write_collection(&particles, &entries(resume::particle_file))?;
+        vtk::write_collection(&particles, &entries(files::particle_file))?;
         Ok(())
     }
 

@@ -1,27 +1,39 @@
 //! What the recorder leaves in a checkpoint, and how it goes on from one.
 
 use std::collections::BTreeMap;
-use std::fs;
+use std::fs::{self, File};
 use std::io::ErrorKind;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use super::difference;
+use super::files::{DRAFT, gas_file, particle_file};
 use super::inertial_number::InertialNumberStatistics;
+use super::moment::SnapshotMoment;
 use super::quantities::Captured;
+use super::series::SeriesMark;
 use super::steps::StepSummary;
 use super::summary::{ConvergenceSummary, ProcessorTimes, Provenance, Summary, Verdict, WallTimes};
 use super::warnings::Warnings;
-use super::{ResultsError, SERIES, STORE, SUMMARY, files};
+use super::{ResultsError, STORE, SUMMARY, files};
 use crate::case::model::Case;
 
 /// Name of the counters in a checkpoint directory.
 const COUNTERS: &str = "recorder.json";
 
-/// Where the recorder stands; with the copies of `series.csv` and `results.h5` all that it needs.
+/// Raised with every change of what is counted.
+const FORMAT: u32 = 1;
+
+/// Where the recorder stands: with the files of the results folder, cut back to it, all that it needs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Counters {
+    /// Layout of the checkpoint.
+    #[serde(default)]
+    pub format: u32,
+    /// How far `series.csv` was.
+    #[serde(default)]
+    pub series: SeriesMark,
     /// Hash of the case.
     pub case_hash: String,
     /// The run that this one continued from.
@@ -37,8 +49,9 @@ pub(super) struct Counters {
     pub last_snapshot: Option<i64>,
     /// Rows written.
     pub rows: usize,
-    /// Process times in s of the snapshots written.
-    pub snapshots: Vec<f64>,
+    /// The snapshots written.
+    #[serde(default)]
+    pub snapshots: Vec<SnapshotMoment>,
     /// Ids of the particles that have a column of their own.
     pub tracked: Vec<u64>,
     /// Quantities whose time has come.
@@ -67,45 +80,58 @@ pub(super) struct Counters {
     pub gas_phases: BTreeMap<String, f64>,
 }
 
-/// Name of a snapshot's gas file.
-pub(super) fn gas_file(number: usize) -> String {
-    format!("gas/gas_{number:04}.vtu")
-}
-
-/// Name of a snapshot's particle file.
-pub(super) fn particle_file(number: usize) -> String {
-    format!("particles/particles_{number:04}.vtp")
-}
-
-/// Name of a snapshot's file of probes.
-pub(super) fn probe_file(number: usize) -> String {
-    format!("probes/probes_{number:04}.csv")
-}
-
-/// Copies a result directory's files and the counters into a checkpoint directory.
+/// Flushes a result directory's files to the disk, those of the snapshots from a number on, and writes the counters into a checkpoint
+/// directory. What this takes does not depend on how much the results are.
 pub(super) fn save(
     results: &Path,
     checkpoint: &Path,
-    counters: &Counters,
+    counters: Counters,
+    flushed: usize,
 ) -> Result<(), ResultsError> {
     files::directory(checkpoint)?;
-    files::copy(&results.join(SERIES), &checkpoint.join(SERIES))?;
-    if cfg!(feature = "hdf5") {
-        files::copy(&results.join(STORE), &checkpoint.join(STORE))?;
+    let flush = |path: &Path| {
+        let file = File::open(path).and_then(|file| file.sync_all());
+        file.map_err(ResultsError::file("flush", path))
+    };
+    for number in flushed..counters.snapshots.len() {
+        flush(&results.join(gas_file(number)))?;
+        flush(&results.join(particle_file(number)))?;
     }
-    files::replace_json(&checkpoint.join(COUNTERS), counters)
+    if cfg!(feature = "hdf5") {
+        flush(&results.join(STORE))?;
+    }
+    let counters = Counters {
+        format: FORMAT,
+        ..counters
+    };
+    files::replace_json(&checkpoint.join(COUNTERS), &counters)
 }
 
-/// Brings a result directory back to where a checkpoint stands: restores the series and the HDF5
-/// file and removes later snapshots.
+/// What a run resumes with.
+pub(super) struct Restored {
+    /// Where the recorder stood.
+    pub counters: Counters,
+    /// False where `results.h5` may be in the middle of a change.
+    pub store_is_closed: bool,
+}
+
+/// Brings a result directory back to where a checkpoint stands: cuts the series and removes later snapshots. Nothing is changed where what
+/// the checkpoint counts on is not there.
 pub(super) fn restore(
     checkpoint: &Path,
     results: &Path,
     case: &Case,
-) -> Result<Counters, ResultsError> {
+) -> Result<Restored, ResultsError> {
     let path = checkpoint.join(COUNTERS);
     let counters: Counters = serde_json::from_str(&files::read(&path)?)
         .map_err(|error| ResultsError::content(&path, error.to_string()))?;
+    if counters.format != FORMAT {
+        let fact = format!(
+            "it is of layout {}, which another release of Calcine wrote; this one reads layout {FORMAT}",
+            counters.format
+        );
+        return Err(ResultsError::content(&path, fact));
+    }
     if counters.case_hash != case.hash {
         return Err(ResultsError::OtherCase {
             path,
@@ -120,21 +146,25 @@ pub(super) fn restore(
             let file = results.join(name);
             if !file.is_file() {
                 let fact = "it is missing, but the checkpoint counts on it";
-                return Err(ResultsError::content(&file, fact));
+                return Err(ResultsError::behind(&file, fact));
             }
         }
     }
-    files::copy(&checkpoint.join(SERIES), &results.join(SERIES))?;
-    if cfg!(feature = "hdf5") {
-        files::copy(&checkpoint.join(STORE), &results.join(STORE))?;
-    }
+    counters.series.check(results)?;
+    // A run that was stopped has closed the file; one that was killed may have left it in the middle.
+    let is_closed = Summary::read(results).is_ok_and(|summary| summary.verdict != Verdict::Running);
+    counters.series.cut(results)?;
     for folder in ["gas", "particles", "probes"] {
         let folder = results.join(folder);
         if folder.is_dir() {
             remove_later(&folder, count)?;
         }
     }
-    Ok(counters)
+    remove(&results.join(DRAFT))?;
+    Ok(Restored {
+        counters,
+        store_is_closed: is_closed || cfg!(not(feature = "hdf5")),
+    })
 }
 
 /// True where the run in this directory ended before its end, so that it may begin again; false where it came to its
@@ -161,10 +191,14 @@ pub fn may_start_again(results: &Path, case: &Case) -> Result<bool, ResultsError
 
 /// Makes room for a run that begins again.
 pub fn clear_start(results: &Path) -> Result<(), ResultsError> {
-    let path = results.join(SUMMARY);
-    match fs::remove_file(&path) {
+    remove(&results.join(SUMMARY))
+}
+
+/// Removes a file where there is one.
+fn remove(path: &Path) -> Result<(), ResultsError> {
+    match fs::remove_file(path) {
         Err(cause) if cause.kind() != ErrorKind::NotFound => {
-            Err(ResultsError::file("remove", &path)(cause))
+            Err(ResultsError::file("remove", path)(cause))
         }
         _ => Ok(()),
     }

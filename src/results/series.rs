@@ -1,12 +1,14 @@
 //! The time series: columns that stay the same over a run, and `series.csv`.
 
-use std::fs::{File, OpenOptions};
+use std::fs::{self, File, OpenOptions};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use calcine_coupler::observer::CommittedState;
 use calcine_coupler::step_error::StepError;
 use calcine_coupler::time::Window;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 
 use super::probe::Site;
 use super::quantities::{evaluate, statistic};
@@ -250,13 +252,60 @@ pub(super) fn row(
         .iter()
         .map(|id| temperature(id).unwrap_or(f64::NAN))
         .collect();
+    // The same NaN as the file reads back to.
+    for value in values.iter_mut().filter(|value| value.is_nan()) {
+        *value = f64::NAN;
+    }
     Row { values, particles }
+}
+
+/// How far `series.csv` was when a checkpoint was written.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct SeriesMark {
+    /// Its length in bytes.
+    pub bytes: u64,
+    /// SHA-256 of these bytes in hexadecimal digits.
+    pub sha256: String,
+}
+
+impl SeriesMark {
+    /// Refuses a file that does not begin with what it was.
+    pub fn check(&self, directory: &Path) -> Result<(), ResultsError> {
+        let path = directory.join(SERIES);
+        let text = fs::read(&path).map_err(ResultsError::file("read", &path))?;
+        let begin = usize::try_from(self.bytes)
+            .ok()
+            .and_then(|bytes| text.get(..bytes))
+            .ok_or_else(|| {
+                let fact = format!("it has {} bytes in place of {}", text.len(), self.bytes);
+                ResultsError::behind(&path, fact)
+            })?;
+        match digits(Sha256::new_with_prefix(begin)) == self.sha256 {
+            true => Ok(()),
+            false => Err(ResultsError::behind(&path, "what was in it is changed")),
+        }
+    }
+
+    /// Cuts a file that has gone on back to what it was.
+    pub fn cut(&self, directory: &Path) -> Result<(), ResultsError> {
+        let path = directory.join(SERIES);
+        let file = OpenOptions::new().write(true).open(&path);
+        file.and_then(|file| file.set_len(self.bytes))
+            .map_err(ResultsError::file("cut", &path))
+    }
+}
+
+fn digits(hasher: Sha256) -> String {
+    let bytes = hasher.finalize();
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The file `series.csv`.
 pub(super) struct Table {
     path: PathBuf,
     file: BufWriter<File>,
+    bytes: u64,
+    hasher: Sha256,
 }
 
 impl Table {
@@ -271,6 +320,8 @@ impl Table {
         let mut table = Self {
             path,
             file: BufWriter::new(file),
+            bytes: 0,
+            hasher: Sha256::new(),
         };
         let head = head(&table.path, columns, tracked)?;
         table.write(&head)?;
@@ -298,6 +349,20 @@ impl Table {
         Ok(Self {
             path,
             file: BufWriter::new(file),
+            bytes: text.len() as u64,
+            hasher: Sha256::new_with_prefix(text),
+        })
+    }
+
+    /// Flushes the file to the disk; gives how far it is.
+    pub fn mark(&mut self) -> Result<SeriesMark, ResultsError> {
+        self.flush()?;
+        let file = self.file.get_ref();
+        file.sync_data()
+            .map_err(ResultsError::file("flush", &self.path))?;
+        Ok(SeriesMark {
+            bytes: self.bytes,
+            sha256: digits(self.hasher.clone()),
         })
     }
 
@@ -316,6 +381,8 @@ impl Table {
     }
 
     fn write(&mut self, bytes: &[u8]) -> Result<(), ResultsError> {
+        self.bytes += bytes.len() as u64;
+        self.hasher.update(bytes);
         self.file
             .write_all(bytes)
             .map_err(ResultsError::file("write", &self.path))

@@ -92,13 +92,22 @@ pub(super) const SOLIDS: &str = "solids";
 /// The name by which a case file asks for all columns that the models of particles show.
 pub(super) const INSIDE: &str = "inside";
 
-/// The gas fields that the case asks for, in a fixed order; mass fractions go by the names of the
-/// species.
+/// The gas fields that the case asks for, one value a cell.
 pub(super) fn gas<'a>(
     output: &Output,
     species: &'a [String],
     moment: &CommittedState<'a>,
 ) -> Result<Vec<Field<'a>>, ResultsError> {
+    let fields = gas_fields(output, species, moment);
+    of_length(fields, moment.mesh.cells(), "gas")
+}
+
+/// The same of whatever lengths, in a fixed order; mass fractions go by the names of the species.
+pub(super) fn gas_fields<'a>(
+    output: &Output,
+    species: &'a [String],
+    moment: &CommittedState<'a>,
+) -> Vec<Field<'a>> {
     use Values::{Scalar, Vector};
     let gas = moment.gas;
     let all = [
@@ -128,7 +137,7 @@ pub(super) fn gas<'a>(
             Scalar(&moment.bed.void_fraction),
         ),
     ];
-    let mut fields = chosen(&all, &output.gas, moment.mesh.cells(), "gas")?;
+    let mut fields = chosen(&all, &output.gas);
     if output.gas.iter().any(|name| name == MASS_FRACTIONS) {
         fields.extend(species.iter().enumerate().map(|(column, name)| {
             let values = Values::Column {
@@ -161,22 +170,28 @@ pub(super) fn gas<'a>(
                 eddies.viscosity,
             ),
         ] {
-            let one = field(name, unit, description, Scalar(values));
-            if values.len() != moment.mesh.cells() {
-                return Err(wrong_length(&one, moment.mesh.cells(), "gas"));
-            }
-            fields.push(one);
+            fields.push(field(name, unit, description, Scalar(values)));
         }
     }
-    Ok(fields)
+    fields
 }
 
-/// What every particle snapshot holds, then the particle fields that the case asks for.
+/// The particle fields of a snapshot, one value a particle.
 pub(super) fn particles<'a>(
     output: &Output,
     inside: &'a [ParticleColumn],
     moment: &CommittedState<'a>,
 ) -> Result<Vec<Field<'a>>, ResultsError> {
+    let fields = particle_fields(output, inside, moment);
+    of_length(fields, moment.particles.len(), "particle")
+}
+
+/// The same of whatever lengths: what every snapshot holds, then what the case asks for.
+pub(super) fn particle_fields<'a>(
+    output: &Output,
+    inside: &'a [ParticleColumn],
+    moment: &CommittedState<'a>,
+) -> Vec<Field<'a>> {
     use Values::{Scalar, Small, Vector, Whole};
     let bed = moment.particles;
     let always = [
@@ -228,7 +243,6 @@ pub(super) fn particles<'a>(
             Scalar(moment.particle_gas.slip),
         ),
     ];
-    let count = bed.len();
     let mut fields = always.to_vec();
     if bed.has_weights() {
         fields.push(field(
@@ -238,7 +252,7 @@ pub(super) fn particles<'a>(
             Scalar(bed.weight),
         ));
     }
-    fields.extend(chosen(&all, &output.particles, count, "particle")?);
+    fields.extend(chosen(&all, &output.particles));
     for one in inside {
         let column = &one.column;
         let name = column.name.as_str();
@@ -247,10 +261,7 @@ pub(super) fn particles<'a>(
             fields.push(field(name, column.unit, &column.description, values));
         }
     }
-    match fields.iter().find(|field| field.values.len() != count) {
-        None => Ok(fields),
-        Some(field) => Err(wrong_length(field, count, "particle")),
-    }
+    fields
 }
 
 /// Columns inside particles that the case asks for: those of the solids, or all that are shown.
@@ -300,24 +311,22 @@ pub(super) fn lengths_of(name: &str) -> String {
     format!("{name}.lengths")
 }
 
-fn chosen<'a>(
-    all: &[Field<'a>],
-    names: &[String],
-    count: usize,
-    what: &str,
-) -> Result<Vec<Field<'a>>, ResultsError> {
+fn chosen<'a>(all: &[Field<'a>], names: &[String]) -> Vec<Field<'a>> {
     let is_wanted = |field: &&Field<'a>| names.iter().any(|name| name == field.name);
-    let fields: Vec<_> = all.iter().filter(is_wanted).copied().collect();
-    match fields.iter().find(|field| field.values.len() != count) {
-        None => Ok(fields),
-        Some(field) => Err(wrong_length(field, count, what)),
-    }
+    all.iter().filter(is_wanted).copied().collect()
 }
 
-fn wrong_length(field: &Field<'_>, expected: usize, what: &str) -> ResultsError {
-    ResultsError::Length {
-        list: format!("the {what} field `{}`", field.name),
-        found: field.values.len(),
-        expected,
+fn of_length<'a>(
+    fields: Vec<Field<'a>>,
+    expected: usize,
+    what: &str,
+) -> Result<Vec<Field<'a>>, ResultsError> {
+    match fields.iter().find(|field| field.values.len() != expected) {
+        None => Ok(fields),
+        Some(field) => Err(ResultsError::Length {
+            list: format!("the {what} field `{}`", field.name),
+            found: field.values.len(),
+            expected,
+        }),
     }
 }

@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 
 use calcine_coupler::interior::ColumnValues;
 use calcine_coupler::mesh::Mesh;
-use calcine_coupler::observer::CommittedState;
 use calcine_coupler::physics::Vec3;
 use hdf5::types::VarLenUnicode;
 use hdf5::{Dataset, File, FileBuilder, Group, H5Type, Location};
 use ndarray::{Array2, ArrayView1, ArrayView2};
 
 use super::ResultsError;
+use super::moment::SnapshotMoment;
 use super::probe::{Column as Sampled, Sample, Site};
 use super::series::{Column, Row};
 use super::snapshot::{Field, Values, lengths_of};
@@ -68,10 +68,17 @@ impl Store {
         begin().map_err(failure("create", path))
     }
 
-    /// Opens a file that holds so many rows.
-    pub fn resume(path: &Path, columns: &[Column], rows: usize) -> Result<Self, ResultsError> {
-        let begin = || -> hdf5::Result<Self> {
+    /// Opens a file that holds so many rows and snapshots.
+    pub fn resume(
+        path: &Path,
+        columns: &[Column],
+        rows: usize,
+        snapshots: usize,
+    ) -> Result<Self, ResultsError> {
+        let mut found = 0;
+        let mut begin = || -> hdf5::Result<Self> {
             let file = unlocked().open_rw(path)?;
+            found = file.group("snapshots")?.len() as usize;
             let series = file.group("series")?;
             let columns = columns
                 .iter()
@@ -90,6 +97,10 @@ impl Store {
             })
         };
         let store = begin().map_err(failure("open", path))?;
+        if found != snapshots {
+            let fact = format!("it has {found} snapshots, the checkpoint {snapshots}");
+            return Err(ResultsError::content(path, fact));
+        }
         match store.columns.iter().find(|column| column.size() != rows) {
             None => Ok(store),
             Some(column) => Err(ResultsError::content(
@@ -137,7 +148,8 @@ impl Store {
     pub fn snapshot(
         &mut self,
         number: usize,
-        moment: &CommittedState<'_>,
+        moment: &SnapshotMoment,
+        positions: &[Vec3],
         gas: &[Field<'_>],
         particles: &[Field<'_>],
         samples: &[Sample<'_>],
@@ -145,8 +157,8 @@ impl Store {
         let write = || -> hdf5::Result<()> {
             let group = self.file.create_group(&format!("snapshots/{number:04}"))?;
             let times = [
-                ("process_time", moment.clocks.process.seconds()),
-                ("motion_time", moment.clocks.motion.seconds()),
+                ("process_time", moment.process_time),
+                ("motion_time", moment.motion_time),
                 ("windows", moment.windows as f64),
             ];
             for (name, value) in times {
@@ -161,7 +173,7 @@ impl Store {
                 name: "position",
                 unit: "m",
                 description: "particle centres",
-                values: Values::Vector(moment.particles.position),
+                values: Values::Vector(positions),
             };
             for field in std::iter::once(&position).chain(particles) {
                 write_field(&bed, field)?;
@@ -179,6 +191,14 @@ impl Store {
             Ok(())
         };
         write().map_err(failure("write a snapshot to", &self.path))
+    }
+
+    /// Takes the place of the file of another name.
+    pub fn rename(&mut self, to: &Path) -> Result<(), ResultsError> {
+        self.flush()?;
+        std::fs::rename(&self.path, to).map_err(ResultsError::file("replace", to))?;
+        self.path = to.to_owned();
+        Ok(())
     }
 
     /// Hands everything to the operating system.

@@ -15,6 +15,8 @@ mod checkpoint_faults;
 mod checkpoint_harm;
 mod counter_current;
 mod elastic_box;
+#[cfg(feature = "hdf5")]
+mod external_restarts;
 mod flame;
 #[cfg(feature = "hdf5")]
 #[path = "../support/fluidised.rs"]
@@ -67,6 +69,8 @@ const ALL: &[(&str, fn())] = &[
     #[cfg(feature = "hdf5")]
     ("checkpoint-faults", checkpoint_faults::run),
     ("elastic-box", elastic_box::run),
+    #[cfg(feature = "hdf5")]
+    ("external-restarts", external_restarts::run),
     ("flame", flame::run),
     #[cfg(feature = "hdf5")]
     ("fluidised-bed", fluidised_bed::run),

@@ -45,7 +45,7 @@ usage: cargo xtask TASK
                           hot-duct, five-species
         [--no-build]      with the programs that were built last
   fuzz [--minutes N]      fuzz the readers of users' files, ten minutes each by default
-        [--seed S]        of case, polymesh, stl, csv, vtk, set, checkpoint
+        [--seed S]        of case, polymesh, stl, csv, curves, vtk, set, checkpoint
         [TARGET …]
   torture [--kills N]     kill runs at random moments, resume, compare every bit (default: 50)
         [--seed S]        the seed of the random numbers
@@ -54,8 +54,8 @@ usage: cargo xtask TASK
         [--seed S]        random moment and check that it is named, that everything ends and
         [--from K]        that nothing is left (default: 500 trials)
   validate [NAME …]       long validations, all by default: agreement, backward-step,
-                          checkpoint-faults, elastic-box, flame, fluidised-bed, hopper,
-                          load, moving-bed, repose, restarts, shaft-choices, shaft-flames,
+                          checkpoint-faults, elastic-box, external-restarts, flame,
+                          fluidised-bed, hopper, load, moving-bed, repose, restarts, shaft-choices, shaft-flames,
                           shaft-furnace, skewed-cavity, skewed-meshes, spouted-bed,
                           square-cylinder, voids";
 

@@ -27,7 +27,12 @@ pub fn within_itself(wall: &Wall) -> bool {
             along(axis, velocity)
         }
         (WallShape::Cone { .. }, WallMotion::Translating(_))
-        | (_, WallMotion::Scheduled { .. } | WallMotion::Oscillating { .. }) => false,
+        | (
+            _,
+            WallMotion::Scheduled { .. }
+            | WallMotion::Oscillating { .. }
+            | WallMotion::Servo { .. },
+        ) => false,
         (
             shape,
             WallMotion::Rotating {

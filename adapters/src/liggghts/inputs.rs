@@ -66,7 +66,7 @@ impl Inputs<'_> {
         ];
         let meshes = match &self.setup.motion {
             Motion::Free(contacts) => moving::meshes(contacts, self.smallest()),
-            Motion::Frozen => Vec::new(),
+            Motion::Frozen | Motion::Parcels(_) => Vec::new(),
         };
         fs::create_dir_all(folder).map_err(|error| unwritable(folder, error))?;
         let mut more = meshes;
@@ -84,18 +84,18 @@ impl Inputs<'_> {
     fn check(&self) -> Result<(), PartError> {
         let refuse = |message: String| Err(PartError::new(WHO, FailureKind::NotStarted, message));
         let setup = self.setup;
+        if matches!(setup.motion, Motion::Parcels(_)) {
+            return refuse(
+                "the particles are parcels, and LIGGGHTS moves particles that touch each other; move parcels natively \
+                 (`--particles native`)"
+                    .into(),
+            );
+        }
         if let Motion::Free(contacts) = &setup.motion {
             if let Some(reason) = moving::refusal(contacts) {
                 return refuse(reason);
             }
             let largest = setup.radius.iter().copied().fold(0.0, f64::max);
-            if !contacts.periodicity.is_none() {
-                return refuse(
-                    "the domain has periodic patches, and LIGGGHTS' processes may end while particles cross them; move the particles \
-                     natively (`--particles native`)"
-                        .into(),
-                );
-            }
             if let Err(error) = periodic_motion::check(contacts, largest) {
                 return refuse(format!("{error}; {}", error.remedy()));
             }
@@ -113,6 +113,7 @@ impl Inputs<'_> {
         for (row, id) in setup.id.iter().enumerate() {
             let held = match &setup.motion {
                 Motion::Frozen => true,
+                Motion::Parcels(_) => false,
                 Motion::Free(contacts) => {
                     contacts.held.get(setup.population[row] as usize) == Some(&true)
                 }
@@ -184,7 +185,7 @@ impl Inputs<'_> {
             });
         }
         let (template, contacts) = match &self.setup.motion {
-            Motion::Frozen => (FROZEN_BED, String::new()),
+            Motion::Frozen | Motion::Parcels(_) => (FROZEN_BED, String::new()),
             Motion::Free(contacts) => (MOVING_BED, moving::commands(contacts, self.form())),
         };
         let script = template
@@ -201,7 +202,7 @@ impl Inputs<'_> {
         let setup = self.setup;
         let (lower, upper) = self.corners();
         let types = match &setup.motion {
-            Motion::Frozen => setup.population.iter().max().map_or(1, |last| last + 1) as usize,
+            Motion::Frozen | Motion::Parcels(_) => setup.population.iter().max().map_or(1, |last| last + 1) as usize,
             Motion::Free(contacts) => moving::types(contacts),
         };
         let mut text = format!(
@@ -264,7 +265,7 @@ impl Inputs<'_> {
     fn periodicity(&self) -> Periodicity {
         match &self.setup.motion {
             Motion::Free(contacts) => contacts.periodicity,
-            Motion::Frozen => Periodicity::default(),
+            Motion::Frozen | Motion::Parcels(_) => Periodicity::default(),
         }
     }
 
@@ -304,6 +305,10 @@ fn unwritable(path: &Path, error: std::io::Error) -> PartError {
 
 #[cfg(test)]
 mod tests {
+    use calcine_coupler::conformance::particles::soft_spheres;
+    use calcine_coupler::motion::{Contacts, Wall, WallMotion, WallShape};
+    use calcine_coupler::periodicity::{PeriodicSpan, Periodicity};
+
     use super::*;
 
     fn setup() -> ParticleSetup {
@@ -377,5 +382,76 @@ mod tests {
             ..inputs(&fine)
         };
         assert!(still.check().unwrap_err().to_string().contains("0 s"));
+    }
+
+    /// What LIGGGHTS does not have is refused before a process is started, not left out.
+    #[test]
+    fn periodic_patches_and_walls_that_it_does_not_move_are_refused_with_the_remedy() {
+        let wall = |motion| Wall {
+            name: "lid".into(),
+            material: 0,
+            shape: WallShape::Plane {
+                point: Vec3::zeros(),
+                normal: Vec3::z(),
+            },
+            motion,
+        };
+        let span = PeriodicSpan {
+            low: 0.0,
+            high: 0.1,
+        };
+        let along = Periodicity {
+            axes: [Some(span), None, None],
+        };
+        let direction = Vec3::z();
+        let scheduled = WallMotion::Scheduled {
+            direction,
+            distance: vec![(0.0, 0.0), (1.0, 0.1)],
+        };
+        let oscillating = WallMotion::Oscillating {
+            amplitude: direction,
+            period: 0.1,
+        };
+        let servo = WallMotion::Servo {
+            direction,
+            force: 1.0,
+            mass: 1.0,
+            damping: 0.0,
+        };
+        let none = Periodicity::default();
+        for (periodicity, walls, words) in [
+            (along, vec![], ["LIGGGHTS' processes may end", "native"]),
+            (
+                none,
+                vec![wall(scheduled)],
+                ["`moved` of the wall \"lid\"", "native particles"],
+            ),
+            (
+                none,
+                vec![wall(oscillating)],
+                ["`oscillating` of the wall \"lid\"", "native particles"],
+            ),
+            (
+                none,
+                vec![wall(servo)],
+                ["`servo` of the wall \"lid\"", "native particles"],
+            ),
+        ] {
+            let contacts = Contacts {
+                periodicity,
+                walls,
+                material_of: vec![0, 0],
+                held: vec![false, false],
+                ..soft_spheres(1e-5, 1e7)
+            };
+            let moving = ParticleSetup {
+                motion: Motion::Free(Box::new(contacts)),
+                ..setup()
+            };
+            let error = inputs(&moving).check().unwrap_err().to_string();
+            for word in words {
+                assert!(error.contains(word), "{error}");
+            }
+        }
     }
 }

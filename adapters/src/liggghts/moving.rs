@@ -51,13 +51,20 @@ pub fn refusal(contacts: &Contacts) -> Option<String> {
         }
         ContactForce::Linear { .. } | ContactForce::HertzMindlin => {}
     }
-    let scheduled = contacts
+    if !contacts.periodicity.is_none() {
+        return Some(
+            "the domain has periodic patches, and LIGGGHTS' processes may end while particles cross them; move the particles \
+             natively (`--particles native`)"
+                .into(),
+        );
+    }
+    let unknown = contacts
         .walls
         .iter()
-        .find(|wall| matches!(wall.motion, WallMotion::Scheduled { .. }));
-    if let Some(wall) = scheduled {
+        .find_map(|wall| Some((wall, unknown_motion(&wall.motion)?)));
+    if let Some((wall, (key, what))) = unknown {
         return Some(format!(
-            "it has no walls that move by a schedule (wall \"{}\"); write `velocity` or `oscillating`",
+            "it has no walls that {what} (`{key}` of the wall \"{}\"); write `velocity` or `rotating`, or use native particles",
             wall.name
         ));
     }
@@ -379,9 +386,10 @@ fn curvature(wall: &Wall, smallest: f64) -> String {
 /// The speed of a surface that moves within itself: its triangles stay.
 fn surface(motion: &WallMotion) -> String {
     match motion {
-        WallMotion::Still | WallMotion::Scheduled { .. } | WallMotion::Oscillating { .. } => {
-            String::new()
-        }
+        WallMotion::Still
+        | WallMotion::Scheduled { .. }
+        | WallMotion::Oscillating { .. }
+        | WallMotion::Servo { .. } => String::new(),
         WallMotion::Translating(v) => format!(" surface_vel {:e} {:e} {:e}", v.x, v.y, v.z),
         WallMotion::Rotating {
             point,
@@ -403,7 +411,10 @@ fn surface(motion: &WallMotion) -> String {
 fn moving_mesh(text: &mut String, index: usize, motion: &WallMotion) {
     let head = format!("fix calcine_turn_{index} all move/mesh mesh calcine_mesh_{index}");
     match motion {
-        WallMotion::Still | WallMotion::Scheduled { .. } | WallMotion::Oscillating { .. } => {}
+        WallMotion::Still
+        | WallMotion::Scheduled { .. }
+        | WallMotion::Oscillating { .. }
+        | WallMotion::Servo { .. } => {}
         WallMotion::Translating(v) => {
             let _ = writeln!(text, "{head} linear {:e} {:e} {:e}", v.x, v.y, v.z);
         }
@@ -435,4 +446,14 @@ fn moving_mesh(text: &mut String, index: usize, motion: &WallMotion) {
 pub fn boundary(periodicity: &Periodicity) -> String {
     let word = |span: &Option<PeriodicSpan>| if span.is_some() { "p" } else { "f" };
     periodicity.axes.each_ref().map(word).join(" ")
+}
+
+/// The key of a motion that its walls do not have, and what such a wall does.
+fn unknown_motion(motion: &WallMotion) -> Option<(&'static str, &'static str)> {
+    match motion {
+        WallMotion::Scheduled { .. } => Some(("moved", "move by a schedule")),
+        WallMotion::Oscillating { .. } => Some(("oscillating", "oscillate")),
+        WallMotion::Servo { .. } => Some(("servo", "hold a force")),
+        WallMotion::Still | WallMotion::Translating(_) | WallMotion::Rotating { .. } => None,
+    }
 }

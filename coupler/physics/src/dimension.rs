@@ -38,6 +38,7 @@ macro_rules! dimensions {
 dimensions! {
     NONE = [0, 0, 0, 0, 0], "a plain number", "", "0.6";
     LENGTH = [1, 0, 0, 0, 0], "a length", "m", "2 mm";
+    AREA = [2, 0, 0, 0, 0], "an area", "m^2", "20 cm^2";
     PERMEABILITY = [2, 0, 0, 0, 0], "a permeability", "m^2", "1e-15 m^2";
     TIME = [0, 0, 1, 0, 0], "a time", "s", "10 min";
     MASS = [0, 1, 0, 0, 0], "a mass", "kg", "5 mg";

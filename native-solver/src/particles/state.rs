@@ -6,7 +6,7 @@ use calcine_coupler::checkpoint::StateFile;
 use calcine_coupler::physics::Vec3;
 
 use super::check::length;
-use super::dem::{EngineState, StoredContact, StoredWallContact};
+use super::dem::{EngineState, ServoState, StoredContact, StoredWallContact};
 use super::{NativeError, NativeParticles};
 use crate::gas::{flat, vectors};
 
@@ -89,7 +89,7 @@ impl NativeParticles {
         }
         let memories = memories(&file, count, walls)?;
         self.steps = file.u64s("steps")?.first().copied().unwrap_or(0) as i64;
-        let state = engine_state(&file, count)?;
+        let state = engine_state(&file, count, engine.servo_states().len())?;
         let particles = self.spheres();
         let Some(engine) = &mut self.engine else {
             return Ok(());
@@ -142,9 +142,36 @@ fn record_engine(state: &EngineState, file: &mut StateFile) {
     file.set_f64s("searched_position", &flat(&state.searched));
     file.set_f64s("search", &[state.skin, gone, wall_gone]);
     file.set_u64s("search_steps", &counts);
+    if !state.servos.is_empty() {
+        let servos = state.servos.iter();
+        let values = servos.flat_map(|one| {
+            let [x, y, z] = one.pressed.into();
+            [one.distance, one.rate, x, y, z, one.searched]
+        });
+        file.set_f64s("servos", &values.collect::<Vec<_>>());
+    }
 }
 
-fn engine_state(file: &StateFile, count: usize) -> Result<EngineState, NativeError> {
+/// Walls that hold a force; the state has none where the case has none.
+fn servos(file: &StateFile, expected: usize) -> Result<Vec<ServoState>, NativeError> {
+    if expected == 0 {
+        return Ok(Vec::new());
+    }
+    let values = file.f64s_of("servos", 6 * expected)?.as_chunks::<6>().0;
+    let state = |&[distance, rate, x, y, z, searched]: &[f64; 6]| ServoState {
+        distance,
+        rate,
+        pressed: Vec3::new(x, y, z),
+        searched,
+    };
+    Ok(values.iter().map(state).collect())
+}
+
+fn engine_state(
+    file: &StateFile,
+    count: usize,
+    servos_of: usize,
+) -> Result<EngineState, NativeError> {
     let blocks = EngineState::blocks(count);
     let loads = vectors(file.f64s_of("load", 6 * count)?);
     let search = file.f64s_of("search", 3)?;
@@ -160,6 +187,7 @@ fn engine_state(file: &StateFile, count: usize) -> Result<EngineState, NativeErr
         skin: search[0],
         gone: [search[1], search[2]],
         age,
+        servos: servos(file, servos_of)?,
     })
 }
 

@@ -3,6 +3,7 @@
 use super::flowsheet::FLOWSHEET;
 use super::key::Key;
 use super::root::BED;
+use super::tuning::TUNING;
 use crate::laws::{LawCatalogue, LawFamilies};
 
 /// A kind of case. A new one is an entry of [`KINDS`], and its commands are one of the list in
@@ -35,6 +36,13 @@ pub static KINDS: &[CaseKind] = &[
         keys: FLOWSHEET,
         families: LawCatalogue::plant_families,
         page: "docs/reference/plant-file.md",
+    },
+    CaseKind {
+        name: "tuning",
+        summary: "a model whose parameters are tuned to curves",
+        keys: TUNING,
+        families: LawCatalogue::tuning_families,
+        page: "docs/reference/tuning-file.md",
     },
 ];
 

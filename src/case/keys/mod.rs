@@ -26,6 +26,7 @@ mod prelude;
 mod quantities;
 mod reactions;
 mod root;
+mod tuning;
 mod walls;
 mod zone;
 

@@ -14,6 +14,9 @@ fn ask(kind: &CaseKind, root: &TableReader<'_>, path: &Path, text: &str) {
         "bed" => {
             crate::case::sections::case(root, path, text, String::new());
         }
+        "tuning" => {
+            crate::case::sections::tuning::tuning(root, path, text, String::new());
+        }
         "flowsheet" => {
             crate::case::plant::plant(root, path, text, String::new());
         }

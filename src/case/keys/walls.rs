@@ -42,6 +42,16 @@ const OSCILLATING: &[Key] = &[
 ];
 
 #[rustfmt::skip]
+const SERVO: &[Key] = &[
+    key("direction", Vector(D::NONE), Required, "Direction in which it presses, against the particles; of any length. It moves along this line, to either side.", "\"0 0 -1\""),
+    key("force", Number(D::FORCE, Positive), OneOf, "Force with which it presses, its weight included. One of `force`, `pressure`.", "\"10 N\""),
+    key("pressure", Number(D::PRESSURE, Positive), OneOf, "Pressure with which it presses, over `area`. One of `force`, `pressure`.", "\"5 kPa\""),
+    key("area", Number(D::AREA, Positive), Without("required with `pressure`"), "Area over which `pressure` presses.", "\"20 cm^2\""),
+    key("mass", Number(D::MASS, Positive), Required, "Mass m of the wall: its speed v follows m dv/dt = F - c v less the force of the particles.", "\"0.2 kg\""),
+    key("damping", Number(D::MASS_FLOW, NotNegative), Default("0 N s/m"), "Damping c of its motion: a wall that touches nothing approaches the speed F/c.", "\"50 N s/m\""),
+];
+
+#[rustfmt::skip]
 pub(super) const WALLS: &[Key] = &[
     key("name", Text, Required, "Name.", "\"container\""),
     key("material", Text, Required, "Its material.", "\"steel\""),
@@ -51,9 +61,10 @@ pub(super) const WALLS: &[Key] = &[
     key("stl", Path, OneOf, "Triangles of an STL file, ASCII or binary; both their sides are wall. One of `patches`, `plane`, `cylinder`, `cone`, `stl`.", "\"wall.stl\""),
     key("patches", Texts(0), OneOf, "The sides of the generated mesh that carry these patches, the round side of a cylinder being the circle of its diameter; of a `polymesh` the faces of these patches, as triangles. One of `patches`, `plane`, `cylinder`, `cone`, `stl`.", "[\"side\", \"bottom\"]"),
     key("scale", Number(D::NONE, Positive), Default("1"), "Length in m of a unit of the STL file.", "1e-3"),
-    key("velocity", Vector(D::VELOCITY), Without("at rest"), "Velocity of the wall. One of `velocity`, `rotating`, `moved`, `oscillating`.", "\"0 0 0.1 m/s\""),
-    key("rotating", Table(ROTATING), Without("at rest"), "The wall turns about an axis. One of `velocity`, `rotating`, `moved`, `oscillating`.", "{ point = \"0 0 0 m\", angular_velocity = \"0 0 3 rad/s\" }"),
-    key("moved", Table(MOVED), Without("at rest"), "The wall is moved along a line by a schedule, as gates and dampers are; not in LIGGGHTS, nor with `motion.held`. One of `velocity`, `rotating`, `moved`, `oscillating`.", "{ direction = \"1 0 0\", distance = [[\"5 s\", \"0 mm\"], [\"6 s\", \"40 mm\"]] }"),
-    key("oscillating", Table(OSCILLATING), Without("at rest"), "The wall oscillates, as vibrated floors do; not in LIGGGHTS, nor with `motion.held`. One of `velocity`, `rotating`, `moved`, `oscillating`.", "{ amplitude = \"0 0 2 mm\", period = \"50 ms\" }"),
+    key("velocity", Vector(D::VELOCITY), Without("at rest"), "Velocity of the wall. One of `velocity`, `rotating`, `moved`, `oscillating`, `servo`.", "\"0 0 0.1 m/s\""),
+    key("rotating", Table(ROTATING), Without("at rest"), "The wall turns about an axis. One of `velocity`, `rotating`, `moved`, `oscillating`, `servo`.", "{ point = \"0 0 0 m\", angular_velocity = \"0 0 3 rad/s\" }"),
+    key("moved", Table(MOVED), Without("at rest"), "The wall is moved along a line by a schedule, as gates and dampers are; not in LIGGGHTS, nor with `motion.held`. One of `velocity`, `rotating`, `moved`, `oscillating`, `servo`.", "{ direction = \"1 0 0\", distance = [[\"5 s\", \"0 mm\"], [\"6 s\", \"40 mm\"]] }"),
+    key("oscillating", Table(OSCILLATING), Without("at rest"), "The wall oscillates, as vibrated floors do; not in LIGGGHTS, nor with `motion.held`. One of `velocity`, `rotating`, `moved`, `oscillating`, `servo`.", "{ amplitude = \"0 0 2 mm\", period = \"50 ms\" }"),
+    key("servo", Table(SERVO), Without("at rest"), "The wall is moved along a line to hold a force or a pressure, as plates that load a bed are; not in LIGGGHTS. One of `velocity`, `rotating`, `moved`, `oscillating`, `servo`.", "{ direction = \"0 0 -1\", force = \"10 N\", mass = \"0.2 kg\" }"),
     key("temperature", Schedule(D::TEMPERATURE, Positive), Without("adiabatic"), "Temperature of the wall, for conduction and radiation between it and particles. A wall without it conducts nothing and reflects radiation as a mirror.", "\"400 K\""),
 ];

@@ -18,6 +18,7 @@ mod mesh;
 mod motion;
 mod output;
 mod packing;
+mod parcels;
 mod particles;
 mod place;
 mod probes;
@@ -28,6 +29,7 @@ mod sizes;
 mod solids;
 mod species_data;
 mod time;
+pub(super) mod tuning;
 mod turbulence;
 mod walls;
 mod zone;
@@ -139,6 +141,7 @@ pub(super) fn case(
     }
     if let (Some((time, _)), Some(particles)) = (&time, &particles) {
         motion::fits(root, motion.as_ref(), time, particles);
+        parcels::fits(root, (motion.as_ref(), coupling.as_ref()), particles);
         if let Some(motion) = &motion {
             let meeting = motion::Meeting {
                 motion,

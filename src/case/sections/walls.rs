@@ -305,14 +305,43 @@ fn motion(table: &TableReader<'_>) -> WallMotion {
             period: period?,
         })
     });
+    let servo = table.table("servo").and_then(|table| servo(&table));
     let translating = translating.map(WallMotion::Translating);
-    let mut stated = [translating, rotating, moved, oscillating]
+    let mut stated = [translating, rotating, moved, oscillating, servo]
         .into_iter()
         .flatten();
     let first = stated.next();
     if stated.next().is_some() {
-        let rule = "has several of `velocity`, `rotating`, `moved` and `oscillating`";
+        let rule = "has several of `velocity`, `rotating`, `moved`, `oscillating` and `servo`";
         table.fail_whole(rule, "write one of them");
     }
     first.unwrap_or_default()
+}
+
+fn servo(table: &TableReader<'_>) -> Option<WallMotion> {
+    let direction = direction(table, "direction");
+    let kind = table.exactly_one();
+    let [force, pressure, area] = ["force", "pressure", "area"].map(|key| table.number(key));
+    let (mass, damping) = (table.number("mass"), table.number("damping"));
+    if kind == Some("pressure") && area.is_none() {
+        table.fail(
+            "pressure",
+            "stands without `area`",
+            "write the area over which it presses",
+        );
+    }
+    if kind == Some("force") && area.is_some() {
+        table.fail("area", "goes with `pressure` only", "remove it");
+    }
+    table.finish();
+    let force = match kind? {
+        "force" => force?,
+        _ => pressure? * area?,
+    };
+    Some(WallMotion::Servo {
+        direction: direction?,
+        force,
+        mass: mass?,
+        damping: damping?,
+    })
 }

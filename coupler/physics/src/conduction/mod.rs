@@ -13,6 +13,8 @@
 //! | [`Geometric`] | 2 k r, r² = 2 R* δ (circle of intersection) | √2 | 1 |
 //! | [`Lens`] | 2 k √A, A = π r², r² = 2 R* δ | √(2π) | √π |
 //!
+//! [`RoughContact`] puts the asperities of rough surfaces in series with the first.
+//!
 //! Per area of contact, G = A/R_th, that is R_th = π r/(2 k) for the first two and √(π) r/(2 k) for the third.
 
 mod area;
@@ -25,6 +27,7 @@ mod lens;
 mod model;
 mod none;
 mod rong_horio;
+mod rough;
 
 pub use area::{ContactArea, ElasticLaw, Stiffness};
 pub use batchelor_obrien::BatchelorObrien;
@@ -36,6 +39,7 @@ pub use lens::Lens;
 pub use model::{Conduction, SphereContact};
 pub use none::NoConduction;
 pub use rong_horio::RongHorio;
+pub use rough::RoughContact;
 
 use crate::law::LawEntry;
 
@@ -44,6 +48,7 @@ pub static CONDUCTION_LAWS: &[&LawEntry<dyn Conduction>] = &[
     &batchelor_obrien::LAW,
     &geometric::LAW,
     &lens::LAW,
+    &rough::LAW,
     &none::LAW,
 ];
 

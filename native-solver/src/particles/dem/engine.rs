@@ -2,6 +2,7 @@
 
 mod drag;
 mod pass;
+mod servo;
 mod state;
 
 use std::iter::repeat;
@@ -23,6 +24,7 @@ use super::sphere::{SphereLoad, SphereMotion, SpherePosition, Spheres};
 use super::stored_contacts::{StoredContact, StoredContacts, StoredWallContact};
 use super::walls::WallBody;
 
+pub use servo::ServoState;
 pub use state::EngineState;
 
 /// Skin at the start, in radii of the smallest sphere.
@@ -123,6 +125,8 @@ pub struct Engine {
     posed: i64,
     /// Centres in m at the last search, in the order of the particles, and the steps of the run before it.
     searched: (Vec<Vec3>, i64),
+    /// Distances in m of walls that hold a force at the last search.
+    searched_servos: Vec<f64>,
     /// Evaluations of all forces so far.
     stamp: u64,
     searches: u64,
@@ -151,6 +155,7 @@ impl Engine {
             age: 0,
             posed: 0,
             searched: (Vec::new(), 0),
+            searched_servos: Vec::new(),
             stamp: 1,
             searches: 0,
             counting: false,
@@ -263,11 +268,13 @@ impl Engine {
     /// Takes `steps` steps after the `done` first of the run. Velocities are whole after the last one.
     pub fn advance(&mut self, done: i64, steps: i64) -> Result<(), EscapedParticle> {
         if self.spheres.len() == 0 || steps <= 0 {
+            self.steer_alone(steps);
             return Ok(());
         }
         let step = self.contacts.step;
         let mut fastest = self.drift(1);
         for k in 0..steps {
+            self.steer(if k == 0 { 1 } else { 2 });
             self.pose(done + k + 1);
             self.spheres.move_images();
             self.gone += fastest * step;
@@ -295,6 +302,7 @@ impl Engine {
         }
         self.take_up();
         self.close();
+        self.release();
         self.check()
     }
 
@@ -492,6 +500,7 @@ impl Engine {
         self.searched.0.clear();
         self.searched.0.extend(places.map(|place| place.centre));
         self.searched.1 = self.posed;
+        self.searched_servos = self.servos().map(|servo| servo.distance).collect();
         self.searches += 1;
     }
 }

@@ -20,6 +20,6 @@ mod sphere;
 mod stored_contacts;
 mod walls;
 
-pub use engine::{Engine, EngineState, EscapedParticle, InsertedSphere};
+pub use engine::{Engine, EngineState, EscapedParticle, InsertedSphere, ServoState};
 pub use stored_contacts::{StoredContact, StoredWallContact};
 pub use walls::{distance_to_shape, distance_to_triangle, repeated};

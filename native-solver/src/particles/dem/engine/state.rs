@@ -10,6 +10,7 @@ use super::super::block::size;
 use super::super::energy::ContactEnergy;
 use super::super::sphere::{SphereLoad, SphereMotion, SpherePosition, Spheres};
 use super::super::stored_contacts::{StoredContact, StoredContacts, StoredWallContact};
+use super::servo::ServoState;
 use super::{Engine, EscapedParticle, InsertedSphere};
 
 /// Loads, and the last search for candidates; particles by rows of ascending ids.
@@ -29,6 +30,8 @@ pub struct EngineState {
     pub gone: [f64; 2],
     /// Steps since.
     pub age: u64,
+    /// Walls that hold a force.
+    pub servos: Vec<ServoState>,
 }
 
 impl EngineState {
@@ -51,6 +54,7 @@ impl Engine {
             skin: self.skin,
             gone: [self.gone, self.wall_gone],
             age: self.age,
+            servos: self.servo_states(),
         };
         let loads = self.blocks.iter().flat_map(|block| &block.load);
         for (row, load) in rows().zip(loads) {
@@ -76,15 +80,18 @@ impl Engine {
         self.skin = state.skin;
         if particles.is_empty() {
             self.blocks.clear();
+            self.place_servos(&state.servos, false);
             return Ok(());
         }
         self.check()?;
         for (place, searched) in self.spheres.place.iter_mut().zip(&state.searched) {
             place.centre = *searched;
         }
+        self.place_servos(&state.servos, true);
         self.pose(state.searched_after);
         self.search.stored = StoredContacts::in_slots(pairs, walls);
         self.find();
+        self.place_servos(&state.servos, false);
         self.pose(steps);
         ([self.gone, self.wall_gone], self.age) = (state.gone, state.age);
         let rows = self.spheres.row.iter().map(|&row| row as usize);
@@ -99,6 +106,7 @@ impl Engine {
                 *load = SphereLoad { force, torque };
             }
         }
+        self.press(&state.servos);
         Ok(())
     }
 

@@ -56,6 +56,9 @@ pub struct WallContacts {
     pub slots: Vec<WallContactMemory>,
     /// What the law prepared, one per group; empty where it prepares nothing.
     pub prepared: Vec<f64>,
+    /// Force in N with which the particles of the block pressed against each wall in the last evaluation; empty where none
+    /// holds a force.
+    pub pressed: Vec<Vec3>,
 }
 
 /// A contact with a wall: in the wall's own frame.
@@ -111,7 +114,12 @@ impl WallContacts {
         load: &mut [SphereLoad],
         budget: &mut ContactEnergy,
     ) {
+        self.pressed.clear();
+        if scene.walls.iter().any(|wall| wall.servo.is_some()) {
+            self.pressed.resize(scene.walls.len(), Vec3::zeros());
+        }
         for (k, group) in self.groups.iter().enumerate() {
+            let before = load[group.particle as usize].force;
             let wall = &scene.walls[group.wall as usize];
             let index = begin + group.particle as usize;
             let place = &scene.spheres.place[index];
@@ -148,6 +156,9 @@ impl WallContacts {
                         touch(near, slots);
                     }
                 }
+            }
+            if let Some(pressed) = self.pressed.get_mut(group.wall as usize) {
+                *pressed -= load.force - before;
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Walls: where they are, how they move, which point of them is nearest to a sphere.
 
 pub mod group;
+mod servo;
 pub mod shape;
 pub mod triangle;
 
@@ -8,6 +9,8 @@ use calcine_coupler::motion::{Wall, WallMotion, WallShape};
 use calcine_coupler::periodicity::Periodicity;
 use calcine_coupler::physics::Vec3;
 use nalgebra::{Matrix3, Rotation3};
+
+pub use servo::Servo;
 
 /// Distance in m from a place to a plane, cylinder or cone; negative behind a plane or cylinder. Nothing for a mesh.
 pub fn distance_to_shape(shape: &WallShape, place: Vec3) -> Option<f64> {
@@ -31,6 +34,8 @@ pub struct WallBody {
     shift: Vec3,
     /// Velocity in m/s of a wall that does not turn.
     rate: Vec3,
+    /// Where it is where it holds a force.
+    pub servo: Option<Servo>,
     /// Largest speed in m/s at which its surface comes nearer to a place within the bounds.
     pub speed: f64,
 }
@@ -45,12 +50,18 @@ impl WallBody {
             turn: Matrix3::identity(),
             shift: Vec3::zeros(),
             rate: wall.motion.displacement(0.0).1,
+            servo: Servo::of(&wall.motion),
             speed: speed(wall, bounds),
         }
     }
 
-    /// Moves it to where it is at a motion time in s.
+    /// Moves it to where it is at a motion time in s; a wall that holds a force to where its servo is.
     pub fn pose(&mut self, time: f64) {
+        if let Some(servo) = &self.servo {
+            (self.shift, self.rate) = (servo.shift(), servo.velocity());
+            self.speed = servo.rate.abs();
+            return;
+        }
         match &self.motion {
             WallMotion::Rotating {
                 point,
