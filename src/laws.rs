@@ -14,8 +14,17 @@ use calcine_coupler::physics::law::{LawEntry, LawSummary};
 use calcine_coupler::physics::reaction::{RATE_LAWS, RateLaw};
 use calcine_coupler::physics::turbulence::{BED_EDDY_LAWS, BedEddies};
 use calcine_coupler::view_factors::{RADIATION_LAWS, RadiationLaw};
+use calcine_flowsheet::mill::{MILL_LAWS, MillLaw};
+use calcine_flowsheet::population::{
+    AGGREGATION_LAWS, AggregationKernel, BREAKAGE_LAWS, BreakageLaw,
+};
+use calcine_flowsheet::screen::{SCREEN_LAWS, ScreenLaw};
+use calcine_tuning::law::CONVERSION_LAWS;
 
 use crate::case::model::{Case, ConductionArea};
+
+/// Families of laws by the table in which a law is chosen.
+pub type LawFamilies = Vec<(&'static str, Vec<LawSummary>)>;
 
 /// The laws that a case may choose: Calcine's own, and those that a program adds to them.
 #[derive(Clone, Debug)]
@@ -42,6 +51,14 @@ pub struct LawCatalogue {
     pub rolling: Vec<&'static LawEntry<Rolling>>,
     /// Attraction between surfaces.
     pub cohesion: Vec<&'static LawEntry<Cohesion>>,
+    /// Which share of a size a screen sends to its coarse side.
+    pub screen: Vec<&'static LawEntry<dyn ScreenLaw>>,
+    /// What a mill makes of a distribution.
+    pub mill: Vec<&'static LawEntry<dyn MillLaw>>,
+    /// Rate at which pairs of particles aggregate.
+    pub aggregation: Vec<&'static LawEntry<dyn AggregationKernel>>,
+    /// What breaks, and into what.
+    pub breakage: Vec<&'static LawEntry<dyn BreakageLaw>>,
 }
 
 impl Default for LawCatalogue {
@@ -58,6 +75,10 @@ impl Default for LawCatalogue {
             contact: CONTACT_LAWS.to_vec(),
             rolling: ROLLING_LAWS.to_vec(),
             cohesion: COHESION_LAWS.to_vec(),
+            screen: SCREEN_LAWS.to_vec(),
+            mill: MILL_LAWS.to_vec(),
+            aggregation: AGGREGATION_LAWS.to_vec(),
+            breakage: BREAKAGE_LAWS.to_vec(),
         }
     }
 }
@@ -81,8 +102,18 @@ impl LawCatalogue {
         self
     }
 
-    /// All families by the table in which a law is chosen.
-    pub fn families(&self) -> Vec<(&'static str, Vec<LawSummary>)> {
+    /// The families of plants by the table in which a law is chosen.
+    pub fn plant_families(&self) -> LawFamilies {
+        vec![
+            ("units.screen", summaries(&self.screen)),
+            ("units.mill", summaries(&self.mill)),
+            ("units.granulator.aggregation", summaries(&self.aggregation)),
+            ("units.granulator.breakage", summaries(&self.breakage)),
+        ]
+    }
+
+    /// The families of beds by the table in which a law is chosen.
+    pub fn families(&self) -> LawFamilies {
         vec![
             ("laws.drag", summaries(&self.drag)),
             ("laws.heat_transfer", summaries(&self.heat_transfer)),
@@ -97,6 +128,13 @@ impl LawCatalogue {
             ("motion.rolling", summaries(&self.rolling)),
             ("motion.cohesion", summaries(&self.cohesion)),
         ]
+    }
+}
+
+impl LawCatalogue {
+    /// Families of laws that a tuning chooses from; their numbers are keys of its reactions.
+    pub fn tuning_families(&self) -> LawFamilies {
+        vec![("reactions.laws", summaries(CONVERSION_LAWS))]
     }
 }
 
@@ -120,7 +158,11 @@ families!(
     size,
     contact,
     rolling,
-    cohesion
+    cohesion,
+    screen,
+    mill,
+    aggregation,
+    breakage
 );
 
 /// The laws of heat between particles of a case; `None` where there are none.
@@ -182,7 +224,8 @@ mod tests {
 
     #[test]
     fn laws_of_every_family_have_names_of_their_own_and_sources() {
-        for (family, laws) in LawCatalogue::default().families() {
+        let catalogue = LawCatalogue::default();
+        for (family, laws) in [catalogue.families(), catalogue.plant_families()].concat() {
             let mut names: Vec<&str> = laws.iter().map(|law| law.name).collect();
             for law in &laws {
                 assert!(law.summary.ends_with('.'), "{family}: {}", law.name);

@@ -23,6 +23,7 @@ const ARROWS: [(&str, &[&str]); 13] = [
         &[
             "calcine-adapters",
             "calcine-coupler",
+            "calcine-flowsheet",
             "calcine-interior",
             "calcine-native",
             "calcine-physics",

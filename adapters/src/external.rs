@@ -192,6 +192,14 @@ impl ExternalParticlesLaunch<'_> {
     /// Writes the folder, starts the solver and takes over the particles it starts from, which must be those of the
     /// case where no checkpoint is taken up.
     pub fn launch(self, supervisor: &mut Supervisor) -> Result<LinkedParticles, PartError> {
+        if matches!(self.setup.motion, Motion::Parcels(_)) {
+            return Err(PartError::new(
+                PARTICLES,
+                FailureKind::NotStarted,
+                "the particles are parcels, which programs of their own are not told to move; move them natively \
+                 (`--particles native`)",
+            ));
+        }
         self.write_folder()?;
         let resume = self.solver.resume.as_deref();
         let (ids, radii) = particles::identity(PARTICLES, self.setup, resume)?;
@@ -243,6 +251,7 @@ impl ExternalParticlesLaunch<'_> {
             let held = match &setup.motion {
                 Motion::Frozen => true,
                 Motion::Free(contacts) => contacts.held.get(population as usize) == Some(&true),
+                Motion::Parcels(_) => false,
             };
             let _ = write!(table, "{},{population},{}", setup.id[row], u8::from(held));
             let velocity = setup.velocity.get(row).copied().unwrap_or_default();

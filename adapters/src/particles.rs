@@ -150,7 +150,7 @@ impl LinkedParticles {
             largest_id,
             periodicity: match &setup.motion {
                 Motion::Free(contacts) => contacts.periodicity,
-                Motion::Frozen => Periodicity::default(),
+                Motion::Frozen | Motion::Parcels(_) => Periodicity::default(),
             },
         };
         particles.committed = particles.read(None)?;

@@ -27,6 +27,7 @@ pub mod motion;
 pub mod named_columns;
 pub mod observer;
 pub mod packing;
+pub mod parcels;
 pub mod part;
 pub mod paths;
 pub mod periodic_motion;

@@ -8,6 +8,7 @@ use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 use calcine_physics::points::linear;
 
+use crate::parcels::ParcelMotion;
 use crate::periodicity::Periodicity;
 
 /// How the particles of a run move.
@@ -18,6 +19,8 @@ pub enum Motion {
     Frozen,
     /// They move freely under gravity, contacts and the force of the gas.
     Free(Box<Contacts>),
+    /// Each stands for many, and moves under gravity, the force of the gas and the stress of the solid.
+    Parcels(Box<ParcelMotion>),
 }
 
 impl Motion {

@@ -136,4 +136,12 @@ pub enum PlantError {
         /// Iterations done.
         iterations: usize,
     },
+    /// A value of a key for which there is no plant.
+    #[error("no plant has the value {value}: {cause}")]
+    NoPlant {
+        /// Value of the key.
+        value: f64,
+        /// Why.
+        cause: String,
+    },
 }

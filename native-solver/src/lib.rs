@@ -3,4 +3,5 @@
 
 pub mod gas;
 pub mod numerics;
+pub mod parcels;
 pub mod particles;

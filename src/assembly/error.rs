@@ -6,6 +6,7 @@ use calcine_coupler::error::PartError;
 use calcine_coupler::interior::reacting::LayersError;
 use calcine_coupler::smoother::SmootherError;
 use calcine_native::gas::NativeError;
+use calcine_native::parcels::ParcelError;
 use thiserror::Error;
 
 use crate::case::model::Case;
@@ -48,6 +49,9 @@ pub enum AssemblyError {
     /// A native solver refuses the case or a checkpoint.
     #[error(transparent)]
     Native(#[from] NativeError),
+    /// Parcels that the native solver cannot move.
+    #[error(transparent)]
+    Parcels(#[from] ParcelError),
     /// A gas of the user's own that the case does not name.
     #[error("the case names no gas solver of your own; add [external.gas] with program = \"…\"")]
     NoExternalGas,

@@ -19,7 +19,7 @@ pub(super) fn plan(case: &Case, prepared: &PreparedCase, checkpoint: CheckpointP
         motion_window: case.time.motion_window,
         window_bounds: case.time.window_bounds,
         particle_step: match &prepared.particles.motion {
-            Motion::Frozen => None,
+            Motion::Frozen | Motion::Parcels(_) => None,
             Motion::Free(contacts) => Some(contacts.step),
         },
         breaks,
@@ -43,6 +43,7 @@ pub(super) fn plan(case: &Case, prepared: &PreparedCase, checkpoint: CheckpointP
         free: match &prepared.particles.motion {
             Motion::Frozen => Vec::new(),
             Motion::Free(contacts) => contacts.held.iter().map(|held| !held).collect(),
+            Motion::Parcels(_) => vec![true; case.particles.len()],
         },
         holds: case
             .motion
@@ -53,7 +54,7 @@ pub(super) fn plan(case: &Case, prepared: &PreparedCase, checkpoint: CheckpointP
         substance: case.particles.iter().map(|one| one.material).collect(),
         paths: paths(case, prepared),
         step_limit: match &prepared.particles.motion {
-            Motion::Frozen => None,
+            Motion::Frozen | Motion::Parcels(_) => None,
             Motion::Free(contacts) => {
                 let waived = case.motion.as_ref().is_some_and(|motion| motion.long_step);
                 (!waived).then(|| ContactStepLimit::of(contacts))

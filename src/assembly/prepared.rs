@@ -16,7 +16,7 @@ use super::error::AssemblyError;
 use crate::case::model::{Case, MappingSpec, Population};
 use crate::case::packed::BedPacking;
 use crate::case::sizes;
-use crate::case::{InitialParticles, PlaceError, contacts, in_wall, mesh_of, particles};
+use crate::case::{InitialParticles, PlaceError, in_wall, mesh_of, parcels, particles};
 
 /// Diameter over the narrowest width of a mesh that only a slip of units gives: slices of a bed may be thinner than its
 /// particles, which are pressed together.
@@ -53,7 +53,7 @@ impl PreparedCase {
             temperature,
         } = particles(case, mesh.periodicity())?;
         fit_between_walls(case, &mesh, &setup)?;
-        setup.motion = contacts::motion(case, &mesh, &setup).map_err(PlaceError::from)?;
+        setup.motion = parcels::motion_of(case, &mesh, &setup)?;
         in_wall::check(case, &setup)?;
         let radii = &setup.radius;
         Ok(Self {
@@ -76,7 +76,7 @@ impl PreparedCase {
         let names: Vec<String> = case.particles.iter().map(|one| one.name.clone()).collect();
         let mut taken =
             origin.take_particles(&self.mesh, species, &names, &self.particles, &reacting)?;
-        taken.motion = contacts::motion(case, &self.mesh, &taken).map_err(PlaceError::from)?;
+        taken.motion = parcels::motion_of(case, &self.mesh, &taken)?;
         Ok(Self {
             particles: taken,
             ..self.clone()

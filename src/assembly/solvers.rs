@@ -18,6 +18,7 @@ use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::GasStart;
 use calcine_coupler::supervisor::Supervisor;
 use calcine_native::gas::NativeGas;
+use calcine_native::parcels::NativeParcels;
 use calcine_native::particles::NativeParticles;
 
 use super::error::AssemblyError;
@@ -78,7 +79,12 @@ pub fn native_parts(
         return Err(AssemblyError::NoExternalParticles);
     }
     if pairing.particles == ParticleBackend::Native {
-        NativeParticles::new(&prepared.particles)?;
+        match &prepared.particles.motion {
+            Motion::Parcels(_) => {
+                NativeParcels::new(Arc::clone(&prepared.mesh), &prepared.particles)?;
+            }
+            _ => drop(NativeParticles::new(&prepared.particles)?),
+        }
     }
     Ok(())
 }
@@ -138,7 +144,7 @@ fn liggghts_inputs<'a>(
         setup: &prepared.particles,
         bounds,
         step: match &prepared.particles.motion {
-            Motion::Frozen => FROZEN_STEP,
+            Motion::Frozen | Motion::Parcels(_) => FROZEN_STEP,
             Motion::Free(contacts) => contacts.step,
         },
         ranks,
@@ -223,6 +229,13 @@ impl Assembly<'_> {
         let from = self.from.map(|folder| folder.join("particles"));
         let setup = &self.prepared.particles;
         match self.settings.pairing.particles {
+            ParticleBackend::Native if matches!(setup.motion, Motion::Parcels(_)) => {
+                let mut parcels = NativeParcels::new(Arc::clone(&self.prepared.mesh), setup)?;
+                if let Some(folder) = from {
+                    parcels.restore(&folder)?;
+                }
+                Ok(Box::new(parcels))
+            }
             ParticleBackend::Native => {
                 let mut particles = NativeParticles::new(setup)?;
                 if let Some(folder) = from {

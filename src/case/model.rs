@@ -16,6 +16,7 @@ use calcine_coupler::hold::Holds;
 use calcine_coupler::interior::reacting::{Reaction, SizeChange};
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::motion::{ContactLaw, Wall};
+use calcine_coupler::parcels::{Packing, ParcelCollisions};
 pub use calcine_coupler::paths::SURROUNDINGS;
 use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::setup::{GasSetup, Schedule};
@@ -172,10 +173,27 @@ pub struct FreeMotion {
     pub step: Option<f64>,
     /// True where a step that is too long for the contacts is warned of, not refused.
     pub long_step: bool,
-    /// Law of contacts.
+    /// Law of contacts; of parcels, which have none, it is never used.
     pub law: ContactLaw,
+    /// How parcels move; `None` where particles move one by one.
+    pub parcels: Option<ParcelSpec>,
     /// When the bed is held.
     pub held: Holds,
+}
+
+/// `[motion.parcels]`: how parcels move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParcelSpec {
+    /// Courant number of a parcel at most.
+    pub courant: f64,
+    /// Steps of a window at most.
+    pub most_steps: u32,
+    /// Solid fraction of the closest packing.
+    pub close_packing: f64,
+    /// How the stress of the solid acts.
+    pub packing: Packing,
+    /// Damping and isotropy.
+    pub collisions: ParcelCollisions,
 }
 
 /// Which clock the motion of particles belongs to (docs/theory.md, TSM-7).

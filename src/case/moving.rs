@@ -25,7 +25,7 @@ pub(super) fn moving_spheres(
     setup: &ParticleSetup,
 ) -> impl Iterator<Item = MovingSpheres> {
     let populations = case.particles.iter().enumerate();
-    let populations = populations.filter(|(_, one)| one.motion != MotionSpec::Frozen);
+    let populations = populations.filter(|(_, one)| one.motion == MotionSpec::Free);
     populations.filter_map(|(index, population)| {
         let material = &case.materials[population.material];
         let elastic = Elastic {

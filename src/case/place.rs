@@ -201,7 +201,7 @@ fn spheres(
             let entries = bed::read(path, choice)?;
             let diameters = draw(entries.len())?;
             // What is held has no velocity, whatever it had where the file was written.
-            let moves = population.motion == MotionSpec::Free;
+            let moves = population.motion != MotionSpec::Frozen;
             let mut made = Vec::with_capacity(entries.len());
             for (entry, drawn) in entries.into_iter().zip(diameters) {
                 let centre = periodicity.wrap(entry.centre);

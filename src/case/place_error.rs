@@ -97,6 +97,9 @@ pub enum PlaceError {
     /// Contacts that cannot be stepped through.
     #[error(transparent)]
     Contacts(#[from] super::contacts::ContactsError),
+    /// Walls that do not go with the mesh of parcels.
+    #[error(transparent)]
+    ParcelWalls(#[from] super::parcels::ParcelWallError),
     /// No particle at all.
     #[error(
         "the case has no particles: {} place none; a run needs one particle at least", .names.join(", ")
@@ -139,6 +142,7 @@ impl PlaceError {
             Self::Contacts(ContactsError::Step { .. }) => "motion.motion_step".into(),
             Self::Contacts(ContactsError::Short { .. }) => "motion.held".into(),
             Self::Contacts(_) => "motion".into(),
+            Self::ParcelWalls(_) => "motion.parcels".into(),
             _ => "particles".into(),
         }
     }

@@ -113,6 +113,7 @@ fn form(value: KeyValue, laws: &LawCatalogue) -> Value {
         }
         KeyValue::Wholes(count) => tuple(count, json!({"type": "integer", "minimum": 1})),
         KeyValue::Number(dimension, _) => number(dimension),
+        KeyValue::Numbers(0) => list(json!({"type": "number"})),
         KeyValue::Numbers(count) => tuple(count, json!({"type": "number"})),
         KeyValue::Vector(dimension) => vector(dimension),
         KeyValue::Vectors(dimension) => list(vector(dimension)),

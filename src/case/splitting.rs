@@ -143,7 +143,7 @@ impl<'a> Splitting<'a> {
                 .filter_map(|one| one.warning(name)),
         );
         let constant =
-            self.population.motion == MotionSpec::Free && !case.coupling.window_drag.follows();
+            self.population.motion != MotionSpec::Frozen && !case.coupling.window_drag.follows();
         if let Some(share) = self.drag.filter(|share| constant && *share > 1.0) {
             all.push(format!(
                 "a window is {} times the time m/K in which drag takes particles of `{name}` along: shorten it, or write \

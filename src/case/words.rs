@@ -10,6 +10,10 @@ pub(super) use calcine_coupler::setup::{Convection, InletScalars, TimeScheme, Wa
 pub(super) use calcine_coupler::time::GasStorage;
 pub(super) use calcine_coupler::window_drag::WindowDrag;
 
+use calcine_tuning::DifferenceForm;
+
+use crate::tuning::curves::Delimiter;
+
 pub(super) use super::model::{MappingSpec, MotionKind, MotionSpec, Statistic};
 
 /// A choice between words.
@@ -18,6 +22,43 @@ pub(super) trait CaseWord: Copy + 'static {
     const ALL: &'static [(&'static str, Self)];
 }
 
+/// `model.type` of a tuning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum TunedModel {
+    /// A sample in a crucible.
+    Lumped,
+    /// A sample of a known temperature.
+    Kinetic,
+}
+
+/// `model.heat_capacity` of a tuning: true where it follows the composition.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SampleCapacity(pub bool);
+
+/// `model.reaction_heat` of a tuning: true where it follows the temperature.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ReactionHeat(pub bool);
+
+/// `parameters.scale` of a tuning: true of a logarithmic one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ParameterScale(pub bool);
+
+/// `targets.delimiter` of a tuning.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DelimiterName(pub Delimiter);
+
+/// `targets.decimal` of a tuning: true of a comma.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DecimalName(pub bool);
+
+/// `method.differences` of a tuning.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DifferenceName(pub DifferenceForm);
+
+/// `method.algorithm` of a tuning: true of evolution.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TuningAlgorithm(pub bool);
+
 macro_rules! case_words {
     ($($(#[$doc:meta])* $type:ty { $($word:literal => $value:expr),* $(,)? })*) => {
         $($(#[$doc])* impl CaseWord for $type {
@@ -25,6 +66,8 @@ macro_rules! case_words {
         })*
     };
 }
+
+pub(super) use case_words;
 
 /// `gas.chemistry.model`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,6 +128,17 @@ pub(super) struct Adiabatic;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Closed;
 
+/// `motion.parcels.packing`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum PackingScheme {
+    /// The solid fraction at the end of the step is solved for.
+    Implicit,
+    /// The gradient of the stress at its start, limited as Snider does.
+    Explicit,
+    /// No stress.
+    None,
+}
+
 /// A field of the gas whose difference between patches is measured.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DifferenceField(pub &'static str);
@@ -98,6 +152,22 @@ pub(super) struct GasField(pub &'static str);
 pub(super) struct ParticleField(pub &'static str);
 
 case_words! {
+    TunedModel { "lumped" => TunedModel::Lumped, "kinetic" => TunedModel::Kinetic }
+    SampleCapacity { "constant" => SampleCapacity(false), "composition" => SampleCapacity(true) }
+    ReactionHeat { "constant" => ReactionHeat(false), "kirchhoff" => ReactionHeat(true) }
+    ParameterScale { "linear" => ParameterScale(false), "logarithmic" => ParameterScale(true) }
+    DelimiterName {
+        "semicolon" => DelimiterName(Delimiter::Semicolon),
+        "tab" => DelimiterName(Delimiter::Tab),
+        "comma" => DelimiterName(Delimiter::Comma),
+        "space" => DelimiterName(Delimiter::Space),
+    }
+    DecimalName { "point" => DecimalName(false), "comma" => DecimalName(true) }
+    DifferenceName {
+        "absolute" => DifferenceName(DifferenceForm::Absolute),
+        "relative" => DifferenceName(DifferenceForm::Relative),
+    }
+    TuningAlgorithm { "least-squares" => TuningAlgorithm(false), "nsga2" => TuningAlgorithm(true) }
     GasStorage { "process" => GasStorage::Process, "accelerated" => GasStorage::Accelerated }
     MotionKind { "real-time" => MotionKind::RealTime, "accelerated" => MotionKind::Accelerated }
     CombustionModel { "laminar" => CombustionModel::Laminar, "pasr" => CombustionModel::Pasr }
@@ -116,7 +186,12 @@ case_words! {
     TimeScheme { "euler" => TimeScheme::ImplicitEuler, "sdirk2" => TimeScheme::Sdirk2 }
     InletScalars { "flux" => InletScalars::Flux, "value" => InletScalars::Value }
     Share { "number" => Share::Number, "mass" => Share::Mass }
-    MotionSpec { "frozen" => MotionSpec::Frozen, "free" => MotionSpec::Free }
+    MotionSpec { "frozen" => MotionSpec::Frozen, "free" => MotionSpec::Free, "parcels" => MotionSpec::Parcels }
+    PackingScheme {
+        "implicit" => PackingScheme::Implicit,
+        "explicit" => PackingScheme::Explicit,
+        "none" => PackingScheme::None,
+    }
     PackingName {
         "random" => PackingName(None),
         "simple-cubic" => PackingName(Some(Lattice::SimpleCubic)),

@@ -24,7 +24,7 @@ pub(super) fn seconds(case: &Case, cells: usize, setup: &ParticleSetup) -> f64 {
     };
     let steps = match &setup.motion {
         Motion::Free(contacts) => case.time.motion_window.seconds() / contacts.step,
-        Motion::Frozen => 0.0,
+        Motion::Frozen | Motion::Parcels(_) => 0.0,
     };
     let reacts = |population: &usize| {
         let material = case.particles[*population].material;

@@ -24,15 +24,18 @@ pub(super) struct Arguments {
     /// Pairings of gas and particles such as `native+native,openfoam+liggghts`, or `all`: those that can run here.
     #[arg(long, default_value = "all", value_parser = pairings)]
     pairings: Chosen,
+    /// Of a plant: compares these two results folders in place of two runs.
+    #[arg(long, value_name = "DIR,DIR", value_delimiter = ',')]
+    pub(super) results: Vec<PathBuf>,
     /// Folder of the comparison [default: results/NAME-compare].
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
     /// Changes a key of the case, for example `--set time.acceleration=200`.
     #[arg(long, value_name = "KEY=VALUE")]
     pub(super) set: Vec<String>,
     /// Shows no progress bar.
     #[arg(long)]
-    quiet: bool,
+    pub(super) quiet: bool,
 }
 
 /// The pairings asked for.
@@ -107,6 +110,10 @@ fn able_ones(valid: &ValidCase, chosen: &Chosen) -> Result<Vec<Pairing>, Failure
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
+    if !arguments.results.is_empty() {
+        let message = "`--results` goes with plants; name the pairings of a bed with `--pairings`";
+        return Err(Failure::new(exit::CASE, message));
+    }
     let valid = ValidCase::open(&arguments.case, &arguments.set)?;
     let pairings = able_ones(&valid, &arguments.pairings)?;
     let ValidCase { case, prepared, .. } = valid;

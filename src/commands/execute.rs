@@ -6,13 +6,12 @@ use std::time::Duration;
 
 use calcine_coupler::ledger::{DRAG_CARRY, PRESCRIBED_HEAT, STORAGE_CLOCK};
 use calcine_coupler::supervisor::Interrupts;
-use signal_hook::consts::{SIGINT, SIGTERM};
-use signal_hook::iterator::Signals;
 
 use super::console::printed;
 use super::continuation::Recorded;
 use super::failure::{Failure, chain};
 use super::parallel::Transport;
+use super::signals::SignalThread;
 use crate::assembly::{Pairing, PreparedCase, SolverStarts};
 use crate::case::buoyancy;
 use crate::case::model::Case;
@@ -245,37 +244,4 @@ fn failed(out: &Path, failure: &SimulationError) -> Failure {
         ));
     }
     Failure::new(failure.exit_code(), message)
-}
-
-/// Turns Ctrl-C, SIGTERM and `--stop-after` into interrupts.
-struct SignalThread(signal_hook::iterator::Handle);
-
-impl SignalThread {
-    fn start(interrupts: &Interrupts, stop_after: Option<Duration>) -> Result<Self, Failure> {
-        let mut signals = Signals::new([SIGINT, SIGTERM]).map_err(|cause| {
-            Failure::new(
-                exit::OTHER,
-                format_args!("signals cannot be caught: {cause}"),
-            )
-        })?;
-        let handle = signals.handle();
-        let on_signal = interrupts.clone();
-        std::thread::spawn(move || signals.forever().for_each(|_| on_signal.raise()));
-        if let Some(limit) = stop_after {
-            let on_time = interrupts.clone();
-            std::thread::spawn(move || {
-                std::thread::sleep(limit);
-                if on_time.count() == 0 {
-                    on_time.raise();
-                }
-            });
-        }
-        Ok(Self(handle))
-    }
-}
-
-impl Drop for SignalThread {
-    fn drop(&mut self) {
-        self.0.close();
-    }
 }

@@ -6,10 +6,21 @@ use std::sync::Arc;
 use calcine_wire::SolverNetwork;
 
 use super::failure::Failure;
-use super::{check, compare, report, run, sweep};
+use super::{check, compare, plant, report, run, sweep, tune};
 use crate::case::kind_of;
 use crate::exit;
 use crate::results::ResultsError;
+
+/// A command with its arguments; gives the exit code.
+type Command<A> = fn(&A) -> Result<u8, Failure>;
+
+/// `run` with its arguments, the case, what can spawn solvers by MPI, and what hands over to the program that can.
+type RunCommand = fn(
+    &run::Arguments,
+    &Path,
+    Option<&Arc<dyn SolverNetwork>>,
+    fn() -> Failure,
+) -> Result<u8, Failure>;
 
 /// The commands of a kind of case. A new kind is an entry of [`COMMANDS`], and its keys are one of
 /// [`KINDS`](crate::case::keys::KINDS).
@@ -17,31 +28,53 @@ struct KindCommands {
     /// Word of the key `kind`.
     kind: &'static str,
     /// `run`, with the arguments that `--resume DIR` stands for, and the case.
-    run: fn(
-        &run::Arguments,
-        &Path,
-        Option<&Arc<dyn SolverNetwork>>,
-        fn() -> Failure,
-    ) -> Result<u8, Failure>,
+    run: RunCommand,
     /// `check`.
-    check: fn(&check::Arguments) -> Result<u8, Failure>,
+    check: Command<check::Arguments>,
     /// `compare`, where the kind has it.
-    compare: Option<fn(&compare::Arguments) -> Result<u8, Failure>>,
+    compare: Option<Command<compare::Arguments>>,
     /// `sweep`, where the kind has it.
-    sweep: Option<fn(&sweep::Arguments) -> Result<u8, Failure>>,
+    sweep: Option<Command<sweep::Arguments>>,
     /// `report`: writes the page of a results folder.
     report: fn(&Path) -> Result<PathBuf, ResultsError>,
 }
 
 /// All kinds; the first is that of cases and results that state none.
-static COMMANDS: &[KindCommands] = &[KindCommands {
-    kind: "bed",
-    run: run::run,
-    check: check::run,
-    compare: Some(compare::run),
-    sweep: Some(sweep::run),
-    report: crate::report::write,
-}];
+static COMMANDS: &[KindCommands] = &[
+    KindCommands {
+        kind: "bed",
+        run: run::run,
+        check: check::run,
+        compare: Some(compare::run),
+        sweep: Some(sweep::run),
+        report: crate::report::write,
+    },
+    KindCommands {
+        kind: "flowsheet",
+        run: plant::run,
+        check: plant::check,
+        compare: Some(plant::compare),
+        sweep: Some(plant::sweep),
+        report: crate::plant::write_plant_report,
+    },
+    KindCommands {
+        kind: "tuning",
+        run: |arguments, case, _, _| {
+            run::use_threads(arguments.threads.map(usize::from))?;
+            tune::tune(&tune::Tuning {
+                case,
+                set: &arguments.set,
+                out: arguments.out.as_deref(),
+                resume: arguments.resume.is_some(),
+                quiet: arguments.quiet,
+            })
+        },
+        check: |arguments| tune::check(&arguments.case, &arguments.set),
+        compare: None,
+        sweep: None,
+        report: tune::page,
+    },
+];
 
 /// The commands of a case's kind.
 fn commands(case: &Path, set: &[String]) -> Result<&'static KindCommands, Failure> {

@@ -13,6 +13,7 @@ mod inputs;
 mod kinds;
 mod new;
 mod parallel;
+mod plant;
 mod prepare;
 #[cfg(test)]
 mod reference;
@@ -20,7 +21,9 @@ mod report;
 mod run;
 mod schema;
 mod shell;
+mod signals;
 mod sweep;
+mod tune;
 
 use std::os::unix::process::CommandExt;
 use std::process::{self, ExitCode};
@@ -50,6 +53,7 @@ enum Command {
     Check(check::Arguments),
     Compare(compare::Arguments),
     Sweep(sweep::Arguments),
+    Tune(tune::Arguments),
     Conform(conform::Arguments),
     Report(report::Arguments),
     Prepare(prepare::Arguments),
@@ -73,6 +77,7 @@ pub fn run_line(network: Option<&Arc<dyn SolverNetwork>>) -> u8 {
         Command::Check(arguments) => kinds::check(arguments),
         Command::Compare(arguments) => kinds::compare(arguments),
         Command::Sweep(arguments) => kinds::sweep(arguments),
+        Command::Tune(arguments) => tune::run(arguments),
         Command::Conform(arguments) => conform::run(arguments),
         Command::Report(arguments) => kinds::report(arguments),
         Command::Prepare(arguments) => prepare::run(arguments),

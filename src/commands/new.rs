@@ -34,6 +34,14 @@ enum Shipped {
     PackedColumn,
     /// Carbon dioxide purged from a warm bed by nitrogen.
     PurgedBed,
+    /// Tuning: kinetic laws compared on thermogravimetry at several heating rates.
+    TgLaws,
+    /// Tuning: a lumped model of a sample in a crucible.
+    TgTuning,
+    /// Plant: spray granulation with two screens, a mill and a recycle.
+    GranulationPlant,
+    /// Plant: a granulator and a mill that oscillate.
+    GranulationOscillation,
 }
 
 impl Shipped {
@@ -43,6 +51,30 @@ impl Shipped {
             Shipped::HeatedBed => include_str!("../../cases/heated-bed.toml"),
             Shipped::PackedColumn => include_str!("../../cases/packed-column.toml"),
             Shipped::PurgedBed => include_str!("../../cases/purged-bed.toml"),
+            Shipped::TgLaws => include_str!("../../cases/tg-laws.toml"),
+            Shipped::TgTuning => include_str!("../../cases/tg-tuning.toml"),
+            Shipped::GranulationPlant => include_str!("../../cases/granulation-plant.toml"),
+            Shipped::GranulationOscillation => {
+                include_str!("../../cases/granulation-oscillation.toml")
+            }
+        }
+    }
+
+    /// The file that the case names, with its text.
+    fn file(self) -> Option<(&'static str, &'static str)> {
+        match self {
+            Shipped::TgLaws => Some(("tg-laws.csv", include_str!("../../cases/tg-laws.csv"))),
+            Shipped::TgTuning => Some(("tg-tuning.csv", include_str!("../../cases/tg-tuning.csv"))),
+            _ => None,
+        }
+    }
+
+    /// Kind of the case, and the command that runs it.
+    fn kind(self) -> (&'static str, &'static str) {
+        match self {
+            Shipped::TgLaws | Shipped::TgTuning => ("tuning", "tune"),
+            Shipped::GranulationPlant | Shipped::GranulationOscillation => ("flowsheet", "run"),
+            _ => ("bed", "run"),
         }
     }
 }
@@ -60,12 +92,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let file = folder.join(stem).with_extension("toml");
     let failed = |cause: std::io::Error| Failure::unwritable(&file, "NAME", &cause);
     std::fs::create_dir_all(folder).map_err(failed)?;
-    let text = with_laws(arguments.like.text());
+    let (kind, command) = arguments.like.kind();
+    let text = match kind {
+        "bed" => with_laws(arguments.like.text()),
+        _ => arguments.like.text().to_owned(),
+    };
+    if let Some((name, content)) = arguments.like.file() {
+        std::fs::write(folder.join(name), content).map_err(failed)?;
+    }
     let text = format!("#:schema {SCHEMA}\n{text}");
     std::fs::write(&file, text).map_err(failed)?;
-    std::fs::write(folder.join(SCHEMA), schema::text("bed")).map_err(failed)?;
+    std::fs::write(folder.join(SCHEMA), schema::text(kind)).map_err(failed)?;
     say(format_args!(
-        "{}: change it, then\n  calcine check {0}\n  calcine run {0}",
+        "{}: change it, then\n  calcine check {0}\n  calcine {command} {0}",
         file.display()
     ))?;
     Ok(exit::OK)

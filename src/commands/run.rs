@@ -33,28 +33,28 @@ pub(super) struct Arguments {
     parallel: Parallel,
     /// Results folder [default: results/NAME].
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
     /// Changes a key of the case, for example `--set time.acceleration=200`.
     #[arg(long, value_name = "KEY=VALUE")]
     pub(super) set: Vec<String>,
     /// Continues from the last checkpoint in the results folder; a run that was stopped before its first one starts again.
     /// `--resume DIR` alone takes case, `--set` and solvers from the run in DIR.
     #[arg(long, value_name = "DIR", num_args = 0..=1)]
-    resume: Option<Option<PathBuf>>,
+    pub(super) resume: Option<Option<PathBuf>>,
     /// Starts from the last checkpoint of another run on the same mesh, with this
     /// case's settings and clocks at zero.
     #[arg(long, value_name = "DIR")]
-    from: Option<PathBuf>,
+    pub(super) from: Option<PathBuf>,
     /// Threads of Calcine's own solvers and of the coupling [default: one a core]. Results do not
     /// depend on their number.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
+    pub(super) threads: Option<u16>,
     /// Shows no progress bar.
     #[arg(long)]
-    quiet: bool,
+    pub(super) quiet: bool,
     /// Writes a checkpoint and stops after this wall time, for example `23h30m`, `90 s`, or a plain number of seconds.
     #[arg(long, value_name = "TIME", value_parser = wall_time)]
-    stop_after: Option<Duration>,
+    pub(super) stop_after: Option<Duration>,
     /// Ends with exit code 6 where a complete run has warnings: of its case, as `check` tells them, or of what left the
     /// range of a law or did not converge.
     #[arg(long)]
@@ -66,6 +66,18 @@ impl Arguments {
     fn needs_mpi(&self) -> bool {
         let external = self.gas != GasBackend::Native || self.particles != ParticleBackend::Native;
         external && self.parallel.transport() == Transport::Mpi
+    }
+
+    /// An option that is given and that only beds have.
+    pub(super) fn of_beds(&self) -> Option<&'static str> {
+        let own = [
+            ("--gas", self.gas != GasBackend::Native),
+            ("--particles", self.particles != ParticleBackend::Native),
+            ("--threads", self.threads.is_some()),
+            ("--strict", self.strict),
+        ];
+        let given = own.iter().find(|(_, given)| *given).map(|(name, _)| *name);
+        given.or_else(|| self.parallel.given())
     }
 
     /// The arguments with what `--resume DIR` stands for, and the case.
@@ -203,7 +215,7 @@ pub(super) fn run(
 }
 
 /// Starts the threads; this one is one of them, so that no loop is handed over from thread to thread.
-fn use_threads(threads: Option<usize>) -> Result<(), Failure> {
+pub(super) fn use_threads(threads: Option<usize>) -> Result<(), Failure> {
     let threads =
         threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
     let pool = rayon::ThreadPoolBuilder::new();

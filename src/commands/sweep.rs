@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     particles: ParticleBackend,
     /// Values of a key, separated by commas: `--set time.acceleration=1,50,200`.
     #[arg(long, value_name = "KEY=A,B,C", required = true)]
-    set: Vec<String>,
+    pub(super) set: Vec<String>,
     /// Value of one swept key with which the others are compared.
     #[arg(long, value_name = "KEY=VALUE")]
     reference: Option<String>,
@@ -42,13 +42,36 @@ pub(super) struct Arguments {
     span: Option<f64>,
     /// Folder of the sweep [default: results/NAME-sweep].
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
     /// Also writes the table to this file, as Markdown.
     #[arg(long, value_name = "FILE")]
-    table: Option<PathBuf>,
+    pub(super) table: Option<PathBuf>,
     /// Shows no progress bar.
     #[arg(long)]
-    quiet: bool,
+    pub(super) quiet: bool,
+}
+
+impl Arguments {
+    /// An option that is given and that only beds have.
+    pub(super) fn of_beds(&self) -> Option<&'static str> {
+        let own = [
+            ("--gas", self.gas != GasBackend::Native),
+            ("--particles", self.particles != ParticleBackend::Native),
+            ("--reference", self.reference.is_some()),
+        ];
+        own.iter().find(|(_, given)| *given).map(|(name, _)| *name)
+    }
+}
+
+/// The keys that `--set KEY=A,B,C` names, and every combination of their values as settings.
+pub(super) fn combinations(set: &[String]) -> Result<(Vec<String>, Vec<Vec<String>>), Failure> {
+    let axes: Vec<Vec<String>> = set
+        .iter()
+        .map(|text| axis(text))
+        .collect::<Result<_, _>>()?;
+    let keys = axes.iter();
+    let keys = keys.filter_map(|axis| Some(axis.first()?.split_once('=')?.0.to_owned()));
+    Ok((keys.collect(), combine(&axes)))
 }
 
 /// One run of the sweep.
@@ -117,7 +140,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8, Failure> {
 }
 
 /// Whether a file can be written; it stays as it is, or absent.
-fn writable(path: &Path) -> std::io::Result<()> {
+pub(super) fn writable(path: &Path) -> std::io::Result<()> {
     let absent = !path.exists();
     std::fs::File::options()
         .append(true)
@@ -204,7 +227,7 @@ fn combine(axes: &[Vec<String>]) -> Vec<Vec<String>> {
 }
 
 /// A folder name made of the values.
-fn folder_name(settings: &[String]) -> String {
+pub(super) fn folder_name(settings: &[String]) -> String {
     let values = settings.iter().map(|setting| {
         let value = setting
             .split_once('=')

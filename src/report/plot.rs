@@ -39,12 +39,17 @@ pub(crate) enum Stroke {
     Solid,
     /// Broken, as the first of so many lines: where they cover each other, each shows in turn.
     Share(usize, usize),
+    /// As points.
+    Points,
 }
 
 impl Stroke {
     fn attributes(self) -> String {
         match self {
             Stroke::Solid => String::new(),
+            Stroke::Points => {
+                " style=\"stroke-width:4;stroke-linecap:round;stroke-opacity:0.55\"".into()
+            }
             Stroke::Share(place, count) => format!(
                 " stroke-dasharray=\"8 {}\" stroke-dashoffset=\"-{}\"",
                 8 * (count.max(2) - 1),
@@ -303,6 +308,10 @@ fn path(curve: &Curve<'_>, frame: &Frame) -> String {
         let (x, y) = (curve.x[place], frame.value(curve.y[place]));
         if !y.is_finite() {
             pen_down = false;
+            continue;
+        }
+        if curve.stroke == Stroke::Points {
+            let _ = write!(text, "M{:.1} {:.1}h0", frame.across(x), frame.up(y));
             continue;
         }
         let verb = if pen_down { 'L' } else { 'M' };

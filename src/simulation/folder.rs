@@ -33,7 +33,7 @@ fn io_error(path: &Path, cause: io::Error) -> SimulationError {
 
 /// The results folder of a run that is about to begin, kept from other runs. Unless it is kept, all that was put into
 /// it is removed again: a run that is refused leaves the folder, or its absence, as it was.
-pub(super) struct ClaimedFolder {
+pub(crate) struct ClaimedFolder {
     out: PathBuf,
     /// Names in the folder before; `None` where the folder is this run's own.
     before: Option<BTreeSet<OsString>>,
@@ -43,7 +43,7 @@ pub(super) struct ClaimedFolder {
 }
 
 /// Claims the results folder, makes it where it is absent, with its `log/`.
-pub(super) fn claim(out: &Path) -> Result<ClaimedFolder, SimulationError> {
+pub(crate) fn claim(out: &Path) -> Result<ClaimedFolder, SimulationError> {
     let unusable = |cause| SimulationError::UnusableFolder {
         folder: out.to_owned(),
         cause,
@@ -89,7 +89,7 @@ impl ClaimedFolder {
     }
 
     /// Leaves what is in the folder, and gives the lock, which holds while it lives.
-    pub(super) fn keep(mut self) -> Option<File> {
+    pub(crate) fn keep(mut self) -> Option<File> {
         self.lock.take()
     }
 }

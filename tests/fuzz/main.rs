@@ -12,6 +12,7 @@ mod attached;
 mod case;
 #[cfg(feature = "hdf5")]
 mod checkpoint;
+mod curves;
 mod mutate;
 mod parent;
 mod polymesh;
@@ -44,6 +45,7 @@ const TARGETS: &[&str] = &[
     "polymesh",
     "stl",
     "csv",
+    "curves",
     "vtk",
     "set",
     #[cfg(feature = "hdf5")]
@@ -53,6 +55,7 @@ const TARGETS: &[&str] = &[
 fn target(name: &str) -> Box<dyn Target> {
     match name {
         "case" => Box::new(case::CaseFiles::new()),
+        "curves" => Box::new(curves::Curves::new()),
         "set" => Box::new(set::Assignments::new()),
         "stl" | "csv" | "vtk" => Box::new(attached::AttachedFiles::new(name)),
         #[cfg(feature = "hdf5")]

@@ -26,7 +26,8 @@ impl Assignments {
             .flat_map(|folder| fs::read_dir(root.join(folder)).unwrap())
         {
             let path = entry.unwrap().path();
-            if path.extension().is_some_and(|one| one == "toml") {
+            let of_bed = || calcine::case::kind_of(&path, &[]).is_ok_and(|kind| kind.name == "bed");
+            if path.extension().is_some_and(|one| one == "toml") && of_bed() {
                 let text = fs::read_to_string(&path).unwrap();
                 cases.push((path, text));
             }

@@ -94,6 +94,15 @@ pub fn fit(
     walk.finish()
 }
 
+/// The slopes of a problem at places, where nothing is to be moved.
+pub fn slopes(
+    problem: &dyn TuningProblem,
+    places: &[f64],
+    choice: &FitChoice,
+) -> Result<FittedPlaces, TuningError> {
+    Walk::new(problem, places, choice)?.finish()
+}
+
 struct Walk<'a> {
     problem: &'a dyn TuningProblem,
     chosen: Vec<usize>,

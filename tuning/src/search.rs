@@ -124,10 +124,12 @@ pub struct SearchedFront {
 }
 
 /// Searches for the front of a problem by NSGA-II. `after` is told each generation; evaluations run on threads and do not
-/// depend on their number.
+/// depend on their number. `known` are evaluations of an earlier search with the same settings, from its start on: they are
+/// taken as they are, and not told again, so that a search that was interrupted goes on with the same bits.
 pub fn search_front(
     problem: &dyn TuningProblem,
     settings: &FrontSettings,
+    known: &[SearchEvaluation],
     stop: &AtomicBool,
     mut after: impl FnMut(usize, &[SearchEvaluation]),
 ) -> Result<SearchedFront, TuningError> {
@@ -149,14 +151,22 @@ pub fn search_front(
             return Err(TuningError::Interrupted);
         }
         let asked = search.ask().to_vec();
-        let of = |places: &Vec<f64>| match stop.load(Ordering::Relaxed) {
+        let from = found.evaluations.len();
+        let before: Vec<&SearchEvaluation> = known.iter().skip(from).take(asked.len()).collect();
+        let same = |(one, places): (&&SearchEvaluation, &Vec<f64>)| one.places == *places;
+        let replayed = before.len() == asked.len() && before.iter().zip(&asked).all(same);
+        let of = |(k, places): (usize, &Vec<f64>)| match stop.load(Ordering::Relaxed) {
             true => None,
+            false if replayed => Some(before[k].objectives.clone()),
             false => Some(objectives_at(problem, places)),
         };
-        let told: Vec<Option<Vec<f64>>> = asked.par_iter().map(of).collect();
+        let told: Vec<Option<Vec<f64>>> = asked.par_iter().enumerate().map(of).collect();
         let told: Option<Vec<Vec<f64>>> = told.into_iter().collect();
         let told = told.ok_or(TuningError::Interrupted)?;
-        let from = found.evaluations.len();
+        // What an interrupt cut short counts as not evaluated.
+        if stop.load(Ordering::Relaxed) {
+            return Err(TuningError::Interrupted);
+        }
         for (places, objectives) in asked.into_iter().zip(&told) {
             found.archive.offer(ArchivedPoint {
                 evaluation: found.evaluations.len(),
@@ -178,7 +188,9 @@ pub fn search_front(
         }
         found.hypervolumes.push(relative_volume(&found));
         search.tell(told);
-        after(generation, &found.evaluations[from..]);
+        if !replayed {
+            after(generation, &found.evaluations[from..]);
+        }
     }
     if found.archive.front().is_empty() {
         let tried = found.evaluations.len();

@@ -20,9 +20,9 @@ use calcine_tuning::{
 };
 
 /// Contracting area of calcite, Crystals 10(9) 849: requirements DEC-T15.
-const ENERGY: f64 = 235.78e3;
-const FACTOR: f64 = 1.13e11;
-const LOSS: f64 = 0.4397;
+pub const ENERGY: f64 = 235.78e3;
+pub const FACTOR: f64 = 1.13e11;
+pub const LOSS: f64 = 0.4397;
 
 fn reaction(law: &str, factor: f64, energy: f64) -> SampleReaction {
     let law = conversion_law(law).unwrap();
@@ -71,7 +71,7 @@ fn curve(truth: &KineticModel, rate: f64, noise: f64, random: &mut SearchRandom)
     }
 }
 
-fn curves(rates: &[f64], noise: f64, seed: u64) -> Vec<TargetCurve> {
+pub fn curves(rates: &[f64], noise: f64, seed: u64) -> Vec<TargetCurve> {
     let truth = model("R2", FACTOR, ENERGY);
     let mut random = SearchRandom::new(seed);
     rates
@@ -138,7 +138,7 @@ fn energy(problem: &SampleProblem, fitted: &FittedPlaces) -> f64 {
     problem.space().values(&fitted.places)[1]
 }
 
-const RATES: [f64; 4] = [3.0, 6.0, 9.0, 12.0];
+pub const RATES: [f64; 4] = [3.0, 6.0, 9.0, 12.0];
 
 #[test]
 fn first_order_without_lag_peaks_where_kissinger_has_it() {

@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod fronts;
+mod grains;
 mod kinetics;
 mod lumped;
+mod shipped;
 mod twin;

@@ -15,13 +15,13 @@ use calcine_tuning::{
 use crate::lumped::{lumped, run};
 
 /// Published values of the paper: what the twin data are made with.
-const CONTACT: f64 = 73.5;
-const FACTOR: f64 = 1.63e15;
+pub const CONTACT: f64 = 73.5;
+pub const TWIN_FACTOR: f64 = 1.63e15;
 
 /// Lumped model against its own curves at 15 K/min with 5 mg, a value each 10 s; bounds of the paper.
 pub fn twin() -> SampleProblem {
     let mut truth = lumped(LumpedSettings::default());
-    assert!(truth.set("contact_transfer", CONTACT) && truth.set("pre_exponential", FACTOR));
+    assert!(truth.set("contact_transfer", CONTACT) && truth.set("pre_exponential", TWIN_FACTOR));
     let run = run(15.0, 5e-6, 10.0);
     let values: Vec<f64> = truth.parameters().iter().map(|one| one.value).collect();
     let mut response = SampleResponse::default();
@@ -71,7 +71,8 @@ fn evolution_finds_the_numbers_behind_twin_data_whatever_its_seed() {
             variation: VariationSettings::default(),
             seed,
         };
-        let found = search_front(&problem, &settings, &AtomicBool::new(false), |_, _| {}).unwrap();
+        let found =
+            search_front(&problem, &settings, &[], &AtomicBool::new(false), |_, _| {}).unwrap();
         // The paper's choice: the point of the front with the smallest error of the mass.
         let best = found.archive.best(1).unwrap();
         let values = problem.space().values(&best.genes);
@@ -82,7 +83,7 @@ fn evolution_finds_the_numbers_behind_twin_data_whatever_its_seed() {
             "seed {seed}: {values:?}"
         );
         assert!(
-            (values[1] / FACTOR - 1.0).abs() < 0.005,
+            (values[1] / TWIN_FACTOR - 1.0).abs() < 0.005,
             "seed {seed}: {values:?}"
         );
         let rising = found
@@ -99,5 +100,5 @@ fn a_fit_polishes_what_evolution_found_to_the_error_of_the_integration() {
     let fitted = fit(&problem, &[0.3, 0.7], &FitChoice::default()).unwrap();
     let values = problem.space().values(&fitted.places);
     assert!((values[0] / CONTACT - 1.0).abs() < 1e-5, "{values:?}");
-    assert!((values[1] / FACTOR - 1.0).abs() < 1e-5, "{values:?}");
+    assert!((values[1] / TWIN_FACTOR - 1.0).abs() < 1e-5, "{values:?}");
 }

@@ -70,6 +70,7 @@ void Foam::calcine::gas::balanceEnergy(report& result) const
         energy.source += window_.storageSpan*gSum(radiation);
         energy.sourceMagnitude += window_.storageSpan*gSumMag(radiation);
     }
+    const surfaceScalarField* oblique = enthalpy_->faceFluxCorrectionPtr();
     forAll(mesh_.boundary(), patchi)
     {
         if (boundary_.of(patchi) == passage::within)
@@ -82,7 +83,8 @@ void Foam::calcine::gas::balanceEnergy(report& result) const
         {
             const scalar out = enthalpy_->internalCoeffs()[patchi][i]*h[cells[i]]
               - enthalpy_->boundaryCoeffs()[patchi][i] - flux[i]*referenceEnthalpy_
-              + (carried_.valid() ? carried_->boundaryField()[patchi][i] : 0);
+              + (carried_.valid() ? carried_->boundaryField()[patchi][i] : 0)
+              + (oblique ? oblique->boundaryField()[patchi][i] : 0);
             energy.boundary -= window_.storageSpan*out;
             energy.boundaryMagnitude += window_.storageSpan*mag(out);
         }
@@ -104,6 +106,7 @@ void Foam::calcine::gas::balanceMomentum(report& result) const
     (
         span*(share*(density()*gravity_ - pressureGradient_ - meanGradient_) + u*outflow_) + gained
     );
+    const surfaceVectorField* oblique = momentum_->faceFluxCorrectionPtr();
     result.storageClock = (1 - span/window_.storageSpan)*gSum(gained);
     for (direction axis = 0; axis < 3; ++axis)
     {
@@ -129,7 +132,8 @@ void Foam::calcine::gas::balanceMomentum(report& result) const
                 const vector& n = normal_[facei];
                 const scalar out = internal[i][axis]*u[cells[i]][axis] - given[i][axis]
                   + normalStiffness_[facei]*(n & u[cells[i]])*n[axis]
-                  - stressForce_->boundaryField()[patchi][i][axis];
+                  - stressForce_->boundaryField()[patchi][i][axis]
+                  + (oblique ? oblique->boundaryField()[patchi][i][axis] : 0);
                 momentum.boundary -= span*out;
                 momentum.boundaryMagnitude += span*mag(out);
             }

@@ -297,6 +297,41 @@ void serve
     }
 }
 
+// What fvSolution and fvSchemes ask for, and this solver does not do, is refused by name.
+void refuseUnused(const fvMesh& mesh)
+{
+    const dictionary& solution = mesh.solutionDict();
+    for (const char* algorithm : {"PIMPLE", "PISO", "SIMPLE"})
+    {
+        if (solution.isDict(algorithm))
+        {
+            FatalIOErrorInFunction(solution)
+                << "`" << algorithm << "` has no effect in calcineGasFoam: remove it, and state outer_iterations, "
+                << "pressure_corrections and outer_tolerance in `gas.controls` of the case" << exit(FatalIOError);
+        }
+    }
+    if (solution.isDict("relaxationFactors") && !solution.subDict("relaxationFactors").empty())
+    {
+        FatalIOErrorInFunction(solution)
+            << "`relaxationFactors` have no effect in calcineGasFoam: remove them" << exit(FatalIOError);
+    }
+    const dictionary& schemes = mesh.schemesDict();
+    if (schemes.isDict("ddtSchemes"))
+    {
+        const dictionary& times = schemes.subDict("ddtSchemes");
+        for (const char* name : {"default", "ddt(U)", "ddt(rho,U)", "ddt(h)", "ddt(rho,h)"})
+        {
+            const word scheme(times.found(name) ? word(times.lookup(name)) : word("Euler"));
+            if (scheme != "Euler" && scheme != "steadyState" && scheme != "none")
+            {
+                FatalIOErrorInFunction(times)
+                    << "`" << name << " " << scheme << "` of ddtSchemes has no effect in calcineGasFoam, which steps in time itself: "
+                    << "remove it, and state `gas.controls.time_scheme` in the case" << exit(FatalIOError);
+            }
+        }
+    }
+}
+
 void run(const argList& args, calcine::link& link)
 {
     Time runTime(Time::controlDictName, args);
@@ -310,6 +345,7 @@ void run(const argList& args, calcine::link& link)
     (
         IOobject(fvMesh::defaultRegion, runTime.timeName(), runTime, IOobject::MUST_READ)
     );
+    refuseUnused(mesh);
     const calcine::addressing numbers(mesh);
     calcine::compareCells(mesh, numbers);
     const IOdictionary properties

@@ -1,6 +1,7 @@
 #include "gas.H"
 #include "clockValue.H"
 #include "link.H"
+#include "obliqueSchemes.H"
 #include "OStringStream.H"
 #include "wedgePolyPatch.H"
 
@@ -147,6 +148,9 @@ Foam::calcine::gas::gas
     const scalarField reference(1, 298.15);
     referenceEnthalpy_ = thermo_->he(scalarField(1, pRef_), reference, labelList(1, 0))()[0];
 
+    // Balances ask for what corrections of oblique lines carry through the boundary.
+    mesh.setFluxRequired(U_.name());
+    mesh.setFluxRequired(thermo_->T().name());
     if (species_)
     {
         speciesSolver_.reset(new linear(mesh, "Yi"));
@@ -207,12 +211,13 @@ void Foam::calcine::gas::measureFaces()
         const vector& n = normal_[facei] = normalised(mesh_.faceAreas()[facei]);
         const vector fromOwner = centre - mesh_.cellCentres()[mesh_.faceOwner()[facei]];
         ownerDistance_[facei] = n & fromOwner;
-        ownerSkew_[facei] = fromOwner - ownerDistance_[facei]*n;
+        ownerSkew_[facei] = limitedSkew(fromOwner - ownerDistance_[facei]*n, ownerDistance_[facei]);
         if (shared_.within(facei))
         {
             const vector toNeighbour = beyond[facei] - centre;
             neighbourDistance_[facei] = n & toNeighbour;
-            neighbourSkew_[facei] = toNeighbour - neighbourDistance_[facei]*n;
+            neighbourSkew_[facei] =
+                limitedSkew(toNeighbour - neighbourDistance_[facei]*n, neighbourDistance_[facei]);
         }
         const vector& area = mesh_.faceAreas()[facei];
         warp_[mesh_.faceOwner()[facei]] -= area*fromOwner;
@@ -506,9 +511,19 @@ void Foam::calcine::gas::step(report& result)
         setFlux();
         result.residual = predictVelocity(rho, result);
         result.residual = max(result.residual, assemblePressure(rho, outer == 1));
+        holdFriction();
+        if (oblique_ && outer == 1)
+        {
+            // The gradient that carries pressures along faces is not kept between windows: it follows the fluxes at hand.
+            updateForce();
+            for (label settling = 0; settling < 4; ++settling)
+            {
+                updatePressureAlong(false);
+            }
+        }
         for (label correction = 0; correction < max(corrections_, 1); ++correction)
         {
-            correctPressure(rho, result);
+            correctPressure(rho, correction == 0, result);
         }
         mass_ = committed_.mass - window_.storageSpan*(outflow() - massSource());
         setFlux();

@@ -133,7 +133,11 @@ void Foam::calcine::gas::addConduction(fvScalarMatrix& enthalpy) const
     const volScalarField& T = thermo_->T();
     surfaceScalarField conduction("conduction", fvc::interpolate(conductivity()));
     inflow_.seal(conduction);
-    const fvScalarMatrix heat(fvm::laplacian(conduction, T));
+    fvScalarMatrix heat(fvm::laplacian(conduction, T));
+    if (heat.faceFluxCorrectionPtr())
+    {
+        enthalpy.faceFluxCorrectionPtr() = new surfaceScalarField(-*heat.faceFluxCorrectionPtr());
+    }
     const labelUList& owner = mesh_.owner();
     const labelUList& neighbour = mesh_.neighbour();
     const scalarField& upper = heat.upper();

@@ -53,7 +53,7 @@ Foam::scalar Foam::calcine::gas::ownerPush(label facei) const
 
 void Foam::calcine::gas::updateForce()
 {
-    force_ = momentum_->H()().primitiveField()/pressureShare_;
+    force_ = (momentum_->H()().primitiveField() + frictionGivenBack()/mesh_.cellVolumes())/pressureShare_;
 }
 
 
@@ -117,13 +117,17 @@ Foam::scalar Foam::calcine::gas::assemblePressure(const scalarField& density, bo
 }
 
 
-void Foam::calcine::gas::correctPressure(const scalarField& density, report& result)
+void Foam::calcine::gas::correctPressure(const scalarField& density, bool first, report& result)
 {
     const label internal = mesh_.nInternalFaces();
     const labelUList& owner = mesh_.faceOwner();
     const labelUList& neighbour = mesh_.faceNeighbour();
     updateForce();
-    updateTransport(density);
+    // On oblique lines once, as gradients are fed back.
+    if (first || !oblique_)
+    {
+        updateTransport(density);
+    }
 
     // What the forces alone would drive through each face; all of it where the flux is given.
     for (label facei = 0; facei < internal; ++facei)
@@ -238,7 +242,7 @@ void Foam::calcine::gas::correctPressure(const scalarField& density, report& res
         }
     }
     shared_.agree(flux_);
-    updatePressureAlong();
+    updatePressureAlong(first);
     updatePressureGradient();
 
     updateVelocity();
@@ -272,7 +276,7 @@ void Foam::calcine::gas::updatePressureGradient()
 }
 
 
-void Foam::calcine::gas::updatePressureAlong()
+void Foam::calcine::gas::updatePressureAlong(bool first)
 {
     // sum p_f S/V from the values that a cell's own half gives on its faces: to the face's plane along the normal by the half's
     // slope, and along the face. It does not take up its own last value where cells repeat, and so settles at any skewness: the
@@ -295,5 +299,11 @@ void Foam::calcine::gas::updatePressureAlong()
         }
     }
     // The sum over warped faces of a pressure of this gradient is not the gradient.
-    pressureAlong_ = next/mesh_.cellVolumes() + (warp_ & pressureAlong_);
+    next = next/mesh_.cellVolumes() + (warp_ & pressureAlong_);
+    if (first)
+    {
+        // The first correction overshoots by friction.
+        next = pressureAlong_ + withoutFriction_*(next - pressureAlong_);
+    }
+    pressureAlong_ = next;
 }

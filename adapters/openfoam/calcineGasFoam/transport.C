@@ -11,6 +11,7 @@
 // duct, c is zero and resistances in series stay exact. Without c an excess A_t d^2 d2u_n/dn2 of friction
 // would remain on every mesh.
 #include "gas.H"
+#include "emptyPolyPatch.H"
 
 Foam::tensorField Foam::calcine::gas::massVelocityGradient
 (
@@ -103,6 +104,41 @@ void Foam::calcine::gas::updateTransport(const scalarField& density)
 }
 
 
+// Half of each cell's gradient and half of the mean of those of the cells beside it, which keeps what is fed back bounded on tetrahedra (native
+// gas, docs/theory.md).
+Foam::tensorField Foam::calcine::gas::besideToo(const tensorField& gradient) const
+{
+    const tensorField beyond(shared_.beyond(gradient));
+    tensorField sum(mesh_.nCells(), Zero);
+    scalarField count(mesh_.nCells(), Zero);
+    for (label facei = 0; facei < mesh_.nFaces(); ++facei)
+    {
+        if (!shared_.within(facei))
+        {
+            continue;
+        }
+        const label P = mesh_.faceOwner()[facei];
+        sum[P] += beyond[facei];
+        count[P] += 1;
+        if (facei < mesh_.nInternalFaces())
+        {
+            const label N = mesh_.faceNeighbour()[facei];
+            sum[N] += gradient[P];
+            count[N] += 1;
+        }
+    }
+    tensorField mixed(gradient);
+    forAll(mixed, celli)
+    {
+        if (count[celli] > 0)
+        {
+            mixed[celli] = 0.5*gradient[celli] + (0.5/count[celli])*sum[celli];
+        }
+    }
+    return mixed;
+}
+
+
 // By least squares, exact for linear fields on any mesh; where nothing but the slope along the normal is given, zero, the value counts at
 // the foot of the normal.
 Foam::tensorField Foam::calcine::gas::obliqueGradient
@@ -155,11 +191,23 @@ Foam::tensorField Foam::calcine::gas::obliqueGradient
             add(P, given ? vector(foot + ownerSkew_[facei]) : foot, value - massVelocity[P]);
         }
     }
+    for (const polyPatch& patch : mesh_.boundaryMesh())
+    {
+        // Nothing varies across empty patches, whose faces have no field.
+        if (isA<emptyPolyPatch>(patch))
+        {
+            forAll(patch, i)
+            {
+                const vector& n = normal_[patch.start() + i];
+                ways[patch.faceCells()[i]] += n*n;
+            }
+        }
+    }
     forAll(sum, celli)
     {
         sum[celli] = inv(ways[celli]) & sum[celli];
     }
-    return sum;
+    return besideToo(sum);
 }
 
 

@@ -66,7 +66,7 @@ impl Inputs<'_> {
         ];
         let meshes = match &self.setup.motion {
             Motion::Free(contacts) => moving::meshes(contacts, self.smallest()),
-            Motion::Frozen => Vec::new(),
+            Motion::Frozen | Motion::Parcels(_) => Vec::new(),
         };
         fs::create_dir_all(folder).map_err(|error| unwritable(folder, error))?;
         let mut more = meshes;
@@ -84,6 +84,13 @@ impl Inputs<'_> {
     fn check(&self) -> Result<(), PartError> {
         let refuse = |message: String| Err(PartError::new(WHO, FailureKind::NotStarted, message));
         let setup = self.setup;
+        if matches!(setup.motion, Motion::Parcels(_)) {
+            return refuse(
+                "the particles are parcels, and LIGGGHTS moves particles that touch each other; move parcels natively \
+                 (`--particles native`)"
+                    .into(),
+            );
+        }
         if let Motion::Free(contacts) = &setup.motion {
             if let Some(reason) = moving::refusal(contacts) {
                 return refuse(reason);
@@ -106,6 +113,7 @@ impl Inputs<'_> {
         for (row, id) in setup.id.iter().enumerate() {
             let held = match &setup.motion {
                 Motion::Frozen => true,
+                Motion::Parcels(_) => false,
                 Motion::Free(contacts) => {
                     contacts.held.get(setup.population[row] as usize) == Some(&true)
                 }
@@ -177,7 +185,7 @@ impl Inputs<'_> {
             });
         }
         let (template, contacts) = match &self.setup.motion {
-            Motion::Frozen => (FROZEN_BED, String::new()),
+            Motion::Frozen | Motion::Parcels(_) => (FROZEN_BED, String::new()),
             Motion::Free(contacts) => (MOVING_BED, moving::commands(contacts, self.form())),
         };
         let script = template
@@ -194,7 +202,7 @@ impl Inputs<'_> {
         let setup = self.setup;
         let (lower, upper) = self.corners();
         let types = match &setup.motion {
-            Motion::Frozen => setup.population.iter().max().map_or(1, |last| last + 1) as usize,
+            Motion::Frozen | Motion::Parcels(_) => setup.population.iter().max().map_or(1, |last| last + 1) as usize,
             Motion::Free(contacts) => moving::types(contacts),
         };
         let mut text = format!(
@@ -257,7 +265,7 @@ impl Inputs<'_> {
     fn periodicity(&self) -> Periodicity {
         match &self.setup.motion {
             Motion::Free(contacts) => contacts.periodicity,
-            Motion::Frozen => Periodicity::default(),
+            Motion::Frozen | Motion::Parcels(_) => Periodicity::default(),
         }
     }
 

@@ -4,6 +4,7 @@
 pub mod bed_conductivity;
 pub mod conduction;
 pub mod contact;
+pub mod devolatilisation;
 pub mod dimension;
 pub mod drag;
 pub mod film;
@@ -16,7 +17,9 @@ pub mod kinetics;
 pub mod law;
 pub mod local;
 pub mod mass_transfer;
+pub mod moisture;
 pub mod numbers;
+pub mod parcels;
 pub mod points;
 pub mod pores;
 pub mod pressure_drop;

@@ -7,6 +7,7 @@ mod flows;
 mod implicit;
 mod jacobian;
 mod ledger;
+mod look;
 mod method;
 mod order;
 mod run;

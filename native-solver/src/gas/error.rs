@@ -83,6 +83,14 @@ pub enum NativeError {
         /// Its id.
         id: u64,
     },
+    /// Particles that move in another way than the part moves them.
+    #[error("the part moves {takes}, and is given {given}")]
+    OtherMotion {
+        /// What it moves.
+        takes: &'static str,
+        /// What it is given.
+        given: &'static str,
+    },
     /// Lists of unequal length.
     #[error("{field} has {found} values for {expected} {of}")]
     Length {

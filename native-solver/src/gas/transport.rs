@@ -33,6 +33,8 @@ pub struct FaceTransport {
     mass_velocity: Vec<Vec3>,
     /// Its gradient in kg/m³/s.
     gradients: Vec<Matrix3<f64>>,
+    /// Memory for gradients without those of the cells beside.
+    plain: Vec<Matrix3<f64>>,
     /// What ρ ε u has at each face beyond its owner's and its neighbour's, along its normal, by their gradients; in kg/m²/s.
     /// Empty where lines between centres are normal to faces.
     pub reach: Vec<[f64; 2]>,
@@ -47,6 +49,7 @@ impl FaceTransport {
             force: vec![[0.0; 2]; faces],
             mass_velocity: vec![Vec3::zeros(); cells],
             gradients: vec![Matrix3::zeros(); cells],
+            plain: Vec::new(),
             reach: Vec::new(),
             bent: Vec::new(),
         }
@@ -141,6 +144,7 @@ impl FaceTransport {
             }
         };
         gradient::vector(grid, mass_velocity, boundary, &mut self.gradients);
+        gradient::averaged(grid, &mut self.gradients, &mut self.plain);
         let gradients = &self.gradients;
         self.reach.resize(grid.faces.len(), [0.0; 2]);
         fill(&mut self.reach, |index| reach(grid, index, gradients));
@@ -179,7 +183,7 @@ fn interpolated(
     let face = &grid.faces[index];
     let (own, other, weight) = (face.owner, face.neighbour, face.owner_weight());
     let mean = weight * mass_velocity[own] + (1.0 - weight) * mass_velocity[other];
-    let miss = weight * face.owner_skew - (1.0 - weight) * face.neighbour_skew;
+    let miss = face.miss();
     let slope = gradients[own] * weight + gradients[other] * (1.0 - weight);
     face.normal.dot(&(mean + slope * miss))
 }

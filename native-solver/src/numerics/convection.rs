@@ -46,9 +46,10 @@ pub fn beyond_upwind(
 ) -> f64 {
     let (up, down, weight) = sides(grid, index, flux);
     if let Convection::Central(share) = scheme {
-        let (face, owner) = (&grid.faces[index], grid.faces[index].owner_weight());
-        let own = values[face.owner] + gradients[face.owner].dot(&face.owner_skew);
-        let other = values[face.neighbour] - gradients[face.neighbour].dot(&face.neighbour_skew);
+        let face = &grid.faces[index];
+        let (owner, miss) = (face.owner_weight(), face.miss());
+        let own = values[face.owner] + gradients[face.owner].dot(&miss);
+        let other = values[face.neighbour] + gradients[face.neighbour].dot(&miss);
         return share * (owner * own + (1.0 - owner) * other - values[up]);
     }
     if scheme == Convection::Upwind {
@@ -115,9 +116,10 @@ pub fn vector_beyond_upwind(
 ) -> Vec3 {
     let (up, down, weight) = sides(grid, index, flux);
     if let Convection::Central(share) = scheme {
-        let (face, owner) = (&grid.faces[index], grid.faces[index].owner_weight());
-        let own = values[face.owner] + gradients[face.owner] * face.owner_skew;
-        let other = values[face.neighbour] - gradients[face.neighbour] * face.neighbour_skew;
+        let face = &grid.faces[index];
+        let (owner, miss) = (face.owner_weight(), face.miss());
+        let own = values[face.owner] + gradients[face.owner] * miss;
+        let other = values[face.neighbour] + gradients[face.neighbour] * miss;
         return share * (owner * own + (1.0 - owner) * other - values[up]);
     }
     if scheme == Convection::Upwind {

@@ -5,6 +5,19 @@ use calcine_coupler::physics::Vec3;
 
 /// Directions shorter than this share of the distance between centres count as round-off.
 const SKEW: f64 = 1e-9;
+/// A centre farther along a face than this many times its distance from the face's plane counts as one at the limit: corrections are limited
+/// beyond an angle of 75 degrees.
+const OBLIQUE: f64 = 3.732_050_807_568_877;
+
+/// The part of a way along a face, limited by its part along the normal.
+fn limited(along: Vec3, normal: f64) -> Vec3 {
+    let (length, most) = (along.norm(), OBLIQUE * normal.abs());
+    if length > most {
+        along * (most / length)
+    } else {
+        along
+    }
+}
 
 /// What a face's geometry means for differences across it. With n the unit normal (out of the
 /// owner), x_P, x_N, x_f the centres of owner, neighbour and face.
@@ -33,6 +46,13 @@ impl Face {
     #[inline]
     pub fn distance(&self) -> f64 {
         self.owner_distance + self.neighbour_distance
+    }
+
+    /// From where the line between two centres meets the face's plane to the face's centre, in m.
+    #[inline]
+    pub fn miss(&self) -> Vec3 {
+        let weight = self.owner_weight();
+        weight * self.owner_skew - (1.0 - weight) * self.neighbour_skew
     }
 
     /// Weight of the owner in linear interpolation.
@@ -206,7 +226,22 @@ fn measure(mesh: &Mesh, face: usize) -> Face {
         normal,
         owner_distance,
         neighbour_distance,
-        owner_skew: inner - owner_distance * normal,
-        neighbour_skew: outer - neighbour_distance * normal,
+        owner_skew: limited(inner - owner_distance * normal, owner_distance),
+        neighbour_skew: limited(outer - neighbour_distance * normal, neighbour_distance),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ways_along_faces_are_limited_beyond_75_degrees() {
+        let at = |degrees: f64| 0.2 * Vec3::new(degrees.to_radians().tan(), 0.0, 0.0);
+        assert_eq!(limited(at(70.0), 0.2), at(70.0));
+        assert_eq!(limited(at(74.9), -0.2), at(74.9));
+        for degrees in [75.1, 80.0, 89.0] {
+            assert!((limited(at(degrees), 0.2) - at(75.0)).norm() < 1e-12);
+        }
     }
 }

@@ -3,6 +3,7 @@
 use calcine_coupler::motion::{
     ContactForce, Contacts, Motion, ParticleChanges, Resized, Wall, WallShape,
 };
+use calcine_coupler::parcels::ParcelMotion;
 use calcine_coupler::periodic_motion;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
@@ -47,6 +48,7 @@ pub fn check(setup: &ParticleSetup) -> Result<(), NativeError> {
     }
     match &setup.motion {
         Motion::Frozen => Ok(()),
+        Motion::Parcels(motion) => parcels(motion, &setup.population),
         Motion::Free(contacts) => {
             contact(contacts, &setup.population)?;
             let largest = setup.radius.iter().copied().fold(0.0, f64::max);
@@ -61,6 +63,53 @@ pub fn check(setup: &ParticleSetup) -> Result<(), NativeError> {
             })
         }
     }
+}
+
+/// The error of particles that are no parcels.
+pub fn not_parcels() -> NativeError {
+    NativeError::OtherMotion {
+        takes: "parcels",
+        given: "frozen or free particles",
+    }
+}
+
+fn parcels(motion: &ParcelMotion, population: &[u32]) -> Result<(), NativeError> {
+    let of = || "the motion of parcels".to_owned();
+    let share = |value: f64| (0.0..=1.0).contains(&value);
+    let rule = "above 0 and at most 1";
+    within(
+        "the Courant number",
+        motion.courant,
+        "",
+        of,
+        rule,
+        |value| value > 0.0 && value <= 1.0,
+    )?;
+    let needed = population.iter().max().map_or(0, |&most| most as usize + 1);
+    for wall in &motion.walls {
+        if wall.impact.len() < needed {
+            return Err(length("the list of impacts", wall.impact.len(), needed));
+        }
+        for impact in &wall.impact {
+            let place = || format!("wall `{}`", wall.patch);
+            let (e, rule) = (impact.restitution, "0 to 1");
+            within("the restitution", e, "", place, rule, share)?;
+            let rule = "0 or above";
+            within("the friction", impact.friction, "", place, rule, |value| {
+                value >= 0.0
+            })?;
+        }
+    }
+    Ok(())
+}
+
+/// Weights that particles that come may have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Weights {
+    /// Each stands for itself alone.
+    One,
+    /// Any positive number.
+    Any,
 }
 
 /// A particle that moves touches others one by one, so that it stands for itself alone.
@@ -269,6 +318,7 @@ pub fn change(
     change: &ParticleChanges,
     id: &[u64],
     populations: usize,
+    weights: Weights,
 ) -> Result<Vec<usize>, NativeError> {
     let mut rows = Vec::with_capacity(change.remove.len());
     for &gone in &change.remove {
@@ -296,7 +346,10 @@ pub fn change(
         last = new.id;
         positive("the radius", new.radius, "m", place)?;
         positive("the density", new.density, "kg/m^3", place)?;
-        alone(new.weight, place)?;
+        match weights {
+            Weights::One => alone(new.weight, place)?,
+            Weights::Any => positive("the weight", new.weight, "", place)?,
+        }
         let rule = |value: f64| value < populations as f64;
         let known = "that of a population with a material";
         within(

@@ -1,6 +1,6 @@
 //! The native particles: spheres that stay where they are, or that move by the discrete element solver.
 
-mod check;
+pub(crate) mod check;
 pub mod dem;
 mod state;
 
@@ -60,6 +60,12 @@ impl NativeParticles {
     /// The bed of a setup; masses are 4/3 π r³ ρ.
     pub fn new(setup: &ParticleSetup) -> Result<Self, NativeError> {
         check(setup)?;
+        if matches!(setup.motion, Motion::Parcels(_)) {
+            return Err(NativeError::OtherMotion {
+                takes: "frozen and free particles",
+                given: "parcels",
+            });
+        }
         let count = setup.id.len();
         let spheres = setup.radius.iter().zip(&setup.density);
         let mut bed = Self {
@@ -359,7 +365,7 @@ impl NativeParticles {
             let contacts = engine.contacts();
             populations = contacts.material_of.len().min(contacts.held.len());
         }
-        let gone = check::change(change, &self.id, populations)?;
+        let gone = check::change(change, &self.id, populations, check::Weights::One)?;
         let mut keep = vec![true; self.id.len()];
         for &row in &gone {
             keep[row] = false;
@@ -420,7 +426,7 @@ fn takes(column: &str) -> bool {
     [DRAG_COEFFICIENT, GAS_VELOCITY].contains(&column)
 }
 
-fn retain<T>(values: &mut Vec<T>, keep: &[bool]) {
+pub(crate) fn retain<T>(values: &mut Vec<T>, keep: &[bool]) {
     let mut keep = keep.iter();
     values.retain(|_| keep.next().copied().unwrap_or(true));
 }

@@ -38,6 +38,7 @@ impl KeyValue {
             KeyValue::Whole(least, most) => format!("whole number, {least} to {most}"),
             KeyValue::Wholes(n) => format!("{} whole numbers", count(n)),
             KeyValue::Number(dimension, _) => quantity(dimension),
+            KeyValue::Numbers(0) => "list of numbers".into(),
             KeyValue::Numbers(n) => format!("{} numbers", count(n)),
             KeyValue::Vector(dimension) => format!("three {}", plural(dimension)),
             KeyValue::Vectors(dimension) => format!("list of three {}", plural(dimension)),

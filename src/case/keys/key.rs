@@ -92,7 +92,7 @@ pub enum KeyValue {
     Wholes(usize),
     /// A quantity with its unit, or a plain number.
     Number(Dimension, Bound),
-    /// A list of so many plain numbers.
+    /// A list of so many plain numbers; 0: of any number.
     Numbers(usize),
     /// Three numbers and a unit in one text; without a dimension a direction.
     Vector(Dimension),

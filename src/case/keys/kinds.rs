@@ -1,10 +1,10 @@
 //! Kinds of cases: what a file describes, by its key `kind`.
 
-use calcine_coupler::physics::law::LawSummary;
-
+use super::flowsheet::FLOWSHEET;
 use super::key::Key;
 use super::root::BED;
-use crate::laws::LawCatalogue;
+use super::tuning::TUNING;
+use crate::laws::{LawCatalogue, LawFamilies};
 
 /// A kind of case. A new one is an entry of [`KINDS`], and its commands are one of the list in
 /// `src/commands/kinds.rs`.
@@ -16,19 +16,35 @@ pub struct CaseKind {
     /// The keys of the file.
     pub(in crate::case) keys: &'static [Key],
     /// Families of laws that it chooses from, by the table in which a law is chosen.
-    pub(in crate::case) families: fn(&LawCatalogue) -> Vec<(&'static str, Vec<LawSummary>)>,
+    pub(in crate::case) families: fn(&LawCatalogue) -> LawFamilies,
     /// Page of the docs whose last part is made from the keys.
     pub page: &'static str,
 }
 
 /// All kinds; a case that states none is of the first.
-pub static KINDS: &[CaseKind] = &[CaseKind {
-    name: "bed",
-    summary: "a reactive granular bed, gas coupled with particles",
-    keys: BED,
-    families: LawCatalogue::families,
-    page: "docs/reference/case-file.md",
-}];
+pub static KINDS: &[CaseKind] = &[
+    CaseKind {
+        name: "bed",
+        summary: "a reactive granular bed, gas coupled with particles",
+        keys: BED,
+        families: LawCatalogue::families,
+        page: "docs/reference/case-file.md",
+    },
+    CaseKind {
+        name: "flowsheet",
+        summary: "a plant of units and streams",
+        keys: FLOWSHEET,
+        families: LawCatalogue::plant_families,
+        page: "docs/reference/plant-file.md",
+    },
+    CaseKind {
+        name: "tuning",
+        summary: "a model whose parameters are tuned to curves",
+        keys: TUNING,
+        families: LawCatalogue::tuning_families,
+        page: "docs/reference/tuning-file.md",
+    },
+];
 
 /// The kind of this name.
 pub fn kind_named(name: &str) -> Option<&'static CaseKind> {

@@ -9,6 +9,7 @@ mod coupling;
 mod describe;
 mod docs;
 mod external;
+mod flowsheet;
 mod gas;
 mod key;
 mod kinds;
@@ -25,6 +26,7 @@ mod prelude;
 mod quantities;
 mod reactions;
 mod root;
+mod tuning;
 mod walls;
 mod zone;
 

@@ -69,11 +69,11 @@ pub(super) const PARTICLES: &[Key] = &[
     key("name", Text, Required, "Name; no two alike.", "\"beads\""),
     key("material", Text, Required, "One of `materials`.", "\"glass\""),
     key("diameter", Either(&Number(D::LENGTH, Positive), &Table(DIAMETER)), Required, "Diameter, or a distribution: exactly one of `normal`, `log_normal`, `uniform` and `table`. Where a file of particles states diameters, those count.", "\"10 mm\""),
-    key("motion", Choice(words::<MotionSpec>), Required, "How the particles move: not at all, or by gravity, contacts and the force of the gas (then with a section `[motion]`).", "\"frozen\""),
+    key("motion", Choice(words::<MotionSpec>), Required, "How the particles move: not at all; by gravity, contacts and the force of the gas; or as parcels that stand for many, by gravity, the stress of the solid and the force of the gas. What moves needs a section `[motion]`.", "\"frozen\""),
     key("velocity", Vector(D::VELOCITY), Without("at rest"), "Velocity at the start; of free particles.", "\"0 0 -0.1 m/s\""),
     key("temperature", Number(D::TEMPERATURE, Positive), OneOf, "Temperature at the start. Either this or `prescribed_temperature`.", "\"300 K\""),
     key("prescribed_temperature", Schedule(D::TEMPERATURE, Positive), OneOf, "Temperature over process time, whatever heat the particles take or give: a boundary condition. What that takes from outside is `prescribed_heat` in the ledger. Not of a material that reacts. Either this or `temperature`.", "[[\"0 s\", \"300 K\"], [\"10 min\", \"600 K\"]]"),
-    key("weight", Number(D::NONE, Positive), Default("1"), "Statistical weight: how many real particles of this diameter each particle stands for, in all that it exchanges with the gas. Other than 1 for motion = \"frozen\" only, and without heat between particles.", "2.5"),
+    key("weight", Number(D::NONE, Positive), Default("1"), "Statistical weight: how many real particles of this diameter each particle stands for, in all that it exchanges with the gas. Other than 1 for motion = \"frozen\" and \"parcels\" only, and without heat between particles.", "2.5"),
     key("place", Table(PLACE), Required, "Where the particles are: exactly one of `grid`, `file` and `packing`. Spheres may overlap by 5 % of their diameter, as where they are pressed together.", "{ file = \"bed.csv\" }"),
 ];
 

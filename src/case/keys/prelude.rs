@@ -12,4 +12,5 @@ pub(super) use super::key::KeyValue::{
     Vectors, Whole, Wholes,
 };
 pub(super) use super::key::{Key, MOST, key, words};
+pub(super) use crate::case::plant::words::*;
 pub(super) use crate::case::words::*;

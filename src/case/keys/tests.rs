@@ -14,6 +14,12 @@ fn ask(kind: &CaseKind, root: &TableReader<'_>, path: &Path, text: &str) {
         "bed" => {
             crate::case::sections::case(root, path, text, String::new());
         }
+        "tuning" => {
+            crate::case::sections::tuning::tuning(root, path, text, String::new());
+        }
+        "flowsheet" => {
+            crate::case::plant::plant(root, path, text, String::new());
+        }
         other => panic!("which reader takes a case of kind \"{other}\"?"),
     }
 }
@@ -24,7 +30,7 @@ fn the_keys_that_are_declared_are_exactly_those_that_the_reader_asks_for() {
     let laws = LawCatalogue::default();
     for kind in KINDS {
         let mut asked = BTreeSet::new();
-        for folder in ["cases", "tests/inputs/good"] {
+        for folder in ["cases", "tests/inputs/good", "tests/inputs/plants/good"] {
             for entry in std::fs::read_dir(root.join(folder)).unwrap() {
                 let path = entry.unwrap().path();
                 if path.extension().is_none_or(|extension| extension != "toml") {

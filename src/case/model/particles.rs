@@ -61,6 +61,8 @@ pub enum MotionSpec {
     Frozen,
     /// They move by gravity, contacts and the force of the gas.
     Free,
+    /// Each stands for many, and moves by gravity, the stress of the solid and the force of the gas.
+    Parcels,
 }
 
 /// How many spheres a random packing has.

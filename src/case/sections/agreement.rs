@@ -1,8 +1,8 @@
 //! `[agreement]`.
 
-use super::quantities::band;
 use crate::case::model::{AgreementSpec, FieldBand, Output};
 use crate::case::table::TableReader;
+use crate::case::tolerance::band;
 use crate::case::units::Dimension;
 
 /// Words of `output` that stand for fields of other names.

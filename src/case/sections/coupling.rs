@@ -48,7 +48,7 @@ pub(super) fn read(root: &TableReader<'_>) -> Option<Coupling> {
 
 /// Drag within a window acts on particles that move.
 pub(super) fn check_drag(root: &TableReader<'_>, particles: &[Population]) {
-    let moves = |population: &Population| population.motion == MotionSpec::Free;
+    let moves = |population: &Population| population.motion != MotionSpec::Frozen;
     if particles.iter().any(moves) {
         return;
     }

@@ -18,6 +18,7 @@ mod mesh;
 mod motion;
 mod output;
 mod packing;
+mod parcels;
 mod particles;
 mod place;
 mod probes;
@@ -28,6 +29,7 @@ mod sizes;
 mod solids;
 mod species_data;
 mod time;
+pub(super) mod tuning;
 mod turbulence;
 mod walls;
 mod zone;
@@ -36,10 +38,8 @@ use std::path::Path;
 
 use self::gas::GasRead;
 use super::model::Case;
+use super::parse::FORMAT;
 use super::table::TableReader;
-
-/// Version of the format that this reader knows.
-const FORMAT: u64 = 1;
 
 /// Reads all sections; `None` where one could not be read (its problems are recorded).
 pub(super) fn case(
@@ -141,6 +141,7 @@ pub(super) fn case(
     }
     if let (Some((time, _)), Some(particles)) = (&time, &particles) {
         motion::fits(root, motion.as_ref(), time, particles);
+        parcels::fits(root, (motion.as_ref(), coupling.as_ref()), particles);
         if let Some(motion) = &motion {
             let meeting = motion::Meeting {
                 motion,

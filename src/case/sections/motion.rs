@@ -1,8 +1,8 @@
 //! `[motion]`: how particles that are free move, and what their contacts need to be told.
 
-use calcine_coupler::motion::{Cohesion, ContactLaw, Rolling, Wall};
+use calcine_coupler::motion::{Cohesion, ContactForce, ContactLaw, Rolling, Wall};
 
-use super::hold;
+use super::{hold, parcels};
 use crate::case::model::{
     ContactSpec, FreeMotion, MaterialSpec, MotionKind, MotionSpec, Population, TimeSpec,
 };
@@ -14,11 +14,31 @@ pub(super) fn motion(root: &TableReader<'_>, time: Option<&TimeSpec>) -> Option<
     let kind = section.choice("kind");
     let step = section.number("motion_step");
     let long_step = section.truth("long_step");
-    let force = section.plain_law("contact", &known.contact);
     let attractive = section.truth("attractive_damping");
+    let held = hold::holds(&section, time);
+    if section.has("parcels") {
+        let parcels = parcels::parcels(&section);
+        section.finish();
+        return Some(FreeMotion {
+            kind: kind?,
+            step: None,
+            long_step: false,
+            law: ContactLaw {
+                force: ContactForce::HertzMindlin,
+                attractive_damping: true,
+                rolling: Rolling::None,
+                cohesion: Cohesion::None,
+            },
+            parcels: Some(parcels?),
+            held,
+        });
+    }
+    for key in ["contact", "rolling", "cohesion"] {
+        section.need(key);
+    }
+    let force = section.plain_law("contact", &known.contact);
     let rolling = section.plain_law("rolling", &known.rolling);
     let cohesion = section.plain_law("cohesion", &known.cohesion);
-    let held = hold::holds(&section, time);
     section.finish();
     Some(FreeMotion {
         kind: kind?,
@@ -30,6 +50,7 @@ pub(super) fn motion(root: &TableReader<'_>, time: Option<&TimeSpec>) -> Option<
             rolling: *rolling?.make(),
             cohesion: *cohesion?.make(),
         },
+        parcels: None,
         held,
     })
 }

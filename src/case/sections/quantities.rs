@@ -8,12 +8,13 @@ use super::common::patches;
 use super::walls::direction;
 use crate::case::model::{
     Expect, GasPlace, Measure, MeshSpec, ParticlePlace, PlacementSpec, Population, Probe, Quantity,
-    SURROUNDINGS, Statistic, ToleranceBand, belongs,
+    SURROUNDINGS, Statistic, belongs,
 };
 use calcine_coupler::physics::solids::SolidSpecies;
 
 use crate::case::table::TableReader;
-use crate::case::units::{Dimension, difference};
+use crate::case::tolerance::band;
+use crate::case::units::Dimension;
 use crate::case::words::{DifferenceField, GasField, ParticleField};
 
 pub(super) fn quantities(root: &TableReader<'_>, known: &Known<'_>) -> Vec<Quantity> {
@@ -100,33 +101,6 @@ fn quantity(table: &TableReader<'_>, known: &Known<'_>) -> Option<Quantity> {
         agree_over: over.unwrap_or(0.0),
         expect,
     })
-}
-
-/// A band such as "5 %" or "0.5 K".
-pub(super) fn band(
-    table: &TableReader<'_>,
-    key: &str,
-    dimension: Dimension,
-) -> Option<ToleranceBand> {
-    let text = table.text(key)?;
-    let made = match difference(text) {
-        Ok((number, _)) if number >= 0.0 && text.trim_end().ends_with('%') => {
-            Some(ToleranceBand::Relative(number))
-        }
-        Ok((number, found)) if number >= 0.0 && found == dimension => {
-            Some(ToleranceBand::Absolute(number))
-        }
-        _ => None,
-    };
-    if made.is_none() {
-        let help = format!(
-            "write a share such as \"5 %\", or {} such as \"{}\"",
-            dimension.words(),
-            dimension.example()
-        );
-        table.fail(key, format!("is \"{text}\", which is no band"), help);
-    }
-    made
 }
 
 /// What a measure may name.

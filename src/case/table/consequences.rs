@@ -16,6 +16,7 @@ const USES: &[(&str, &[&str])] = &[
     ("openfoam", &["gas", "time", "laws"]),
     ("output", &["gas"]),
     ("laws", &["materials", "particles", "gas"]),
+    ("units", &["sizes", "compounds", "attributes"]),
     (
         "quantities",
         &[
@@ -27,6 +28,9 @@ const USES: &[(&str, &[&str])] = &[
             "solids",
             "mesh",
             "probes",
+            "compounds",
+            "units",
+            "streams",
         ],
     ),
 ];

@@ -1,0 +1,91 @@
+// Friction at walls within the pressure corrections of an outer iteration, as in the native gas (native-solver/src/gas/friction.rs has the
+// derivation). A correction lets gas slip along walls; with all of their friction w = mu A/d the second correction overshoots where
+// nu dt/d^2 is large. Corrections take the pull of a wall as
+//
+//   w (u* - u_w) + w' (u - u*),   1/w' = (1/w + 1/w_d) (a - w + g)/a,   w_d = i/2 + sqrt(i^2/4 + g i),   g = w d A/V,
+//
+// u* the velocity that the predictor found, i the part of the diagonal a by inertia and drag, w' at most w. Where u = u* the pull is
+// that of the momentum equation.
+#include "gas.H"
+
+namespace
+{
+
+using namespace Foam;
+
+// w - w' in kg/s, by w, g, i and a in kg/s.
+scalar held(scalar friction, scalar between, scalar inertia, scalar diagonal)
+{
+    if (!(friction > 0))
+    {
+        return 0;
+    }
+    const scalar layer = 0.5*inertia + Foam::sqrt(0.25*inertia*inertia + between*inertia);
+    const scalar beyond = diagonal - friction + between;
+    const scalar share = layer/(friction + layer)*diagonal/beyond;
+    return friction*(1 - min(share, scalar(1)));
+}
+
+} // End anonymous namespace
+
+
+void Foam::calcine::gas::holdFriction()
+{
+    const scalarField& volume = mesh_.cellVolumes();
+    const scalarField inertia(committed_.mass/window_.motionSpan + given_.dragCoefficient);
+    const scalarField diagonal(momentumDiagonal_*volume);
+    predicted_ = U_.primitiveField();
+    heldFriction_ = scalarField(mesh_.nFaces(), Zero);
+    scalarField friction(mesh_.nCells(), Zero);
+    const scalarField& upper = momentum_->upper();
+    const scalarField& lower = momentum_->lower();
+    for (label facei = 0; facei < mesh_.nInternalFaces(); ++facei)
+    {
+        // One of the two is friction alone, the other one with what flows in.
+        const scalar viscous = -max(upper[facei], lower[facei]);
+        friction[mesh_.faceOwner()[facei]] += viscous;
+        friction[mesh_.faceNeighbour()[facei]] += viscous;
+    }
+    forAll(mesh_.boundary(), patchi)
+    {
+        const fvPatch& patch = mesh_.boundary()[patchi];
+        const fvPatchVectorField& U = U_.boundaryField()[patchi];
+        if (!U.coupled() && !U.fixesValue())
+        {
+            continue;
+        }
+        forAll(patch, i)
+        {
+            const label facei = patch.start() + i, celli = patch.faceCells()[i];
+            const scalar w = U.coupled()
+              ? max(momentum_->boundaryCoeffs()[patchi][i].x(), scalar(0))
+              : momentum_->internalCoeffs()[patchi][i].x();
+            friction[celli] += w;
+            if (!U.coupled())
+            {
+                const scalar area = mag(mesh_.faceAreas()[facei]);
+                const scalar between = w*area*ownerDistance_[facei]/volume[celli];
+                heldFriction_[facei] = held(w, between, inertia[celli], diagonal[celli]);
+            }
+        }
+    }
+    withoutFriction_ = 1 - friction/diagonal;
+}
+
+
+Foam::vectorField Foam::calcine::gas::frictionGivenBack() const
+{
+    vectorField force(mesh_.nCells(), Zero);
+    for (label facei = mesh_.nInternalFaces(); facei < mesh_.nFaces(); ++facei)
+    {
+        const scalar held = heldFriction_[facei];
+        if (held > 0)
+        {
+            const label celli = mesh_.faceOwner()[facei];
+            const vector& n = normal_[facei];
+            const vector slip = U_[celli] - predicted_[celli];
+            force[celli] += held*(slip - (slip & n)*n);
+        }
+    }
+    return force;
+}

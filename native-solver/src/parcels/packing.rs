@@ -1,0 +1,383 @@
+//! The stress of the solid on the mesh (docs/theory.md, MPC-2, MPC-3).
+//!
+//! Implicit, by default: with α* after the flight, the solid fraction at the end of the step obeys
+//!
+//! V (α(τ) − α*) = Δt² Σ_f φ_f A_f (τ_N − τ_P)/(ρ_f d_f),
+//!
+//! with the share φ that drag leaves of what a force adds to velocities in a step, solved for the stress τ, whose α(τ) stays below close packing. It is concave and the matrix of the faces is an M-matrix, so
+//! that Newton's method rises to the solution from below. The volume that passes each face moves the parcels, the impulse
+//! −Δt (τ_N − τ_P) A_f n of each face is shared by the masses at both its sides.
+
+use std::sync::Arc;
+
+use calcine_coupler::numerics::parallel;
+use calcine_coupler::parcels::Packing;
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::physics::parcels::HarrisCrighton;
+use rayon::prelude::*;
+
+use super::error::ParcelError;
+use super::linear::{CornerValues, LinearWeights};
+use super::step::{FlyingParcel, PIECE};
+use super::stress::StressCurve;
+use super::tetrahedra::{Barycentric, TetPlace, Tetrahedra};
+use crate::numerics::grid::MeshGraph;
+use crate::numerics::krylov::{Krylov, SolveTolerance};
+use crate::numerics::matrix::Matrix;
+use crate::numerics::preconditioner::{Incomplete, Preconditioner};
+
+/// Newton's iterations at most; far from the solution each doubles the stress.
+const ITERATIONS: u32 = 80;
+/// Residual of a cell as a solid fraction at which they end.
+const RESIDUAL: f64 = 1e-9;
+/// Σ cos² of the directions to the neighbours of a cell against one direction, above which they tell how the stress changes along it.
+const FACING: f64 = 0.01;
+/// Share of the distance between two centres that a parcel is moved by the stress in a step at most.
+const FARTHEST: f64 = 0.5;
+
+/// Real particles of all rows in m³ and kg.
+#[derive(Clone, Copy, Debug)]
+pub struct RowAmounts<'a> {
+    /// Solid volumes.
+    pub volume: &'a [f64],
+    /// Masses.
+    pub mass: &'a [f64],
+}
+
+/// What belongs to each cell.
+#[derive(Clone, Debug, Default)]
+pub struct CellSolid {
+    /// Solid fraction.
+    pub fraction: Vec<f64>,
+    /// Mass in kg.
+    pub mass: Vec<f64>,
+    /// The same times the share φ₁ that drag leaves of what a force adds to velocities in the step.
+    pub yielding: Vec<f64>,
+    /// Momentum in N s.
+    pub momentum: Vec<Vec3>,
+}
+
+/// Solves for the stress on a mesh and has it act.
+#[derive(Debug)]
+pub struct Packer {
+    grid: Arc<MeshGraph>,
+    weights: LinearWeights,
+    /// Face of the grid of each face of the mesh, and 1 where both have their normals out of the face's owner, else −1.
+    grid_face: Vec<(u32, f64)>,
+    matrix: Matrix,
+    incomplete: Incomplete,
+    krylov: Krylov,
+}
+
+impl Packer {
+    /// The packing of a mesh.
+    pub fn new(tetrahedra: &Tetrahedra) -> Self {
+        let mesh = tetrahedra.mesh();
+        let grid = Arc::new(MeshGraph::new(mesh));
+        let mut grid_face = vec![(0, 1.0); mesh.faces()];
+        for cell in 0..mesh.cells() {
+            for (&face, link) in mesh.faces_of(cell).iter().zip(grid.links(cell)) {
+                let side = mesh.side(cell, face as usize);
+                grid_face[face as usize] = (link.face, link.sign * side);
+            }
+        }
+        Self {
+            weights: LinearWeights::new(tetrahedra),
+            matrix: Matrix::new(Arc::clone(&grid)),
+            incomplete: Incomplete::default(),
+            krylov: Krylov::default(),
+            grid_face,
+            grid,
+        }
+    }
+
+    /// What belongs to each cell.
+    pub fn solid(
+        &self,
+        tetrahedra: &Tetrahedra,
+        parcels: &[FlyingParcel],
+        amounts: RowAmounts<'_>,
+    ) -> CellSolid {
+        let weights = &self.weights;
+        let mut volume: CornerValues<f64> = weights.corners(tetrahedra);
+        let mut mass: CornerValues<f64> = weights.corners(tetrahedra);
+        let mut yielding: CornerValues<f64> = weights.corners(tetrahedra);
+        let mut momentum: CornerValues<Vec3> = weights.corners(tetrahedra);
+        for (row, parcel) in parcels.iter().enumerate() {
+            let share = tetrahedra.map(parcel.place).of(parcel.position);
+            let (v, m) = (amounts.volume[row], amounts.mass[row]);
+            weights.add(tetrahedra, &mut volume, parcel.place, share, v);
+            weights.add(tetrahedra, &mut mass, parcel.place, share, m);
+            let free = parcel.yielding * m;
+            weights.add(tetrahedra, &mut yielding, parcel.place, share, free);
+            weights.add(
+                tetrahedra,
+                &mut momentum,
+                parcel.place,
+                share,
+                m * parcel.velocity,
+            );
+        }
+        let volumes = weights.gather(tetrahedra, &volume);
+        let fractions = volumes.iter().zip(weights.volume());
+        CellSolid {
+            fraction: fractions.map(|(solid, whole)| solid / whole).collect(),
+            mass: weights.gather(tetrahedra, &mass),
+            yielding: weights.gather(tetrahedra, &yielding),
+            momentum: weights.gather(tetrahedra, &momentum),
+        }
+    }
+
+    /// Has the stress act over a step in s; the impulse in N s that walls gave all parcels.
+    pub fn act(
+        &mut self,
+        packing: &Packing,
+        tetrahedra: &Tetrahedra,
+        (parcels, amounts): (&mut [FlyingParcel], RowAmounts<'_>),
+        time: f64,
+    ) -> Result<Vec3, ParcelError> {
+        match packing {
+            Packing::None => Ok(Vec3::zeros()),
+            Packing::Implicit(law) => self.implicit(law, tetrahedra, (parcels, amounts), time),
+            Packing::Explicit {
+                stress,
+                restitution,
+            } => {
+                let solid = self.solid(tetrahedra, parcels, amounts);
+                let of = |&fraction: &f64| stress.stress(fraction).0;
+                let stress: Vec<f64> = solid.fraction.iter().map(of).collect();
+                let changes = self.changes(&stress, &solid.mass, time);
+                let mean = solid.momentum.iter().zip(&solid.mass);
+                let mean: Vec<Vec3> = mean.map(|(p, &m)| per_mass(*p, m)).collect();
+                let changes = self.weights.spread(tetrahedra, &changes);
+                let mean = self.weights.spread(tetrahedra, &mean);
+                let mut given = Vec3::zeros();
+                for (row, parcel) in parcels.iter_mut().enumerate() {
+                    let share = tetrahedra.map(parcel.place).of(parcel.position);
+                    let at = |values| self.weights.at(tetrahedra, values, parcel.place, share);
+                    let slip = at(&mean) - parcel.velocity;
+                    let change = snider(parcel.yielding * at(&changes), slip, *restitution);
+                    parcel.velocity += change;
+                    given += amounts.mass[row] * change;
+                }
+                Ok(given)
+            }
+        }
+    }
+
+    fn implicit(
+        &mut self,
+        law: &HarrisCrighton,
+        tetrahedra: &Tetrahedra,
+        (parcels, amounts): (&mut [FlyingParcel], RowAmounts<'_>),
+        time: f64,
+    ) -> Result<Vec3, ParcelError> {
+        let solid = self.solid(tetrahedra, parcels, amounts);
+        let density = |cell: usize| {
+            let solids = solid.fraction[cell] * self.weights.volume()[cell];
+            (solids > 0.0).then(|| solid.mass[cell] / solids)
+        };
+        // φ₁ Δt² A/(ρ d) of each face between two cells, in m³/Pa.
+        let conductance: Vec<f64> = self.grid.faces[..self.grid.internal]
+            .iter()
+            .map(|face| {
+                let density = match (density(face.owner), density(face.neighbour)) {
+                    (Some(owner), Some(neighbour)) => 0.5 * (owner + neighbour),
+                    (Some(one), None) | (None, Some(one)) => one,
+                    (None, None) => return 0.0,
+                };
+                let mass = solid.mass[face.owner] + solid.mass[face.neighbour];
+                let free = solid.yielding[face.owner] + solid.yielding[face.neighbour];
+                free / mass * time * time * face.area / (density * face.distance())
+            })
+            .collect();
+        let stress = self.solve(law, &solid.fraction, &conductance)?;
+        let changes = self.changes(&stress, &solid.mass, time);
+        let changes = self.weights.spread(tetrahedra, &changes);
+        let passing = self.passing(&stress, &solid.fraction, &conductance, time);
+        let mut ways = vec![Vec3::zeros(); parcels.len()];
+        let mut given = Vec3::zeros();
+        for (row, parcel) in parcels.iter_mut().enumerate() {
+            let share = tetrahedra.map(parcel.place).of(parcel.position);
+            let change = self.weights.at(tetrahedra, &changes, parcel.place, share);
+            let inner = parcel.pushed(change);
+            given += amounts.mass[row] * change;
+            ways[row] = time * self.moved(tetrahedra, parcel.place, (share, inner), &passing);
+        }
+        parcels
+            .par_iter_mut()
+            .zip(&ways)
+            .with_min_len(PIECE)
+            .for_each(|(parcel, way)| parcel.shift(tetrahedra, *way));
+        Ok(given)
+    }
+
+    /// Velocity in m/s with which the stress moves a parcel: along the normal of its tetrahedron's face it changes linearly from
+    /// that of the mean towards that through the face, so that the volume passes which was solved for.
+    fn moved(
+        &self,
+        tetrahedra: &Tetrahedra,
+        place: TetPlace,
+        (share, inner): (Barycentric, Vec3),
+        passing: &[f64],
+    ) -> Vec3 {
+        let (cell, face) = (place.cell as usize, place.face as usize);
+        let (index, side) = self.grid_face[face];
+        let mesh = tetrahedra.mesh();
+        let through = mesh.side(cell, face) * side * passing[index as usize];
+        let normal = mesh.outward(cell, face).normalize();
+        inner + (1.0 - share[0]) * (through - inner.dot(&normal)) * normal
+    }
+
+    /// The stress in Pa at the end of the step.
+    fn solve(
+        &mut self,
+        law: &HarrisCrighton,
+        fraction: &[f64],
+        conductance: &[f64],
+    ) -> Result<Vec<f64>, ParcelError> {
+        let curve = StressCurve::new(law);
+        let volume = self.weights.volume();
+        let mut stress: Vec<f64> = fraction.iter().map(|&one| curve.first(one)).collect();
+        let mut left = f64::INFINITY;
+        let cells = fraction.len();
+        let (mut residual, mut change) = (vec![0.0; cells], vec![0.0; cells]);
+        for _ in 0..ITERATIONS {
+            let grid = &self.grid;
+            parallel::fill(&mut residual, |cell| {
+                let mut sum = volume[cell] * (fraction[cell] - curve.fraction(stress[cell]).0);
+                for link in grid.links(cell).iter().filter(|link| !link.is_boundary()) {
+                    sum += conductance[link.face as usize]
+                        * (stress[link.other as usize] - stress[cell]);
+                }
+                sum
+            });
+            let share = |cell: usize| (residual[cell] / volume[cell]).abs();
+            let worst = parallel::largest(cells, share);
+            left = worst.1;
+            if left <= RESIDUAL || !left.is_finite() {
+                break;
+            }
+            self.matrix.assemble(|cell, diagonal, row| {
+                *diagonal += volume[cell] * curve.fraction(stress[cell]).1;
+                for link in grid.links(cell).iter().filter(|link| !link.is_boundary()) {
+                    let conductance = conductance[link.face as usize];
+                    *diagonal += conductance;
+                    row[link.slot as usize] -= conductance;
+                }
+            });
+            self.incomplete.update(&self.matrix);
+            change.fill(0.0);
+            let target = SolveTolerance {
+                absolute: 0.0,
+                of_terms: 0.0,
+                relative: 1e-6,
+                iterations: 1000,
+            };
+            self.krylov.symmetric(
+                &self.matrix,
+                &mut self.incomplete,
+                &residual,
+                &mut change,
+                target,
+            );
+            for (stress, change) in stress.iter_mut().zip(&change) {
+                *stress += change;
+            }
+        }
+        if left <= RESIDUAL {
+            return Ok(stress);
+        }
+        Err(ParcelError::NotPacked {
+            residual: left,
+            iterations: ITERATIONS,
+        })
+    }
+
+    /// What the stress adds to the velocity of each cell in m/s. A face gives its impulse to the masses at both sides alike; a
+    /// wall carries what presses against it, by the stress extrapolated to it, and never pulls.
+    fn changes(&self, stress: &[f64], mass: &[f64], time: f64) -> Vec<Vec3> {
+        let grid = &self.grid;
+        let mut changes = vec![Vec3::zeros(); mass.len()];
+        parallel::fill(&mut changes, |cell| {
+            let mut sum = Vec3::zeros();
+            for link in grid.links(cell) {
+                let face = &grid.faces[link.face as usize];
+                let normal = link.sign * face.normal;
+                if link.is_boundary() {
+                    let more = self.rise(stress, cell, normal) * face.owner_distance;
+                    sum -= per_mass(time * more.max(0.0) * face.area * normal, mass[cell]);
+                } else {
+                    let other = link.other as usize;
+                    let impulse = -time * (stress[other] - stress[cell]) * face.area * normal;
+                    sum += per_mass(impulse, mass[cell] + mass[other]);
+                }
+            }
+            sum
+        });
+        changes
+    }
+
+    /// How fast the stress rises along a direction by the neighbours of a cell, in Pa/m (least squares).
+    fn rise(&self, stress: &[f64], cell: usize, direction: Vec3) -> f64 {
+        let (mut above, mut below) = (0.0, 0.0);
+        let links = self.grid.links(cell).iter();
+        for link in links.filter(|link| !link.is_boundary()) {
+            let line = link.sign * self.grid.between(link.face as usize);
+            let along = line.dot(&direction);
+            let weight = 1.0 / line.norm_squared();
+            above += weight * along * (stress[link.other as usize] - stress[cell]);
+            below += weight * along * along;
+        }
+        if below > FACING { above / below } else { 0.0 }
+    }
+
+    /// Velocity in m/s with which parcels pass each face of the grid because of the stress, out of its owner: the volume that
+    /// passes over the solid fraction of the cell it comes from, at most half the distance between centres a step.
+    fn passing(
+        &self,
+        stress: &[f64],
+        fraction: &[f64],
+        conductance: &[f64],
+        time: f64,
+    ) -> Vec<f64> {
+        let mut passing = vec![0.0; self.grid.faces.len()];
+        for (index, face) in self.grid.faces[..self.grid.internal].iter().enumerate() {
+            // Of the solid, in m³ a step.
+            let volume = conductance[index] * (stress[face.owner] - stress[face.neighbour]);
+            let from = if volume > 0.0 {
+                face.owner
+            } else {
+                face.neighbour
+            };
+            if fraction[from] > 0.0 {
+                let farthest = FARTHEST * face.distance() / time;
+                let speed = volume / (fraction[from] * face.area * time);
+                passing[index] = speed.clamp(-farthest, farthest);
+            }
+        }
+        passing
+    }
+}
+
+/// A quantity over a mass; none where there is no mass.
+fn per_mass(quantity: Vec3, mass: f64) -> Vec3 {
+    if mass > 0.0 {
+        quantity / mass
+    } else {
+        Vec3::zeros()
+    }
+}
+
+/// Snider's limit of each component of a change of velocity: towards the mean velocity only, and by at most (1 + e) times the
+/// difference from it (docs/theory.md, MPC-2).
+fn snider(change: Vec3, slip: Vec3, restitution: f64) -> Vec3 {
+    change.zip_map(&slip, |change, slip| {
+        let most = (1.0 + restitution) * slip;
+        if change > 0.0 {
+            change.min(most.max(0.0))
+        } else {
+            change.max(most.min(0.0))
+        }
+    })
+}

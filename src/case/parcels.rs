@@ -1,0 +1,157 @@
+//! From the sections of a case to what the solver of parcels is told.
+
+use calcine_coupler::mesh::Mesh;
+use calcine_coupler::motion::{Motion, Wall, WallMotion, WallShape};
+use calcine_coupler::parcels::{ParcelImpact, ParcelMotion, ParcelWall};
+use calcine_coupler::physics::Vec3;
+use calcine_coupler::setup::ParticleSetup;
+use calcine_native::particles::dem::{distance_to_shape, distance_to_triangle};
+use thiserror::Error;
+
+use super::contacts;
+use super::model::{Case, ContactSpec, ParcelSpec};
+use super::place_error::PlaceError;
+
+/// Walls that do not go with the mesh in which parcels move.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ParcelWallError {
+    /// A patch at which no wall is.
+    #[error(
+        "no wall lies at patch `{patch}` of the mesh, and parcels rebound from its boundary; add [[walls]] with patches = [\"{patch}\"]"
+    )]
+    None {
+        /// Its name.
+        patch: String,
+    },
+    /// A patch at which several are.
+    #[error(
+        "walls `{one}` and `{other}` both lie at patch `{patch}`, and parcels rebound from a patch in one way; give the patch one \
+         wall, or divide it"
+    )]
+    Several {
+        /// Its name.
+        patch: String,
+        /// A wall.
+        one: String,
+        /// Another one.
+        other: String,
+    },
+    /// A contact that is not stated.
+    #[error(
+        "parcels of \"{material}\" meet wall `{wall}` of \"{other}\", but [[contacts]] has no restitution and friction of the two; add \
+         an entry with between = [\"{material}\", \"{other}\"]"
+    )]
+    Contact {
+        /// Material of the parcels.
+        material: String,
+        /// The wall.
+        wall: String,
+        /// Its material.
+        other: String,
+    },
+    /// A motion that moves the wall away from the mesh.
+    #[error(
+        "wall `{wall}` is `moved` or `oscillating`, and the mesh in which parcels move stays; walls of parcels turn or move along \
+         themselves"
+    )]
+    Moves {
+        /// The wall.
+        wall: String,
+    },
+}
+
+/// How the particles of a case move, on the motion clock.
+pub fn motion_of(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Result<Motion, PlaceError> {
+    let spec = case.motion.as_ref().and_then(|motion| motion.parcels.as_ref());
+    match spec {
+        Some(spec) => Ok(motion(case, spec, mesh)?),
+        None => Ok(contacts::motion(case, mesh, setup)?),
+    }
+}
+
+/// How the parcels of a case move: each patch rebounds them as the wall that lies at it.
+fn motion(case: &Case, spec: &ParcelSpec, mesh: &Mesh) -> Result<Motion, ParcelWallError> {
+    let patches = mesh.patches().iter();
+    let bounding = patches.filter(|patch| patch.count > 0 && mesh.partner(patch).is_none());
+    let walls = bounding.map(|patch| {
+        let mut found: Option<&Wall> = None;
+        for face in patch.faces() {
+            let wall = nearest(case, mesh, face).ok_or_else(|| ParcelWallError::None {
+                patch: patch.name.clone(),
+            })?;
+            if let Some(other) = found.filter(|other| !alike(other, wall)) {
+                return Err(ParcelWallError::Several {
+                    patch: patch.name.clone(),
+                    one: other.name.clone(),
+                    other: wall.name.clone(),
+                });
+            }
+            found = Some(wall);
+        }
+        let wall = found.ok_or_else(|| ParcelWallError::None {
+            patch: patch.name.clone(),
+        })?;
+        if let WallMotion::Scheduled { .. } | WallMotion::Oscillating { .. } = wall.motion {
+            let wall = wall.name.clone();
+            return Err(ParcelWallError::Moves { wall });
+        }
+        Ok(ParcelWall {
+            patch: patch.name.clone(),
+            motion: wall.motion.clone(),
+            impact: impacts(case, wall)?,
+        })
+    });
+    Ok(Motion::Parcels(Box::new(ParcelMotion {
+        gravity: case.gas.gravity,
+        courant: spec.courant,
+        most_steps: spec.most_steps,
+        walls: walls.collect::<Result<_, _>>()?,
+        packing: spec.packing,
+        collisions: spec.collisions,
+    })))
+}
+
+/// True where parcels rebound alike from both.
+fn alike(one: &Wall, other: &Wall) -> bool {
+    one.material == other.material && one.motion == other.motion
+}
+
+/// The wall nearest to a boundary face, no farther from it than the centre of its cell is.
+fn nearest<'a>(case: &'a Case, mesh: &Mesh, face: usize) -> Option<&'a Wall> {
+    let centre = mesh.face_centre()[face];
+    let depth = (centre - mesh.cell_centre()[mesh.owner()[face] as usize]).norm();
+    let with_distance = case.walls.iter().map(|wall| (wall, distance(wall, centre)));
+    let near = with_distance.filter(|(_, distance)| *distance < depth);
+    near.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(wall, _)| wall)
+}
+
+fn distance(wall: &Wall, place: Vec3) -> f64 {
+    if let WallShape::Mesh { triangles } = &wall.shape {
+        let each = triangles.iter().map(|one| distance_to_triangle(one, place));
+        return each.fold(f64::INFINITY, f64::min);
+    }
+    distance_to_shape(&wall.shape, place).map_or(f64::INFINITY, f64::abs)
+}
+
+/// The impact of each population on a wall.
+fn impacts(case: &Case, wall: &Wall) -> Result<Vec<ParcelImpact>, ParcelWallError> {
+    let of = |material: usize| {
+        let between = |contact: &&ContactSpec| {
+            let [a, b] = contact.between;
+            [a, b] == [material, wall.material] || [b, a] == [material, wall.material]
+        };
+        let contact = case.contacts.iter().find(between);
+        let impact = contact.and_then(|contact| {
+            Some(ParcelImpact {
+                restitution: contact.restitution?,
+                friction: contact.friction?,
+            })
+        });
+        impact.ok_or_else(|| ParcelWallError::Contact {
+            material: case.materials[material].name.clone(),
+            wall: wall.name.clone(),
+            other: case.materials[wall.material].name.clone(),
+        })
+    };
+    case.particles.iter().map(|one| of(one.material)).collect()
+}

@@ -1,0 +1,19 @@
+//! Cases of plants: from a file of kind `flowsheet` to a checked [`PlantCase`].
+
+mod granulator;
+mod layout;
+mod model;
+mod quantities;
+mod read;
+mod solids;
+mod streams;
+mod units;
+pub(in crate::case) mod words;
+
+pub use model::{
+    ContinuationSpec, PlantCase, PlantMeasure, PlantMethod, PlantPlace, PlantQuantity, SteadySpec,
+};
+#[cfg(test)]
+pub(in crate::case) use read::plant;
+pub use read::{parse_plant, read_plant, read_plant_with};
+pub use words::{LimitField, OverTime, PlantField, SteadyField, SteadyFrom};

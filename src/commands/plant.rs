@@ -1,0 +1,265 @@
+//! Commands with cases of plants.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use calcine_coupler::supervisor::Interrupts;
+use calcine_wire::SolverNetwork;
+
+use super::console::say;
+use super::continuation::{Recorded, begin_again};
+use super::failure::Failure;
+use super::shell::word;
+use super::signals::SignalThread;
+use super::{check, compare, run, sweep};
+use crate::case::plant::{PlantCase, read_plant};
+use crate::exit;
+use crate::plant::{
+    PlantEnding, PlantRunError, PlantStart, PlantSummary, plant_check, plant_closing, run_plant,
+    write_plant_report,
+};
+use crate::results::Verdict;
+
+impl From<PlantRunError> for Failure {
+    fn from(error: PlantRunError) -> Self {
+        let help = error.help().map(|help| format!("\n  help: {help}"));
+        let told = super::failure::chain(&error) + &help.unwrap_or_default();
+        Failure::new(error.exit_code(), told)
+    }
+}
+
+/// Reads the case of a plant; all its errors at once. Every value of a continuation is read too.
+fn read(path: &Path, set: &[String]) -> Result<PlantCase, Failure> {
+    let wrong = |errors: crate::case::CaseErrors| Failure::new(exit::CASE, errors.render());
+    let case = read_plant(path, set).map_err(wrong)?;
+    if let Some(spec) = &case.continuation {
+        for value in &spec.values {
+            let settings = [set, &spec.settings(*value)].concat();
+            read_plant(path, &settings).map_err(wrong)?;
+        }
+    }
+    Ok(case)
+}
+
+/// The results folder: that of `--out`, or results/NAME.
+fn folder(case: &PlantCase, out: Option<&Path>) -> PathBuf {
+    out.map_or_else(|| Path::new("results").join(&case.name), Path::to_owned)
+}
+
+fn refused<T>(message: impl std::fmt::Display) -> Result<T, Failure> {
+    Err(Failure::new(exit::CASE, message))
+}
+
+fn code(summary: &PlantSummary) -> u8 {
+    match summary.verdict {
+        Verdict::Fail => exit::OUTSIDE_BANDS,
+        _ => exit::OK,
+    }
+}
+
+/// Runs a case into a folder and tells how it ended.
+fn into_folder(
+    case: &PlantCase,
+    out: &Path,
+    arguments: Option<&run::Arguments>,
+    quiet: bool,
+    go_on: &str,
+) -> Result<(u8, Option<PlantSummary>), Failure> {
+    let interrupts = Interrupts::default();
+    let stop_after = arguments.and_then(|one| one.stop_after);
+    let _signals = SignalThread::start(&interrupts, stop_after)?;
+    let start = PlantStart {
+        out,
+        resume: arguments.is_some_and(|one| one.resume.is_some()),
+        from: arguments.and_then(|one| one.from.as_deref()),
+        progress: !quiet,
+        interrupts,
+    };
+    match run_plant(case, &start)? {
+        PlantEnding::Finished(summary) => Ok((code(&summary), Some(*summary))),
+        PlantEnding::Complete(summary) => {
+            say(format_args!(
+                "the run in {} is already complete",
+                out.display()
+            ))?;
+            Ok((code(&summary), None))
+        }
+        PlantEnding::Checkpointed(path) => {
+            say(format_args!(
+                "stopped with a checkpoint in {}; {go_on}",
+                path.display()
+            ))?;
+            Ok((exit::CHECKPOINTED, None))
+        }
+    }
+}
+
+/// `calcine run` of a plant.
+pub(super) fn run(
+    arguments: &run::Arguments,
+    case_file: &Path,
+    _network: Option<&Arc<dyn SolverNetwork>>,
+    _hand_over: fn() -> Failure,
+) -> Result<u8, Failure> {
+    if let Some(option) = arguments.of_beds() {
+        return refused(format_args!(
+            "`{option}` goes with beds: a plant has no solvers to choose; leave it out"
+        ));
+    }
+    let case = read(case_file, &arguments.set)?;
+    for change in &case.changes {
+        say(format_args!("set {change}"))?;
+    }
+    let out = folder(&case, arguments.out.as_deref());
+    let mut options: Vec<String> = Vec::new();
+    for setting in &arguments.set {
+        options.extend(["--set".to_owned(), setting.clone()]);
+    }
+    if arguments.quiet {
+        options.push("--quiet".into());
+    }
+    let path = std::path::absolute(case_file).unwrap_or_else(|_| case_file.to_owned());
+    let recorded = path.to_str().map(|case| Recorded {
+        case: case.to_owned(),
+        options,
+    });
+    let go_on = format!("`calcine run --resume {}` goes on", word(out.as_os_str()));
+    // Before the run: a kill leaves what `--resume` needs. The folder that is refused below stays as it is.
+    let fresh = !out.join(crate::results::SUMMARY).exists();
+    if let Some(recorded) = recorded.filter(|_| fresh) {
+        std::fs::create_dir_all(&out)
+            .map_err(|cause| Failure::unwritable(&out, "--out", &cause))?;
+        recorded.write(&out)?;
+    }
+    let (code, summary) = into_folder(&case, &out, Some(arguments), arguments.quiet, &go_on)?;
+    if let Some(summary) = summary {
+        let page = write_plant_report(&out);
+        say(plant_closing(&summary))?;
+        let page = page.map_err(|error| Failure::told(exit::OTHER, &error))?;
+        say(format_args!("report: {}", page.display()))?;
+    }
+    Ok(code)
+}
+
+/// `calcine check` of a plant.
+pub(super) fn check(arguments: &check::Arguments) -> Result<u8, Failure> {
+    let case = read(&arguments.case, &arguments.set)?;
+    say(plant_check(&case)?.trim_end())?;
+    Ok(exit::OK)
+}
+
+/// `calcine compare` of a plant: recycles closed at every evaluation against waveform relaxation, or two results.
+pub(super) fn compare(arguments: &compare::Arguments) -> Result<u8, Failure> {
+    let case = read(&arguments.case, &arguments.set)?;
+    let told = |error: &crate::results::ResultsError| Failure::told(exit::OTHER, error);
+    if let [one, other] = &arguments.results[..] {
+        let names = [one, other].map(|path| path.display().to_string());
+        let names = [names[0].as_str(), names[1].as_str()];
+        let found = crate::plant::compare::compare(&case, names, [one, other]);
+        let found = found.map_err(|error| told(&error))?;
+        say(found.text.trim_end())?;
+        return Ok(match found.agrees {
+            true => exit::OK,
+            false => exit::OUTSIDE_BANDS,
+        });
+    }
+    if !arguments.results.is_empty() {
+        return refused("`--results` takes two folders: --results DIR,DIR");
+    }
+    let out = arguments.out.clone().unwrap_or_else(|| {
+        let mut folder = folder(&case, None).into_os_string();
+        folder.push("-compare");
+        folder.into()
+    });
+    let go_on = begin_again("comparison", &out);
+    let methods = ["monolithic", "waveform"];
+    for method in methods {
+        let mut set = arguments.set.clone();
+        set.push(format!("method.recycles={method}"));
+        let case = read(&arguments.case, &set)?;
+        say(format_args!("{method}:"))?;
+        let (code, summary) = into_folder(&case, &out.join(method), None, arguments.quiet, &go_on)?;
+        match summary {
+            Some(summary) => say(plant_closing(&summary))?,
+            None => return Ok(code),
+        }
+    }
+    let folders = methods.map(|method| out.join(method));
+    let found = crate::plant::compare::compare(&case, methods, [&folders[0], &folders[1]]);
+    let found = found.map_err(|error| told(&error))?;
+    say(found.text.trim_end())?;
+    Ok(match found.agrees {
+        true => exit::OK,
+        false => exit::OUTSIDE_BANDS,
+    })
+}
+
+/// `calcine sweep` of a plant.
+pub(super) fn sweep(arguments: &sweep::Arguments) -> Result<u8, Failure> {
+    if let Some(option) = arguments.of_beds() {
+        return refused(format_args!("`{option}` goes with beds; leave it out"));
+    }
+    let base = read(&arguments.case, &[])?;
+    let out = arguments.out.clone().unwrap_or_else(|| {
+        let mut folder = folder(&base, None).into_os_string();
+        folder.push("-sweep");
+        folder.into()
+    });
+    let (names, combinations) = sweep::combinations(&arguments.set)?;
+    // Every case is read before the first one runs.
+    for settings in &combinations {
+        read(&arguments.case, settings)?;
+    }
+    if let Some(path) = &arguments.table {
+        sweep::writable(path).map_err(|cause| Failure::unwritable(path, "--table", &cause))?;
+    }
+    let go_on = begin_again("sweep", &out);
+    let mut head = names;
+    let mut rows = Vec::new();
+    let mut worst = exit::OK;
+    for settings in &combinations {
+        say(settings.join("  "))?;
+        let case = read(&arguments.case, settings)?;
+        let place = out.join(sweep::folder_name(settings));
+        let (code, summary) = into_folder(&case, &place, None, arguments.quiet, &go_on)?;
+        let Some(summary) = summary else {
+            return Ok(code);
+        };
+        worst = if code == exit::OK { worst } else { code };
+        let values = settings.iter();
+        let values = values.filter_map(|one| Some(one.split_once('=')?.1.to_owned()));
+        let mut row: Vec<String> = values.collect();
+        row.push(format!("{:.2}", summary.wall_time_s));
+        for (name, quantity) in &summary.quantities {
+            let title = format!("{name} {}", quantity.unit);
+            if rows.is_empty() {
+                if row.len() == head.len() + 1 {
+                    head.push("s".into());
+                }
+                head.push(title);
+            }
+            let value = quantity.value;
+            row.push(value.map_or("none".into(), |value| format!("{value:.7}")));
+        }
+        if let Some(mode) = &summary.stability {
+            if rows.is_empty() {
+                head.extend(["growth rate 1/s".to_owned(), "period s".into()]);
+            }
+            let period = mode.period_s;
+            row.push(format!("{:.5e}", mode.growth_rate_per_s));
+            row.push(period.map_or("none".into(), |period| format!("{period:.2}")));
+        }
+        rows.push(row);
+    }
+    let mut table = format!("| {} |\n|{}\n", head.join(" | "), "---|".repeat(head.len()));
+    for row in rows {
+        table.push_str(&format!("| {} |\n", row.join(" | ")));
+    }
+    // Written before anything is printed: standard output may be lost.
+    let written = arguments.table.as_ref().map(|path| {
+        std::fs::write(path, &table).map_err(|cause| Failure::unwritable(path, "--table", &cause))
+    });
+    say(table.trim_end())?;
+    written.transpose()?;
+    Ok(worst)
+}

@@ -1,0 +1,384 @@
+//! A plant's run from its case to its results folder.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use calcine_coupler::supervisor::Interrupts;
+use calcine_flowsheet::{PlantError, PlantRun};
+
+use super::checkpoint::{PlantCheckpoint, Written};
+use super::error::PlantRunError;
+use super::files::{
+    DISTRIBUTIONS, SERIES, Table, TimeTable, distribution_head, distribution_rows, series_head,
+    write_streams,
+};
+use super::measure::{Column, columns, row};
+use super::progress::PlantProgress;
+use super::quantities::{Measured, results, verdict};
+use super::summary::{KIND, PlantLedgerSummary, PlantSummary};
+use super::{steady, store};
+use crate::case::plant::PlantCase;
+use crate::results::sheet::number;
+use crate::results::summary::{CaseName, RunFailure};
+use crate::results::{CASE, ResultsError, SUMMARY, Verdict, difference, files, kind};
+use crate::simulation::claim;
+
+/// How a run begins, and what it shows.
+pub struct PlantStart<'a> {
+    /// Results folder.
+    pub out: &'a Path,
+    /// Continues from the checkpoint in it, or begins where there is none yet.
+    pub resume: bool,
+    /// Results folder of another run whose last state it begins from.
+    pub from: Option<&'a Path>,
+    /// Shows a progress bar.
+    pub progress: bool,
+    /// One leaves a checkpoint after the row of the series that is computed.
+    pub interrupts: Interrupts,
+}
+
+/// How a run ended.
+#[derive(Debug)]
+pub enum PlantEnding {
+    /// At its end.
+    Finished(Box<PlantSummary>),
+    /// It had come to its end before.
+    Complete(Box<PlantSummary>),
+    /// With a checkpoint in this file.
+    Checkpointed(PathBuf),
+}
+
+/// A run under way.
+struct Driven<'a> {
+    case: &'a PlantCase,
+    out: &'a Path,
+    run: PlantRun<'a>,
+    columns: Vec<Column>,
+    series: Table,
+    distributions: Table,
+    /// Rows of the series.
+    rows: u64,
+    next_distributions: f64,
+    /// Wall time of the stretches before in s.
+    before: f64,
+    begun: Instant,
+    from: Option<String>,
+}
+
+/// Follows a plant to the end of its case, or to an interrupt.
+pub fn run_plant(case: &PlantCase, start: &PlantStart<'_>) -> Result<PlantEnding, PlantRunError> {
+    let out = start.out;
+    if let Some(summary) = occupied(out, case, start.resume)? {
+        return Ok(PlantEnding::Complete(Box::new(summary)));
+    }
+    let claimed = claim(out)?;
+    let mut driven = begin(case, start)?;
+    let _lock = claimed.keep();
+    files::replace(&out.join(CASE), case.effective.as_bytes())?;
+    let mut progress = PlantProgress::new(out, driven.run.time(), case.end, start.progress);
+    driven.summary(Verdict::Running)?.replace(out)?;
+    match driven.follow(start, &mut progress) {
+        Ok(true) => {}
+        Ok(false) => {
+            let path = driven.checkpoint()?;
+            driven.summary(Verdict::Stopped)?.replace(out)?;
+            progress.show(driven.run.time(), "stopped")?;
+            return Ok(PlantEnding::Checkpointed(path));
+        }
+        Err(error) => {
+            let mut summary = driven.summary(Verdict::Stopped)?;
+            summary.failure = Some(RunFailure {
+                code: error.exit_code(),
+                message: error.to_string(),
+            });
+            summary.replace(out)?;
+            progress.show(driven.run.time(), "stopped")?;
+            return Err(error);
+        }
+    }
+    driven.checkpoint()?;
+    let summary = driven.finish();
+    let summary = summary.inspect_err(|_| {
+        // The error is the one to tell; the state at the end is kept.
+        let _ = driven
+            .summary(Verdict::Stopped)
+            .map(|summary| summary.replace(out));
+    })?;
+    progress.show(driven.run.time(), "complete")?;
+    Ok(PlantEnding::Finished(Box::new(summary)))
+}
+
+/// Refuses a folder with another run's results; the summary where the run to resume is complete.
+fn occupied(
+    out: &Path,
+    case: &PlantCase,
+    resume: bool,
+) -> Result<Option<PlantSummary>, PlantRunError> {
+    if !out.join(SUMMARY).is_file() {
+        return Ok(None);
+    }
+    if kind(out) != KIND {
+        return Err(PlantRunError::Results(ResultsError::Content {
+            path: out.join(SUMMARY),
+            fact: "it holds the results of a bed: name another folder with `--out`".into(),
+        }));
+    }
+    let summary = PlantSummary::read(out)?;
+    if !resume {
+        return Err(PlantRunError::Results(ResultsError::Occupied {
+            path: out.to_owned(),
+            case: summary.case.name,
+            state: match summary.verdict {
+                Verdict::Running => "running",
+                Verdict::Stopped => "stopped",
+                _ => "complete",
+            },
+            time: summary.time_s,
+        }));
+    }
+    if summary.case.hash != case.hash {
+        return Err(PlantRunError::Results(ResultsError::OtherCase {
+            path: out.join(SUMMARY),
+            stored: summary.case.hash,
+            hash: case.hash.clone(),
+            keys: difference(out, &case.effective),
+        }));
+    }
+    Ok(summary.is_complete().then_some(summary))
+}
+
+/// The run at its start, or where its checkpoint stands.
+fn begin<'a>(case: &'a PlantCase, start: &PlantStart<'a>) -> Result<Driven<'a>, PlantRunError> {
+    let (plant, out) = (&case.plant, start.out);
+    let columns = columns(plant);
+    let (integrator, tolerance) = (case.method.integrator, case.method.tolerance);
+    let saved = match start.resume {
+        true => PlantCheckpoint::read(out)?,
+        false => None,
+    };
+    if let Some(saved) = saved {
+        if saved.case_hash != case.hash {
+            return Err(PlantRunError::Results(ResultsError::OtherCase {
+                path: out.join("checkpoint"),
+                stored: saved.case_hash,
+                hash: case.hash.clone(),
+                keys: difference(out, &case.effective),
+            }));
+        }
+        let mut run = PlantRun::new(plant, integrator, tolerance)?;
+        let series = Table::resume(out, SERIES, saved.series)?;
+        let distributions = Table::resume(out, DISTRIBUTIONS, saved.distributions)?;
+        let (rows, next, wall) = (saved.rows, saved.next_distributions, saved.wall);
+        let from = saved.from.clone();
+        run.resume(saved.step());
+        return Ok(Driven {
+            case,
+            out,
+            run,
+            columns,
+            series,
+            distributions,
+            rows,
+            next_distributions: next,
+            before: wall,
+            begun: Instant::now(),
+            from,
+        });
+    }
+    let run = match start.from {
+        None => PlantRun::new(plant, integrator, tolerance)?,
+        Some(folder) => {
+            let state = PlantCheckpoint::read(folder)?.ok_or_else(|| ResultsError::NoResults {
+                path: folder.to_owned(),
+                fact: "it holds no checkpoint of a plant",
+            })?;
+            let (found, own) = (state.unknowns().len(), plant.unknowns());
+            if found != own {
+                return Err(PlantRunError::OtherPlant {
+                    folder: folder.display().to_string(),
+                    found,
+                    own,
+                });
+            }
+            PlantRun::from(plant, state.unknowns().to_vec(), integrator, tolerance)?
+        }
+    };
+    let mut driven = Driven {
+        case,
+        out,
+        run,
+        series: Table::create(out, SERIES, &series_head(&columns))?,
+        columns,
+        distributions: Table::create(out, DISTRIBUTIONS, &distribution_head(plant))?,
+        rows: 0,
+        next_distributions: 0.0,
+        before: 0.0,
+        begun: Instant::now(),
+        from: start.from.map(|folder| folder.display().to_string()),
+    };
+    driven.record()?;
+    Ok(driven)
+}
+
+impl Driven<'_> {
+    /// Row by row to the end: true; false where it was interrupted.
+    fn follow(
+        &mut self,
+        start: &PlantStart<'_>,
+        progress: &mut PlantProgress,
+    ) -> Result<bool, PlantRunError> {
+        let mut last = (self.run.time(), Instant::now());
+        while self.run.time() < self.case.end {
+            if start.interrupts.count() > 0 {
+                return Ok(false);
+            }
+            let next = (self.rows as f64 * self.case.row_every).min(self.case.end);
+            // The last interval is not cut into one that only round-off makes.
+            let next = match self.case.end - next < 1e-9 * self.case.row_every {
+                true => self.case.end,
+                false => next,
+            };
+            match &self.case.method.waveform {
+                None => self.run.advance(next)?,
+                Some(windows) => self.run.advance_by_windows(next, windows)?,
+            }
+            self.record()?;
+            let due = |every: Option<f64>| {
+                every.is_some_and(|every| self.run.time() - last.0 >= every * (1.0 - 1e-12))
+            };
+            let wall = self.case.checkpoint_wall;
+            let late = wall.is_some_and(|wall: Duration| last.1.elapsed() >= wall);
+            if due(self.case.checkpoint_every) || late {
+                self.checkpoint()?;
+                last = (self.run.time(), Instant::now());
+            }
+            progress.show(self.run.time(), "running")?;
+        }
+        Ok(true)
+    }
+
+    /// Writes the row of this moment, and distributions where they are due.
+    fn record(&mut self) -> Result<(), PlantRunError> {
+        let values = row(&self.run, &self.case.plant, &self.columns);
+        let words: Vec<String> = values.into_iter().map(number).collect();
+        self.series.append(&words)?;
+        self.rows += 1;
+        let time = self.run.time();
+        let every = self.case.distributions_every.unwrap_or(f64::INFINITY);
+        let ended = time >= self.case.end;
+        if ended || time >= self.next_distributions - 1e-9 * self.case.row_every {
+            for words in distribution_rows(&self.run, &self.case.plant) {
+                self.distributions.append(&words)?;
+            }
+            while self.next_distributions <= time + 1e-9 * self.case.row_every {
+                self.next_distributions += every;
+            }
+        }
+        Ok(())
+    }
+
+    fn checkpoint(&mut self) -> Result<PathBuf, PlantRunError> {
+        self.series.sync()?;
+        self.distributions.sync()?;
+        let written = Written {
+            rows: self.rows,
+            series: self.series.bytes(),
+            distributions: self.distributions.bytes(),
+            // JSON has no infinity.
+            next_distributions: self.next_distributions.min(f64::MAX),
+            wall: self.wall(),
+        };
+        let state = self.run.checkpoint();
+        let kept = PlantCheckpoint::new(&self.case.hash, &written, self.from.clone(), state);
+        Ok(kept.write(self.out)?)
+    }
+
+    fn wall(&self) -> f64 {
+        self.before + self.begun.elapsed().as_secs_f64()
+    }
+
+    /// The tables of the end, steady states, quantities, the HDF5 file.
+    fn finish(&self) -> Result<PlantSummary, PlantRunError> {
+        write_streams(self.out, &self.run, &self.case.plant)?;
+        let mut summary = self.summary(Verdict::Running)?;
+        if let Some(spec) = self.case.steady {
+            match steady::steady(self.case, spec, self.run.unknowns()) {
+                Ok(found) => {
+                    summary.stability = found.modes.first().copied();
+                    summary.steady = Some(found);
+                }
+                Err(error) => summary.not_steady = Some(error.to_string()),
+            }
+        }
+        if let Some(spec) = &self.case.continuation {
+            match steady::continuation(self.case, spec) {
+                Ok(found) => summary.continuation = Some(found),
+                Err(error) => summary.not_steady = Some(error.to_string()),
+            }
+        }
+        let series = TimeTable::series(self.out)?;
+        let measured = Measured {
+            series: &series,
+            columns: &self.columns,
+            steady: summary.steady.as_ref(),
+            continuation: summary.continuation.as_ref(),
+        };
+        summary.quantities = results(self.case, &measured, self.run.time(), true);
+        summary.verdict = verdict(&summary.quantities);
+        store::write(self.out, self.case, &self.columns, &series)?;
+        summary.wall_time_s = self.wall();
+        summary.replace(self.out)?;
+        // What draughts of files an earlier stretch left is of no use any more.
+        let _ = fs::remove_file(self.out.join("checkpoint/plant.json.new"));
+        Ok(summary)
+    }
+
+    /// The summary of this moment.
+    fn summary(&self, verdict: Verdict) -> Result<PlantSummary, PlantError> {
+        let case = self.case;
+        let plant = &case.plant;
+        let [steps, repeated] = self.run.steps();
+        let nothing = TimeTable {
+            names: Vec::new(),
+            columns: Vec::new(),
+        };
+        let measured = Measured {
+            series: &nothing,
+            columns: &self.columns,
+            steady: None,
+            continuation: None,
+        };
+        Ok(PlantSummary {
+            format: 1,
+            calcine: env!("CARGO_PKG_VERSION").into(),
+            kind: KIND.into(),
+            case: CaseName {
+                name: case.name.clone(),
+                title: case.title.clone(),
+                hash: case.hash.clone(),
+            },
+            from: self.from.clone(),
+            verdict,
+            recycles: case.method.recycles().into(),
+            integrator: case.method.integrator().into(),
+            tolerance: case.method.tolerance,
+            time_s: self.run.time(),
+            end_s: case.end,
+            classes: plant.layout().grid().classes(),
+            unknowns: plant.unknowns(),
+            tears: plant.tears().into_iter().map(str::to_owned).collect(),
+            steps,
+            repeated_steps: repeated,
+            rounds: self.run.rounds(),
+            ledger: PlantLedgerSummary::of(&self.run.ledger()),
+            quantities: results(case, &measured, self.run.time(), false),
+            steady: None,
+            not_steady: None,
+            stability: None,
+            continuation: None,
+            wall_time_s: self.wall(),
+            failure: None,
+        })
+    }
+}

@@ -1,0 +1,334 @@
+//! What columns are, and their units.
+
+use std::path::Path;
+
+use super::CurveFileError;
+use super::sheet::Sheet;
+
+/// What a column of a curve may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum CurveColumn {
+    /// Time.
+    Time,
+    /// Temperature.
+    Temperature,
+    /// Mass: thermogravimetry.
+    Mass,
+    /// Rate at which the mass falls: derivative thermogravimetry.
+    LossRate,
+    /// Which run a row belongs to.
+    Run,
+}
+
+impl CurveColumn {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Time,
+        Self::Temperature,
+        Self::Mass,
+        Self::LossRate,
+        Self::Run,
+    ];
+
+    /// Key in a case file.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Time => "time",
+            Self::Temperature => "temperature",
+            Self::Mass => "mass",
+            Self::LossRate => "loss_rate",
+            Self::Run => "run",
+        }
+    }
+
+    /// Beginnings of headings that mean it, in small letters.
+    fn beginnings(self) -> &'static [&'static str] {
+        match self {
+            Self::Time => &[
+                "time", "zeit", "temps", "tiempo", "t/s", "t/min", "t (s", "t (min", "t [s",
+                "t [min", "t_s", "t_min",
+            ],
+            Self::Temperature => &[
+                "temp",
+                "sample temp",
+                "ts",
+                "tr",
+                "t/°c",
+                "t/k",
+                "t (°c",
+                "t (k",
+                "t [°c",
+                "t [k",
+                "t_c",
+                "t_k",
+                "probentemp",
+            ],
+            Self::Mass => &[
+                "mass",
+                "weight",
+                "tg",
+                "masse",
+                "gewicht",
+                "sample mass",
+                "sample weight",
+                "m/",
+                "m (",
+                "m [",
+            ],
+            Self::LossRate => &[
+                "dtg",
+                "deriv",
+                "d(m",
+                "dm/dt",
+                "dw/dt",
+                "rate of loss",
+                "loss_rate",
+            ],
+            Self::Run => &["run", "segment no", "experiment"],
+        }
+    }
+
+    /// Units with the factor and the offset to SI; the mass in kg, or as a share.
+    fn units(self) -> &'static [(&'static str, f64, f64)] {
+        match self {
+            Self::Time => &[
+                ("s", 1.0, 0.0),
+                ("sec", 1.0, 0.0),
+                ("min", 60.0, 0.0),
+                ("h", 3600.0, 0.0),
+                ("hr", 3600.0, 0.0),
+                ("ms", 1e-3, 0.0),
+            ],
+            Self::Temperature => &[
+                ("°C", 1.0, 273.15),
+                ("degC", 1.0, 273.15),
+                ("C", 1.0, 273.15),
+                ("Cel", 1.0, 273.15),
+                ("K", 1.0, 0.0),
+            ],
+            Self::Mass => &[
+                ("%", 0.01, 0.0),
+                ("wt%", 0.01, 0.0),
+                ("wt.%", 0.01, 0.0),
+                ("mg", 1e-6, 0.0),
+                ("g", 1e-3, 0.0),
+                ("ug", 1e-9, 0.0),
+                ("µg", 1e-9, 0.0),
+                ("kg", 1.0, 0.0),
+                ("1", 1.0, 0.0),
+            ],
+            Self::LossRate => &[
+                ("%/min", 0.01 / 60.0, 0.0),
+                ("%/s", 0.01, 0.0),
+                ("mg/min", 1e-6 / 60.0, 0.0),
+                ("mg/s", 1e-6, 0.0),
+                ("1/s", 1.0, 0.0),
+                ("1/min", 1.0 / 60.0, 0.0),
+            ],
+            Self::Run => &[("1", 1.0, 0.0)],
+        }
+    }
+
+    /// True of units of a mass that need the mass at the start.
+    pub(super) fn is_weighed(self, unit: &str) -> bool {
+        matches!(self, Self::Mass | Self::LossRate) && unit.contains('g')
+    }
+}
+
+/// True of a text that is a unit of some column.
+pub(super) fn is_unit(text: &str) -> bool {
+    let bare = bare(text);
+    CurveColumn::ALL
+        .iter()
+        .any(|one| one.units().iter().any(|(name, ..)| *name == bare))
+}
+
+/// A unit without brackets.
+fn bare(text: &str) -> &str {
+    text.trim().trim_matches(['(', ')', '[', ']', '/']).trim()
+}
+
+/// What a case says of a column.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ColumnChoice {
+    /// Its heading, or its number from 1; `None`: recognised.
+    pub heading: Option<String>,
+    /// Its unit; `None`: that of the heading.
+    pub unit: Option<String>,
+}
+
+/// A column that was found.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct FoundColumn {
+    /// Place among the columns.
+    pub place: usize,
+    /// Its unit as written.
+    pub unit: String,
+    /// SI value = factor · value + offset.
+    pub factor: f64,
+    /// Offset of the temperature scale.
+    pub offset: f64,
+}
+
+/// A heading as its name and its unit: `Temp./°C`, `Mass (mg)`, `Time [min]`, `mass_mg`.
+fn parted(heading: &str) -> (String, Option<String>) {
+    let text = heading.trim();
+    for (open, close) in [('(', ')'), ('[', ']')] {
+        if let Some((name, rest)) = text.rsplit_once(open)
+            && let Some((unit, _)) = rest.split_once(close)
+        {
+            return (name.trim().to_owned(), Some(unit.trim().to_owned()));
+        }
+    }
+    for sign in ["/", ", ", " in ", "_"] {
+        // DTG/(%/min) and dm/dt/%/min: the unit is the longest end that is one.
+        for (place, _) in text.match_indices(sign) {
+            let unit = &text[place + sign.len()..];
+            if is_unit(unit) {
+                return (text[..place].trim().to_owned(), Some(bare(unit).to_owned()));
+            }
+        }
+    }
+    (text.to_owned(), None)
+}
+
+/// Place of the column of a heading, its unit left out or not, or of a number from 1.
+fn named(sheet: &Sheet, wanted: &str) -> Option<usize> {
+    let wanted = wanted.trim();
+    let same = |name: &String| name.trim() == wanted || parted(name).0 == wanted;
+    let number = wanted.parse::<usize>().ok();
+    let by_number = number.filter(|k| (1..=sheet.headings.len()).contains(k));
+    sheet
+        .headings
+        .iter()
+        .position(same)
+        .or(by_number.map(|k| k - 1))
+}
+
+/// Finds a column: as the case says, or by its heading. `None` where neither does.
+pub(super) fn find(
+    path: &Path,
+    sheet: &Sheet,
+    column: CurveColumn,
+    choice: &ColumnChoice,
+) -> Result<Option<FoundColumn>, CurveFileError> {
+    let wrong =
+        |fact: String, help: String| Err(CurveFileError::new(path, sheet.heading_line, fact, help));
+    let key = column.key();
+    let known = || {
+        let names = sheet.headings.iter().enumerate();
+        let names = names.map(|(k, name)| format!("{} \"{name}\"", k + 1));
+        names.collect::<Vec<_>>().join(", ")
+    };
+    let place = match &choice.heading {
+        Some(wanted) => match named(sheet, wanted) {
+            Some(place) => place,
+            None => {
+                let fact = format!("no column is called \"{wanted}\"");
+                return wrong(
+                    fact,
+                    format!(
+                        "its columns are {}: name one of them as `columns.{key}`, or its number",
+                        known()
+                    ),
+                );
+            }
+        },
+        None => {
+            let means = |name: &String| {
+                let small = name.trim().trim_start_matches('#').to_lowercase();
+                column
+                    .beginnings()
+                    .iter()
+                    .any(|begin| small.starts_with(begin))
+                    && !(column == CurveColumn::Mass && small.starts_with("mass loss rate"))
+            };
+            let found = (0..sheet.headings.len()).filter(|&k| means(&sheet.headings[k]));
+            let found: Vec<usize> = found.collect();
+            match found[..] {
+                [] => return Ok(None),
+                [place] => place,
+                _ => {
+                    let names = found.iter().map(|&k| format!("\"{}\"", sheet.headings[k]));
+                    let names: Vec<String> = names.collect();
+                    let fact = format!("several columns may be the {key}: {}", names.join(", "));
+                    return wrong(
+                        fact,
+                        format!("name the one that is meant as `columns.{key}`"),
+                    );
+                }
+            }
+        }
+    };
+    let own = parted(&sheet.headings[place]).1;
+    let below = sheet.units.get(place).map(|unit| bare(unit).to_owned());
+    let below = below.filter(|unit| !unit.is_empty());
+    // What tells runs apart is a label, whatever its unit.
+    if column == CurveColumn::Run {
+        return Ok(Some(FoundColumn {
+            place,
+            unit: String::new(),
+            factor: 1.0,
+            offset: 0.0,
+        }));
+    }
+    let Some(unit) = choice.unit.clone().or(own).or(below) else {
+        let fact = format!("the column \"{}\" has no unit", sheet.headings[place]);
+        let units = column
+            .units()
+            .iter()
+            .map(|one| one.0)
+            .collect::<Vec<_>>()
+            .join(", ");
+        return wrong(
+            fact,
+            format!("write it behind the heading, or as `units.{key}` of the target: {units}"),
+        );
+    };
+    let known = column
+        .units()
+        .iter()
+        .find(|(name, ..)| *name == bare(&unit));
+    let Some(&(name, factor, offset)) = known else {
+        let fact = format!(
+            "the unit \"{unit}\" of the column \"{}\" is not known",
+            sheet.headings[place]
+        );
+        let units = column
+            .units()
+            .iter()
+            .map(|one| one.0)
+            .collect::<Vec<_>>()
+            .join(", ");
+        return wrong(fact, format!("state `units.{key}` of the target: {units}"));
+    };
+    Ok(Some(FoundColumn {
+        place,
+        unit: name.to_owned(),
+        factor,
+        offset,
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headings_part_into_names_and_units() {
+        for (heading, name, unit) in [
+            ("Temp./°C", "Temp.", Some("°C")),
+            ("Mass (mg)", "Mass", Some("mg")),
+            ("Time [min]", "Time", Some("min")),
+            ("mass_mg", "mass", Some("mg")),
+            ("Weight, %", "Weight", Some("%")),
+            ("Time in s", "Time", Some("s")),
+            ("DTG/(%/min)", "DTG/", Some("%/min")),
+            ("Mass", "Mass", None),
+            ("dm/dt", "dm/dt", None),
+        ] {
+            let (found, of) = parted(heading);
+            assert_eq!((&found[..], of.as_deref()), (name, unit), "{heading}");
+        }
+    }
+}

@@ -1,0 +1,327 @@
+//! Runs of a sample from columns.
+
+use std::path::Path;
+
+use super::CurveFileError;
+use super::columns::{ColumnChoice, CurveColumn, FoundColumn, find};
+use super::sheet::{Sheet, SheetForm, decode, sheet};
+
+/// How a file of curves is read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CurveFile {
+    /// How numbers are written.
+    pub form: SheetForm,
+    /// What is said of each column, in the order of [`CurveColumn::ALL`].
+    pub columns: [ColumnChoice; 5],
+    /// What no sample does.
+    pub rules: CurveRules,
+}
+
+/// What a run must have, and what it may not do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurveRules {
+    /// True: a temperature is needed, as the case states no heating rate.
+    pub needs_temperature: bool,
+    /// Largest rise of the mass, as a share of its whole fall.
+    pub largest_rise: f64,
+    /// Mass at the start in kg, where it is not the first value of the file.
+    pub initial_mass: Option<f64>,
+}
+
+impl Default for CurveRules {
+    fn default() -> Self {
+        Self {
+            needs_temperature: true,
+            largest_rise: LARGEST_RISE,
+            initial_mass: None,
+        }
+    }
+}
+
+/// Largest rise of a mass unless a case says otherwise: above the noise of a balance, below what buoyancy does to a small
+/// sample.
+pub(crate) const LARGEST_RISE: f64 = 0.05;
+/// Rows of a run at least.
+const LEAST_ROWS: usize = 10;
+/// Least fall of the mass that counts as one.
+const LEAST_FALL: f64 = 1e-3;
+
+/// One run of a sample, in SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredRun {
+    /// Value of the column that tells runs apart, as written; empty where there is none.
+    pub label: String,
+    /// Times in s from the first row on.
+    pub time: Vec<f64>,
+    /// Temperatures in K; empty where there is no such column.
+    pub temperature: Vec<f64>,
+    /// Mass relative to that at the start; empty where there is no such column.
+    pub mass: Vec<f64>,
+    /// Rate of its fall in 1/s; empty where there is no such column.
+    pub loss_rate: Vec<f64>,
+    /// Mass at the start in kg, where the file has it.
+    pub initial_mass: Option<f64>,
+    /// Line of each row.
+    pub lines: Vec<usize>,
+}
+
+/// Reads all runs of a file.
+pub fn read_curves(path: &Path, file: &CurveFile) -> Result<Vec<MeasuredRun>, CurveFileError> {
+    let bytes = std::fs::read(path).map_err(|cause| {
+        let help = "paths are relative to the case file";
+        CurveFileError::new(path, None, format!("it cannot be read: {cause}"), help)
+    })?;
+    parse_curves(path, &bytes, file)
+}
+
+/// Reads all runs of the bytes of a file; `path` is what messages name.
+pub fn parse_curves(
+    path: &Path,
+    bytes: &[u8],
+    file: &CurveFile,
+) -> Result<Vec<MeasuredRun>, CurveFileError> {
+    let text = decode(path, bytes)?;
+    let sheet = sheet(path, &text, file.form)?;
+    let mut found: [Option<FoundColumn>; 5] = Default::default();
+    for ((column, choice), place) in CurveColumn::ALL.iter().zip(&file.columns).zip(&mut found) {
+        *place = find(path, &sheet, *column, choice)?;
+    }
+    let [time, temperature, mass, rate, run] = found;
+    let Some(time) = time else {
+        return Err(no_column(path, &sheet, CurveColumn::Time));
+    };
+    if temperature.is_none() && file.rules.needs_temperature {
+        return Err(no_column(path, &sheet, CurveColumn::Temperature));
+    }
+    if mass.is_none() && rate.is_none() {
+        return Err(no_column(path, &sheet, CurveColumn::Mass));
+    }
+    let columns = Columns {
+        time,
+        temperature,
+        mass,
+        rate,
+    };
+    let groups = groups(&sheet, run.as_ref());
+    let runs = groups
+        .into_iter()
+        .map(|(label, rows)| columns.run(path, &sheet, label, &rows, &file.rules));
+    runs.collect()
+}
+
+fn no_column(path: &Path, sheet: &Sheet, column: CurveColumn) -> CurveFileError {
+    let key = column.key();
+    let names: Vec<String> = sheet
+        .headings
+        .iter()
+        .map(|name| format!("\"{name}\""))
+        .collect();
+    let fact = format!(
+        "no column was recognised as the {key} among {}",
+        names.join(", ")
+    );
+    let rate = match column {
+        CurveColumn::Temperature => ", or state `heating_rate`",
+        _ => "",
+    };
+    let help =
+        format!("name it as `columns.{key}` of the target, by its heading or its number{rate}");
+    CurveFileError::new(path, sheet.heading_line, fact, help)
+}
+
+/// Rows by the value of the column of runs, in the order of the file.
+fn groups(sheet: &Sheet, run: Option<&FoundColumn>) -> Vec<(String, Vec<usize>)> {
+    let Some(run) = run else {
+        return vec![(String::new(), (0..sheet.rows.len()).collect())];
+    };
+    let mut all: Vec<(String, Vec<usize>)> = Vec::new();
+    for (k, row) in sheet.rows.iter().enumerate() {
+        let label = row[run.place].to_string();
+        match all.iter_mut().find(|(known, _)| *known == label) {
+            Some((_, rows)) => rows.push(k),
+            None => all.push((label, vec![k])),
+        }
+    }
+    all
+}
+
+struct Columns {
+    time: FoundColumn,
+    temperature: Option<FoundColumn>,
+    mass: Option<FoundColumn>,
+    rate: Option<FoundColumn>,
+}
+
+impl Columns {
+    fn run(
+        &self,
+        path: &Path,
+        sheet: &Sheet,
+        label: String,
+        rows: &[usize],
+        rules: &CurveRules,
+    ) -> Result<MeasuredRun, CurveFileError> {
+        let of = match label.is_empty() {
+            true => String::new(),
+            false => format!(" of run {label}"),
+        };
+        let wrong = |k: usize, fact: String, help: &str| {
+            Err(CurveFileError::new(
+                path,
+                Some(sheet.lines[rows[k]]),
+                fact + &of,
+                help,
+            ))
+        };
+        if rows.len() < LEAST_ROWS {
+            let fact = format!("{} rows are no curve", rows.len());
+            return wrong(0, fact, "export the whole curve, ten rows or more");
+        }
+        let column = |found: &FoundColumn| -> Vec<f64> {
+            let value = |&k: &usize| sheet.rows[k][found.place] * found.factor + found.offset;
+            rows.iter().map(value).collect()
+        };
+        let optional =
+            |found: &Option<FoundColumn>| found.as_ref().map(&column).unwrap_or_default();
+        let time = column(&self.time);
+        let finite =
+            |found: &FoundColumn| column(found).iter().position(|value| !value.is_finite());
+        let others = [&self.temperature, &self.mass, &self.rate]
+            .into_iter()
+            .flatten();
+        if let Some(k) = others.chain([&self.time]).find_map(finite) {
+            return wrong(
+                k,
+                "a number is too large for any unit".into(),
+                "correct the row",
+            );
+        }
+        let written = |k: usize, found: &FoundColumn| sheet.rows[rows[k]][found.place];
+        if let Some(k) = (1..time.len()).find(|&k| time[k] <= time[k - 1]) {
+            let (before, after) = (written(k - 1, &self.time), written(k, &self.time));
+            let unit = &self.time.unit;
+            let (fact, help) = match time[k] == time[k - 1] {
+                true => (
+                    format!("the time {after} {unit} stands there twice"),
+                    "remove one of the rows",
+                ),
+                false => (
+                    format!("the time goes back from {before} to {after} {unit}"),
+                    "give each run a file of its own, or a column that tells runs apart as `columns.run`",
+                ),
+            };
+            return wrong(k, fact, help);
+        }
+        let temperature = optional(&self.temperature);
+        if let Some(found) = &self.temperature
+            && let Some(k) = temperature
+                .iter()
+                .position(|&t| !(1.0..4000.0).contains(&t))
+        {
+            let fact = format!(
+                "the temperature {} {} is none",
+                written(k, found),
+                found.unit
+            );
+            return wrong(k, fact, "correct the row, or the unit of the temperature");
+        }
+        let (mut mass, mut loss_rate) = (optional(&self.mass), optional(&self.rate));
+        let mut initial = rules.initial_mass;
+        if let Some(found) = &self.mass {
+            let weighed = CurveColumn::Mass.is_weighed(&found.unit);
+            let start = match (weighed, rules.initial_mass) {
+                (true, Some(stated)) => stated,
+                // The noise of a few values averages out: an error of this one would shift the whole curve.
+                (true, None) => {
+                    let few = (mass.len() / 50).max(1);
+                    mass[..few].iter().sum::<f64>() / few as f64
+                }
+                // Shares are of the mass at the start; files whose first value is not 100 % have lost something before.
+                (false, _) => 1.0,
+            };
+            if !(start > 0.0 && mass[0] > 0.0) {
+                let fact = format!(
+                    "the mass is {} {} at the start",
+                    written(0, found),
+                    found.unit
+                );
+                return wrong(0, fact, "export the mass of the sample, not its change");
+            }
+            if !weighed && !(0.2..=1.5).contains(&mass[0]) {
+                let fact = format!(
+                    "the mass is {} {} at the start, where 100 % are meant",
+                    written(0, found),
+                    found.unit
+                );
+                return wrong(
+                    0,
+                    fact,
+                    "export the mass relative to that at the start, or state the unit as `units.mass`",
+                );
+            }
+            if weighed && initial.is_none() {
+                initial = Some(start);
+            }
+            mass.iter_mut().for_each(|m| *m /= start);
+            if let Err((k, fact, help)) = falls(&mass, rules.largest_rise) {
+                return wrong(k, fact, &help);
+            }
+        }
+        if let Some(found) = &self.rate {
+            if CurveColumn::LossRate.is_weighed(&found.unit) {
+                let Some(start) = initial else {
+                    let fact = format!(
+                        "the rate is in {}, but the mass at the start is not known",
+                        found.unit
+                    );
+                    return wrong(0, fact, "state `sample_mass` of the target");
+                };
+                loss_rate.iter_mut().for_each(|r| *r /= start);
+            }
+            // Instruments write the derivative of the mass, which is negative, or its size.
+            let sum: f64 = loss_rate.iter().sum();
+            loss_rate.iter_mut().for_each(|r| *r *= sum.signum());
+        }
+        let start = time[0];
+        Ok(MeasuredRun {
+            label,
+            time: time.iter().map(|t| t - start).collect(),
+            temperature,
+            mass,
+            loss_rate,
+            initial_mass: initial,
+            lines: rows.iter().map(|&k| sheet.lines[k]).collect(),
+        })
+    }
+}
+
+/// Refuses a mass that does not fall, or that rises by more than a share of its fall.
+fn falls(mass: &[f64], largest: f64) -> Result<(), (usize, String, String)> {
+    let fall = mass[0] - mass.iter().copied().fold(f64::INFINITY, f64::min);
+    let (mut low, mut worst) = (mass[0], (0, 0.0));
+    for (k, &m) in mass.iter().enumerate() {
+        low = low.min(m);
+        if m - low > worst.1 {
+            worst = (k, m - low);
+        }
+    }
+    let percent = |share: f64| format!("{:.3}", 100.0 * share);
+    if fall < LEAST_FALL {
+        let fact = format!("the mass falls by {} % in all", percent(fall));
+        let help = "a loss of mass is tuned: name the right column as `columns.mass`".into();
+        return Err((mass.len() - 1, fact, help));
+    }
+    if worst.1 > largest * fall {
+        let fact = format!(
+            "the mass rises by {} % of that at the start, {:.1} % of its whole fall",
+            percent(worst.1),
+            100.0 * worst.1 / fall
+        );
+        let help = format!(
+            "subtract the blank run (buoyancy), cut the row, or allow it: largest_rise = \"{:.0} %\"",
+            (100.0 * worst.1 / fall).ceil()
+        );
+        return Err((worst.0, fact, help));
+    }
+    Ok(())
+}

@@ -1,0 +1,302 @@
+//! Plants by the command: what is refused and how it is told, both methods of recycles against each other, a run that is
+//! killed and goes on to the same bits, steady states against long runs, results and their page.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use calcine::case::plant::read_plant;
+use calcine::plant::PlantSummary;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn files(folder: &str) -> Vec<PathBuf> {
+    let entries = fs::read_dir(root().join(folder)).unwrap();
+    let mut found: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    found.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
+    found.sort();
+    found
+}
+
+fn calcine(words: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_calcine"));
+    command.args(words).output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    let texts = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
+    texts.concat()
+}
+
+/// Runs a case into a folder with these settings; what it said.
+fn run(case: &Path, out: &Path, settings: &[&str], words: &[&str]) -> Output {
+    let mut all = vec!["run", case.to_str().unwrap(), "--quiet"];
+    for setting in settings {
+        all.extend(["--set", setting]);
+    }
+    all.extend(["--out", out.to_str().unwrap()]);
+    all.extend(words);
+    calcine(&all)
+}
+
+/// (line, message) of each `#^`, which stands under its line or under another `#^`.
+fn expected(text: &str) -> Vec<(usize, String)> {
+    let (mut line, mut found) = (0, Vec::new());
+    for (number, content) in (1..).zip(text.lines()) {
+        match content.trim_start().strip_prefix("#^ ") {
+            Some(message) => found.push((line, message.to_owned())),
+            None => line = number,
+        }
+    }
+    found
+}
+
+#[test]
+fn every_bad_plant_gives_its_messages_all_at_once_each_with_a_remedy() {
+    let all = files("tests/inputs/plants/bad");
+    assert!(all.len() >= 40, "{} bad plants", all.len());
+    for path in all {
+        let mut wanted = expected(&fs::read_to_string(&path).unwrap());
+        assert!(!wanted.is_empty(), "{} holds no message", path.display());
+        let Err(errors) = read_plant(&path, &[]) else {
+            panic!("{} was read without an error", path.display());
+        };
+        let problems = errors.problems().iter();
+        let found = problems.map(|one| (one.line, one.message.clone()));
+        let mut found: Vec<(usize, String)> = found.collect();
+        found.sort();
+        wanted.sort();
+        assert_eq!(found, wanted, "{}", path.display());
+        for problem in errors.problems() {
+            let message = &problem.message;
+            assert!(!problem.help.is_empty(), "{}: {message}", path.display());
+        }
+    }
+}
+
+/// Every good plant runs with all its balances closed, writes its files, and has a report.
+#[test]
+fn every_good_plant_closes_and_leaves_its_results() {
+    let folder = tempfile::tempdir().unwrap();
+    for case in files("tests/inputs/plants/good") {
+        let name = case.file_stem().unwrap();
+        let out = folder.path().join(name);
+        let checked = calcine(&["check", case.to_str().unwrap()]);
+        assert!(checked.status.success(), "{}", said(&checked));
+        let output = run(&case, &out, &[], &[]);
+        assert!(output.status.success(), "{}", said(&output));
+        let summary = PlantSummary::read(&out).unwrap();
+        let ledger = &summary.ledger;
+        assert!(ledger.loop_closure <= 1e-12, "{}", ledger.loop_closure);
+        for line in &ledger.lines {
+            assert!(line.relative_error < 1e-10, "{name:?}: {line:?}");
+        }
+        for file in [
+            "series.csv",
+            "distributions.csv",
+            "streams.csv",
+            "report.html",
+            "status.json",
+        ] {
+            let text = fs::read_to_string(out.join(file)).unwrap();
+            assert!(text.len() > 50, "{name:?}: {file}");
+        }
+        let page = fs::read_to_string(out.join("report.html")).unwrap();
+        assert!(page.contains("aria-label=\"Flowsheet\""));
+        let read = read_plant(&case, &[]).unwrap();
+        for stream in read.plant.streams() {
+            assert!(page.contains(&format!(">{stream}")), "{name:?}: {stream}");
+        }
+    }
+}
+
+/// The shipped plants run for a little while, whatever their bands say of it.
+#[test]
+fn the_shipped_plants_run_and_close() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, settings) in [
+        (
+            "granulation-plant",
+            ["time.end=40 s", "sizes.uniform.classes=100"],
+        ),
+        (
+            "granulation-oscillation",
+            ["time.end=40 s", "continuation.values=[\"4\", \"6\"]"],
+        ),
+    ] {
+        let case = root().join(format!("cases/{name}.toml"));
+        let out = folder.path().join(name);
+        let output = run(&case, &out, &settings, &[]);
+        let code = output.status.code();
+        assert!([Some(0), Some(5)].contains(&code), "{}", said(&output));
+        let summary = PlantSummary::read(&out).unwrap();
+        assert!(summary.ledger.largest_relative_error < 1e-12);
+        assert!(summary.ledger.loop_closure <= 1e-12);
+    }
+}
+
+#[test]
+fn a_run_that_was_stopped_or_killed_goes_on_to_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = root().join("cases/granulation-plant.toml");
+    let settings = [
+        "time.end=400 s",
+        "sizes.uniform.classes=100",
+        "time.checkpoint={ every = \"20 s\" }",
+    ];
+    let [whole, stopped, killed] =
+        ["whole", "stopped", "killed"].map(|name| folder.path().join(name));
+    run(&case, &whole, &settings, &[]);
+    let output = run(&case, &stopped, &settings, &["--stop-after", "0.02"]);
+    assert_eq!(output.status.code(), Some(75), "{}", said(&output));
+    let mut child = Command::new(env!("CARGO_BIN_EXE_calcine"));
+    child.args(["run", case.to_str().unwrap(), "--quiet", "--out"]);
+    child.arg(&killed);
+    for setting in settings {
+        child.args(["--set", setting]);
+    }
+    let mut child = child.stdout(std::process::Stdio::null()).spawn().unwrap();
+    // Killed as soon as there is a checkpoint; where the run was faster, it is complete.
+    let saved = killed.join("checkpoint/plant.json");
+    while !saved.exists() && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    let _ = child.kill();
+    child.wait().unwrap();
+    for out in [&stopped, &killed] {
+        let output = calcine(&["run", "--resume", out.to_str().unwrap(), "--quiet"]);
+        let code = output.status.code();
+        assert!([Some(0), Some(5)].contains(&code), "{}", said(&output));
+        for file in ["series.csv", "distributions.csv", "streams.csv"] {
+            let read = |folder: &Path| fs::read(folder.join(file)).unwrap();
+            assert!(read(out) == read(&whole), "{}: {file}", out.display());
+        }
+        let [one, other] = [out, &whole].map(|folder| PlantSummary::read(folder).unwrap());
+        assert_eq!(one.ledger, other.ledger);
+        assert_eq!(one.quantities, other.quantities);
+    }
+}
+
+#[test]
+fn both_methods_of_recycles_agree_within_a_millionth() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = root().join("cases/granulation-plant.toml");
+    let out = folder.path().join("compared");
+    let words = [
+        "compare",
+        case.to_str().unwrap(),
+        "--quiet",
+        "--set",
+        "time.end=100 s",
+        "--set",
+        "sizes.uniform.classes=60",
+        "--set",
+        "method.tolerance=1e-8",
+        "--out",
+        out.to_str().unwrap(),
+    ];
+    let output = calcine(&words);
+    let text = said(&output);
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    // All seven quantities have bands of a millionth.
+    assert_eq!(text.matches("agrees within 1.0").count(), 7, "{text}");
+    let both = ["monolithic", "waveform"].map(|name| out.join(name));
+    let results = format!("{},{}", both[0].display(), both[1].display());
+    let words = ["compare", case.to_str().unwrap(), "--results", &results];
+    let again = calcine(&words);
+    assert!(again.status.success(), "{}", said(&again));
+}
+
+/// A long run of a screen that is flat enough ends in the steady state that Newton's iteration finds, whose dominant mode
+/// decays as published; and `--from` begins there.
+#[test]
+fn a_long_run_ends_in_the_steady_state_and_another_begins_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = root().join("cases/granulation-oscillation.toml");
+    let text = fs::read_to_string(&case).unwrap();
+    let (head, rest) = text.split_once("[continuation]").unwrap();
+    let quantities = rest.split_once("[[quantities]]").unwrap().1;
+    let _ = quantities;
+    let own = folder.path().join("flat.toml");
+    let steady = "[steady]\n\n[[quantities]]\nname = \"decay\"\nmeasure = { steady = \"growth_rate\" }\n\
+                  expect = { value = \"-1.98e-3 1/s\", within = \"2 %\" }\n\n[[quantities]]\nname = \"distance\"\n\
+                  measure = { steady = \"distance\" }\nexpect = { value = 0, within = \"1e-8\" }\n";
+    fs::write(&own, format!("{head}{steady}")).unwrap();
+    let settings = [
+        "units.coarse screen.screen.sharpness=8",
+        "units.fine screen.screen.sharpness=8",
+        "method.tolerance=1e-7",
+        "time.end=14000 s",
+        "output.every=1000 s",
+        "output.distributions=7000 s",
+    ];
+    let out = folder.path().join("out");
+    let output = run(&own, &out, &settings, &[]);
+    println!("{}", said(&output));
+    assert!(output.status.success(), "{}", said(&output));
+    let next = folder.path().join("next");
+    let from = ["--from", out.to_str().unwrap()];
+    let mut short = settings;
+    short[3] = "time.end=10 s";
+    let output = run(&own, &next, &short, &from);
+    assert!(output.status.success(), "{}", said(&output));
+    let steady = PlantSummary::read(&next).unwrap().steady.unwrap();
+    assert!(steady.distance < 1e-8, "{}", steady.distance);
+}
+
+/// What shows only as the plant is followed: a mill that gets nothing, a recycle that gains, a bunker that runs empty.
+#[test]
+fn what_fails_in_time_is_told_with_its_place_and_a_remedy() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string(root().join("tests/inputs/plants/good/recycle.toml")).unwrap();
+    for (name, from, to, told) in [(
+        "idle",
+        "mill = { law = \"constant\", mean = \"1 mm\", deviation = \"0.1 mm\" }",
+        "mill = { law = \"bond-normal\", work_index = \"10 kWh/t\", power = \"1 kW\", deviation = \"0.1 mm\" }",
+        "no solids flow into mill \"mill\"",
+    )] {
+        assert!(text.contains(from));
+        // Nothing at all is coarse.
+        let changed = text.replace(from, to).replace(
+            "law = \"plitt\", cut = \"2 mm\", sharpness = 8",
+            "law = \"probability\", mean = \"100 mm\", deviation = \"1 mm\"",
+        );
+        let case = folder.path().join(format!("{name}.toml"));
+        fs::write(&case, changed).unwrap();
+        let output = run(&case, &folder.path().join(name), &[], &[]);
+        assert_eq!(output.status.code(), Some(3), "{}", said(&output));
+        assert!(said(&output).contains(told), "{}", said(&output));
+    }
+}
+
+#[test]
+fn a_plant_is_swept_and_made_anew_and_takes_no_solver_of_beds() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = root().join("tests/inputs/plants/good/recycle.toml");
+    let case = case.to_str().unwrap();
+    let out = folder.path().join("swept");
+    let words = [
+        "sweep",
+        case,
+        "--quiet",
+        "--set",
+        "units.screen.screen.cut=2 mm,2.1 mm",
+        "--out",
+        out.to_str().unwrap(),
+    ];
+    let output = calcine(&words);
+    assert!(output.status.success(), "{}", said(&output));
+    assert!(said(&output).contains("| 2.1 mm |"), "{}", said(&output));
+    let refused = calcine(&["run", case, "--gas", "openfoam"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(said(&refused).contains("`--gas` goes with beds"));
+    let mut new = Command::new(env!("CARGO_BIN_EXE_calcine"));
+    new.args(["new", "mine", "--like", "granulation-plant"]);
+    let output = new.current_dir(folder.path()).output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    let made = folder.path().join("mine/mine.toml");
+    let checked = calcine(&["check", made.to_str().unwrap()]);
+    assert!(checked.status.success(), "{}", said(&checked));
+}

@@ -1,0 +1,447 @@
+//! Tunings: what is refused and how, what is recognised, and that they go on with the same bits.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use calcine::case::{parse_tuning, read_tuning};
+use serde_json::Value;
+
+fn cases() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("cases")
+}
+
+/// A curve that falls from 100 to 60 % between 600 and 800 K.
+fn curve(head: &str, row: impl Fn(f64, f64, f64) -> String) -> String {
+    let mut text = format!("{head}\n");
+    for k in 0..60 {
+        let (time, temperature) = (0.5 * f64::from(k), 300.0 + 10.0 * f64::from(k));
+        let mass = 100.0 - 40.0 / (1.0 + (-(f64::from(k) - 35.0) / 3.0).exp());
+        text += &row(time, temperature, mass);
+        text.push('\n');
+    }
+    text
+}
+
+fn plain() -> String {
+    curve("Time (min),Temp (degC),Mass (%)", |t, temp, m| {
+        format!("{t},{temp},{m:.4}")
+    })
+}
+
+const CASE: &str = r#"
+format = 1
+kind = "tuning"
+title = "test"
+[model]
+type = "kinetic"
+[[reactions]]
+laws = ["F1"]
+[parameters.pre_exponential]
+low = "1e2 1/s"
+high = "1e20 1/s"
+[parameters.activation_energy]
+low = "50 kJ/mol"
+high = "400 kJ/mol"
+[[targets]]
+file = "a.csv"
+"#;
+
+/// All that is said of a case with a curve beside it; empty where it is taken.
+fn told(case: &str, csv: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.csv"), csv).unwrap();
+    match parse_tuning(&folder.path().join("case.toml"), case, &[]) {
+        Ok(_) => String::new(),
+        Err(errors) => errors.to_string(),
+    }
+}
+
+#[test]
+fn bad_curves_are_refused_with_line_fact_and_remedy() {
+    let replaced = |from: &str, to: &str| plain().replacen(from, to, 1);
+    let line = |k: usize| plain().lines().nth(k - 1).unwrap().to_owned();
+    let comma = |text: &str| text.replace('.', ",");
+    let cases: Vec<(String, [&str; 3])> = vec![
+        (String::new(), ["a.csv", "empty", "export the curve again"]),
+        (
+            "a b c\nd e f\n".into(),
+            ["line 2", "no table of numbers", "`delimiter`"],
+        ),
+        (
+            plain().replace("Mass (%)", "Mass"),
+            ["line 1", "has no unit", "`units.mass`"],
+        ),
+        (
+            plain().replace("Mass (%)", "Mass (stone)"),
+            ["line 1", "\"stone\"", "`units.mass`"],
+        ),
+        (
+            plain().replace("Mass", "Signal"),
+            [
+                "line 1",
+                "no column was recognised as the mass",
+                "`columns.mass`",
+            ],
+        ),
+        (
+            plain().replace("Time", "Clock"),
+            ["line 1", "recognised as the time", "`columns.time`"],
+        ),
+        (
+            plain().replace("Temp", "Heat"),
+            ["line 1", "recognised as the temperature", "heating_rate"],
+        ),
+        (
+            plain().replace("Temp (degC)", "Mass 2 (%)"),
+            [
+                "line 1",
+                "several columns may be the mass",
+                "`columns.mass`",
+            ],
+        ),
+        (
+            replaced("\n10,", "\n9,"),
+            [
+                "line 22",
+                "the time goes back from 9.5 to 9 min",
+                "`columns.run`",
+            ],
+        ),
+        (
+            replaced("\n10,", "\n9.5,"),
+            ["line 22", "stands there twice", "remove one"],
+        ),
+        (comma(&plain()), ["a.csv", "decimal sign", "semicolons"]),
+        (
+            replaced(&line(30), "14,oops,80"),
+            ["line 30", "\"oops\" is not a number", "remove the line"],
+        ),
+        (
+            replaced(&line(30), "14,440"),
+            ["line 30", "2 fields where 3 columns", "one table"],
+        ),
+        (
+            replaced(&line(50), "24,780,90"),
+            ["line 50", "the mass rises", "largest_rise"],
+        ),
+        (
+            replaced(&line(2), "0,300,0"),
+            ["line 2", "the mass is 0 % at the start", "not its change"],
+        ),
+        (
+            replaced(&line(2), "0,300,5"),
+            ["line 2", "where 100 % are meant", "`units.mass`"],
+        ),
+        (
+            replaced(&line(40), "19,-300,62"),
+            ["line 40", "the temperature -300", "unit of the temperature"],
+        ),
+        (
+            plain().lines().take(8).collect::<Vec<_>>().join("\n"),
+            ["line 2", "7 rows are no curve", "ten rows"],
+        ),
+        (
+            curve("Time (min),Temp (degC),Mass (%)", |t, temp, _| {
+                format!("{t},{temp},100")
+            }),
+            ["a.csv", "the mass falls by", "`columns.mass`"],
+        ),
+        ("PK\u{3}\u{4}xlsx".into(), ["a.csv", "no text", "CSV"]),
+        (
+            curve("Time (min) Temp (degC) Mass (%)", |t, temp, m| {
+                comma(&format!("{t:.1} {temp:.1} {m:.1}"))
+            }),
+            [
+                "a.csv",
+                "no column was recognised as the time",
+                "`columns.time`",
+            ],
+        ),
+    ];
+    for (csv, words) in cases {
+        let told = told(CASE, &csv);
+        for word in words {
+            assert!(told.contains(word), "{word}: {told}\n{csv:.120}");
+        }
+    }
+}
+
+#[test]
+fn bad_tuning_files_are_refused_at_their_line() {
+    let cases: &[(&str, &str, &[&str])] = &[
+        (
+            "low = \"50 kJ/mol\"",
+            "low = \"500 kJ/mol\"",
+            &["low", "not below `high`", "exchange"],
+        ),
+        (
+            "low = \"1e2 1/s\"",
+            "low = \"0 1/s\"",
+            &["logarithmic scale", "linear"],
+        ),
+        ("low = \"50 kJ/mol\"", "low = 50", &["needs a unit"]),
+        (
+            "low = \"50 kJ/mol\"",
+            "low = \"50 kJ\"",
+            &["a molar energy"],
+        ),
+        ("low = \"50 kJ/mol\"", "", &["low` is missing"]),
+        (
+            "[parameters.activation_energy]",
+            "[parameters.energy]",
+            &["not a parameter of this model", "activation_energy"],
+        ),
+        ("\"F1\"", "\"R4\"", &["\"R4\", which is not known", "R2"]),
+        ("type = \"kinetic\"", "type = \"lump\"", &["type", "lumped"]),
+        (
+            "type = \"kinetic\"",
+            "type = \"lumped\"",
+            &["sample_mass", "missing"],
+        ),
+        (
+            "file = \"a.csv\"",
+            "file = \"b.csv\"",
+            &["cannot be read", "relative to the case file"],
+        ),
+        (
+            "file = \"a.csv\"",
+            "file = \"a.csv\"\nconversion = [0.9, 0.1]",
+            &["two numbers from 0 to 1"],
+        ),
+        (
+            "file = \"a.csv\"",
+            "file = \"a.csv\"\ncompare = [\"temperature\"]",
+            &["takes the temperature of the file"],
+        ),
+        (
+            "file = \"a.csv\"",
+            "file = \"a.csv\"\ncompare = [\"loss_rate\"]",
+            &["the file has no column", "`columns`"],
+        ),
+        (
+            "file = \"a.csv\"",
+            "file = \"a.csv\"\ncolumns = { mass = \"Weight\" }",
+            &["no column is called \"Weight\"", "its columns are"],
+        ),
+        (
+            "file = \"a.csv\"",
+            "file = \"a.csv\"\nmass = \"5 mg\"",
+            &["not a key of a case"],
+        ),
+        (
+            "file = \"a.csv\"",
+            "file = \"a.csv\"\n[method]\nchoose = \"speed\"",
+            &["which no target compares", "mass"],
+        ),
+        (
+            "file = \"a.csv\"",
+            "file = \"a.csv\"\n[intervals]\nlevel = 1.2",
+            &["level", "0.5"],
+        ),
+        (
+            "laws = [\"F1\"]",
+            "laws = [\"F1\"]\norder = 2",
+            &["has no effect with these laws"],
+        ),
+        (
+            "laws = [\"F1\"]",
+            "laws = [\"F1\"]\nreactant = 0.6\nname = \"a\"\nmass_loss = 0.4\n[[reactions]]\nname = \"a\"\nreactant = 0.6\nmass_loss = 0.4",
+            &["1.2 of the sample", "second time"],
+        ),
+    ];
+    assert_eq!(told(CASE, &plain()), "");
+    for (from, to, words) in cases {
+        assert!(CASE.contains(from), "{from}");
+        let told = told(&CASE.replacen(from, to, 1), &plain());
+        for word in *words {
+            assert!(told.contains(word), "{to}: {word}: {told}");
+        }
+    }
+}
+
+#[test]
+fn files_of_other_instruments_give_the_same_curve() {
+    let comma = |text: String| text.replace('.', ",");
+    let read = |csv: &str, keys: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("a.csv"), csv).unwrap();
+        let case = format!("{CASE}{keys}");
+        let case = parse_tuning(&folder.path().join("case.toml"), &case, &[]).unwrap();
+        let target = &case.targets[0];
+        (
+            target.run.times.clone(),
+            target.values[0].1.clone(),
+            target.run.programme.at(600.0).0,
+        )
+    };
+    let expected = read(&plain(), "");
+    let others = [
+        (
+            curve("##Temp./°C;Time/min;Mass/%", |t, temp, m| {
+                comma(format!("{temp:.1};{t:.1};{m:.4}"))
+            }),
+            "",
+        ),
+        (
+            curve("time\tT\tweight\nh\tK\tmg", |t, temp, m| {
+                format!("{}\t{}\t{:.6}", t / 60.0, temp + 273.15, 0.05 * m)
+            }),
+            "columns = { temperature = \"T\" }",
+        ),
+        (
+            curve("Instrument X\nrun of today\n\nt_s,Ts_C,TG", |t, temp, m| {
+                format!("{},{temp},{m:.4}", 60.0 * t)
+            }),
+            "units = { mass = \"%\" }",
+        ),
+    ];
+    for (csv, keys) in others {
+        let found = read(&csv, keys);
+        let near = |a: &[f64], b: &[f64], within: f64| {
+            a.iter().zip(b).all(|(a, b)| (a - b).abs() < within)
+        };
+        assert!(near(&found.0, &expected.0, 1e-6), "{csv:.60}");
+        assert!(near(&found.1, &expected.1, 2e-6), "{csv:.60}");
+        assert!((found.2 - expected.2).abs() < 1e-6, "{csv:.60}");
+    }
+}
+
+fn tune(words: &[&str]) -> (i32, String) {
+    let out = Command::new(env!("CARGO_BIN_EXE_calcine"))
+        .arg("tune")
+        .args(words)
+        .output()
+        .unwrap();
+    let text =
+        String::from_utf8_lossy(&out.stdout).into_owned() + &String::from_utf8_lossy(&out.stderr);
+    (out.status.code().unwrap_or(-1), text)
+}
+
+fn summary(folder: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn the_shipped_twin_gives_back_its_numbers_and_goes_on_with_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = cases().join("tg-tuning.toml");
+    let case = case.to_str().unwrap();
+    let (one, two) = (folder.path().join("one"), folder.path().join("two"));
+    let (first, second) = (one.to_str().unwrap(), two.to_str().unwrap());
+    let short = "method.generations=40";
+    let (code, text) = tune(&[case, "--set", short, "--out", first]);
+    assert_eq!(code, 0, "{text}");
+    let found = summary(&one);
+    let parameters = &found["tuning"]["parameters"];
+    let value = |name: &str| parameters[name]["value"].as_f64().unwrap();
+    assert!(
+        (value("contact_transfer") / 73.5 - 1.0).abs() < 0.01,
+        "{text}"
+    );
+    assert!(
+        (value("pre_exponential") / 1.63e15 - 1.0).abs() < 0.005,
+        "{text}"
+    );
+    assert_eq!(parameters["pre_exponential"]["unit"], "1/s");
+    assert!(found["tuning"]["objectives"]["mass"]["value"].is_f64());
+    assert!(
+        found["warnings"][0]
+            .as_str()
+            .unwrap()
+            .contains("correlated")
+    );
+    // As if it had been stopped in the middle of a generation: its state, and a part of its evaluations.
+    fs::create_dir(&two).unwrap();
+    let stopped = fs::read_to_string(one.join("summary.json")).unwrap();
+    let mut stopped: Value = serde_json::from_str(&stopped).unwrap();
+    stopped["verdict"] = "stopped".into();
+    fs::write(two.join("summary.json"), stopped.to_string()).unwrap();
+    fs::copy(one.join("command.json"), two.join("command.json")).unwrap();
+    let lines = fs::read_to_string(one.join("evaluations.csv")).unwrap();
+    let part: Vec<&str> = lines.lines().take(400).collect();
+    fs::write(two.join("evaluations.csv"), part.join("\n")).unwrap();
+    let (code, text) = tune(&["--resume", second]);
+    assert_eq!(code, 0, "{text}");
+    for file in ["front.csv", "curves.csv", "profiles.csv", "evaluations.csv"] {
+        let same = fs::read(one.join(file)).unwrap() == fs::read(two.join(file)).unwrap();
+        assert!(same, "{file}");
+    }
+    assert_eq!(summary(&two)["tuning"]["parameters"], *parameters);
+    let (code, text) = tune(&[case, "--set", short, "--out", first]);
+    assert!(
+        code == 2 && text.contains("holds the results of another tuning"),
+        "{text}"
+    );
+    let (code, text) = tune(&[case, "--resume", "--out", first]);
+    assert!(code == 2 && text.contains("resume with the file"), "{text}");
+}
+
+#[test]
+fn the_shipped_laws_are_told_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let case = cases().join("tg-laws.toml");
+    let words = [
+        case.to_str().unwrap(),
+        "--out",
+        out.to_str().unwrap(),
+        "--set",
+        "intervals.bootstrap=20",
+    ];
+    let (code, text) = tune(&words);
+    assert_eq!(code, 0, "{text}");
+    let found = summary(&out);
+    assert_eq!(found["tuning"]["law"], "R2", "{text}");
+    let energy = &found["tuning"]["parameters"]["activation_energy"];
+    let of = |key: &str| energy[key].as_f64().unwrap();
+    assert!((of("value") / 235.78e3 - 1.0).abs() < 0.02, "{text}");
+    assert!(of("low") < of("value") && of("value") < of("high"));
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(
+        page.contains("Kissinger") && !page.contains("http"),
+        "one self-contained page"
+    );
+    // One of the rates alone, by first order.
+    let one = folder.path().join("one");
+    let csv = fs::read_to_string(cases().join("tg-laws.csv")).unwrap();
+    let rows = csv
+        .lines()
+        .filter(|line| line.starts_with("6;") || line.starts_with("rate"));
+    fs::write(
+        folder.path().join("tg-laws.csv"),
+        rows.collect::<Vec<_>>().join("\n"),
+    )
+    .unwrap();
+    let text = fs::read_to_string(&case).unwrap();
+    let text = text.replace("[\"all\"]", "[\"F1\"]");
+    let text = text.replace("[parameters.order]\nlow = 0\nhigh = 4\n", "");
+    let text = text.replace("[parameters.exponent]\nlow = 0.5\nhigh = 4\n", "");
+    let text = text.replace("[parameters.structure]\nlow = 0\nhigh = 100\n", "");
+    let single = folder.path().join("single.toml");
+    fs::write(&single, text).unwrap();
+    let (code, text) = tune(&[
+        single.to_str().unwrap(),
+        "--out",
+        one.to_str().unwrap(),
+        "--set",
+        "intervals.bootstrap=0",
+    ]);
+    assert_eq!(code, 0, "{text}");
+    assert!(
+        text.contains("all targets have one heating rate, 6 K/min"),
+        "{text}"
+    );
+    let energy = summary(&one)["tuning"]["parameters"]["activation_energy"]["value"]
+        .as_f64()
+        .unwrap();
+    assert!(energy / 235.78e3 > 1.2, "{energy}");
+}
+
+#[test]
+fn shipped_tunings_are_in_order() {
+    for name in ["tg-tuning.toml", "tg-laws.toml"] {
+        let case = read_tuning(&cases().join(name), &[]).unwrap();
+        assert!(!case.targets.is_empty() && case.hash.len() == 64, "{name}");
+    }
+}
