@@ -92,6 +92,7 @@ impl AssemblyError {
             Self::Run(RunError::Smoother(SmootherError::DiffusionLength { .. })) => {
                 Some("coupling.smoother".into())
             }
+            Self::Parcels(_) => Some("particles".into()),
             Self::TooLarge(_) | Self::Native(_) | Self::Part(_) | Self::Run(_) => None,
         }
     }

@@ -39,7 +39,6 @@ dimensions! {
     NONE = [0, 0, 0, 0, 0], "a plain number", "", "0.6";
     LENGTH = [1, 0, 0, 0, 0], "a length", "m", "2 mm";
     AREA = [2, 0, 0, 0, 0], "an area", "m^2", "20 cm^2";
-    PERMEABILITY = [2, 0, 0, 0, 0], "a permeability", "m^2", "1e-15 m^2";
     TIME = [0, 0, 1, 0, 0], "a time", "s", "10 min";
     MASS = [0, 1, 0, 0, 0], "a mass", "kg", "5 mg";
     TEMPERATURE = [0, 0, 0, 1, 0], "a temperature", "K", "300 K";
@@ -63,6 +62,11 @@ dimensions! {
     MOLAR_ENTROPY = [2, 1, -2, -1, -1], "a molar entropy", "J/mol/K", "57.6 J/mol/K";
     ENERGY_OF_MASS = [2, 0, -2, 0, 0], "an energy per mass", "m^2/s^2", "0.01 m^2/s^2";
     DIFFUSIVITY = [2, 0, -1, 0, 0], "a diffusivity", "m^2/s", "1e-5 m^2/s";
+}
+
+impl Dimension {
+    /// Of permeabilities, which are areas.
+    pub const PERMEABILITY: Self = Self::AREA;
 }
 
 impl fmt::Display for Dimension {
