@@ -41,6 +41,7 @@ pub mod supervisor;
 pub mod time;
 pub mod turbulence;
 pub mod view_factors;
+pub mod wall_motion;
 pub mod window_control;
 pub mod window_drag;
 

@@ -4,7 +4,7 @@
 use calcine_physics::Vec3;
 use calcine_physics::parcels::{CollisionTimes, HarrisCrighton};
 
-use crate::motion::WallMotion;
+use crate::wall_motion::WallMotion;
 
 /// Parcels: rows that stand for many particles, which meet walls one by one and each other by averages of the mesh
 /// (docs/theory.md, MPC-1).

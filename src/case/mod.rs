@@ -20,6 +20,7 @@ pub mod model;
 mod moving;
 mod overlap;
 pub mod packed;
+mod parcel_wall_error;
 pub mod parcels;
 mod parse;
 mod patch_cautions;

@@ -6,59 +6,11 @@ use calcine_coupler::parcels::{ParcelImpact, ParcelMotion, ParcelWall};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_native::particles::dem::{distance_to_shape, distance_to_triangle};
-use thiserror::Error;
 
 use super::contacts;
 use super::model::{Case, ContactSpec, ParcelSpec};
+use super::parcel_wall_error::ParcelWallError;
 use super::place_error::PlaceError;
-
-/// Walls that do not go with the mesh in which parcels move.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum ParcelWallError {
-    /// A patch at which no wall is.
-    #[error(
-        "no wall lies at patch `{patch}` of the mesh, and parcels rebound from its boundary; add [[walls]] with patches = [\"{patch}\"]"
-    )]
-    None {
-        /// Its name.
-        patch: String,
-    },
-    /// A patch at which several are.
-    #[error(
-        "walls `{one}` and `{other}` both lie at patch `{patch}`, and parcels rebound from a patch in one way; give the patch one \
-         wall, or divide it"
-    )]
-    Several {
-        /// Its name.
-        patch: String,
-        /// A wall.
-        one: String,
-        /// Another one.
-        other: String,
-    },
-    /// A contact that is not stated.
-    #[error(
-        "parcels of \"{material}\" meet wall `{wall}` of \"{other}\", but [[contacts]] has no restitution and friction of the two; add \
-         an entry with between = [\"{material}\", \"{other}\"]"
-    )]
-    Contact {
-        /// Material of the parcels.
-        material: String,
-        /// The wall.
-        wall: String,
-        /// Its material.
-        other: String,
-    },
-    /// A motion that moves the wall away from the mesh.
-    #[error(
-        "wall `{wall}` is `moved` or `oscillating`, and the mesh in which parcels move stays; walls of parcels turn or move along \
-         themselves"
-    )]
-    Moves {
-        /// The wall.
-        wall: String,
-    },
-}
 
 /// How the particles of a case move, on the motion clock.
 pub fn motion_of(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Result<Motion, PlaceError> {

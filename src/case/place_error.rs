@@ -99,7 +99,7 @@ pub enum PlaceError {
     Contacts(#[from] super::contacts::ContactsError),
     /// Walls that do not go with the mesh of parcels.
     #[error(transparent)]
-    ParcelWalls(#[from] super::parcels::ParcelWallError),
+    ParcelWalls(#[from] super::parcel_wall_error::ParcelWallError),
     /// No particle at all.
     #[error(
         "the case has no particles: {} place none; a run needs one particle at least", .names.join(", ")

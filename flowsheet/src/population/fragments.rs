@@ -3,8 +3,6 @@
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
-use super::power_fragments::POWER;
-
 /// Breakage of particles of volume v in m³.
 pub trait BreakageLaw: Send + Sync {
     /// Rate S at which a particle of volume v breaks, in 1/s.
@@ -42,7 +40,7 @@ impl BreakageLaw for RandomBinary {
 }
 
 /// Its entry in a case file.
-static RANDOM_BINARY: LawEntry<dyn BreakageLaw> = LawEntry {
+pub(super) static RANDOM_BINARY: LawEntry<dyn BreakageLaw> = LawEntry {
     name: "random-binary",
     summary: "Two fragments of any size, at a rate in proportion to volume.",
     source: "Ziff and McGrady, J. Phys. A 18 (1985) 3027, doi 10.1088/0305-4470/18/15/026",
@@ -58,6 +56,3 @@ static RANDOM_BINARY: LawEntry<dyn BreakageLaw> = LawEntry {
     tables: &[],
     make: |values| Box::new(RandomBinary { rate: values[0] }),
 };
-
-/// The laws of breakage that a case may choose. A new one is declared and listed here.
-pub static BREAKAGE_LAWS: &[&LawEntry<dyn BreakageLaw>] = &[&RANDOM_BINARY, &POWER];

@@ -2,6 +2,7 @@
 
 mod aggregation;
 mod breakage;
+mod breakage_laws;
 mod dyssol;
 mod fragments;
 mod growth;
@@ -11,8 +12,9 @@ mod power_fragments;
 
 pub use aggregation::Aggregation;
 pub use breakage::ParticleBreakage;
+pub use breakage_laws::BREAKAGE_LAWS;
 pub use dyssol::dyssol_growth;
-pub use fragments::{BREAKAGE_LAWS, BreakageLaw, RandomBinary};
+pub use fragments::{BreakageLaw, RandomBinary};
 pub use growth::{GrowthScheme, SizeFluxes};
 pub use growth_law::{GrowthLaw, LinearGrowth, TabulatedGrowth, UniformGrowth};
 pub use kernels::{

@@ -4,7 +4,7 @@ use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 use calcine_physics::sphere::volume_of_diameter;
 
-use super::BreakageLaw;
+use super::fragments::BreakageLaw;
 
 /// Breakage whose rate and whose fragments are powers of the volume.
 ///

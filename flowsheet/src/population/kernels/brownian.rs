@@ -3,7 +3,7 @@
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
-use super::AggregationKernel;
+use super::aggregation_kernel::AggregationKernel;
 
 /// Particles that meet by Brownian motion in a continuum.
 ///

@@ -4,7 +4,7 @@ use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 use calcine_physics::sphere::volume_of_diameter;
 
-use super::AggregationKernel;
+use super::aggregation_kernel::AggregationKernel;
 
 /// Particles whose random velocities share the kinetic energy alike, as in fluidised and tumbling beds.
 ///

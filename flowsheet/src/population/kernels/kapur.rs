@@ -4,7 +4,7 @@ use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 use calcine_physics::sphere::volume_of_diameter;
 
-use super::AggregationKernel;
+use super::aggregation_kernel::AggregationKernel;
 
 /// Powers of the sum and of the product of volumes, to be fitted.
 ///

@@ -1,5 +1,6 @@
 //! Rates at which two particles aggregate. One law a file.
 
+mod aggregation_kernel;
 mod brownian;
 mod constant;
 mod equipartition;
@@ -12,6 +13,7 @@ mod table;
 
 use calcine_physics::law::LawEntry;
 
+pub use aggregation_kernel::AggregationKernel;
 pub use brownian::BrownianKernel;
 pub use constant::ConstantKernel;
 pub use equipartition::EquipartitionKernel;
@@ -21,13 +23,6 @@ pub use settling::SettlingKernel;
 pub use shear::ShearKernel;
 pub use sum::SumKernel;
 pub use table::TabulatedKernel;
-
-/// Rate β at which two particles of volumes u, v in m³ aggregate, in 1/s (for a bed as a whole: the number of
-/// aggregations in a second is ½ Σ Σ β N N).
-pub trait AggregationKernel: Send + Sync {
-    /// β(u, v) in 1/s.
-    fn rate(&self, u: f64, v: f64) -> f64;
-}
 
 /// The kernels of aggregation that a case may choose. A new one is declared and listed here.
 pub static AGGREGATION_LAWS: &[&LawEntry<dyn AggregationKernel>] = &[

@@ -3,7 +3,7 @@
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
-use super::AggregationKernel;
+use super::aggregation_kernel::AggregationKernel;
 
 /// β = β₀ u v. It gels: at N₀ v₀² β₀ t = ½ from an exponential distribution of mean v₀ the second moment is infinite.
 #[derive(Clone, Copy, Debug)]

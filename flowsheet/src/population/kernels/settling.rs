@@ -3,7 +3,7 @@
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
-use super::AggregationKernel;
+use super::aggregation_kernel::AggregationKernel;
 
 /// Particles that meet because large ones settle faster, after Stokes. Equals never meet.
 ///

@@ -3,7 +3,7 @@
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
-use super::AggregationKernel;
+use super::aggregation_kernel::AggregationKernel;
 
 /// β = β₀ (u + v).
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 
 use calcine_physics::sphere::radius_of;
 
-use super::AggregationKernel;
+use super::aggregation_kernel::AggregationKernel;
 use crate::PlantError;
 
 /// β by a symmetric table over the diameters of both particles, bilinear between its points and constant beyond: measured, or

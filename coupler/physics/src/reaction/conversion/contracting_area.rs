@@ -1,19 +1,6 @@
 //! Cylinders that shrink from their side.
 
-use super::table::{RATE, made};
-use super::{Conversion, ConversionLaw};
-use crate::law::LawEntry;
-use crate::reaction::rate_law::RateLaw;
-
-/// Its entry in a case file.
-pub static CONTRACTING_AREA: LawEntry<RateLaw> = LawEntry {
-    name: "contracting-area",
-    summary: "In the whole particle, by grains whose surface shrinks as that of cylinders.",
-    source: "docs/theory.md, XDP-9",
-    parameters: &[],
-    tables: &[RATE],
-    make: |values| Box::new(made(values, Conversion::ContractingArea(ContractingArea))),
-};
+use super::conversion_law::ConversionLaw;
 
 /// f = 2 w^1/2 (R2): 1 − (1 − X)^1/2 = k t.
 ///

@@ -1,24 +1,6 @@
 //! Spheres that shrink from their surface.
 
-use super::table::{RATE, made};
-use super::{Conversion, ConversionLaw};
-use crate::law::LawEntry;
-use crate::reaction::rate_law::RateLaw;
-
-/// Its entry in a case file.
-pub static CONTRACTING_VOLUME: LawEntry<RateLaw> = LawEntry {
-    name: "contracting-volume",
-    summary: "In the whole particle, by grains whose surface shrinks as that of spheres.",
-    source: "docs/theory.md, XDP-9",
-    parameters: &[],
-    tables: &[RATE],
-    make: |values| {
-        Box::new(made(
-            values,
-            Conversion::ContractingVolume(ContractingVolume),
-        ))
-    },
-};
+use super::conversion_law::ConversionLaw;
 
 /// f = 3 w^2/3 (R3): 1 − (1 − X)^1/3 = k t.
 ///

@@ -1,59 +1,5 @@
 //! The surface of grains that gives off a gas below its equilibrium pressure.
 
-use super::table::RATE;
-use crate::dimension::Dimension;
-use crate::law::{Bound, LawEntry, LawParameter, LawTable};
-use crate::reaction::arrhenius::{ACTIVATION_ENERGY, Arrhenius, EXPONENT};
-use crate::reaction::rate_law::RateLaw;
-
-/// Its entry in a case file.
-pub static EQUILIBRIUM_PRESSURE: LawEntry<RateLaw> = LawEntry {
-    name: "equilibrium-pressure",
-    summary: "At the surface of the grains of a particle, in proportion to what the pressure of the gas that they give off lacks \
-              of its equilibrium.",
-    source: "docs/theory.md, XDP-9",
-    parameters: &[LawParameter {
-        name: "grain_diameter",
-        dimension: Dimension::LENGTH,
-        bound: Bound::Positive,
-        default: None,
-        needed_with: None,
-        meaning: "Diameter of the grains at the start.",
-        example: "\"10 um\"",
-    }],
-    tables: &[SURFACE_RATE],
-    make: |values| {
-        let rate = values.table(0).cloned().unwrap_or_default();
-        Box::new(RateLaw::EquilibriumPressure {
-            rate_constant: Arrhenius::from_values(&rate),
-            grains: GrainSurface {
-                diameter: values[0],
-            },
-        })
-    },
-};
-
-const SURFACE_RATE: LawTable = LawTable {
-    name: "rate",
-    meaning: "Rate constant k = factor T^exponent exp(-activation_energy/RT), by the surface of the grains and the pressure that lacks.",
-    example: "{ factor = 1e-6, activation_energy = \"60 kJ/mol\" }",
-    parameters: &[
-        LawParameter {
-            name: "factor",
-            dimension: Dimension::NONE,
-            bound: Bound::Positive,
-            default: None,
-            needed_with: None,
-            meaning: "A number in mol/m^2/s/Pa.",
-            example: "1e-6",
-        },
-        EXPONENT,
-        ACTIVATION_ENERGY,
-    ],
-    tables: &[],
-    ..RATE
-};
-
 /// r = k S (p_eq − p) in mol/s, with the surface S = 6 V₀ w^2/3/d of spherical grains that shrink, V₀ the volume of the solid
 /// itself at the start.
 ///

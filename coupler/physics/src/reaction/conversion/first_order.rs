@@ -1,19 +1,6 @@
 //! A solid of which every part reacts alike.
 
-use super::table::{RATE, made};
-use super::{Conversion, ConversionLaw};
-use crate::law::LawEntry;
-use crate::reaction::rate_law::RateLaw;
-
-/// Its entry in a case file.
-pub static FIRST_ORDER: LawEntry<RateLaw> = LawEntry {
-    name: "first-order",
-    summary: "In the whole particle, in proportion to what is left of the solid.",
-    source: "docs/theory.md, XDP-9",
-    parameters: &[],
-    tables: &[RATE],
-    make: |values| Box::new(made(values, Conversion::FirstOrder(FirstOrder))),
-};
+use super::conversion_law::ConversionLaw;
 
 /// f = w.
 ///

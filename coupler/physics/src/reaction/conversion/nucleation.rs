@@ -1,45 +1,6 @@
 //! Nuclei that grow.
 
-use super::table::{RATE, made};
-use super::{Conversion, ConversionLaw};
-use crate::dimension::Dimension;
-use crate::law::{Bound, LawEntry, LawParameter};
-use crate::reaction::rate_law::RateLaw;
-
-/// Its entry in a case file.
-pub static NUCLEATION: LawEntry<RateLaw> = LawEntry {
-    name: "nucleation",
-    summary: "In the whole particle, by nuclei of the product that grow (Avrami and Erofeev).",
-    source: "docs/theory.md, XDP-9",
-    parameters: &[
-        LawParameter {
-            name: "exponent",
-            dimension: Dimension::NONE,
-            bound: Bound::AtLeast(1.0),
-            default: None,
-            needed_with: None,
-            meaning: "Exponent m of Avrami, 1 to 4.",
-            example: "2",
-        },
-        LawParameter {
-            name: "nuclei",
-            dimension: Dimension::NONE,
-            bound: Bound::Positive,
-            default: Some(1e-3),
-            needed_with: None,
-            meaning: "Share of the solid that nuclei hold at the start: without any nothing would begin.",
-            example: "1e-3",
-        },
-    ],
-    tables: &[RATE],
-    make: |values| {
-        let law = Nucleation {
-            exponent: values[0],
-            nuclei: values[1],
-        };
-        Box::new(made(values, Conversion::Nucleation(law)))
-    },
-};
+use super::conversion_law::ConversionLaw;
 
 /// f = m w (a − ln w)^(1 − 1/m): (a − ln w)^1/m = k t + a^1/m. With a = 0 it is the law of Avrami and Erofeev, whose rate is zero at
 /// the start, so that it would never begin; a is the share that nuclei hold then.

@@ -1,33 +1,6 @@
 //! Pores that grow and meet.
 
-use super::table::{RATE, made};
-use super::{Conversion, ConversionLaw};
-use crate::dimension::Dimension;
-use crate::law::{Bound, LawEntry, LawParameter};
-use crate::reaction::rate_law::RateLaw;
-
-/// Its entry in a case file.
-pub static RANDOM_PORE: LawEntry<RateLaw> = LawEntry {
-    name: "random-pore",
-    summary: "In the whole particle, by the surface of pores that grow and meet (Bhatia and Perlmutter).",
-    source: "docs/theory.md, XDP-9",
-    parameters: &[LawParameter {
-        name: "structure",
-        dimension: Dimension::NONE,
-        bound: Bound::NotNegative,
-        default: None,
-        needed_with: None,
-        meaning: "Structural parameter psi = 4 pi L (1 - e)/S^2 of the pores at the start; 0 is first order.",
-        example: "4.6",
-    }],
-    tables: &[RATE],
-    make: |values| {
-        let law = RandomPore {
-            structure: values[0],
-        };
-        Box::new(made(values, Conversion::RandomPore(law)))
-    },
-};
+use super::conversion_law::ConversionLaw;
 
 /// f = w (1 − ψ ln w)^1/2.
 ///
