@@ -62,7 +62,10 @@ pub enum ParcelWallError {
 
 /// How the particles of a case move, on the motion clock.
 pub fn motion_of(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Result<Motion, PlaceError> {
-    let spec = case.motion.as_ref().and_then(|motion| motion.parcels.as_ref());
+    let spec = case
+        .motion
+        .as_ref()
+        .and_then(|motion| motion.parcels.as_ref());
     match spec {
         Some(spec) => Ok(motion(case, spec, mesh)?),
         None => Ok(contacts::motion(case, mesh, setup)?),
@@ -122,7 +125,8 @@ fn nearest<'a>(case: &'a Case, mesh: &Mesh, face: usize) -> Option<&'a Wall> {
     let depth = (centre - mesh.cell_centre()[mesh.owner()[face] as usize]).norm();
     let with_distance = case.walls.iter().map(|wall| (wall, distance(wall, centre)));
     let near = with_distance.filter(|(_, distance)| *distance < depth);
-    near.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(wall, _)| wall)
+    near.min_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(wall, _)| wall)
 }
 
 fn distance(wall: &Wall, place: Vec3) -> f64 {

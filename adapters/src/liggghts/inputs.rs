@@ -202,7 +202,9 @@ impl Inputs<'_> {
         let setup = self.setup;
         let (lower, upper) = self.corners();
         let types = match &setup.motion {
-            Motion::Frozen | Motion::Parcels(_) => setup.population.iter().max().map_or(1, |last| last + 1) as usize,
+            Motion::Frozen | Motion::Parcels(_) => {
+                setup.population.iter().max().map_or(1, |last| last + 1) as usize
+            }
             Motion::Free(contacts) => moving::types(contacts),
         };
         let mut text = format!(

@@ -44,7 +44,10 @@ pub(super) fn parcels(motion: &TableReader<'_>) -> Option<ParcelSpec> {
     }
     if isotropy && seed.is_none() {
         let help = "add seed = 1: equal seeds give equal runs";
-        table.fail_whole("has no `seed`, which velocities that are drawn anew need", help);
+        table.fail_whole(
+            "has no `seed`, which velocities that are drawn anew need",
+            help,
+        );
     }
     let stress = HarrisCrighton {
         pressure: pressure?,
@@ -116,7 +119,8 @@ pub(super) fn fits(
              another bed than the parcels",
             spec.close_packing, coupling.max_solid_fraction
         );
-        let help = "lower `motion.parcels.close_packing`, or raise `coupling.smoother.max_solid_fraction`";
+        let help =
+            "lower `motion.parcels.close_packing`, or raise `coupling.smoother.max_solid_fraction`";
         section.fail("parcels", rule, help);
     }
 }
