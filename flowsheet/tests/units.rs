@@ -283,6 +283,43 @@ fn a_controlled_bed_goes_to_its_set_point() {
     assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected}");
 }
 
+/// A bed that keeps moisture, and whose mass changes by dust that returns and by wear, closes its water.
+#[test]
+fn a_moist_bed_that_makes_dust_closes_its_water() {
+    let grid = SizeGrid::uniform(40, 0.0, 4e-3).unwrap();
+    let layout = StreamLayout::new(grid.clone(), Vec::new(), vec![solid("urea"), water()]).unwrap();
+    let shares = normal_shares(&grid, 2e-3, 2e-4, "bed").unwrap();
+    let mut content = vec![0.0; layout.solids()];
+    for (class, share) in shares.iter().enumerate() {
+        content[class * layout.inner()] = 10.0 * share;
+    }
+    let mut sizes = vec![0.0; 40];
+    sizes[1] = 1.0;
+    let bed = Granulator::new(content, 1320.0)
+        .with_moisture(0.01)
+        .with_wear(1e-8)
+        .with_level(BedLevel::Controlled {
+            mass: 12.0,
+            time: 50.0,
+        })
+        .with_overspray(Overspray {
+            share: 0.3,
+            returned: 0.4,
+            sizes,
+        });
+    let none = vec![0.0; layout.width()];
+    let mut spray = none.clone();
+    spray[layout.liquid(0)] = 0.1;
+    spray[layout.liquid(1)] = 0.1;
+    layout.set_temperature(&mut spray, 300.0);
+    let feeds = vec![always(none.clone()), always(spray), always(none)];
+    let plant = alone(layout, bed, feeds);
+    let mut run = PlantRun::new(&plant, Integrator::Explicit, 1e-8).unwrap();
+    run.advance(20.0).unwrap();
+    let ledger = run.ledger();
+    assert!(ledger.worst() < 1e-12, "{:#?}", ledger.lines);
+}
+
 /// Growth and aggregation leave each colour's mass where its particles are: what is sprayed falls on both alike by number.
 #[test]
 fn colours_stay_with_their_particles_in_a_granulator() {

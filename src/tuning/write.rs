@@ -221,7 +221,7 @@ pub struct EvaluationLog {
     names: Vec<String>,
     objectives: Vec<String>,
     known: Vec<(String, SearchEvaluation)>,
-    text: String,
+    lines: Vec<(String, usize, String)>,
 }
 
 impl EvaluationLog {
@@ -237,15 +237,15 @@ impl EvaluationLog {
             names: Vec::new(),
             objectives: Vec::new(),
             known: Vec::new(),
-            text: String::new(),
+            lines: Vec::new(),
         };
         for line in before.lines().skip(1) {
             let Some(one) = parse(line) else {
                 break;
             };
+            log.lines
+                .push((one.0.clone(), one.1.generation, line.to_owned()));
             log.known.push(one);
-            log.text += line;
-            log.text.push('\n');
         }
         log
     }
@@ -263,24 +263,30 @@ impl EvaluationLog {
 
     /// Adds a generation and writes the log anew; it is replaced as a whole, so that an interrupt leaves the one before.
     pub fn add(&mut self, stage: &str, new: &[SearchEvaluation]) -> Result<(), ResultsError> {
+        // An interrupt may have left a part of this generation.
+        if let Some(first) = new.first() {
+            let before = |(of, generation, _): &(String, usize, String)| {
+                of != stage || *generation < first.generation
+            };
+            self.lines.retain(before);
+        }
         for one in new {
             let list = |values: &[f64]| -> String {
                 let values = values.iter().map(|value| format!("{value:e}"));
                 values.collect::<Vec<_>>().join(" ")
             };
             let (places, objectives) = (list(&one.places), list(&one.objectives));
-            let _ = writeln!(
-                self.text,
-                "{stage},{},{places},{objectives}",
-                one.generation
-            );
+            let line = format!("{stage},{},{places},{objectives}", one.generation);
+            self.lines.push((stage.to_owned(), one.generation, line));
         }
         let head = format!(
             "stage,generation,places from 0 to 1 between the bounds of {},sums of squares of {}\n",
             self.names.join(" "),
             self.objectives.join(" ")
         );
-        files::replace(&self.path, (head + &self.text).as_bytes())
+        let lines = self.lines.iter().map(|(_, _, line)| format!("{line}\n"));
+        let text: String = lines.collect();
+        files::replace(&self.path, (head + &text).as_bytes())
     }
 }
 

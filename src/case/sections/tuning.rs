@@ -40,6 +40,8 @@ pub(in crate::case) fn tuning(
         );
     }
     let title = root.text("title");
+    // Known, even where what comes before it cannot be read.
+    root.has("parameters");
     let folder = path.parent().unwrap_or(Path::new("."));
     let model = root.table("model");
     let of = model
@@ -62,6 +64,9 @@ pub(in crate::case) fn tuning(
         reactions,
         laws,
     };
+    if read.curves.is_empty() {
+        return None;
+    }
     take_loss(root, &mut model, loss)?;
     let parameters = parameters(root, &known_parameters(&model));
     let name = path

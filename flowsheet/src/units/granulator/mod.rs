@@ -161,6 +161,7 @@ impl Granulator {
             deposit,
             deposited,
             dust,
+            enters,
             product,
             worn,
         }
@@ -257,10 +258,9 @@ impl ProcessUnit for Granulator {
         }
         if let Some(k) = self.moisture(layout).filter(|_| self.moisture > 0.0) {
             // What the bed keeps as it gains mass counts too.
-            let enters = Self::feed(view) + turnover.deposited;
             let stays = match self.level {
                 BedLevel::Fixed => 0.0,
-                _ => self.moisture * (enters - turnover.product),
+                _ => self.moisture * (turnover.enters - turnover.product),
             };
             let place = layout.liquid(k);
             product[place] = self.moisture * turnover.product;

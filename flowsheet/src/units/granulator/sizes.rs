@@ -28,6 +28,8 @@ pub(super) struct Turnover {
     pub(super) deposited: f64,
     /// Dust by compound in kg/s: overspray.
     pub(super) dust: Vec<f64>,
+    /// Solids that come to stay: fed, deposited and returned, less what wears off, in kg/s.
+    pub(super) enters: f64,
     /// Solids that leave as product in kg/s.
     pub(super) product: f64,
     /// Worn off by size class, attribute and compound in kg/s; empty without wear.
