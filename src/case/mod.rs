@@ -26,6 +26,7 @@ mod place_error;
 mod problem;
 mod ranges;
 mod reach_cautions;
+mod resolved;
 mod schedules;
 pub mod schema;
 mod sections;

@@ -10,7 +10,7 @@ pub(super) use calcine_coupler::setup::{Convection, InletScalars, TimeScheme, Wa
 pub(super) use calcine_coupler::time::GasStorage;
 pub(super) use calcine_coupler::window_drag::WindowDrag;
 
-pub(super) use super::model::{MappingSpec, MotionKind, MotionSpec, Statistic};
+pub(super) use super::model::{Inside, MappingSpec, MotionKind, MotionSpec, Statistic};
 
 /// A choice between words.
 pub(super) trait CaseWord: Copy + 'static {
@@ -105,6 +105,7 @@ case_words! {
         "k-epsilon" => TurbulenceModel::KEpsilon,
         "laminar" => TurbulenceModel::Laminar,
     }
+    Inside { "thin" => Inside::Thin, "radial" => Inside::Radial, "auto" => Inside::Auto }
     WallVelocity { "no-slip" => WallVelocity::NoSlip, "slip" => WallVelocity::Slip }
     Adiabatic { "adiabatic" => Adiabatic }
     Closed { "closed" => Closed }
