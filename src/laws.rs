@@ -11,6 +11,9 @@ use calcine_coupler::physics::conduction::{
 use calcine_coupler::physics::drag::{DRAG_LAWS, Drag};
 use calcine_coupler::physics::heat_transfer::{HEAT_TRANSFER_LAWS, HeatTransfer};
 use calcine_coupler::physics::law::{LawEntry, LawSummary};
+use calcine_coupler::physics::pores::{
+    CONDUCTIVITY_LAWS, PERMEABILITY_LAWS, Permeability, PorousConductivity,
+};
 use calcine_coupler::physics::reaction::{RATE_LAWS, RateLaw};
 use calcine_coupler::physics::turbulence::{BED_EDDY_LAWS, BedEddies};
 use calcine_coupler::view_factors::{RADIATION_LAWS, RadiationLaw};
@@ -45,6 +48,10 @@ pub struct LawCatalogue {
     pub rate: Vec<&'static LawEntry<RateLaw>>,
     /// Size of particles that react.
     pub size: Vec<&'static LawEntry<SizeRule>>,
+    /// Permeability of particles with shells.
+    pub permeability: Vec<&'static LawEntry<Permeability>>,
+    /// Conductivity of particles with shells.
+    pub porous_conductivity: Vec<&'static LawEntry<PorousConductivity>>,
     /// Force of a contact.
     pub contact: Vec<&'static LawEntry<ContactForce>>,
     /// Resistance to rolling.
@@ -72,6 +79,8 @@ impl Default for LawCatalogue {
             radiation: RADIATION_LAWS.to_vec(),
             rate: RATE_LAWS.to_vec(),
             size: SIZE_LAWS.to_vec(),
+            permeability: PERMEABILITY_LAWS.to_vec(),
+            porous_conductivity: CONDUCTIVITY_LAWS.to_vec(),
             contact: CONTACT_LAWS.to_vec(),
             rolling: ROLLING_LAWS.to_vec(),
             cohesion: COHESION_LAWS.to_vec(),
@@ -124,6 +133,14 @@ impl LawCatalogue {
             ("laws.radiation", summaries(&self.radiation)),
             ("reactions", summaries(&self.rate)),
             ("materials.NAME.size", summaries(&self.size)),
+            (
+                "materials.NAME.radial.permeability",
+                summaries(&self.permeability),
+            ),
+            (
+                "materials.NAME.radial.conduction",
+                summaries(&self.porous_conductivity),
+            ),
             ("motion.contact", summaries(&self.contact)),
             ("motion.rolling", summaries(&self.rolling)),
             ("motion.cohesion", summaries(&self.cohesion)),
@@ -156,6 +173,8 @@ families!(
     radiation,
     rate,
     size,
+    permeability,
+    porous_conductivity,
     contact,
     rolling,
     cohesion,

@@ -63,6 +63,7 @@ fn sources(case: &Path) -> (f64, f64) {
         // Reactions heat and cool what they are in.
         "ore-reduction" => (1050.0, 1250.0),
         "lime-burning" => (1000.0, 1200.0),
+        "calcining-stone" => (1000.0, 1400.0),
         "dri-self-heating" => (300.0, 340.0),
         _ => (300.0, 400.0),
     }

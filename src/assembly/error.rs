@@ -3,6 +3,7 @@
 use calcine_adapters::last_words;
 use calcine_coupler::coordinator::RunError;
 use calcine_coupler::error::PartError;
+use calcine_coupler::interior::radial::RadialError;
 use calcine_coupler::interior::reacting::LayersError;
 use calcine_coupler::smoother::SmootherError;
 use calcine_native::gas::NativeError;
@@ -46,6 +47,9 @@ pub enum AssemblyError {
     /// Reactions that make no shrinking core.
     #[error("reactions: {0}")]
     Layers(#[from] LayersError),
+    /// Particles that can have no shells.
+    #[error("particles with shells: {0}")]
+    Radial(#[from] RadialError),
     /// A native solver refuses the case or a checkpoint.
     #[error(transparent)]
     Native(#[from] NativeError),
@@ -85,6 +89,7 @@ impl AssemblyError {
             Self::Excluded { index } => Some(format!("coupling.smoother.excluded[{index}]")),
             Self::Particles(error) => Some(error.key(case)),
             Self::Layers(_) => Some("reactions".into()),
+            Self::Radial(_) => Some("materials".into()),
             Self::NoExternalGas | Self::NoExternalParticles => None,
             Self::Run(RunError::Smoother(SmootherError::DoesNotFit { .. })) => {
                 Some("particles".into())

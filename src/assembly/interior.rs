@@ -1,18 +1,23 @@
 //! The inside of the particles of a case: a model for each material and each prescribed temperature, and the network between them.
 
 use calcine_coupler::coordinator::RunError;
-use calcine_coupler::interior::reacting::SolidChemistry;
+use calcine_coupler::interior::radial::{
+    PoreGas, PorousSolid, RadialError, RadialNumerics, Resolution,
+};
+use calcine_coupler::interior::reacting::{Rate, SizeChange, SolidChemistry};
 use calcine_coupler::interior::{
-    HeatNetwork, ParticleModel, PrescribedTemperature, Reacting, Thin,
+    HeatNetwork, ParticleModel, PrescribedTemperature, Radial, Reacting, Thin,
 };
 use calcine_coupler::models::ParticleModels;
 use calcine_coupler::part::ParticleFields;
 use calcine_coupler::physics::gas_model::GasModel;
+use calcine_coupler::physics::pores::Permeability;
+use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::physics::sphere;
 
 use super::error::AssemblyError;
 use super::prepared::PreparedCase;
-use crate::case::model::{Case, ReactionSpec};
+use crate::case::model::{Case, Inside, ReactionSpec};
 use crate::laws;
 
 /// Makes the model of the particles of a material by its name, without particles yet; `None` for the one that the case
@@ -74,14 +79,101 @@ pub(super) fn models(
 
 /// The model that the case asks for.
 fn model(case: &Case, material: usize) -> Result<Box<dyn ParticleModel>, AssemblyError> {
-    if case.chemistry.reactions.is_empty() {
-        let law = case.materials[material].heat_capacity.clone();
-        return Ok(Box::new(Thin::new(law)));
+    let own = &case.materials[material];
+    if own.inside != Inside::Thin {
+        return radial(case, material);
     }
-    let made = Reacting::new(chemistry(case)?, &case.chemistry.compositions[material]);
+    if case.chemistry.reactions.is_empty() {
+        return Ok(Box::new(Thin::new(own.heat_capacity.clone())));
+    }
+    let mut chemistry = case.chemistry.clone();
+    chemistry.reactions.retain(|one| !one.rate.needs_shells());
+    let chemistry = with_gas(case, chemistry, true)?;
+    let made = Reacting::new(chemistry, &case.chemistry.compositions[material]);
     let size = case.chemistry.sizes[material].clone();
-    let used_up = case.materials[material].used_up;
-    Ok(Box::new(made.with_size(size).with_used_up(used_up)))
+    Ok(Box::new(made.with_size(size).with_used_up(own.used_up)))
+}
+
+/// The model of particles with shells.
+fn radial(case: &Case, material: usize) -> Result<Box<dyn ParticleModel>, AssemblyError> {
+    let own = &case.materials[material];
+    let spec = &own.radial;
+    let reacts = !case.chemistry.reactions.is_empty();
+    let (chemistry, fractions, true_densities, size) = if reacts {
+        (
+            of_shells(case)?,
+            case.chemistry.compositions[material].clone(),
+            case.chemistry.true_densities[material].clone(),
+            case.chemistry.sizes[material].clone(),
+        )
+    } else {
+        let solid = SolidSpecies::inert(&own.name, own.heat_capacity.clone());
+        let chemistry = SolidChemistry::new(vec![solid], None, Vec::new())?;
+        (
+            chemistry,
+            vec![1.0],
+            vec![f64::INFINITY],
+            SizeChange::Constant,
+        )
+    };
+    let pores = match &chemistry.gas {
+        Some(gas) => {
+            let mut fractions = vec![0.0; gas.names().len()];
+            gas.mole_fractions(&case.gas.composition, &mut fractions);
+            PoreGas {
+                pressure: case.gas.pressure,
+                fractions,
+            }
+        }
+        None => PoreGas::default(),
+    };
+    let missing = || AssemblyError::Radial(RadialError::Shells { shells: 0 });
+    let solid = PorousSolid {
+        true_densities,
+        conductivity: own.conductivity.clone().ok_or_else(missing)?,
+        conduction: spec.conduction,
+        // Without gas there are no pores to speak of.
+        pore_diameter: spec.pore_diameter.unwrap_or(1.0),
+        tortuosity: spec.tortuosity.unwrap_or(1.0),
+        permeability: spec.permeability.unwrap_or(Permeability::Constant(1.0)),
+        size,
+    };
+    let numerics = RadialNumerics {
+        grid: spec.grid,
+        resolution: match own.inside {
+            Inside::Auto => Resolution::Beyond {
+                temperature: spec.turns[0],
+                pressure: spec.turns[1],
+            },
+            _ => Resolution::All,
+        },
+        temperature: spec.errors[0],
+        conversion: spec.errors[1],
+    };
+    let made = Radial::new(chemistry, &fractions, solid, pores, numerics);
+    let made = made.map_err(AssemblyError::Radial)?;
+    Ok(Box::new(made.with_used_up(own.used_up)))
+}
+
+/// The reactions of particles with shells: those by laws that leave layers to the shells.
+fn of_shells(case: &Case) -> Result<SolidChemistry, AssemblyError> {
+    let mut own = case.chemistry.clone();
+    own.reactions
+        .retain(|one| !matches!(one.rate, Rate::Core { .. }));
+    with_gas(case, own, case.chemistry.exchanges())
+}
+
+/// Reactions with the gas of a case, where they have one.
+fn with_gas(
+    case: &Case,
+    own: ReactionSpec,
+    exchanges: bool,
+) -> Result<SolidChemistry, AssemblyError> {
+    let gas = match &case.gas.properties {
+        GasModel::Mixture(mixture) if exchanges => Some(mixture.clone()),
+        _ => None,
+    };
+    Ok(SolidChemistry::new(own.solids, gas, own.reactions)?)
 }
 
 /// Heat between particles and to walls, without particles yet; `None` where there is none.
@@ -95,12 +187,5 @@ pub(super) fn network(case: &Case) -> Option<HeatNetwork> {
 
 /// The reactions of a case.
 pub fn chemistry(case: &Case) -> Result<SolidChemistry, AssemblyError> {
-    let gas = match &case.gas.properties {
-        GasModel::Mixture(mixture) => Some(mixture.clone()),
-        GasModel::Perfect(_) | GasModel::Constant(_) => None,
-    };
-    let ReactionSpec {
-        solids, reactions, ..
-    } = case.chemistry.clone();
-    Ok(SolidChemistry::new(solids, gas, reactions)?)
+    with_gas(case, case.chemistry.clone(), true)
 }

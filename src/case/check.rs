@@ -16,7 +16,7 @@ use super::model::{Case, MeshSpec, Population, TimeSpec};
 use super::packed::BedPacking;
 use super::splitting::Splitting;
 use super::units::{short, short3};
-use super::{boundaries, buoyancy, mesh_shape, sizes, span, work};
+use super::{boundaries, buoyancy, mesh_shape, resolved, sizes, span, work};
 
 /// Clocks, sizes, the flow, and how far the time splitting may be from the unsplit run.
 pub fn check_report(
@@ -144,6 +144,9 @@ pub fn check_report(
             for line in splitting.lines(case) {
                 let _ = writeln!(text, "    {line}");
             }
+        }
+        for line in resolved::lines(case, population) {
+            let _ = writeln!(text, "    {line}");
         }
         if let Some(line) = prescribed(population) {
             let _ = writeln!(text, "    {line}");

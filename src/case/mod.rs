@@ -30,6 +30,7 @@ pub mod plant;
 mod problem;
 mod ranges;
 mod reach_cautions;
+mod resolved;
 mod schedules;
 pub mod schema;
 mod sections;

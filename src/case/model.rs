@@ -26,7 +26,7 @@ use calcine_coupler::window_drag::WindowDrag;
 
 pub use agreement::{AgreementSpec, FieldBand};
 pub use laws::{ConductionArea, ConductionSpec, Laws, RadiationSpec};
-pub use material::{MaterialSpec, SizeLaw};
+pub use material::{Inside, MaterialSpec, RadialSpec, SizeLaw};
 pub use mesh::MeshSpec;
 pub use particles::{
     FeedSpec, MotionSpec, PackingSection, PackingSpace, PlacementSpec, Population, RandomAmount,
@@ -136,6 +136,8 @@ pub struct ReactionSpec {
     pub reactions: Vec<Reaction>,
     /// Mass fractions of the solids in each material.
     pub compositions: Vec<Vec<f64>>,
+    /// True density in kg/m³ of the solids in each material; infinite where it is not said.
+    pub true_densities: Vec<Vec<f64>>,
     /// How particles of each material take up room.
     pub sizes: Vec<SizeChange>,
 }

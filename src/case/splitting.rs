@@ -8,7 +8,7 @@ use calcine_coupler::physics::sphere;
 use calcine_coupler::setup::{GasPatch, InletFlow};
 use calcine_coupler::time::GasStorage;
 
-use super::model::{Case, MotionSpec, Population};
+use super::model::{Case, Inside, MotionSpec, Population};
 use super::ranges;
 use super::units::short3;
 
@@ -26,6 +26,8 @@ pub(super) struct Splitting<'a> {
     drag: Option<f64>,
     /// Biot number h (d/6)/k of the film against the inside, where the material states its conductivity.
     biot: Option<f64>,
+    /// True where particles have shells.
+    resolved: bool,
     local: LocalGas,
     /// Mean diameter in m.
     diameter: f64,
@@ -65,6 +67,7 @@ impl<'a> Splitting<'a> {
             error: 0.11 * rate * factor * window,
             drag,
             biot,
+            resolved: material.inside != Inside::Thin,
             local,
             diameter: d,
         })
@@ -96,11 +99,12 @@ impl<'a> Splitting<'a> {
                 .iter()
                 .map(|one| one.line()),
         );
-        lines.extend(self.biot.map(|biot| {
-            format!(
+        lines.extend(self.biot.map(|biot| match self.resolved {
+            true => format!("Biot number h d/(6 k) of particles with shells       {biot:.2e}"),
+            false => format!(
                 "Biot number h d/(6 k) of particles without gradients {biot:.2e}{}",
                 above(biot)
-            )
+            ),
         }));
         lines.extend(self.drag.map(|share| {
             format!("window over the drag's time m/K                      {share:.2e}")
@@ -130,10 +134,10 @@ impl<'a> Splitting<'a> {
                 short3(self.error)
             ));
         }
-        if let Some(biot) = self.biot.filter(|biot| *biot > WARNING) {
+        if let Some(biot) = self.biot.filter(|biot| *biot > WARNING && !self.resolved) {
             all.push(format!(
                 "the Biot number h d/(6 k) of `{name}` is {}, above {WARNING}: real particles of this size are colder inside than at their \
-                 surface, while these have one temperature each and take up heat faster",
+                 surface, while these have one temperature each and take up heat faster: write `inside` = \"auto\" or \"radial\" of the material",
                 short3(biot)
             ));
         }

@@ -14,7 +14,7 @@ use calcine_tuning::DifferenceForm;
 
 use crate::tuning::curves::Delimiter;
 
-pub(super) use super::model::{MappingSpec, MotionKind, MotionSpec, Statistic};
+pub(super) use super::model::{Inside, MappingSpec, MotionKind, MotionSpec, Statistic};
 
 /// A choice between words.
 pub(super) trait CaseWord: Copy + 'static {
@@ -175,6 +175,7 @@ case_words! {
         "k-epsilon" => TurbulenceModel::KEpsilon,
         "laminar" => TurbulenceModel::Laminar,
     }
+    Inside { "thin" => Inside::Thin, "radial" => Inside::Radial, "auto" => Inside::Auto }
     WallVelocity { "no-slip" => WallVelocity::NoSlip, "slip" => WallVelocity::Slip }
     Adiabatic { "adiabatic" => Adiabatic }
     Closed { "closed" => Closed }

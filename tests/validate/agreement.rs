@@ -23,8 +23,9 @@ const fn whole(name: &'static str) -> Compared {
 
 /// Shortened: the furnace as far as two of the means over 240 s that its pressure drop is compared by, of 3400 s; it goes on to
 /// 600 s in `shaft-flames`.
-const CASES: [Compared; 11] = [
+const CASES: [Compared; 12] = [
     whole("lime-burning"),
+    whole("calcining-stone"),
     whole("ore-reduction"),
     whole("dri-self-heating"),
     whole("purged-bed"),

@@ -24,11 +24,28 @@ const SIZE: &[Key] = &[
 ];
 
 #[rustfmt::skip]
+const RADIAL: &[Key] = &[
+    key("shells", Whole(3, 1000), Default("30"), "Number of shells.", "40"),
+    key("grading", Number(D::NONE, Between(1.0, 1000.0)), Default("4"), "How many times as thick as the outermost shell the innermost one is.", "10"),
+    key("true_densities", ByName(D::DENSITY), Without("required where reactions exchange gas"), "Density of each solid itself, without pores, that the particles hold or come to hold; what they leave of the volume are the pores.", "{ CaCO3 = \"2711 kg/m^3\", CaO = \"3340 kg/m^3\" }"),
+    key("pore_diameter", Number(D::LENGTH, Positive), Without("required where reactions exchange gas"), "Diameter of the pores, by which molecules meet their walls.", "\"1 um\""),
+    key("tortuosity", Number(D::NONE, AtLeast(1.0)), Without("required where reactions exchange gas"), "Tortuosity t: gases diffuse by the porosity over t.", "2"),
+    key("permeability", Law(laws::permeability, &[]), Without("required where reactions exchange gas"), "Permeability to gas that flows by pressure.", "{ law = \"constant\", value = \"1e-15 m^2\" }"),
+    key("conduction", Law(laws::porous_conductivity, &[]), Without("the material's conductivity is that of its particles"), "How the material's conductivity and the pores make that of a particle.", "{ law = \"parallel\" }"),
+    key("temperature_error", Number(D::TEMPERATURE, Positive), Default("1 K"), "Error of the mean temperature in a step within a window.", "\"0.1 K\""),
+    key("conversion_error", Number(D::NONE, Positive), Default("1e-3"), "Error of what reactions turn over in such a step, as a share of the particle's solids.", "1e-4"),
+    key("turn_temperature", Number(D::TEMPERATURE, Positive), Default("5 K"), "With `auto`: difference of temperature between centre and surface from which on a particle has its shells.", "\"1 K\""),
+    key("turn_pressure", Number(D::NONE, Positive), Default("0.05"), "With `auto`: the same of the partial pressure of a gas, as a share of the pressure.", "0.02"),
+];
+
+#[rustfmt::skip]
 pub(super) const MATERIALS: &[Key] = &[
     key("density", Number(D::DENSITY, Positive), Required, "Density.", "\"2500 kg/m^3\""),
     key("composition", Table(COMPOSITION), OneOf, "What the material is made of, where it reacts: mass fractions of solids, which sum to 1, or moles in any ratio. Either this or `heat_capacity`.", "{ mass = { Fe2O3 = 0.95, Al2O3 = 0.05 } }"),
     key("heat_capacity", Either(&Curve(D::HEAT_CAPACITY, Positive), &Table(HEAT_CAPACITY)), OneOf, "Specific heat capacity; linear between points, constant outside them; or NASA's polynomials as a table.", "[[\"300 K\", \"780 J/kg/K\"], [\"800 K\", \"1150 J/kg/K\"]]"),
     key("size", Law(laws::size, SIZE), Without("diameters stay"), "How particles of the material take up room while they react; goes with `composition`.", "{ law = \"constant-density\", least_diameter = \"1 mm\" }"),
+    key("inside", Choice(words::<Inside>), Default("thin"), "What is inside of particles: `thin`, one temperature and the amounts of the solids; `radial`, shells along the radius with gas in their pores; `auto`, one shell, and all of them for good from where the difference inside is too large.", "\"radial\""),
+    key("radial", Table(RADIAL), Without("required with `inside` other than `thin` where reactions exchange gas"), "How particles with shells are computed, where `inside` is not `thin`.", "{ shells = 40 }"),
     key("used_up", Number(D::NONE, Between(0.0, 1.0)), Default("1e-6"), "Share of the mass with which a particle came below which it is used up by reactions and goes out of the run; goes with `composition`. Moving particles need one at which they are not yet too light for the time step of contacts.", "0.01"),
     key("conductivity", Curve(D::CONDUCTIVITY, Positive), Without("not known"), "Thermal conductivity; linear between points, constant outside them.", "[[\"300 K\", \"80 W/m/K\"], [\"1000 K\", \"33 W/m/K\"]]"),
     key("emissivity", Number(D::NONE, UpTo(0.0, 1.0)), Without("not known"), "Emissivity of the surface, above 0 and up to 1.", "0.9"),

@@ -1,10 +1,12 @@
 //! Materials.
 
+use calcine_coupler::interior::radial::ShellGrid;
 use calcine_coupler::interior::reacting::size::{
     CONSTANT_DENSITY, CONSTANT_DIAMETER, DENSITIES, SizeRule,
 };
 use calcine_coupler::physics::conduction::Conductivity;
 use calcine_coupler::physics::law::LawEntry;
+use calcine_coupler::physics::pores::{Permeability, PorousConductivity};
 use calcine_coupler::physics::solid::HeatCapacity;
 
 /// A solid material.
@@ -20,6 +22,10 @@ pub struct MaterialSpec {
     pub composition: Option<Vec<f64>>,
     /// How its particles take up room while they react.
     pub size: SizeLaw,
+    /// What is inside of its particles.
+    pub inside: Inside,
+    /// How those with shells are computed.
+    pub radial: RadialSpec,
     /// Share of its first mass below which a particle is used up.
     pub used_up: f64,
     /// Thermal conductivity over temperature.
@@ -32,6 +38,39 @@ pub struct MaterialSpec {
     pub real_young: Option<f64>,
     /// Poisson's ratio.
     pub poisson: Option<f64>,
+}
+
+/// What is inside of particles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Inside {
+    /// One temperature, and amounts of solids.
+    #[default]
+    Thin,
+    /// Shells.
+    Radial,
+    /// One shell, and all where it has to be.
+    Auto,
+}
+
+/// How particles with shells are computed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RadialSpec {
+    /// The shells.
+    pub grid: ShellGrid,
+    /// True density in kg/m³ of all solids that there are; `None` where it is not said.
+    pub true_densities: Vec<Option<f64>>,
+    /// Diameter of pores in m.
+    pub pore_diameter: Option<f64>,
+    /// Tortuosity.
+    pub tortuosity: Option<f64>,
+    /// Permeability.
+    pub permeability: Option<Permeability>,
+    /// How the material's conductivity is that of particles.
+    pub conduction: PorousConductivity,
+    /// Error of a step in K, and as a share of the solids.
+    pub errors: [f64; 2],
+    /// Difference in K, and of partial pressures over the pressure, from which on `auto` has shells.
+    pub turns: [f64; 2],
 }
 
 /// How particles of a material take up room while they react.

@@ -30,7 +30,7 @@ pub(super) fn read(material: &TableReader<'_>, solids: &[SolidSpecies]) -> SizeL
             least_radius: least(&table),
         },
         Some(SizeRule::Densities) => SizeLaw::Densities {
-            densities: densities(&table, solids).unwrap_or_default(),
+            densities: densities(&table, "densities", solids).unwrap_or_default(),
             least_radius: least(&table),
         },
     };
@@ -39,9 +39,13 @@ pub(super) fn read(material: &TableReader<'_>, solids: &[SolidSpecies]) -> SizeL
 }
 
 /// Density of each solid, by the names of the table; `None` where one could not be read.
-fn densities(table: &TableReader<'_>, solids: &[SolidSpecies]) -> Option<Vec<Option<f64>>> {
-    table.need("densities");
-    let (inner, stated) = table.by_name("densities")?;
+pub(super) fn densities(
+    table: &TableReader<'_>,
+    key: &str,
+    solids: &[SolidSpecies],
+) -> Option<Vec<Option<f64>>> {
+    table.need(key);
+    let (inner, stated) = table.by_name(key)?;
     let mut found = vec![None; solids.len()];
     for (name, value) in stated? {
         let Some(k) = solids.iter().position(|one| one.name() == name) else {
@@ -153,7 +157,7 @@ fn stated_density(material: &MaterialSpec) -> Option<f64> {
 }
 
 /// Which solids a material holds or comes to hold.
-fn reached(chemistry: &ReactionSpec, start: &[f64]) -> Vec<bool> {
+pub(super) fn reached(chemistry: &ReactionSpec, start: &[f64]) -> Vec<bool> {
     let mut there: Vec<bool> = start.iter().map(|y| *y > 0.0).collect();
     for _ in 0..chemistry.reactions.len() {
         for reaction in &chemistry.reactions {

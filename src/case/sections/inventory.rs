@@ -61,7 +61,15 @@ pub(super) fn inventory(
     let solids: Vec<SolidSpecies> = kept.map(|(solid, _)| solid).collect();
     let own = materials.iter().zip(&compositions);
     let sizes = own.map(|(material, start)| conversion::size(material, start, &solids, &used));
+    let stated = |material: &MaterialSpec| {
+        let own = &material.radial.true_densities;
+        let kept = (0..used.len()).filter(|k| used[*k]);
+        // Of what is not stated there is never any, or the material needs no pores.
+        kept.map(|k| own.get(k).copied().flatten().unwrap_or(f64::INFINITY))
+            .collect()
+    };
     ReactionSpec {
+        true_densities: materials.iter().map(stated).collect(),
         sizes: sizes.collect(),
         solids,
         reactions,

@@ -23,6 +23,7 @@ mod particles;
 mod place;
 mod probes;
 mod quantities;
+mod radial;
 mod rate_constants;
 mod reactions;
 mod sizes;
@@ -106,6 +107,7 @@ pub(super) fn case(
     let chemistry = inventory::inventory(solids, reactions, &materials, populations);
     if let Some(particles) = &particles {
         conversion::fits(root, &chemistry, &materials, particles);
+        radial::fits(root, &chemistry, &materials, particles);
         let reactions = chemistry.reactions.len();
         particles::prescribed_fit(root, particles, &materials, reactions);
     }

@@ -10,10 +10,10 @@ use calcine_coupler::physics::thermo::Nasa7;
 use calcine_coupler::setup::Schedule;
 
 use super::composition::of_solids;
-use super::conversion;
 use super::place::place;
 use super::reactions::mixed;
 use super::sizes::sizes;
+use super::{conversion, radial};
 use crate::case::model::{ContactSpec, Laws, MaterialSpec, MeshSpec, MotionSpec, Population};
 use crate::case::table::TableReader;
 
@@ -46,8 +46,11 @@ fn material(name: String, table: &TableReader<'_>, solids: &[SolidSpecies]) -> M
         let help = "add a composition, or remove it: only what reacts is used up";
         table.fail("used_up", "stands beside no `composition`", help);
     }
+    let (inside, radial) = radial::read(table, solids);
     let made = MaterialSpec {
         name,
+        inside,
+        radial,
         density: table.number("density").unwrap_or(f64::NAN),
         heat_capacity,
         size: conversion::read(table, solids),

@@ -215,14 +215,33 @@ fn rate(
             rate_constant,
             diffusivity,
         }),
-        RateLaw::EquilibriumPressure { .. } | RateLaw::Conversion { .. } => {
-            let help = "choose shrinking-core or power-law";
-            table.fail(
-                "law",
-                "needs particles with shells, which cases have not yet",
-                help,
-            );
-            None
+        RateLaw::EquilibriumPressure {
+            rate_constant,
+            grains,
+        } => Some(Rate::Grains {
+            rate_constant,
+            grains,
+        }),
+        RateLaw::Conversion {
+            rate_constant,
+            conversion,
+            orders,
+        } => {
+            let [solids, gases] = match orders.is_empty() {
+                true => Default::default(),
+                false => placed(table, orders, known, equation)?,
+            };
+            if let Some((s, _)) = solids.first() {
+                let help = "leave it out: the law says how the rate follows its solid";
+                let rule = format!("gives {} an order", known.solids[*s].name());
+                table.fail("rate", rule, help);
+                return None;
+            }
+            Some(Rate::Conversion {
+                rate_constant,
+                conversion,
+                gases,
+            })
         }
         RateLaw::PowerLaw {
             rate_constant,

@@ -22,10 +22,9 @@ pub use shrinking_core::Interface;
 use crate::law::LawEntry;
 
 /// The laws by which a case may let particles react.
-pub static RATE_LAWS: &[&LawEntry<RateLaw>] = &[&shrinking_core::LAW, &power_law::LAW];
-
-/// Those that only particles with shells know, beside the power law.
-pub static SHELL_RATE_LAWS: &[&LawEntry<RateLaw>] = &[
+pub static RATE_LAWS: &[&LawEntry<RateLaw>] = &[
+    &shrinking_core::LAW,
+    &power_law::LAW,
     &conversion::FIRST_ORDER,
     &conversion::CONTRACTING_AREA,
     &conversion::CONTRACTING_VOLUME,

@@ -1,0 +1,131 @@
+//! What `check` says of particles with shells: how far reactions outrun the pores, and what they take of memory.
+
+use std::f64::consts::PI;
+
+use calcine_coupler::interior::reacting::{Rate, Reaction};
+use calcine_coupler::physics::gas::GAS_CONSTANT;
+use calcine_coupler::physics::gas_model::GasModel;
+use calcine_coupler::physics::pores::knudsen;
+use calcine_coupler::physics::sphere;
+use calcine_coupler::physics::thermo::Mixture;
+use calcine_coupler::setup::GasPatch;
+
+use super::model::{Case, Inside, Population};
+use super::units::short3;
+
+/// Lines of `check` about a population.
+pub(super) fn lines(case: &Case, population: &Population) -> Vec<String> {
+    let material = &case.materials[population.material];
+    if material.inside == Inside::Thin {
+        return Vec::new();
+    }
+    let (solids, gases) = match (&case.gas.properties, case.chemistry.reactions.is_empty()) {
+        (_, true) => (1, 0),
+        (GasModel::Mixture(gas), _) if case.chemistry.exchanges() => {
+            (case.chemistry.solids.len(), gas.names().len())
+        }
+        _ => (case.chemistry.solids.len(), 0),
+    };
+    let shells = material.radial.grid.shells;
+    // Its row and that of the attempt, and what it tells.
+    let numbers = 2 * (shells * (1 + solids + gases) + 5 + gases) + 20 + 4 * gases;
+    let mut all = vec![format!(
+        "{shells} shells, {} bytes a particle{}",
+        8 * numbers,
+        if material.inside == Inside::Auto {
+            "; one shell until the difference inside is too large"
+        } else {
+            ""
+        }
+    )];
+    let GasModel::Mixture(gas) = &case.gas.properties else {
+        return all;
+    };
+    let Ok(diameter) = population.sizes.mean() else {
+        return all;
+    };
+    let exchanging = case.chemistry.reactions.iter();
+    for one in exchanging.filter(|one| !one.gases.is_empty()) {
+        let found = thiele(case, population, (one, gas), diameter);
+        all.extend(found.map(|(number, kelvin)| {
+            format!(
+                "Thiele number R sqrt(r/(D c)) of {} at {} K {number:.2e}",
+                one.name,
+                short3(kelvin)
+            )
+        }));
+    }
+    all
+}
+
+/// R √(r/(D c)) of a reaction forwards, nothing having reacted, at the hottest temperature in K of the gas that comes in: r in
+/// mol/m³/s by the gas at the start, D the mean diffusivity in its pores, c the moles of gas in a volume.
+fn thiele(
+    case: &Case,
+    population: &Population,
+    (reaction, gas): (&Reaction, &Mixture),
+    diameter: f64,
+) -> Option<(f64, f64)> {
+    let material = &case.materials[population.material];
+    let entering = case
+        .gas
+        .patches
+        .iter()
+        .filter_map(|(_, patch)| match patch {
+            GasPatch::Inlet { temperature, .. } => Some(temperature.0.iter().map(|entry| entry.1)),
+            _ => None,
+        });
+    let kelvin = entering.flatten().fold(case.gas.temperature, f64::max);
+    let moles = case.gas.pressure / (GAS_CONSTANT * kelvin);
+    let mut fractions = vec![0.0; gas.names().len()];
+    gas.mole_fractions(&case.gas.composition, &mut fractions);
+    let start = case.chemistry.compositions.get(population.material)?;
+    let of_solid = |s: usize| {
+        material.density * start.get(s).copied().unwrap_or_default()
+            / case.chemistry.solids[s].molar_mass()
+    };
+    let (solid, _) = reaction.solids.iter().find(|one| one.1 < 0.0)?;
+    let powers = |orders: &[(usize, f64)]| -> f64 {
+        let each = orders.iter().map(|&(g, n)| (fractions[g] * moles).powf(n));
+        each.product()
+    };
+    let true_density = case.chemistry.true_densities.get(population.material)?;
+    let rate = match &reaction.rate {
+        Rate::Conversion {
+            rate_constant,
+            conversion,
+            gases,
+        } => rate_constant.at(kelvin) * of_solid(*solid) * conversion.of(1.0)[0] * powers(gases),
+        Rate::Power(law) => {
+            let solids = law.solids.iter().map(|&(s, n)| of_solid(s).powf(n));
+            law.rate_constant.at(kelvin) * solids.product::<f64>() * powers(&law.gases)
+        }
+        Rate::Grains {
+            rate_constant,
+            grains,
+        } => {
+            let volume = material.density * start.get(*solid)? / true_density.get(*solid)?;
+            let lacking = 1e5 / reaction.equilibrium.inverse(kelvin).max(f64::MIN_POSITIVE);
+            rate_constant.at(kelvin) * grains.at_start(volume) * lacking
+        }
+        Rate::Core { .. } => return None,
+    };
+    let filled: f64 = start.iter().zip(true_density).map(|(y, rho)| y / rho).sum();
+    let porosity = 1.0 - material.density * filled;
+    let mut diffusivities = vec![0.0; fractions.len()];
+    gas.diffusivities(
+        case.gas.pressure,
+        kelvin,
+        &case.gas.composition,
+        &mut diffusivities,
+    );
+    let pores = material.radial.pore_diameter?;
+    let each = diffusivities.iter().zip(gas.species()).map(|(free, one)| {
+        1.0 / (1.0 / free + 1.0 / knudsen::diffusivity(pores, kelvin, one.molar_mass()))
+    });
+    let mean = each.sum::<f64>() / fractions.len() as f64;
+    let diffusivity = mean * porosity / material.radial.tortuosity?;
+    let radius = (sphere::volume_of_diameter(diameter) * 0.75 / PI).cbrt();
+    let number = radius * (rate / (diffusivity * moles)).sqrt();
+    number.is_finite().then_some((number, kelvin))
+}

@@ -1,0 +1,198 @@
+//! `materials.NAME.inside` and `.radial`: particles resolved along their radius.
+
+use calcine_coupler::interior::radial::ShellGrid;
+use calcine_coupler::interior::reacting::Rate;
+use calcine_coupler::physics::pores::PorousConductivity;
+use calcine_coupler::physics::solids::SolidSpecies;
+
+use super::conversion::{densities, reached};
+use crate::case::model::{Inside, MaterialSpec, Population, RadialSpec, ReactionSpec};
+use crate::case::table::TableReader;
+
+/// What is inside of a material's particles.
+pub(super) fn read(material: &TableReader<'_>, solids: &[SolidSpecies]) -> (Inside, RadialSpec) {
+    let inside = material.choice("inside").unwrap_or_default();
+    if inside == Inside::Thin && material.has("radial") {
+        let help = "write inside = \"radial\" or \"auto\", or remove it";
+        material.fail("radial", "stands beside `inside` = \"thin\"", help);
+    }
+    let nothing = RadialSpec {
+        grid: ShellGrid {
+            shells: 30,
+            grading: 4.0,
+        },
+        true_densities: Vec::new(),
+        pore_diameter: None,
+        tortuosity: None,
+        permeability: None,
+        conduction: PorousConductivity::Stated,
+        errors: [1.0, 1e-3],
+        turns: [5.0, 0.05],
+    };
+    let Some(table) = material.table("radial") else {
+        return (inside, nothing);
+    };
+    let laws = table.laws();
+    let number = |key: &str| table.number(key).unwrap_or(f64::NAN);
+    let shells = table.whole("shells").unwrap_or(30);
+    let made = RadialSpec {
+        grid: ShellGrid {
+            shells: usize::try_from(shells).unwrap_or(30),
+            grading: number("grading"),
+        },
+        true_densities: match table.has("true_densities") {
+            true => densities(&table, "true_densities", solids).unwrap_or_default(),
+            false => Vec::new(),
+        },
+        pore_diameter: table.number("pore_diameter"),
+        tortuosity: table.number("tortuosity"),
+        permeability: law(&table, "permeability", &laws.permeability),
+        conduction: law(&table, "conduction", &laws.porous_conductivity)
+            .unwrap_or(PorousConductivity::Stated),
+        errors: [number("temperature_error"), number("conversion_error")],
+        turns: [number("turn_temperature"), number("turn_pressure")],
+    };
+    table.finish();
+    (inside, made)
+}
+
+/// The law that a table below names.
+fn law<L: Copy + 'static>(
+    table: &TableReader<'_>,
+    key: &str,
+    laws: &[&'static calcine_coupler::physics::law::LawEntry<L>],
+) -> Option<L> {
+    let (law, inner) = table.law(key, laws)?;
+    inner.finish();
+    law.map(|law| *law.make())
+}
+
+/// Errors where shells do not go with the rest of the case.
+pub(super) fn fits(
+    root: &TableReader<'_>,
+    chemistry: &ReactionSpec,
+    materials: &[MaterialSpec],
+    particles: &[Population],
+) {
+    let tables = root.table("materials").map(|section| section.named());
+    for (name, table) in tables.unwrap_or_default() {
+        let Some(index) = materials.iter().position(|one| one.name == name) else {
+            continue;
+        };
+        if particles.iter().any(|one| one.material == index) {
+            fits_one(&table, chemistry, (&materials[index], index));
+        }
+    }
+}
+
+fn fits_one(
+    table: &TableReader<'_>,
+    chemistry: &ReactionSpec,
+    (material, index): (&MaterialSpec, usize),
+) {
+    let start = chemistry.compositions.get(index).map_or(&[][..], |own| own);
+    let holds = |s: usize| start.get(s).is_some_and(|y| *y > 0.0);
+    let reacts = |shells: bool| {
+        let mut own = chemistry.reactions.iter();
+        own.find(|one| {
+            let core = matches!(one.rate, Rate::Core { .. });
+            let stays = if shells {
+                core
+            } else {
+                one.rate.needs_shells()
+            };
+            stays && one.solids.iter().any(|&(s, n)| n < 0.0 && holds(s))
+        })
+    };
+    let others = |shells: bool| {
+        chemistry.reactions.iter().any(|one| {
+            let own = if shells {
+                !matches!(one.rate, Rate::Core { .. })
+            } else {
+                !one.rate.needs_shells()
+            };
+            own && one.solids.iter().any(|&(s, n)| n < 0.0 && holds(s))
+        })
+    };
+    let with_shells = material.inside != Inside::Thin;
+    if let Some(one) = reacts(with_shells).filter(|_| !others(with_shells)) {
+        let rule = match with_shells {
+            true => format!(
+                "gives particles shells, but {} goes by shrinking-core, which has its own layers",
+                one.name
+            ),
+            false => format!(
+                "lets particles be thin, but {} goes by {}, which needs their shells",
+                one.name,
+                one.rate.law().name
+            ),
+        };
+        let help = match with_shells {
+            true => {
+                "add the reaction by a law of the whole particle, such as equilibrium-pressure or power-law"
+            }
+            false => "write inside = \"radial\" or \"auto\", or choose shrinking-core or power-law",
+        };
+        table.fail("inside", rule, help);
+    }
+    if !with_shells {
+        return;
+    }
+    if material.conductivity.is_none() && !table.has("conductivity") {
+        table.missing_like("conductivity", "\"1.5 W/m/K\"");
+    }
+    if !chemistry.exchanges() {
+        return;
+    }
+    let Some(inner) = table.table("radial") else {
+        let help = "write radial = { true_densities = ..., pore_diameter = ..., tortuosity = ..., permeability = ... }";
+        table.fail(
+            "inside",
+            "gives particles pores with gas, and no `radial` says what they are",
+            help,
+        );
+        return;
+    };
+    for (key, example) in [
+        (
+            "true_densities",
+            "{ CaCO3 = \"2711 kg/m^3\", CaO = \"3340 kg/m^3\" }",
+        ),
+        ("pore_diameter", "\"1 um\""),
+        ("tortuosity", "2"),
+        (
+            "permeability",
+            "{ law = \"constant\", value = \"1e-15 m^2\" }",
+        ),
+    ] {
+        if !inner.has(key) {
+            inner.missing_like(key, example);
+        }
+    }
+    let Some(own) = chemistry
+        .true_densities
+        .get(index)
+        .filter(|own| !own.is_empty())
+    else {
+        return;
+    };
+    let held = reached(chemistry, start);
+    if let Some(s) = (0..own.len()).find(|&s| held[s] && own[s].is_infinite()) {
+        let rule = format!(
+            "has no density of {}, which such particles hold or come to hold",
+            chemistry.solids[s].name()
+        );
+        inner.fail("true_densities", rule, "add it");
+        return;
+    }
+    let true_density = 1.0 / start.iter().zip(own).map(|(y, rho)| y / rho).sum::<f64>();
+    if true_density <= material.density {
+        let rule = format!(
+            "come to {true_density:.0} kg/m^3 at the start, which leaves no pores in a particle of `density` {:.0} kg/m^3",
+            material.density
+        );
+        let help =
+            "true densities are without pores, above that of the particle: correct one of them";
+        inner.fail("true_densities", rule, help);
+    }
+}
