@@ -19,7 +19,7 @@ pub struct ParcelMotion {
     /// What parcels meet at each patch that is not periodic.
     pub walls: Vec<ParcelWall>,
     /// How the stress of the solid acts.
-    pub packing: Packing,
+    pub packing: ParcelPacking,
     /// What collisions do beside.
     pub collisions: ParcelCollisions,
 }
@@ -46,7 +46,7 @@ pub struct ParcelImpact {
 
 /// How the stress of the solid keeps parcels apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Packing {
+pub enum ParcelPacking {
     /// Not at all: parcels pass through each other.
     None,
     /// The solid fraction at the end of the step is solved for (docs/theory.md, MPC-3).

@@ -5,3 +5,4 @@ pub mod gas;
 pub mod numerics;
 pub mod parcels;
 pub mod particles;
+mod pushed_drag;

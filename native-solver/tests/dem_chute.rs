@@ -1,6 +1,11 @@
 //! Spheres down a rough chute that repeats itself along and across the flow (Silbert, Ertaş, Grest, Halsey, Levine and Plimpton, Phys.
 //! Rev. E 64 (2001) 051302, doi 10.1103/PhysRevE.64.051302, with fewer of them): gravity is inclined, and held spheres are the bottom.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout
+)]
 
 use calcine_coupler::motion::{Contacts, NewParticle};
 use calcine_coupler::part::Particles;
@@ -122,7 +127,7 @@ const BULK: std::ops::Range<usize> = 1..4;
 /// The largest differences of velocities over the largest one, and of solid fractions.
 fn apart(one: &Profile, other: &Profile) -> [f64; 2] {
     let most = |a: &[f64], b: &[f64]| {
-        let each = BULK.into_iter().map(|slab| (a[slab] - b[slab]).abs());
+        let each = BULK.clone().map(|slab| (a[slab] - b[slab]).abs());
         each.fold(0.0, f64::max)
     };
     let fastest = one.velocity.iter().copied().fold(0.0, f64::max);
@@ -161,8 +166,7 @@ fn a_periodic_chute_flows_alike_wherever_its_planes_cut() {
         "{velocity:?}"
     );
     assert!(
-        BULK.into_iter()
-            .all(|slab| (0.4..0.62).contains(&solid[slab])),
+        BULK.clone().all(|slab| (0.4..0.62).contains(&solid[slab])),
         "{solid:?}"
     );
     // What two runs of these lengths differ by.

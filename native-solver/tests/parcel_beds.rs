@@ -6,7 +6,9 @@ use std::time::Duration;
 
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::motion::{Motion, WallMotion};
-use calcine_coupler::parcels::{Packing, ParcelCollisions, ParcelImpact, ParcelMotion, ParcelWall};
+use calcine_coupler::parcels::{
+    ParcelCollisions, ParcelImpact, ParcelMotion, ParcelPacking, ParcelWall,
+};
 use calcine_coupler::part::{Bed as GasBed, ParticlePush, ParticleReceived, Particles};
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::parcels::CollisionTimes;
@@ -34,7 +36,7 @@ pub fn motion(mesh: &Mesh, restitution: f64, friction: f64) -> ParcelMotion {
                 impact: vec![impact],
             })
             .collect(),
-        packing: Packing::None,
+        packing: ParcelPacking::None,
         collisions: ParcelCollisions {
             times: CollisionTimes {
                 restitution: 1.0,

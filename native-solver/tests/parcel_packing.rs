@@ -1,11 +1,12 @@
 //! Parcels that meet each other by the averages of the mesh: the stress of the solid, damping and isotropy.
+#![allow(clippy::print_stdout)]
 
 use std::sync::Arc;
 
 use calcine_coupler::conformance::manufactured::CellShape;
 use calcine_coupler::conformance::manufactured::meshes::shaped_box;
 use calcine_coupler::mesh::Mesh;
-use calcine_coupler::parcels::{Packing, ParcelCollisions, ParcelMotion};
+use calcine_coupler::parcels::{ParcelCollisions, ParcelMotion, ParcelPacking};
 use calcine_coupler::part::{DRAG_COEFFICIENT, GAS_VELOCITY, Part, ParticlePush, Particles};
 use calcine_coupler::physics::parcels::{CollisionTimes, HarrisCrighton};
 use calcine_coupler::physics::{Vec3, sphere};
@@ -94,11 +95,11 @@ fn what_is_on_the_mesh_is_what_parcels_have() {
 #[test]
 fn stress_damping_and_isotropy_keep_the_momentum_where_there_are_no_walls() {
     let mesh = endless(0.1, 5);
-    let explicit = Packing::Explicit {
+    let explicit = ParcelPacking::Explicit {
         stress: STRESS,
         restitution: 0.9,
     };
-    for (packing, kept) in [(Packing::Implicit(STRESS), true), (explicit, false)] {
+    for (packing, kept) in [(ParcelPacking::Implicit(STRESS), true), (explicit, false)] {
         let mut rules = motion(&mesh, 1.0, 0.0);
         rules.packing = packing;
         rules.collisions = collisions(0.8, true, true);
@@ -138,7 +139,7 @@ impl Settling {
         let mut rules = motion(&mesh, 0.0, 0.0);
         rules.gravity = Vec3::z() * -9.81;
         rules.courant = 0.5;
-        rules.packing = Packing::Implicit(STIFF);
+        rules.packing = ParcelPacking::Implicit(STIFF);
         let across = 3;
         let mut parcels = Vec::new();
         for k in 0..levels {
@@ -364,7 +365,7 @@ fn parcels_that_meet_go_on_from_a_checkpoint_and_on_any_number_of_threads_to_the
         let mesh = named_box([0.1; 3], [4; 3], SIDES);
         let mut rules = motion(&mesh, 0.5, 0.2);
         rules.gravity = Vec3::z() * -9.81;
-        rules.packing = Packing::Implicit(STRESS);
+        rules.packing = ParcelPacking::Implicit(STRESS);
         rules.collisions = collisions(0.8, true, true);
         cloud(&mesh, rules, (3000, 0.4), isotropic)
     };

@@ -1,4 +1,5 @@
 //! Parcels on their ways through meshes of any cells, and their impacts on walls.
+#![allow(clippy::print_stdout)]
 
 use std::sync::Arc;
 

@@ -2,7 +2,7 @@
 
 use calcine_coupler::coordinator::RunError;
 use calcine_coupler::interior::radial::{
-    PoreGas, PorousSolid, RadialError, RadialNumerics, Resolution,
+    PoreGas, PorousSolid, RadialError, RadialNumerics, ShellResolution,
 };
 use calcine_coupler::interior::reacting::{Rate, SizeChange, SolidChemistry};
 use calcine_coupler::interior::{
@@ -141,11 +141,11 @@ fn radial(case: &Case, material: usize) -> Result<Box<dyn ParticleModel>, Assemb
     let numerics = RadialNumerics {
         grid: spec.grid,
         resolution: match own.inside {
-            Inside::Auto => Resolution::Beyond {
+            Inside::Auto => ShellResolution::Beyond {
                 temperature: spec.turns[0],
                 pressure: spec.turns[1],
             },
-            _ => Resolution::All,
+            _ => ShellResolution::All,
         },
         temperature: spec.errors[0],
         conversion: spec.errors[1],

@@ -16,7 +16,7 @@ use calcine_coupler::hold::Holds;
 use calcine_coupler::interior::reacting::{Reaction, SizeChange};
 use calcine_coupler::mesh::zone::Zone;
 use calcine_coupler::motion::{ContactLaw, Wall};
-use calcine_coupler::parcels::{Packing, ParcelCollisions};
+use calcine_coupler::parcels::{ParcelCollisions, ParcelPacking};
 pub use calcine_coupler::paths::SURROUNDINGS;
 use calcine_coupler::physics::solids::SolidSpecies;
 use calcine_coupler::setup::{GasSetup, Schedule};
@@ -193,7 +193,7 @@ pub struct ParcelSpec {
     /// Solid fraction of the closest packing.
     pub close_packing: f64,
     /// How the stress of the solid acts.
-    pub packing: Packing,
+    pub packing: ParcelPacking,
     /// Damping and isotropy.
     pub collisions: ParcelCollisions,
 }

@@ -200,9 +200,7 @@ impl Bench<'_> {
         let memory = out.iter().map(|list| lag_one(list)).fold(0.0, f64::max);
         let block = match memory > MEMORY {
             // Twice the time over which the memory of such a series fades.
-            true => (2.0 / -memory.max(MEMORY).min(0.98).ln())
-                .ceil()
-                .min(LONGEST_BLOCK),
+            true => (2.0 / -memory.min(0.98).ln()).ceil().min(LONGEST_BLOCK),
             false => 1.0,
         };
         let exact = fitted
@@ -240,7 +238,7 @@ impl Bench<'_> {
                 bootstrap: percentiles(&drawn, k, spec.level)
                     .map(|ends| ends.map(|p| space.value(k, p))),
                 bounds: [one.low, one.high],
-                at_bound: place < ON_BOUND || place > 1.0 - ON_BOUND,
+                at_bound: !(ON_BOUND..=1.0 - ON_BOUND).contains(&place),
             }
         });
         let found: Vec<FoundParameter> = found.collect();

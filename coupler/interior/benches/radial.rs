@@ -7,7 +7,7 @@
 use std::time::Instant;
 
 use calcine_interior::radial::{
-    PoreGas, PorousSolid, Radial, RadialNumerics, Resolution, ShellGrid,
+    PoreGas, PorousSolid, Radial, RadialNumerics, ShellGrid, ShellResolution,
 };
 use calcine_interior::reacting::{Rate, Reaction, SizeChange, SolidChemistry};
 use calcine_interior::{GasLines, Newcomer, ParticleModel, Surroundings, TEMPERATURE};
@@ -61,7 +61,7 @@ fn stones(radius: f64, count: u64) -> Radial {
         fractions: vec![0.0, 1.0],
     };
     let numerics = RadialNumerics {
-        resolution: Resolution::All,
+        resolution: ShellResolution::All,
         ..RadialNumerics::new(ShellGrid {
             shells: SHELLS,
             grading: 2.0,

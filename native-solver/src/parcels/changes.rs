@@ -14,7 +14,7 @@ impl NativeParcels {
             change,
             &self.rows.id,
             populations.unwrap_or(usize::MAX),
-            check::Weights::Any,
+            check::AllowedWeights::Any,
         )?;
         let resized = check::resized(change, &self.rows.id)?;
         let mut comes = super::ParcelRows::default();

@@ -21,12 +21,10 @@ use std::time::Duration;
 use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::mesh::Mesh;
 use calcine_coupler::motion::{Motion, ParticleChanges};
-use calcine_coupler::named_columns::NamedColumns;
 use calcine_coupler::numerics::parallel;
 use calcine_coupler::parcels::ParcelMotion;
 use calcine_coupler::part::{
-    Bed, DRAG_COEFFICIENT, DRAG_IMPULSE, GAS_VELOCITY, Part, ParticleFields, ParticlePush,
-    ParticleReceived, Particles, SolverInfo,
+    Bed, DRAG_IMPULSE, Part, ParticleFields, ParticlePush, ParticleReceived, Particles, SolverInfo,
 };
 use calcine_coupler::physics::{Vec3, sphere};
 use calcine_coupler::setup::ParticleSetup;
@@ -43,6 +41,7 @@ pub use track::WayEnd;
 use walls::WallFaces;
 
 use crate::particles::check;
+use crate::pushed_drag::{pushed_drag, takes};
 
 /// Parcels that move through a mesh.
 #[derive(Debug)]
@@ -133,7 +132,8 @@ impl NativeParcels {
             let message = format!("{} forces for {count} particles", push.force.len());
             return Err(self.failure(FailureKind::Protocol, message));
         }
-        let drag = self.drag_columns(&push.columns)?;
+        let drag = pushed_drag(&push.columns, count)
+            .map_err(|message| self.failure(FailureKind::Protocol, message))?;
         self.drags = drag.is_some();
         let span = window.span.motion.seconds();
         self.impulse.clear();
@@ -142,10 +142,7 @@ impl NativeParcels {
         let flight = |row: usize| {
             let mass = self.rows.mass[row];
             let (rate, gas) = match drag {
-                Some((coefficients, gas)) => (
-                    coefficients[row] / mass,
-                    Vec3::from_row_slice(&gas[3 * row..3 * row + 3]),
-                ),
+                Some(drag) => (drag.coefficient[row] / mass, Vec3::from(drag.gas[row])),
                 None => (0.0, Vec3::zeros()),
             };
             Flight {
@@ -155,33 +152,6 @@ impl NativeParcels {
             }
         };
         Ok((0..count).map(flight).collect())
-    }
-
-    /// The two columns of drag, which come together and with no others; `None` without them.
-    fn drag_columns<'a>(
-        &self,
-        columns: &'a NamedColumns,
-    ) -> Result<Option<(&'a [f64], &'a [f64])>, PartError> {
-        let refuse = |message: String| self.failure(FailureKind::Protocol, message);
-        if columns.is_empty() {
-            return Ok(None);
-        }
-        if let Some(other) = columns.iter().find(|column| !takes(column.name)) {
-            return Err(refuse(format!("it takes no column `{}`", other.name)));
-        }
-        let count = self.rows.id.len();
-        let column = |name: &str, components: usize| {
-            let found = columns.get(name, components, count);
-            found.ok_or_else(|| {
-                refuse(format!(
-                    "the column `{name}` does not have {components} values for each of {count} particles"
-                ))
-            })
-        };
-        Ok(Some((
-            column(DRAG_COEFFICIENT, 1)?,
-            column(GAS_VELOCITY, 3)?,
-        )))
     }
 
     /// The parcels as they fly.
@@ -352,11 +322,6 @@ impl NativeParcels {
         };
         self.failure(kind, error.to_string()).caused_by(error)
     }
-}
-
-/// True for the columns of a push that parcels take.
-fn takes(column: &str) -> bool {
-    [DRAG_COEFFICIENT, GAS_VELOCITY].contains(&column)
 }
 
 impl ParcelRows {

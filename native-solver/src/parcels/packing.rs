@@ -11,7 +11,7 @@
 use std::sync::Arc;
 
 use calcine_coupler::numerics::parallel;
-use calcine_coupler::parcels::Packing;
+use calcine_coupler::parcels::ParcelPacking;
 use calcine_coupler::physics::Vec3;
 use calcine_coupler::physics::parcels::HarrisCrighton;
 use rayon::prelude::*;
@@ -131,15 +131,17 @@ impl Packer {
     /// Has the stress act over a step in s; the impulse in N s that walls gave all parcels.
     pub fn act(
         &mut self,
-        packing: &Packing,
+        packing: &ParcelPacking,
         tetrahedra: &Tetrahedra,
         (parcels, amounts): (&mut [FlyingParcel], RowAmounts<'_>),
         time: f64,
     ) -> Result<Vec3, ParcelError> {
         match packing {
-            Packing::None => Ok(Vec3::zeros()),
-            Packing::Implicit(law) => self.implicit(law, tetrahedra, (parcels, amounts), time),
-            Packing::Explicit {
+            ParcelPacking::None => Ok(Vec3::zeros()),
+            ParcelPacking::Implicit(law) => {
+                self.implicit(law, tetrahedra, (parcels, amounts), time)
+            }
+            ParcelPacking::Explicit {
                 stress,
                 restitution,
             } => {

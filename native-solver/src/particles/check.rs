@@ -103,9 +103,9 @@ fn parcels(motion: &ParcelMotion, population: &[u32]) -> Result<(), NativeError>
     Ok(())
 }
 
-/// Weights that particles that come may have.
+/// AllowedWeights that particles that come may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Weights {
+pub enum AllowedWeights {
     /// Each stands for itself alone.
     One,
     /// Any positive number.
@@ -318,7 +318,7 @@ pub fn change(
     change: &ParticleChanges,
     id: &[u64],
     populations: usize,
-    weights: Weights,
+    weights: AllowedWeights,
 ) -> Result<Vec<usize>, NativeError> {
     let mut rows = Vec::with_capacity(change.remove.len());
     for &gone in &change.remove {
@@ -347,8 +347,8 @@ pub fn change(
         positive("the radius", new.radius, "m", place)?;
         positive("the density", new.density, "kg/m^3", place)?;
         match weights {
-            Weights::One => alone(new.weight, place)?,
-            Weights::Any => positive("the weight", new.weight, "", place)?,
+            AllowedWeights::One => alone(new.weight, place)?,
+            AllowedWeights::Any => positive("the weight", new.weight, "", place)?,
         }
         let rule = |value: f64| value < populations as f64;
         let known = "that of a population with a material";

@@ -11,8 +11,7 @@ use calcine_coupler::error::{FailureKind, PartError};
 use calcine_coupler::motion::{Contacts, Motion, ParticleChanges};
 use calcine_coupler::named_columns::NamedColumns;
 use calcine_coupler::part::{
-    Bed, DRAG_COEFFICIENT, DRAG_IMPULSE, GAS_VELOCITY, Part, ParticleFields, ParticlePush,
-    ParticleReceived, Particles, SolverInfo,
+    Bed, DRAG_IMPULSE, Part, ParticleFields, ParticlePush, ParticleReceived, Particles, SolverInfo,
 };
 use calcine_coupler::periodic_motion::check_period;
 use calcine_coupler::physics::{Vec3, sphere};
@@ -21,6 +20,7 @@ use calcine_coupler::supervisor::Supervisor;
 use calcine_coupler::time::{Ticks, Window};
 
 pub use crate::gas::NativeError;
+use crate::pushed_drag::{pushed_drag, takes};
 use check::check;
 use dem::energy::BedEnergy;
 use dem::{Engine, EscapedParticle, InsertedSphere, StoredContact, StoredWallContact};
@@ -234,42 +234,22 @@ impl NativeParticles {
     fn take_drag(&mut self, window: &Window, columns: &NamedColumns) -> Result<(), PartError> {
         self.drag.0.clear();
         self.drag.1.clear();
-        if columns.is_empty() {
-            return Ok(());
-        }
-        let (drag, gas) = self
-            .drag_columns(columns)
-            .map_err(|error| error.in_window(window))?;
+        let pushed = pushed_drag(columns, self.id.len()).map_err(|message| {
+            self.failure(FailureKind::Protocol, message)
+                .in_window(window)
+        })?;
+        let Some(drag) = pushed else { return Ok(()) };
         let scale = window.span.motion.seconds() / self.acted;
-        self.drag.0.extend(drag.iter().map(|drag| scale * drag));
+        self.drag
+            .0
+            .extend(drag.coefficient.iter().map(|drag| scale * drag));
         self.drag
             .1
-            .extend(gas.as_chunks::<3>().0.iter().map(|one| Vec3::from(*one)));
+            .extend(drag.gas.iter().map(|one| Vec3::from(*one)));
         if let Some(engine) = &mut self.engine {
             engine.drag(&self.drag.0, &self.drag.1);
         }
         Ok(())
-    }
-
-    /// The two columns of drag, which come together and with no others.
-    fn drag_columns<'a>(
-        &self,
-        columns: &'a NamedColumns,
-    ) -> Result<(&'a [f64], &'a [f64]), PartError> {
-        let refuse = |message: String| self.failure(FailureKind::Protocol, message);
-        if let Some(other) = columns.iter().find(|column| !takes(column.name)) {
-            return Err(refuse(format!("it takes no column `{}`", other.name)));
-        }
-        let count = self.id.len();
-        let column = |name: &str, components: usize| {
-            let found = columns.get(name, components, count);
-            found.ok_or_else(|| {
-                refuse(format!(
-                    "the column `{name}` does not have {components} values for each of {count} particles"
-                ))
-            })
-        };
-        Ok((column(DRAG_COEFFICIENT, 1)?, column(GAS_VELOCITY, 3)?))
     }
 
     /// Reports the impulse of drag that followed velocities, and adds it to that of the forces.
@@ -365,7 +345,7 @@ impl NativeParticles {
             let contacts = engine.contacts();
             populations = contacts.material_of.len().min(contacts.held.len());
         }
-        let gone = check::change(change, &self.id, populations, check::Weights::One)?;
+        let gone = check::change(change, &self.id, populations, check::AllowedWeights::One)?;
         let mut keep = vec![true; self.id.len()];
         for &row in &gone {
             keep[row] = false;
@@ -419,11 +399,6 @@ impl NativeParticles {
         self.hand_over((pairs, walls))
             .map_err(|stray| self.outside(stray))
     }
-}
-
-/// True for the columns of a push that the native particles take.
-fn takes(column: &str) -> bool {
-    [DRAG_COEFFICIENT, GAS_VELOCITY].contains(&column)
 }
 
 pub(crate) fn retain<T>(values: &mut Vec<T>, keep: &[bool]) {

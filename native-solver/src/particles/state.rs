@@ -39,6 +39,21 @@ impl NativeParticles {
         Ok(file.write(&directory.join(STATE))?)
     }
 
+    /// Number of populations that the particles may be of: those whose contacts are known, or of a frozen bed those of the setup.
+    fn populations(&self) -> usize {
+        match &self.engine {
+            Some(engine) => {
+                let contacts = engine.contacts();
+                contacts.material_of.len().min(contacts.held.len())
+            }
+            None => self
+                .population
+                .iter()
+                .max()
+                .map_or(0, |last| *last as usize + 1),
+        }
+    }
+
     /// Takes up the state that a checkpoint left in a folder.
     pub fn restore(&mut self, directory: &Path) -> Result<(), NativeError> {
         let file = StateFile::read(&directory.join(STATE))?;
@@ -55,6 +70,14 @@ impl NativeParticles {
                 "the state's list of populations",
                 population.len(),
                 count,
+            ));
+        }
+        let populations = self.populations();
+        if population.iter().any(|&one| one >= populations as u64) {
+            return Err(length(
+                "the state's highest population",
+                populations + 1,
+                populations,
             ));
         }
         self.id = id.to_vec();
@@ -76,17 +99,7 @@ impl NativeParticles {
             return Ok(());
         };
         let contacts = engine.contacts();
-        let (known, walls) = (
-            contacts.material_of.len().min(contacts.held.len()),
-            contacts.walls.len(),
-        );
-        if self
-            .population
-            .iter()
-            .any(|&population| population as usize >= known)
-        {
-            return Err(length("the state's highest population", known + 1, known));
-        }
+        let walls = contacts.walls.len();
         let memories = memories(&file, count, walls)?;
         self.steps = file.u64s("steps")?.first().copied().unwrap_or(0) as i64;
         let state = engine_state(&file, count, engine.servo_states().len())?;

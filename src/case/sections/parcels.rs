@@ -1,6 +1,6 @@
 //! `[motion.parcels]`: how parcels move.
 
-use calcine_coupler::parcels::{Packing, ParcelCollisions};
+use calcine_coupler::parcels::{ParcelCollisions, ParcelPacking};
 use calcine_coupler::physics::parcels::{CollisionTimes, HarrisCrighton};
 
 use crate::case::model::{Coupling, FreeMotion, MotionKind, MotionSpec, ParcelSpec, Population};
@@ -61,12 +61,12 @@ pub(super) fn parcels(motion: &TableReader<'_>) -> Option<ParcelSpec> {
         most_steps: most_steps?,
         close_packing: stress.close_packing,
         packing: match scheme {
-            PackingScheme::Implicit => Packing::Implicit(stress),
-            PackingScheme::Explicit => Packing::Explicit {
+            PackingScheme::Implicit => ParcelPacking::Implicit(stress),
+            PackingScheme::Explicit => ParcelPacking::Explicit {
                 stress,
                 restitution,
             },
-            PackingScheme::None => Packing::None,
+            PackingScheme::None => ParcelPacking::None,
         },
         collisions: ParcelCollisions {
             times: CollisionTimes {

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::CurveFileError;
-use super::columns::{ColumnChoice, CurveColumn, FoundColumn, find};
+use super::columns::{ColumnChoice, FoundColumn, find};
+use super::curve_column::CurveColumn;
 use super::sheet::{Sheet, SheetForm, decode, sheet};
 
 /// How a file of curves is read.
@@ -197,18 +198,28 @@ impl Columns {
             );
         }
         let written = |k: usize, found: &FoundColumn| sheet.rows[rows[k]][found.place];
-        if let Some(k) = (1..time.len()).find(|&k| time[k] <= time[k - 1]) {
+        let since: Vec<f64> = time.iter().map(|t| t - time[0]).collect();
+        if let Some(k) = (1..time.len()).find(|&k| since[k] <= since[k - 1]) {
             let (before, after) = (written(k - 1, &self.time), written(k, &self.time));
             let unit = &self.time.unit;
-            let (fact, help) = match time[k] == time[k - 1] {
-                true => (
+            let (fact, help) = if time[k] == time[k - 1] {
+                (
                     format!("the time {after} {unit} stands there twice"),
                     "remove one of the rows",
-                ),
-                false => (
+                )
+            } else if time[k] > time[k - 1] {
+                let first = written(0, &self.time);
+                (
+                    format!(
+                        "the times {before} and {after} {unit} are too near each other, so far from the first one, {first} {unit}"
+                    ),
+                    "correct the first row, or export times from the start of the run",
+                )
+            } else {
+                (
                     format!("the time goes back from {before} to {after} {unit}"),
                     "give each run a file of its own, or a column that tells runs apart as `columns.run`",
-                ),
+                )
             };
             return wrong(k, fact, help);
         }
@@ -282,10 +293,9 @@ impl Columns {
             let sum: f64 = loss_rate.iter().sum();
             loss_rate.iter_mut().for_each(|r| *r *= sum.signum());
         }
-        let start = time[0];
         Ok(MeasuredRun {
             label,
-            time: time.iter().map(|t| t - start).collect(),
+            time: since,
             temperature,
             mass,
             loss_rate,

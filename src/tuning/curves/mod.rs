@@ -6,13 +6,15 @@
 
 mod columns;
 mod curve;
+mod curve_column;
 mod sheet;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-pub use columns::{ColumnChoice, CurveColumn};
+pub use columns::ColumnChoice;
 pub use curve::{CurveFile, CurveRules, MeasuredRun, parse_curves, read_curves};
+pub use curve_column::CurveColumn;
 pub use sheet::{Delimiter, SheetForm};
 
 /// What is wrong with a file of curves: the fact, where it stands, what to do.

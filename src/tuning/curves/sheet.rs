@@ -338,7 +338,7 @@ fn headings(
     // A line of units below the headings: all of them short, and the line above has as many fields.
     let is_units = last
         .iter()
-        .all(|one| one.is_empty() || super::columns::is_unit(one));
+        .all(|one| one.is_empty() || super::curve_column::is_unit(one));
     let before = above.len().checked_sub(2).map(|place| above[place]);
     match before.and_then(|(line, text)| Some((line, fields(text)?))) {
         Some((line, names)) if is_units => (names, Some(line), last),

@@ -36,7 +36,7 @@ pub struct PoreGas {
 
 /// When a particle has its shells.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Resolution {
+pub enum ShellResolution {
     /// It is one shell.
     One,
     /// From the start.
@@ -56,7 +56,7 @@ pub struct RadialNumerics {
     /// The shells.
     pub grid: ShellGrid,
     /// When particles have them.
-    pub resolution: Resolution,
+    pub resolution: ShellResolution,
     /// Error of the temperature in a step in K, a mean over the particle.
     pub temperature: f64,
     /// Error of what reactions turn over in a step, as a share of the solids of the particle.
@@ -68,7 +68,7 @@ impl RadialNumerics {
     pub fn new(grid: ShellGrid) -> Self {
         Self {
             grid,
-            resolution: Resolution::All,
+            resolution: ShellResolution::All,
             temperature: 1.0,
             conversion: 1e-3,
         }

@@ -26,7 +26,7 @@ mod workspace;
 
 pub use attempt::RadialStalled;
 pub use grid::ShellGrid;
-pub use material::{PoreGas, PorousSolid, RadialNumerics, Resolution};
+pub use material::{PoreGas, PorousSolid, RadialNumerics, ShellResolution};
 pub use physics::RadialError;
 
 use self::physics::RadialPhysics;
@@ -81,7 +81,7 @@ impl Radial {
             .collect();
         let physics = RadialPhysics::new(chemistry, solid, pores, numerics)?;
         let shells = match numerics.resolution {
-            Resolution::One => 1,
+            ShellResolution::One => 1,
             _ => numerics.grid.shells,
         };
         let layout = RowLayout {

@@ -6,7 +6,7 @@ use calcine_physics::thermo::Element;
 
 use super::Radial;
 use super::columns::{RadialColumn, kinds};
-use super::material::Resolution;
+use super::material::ShellResolution;
 use super::physics::RadialError;
 use super::state::{RowLayout, TellLayout};
 use crate::column::{ColumnKind, ColumnShape, Ragged, StateColumn};
@@ -210,7 +210,7 @@ impl ParticleModel for Radial {
                 self.committed[p * width..(p + 1) * width].copy_from_slice(&row[..width]);
                 let tell = &row[self.tell.from..];
                 let hidden = [tell[TellLayout::HIDDEN], tell[TellLayout::HIDDEN + 1]];
-                if let Resolution::Beyond {
+                if let ShellResolution::Beyond {
                     temperature,
                     pressure,
                 } = self.physics.numerics.resolution
@@ -264,8 +264,8 @@ impl Radial {
         let layout = self.layout;
         let mut row = vec![0.0; layout.width()];
         let shells = match self.physics.numerics.resolution {
-            Resolution::All => layout.shells,
-            Resolution::One | Resolution::Beyond { .. } => 1,
+            ShellResolution::All => layout.shells,
+            ShellResolution::One | ShellResolution::Beyond { .. } => 1,
         };
         row[RowLayout::SURFACE] = kelvin;
         row[layout.first_mass()] = one.mass;

@@ -4,7 +4,7 @@ use calcine_numerics::batch::each_row;
 
 use super::Radial;
 use super::attempt::{RadialOutcome, RadialStalled};
-use super::material::Resolution;
+use super::material::ShellResolution;
 use super::state::{RowLayout, TellLayout};
 use super::transport::Outside;
 use super::workspace::RadialWorkspace;
@@ -110,7 +110,7 @@ impl Radial {
         row[n.start..n.start + shells * s].copy_from_slice(&ws.start.amount);
         row[gas.start..gas.start + shells * g].copy_from_slice(&ws.start_gas);
         let hidden = match self.physics.numerics.resolution {
-            Resolution::Beyond { .. } if shells == 1 => hidden(ws, &outside),
+            ShellResolution::Beyond { .. } if shells == 1 => hidden(ws, &outside),
             _ => [0.0; 2],
         };
         let flow = self.tell.flow();

@@ -4,7 +4,7 @@ use calcine_physics::thermo::{Element, Species};
 
 use super::support::*;
 use crate::model::{At, ParticleModel};
-use crate::radial::{RadialNumerics, Resolution};
+use crate::radial::{RadialNumerics, ShellResolution};
 
 #[test]
 fn mass_elements_and_energy_close_in_every_attempt() {
@@ -74,7 +74,7 @@ fn rows_have_the_same_bits_alone_and_among_others_on_any_number_of_threads() {
             .unwrap();
         pool.install(|| {
             let numerics = RadialNumerics {
-                resolution: Resolution::Beyond {
+                resolution: ShellResolution::Beyond {
                     temperature: 2.0,
                     pressure: 0.1,
                 },

@@ -10,7 +10,7 @@ use calcine_physics::sphere;
 use calcine_physics::thermo::Mixture;
 
 use crate::model::{GasLines, Newcomer, ParticleModel, Surroundings, Transfer};
-use crate::radial::{PoreGas, PorousSolid, Radial, RadialNumerics, Resolution, ShellGrid};
+use crate::radial::{PoreGas, PorousSolid, Radial, RadialNumerics, ShellGrid, ShellResolution};
 use crate::reacting::{Rate, Reaction, SizeChange, SolidChemistry};
 use crate::thin::TEMPERATURE;
 
@@ -135,7 +135,7 @@ pub fn grid(shells: usize) -> ShellGrid {
 pub fn one_step(grid: ShellGrid) -> RadialNumerics {
     RadialNumerics {
         grid,
-        resolution: Resolution::All,
+        resolution: ShellResolution::All,
         temperature: f64::INFINITY,
         conversion: f64::INFINITY,
     }
