@@ -241,7 +241,8 @@ fn a_rate_law_of_another_program_is_read_with_its_nested_tables() {
         ),
         (
             "rate = { factor = \"0.3 m/s\", slowed = { share = 1 }, orders = { CO2 = 1 } }",
-            "`reactions[0].rate.orders` does not go with law = \"halved-core\"; remove it, or write law = \"power-law\"",
+            "`reactions[0].rate.orders` does not go with law = \"halved-core\"; remove it, or write law = \"power-law\", \
+             \"first-order\", \"contracting-area\", \"contracting-volume\", \"nucleation\", \"random-pore\"",
         ),
     ] {
         let told = limestone(&format!("law = \"halved-core\"\n{keys}")).unwrap_err();

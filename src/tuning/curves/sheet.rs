@@ -160,6 +160,20 @@ impl Manner {
         }
         best
     }
+
+    /// Where the first stretch of rows of this width begins that is long enough for a table, so that a line that is no row
+    /// is told of rather than taken for a heading of what follows it.
+    fn first_row(self, lines: &[(usize, &str)], width: usize) -> Option<usize> {
+        let is_row = |line: &str| self.row(line).is_some_and(|row| row.len() == width);
+        let mut count = 0;
+        for (place, (_, line)) in lines.iter().enumerate() {
+            count = if is_row(line) { count + 1 } else { 0 };
+            if count == LEAST_ROWS {
+                return Some(place + 1 - LEAST_ROWS);
+            }
+        }
+        None
+    }
 }
 
 /// Finds the columns in a text.
@@ -175,7 +189,8 @@ pub(super) fn sheet(path: &Path, text: &str, form: SheetForm) -> Result<Sheet, C
         return Err(CurveFileError::new(path, None, "it is empty", help));
     }
     let manner = manner(path, &lines, form)?;
-    let (start, _, width) = manner.stretch(&lines);
+    let (longest, _, width) = manner.stretch(&lines);
+    let start = manner.first_row(&lines, width).unwrap_or(longest);
     let above = &lines[..start];
     let (headings, heading_line, units) = headings(above, manner.delimiter, width);
     let (mut rows, mut numbers) = (Vec::new(), Vec::new());
