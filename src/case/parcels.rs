@@ -71,13 +71,26 @@ fn alike(one: &Wall, other: &Wall) -> bool {
     one.material == other.material && one.motion == other.motion
 }
 
-/// The wall nearest to a boundary face, no farther from it than the centre of its cell is.
+/// The wall nearest to a boundary face of those that it lies in: no point of the face is farther from it than half of
+/// its shortest edge, as faces that only begin at a wall are.
 fn nearest<'a>(case: &'a Case, mesh: &Mesh, face: usize) -> Option<&'a Wall> {
-    let centre = mesh.face_centre()[face];
-    let depth = (centre - mesh.cell_centre()[mesh.owner()[face] as usize]).norm();
-    let with_distance = case.walls.iter().map(|wall| (wall, distance(wall, centre)));
-    let near = with_distance.filter(|(_, distance)| *distance < depth);
-    near.min_by(|a, b| a.1.total_cmp(&b.1))
+    let all = &mesh.topology().points;
+    let points: Vec<Vec3> = mesh
+        .face_points(face)
+        .iter()
+        .map(|&point| all[point as usize])
+        .collect();
+    let next = points.iter().cycle().skip(1);
+    let edges = points.iter().zip(next).map(|(a, b)| (b - a).norm());
+    let shortest = edges.fold(f64::INFINITY, f64::min);
+    let farthest = |wall: &Wall| {
+        let distances = points.iter().map(|&point| distance(wall, point));
+        distances.fold(0.0, f64::max)
+    };
+    let with_distance = case.walls.iter().map(|wall| (wall, farthest(wall)));
+    let within = with_distance.filter(|(_, distance)| *distance < 0.5 * shortest);
+    within
+        .min_by(|a, b| a.1.total_cmp(&b.1))
         .map(|(wall, _)| wall)
 }
 

@@ -49,7 +49,8 @@ pub(super) fn read(root: &TableReader<'_>) -> Option<Coupling> {
 /// Drag within a window acts on particles that move.
 pub(super) fn check_drag(root: &TableReader<'_>, particles: &[Population]) {
     let moves = |population: &Population| population.motion != MotionSpec::Frozen;
-    if particles.iter().any(moves) {
+    // Particles that could not be read may move.
+    if particles.is_empty() || particles.iter().any(moves) {
         return;
     }
     if let Some(section) = root.table("coupling").filter(|one| one.has("window_drag")) {

@@ -301,7 +301,8 @@ fn doubled_commas(
     manner: Manner,
     width: usize,
 ) -> Result<(), CurveFileError> {
-    let (start, ..) = manner.stretch(lines);
+    let (longest, ..) = manner.stretch(lines);
+    let start = manner.first_row(lines, width).unwrap_or(longest);
     let Some((_, heading)) = start.checked_sub(1).map(|above| lines[above]) else {
         return Ok(());
     };

@@ -135,10 +135,7 @@ mod tests {
     #[test]
     fn rough_contacts_conduct_nearly_as_their_force() {
         // With the asperities alone G goes with r² P^0.95, that is δ^1.475; the force with δ^1.5.
-        let rough = RoughContact {
-            height: 1e-2,
-            ..LAW
-        };
+        let rough = RoughContact { height: 1.0, ..LAW };
         let ratio = rough.conductance(&contact(2e-7)) / rough.conductance(&contact(1e-7));
         assert!((ratio.log2() - 1.475).abs() < 1e-4, "{ratio}");
         assert_eq!(rough.conductance(&contact(0.0)), 0.0);
