@@ -1,8 +1,8 @@
 //! Bond's law with particles that break in two.
 
-use calcine_physics::dimension::Dimension;
-use calcine_physics::law::{Bound, LawEntry, LawParameter};
+use calcine_physics::law::LawEntry;
 
+use super::bond::{POWER, WORK_INDEX};
 use super::model::MillLaw;
 use super::{BondLaw, BondLength};
 use crate::distribution::quantile;
@@ -108,26 +108,7 @@ pub(super) static LAW: LawEntry<dyn MillLaw> = LawEntry {
     name: "bond-bimodal",
     summary: "Particles that break in two, to the x80 of Bond's law.",
     source: "Bond, Trans. AIME 193 (1952) 484; as the crusher of Dyssol, SoftwareX 12 (2020) 100572, doi 10.1016/j.softx.2020.100572",
-    parameters: &[
-        LawParameter {
-            name: "work_index",
-            dimension: Dimension::ENERGY_OF_MASS,
-            bound: Bound::Positive,
-            default: None,
-            needed_with: None,
-            meaning: "Work index; literature has it in kWh per (short) ton.",
-            example: "\"7.5 kWh/t\"",
-        },
-        LawParameter {
-            name: "power",
-            dimension: Dimension::POWER,
-            bound: Bound::Positive,
-            default: None,
-            needed_with: None,
-            meaning: "Power drawn.",
-            example: "\"0.8 kW\"",
-        },
-    ],
+    parameters: &[WORK_INDEX, POWER],
     tables: &[],
     make: |values| {
         Box::new(BondBimodal {
@@ -145,26 +126,7 @@ pub(super) static IN_MILLIMETRES: LawEntry<dyn MillLaw> = LawEntry {
     name: "bond-mm-bimodal",
     summary: "The same with sizes in mm where Bond has them in µm, as Dyssol computes it.",
     source: "Bond, Trans. AIME 193 (1952) 484; as the crusher of Dyssol, SoftwareX 12 (2020) 100572, doi 10.1016/j.softx.2020.100572",
-    parameters: &[
-        LawParameter {
-            name: "work_index",
-            dimension: Dimension::ENERGY_OF_MASS,
-            bound: Bound::Positive,
-            default: None,
-            needed_with: None,
-            meaning: "Work index; literature has it in kWh per (short) ton.",
-            example: "\"7.5 kWh/t\"",
-        },
-        LawParameter {
-            name: "power",
-            dimension: Dimension::POWER,
-            bound: Bound::Positive,
-            default: None,
-            needed_with: None,
-            meaning: "Power drawn.",
-            example: "\"0.8 kW\"",
-        },
-    ],
+    parameters: &[WORK_INDEX, POWER],
     tables: &[],
     make: |values| {
         Box::new(BondBimodal {

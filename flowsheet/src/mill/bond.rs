@@ -1,6 +1,31 @@
 //! Bond's law.
 
+use calcine_physics::dimension::Dimension;
+use calcine_physics::law::{Bound, LawParameter};
+
 use crate::PlantError;
+
+/// Key of the work index, for mills by this law.
+pub(super) const WORK_INDEX: LawParameter = LawParameter {
+    name: "work_index",
+    dimension: Dimension::ENERGY_OF_MASS,
+    bound: Bound::Positive,
+    default: None,
+    needed_with: None,
+    meaning: "Work index; literature has it in kWh per (short) ton.",
+    example: "\"7.5 kWh/t\"",
+};
+
+/// Key of the power.
+pub(super) const POWER: LawParameter = LawParameter {
+    name: "power",
+    dimension: Dimension::POWER,
+    bound: Bound::Positive,
+    default: None,
+    needed_with: None,
+    meaning: "Power drawn.",
+    example: "\"0.8 kW\"",
+};
 
 /// Length by which Bond's law divides sizes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

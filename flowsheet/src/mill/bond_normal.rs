@@ -3,10 +3,22 @@
 use calcine_physics::dimension::Dimension;
 use calcine_physics::law::{Bound, LawEntry, LawParameter};
 
+use super::bond::{POWER, WORK_INDEX};
 use super::model::MillLaw;
 use super::{BondLaw, BondLength};
 use crate::distribution::{normal_shares, quantile};
 use crate::{PlantError, SizeGrid, Transformation};
+
+/// Key of the product's deviation.
+const DEVIATION: LawParameter = LawParameter {
+    name: "deviation",
+    dimension: Dimension::LENGTH,
+    bound: Bound::Positive,
+    default: None,
+    needed_with: None,
+    meaning: "Standard deviation of the product.",
+    example: "\"0.1 mm\"",
+};
 
 /// A mill whose product is normally distributed, with the x₈₀ of Bond's law.
 ///
@@ -49,35 +61,7 @@ pub(super) static LAW: LawEntry<dyn MillLaw> = LawEntry {
     name: "bond-normal",
     summary: "A normal distribution of the x80 of Bond's law.",
     source: "Bond, Trans. AIME 193 (1952) 484; as the crusher of Dyssol, SoftwareX 12 (2020) 100572, doi 10.1016/j.softx.2020.100572",
-    parameters: &[
-        LawParameter {
-            name: "work_index",
-            dimension: Dimension::ENERGY_OF_MASS,
-            bound: Bound::Positive,
-            default: None,
-            needed_with: None,
-            meaning: "Work index; literature has it in kWh per (short) ton.",
-            example: "\"7.5 kWh/t\"",
-        },
-        LawParameter {
-            name: "power",
-            dimension: Dimension::POWER,
-            bound: Bound::Positive,
-            default: None,
-            needed_with: None,
-            meaning: "Power drawn.",
-            example: "\"0.8 kW\"",
-        },
-        LawParameter {
-            name: "deviation",
-            dimension: Dimension::LENGTH,
-            bound: Bound::Positive,
-            default: None,
-            needed_with: None,
-            meaning: "Standard deviation of the product.",
-            example: "\"0.1 mm\"",
-        },
-    ],
+    parameters: &[WORK_INDEX, POWER, DEVIATION],
     tables: &[],
     make: |values| {
         Box::new(BondNormal {
@@ -96,35 +80,7 @@ pub(super) static IN_MILLIMETRES: LawEntry<dyn MillLaw> = LawEntry {
     name: "bond-mm-normal",
     summary: "The same with sizes in mm where Bond has them in µm, as Dyssol computes it.",
     source: "Bond, Trans. AIME 193 (1952) 484; as the crusher of Dyssol, SoftwareX 12 (2020) 100572, doi 10.1016/j.softx.2020.100572",
-    parameters: &[
-        LawParameter {
-            name: "work_index",
-            dimension: Dimension::ENERGY_OF_MASS,
-            bound: Bound::Positive,
-            default: None,
-            needed_with: None,
-            meaning: "Work index; literature has it in kWh per (short) ton.",
-            example: "\"7.5 kWh/t\"",
-        },
-        LawParameter {
-            name: "power",
-            dimension: Dimension::POWER,
-            bound: Bound::Positive,
-            default: None,
-            needed_with: None,
-            meaning: "Power drawn.",
-            example: "\"0.8 kW\"",
-        },
-        LawParameter {
-            name: "deviation",
-            dimension: Dimension::LENGTH,
-            bound: Bound::Positive,
-            default: None,
-            needed_with: None,
-            meaning: "Standard deviation of the product.",
-            example: "\"0.1 mm\"",
-        },
-    ],
+    parameters: &[WORK_INDEX, POWER, DEVIATION],
     tables: &[],
     make: |values| {
         Box::new(BondNormal {
