@@ -27,6 +27,10 @@ const CHUNK_VALUES: usize = 1 << 16;
 /// HDF5's cache of metadata in bytes; it takes some fifteen times as much memory. A snapshot is written once and not looked at again.
 const METADATA_CACHE: usize = 1 << 16;
 
+/// Slots and bytes of the cache of chunks of each open dataset: rows of the series come at the end, in some of its last chunk. By
+/// HDF5's defaults each column would come to hold a megabyte of chunks that are full.
+const CHUNK_CACHE: (usize, usize) = (521, 1 << 14);
+
 /// The open file.
 pub(super) struct Store {
     path: PathBuf,
@@ -223,7 +227,11 @@ fn unlocked() -> FileBuilder {
         max_size: METADATA_CACHE,
         ..MetadataCacheConfig::default()
     };
-    builder.with_fapl(|access| access.file_locking(false).mdc_config(&cache));
+    let (slots, bytes) = CHUNK_CACHE;
+    builder.with_fapl(|access| {
+        let access = access.file_locking(false).mdc_config(&cache);
+        access.chunk_cache(slots, bytes, 1.0)
+    });
     builder
 }
 
