@@ -165,6 +165,7 @@ Foam::calcine::gas::gas
     committed_.mass = mass_;
     committed_.enthalpy = thermo_->he().primitiveField();
     committed_.temperature = thermo_->T().primitiveField();
+    committed_.density = density();
     committed_.velocity = startVelocity_;
     committed_.pressure = p_.primitiveField();
     committed_.basePressure = pRef_;
@@ -305,6 +306,7 @@ void Foam::calcine::gas::restore()
     }
     U_.primitiveFieldRef() = committed_.velocity;
     p_.primitiveFieldRef() = committed_.pressure;
+    p_.correctBoundaryConditions();
     modelPressure_ == dimensionedScalar("p", dimPressure, committed_.basePressure);
     pressureGradient_ = committed_.pressureGradient;
     pressureAlong_ = committed_.pressureGradient;
@@ -405,6 +407,7 @@ void Foam::calcine::gas::resume(const fileName& directory)
     thermo_->he().correctBoundaryConditions();
     thermo_->correct();
     models_->read(directory);
+    resumed_ = true;
 }
 
 
@@ -431,6 +434,7 @@ void Foam::calcine::gas::takeOver(const fileName& directory)
     restore();
     thermo_->he().correctBoundaryConditions();
     thermo_->correct();
+    resumed_ = false;
 }
 
 
@@ -438,6 +442,7 @@ void Foam::calcine::gas::attempt(const window& when, const exchange& given, repo
 {
     const clockValue begun(true);
     reactionTime_ = 0;
+    resumed_ = false;
     given_ = given;
     restore();
     // Reactions are split from transport, and particles follow the fractions at the window's end: both are first order anyhow.
@@ -462,6 +467,7 @@ void Foam::calcine::gas::commit()
     committed_.mass = mass_;
     committed_.enthalpy = thermo_->he().primitiveField();
     committed_.temperature = thermo_->T().primitiveField();
+    committed_.density = density();
     forAll(committed_.composition, k)
     {
         committed_.composition[k] = species_->Y()[k].primitiveField();
@@ -517,7 +523,7 @@ void Foam::calcine::gas::guard(bool early) const
 
 const Foam::scalarField& Foam::calcine::gas::temperature() const
 {
-    return thermo_->T().primitiveField();
+    return resumed_ ? committed_.temperature : thermo_->T().primitiveField();
 }
 
 
@@ -529,7 +535,7 @@ Foam::scalarField Foam::calcine::gas::absolutePressure() const
 
 Foam::scalarField Foam::calcine::gas::gasDensity() const
 {
-    return density();
+    return resumed_ ? committed_.density : density();
 }
 
 
