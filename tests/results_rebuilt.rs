@@ -126,10 +126,19 @@ fn results_that_a_checkpoint_counts_on_and_that_are_gone_are_named_and_nothing_i
     let bytes = fs::read(&kept).unwrap();
     fs::write(&snapshot, &bytes[..bytes.len() - 200]).unwrap();
     fs::write(out.join("results.h5"), "torn").unwrap();
-    refused(&[
+    let another = [
         "particles_0001.vtp is not as the run left it",
-        "beyond the end of the file",
-    ]);
+        "it has another content than was written",
+    ];
+    refused(&another);
+    // One bit of a number that is changed, and another snapshot in its place.
+    let mut changed = bytes.clone();
+    let middle = bytes.len() / 2;
+    changed[middle] ^= 0x10;
+    fs::write(&snapshot, &changed).unwrap();
+    refused(&another);
+    fs::copy(out.join("particles/particles_0000.vtp"), &snapshot).unwrap();
+    refused(&another);
     // Put back, it goes on; what was in the series after the checkpoint is cut.
     fs::rename(&kept, &snapshot).unwrap();
     let output = resumed(&out);

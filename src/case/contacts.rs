@@ -7,10 +7,12 @@ use calcine_coupler::motion::{
 };
 use calcine_coupler::periodic_motion::{self, PeriodicMotionError};
 use calcine_coupler::physics::contact::time_step;
+use calcine_coupler::physics::Vec3;
 use calcine_coupler::setup::ParticleSetup;
 use calcine_coupler::time::Ticks;
 use thiserror::Error;
 
+use super::fall;
 use super::impact;
 use super::model::{Case, FreeMotion, MaterialSpec, MotionKind, MotionSpec};
 use super::moving::moving_spheres;
@@ -286,6 +288,17 @@ fn walls(case: &Case, mut factors: impl Iterator<Item = f64>) -> Result<Vec<Wall
     case.walls.iter().map(quicker).collect()
 }
 
+/// Largest speed in m/s with which two particles, or one and a wall at rest, can approach at the start: at most the diagonal of the
+/// box about all velocities and zero, and twice the fastest.
+fn approach(velocities: &[Vec3]) -> f64 {
+    let zero = (Vec3::zeros(), Vec3::zeros());
+    let (low, high) = velocities
+        .iter()
+        .fold(zero, |(low, high), one| (low.inf(one), high.sup(one)));
+    let fastest = velocities.iter().map(|one| one.norm()).fold(0.0, f64::max);
+    (high - low).norm().min(2.0 * fastest)
+}
+
 /// Speed in m/s of the start, of walls, or of a fall through the mesh, whichever is largest.
 fn fastest(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> f64 {
     let [low, high] = mesh.bounds();
@@ -294,7 +307,7 @@ fn fastest(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> f64 {
         true => (2.0 * gravity * (high - low).dot(&case.gas.gravity.abs()) / gravity).sqrt(),
         false => 0.0,
     };
-    let start = setup.velocity.iter().map(|velocity| velocity.norm());
+    let start = std::iter::once(approach(&setup.velocity));
     let moving = case.walls.iter().map(|wall| wall.motion.largest_speed());
     start.chain(moving).fold(fall, f64::max)
 }
@@ -387,12 +400,23 @@ pub(super) fn warnings(case: &Case, mesh: &Mesh, setup: &ParticleSetup) -> Vec<S
     let impacts = impact::hardest(case, motion, setup, fastest(case, mesh, setup));
     let impact = impacts.and_then(|impacts| impacts.warning());
     let servos = servo_cautions::all(case, mesh, setup);
-    impact.into_iter().chain(step).chain(servos).collect()
+    let falls = fall::out_of_the_mesh(case, mesh, setup, contacts);
+    let all = impact.into_iter().chain(step).chain(servos);
+    all.chain(falls).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn particles_that_fly_towards_each_other_approach_faster_than_each_flies() {
+        let x = Vec3::x();
+        assert_eq!(approach(&[x, -x]), 2.0);
+        assert_eq!(approach(&[x, -0.5 * x]), 1.5);
+        assert_eq!(approach(&[2.0 * x, x]), 2.0, "against a wall at rest");
+        assert_eq!(approach(&[]), 0.0);
+    }
 
     /// Glass of 2500 kg/m³, 5 GPa, 0.25 and a radius of 1 mm, at 1 m/s, evaluated apart.
     #[test]

@@ -7,6 +7,7 @@ pub mod cautions;
 mod check;
 pub mod contacts;
 pub mod expectations;
+mod fall;
 mod flow_numbers;
 mod flow_time;
 mod impact;

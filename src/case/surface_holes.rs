@@ -103,14 +103,20 @@ fn hole(rim: &[OpenEdge], places: &[Vec3]) -> Option<Hole> {
         at = next;
     }
     let normal = area.try_normalize(0.0)?;
-    let goes_on = rim.iter().all(|edge| {
+    let mut goes_on = false;
+    for edge in rim {
         let [from, to] = edge.ends.map(|corner| places[corner]);
         let along = (to - from).normalize();
         // On which side of the edge a place is.
         let aside = |place: Vec3| (place - from) - along * (place - from).dot(&along);
-        let outside = aside(edge.third).dot(&aside(centre)) < 0.0;
-        outside && edge.normal.dot(&normal).abs() > SMOOTH
-    });
+        let side = aside(edge.third).dot(&aside(centre));
+        let flat = edge.normal.dot(&normal).abs() > SMOOTH;
+        if flat && side > 0.0 {
+            // The surface lies within the rim: it ends here.
+            return None;
+        }
+        goes_on |= flat && side < 0.0;
+    }
     goes_on.then(|| Hole {
         centre,
         width: 2.0 * (area.norm() / std::f64::consts::PI).sqrt(),
@@ -166,6 +172,36 @@ mod tests {
             triangles.remove(k);
         }
         assert_eq!(holes(&triangles, 0.1).len(), 3);
+    }
+
+    /// One that has only the other half of its face beside it in its plane.
+    #[test]
+    fn a_triangle_that_a_box_lacks_is_a_hole() {
+        let corner = |k: usize| {
+            let bit = |axis: usize| 0.1 * ((k >> axis) & 1) as f64;
+            Vec3::new(bit(0), bit(1), bit(2))
+        };
+        let faces = [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
+        let halves = faces.into_iter().flat_map(|[a, b, c, d]| {
+            let [a, b, c, d] = [a, b, c, d].map(corner);
+            [[a, b, c], [a, c, d]]
+        });
+        let triangles: Vec<_> = halves.collect();
+        assert_eq!(holes(&triangles, 0.1), []);
+        for lacking in 0..triangles.len() {
+            let mut open = triangles.clone();
+            open.remove(lacking);
+            assert_eq!(holes(&open, 0.1).len(), 1, "{lacking}");
+        }
+        // Without a whole face it is a box that is open there.
+        assert_eq!(holes(&triangles[2..], 0.1), []);
     }
 
     #[test]

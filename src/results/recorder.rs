@@ -63,8 +63,6 @@ pub struct Recorder {
     /// False where `results.h5` of the run to go on with may be in the middle of a change.
     store_is_closed: bool,
     counters: Counters,
-    /// Snapshots whose files are on the disk.
-    flushed: usize,
     /// Wall times of the processes before this one.
     before: WallTimes,
     /// Their processor times.
@@ -113,7 +111,6 @@ impl Recorder {
             directory: out.to_owned(),
             resumed: resume.is_some(),
             store_is_closed: restored.store_is_closed,
-            flushed: counters.snapshots.len(),
             before: counters.wall,
             processor_before: counters.processor,
             gas_phases_before: counters.gas_phases.clone(),
@@ -197,6 +194,7 @@ impl Recorder {
             if let Ok(store) = Store::resume(&path, columns, rows, snapshots.len()) {
                 return Ok(store);
             }
+            resume::check_snapshots(&self.directory, &counters.sums)?;
         }
         tracing::info!(
             "{STORE} is made anew from {SERIES} and {} snapshots",
@@ -246,6 +244,7 @@ impl Recorder {
 
     fn save(&mut self, moment: &CommittedState<'_>, directory: &Path) -> Result<(), ResultsError> {
         self.flush()?;
+        resume::seal(&self.directory, &mut self.counters)?;
         let mut counters = self.counters.clone();
         if let Some(open) = &mut self.open {
             counters.series = open.table.mark()?;
@@ -253,8 +252,7 @@ impl Recorder {
         counters.wall = self.wall(moment.timing);
         counters.processor = self.processor(moment.timing);
         counters.gas_phases = self.gas_phases(moment.timing);
-        resume::save(&self.directory, directory, counters, self.flushed)?;
-        self.flushed = self.counters.snapshots.len();
+        resume::save(&self.directory, directory, counters)?;
         self.summarise(moment, Verdict::Running)
     }
 

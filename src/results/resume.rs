@@ -5,6 +5,7 @@ use std::fs::{self, File};
 use std::io::ErrorKind;
 use std::path::Path;
 
+use calcine_coupler::coordinator::sum_of_file;
 use serde::{Deserialize, Serialize};
 
 use super::difference;
@@ -23,7 +24,7 @@ use crate::case::model::Case;
 const COUNTERS: &str = "recorder.json";
 
 /// Raised with every change of what is counted.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// Where the recorder stands: with the files of the results folder, cut back to it, all that it needs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -52,6 +53,9 @@ pub(super) struct Counters {
     /// The snapshots written.
     #[serde(default)]
     pub snapshots: Vec<SnapshotMoment>,
+    /// SHA-256 of the file of the gas and of that of the particles of each.
+    #[serde(default)]
+    pub sums: Vec<[String; 2]>,
     /// Ids of the particles that have a column of their own.
     pub tracked: Vec<u64>,
     /// Quantities whose time has come.
@@ -80,23 +84,46 @@ pub(super) struct Counters {
     pub gas_phases: BTreeMap<String, f64>,
 }
 
-/// Flushes a result directory's files to the disk, those of the snapshots from a number on, and writes the counters into a checkpoint
-/// directory. What this takes does not depend on how much the results are.
+/// Flushes the files of the snapshots that came since the last checkpoint to the disk, and takes their sums.
+pub(super) fn seal(results: &Path, counters: &mut Counters) -> Result<(), ResultsError> {
+    for number in counters.sums.len()..counters.snapshots.len() {
+        let sum = |name: String| {
+            let path = results.join(name);
+            sum_of_file(&path, true).map_err(ResultsError::file("flush", &path))
+        };
+        let sums = [sum(gas_file(number))?, sum(particle_file(number))?];
+        counters.sums.push(sums);
+    }
+    Ok(())
+}
+
+/// Refuses snapshots whose files are not what was written.
+pub(super) fn check_snapshots(results: &Path, sums: &[[String; 2]]) -> Result<(), ResultsError> {
+    for (number, sums) in sums.iter().enumerate() {
+        for (name, expected) in [gas_file(number), particle_file(number)].iter().zip(sums) {
+            let path = results.join(name);
+            let found = sum_of_file(&path, false).map_err(ResultsError::file("read", &path))?;
+            if found != *expected {
+                let fact = "it has another content than was written";
+                return Err(ResultsError::behind(&path, fact));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Flushes a result directory's files to the disk and writes the counters into a checkpoint directory. What this takes does not depend on
+/// how much the results are.
 pub(super) fn save(
     results: &Path,
     checkpoint: &Path,
     counters: Counters,
-    flushed: usize,
 ) -> Result<(), ResultsError> {
     files::directory(checkpoint)?;
     let flush = |path: &Path| {
         let file = File::open(path).and_then(|file| file.sync_all());
         file.map_err(ResultsError::file("flush", path))
     };
-    for number in flushed..counters.snapshots.len() {
-        flush(&results.join(gas_file(number)))?;
-        flush(&results.join(particle_file(number)))?;
-    }
     if cfg!(feature = "hdf5") {
         flush(&results.join(STORE))?;
     }
@@ -153,6 +180,9 @@ pub(super) fn restore(
     counters.series.check(results)?;
     // A run that was stopped has closed the file; one that was killed may have left it in the middle.
     let is_closed = Summary::read(results).is_ok_and(|summary| summary.verdict != Verdict::Running);
+    if !is_closed && cfg!(feature = "hdf5") {
+        check_snapshots(results, &counters.sums)?;
+    }
     counters.series.cut(results)?;
     for folder in ["gas", "particles", "probes"] {
         let folder = results.join(folder);

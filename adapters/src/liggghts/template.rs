@@ -22,7 +22,7 @@ const PREFIX: &str = "calcine_";
 const SAME: f64 = 1e-9;
 
 /// What Calcine does itself, by the first words of commands that would do it too, and the remedy.
-const REFUSED: [(&[&str], &str, &str); 4] = [
+const REFUSED: [(&[&str], &str, &str); 5] = [
     (
         &["run", "minimize", "rerun", "reset_timestep"],
         "Calcine advances the particles and keeps the time",
@@ -47,11 +47,19 @@ const REFUSED: [(&[&str], &str, &str); 4] = [
         "place them by `particles.place`, and read them by `read_data ${calcine_data}`",
     ),
     (
+        &["if", "partition", "python", "shell"],
+        "commands within others cannot be looked at",
+        "write the commands that hold, each in a line of its own",
+    ),
+    (
         &["include"],
         "of included files only calcine.contacts, calcine.gravity, calcine.walls and calcine.motion are known",
         "write the lines of other files into the script",
     ),
 ];
+
+/// How styles of fixes begin that integrate the motion of particles.
+const INTEGRATES: [&str; 3] = ["nve", "rigid", "multisphere"];
 
 /// A script that cannot be used, with the line and the remedy.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
@@ -527,6 +535,7 @@ fn check(commands: &[Command]) -> Vec<ScriptTemplateError> {
         ("atom_style granular", "atom_style granular", false),
         ("read_data", "read_data ${calcine_data}", false),
         ("timestep", "timestep ${calcine_step}", false),
+        ("fix … nve/sphere", "include calcine.motion", false),
     ];
     for command in commands {
         let words = command.words();
@@ -552,10 +561,14 @@ fn check(commands: &[Command]) -> Vec<ScriptTemplateError> {
                 found.push(command.refuse(rule, "write `read_data ${calcine_data}`"));
             }
             ["timestep", ..] => needed[3].2 = true,
+            ["include", "calcine.motion"] => needed[4].2 = true,
             [
                 "include",
-                "calcine.contacts" | "calcine.gravity" | "calcine.walls" | "calcine.motion",
+                "calcine.contacts" | "calcine.gravity" | "calcine.walls",
             ] => {}
+            ["fix", _, _, style, ..] if INTEGRATES.iter().any(|one| style.starts_with(one)) => {
+                needed[4].2 = true;
+            }
             ["fix", _, _, style, ..] if style.starts_with("insert/") => {
                 let rule = "particles come in as the case file says";
                 found.push(command.refuse(rule, "write a `[[feeds]]`"));
@@ -583,7 +596,7 @@ mod tests {
     use super::*;
 
     const SCRIPT: &str = "units si\natom_style granular\nread_data ${calcine_data} # beds\n\
-        timestep ${calcine_step}\n";
+        timestep ${calcine_step}\ninclude calcine.motion\n";
 
     fn refused(more: &str) -> String {
         told(&check(&commands(&format!("{SCRIPT}{more}"))))
@@ -593,18 +606,22 @@ mod tests {
     fn what_calcine_does_itself_is_refused_with_the_line() {
         assert_eq!(check(&commands(SCRIPT)), []);
         for (more, part) in [
-            ("run 1000", "line 5, `run 1000`: Calcine advances"),
-            ("\n  clear", "line 6, `clear`"),
+            ("run 1000", "line 6, `run 1000`: Calcine advances"),
+            ("\n  clear", "line 7, `clear`"),
             ("units cgs", "units si"),
             ("atom_style sph", "spheres"),
             ("create_atoms 1 single 0 0 0", "particles.place"),
             ("read_data particles.data", "once"),
             (
                 "fix ins all &\n insert/rate/region seed 1",
-                "line 5, `fix ins all  insert/rate/region",
+                "line 6, `fix ins all  insert/rate/region",
             ),
             ("fix own all external pf/array 1", "leave the line out"),
             ("include other.in", "calcine.walls"),
+            (
+                "if \"1 > 0\" then \"run 500\"",
+                "commands within others cannot be looked at",
+            ),
         ] {
             assert!(refused(more).contains(part), "{}", refused(more));
         }
@@ -621,6 +638,10 @@ mod tests {
             (
                 "timestep ${calcine_step}\n",
                 "write `timestep ${calcine_step}`",
+            ),
+            (
+                "include calcine.motion\n",
+                "there is no `fix … nve/sphere`; write `include calcine.motion`",
             ),
         ] {
             let found = told(&check(&commands(&SCRIPT.replace(left_out, ""))));
@@ -722,7 +743,7 @@ mod tests {
             (
                 "boundary p f f",
                 &none,
-                "line 5, `boundary p f f`: the case has no periodic patches",
+                "line 6, `boundary p f f`: the case has no periodic patches",
             ),
             (
                 "boundary f f f",
@@ -763,6 +784,7 @@ mod tests {
             "line 5, `run 5`",
             "there is no `read_data`",
             "there is no `timestep`",
+            "there is no `fix … nve/sphere`",
         ];
         assert_eq!(found.len(), parts.len(), "{found:?}");
         for (found, part) in found.iter().zip(parts) {

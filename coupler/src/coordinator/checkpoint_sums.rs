@@ -69,8 +69,8 @@ fn files(folder: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// SHA-256 of a file in hexadecimal digits.
-fn sum(path: &Path, flush: bool) -> io::Result<String> {
+/// SHA-256 of a file in hexadecimal digits, which is flushed to disk before where that is asked for.
+pub fn sum(path: &Path, flush: bool) -> io::Result<String> {
     let mut file = File::open(path)?;
     if flush {
         file.sync_all()?;

@@ -37,6 +37,7 @@ use std::time::{Duration, Instant};
 use calcine_interior::HeatNetwork;
 
 pub use checkpoint_paths::{CheckpointPaths, WholeCheckpoint};
+pub use checkpoint_sums::sum as sum_of_file;
 pub use control::Control;
 pub use error::{CheckpointError, ControlError, OriginError, RunError, TooLight};
 pub use origin::Origin;
