@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::unit::SignalKind;
+
 /// What is wrong with a plant, or stops its computation. Each says the fact, the number, the place and the remedy.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum PlantError {
@@ -105,6 +107,38 @@ pub enum PlantError {
         iterations: usize,
         /// What has the largest residual.
         grows: String,
+    },
+    /// A unit that takes signals of one that gives none of these.
+    #[error(
+        "unit \"{unit}\" takes {wanted} from unit \"{from}\", which gives none; name a unit that does"
+    )]
+    Signals {
+        /// Unit that takes them.
+        unit: String,
+        /// Unit that is asked.
+        from: String,
+        /// What it needs.
+        wanted: SignalKind,
+    },
+    /// A bed that cannot be followed.
+    #[error("bed \"{unit}\" at {time} s: {cause}")]
+    Bed {
+        /// Unit.
+        unit: String,
+        /// Time in s.
+        time: f64,
+        /// Why, with what to do.
+        cause: String,
+    },
+    /// What a plant with a coupled bed does not have.
+    #[error(
+        "bed \"{unit}\" exchanges with the plant from time to time: {what}; put a granulator or a bunker in its place"
+    )]
+    CoupledInTime {
+        /// Unit.
+        unit: String,
+        /// What cannot be.
+        what: &'static str,
     },
     /// A number that is not finite.
     #[error(

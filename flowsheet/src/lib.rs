@@ -6,8 +6,10 @@
 //! - [`screen`], [`mill`], [`cyclone`]: laws, one a file;
 //! - [`population`]: growth, aggregation, breakage over size classes;
 //! - [`ProcessUnit`], [`units`]: what stands in a plant;
+//! - [`CoupledBed`]: beds that are computed elsewhere, as units;
 //! - [`Plant`]: units and streams, with recycles solved through tear streams; [`PlantRun`] follows it in time.
 
+mod coupled_bed;
 pub mod cyclone;
 pub mod distribution;
 mod error;
@@ -23,10 +25,11 @@ mod transformation;
 mod unit;
 pub mod units;
 
+pub use coupled_bed::{BedCharge, BedCoupling, BedExchange, CoupledBed};
 pub use error::PlantError;
 pub use grid::SizeGrid;
 pub use layout::{Attribute, Compound, REFERENCE_TEMPERATURE, StreamLayout};
 pub use plant::*;
 pub use timetable::Timetable;
 pub use transformation::Transformation;
-pub use unit::{ProcessUnit, UnitView};
+pub use unit::{ProcessUnit, SignalKind, UnitView};

@@ -26,6 +26,8 @@ pub struct FlowWorkspace {
     /// Ways round the recycles, all in all.
     pub rounds: usize,
     made: Vec<f64>,
+    /// Signals of all units.
+    pub(super) signals: Vec<f64>,
     /// Tear streams of a recycle, what they become, and the iteration between them.
     torn: Vec<f64>,
     new: Vec<f64>,
@@ -67,7 +69,7 @@ impl Plant {
         unit: usize,
         at: Moment,
         y: &'a [f64],
-        streams: &'a [f64],
+        [streams, signals]: [&'a [f64]; 2],
     ) -> UnitView<'a> {
         let own = &self.units[unit];
         UnitView {
@@ -78,6 +80,21 @@ impl Plant {
             state: &y[own.state.clone()],
             streams,
             inlets: &own.inlets,
+            signals,
+            heard: &own.heard,
+        }
+    }
+
+    /// The signals of all units, which follow from their unknowns.
+    fn signal(&self, y: &[f64], signals: &mut Vec<f64>) {
+        let count = self.units.last().map_or(0, |unit| unit.signals.end);
+        signals.resize(count, 0.0);
+        if count == 0 {
+            return;
+        }
+        for unit in &self.units {
+            let to = &mut signals[unit.signals.clone()];
+            unit.unit.signal(&self.layout, &y[unit.state.clone()], to);
         }
     }
 
@@ -90,6 +107,7 @@ impl Plant {
     ) -> Result<(), PlantError> {
         work.closure = 0.0;
         work.became.clear();
+        self.signal(y, &mut work.signals);
         for block in &self.blocks {
             if block.tears.is_empty() {
                 for unit in &block.units {
@@ -165,12 +183,17 @@ impl Plant {
         y: &[f64],
         work: &mut FlowWorkspace,
     ) -> Result<(), PlantError> {
-        let FlowWorkspace { streams, made, .. } = work;
+        let FlowWorkspace {
+            streams,
+            made,
+            signals,
+            ..
+        } = work;
         made.clear();
         made.resize(self.units[unit].outlets.len() * self.layout.width(), 0.0);
         self.units[unit]
             .unit
-            .produce(&self.view(unit, at, y, streams), made)
+            .produce(&self.view(unit, at, y, [streams, signals]), made)
     }
 
     /// Puts `made` in its place: tear streams among `new`, others among the streams.
@@ -367,7 +390,7 @@ impl Plant {
         let kinds = self.layout.compounds().len() + 1;
         let (of_streams, heats) = totals.split_at_mut(self.names.len() * kinds);
         for (index, unit) in self.units.iter().enumerate() {
-            let view = self.view(index, at, y, &work.streams);
+            let view = self.view(index, at, y, [&work.streams, &work.signals]);
             let out = &work.streams[unit.outlets.start * width..unit.outlets.end * width];
             unit.unit.rates(&view, out, &mut own[unit.state.clone()])?;
             heats[index] = unit.unit.heat(&view, out, &own[unit.state.clone()]);
@@ -384,8 +407,10 @@ impl Plant {
         let width = self.layout.width();
         let each = self.units.iter().enumerate().map(|(index, unit)| {
             let out = &work.streams[unit.outlets.start * width..unit.outlets.end * width];
-            unit.unit
-                .fastest(&self.view(index, at, y, &work.streams), out)
+            unit.unit.fastest(
+                &self.view(index, at, y, [&work.streams, &work.signals]),
+                out,
+            )
         });
         each.fold(0.0, f64::max)
     }
@@ -396,7 +421,12 @@ impl Plant {
     }
 
     /// Lets every unit look at its unknowns.
-    pub(super) fn verify(&self, at: Moment, y: &[f64], streams: &[f64]) -> Result<(), PlantError> {
+    pub(super) fn verify(
+        &self,
+        at: Moment,
+        y: &[f64],
+        work: &FlowWorkspace,
+    ) -> Result<(), PlantError> {
         for (index, unit) in self.units.iter().enumerate() {
             let bad = y[unit.state.clone()].iter().any(|value| !value.is_finite());
             if bad {
@@ -406,7 +436,8 @@ impl Plant {
                     time: at.time,
                 });
             }
-            unit.unit.verify(&self.view(index, at, y, streams))?;
+            let seen = [&work.streams[..], &work.signals];
+            unit.unit.verify(&self.view(index, at, y, seen))?;
         }
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! Units and streams together.
 
+mod beds;
 mod continuation;
 mod estimation;
 mod explicit;

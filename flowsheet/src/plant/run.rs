@@ -7,7 +7,7 @@ use super::ledger::PlantLedger;
 use super::method::{Followed, Span, StepMethod};
 use super::stabilised::Chebyshev;
 use super::topology::Plant;
-use crate::PlantError;
+use crate::{CoupledBed, PlantError};
 
 /// How a plant is followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,10 +52,12 @@ pub struct PlantRun<'a> {
     pub(super) time: f64,
     pub(super) now: Followed,
     scales: Vec<f64>,
-    held: Vec<Vec<f64>>,
+    pub(super) held: Vec<Vec<f64>>,
     pub(super) closure: f64,
     /// Length of the next window of waveform relaxation in s; zero before the first.
     pub(super) window: f64,
+    /// Beds that are computed elsewhere, in the order of their units.
+    pub(super) beds: Vec<Box<dyn CoupledBed>>,
 }
 
 impl<'a> PlantRun<'a> {
@@ -102,20 +104,21 @@ impl<'a> PlantRun<'a> {
             },
             closure: 0.0,
             window: 0.0,
+            beds: Vec::new(),
         };
         run.settle()?;
         Ok(run)
     }
 
     /// Computes the streams of the present unknowns.
-    fn settle(&mut self) -> Result<(), PlantError> {
+    pub(super) fn settle(&mut self) -> Result<(), PlantError> {
         let at = Moment {
             time: self.time,
             end: f64::INFINITY,
         };
         self.plant.flows(at, &self.now.y, &mut self.now.work)?;
         self.closure = self.closure.max(self.now.work.closure);
-        self.plant.verify(at, &self.now.y, &self.now.work.streams)
+        self.plant.verify(at, &self.now.y, &self.now.work)
     }
 
     /// Advances to a time in s.
@@ -152,6 +155,7 @@ impl<'a> PlantRun<'a> {
             let end = self.plant.next_break(self.time).min(until);
             self.follow(end, &mut tell)?;
             self.time = end;
+            self.exchange()?;
             self.settle()?;
         }
         Ok(())
@@ -195,8 +199,7 @@ impl<'a> PlantRun<'a> {
             time: self.time,
             end,
         };
-        self.plant
-            .verify(now, &self.now.y, &self.now.work.streams)?;
+        self.plant.verify(now, &self.now.y, &self.now.work)?;
         Ok(took)
     }
 

@@ -39,6 +39,9 @@ pub struct PlantUnit {
     /// Streams that enter, port by port; streams that leave follow one another.
     pub(super) inlets: Vec<usize>,
     pub(super) outlets: Range<usize>,
+    /// Its signals among those of the plant, and those that it takes.
+    pub(super) signals: Range<usize>,
+    pub(super) heard: Vec<Range<usize>>,
 }
 
 /// A plant: units, streams between their ports, and the order in which they are computed.
@@ -62,7 +65,7 @@ impl Plant {
         let mut wrong = Vec::new();
         let mut seen = BTreeSet::new();
         let mut made = Vec::new();
-        let (mut unknowns, mut streams) = (0, 0);
+        let (mut unknowns, mut streams, mut signals) = (0, 0, 0);
         let mut ports = Vec::new();
         for (name, mut unit) in units {
             if !seen.insert(name.clone()) {
@@ -73,16 +76,21 @@ impl Plant {
             }
             let (inlets, outlets) = (unit.inlets(), unit.outlets());
             let (state, out) = (unit.unknowns(&layout), outlets.len());
+            let own = unit.signals().map_or(0, |(_, count)| count);
             made.push(PlantUnit {
                 name,
                 unit,
                 state: unknowns..unknowns + state,
                 inlets: Vec::new(),
                 outlets: streams..streams + out,
+                signals: signals..signals + own,
+                heard: Vec::new(),
             });
             ports.push((inlets, outlets));
             (unknowns, streams) = (unknowns + state, streams + out);
+            signals += own;
         }
+        Self::hear(&mut made, &mut wrong);
         let places = Self::connect(&mut made, &ports, connections, streams, &mut wrong);
         if !wrong.is_empty() {
             return Err(wrong);
@@ -179,6 +187,49 @@ impl Plant {
             }
         }
         left.into_iter().flatten().collect()
+    }
+
+    /// Finds the signals that units take from others.
+    fn hear(units: &mut [PlantUnit], wrong: &mut Vec<PlantError>) {
+        for index in 0..units.len() {
+            let mut heard = Vec::new();
+            for (from, wanted) in units[index].unit.listens_to() {
+                let names = || {
+                    let names = units.iter().map(|unit| unit.name.as_str());
+                    names.collect::<Vec<_>>().join(", ")
+                };
+                match units.iter().find(|unit| unit.name == from) {
+                    Some(other) => match other.unit.signals() {
+                        Some((kind, _)) if kind == wanted => heard.push(other.signals.clone()),
+                        _ => wrong.push(PlantError::Signals {
+                            unit: units[index].name.clone(),
+                            from,
+                            wanted,
+                        }),
+                    },
+                    None => wrong.push(PlantError::UnknownUnit(from.clone(), names())),
+                }
+            }
+            units[index].heard = heard;
+        }
+    }
+
+    /// Units that stand for beds that are computed elsewhere, by their places.
+    pub fn coupled_beds(&self) -> Vec<usize> {
+        let units = self.units.iter().enumerate();
+        let beds = units.filter(|(_, unit)| unit.unit.coupling().is_some());
+        beds.map(|(index, _)| index).collect()
+    }
+
+    /// An error where there is such a unit.
+    pub(super) fn refuse_beds(&self, what: &'static str) -> Result<(), PlantError> {
+        match self.coupled_beds().first() {
+            Some(bed) => Err(PlantError::CoupledInTime {
+                unit: self.units[*bed].name.clone(),
+                what,
+            }),
+            None => Ok(()),
+        }
     }
 
     /// What streams are made of.

@@ -27,9 +27,15 @@ impl PlantRun<'_> {
         };
         while self.time < until {
             let end = self.plant.next_break(self.time).min(until);
-            let took = span.min(end - self.time);
+            let start = self.time;
+            let took = span.min(end - start);
             match self.window(took, end, settings)? {
                 Some(iterations) => {
+                    if took >= end - start {
+                        self.time = end;
+                        self.exchange()?;
+                        self.settle()?;
+                    }
                     if took < span {
                         // Shortened by the end: says nothing about the next.
                         self.window = span;
@@ -108,8 +114,7 @@ impl PlantRun<'_> {
                     time: self.time,
                     end,
                 };
-                self.plant
-                    .verify(now, &self.now.y, &self.now.work.streams)?;
+                self.plant.verify(now, &self.now.y, &self.now.work)?;
                 return Ok(Some(count));
             }
             self.plant.weigh_heat(&mut x, true);

@@ -1,5 +1,6 @@
 //! Units, one a file.
 
+mod bed;
 mod bunker;
 mod cyclone;
 mod delay;
@@ -12,11 +13,12 @@ mod outlet;
 mod screen;
 mod splitter;
 
+pub use bed::CoupledBedUnit;
 pub use bunker::{Bunker, Discharge};
 pub use cyclone::Cyclone;
 pub use delay::TimeDelay;
 pub use dryer::Dryer;
-pub use granulator::{BedHeat, BedLevel, Granulator, Overspray};
+pub use granulator::{BedHeat, BedKernel, BedLevel, Granulator, Overspray};
 pub use inlet::PlantInlet;
 pub use mill::Mill;
 pub use mixer::Mixer;

@@ -1,5 +1,6 @@
 //! Cases of plants: from a file of kind `flowsheet` to a checked [`PlantCase`].
 
+mod bed;
 mod granulator;
 mod layout;
 mod model;
@@ -10,10 +11,11 @@ mod streams;
 mod units;
 pub(in crate::case) mod words;
 
+pub use bed::{PlantBedFeed, PlantBedSpec};
 pub use model::{
     ContinuationSpec, PlantCase, PlantMeasure, PlantMethod, PlantPlace, PlantQuantity, SteadySpec,
 };
 #[cfg(test)]
 pub(in crate::case) use read::plant;
-pub use read::{parse_plant, read_plant, read_plant_with};
+pub use read::{parse_plant, read_plant, read_plant_results, read_plant_with};
 pub use words::{LimitField, OverTime, PlantField, SteadyField, SteadyFrom};

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use calcine_flowsheet::{Integrator, Plant, WaveformSettings};
 
+use super::bed::PlantBedSpec;
 use super::words::{LimitField, OverTime, PlantField, SteadyField, SteadyFrom};
 use crate::case::model::ToleranceBand;
 
@@ -34,6 +35,8 @@ pub struct PlantCase {
     pub plant: Plant,
     /// Kinds of its units, in their order.
     pub kinds: Vec<&'static str>,
+    /// Beds that are cases of their own, in the order of their units.
+    pub beds: Vec<PlantBedSpec>,
     /// Time in s between rows of the series.
     pub row_every: f64,
     /// Time in s between distributions; without it at the start and the end alone.

@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use calcine_flowsheet::{Plant, TearAcceleration, WaveformSettings};
+use sha2::{Digest, Sha256};
 
+use super::bed::PlantBedSpec;
 use super::layout::{layout, refused};
 use super::model::{PlantCase, PlantMethod};
 use super::quantities::{Measurable, continuation, quantities, steady};
@@ -42,11 +44,38 @@ fn parse_plant_with(
     laws: &LawCatalogue,
 ) -> Result<PlantCase, CaseErrors> {
     let kind = kind_named("flowsheet").unwrap_or(&KINDS[0]);
+    let folder = path.parent().unwrap_or(Path::new("."));
     let (mut case, changes) = parse_as(path, text, set, kind, laws, |root, effective, hash| {
-        plant(root, path, effective, hash)
+        plant(root, path, effective, hash, Some(folder))
     })?;
     case.changes = changes;
+    case.hash = with_beds(&case);
     Ok(case)
+}
+
+/// Reads the case of a plant that has run: the cases of its beds, which may lie elsewhere by now, are left out.
+pub fn read_plant_results(path: &Path) -> Result<PlantCase, CaseErrors> {
+    let kind = kind_named("flowsheet").unwrap_or(&KINDS[0]);
+    let laws = LawCatalogue::default();
+    let text = text_of(path)?;
+    let (case, _) = parse_as(path, &text, &[], kind, &laws, |root, effective, hash| {
+        plant(root, path, effective, hash, None)
+    })?;
+    Ok(case)
+}
+
+/// The hash extended by those of its beds, so that a changed bed is not taken for the same case.
+fn with_beds(case: &PlantCase) -> String {
+    if case.beds.is_empty() {
+        return case.hash.clone();
+    }
+    let mut digest = Sha256::new();
+    digest.update(case.hash.as_bytes());
+    for bed in &case.beds {
+        digest.update(bed.hash.as_bytes());
+    }
+    let bytes = digest.finalize();
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Reads all sections; `None` where one could not be read (its problems are recorded).
@@ -55,6 +84,7 @@ pub(in crate::case) fn plant(
     path: &Path,
     effective: &str,
     hash: String,
+    beds_in: Option<&Path>,
 ) -> Option<PlantCase> {
     if root.whole("format").is_some_and(|format| format != FORMAT) {
         let rule = "is not 1, the only one there is";
@@ -74,11 +104,21 @@ pub(in crate::case) fn plant(
     });
     let method = method(root);
     let layout = layout(root);
-    let read = layout.as_ref().map(|(layout, _)| units(root, layout));
+    let read = layout.as_ref().map(|(layout, _)| units(root, layout, beds_in));
     let connections = streams(root, read.as_deref().unwrap_or_default());
     let steady = steady(root);
     let continuation = continuation(root);
     let kinds: Vec<&'static str> = read.iter().flatten().map(|unit| unit.kind).collect();
+    let beds = read.iter().flatten().filter_map(|unit| unit.bed.clone());
+    let beds: Vec<PlantBedSpec> = beds.collect();
+    if let Some(bed) = beds.first() {
+        for (section, is_there) in [("steady", steady.is_some()), ("continuation", continuation.is_some())] {
+            if is_there {
+                let rule = format!("cannot be with the bed \"{}\", which exchanges with the plant at intervals", bed.unit);
+                root.fail(section, rule, "remove it, or put a granulator or a bunker in the bed's place");
+            }
+        }
+    }
     let units = read.and_then(|read| {
         let made = read.into_iter().map(|one| Some((one.name, one.unit?)));
         made.collect::<Option<Vec<_>>>()
@@ -124,6 +164,7 @@ pub(in crate::case) fn plant(
         method: method?,
         plant: plant?,
         kinds,
+        beds,
         row_every: every?,
         distributions_every,
         quantities,

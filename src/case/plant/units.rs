@@ -1,5 +1,7 @@
 //! `[[units]]`.
 
+use std::path::Path;
+
 use calcine_flowsheet::cyclone::MuschelknautzCyclone;
 use calcine_flowsheet::units::{
     Bunker, Cyclone, Discharge, Dryer, Mill, Mixer, PlantInlet, PlantOutlet, Screen, Splitter,
@@ -7,6 +9,7 @@ use calcine_flowsheet::units::{
 };
 use calcine_flowsheet::{ProcessUnit, StreamLayout, Timetable};
 
+use super::bed::{PlantBedSpec, bed};
 use super::granulator::granulator;
 use super::layout::refused;
 use super::solids::{add_solids, by_compound, numbers};
@@ -23,10 +26,16 @@ pub(super) struct ReadUnit<'a> {
     pub unit: Option<Box<dyn ProcessUnit>>,
     /// Its table.
     pub table: TableReader<'a>,
+    /// Of a bed: what its run needs.
+    pub bed: Option<PlantBedSpec>,
 }
 
-/// All units.
-pub(super) fn units<'a>(root: &TableReader<'a>, layout: &StreamLayout) -> Vec<ReadUnit<'a>> {
+/// All units; cases of beds lie relative to `folder`, and are not read without one.
+pub(super) fn units<'a>(
+    root: &TableReader<'a>,
+    layout: &StreamLayout,
+    folder: Option<&Path>,
+) -> Vec<ReadUnit<'a>> {
     let mut all: Vec<ReadUnit<'a>> = Vec::new();
     for table in root.tables("units") {
         let name = table.text("name").unwrap_or_default().to_owned();
@@ -39,7 +48,18 @@ pub(super) fn units<'a>(root: &TableReader<'a>, layout: &StreamLayout) -> Vec<Re
             table.fail("name", rule, "names of units must differ");
         }
         let kind = table.exactly_one();
-        let made = kind.and_then(|kind| unit(&table, kind, layout));
+        let mut spec = None;
+        let made = match kind {
+            Some("bed") => table.table("bed").and_then(|own| {
+                let made = bed(&own, &name, layout, folder);
+                own.finish();
+                let (unit, read) = made?;
+                spec = Some(read);
+                Some(unit)
+            }),
+            Some(kind) => unit(&table, kind, layout),
+            None => None,
+        };
         table.finish();
         let kind = kind.unwrap_or_default();
         let prepared = made.and_then(|mut unit| {
@@ -52,6 +72,7 @@ pub(super) fn units<'a>(root: &TableReader<'a>, layout: &StreamLayout) -> Vec<Re
             kind,
             unit: prepared,
             table,
+            bed: spec,
         });
     }
     all

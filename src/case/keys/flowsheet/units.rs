@@ -19,6 +19,7 @@ pub(super) const UNITS: &[Key] = &[
     key("dryer", Table(DRYER), OneOf, "Dries solids with gas. Ports in: `in`, `gas`; out: `out`, `exhaust`.", "{ moisture = 0.01 }"),
     key("cyclone", Table(CYCLONE), OneOf, "A gas cyclone by Muschelknautz' model. Port in: `in`; out: `solids`, `gas`.", "[units.cyclone]"),
     key("bunker", Table(BUNKER), OneOf, "A well-mixed store. Port in: `in`; out: `out`.", "{ content = { temperature = \"300 K\" } }"),
+    key("bed", Table(BED), OneOf, "A bed that is computed particle by particle as a case of its own, and exchanges with the plant at intervals. It opens a recycle. Port in: `feed`; out: `product`.", "[units.bed]"),
     key("delay", Table(DELAY), OneOf, "A conveyor or pipe: what enters leaves after a time, in well-mixed stages. It opens a recycle. Port in: `in`; out: `out`.", "{ time = \"30 s\", stages = 20 }"),
 ];
 
@@ -51,6 +52,7 @@ const GRANULATOR: &[Key] = &[
     key("wear", Number(D::VELOCITY, NotNegative), Default("0 m/s"), "Rate at which every diameter shrinks by attrition; what is worn off is dust.", "\"1e-9 m/s\""),
     key("aggregation", Law(laws::aggregation, &[]), Without("none"), "Aggregation of pairs of particles.", "{ law = \"constant\", rate = \"1e-9 1/s\" }"),
     key("kernel", Table(KERNEL), Without("none"), "Aggregation by a table of rates, measured or computed at another scale.", "{ diameters = [\"1 mm\", \"2 mm\"], rates = [\"1e-9 1/s\", \"2e-9 1/s\", \"2e-9 1/s\", \"4e-9 1/s\"] }"),
+    key("collisions", Table(COLLISIONS), Without("none"), "Aggregation by the collisions that a bed of this plant counts.", "{ bed = \"bed\", efficiency = 1e-3 }"),
     key("breakage", Law(laws::breakage, &[]), Without("none"), "Breakage of particles.", "{ law = \"random-binary\", rate = \"1e6 1/s/m^3\" }"),
 ];
 
@@ -76,6 +78,25 @@ const GROWTH: &[Key] = &[
 const KERNEL: &[Key] = &[
     key("diameters", Texts(0), Required, "Diameters, rising.", "[\"1 mm\", \"2 mm\"]"),
     key("rates", Texts(0), Required, "Rate at which a pair of particles of the bed aggregates, for each diameter each, row by row; bilinear between, constant beyond.", "[\"1e-9 1/s\", \"2e-9 1/s\", \"2e-9 1/s\", \"4e-9 1/s\"]"),
+];
+
+#[rustfmt::skip]
+const COLLISIONS: &[Key] = &[
+    key("bed", Text, Required, "Unit of kind `bed` that has a `kernel`.", "\"bed\""),
+    key("efficiency", Number(D::NONE, Between(0.0, 1.0)), Required, "Share of the collisions after which two particles stay together.", "1e-3"),
+];
+
+#[rustfmt::skip]
+const BED: &[Key] = &[
+    key("case", Path, Required, "Case file of the bed. It has feeds and outlets; its materials are compounds of the plant by their names; what each feed brings, and how warm, comes from the plant.", "\"plant-bed-shaft.toml\""),
+    key("interval", Number(D::TIME, Positive), Required, "Time between two exchanges: what flowed in over one is fed, and what left the bed in it flows out over the next.", "\"1 s\""),
+    key("kernel", Table(BED_KERNEL), Without("none"), "The kernel of collisions that the bed returns, for `granulator.collisions`.", "{ diameters = [\"4 mm\", \"6 mm\"] }"),
+];
+
+#[rustfmt::skip]
+const BED_KERNEL: &[Key] = &[
+    key("diameters", Texts(0), Required, "Diameters, rising, to which particles are counted by their ratio.", "[\"4 mm\", \"6 mm\"]"),
+    key("gap", Number(D::NONE, Within(0.0, 1.0)), Default("0.05"), "Pairs count that are nearer than this share of their mean diameter, and approach: small against the distance between particles, large enough that pairs are found.", "0.05"),
 ];
 
 #[rustfmt::skip]
