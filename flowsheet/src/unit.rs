@@ -3,25 +3,9 @@
 use std::ops::Range;
 
 use crate::coupled_bed::{BedCoupling, BedExchange};
+use crate::measured_place::MeasuredPlace;
+use crate::signal::SignalKind;
 use crate::{PlantError, StreamLayout};
-
-/// What units tell others.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SignalKind {
-    /// A table of a kernel: diameters in m, then a rate for each pair of them, row by row.
-    Kernel,
-    /// A number.
-    Setting,
-}
-
-impl std::fmt::Display for SignalKind {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Kernel => "a kernel",
-            Self::Setting => "a setting",
-        })
-    }
-}
 
 /// What a unit sees at a time.
 #[derive(Clone, Copy, Debug)]
@@ -42,6 +26,8 @@ pub struct UnitView<'a> {
     /// Signals of all units, and where those stand that this unit takes.
     pub(crate) signals: &'a [f64],
     pub(crate) heard: &'a [Range<usize>],
+    /// What it measures: a stream, or what another unit holds; empty for others.
+    pub measured: &'a [f64],
 }
 
 impl<'a> UnitView<'a> {
@@ -149,6 +135,11 @@ pub trait ProcessUnit: Send + Sync {
     /// Names of the units whose signals it takes, each with what it needs.
     fn listens_to(&self) -> Vec<(String, SignalKind)> {
         Vec::new()
+    }
+
+    /// The stream that it measures, or the unit whose content it measures; its rates see it.
+    fn watches(&self) -> Option<&MeasuredPlace> {
+        None
     }
 
     /// Of a unit that stands for a bed that is computed elsewhere: how it is exchanged.

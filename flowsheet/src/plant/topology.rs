@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::order::{UnitBlock, order};
+use crate::measured_place::MeasuredPlace;
 use crate::{PlantError, ProcessUnit, StreamLayout};
 
 /// A stream: from a unit's outlet to a unit's inlet.
@@ -42,6 +43,15 @@ pub struct PlantUnit {
     /// Its signals among those of the plant, and those that it takes.
     pub(super) signals: Range<usize>,
     pub(super) heard: Vec<Range<usize>>,
+    /// What it measures.
+    pub(super) watched: Option<WatchedPlace>,
+}
+
+/// Where a unit measures: a stream, or what another unit holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum WatchedPlace {
+    Stream(usize),
+    Unit(usize),
 }
 
 /// A plant: units, streams between their ports, and the order in which they are computed.
@@ -85,6 +95,7 @@ impl Plant {
                 outlets: streams..streams + out,
                 signals: signals..signals + own,
                 heard: Vec::new(),
+                watched: None,
             });
             ports.push((inlets, outlets));
             (unknowns, streams) = (unknowns + state, streams + out);
@@ -92,12 +103,16 @@ impl Plant {
         }
         Self::hear(&mut made, &mut wrong);
         let places = Self::connect(&mut made, &ports, connections, streams, &mut wrong);
+        if wrong.is_empty() {
+            let names: Vec<&str> = places.iter().map(|(name, ..)| name.as_str()).collect();
+            Self::watch(&mut made, &names, &mut wrong);
+        }
         if !wrong.is_empty() {
             return Err(wrong);
         }
         let ends: Vec<(usize, usize)> = places.iter().map(|(_, from, to)| (*from, *to)).collect();
         let direct: Vec<bool> = made.iter().map(|u| u.unit.passes_through()).collect();
-        let blocks = order(made.len(), &ends, &direct);
+        let blocks = order(made.len(), &ends, &direct, &[]);
         Ok(Self {
             layout,
             units: made,
@@ -106,6 +121,44 @@ impl Plant {
             unknowns,
             ends,
         })
+    }
+
+    /// The same plant with its recycles torn at these streams; refused where they are not enough, or not within one.
+    pub fn torn_at(mut self, streams: &[&str]) -> Result<Self, PlantError> {
+        let refuse = |stream: &str, why| {
+            Err(PlantError::Tear {
+                stream: stream.to_owned(),
+                why,
+            })
+        };
+        let mut chosen = Vec::new();
+        for name in streams {
+            match self.stream(name) {
+                Some(stream) => chosen.push(stream),
+                None => {
+                    return Err(PlantError::UnknownStream(
+                        (*name).to_owned(),
+                        self.names.join(", "),
+                    ));
+                }
+            }
+        }
+        let direct: Vec<bool> = self.units.iter().map(|u| u.unit.passes_through()).collect();
+        self.blocks = order(self.units.len(), &self.ends, &direct, &chosen);
+        let torn: Vec<usize> = self.blocks.iter().flat_map(|b| b.tears.clone()).collect();
+        if let Some(stream) = chosen.iter().find(|stream| !torn.contains(stream)) {
+            return refuse(
+                &self.names[*stream],
+                "no recycle needs to be torn there; leave it out",
+            );
+        }
+        match torn.iter().find(|stream| !chosen.contains(stream)) {
+            Some(stream) => refuse(
+                &self.names[*stream],
+                "its recycle is not opened by the streams that are named; name it, or another stream of the same recycle",
+            ),
+            None => Ok(self),
+        }
     }
 
     /// Sets the units' inlets; name and ends of each stream.
@@ -211,6 +264,32 @@ impl Plant {
                 }
             }
             units[index].heard = heard;
+        }
+    }
+
+    /// Finds what units measure.
+    fn watch(units: &mut [PlantUnit], streams: &[&str], wrong: &mut Vec<PlantError>) {
+        let names: Vec<String> = units.iter().map(|unit| unit.name.clone()).collect();
+        for unit in units {
+            let Some(place) = unit.unit.watches() else {
+                continue;
+            };
+            let found = match place {
+                MeasuredPlace::Stream(name) => streams
+                    .iter()
+                    .position(|own| *own == name)
+                    .map(WatchedPlace::Stream)
+                    .ok_or_else(|| PlantError::UnknownStream(name.clone(), streams.join(", "))),
+                MeasuredPlace::Unit(name) => names
+                    .iter()
+                    .position(|own| own == name)
+                    .map(WatchedPlace::Unit)
+                    .ok_or_else(|| PlantError::UnknownUnit(name.clone(), names.join(", "))),
+            };
+            match found {
+                Ok(place) => unit.watched = Some(place),
+                Err(error) => wrong.push(error),
+            }
         }
     }
 

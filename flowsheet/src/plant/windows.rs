@@ -81,7 +81,7 @@ impl PlantRun<'_> {
             self.now.work.given = Some(wave.clone());
             let mut x = Vec::with_capacity(NODES * size);
             let mut made = Vec::with_capacity(NODES * size);
-            let (mut closure, mut bend) = (0.0f64, 0.0f64);
+            let (mut closures, mut bend) = (vec![0.0f64; self.closures.len()], 0.0f64);
             for k in 0..NODES {
                 let time = if k == NODES - 1 {
                     from + span
@@ -92,13 +92,17 @@ impl PlantRun<'_> {
                 if k > 0 {
                     let middle = 0.5 * (self.time + time);
                     self.follow(middle, |_| ())?;
-                    bend = bend.max(self.torn_difference(middle, end)?);
+                    let there = self.torn_differences(middle, end)?;
+                    bend = there.into_iter().fold(bend, f64::max);
                     self.follow(time, |_| ())?;
                 }
-                closure = closure.max(self.torn_difference(time, end)?);
+                let there = self.torn_differences(time, end)?;
+                let pairs = closures.iter_mut().zip(there);
+                pairs.for_each(|(largest, own)| *largest = largest.max(own));
                 x.extend_from_slice(&wave.values[k]);
                 made.extend_from_slice(&self.now.work.became);
             }
+            let closure = closures.iter().copied().fold(0.0, f64::max);
             if closure <= LOOP_CLOSURE * 10.0 {
                 if bend > BEND * self.tolerance.max(LOOP_CLOSURE * 100.0)
                     && span > settings.shortest
@@ -109,7 +113,8 @@ impl PlantRun<'_> {
                 }
                 self.time = from + span;
                 self.now.work.given = None;
-                self.closure = self.closure.max(closure);
+                let pairs = self.closures.iter_mut().zip(&closures);
+                pairs.for_each(|(largest, own)| *largest = largest.max(*own));
                 let now = Moment {
                     time: self.time,
                     end,
@@ -131,10 +136,13 @@ impl PlantRun<'_> {
     }
 
     /// What the tear streams became at the present unknowns, against what they were.
-    fn torn_difference(&mut self, time: f64, end: f64) -> Result<f64, PlantError> {
+    fn torn_differences(&mut self, time: f64, end: f64) -> Result<Vec<f64>, PlantError> {
         let at = Moment { time, end };
         self.plant.flows(at, &self.now.y, &mut self.now.work)?;
         let were = self.plant.torn(&self.now.work);
-        Ok(self.plant.difference(&were, &self.now.work.became))
+        let mut all = Vec::new();
+        let became = &self.now.work.became;
+        self.plant.differences(&were, became, &mut all);
+        Ok(all)
     }
 }

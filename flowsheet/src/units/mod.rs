@@ -2,6 +2,7 @@
 
 mod bed;
 mod bunker;
+mod controller;
 mod cyclone;
 mod delay;
 mod dryer;
@@ -15,6 +16,7 @@ mod splitter;
 
 pub use bed::CoupledBedUnit;
 pub use bunker::{Bunker, Discharge};
+pub use controller::{Controller, MeasuredField};
 pub use cyclone::Cyclone;
 pub use delay::TimeDelay;
 pub use dryer::Dryer;

@@ -65,7 +65,9 @@ pub(super) fn bed(
             let diameters = quantities(&table, "diameters", Dimension::LENGTH);
             let gap = table.number("gap");
             table.finish();
-            let rises = |d: &Vec<f64>| d.windows(2).all(|pair| pair[0] < pair[1]) && d.first().is_some_and(|d| *d > 0.0);
+            let rises = |d: &Vec<f64>| {
+                d.windows(2).all(|pair| pair[0] < pair[1]) && d.first().is_some_and(|d| *d > 0.0)
+            };
             if diameters.as_ref().is_some_and(|d| !rises(d)) {
                 let help = "give one diameter or more, above zero and rising";
                 table.fail("diameters", "are no rising diameters", help);
@@ -137,11 +139,17 @@ fn fits(
     }
     if bed.time.checkpoint_every.is_some() || bed.time.checkpoint_wall.is_some() {
         let rule = "names a bed with `time.checkpoint`".into();
-        refuse(rule, "remove that: its checkpoints go with those of the plant");
+        refuse(
+            rule,
+            "remove that: its checkpoints go with those of the plant",
+        );
     }
     if !bed.chemistry.reactions.is_empty() {
         let rule = "names a bed with reactions, whose solids change".into();
-        refuse(rule, "remove `reactions` from it: solids of a plant's bed keep their mass");
+        refuse(
+            rule,
+            "remove `reactions` from it: solids of a plant's bed keep their mass",
+        );
     }
     let names: Vec<&str> = layout.compounds().iter().map(|c| c.name.as_str()).collect();
     let mut compounds = Vec::new();
@@ -164,7 +172,9 @@ fn fits(
             let rule = match cold == hot {
                 true => format!(
                     "names a bed whose \"{}\" has a heat capacity of {} J/kg/K, here it has {} J/kg/K",
-                    material.name, shown(cold), shown(heat)
+                    material.name,
+                    shown(cold),
+                    shown(heat)
                 ),
                 false => format!(
                     "names a bed whose \"{}\" has a heat capacity that depends on temperature",
@@ -173,13 +183,27 @@ fn fits(
             };
             refuse(rule, "give the material and the compound one heat capacity");
         }
+        if population.prescribed_temperature.is_some() {
+            let rule = format!(
+                "names a bed whose particles \"{}\" have a prescribed temperature",
+                population.name
+            );
+            refuse(
+                rule,
+                "remove `prescribed_temperature`: what is fed comes as warm as the plant has it",
+            );
+        }
         let grid = layout.grid();
         let (from, to) = grid.range();
         let (small, large) = (population.sizes.smallest(), population.sizes.largest());
         if small < from || large >= to {
             let rule = format!(
                 "names a bed whose particles \"{}\" have {} m to {} m, beyond the size grid of {} m to {} m",
-                population.name, shown(small), shown(large), shown(from), shown(to)
+                population.name,
+                shown(small),
+                shown(large),
+                shown(from),
+                shown(to)
             );
             refuse(rule, "widen `sizes`");
         }
@@ -189,7 +213,10 @@ fn fits(
     }
     for feed in &bed.feeds {
         let population = &bed.particles[feed.population];
-        let diameter = population.sizes.mean().unwrap_or(population.sizes.largest());
+        let diameter = population
+            .sizes
+            .mean()
+            .unwrap_or(population.sizes.largest());
         let edges = layout.grid().edges();
         let class = edges.partition_point(|edge| *edge <= diameter).max(1) - 1;
         let density = bed.materials[population.material].density;
@@ -205,7 +232,11 @@ fn fits(
         };
         if feed.batch > 0.0 {
             let rule = format!("names a bed whose feed \"{}\" has a batch", feed.name);
-            own.fail("case", rule, "remove `batch`: what it feeds comes from the plant");
+            own.fail(
+                "case",
+                rule,
+                "remove `batch`: what it feeds comes from the plant",
+            );
             good = false;
         }
         let same = |one: &PlantBedFeed| (one.compound, one.class) == (made.compound, made.class);
@@ -214,7 +245,11 @@ fn fits(
                 "names a bed whose feeds \"{}\" and \"{}\" are of one compound and size class",
                 other.name, made.name
             );
-            own.fail("case", rule, "give each a population of its own size, or remove one");
+            own.fail(
+                "case",
+                rule,
+                "give each a population of its own size, or remove one",
+            );
             good = false;
         }
         spec.feeds.push(made);

@@ -135,7 +135,11 @@ fn collisions(own: &TableReader<'_>) -> Option<Option<BedKernel>> {
 }
 
 /// A list of quantities.
-pub(super) fn quantities(table: &TableReader<'_>, key: &str, dimension: Dimension) -> Option<Vec<f64>> {
+pub(super) fn quantities(
+    table: &TableReader<'_>,
+    key: &str,
+    dimension: Dimension,
+) -> Option<Vec<f64>> {
     let texts = table.texts(key)?.into_iter();
     let value = |text: String| table.value(key, &toml_edit::Value::from(text), dimension);
     texts.map(value).collect()

@@ -1,6 +1,8 @@
 //! Cases of plants: from a file of kind `flowsheet` to a checked [`PlantCase`].
 
 mod bed;
+mod controller;
+mod field;
 mod granulator;
 mod layout;
 mod model;
@@ -8,12 +10,15 @@ mod quantities;
 mod read;
 mod solids;
 mod streams;
+mod tuning;
 mod units;
 pub(in crate::case) mod words;
 
 pub use bed::{PlantBedFeed, PlantBedSpec};
+pub use field::field;
 pub use model::{
-    ContinuationSpec, PlantCase, PlantMeasure, PlantMethod, PlantPlace, PlantQuantity, SteadySpec,
+    ContinuationSpec, PlantCase, PlantMeasure, PlantMeasuredValues, PlantMethod, PlantPlace,
+    PlantQuantity, PlantTunedKey, PlantTuningSpec, SteadySpec,
 };
 #[cfg(test)]
 pub(in crate::case) use read::plant;

@@ -10,6 +10,7 @@ use super::layout::{layout, refused};
 use super::model::{PlantCase, PlantMethod};
 use super::quantities::{Measurable, continuation, quantities, steady};
 use super::streams::streams;
+use super::tuning::tuning;
 use super::units::units;
 use super::words::{PlantIntegrator, RecycleMethod, TearMethod};
 use crate::case::keys::{KINDS, kind_named};
@@ -102,9 +103,12 @@ pub(in crate::case) fn plant(
         table.finish();
         (end, every, wall)
     });
-    let method = method(root);
+    let (method, tears) = method(root).unzip();
+    let tears = tears.flatten();
     let layout = layout(root);
-    let read = layout.as_ref().map(|(layout, _)| units(root, layout, beds_in));
+    let read = layout
+        .as_ref()
+        .map(|(layout, _)| units(root, layout, beds_in));
     let connections = streams(root, read.as_deref().unwrap_or_default());
     let steady = steady(root);
     let continuation = continuation(root);
@@ -112,10 +116,20 @@ pub(in crate::case) fn plant(
     let beds = read.iter().flatten().filter_map(|unit| unit.bed.clone());
     let beds: Vec<PlantBedSpec> = beds.collect();
     if let Some(bed) = beds.first() {
-        for (section, is_there) in [("steady", steady.is_some()), ("continuation", continuation.is_some())] {
+        for (section, is_there) in [
+            ("steady", steady.is_some()),
+            ("continuation", continuation.is_some()),
+        ] {
             if is_there {
-                let rule = format!("cannot be with the bed \"{}\", which exchanges with the plant at intervals", bed.unit);
-                root.fail(section, rule, "remove it, or put a granulator or a bunker in the bed's place");
+                let rule = format!(
+                    "cannot be with the bed \"{}\", which exchanges with the plant at intervals",
+                    bed.unit
+                );
+                root.fail(
+                    section,
+                    rule,
+                    "remove it, or put a granulator or a bunker in the bed's place",
+                );
             }
         }
     }
@@ -132,7 +146,14 @@ pub(in crate::case) fn plant(
                     refused(root, "units", error);
                 }
             });
-            told.ok()
+            told.ok().and_then(|plant| match &tears {
+                None => Some(plant),
+                Some(names) => {
+                    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+                    let torn = plant.torn_at(&names);
+                    torn.map_err(|error| refused(root, "method", &error)).ok()
+                }
+            })
         }
         _ => None,
     };
@@ -147,6 +168,13 @@ pub(in crate::case) fn plant(
         continuation: continuation.as_ref().map(|one| one.unit.as_str()),
     };
     let quantities = quantities(root, &known);
+    let tuning = match beds_in {
+        Some(folder) => tuning(root, plant.as_ref(), folder, time.and_then(|time| time.0)),
+        None => {
+            root.raw("tuning");
+            Some(None)
+        }
+    };
     let (end, checkpoint_every, checkpoint_wall) = time?;
     let (every, distributions_every) = output?;
     Some(PlantCase {
@@ -170,10 +198,11 @@ pub(in crate::case) fn plant(
         quantities,
         steady,
         continuation,
+        tuning: tuning?,
     })
 }
 
-fn method(root: &TableReader<'_>) -> Option<PlantMethod> {
+fn method(root: &TableReader<'_>) -> Option<(PlantMethod, Option<Vec<String>>)> {
     let table = root.table_or_empty("method")?;
     let recycles = table.choice::<RecycleMethod>("recycles");
     let integrator = table.choice::<PlantIntegrator>("integrator");
@@ -182,13 +211,18 @@ fn method(root: &TableReader<'_>) -> Option<PlantMethod> {
         Some(RecycleMethod::Waveform) => waveform(&table).map(Some),
         _ => Some(None),
     };
+    let tears = match table.has("tears") {
+        true => Some(table.texts("tears")?),
+        false => None,
+    };
     table.finish();
-    Some(PlantMethod {
+    let method = Some(PlantMethod {
         integrator: integrator?.0,
         tolerance: tolerance?,
         waveform: windows?.filter(|_| recycles == Some(RecycleMethod::Waveform)),
     })
-    .filter(|_| recycles.is_some())
+    .filter(|_| recycles.is_some());
+    Some((method?, tears))
 }
 
 fn waveform(method: &TableReader<'_>) -> Option<WaveformSettings> {

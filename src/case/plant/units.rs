@@ -10,6 +10,7 @@ use calcine_flowsheet::units::{
 use calcine_flowsheet::{ProcessUnit, StreamLayout, Timetable};
 
 use super::bed::{PlantBedSpec, bed};
+use super::controller::controller;
 use super::granulator::granulator;
 use super::layout::refused;
 use super::solids::{add_solids, by_compound, numbers};
@@ -103,8 +104,12 @@ fn unit(
             .whole("inlets")
             .and_then(|count| usize::try_from(count).ok())
             .map(|inlets| -> Box<dyn ProcessUnit> { Box::new(Mixer { inlets }) }),
-        "splitter" => numbers(&own, "shares")
-            .map(|shares| -> Box<dyn ProcessUnit> { Box::new(Splitter { shares }) }),
+        "splitter" => {
+            let controller = own.text("controller").map(str::to_owned);
+            numbers(&own, "shares")
+                .map(|shares| -> Box<dyn ProcessUnit> { Box::new(Splitter { shares, controller }) })
+        }
+        "controller" => controller(&own, layout),
         "granulator" => granulator(&own, layout),
         "dryer" => own
             .number("moisture")
@@ -145,7 +150,11 @@ fn row(table: &TableReader<'_>, amount: &str, layout: &StreamLayout) -> Option<V
 fn inlet(own: &TableReader<'_>, layout: &StreamLayout) -> Option<Box<dyn ProcessUnit>> {
     let stream = row(own, "flow", layout);
     let factor = timetable(own, "factor");
-    Some(Box::new(PlantInlet::new(stream?, factor?)))
+    let made = PlantInlet::new(stream?, factor?);
+    Some(Box::new(match own.text("controller") {
+        Some(name) => made.with_controller(name.to_owned()),
+        None => made,
+    }))
 }
 
 fn bunker(own: &TableReader<'_>, layout: &StreamLayout) -> Option<Box<dyn ProcessUnit>> {
@@ -160,6 +169,10 @@ fn bunker(own: &TableReader<'_>, layout: &StreamLayout) -> Option<Box<dyn Proces
             let made = match table.exactly_one() {
                 Some("residence") => table.number("residence").map(Discharge::Residence),
                 Some("adaptive") => table.number("adaptive").map(Discharge::Adaptive),
+                Some("controller") => {
+                    let name = table.text("controller");
+                    name.map(|name| Discharge::Controlled(name.to_owned()))
+                }
                 Some(_) => timetable(&table, "rate").map(Discharge::Rate),
                 None => None,
             };

@@ -52,10 +52,7 @@ impl BedKernel {
     }
 
     /// Aggregation by a table, made where it is another than the last one.
-    fn by(
-        &self,
-        table: &[f64],
-    ) -> Result<MutexGuard<'_, LastTable>, PlantError> {
+    fn by(&self, table: &[f64]) -> Result<MutexGuard<'_, LastTable>, PlantError> {
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
         let same = made.as_ref().is_some_and(|(own, _)| own == table);
         if let (false, Some((grid, particle, place))) = (same, &self.grid) {
