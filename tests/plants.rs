@@ -405,6 +405,43 @@ fn both_methods_of_recycles_agree_within_a_millionth() {
     assert!(again.status.success(), "{}", said(&again));
 }
 
+/// The plant of every unit by windows, with either acceleration, at a tolerance of 1e-8.
+#[test]
+fn windows_with_either_acceleration_agree_with_closed_recycles_on_every_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = root().join("tests/inputs/plants/good/every-unit.toml");
+    let of = |name: &str, settings: &[&str]| {
+        let out = folder.path().join(name);
+        let all = [&["method.tolerance=1e-8", "time.end=2 s"], settings].concat();
+        let output = run(&case, &out, &all, &[]);
+        let code = output.status.code();
+        assert!(
+            [Some(0), Some(5)].contains(&code),
+            "{name}: {}",
+            said(&output)
+        );
+        let summary = PlantSummary::read(&out).unwrap();
+        let tears = &summary.ledger.tears;
+        assert!(
+            !tears.is_empty() && tears.values().all(|apart| *apart <= 1e-12),
+            "{tears:?}"
+        );
+        let values = summary.quantities.into_values();
+        values.map(|one| one.value.unwrap()).collect::<Vec<f64>>()
+    };
+    let closed = of("monolithic", &["method.recycles=monolithic"]);
+    for acceleration in ["anderson", "wegstein"] {
+        let word = format!("method.waveform.acceleration={acceleration}");
+        let found = of(acceleration, &["method.recycles=waveform", &word]);
+        for (one, other) in found.iter().zip(&closed) {
+            assert!(
+                (one / other - 1.0).abs() < 1e-6,
+                "{acceleration}: {one} {other}"
+            );
+        }
+    }
+}
+
 /// A long run of a screen that is flat enough ends in the steady state that Newton's iteration finds, whose dominant mode
 /// decays as published; and `--from` begins there.
 #[test]

@@ -285,7 +285,7 @@ impl Plant {
     }
 
     /// Whether a guess has flows that run backwards where those of a plain way round do not.
-    fn turns(&self, guess: &[f64], plain: &[f64]) -> bool {
+    pub(super) fn turns(&self, guess: &[f64], plain: &[f64]) -> bool {
         let width = self.layout.width();
         let least = |stream: &[f64]| {
             let masses = &stream[..width - 1];

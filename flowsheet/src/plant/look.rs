@@ -35,7 +35,8 @@ impl Plant {
     /// True where a unit has unknowns and ports, and so may hold something.
     pub fn holds(&self, unit: usize) -> bool {
         let own = &self.units[unit];
-        !own.state.is_empty() && !(own.inlets.is_empty() && own.outlets.is_empty())
+        let has_ports = !own.inlets.is_empty() || !own.outlets.is_empty();
+        has_ports && !own.state.is_empty()
     }
 
     /// True of a controller: a unit that gives others a setting.

@@ -25,11 +25,12 @@ impl PlantRun<'_> {
         } else {
             settings.first
         };
+        let mut why = None;
         while self.time < until {
             let end = self.plant.next_break(self.time).min(until);
             let start = self.time;
             let took = span.min(end - start);
-            match self.window(took, end, settings)? {
+            match self.window(took, end, settings, &mut why)? {
                 Some(iterations) => {
                     if took >= end - start {
                         self.time = end;
@@ -48,10 +49,10 @@ impl PlantRun<'_> {
                 None => {
                     self.window = 0.5 * took;
                     if self.window < settings.shortest {
-                        return Err(PlantError::Steps {
+                        return Err(why.unwrap_or(PlantError::Steps {
                             reached: self.time,
                             cause: "windows became too short for their tear streams; take `monolithic` in place of `waveform`",
-                        });
+                        }));
                     }
                 }
             }
@@ -60,8 +61,31 @@ impl PlantRun<'_> {
         Ok(())
     }
 
-    /// One window; the iterations it took, or none where it has to be shorter (the state is then that of its start).
+    /// One window; the iterations it took, or none where it has to be shorter (the state is then that of its start). A plant
+    /// that could not be followed with tear streams that are given, too, is tried in a shorter one; `why` is what it said.
     fn window(
+        &mut self,
+        span: f64,
+        end: f64,
+        settings: &WaveformSettings,
+        why: &mut Option<PlantError>,
+    ) -> Result<Option<usize>, PlantError> {
+        let start = self.clone_state();
+        let streams = self.now.work.streams.clone();
+        match self.relax(span, end, settings) {
+            Err(error) if span > settings.shortest => {
+                *why = Some(error);
+                self.now.work.given = None;
+                self.now.work.streams = streams;
+                self.restore(&start);
+                Ok(None)
+            }
+            done => done,
+        }
+    }
+
+    /// [`Self::window`], with what goes wrong.
+    fn relax(
         &mut self,
         span: f64,
         end: f64,
@@ -122,12 +146,16 @@ impl PlantRun<'_> {
                 self.plant.verify(now, &self.now.y, &self.now.work)?;
                 return Ok(Some(count));
             }
+            let plain = made.clone();
             self.plant.weigh_heat(&mut x, true);
             self.plant.weigh_heat(&mut made, true);
             iteration.accelerate(settings.acceleration, &x, &mut made);
             self.plant.weigh_heat(&mut made, false);
-            for (values, new) in wave.values.iter_mut().zip(made.chunks_exact(size)) {
-                values.copy_from_slice(new);
+            let pairs = made.chunks_exact(size).zip(plain.chunks_exact(size));
+            for (values, (new, plain)) in wave.values.iter_mut().zip(pairs) {
+                // A guess whose flows run backwards is none.
+                let turned = self.plant.turns(new, plain);
+                values.copy_from_slice(if turned { plain } else { new });
             }
         }
         self.now.work.given = None;
