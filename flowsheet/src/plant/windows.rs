@@ -2,12 +2,14 @@
 
 use super::flows::{LOOP_CLOSURE, Moment};
 use super::run::PlantRun;
-use super::waveform::{NODES, NodeIteration, Waveform, WaveformSettings};
+use super::waveform::{NODES, NodeIteration, TearAcceleration, Waveform, WaveformSettings};
 use crate::PlantError;
 
 /// What tear streams may differ from their polynomials between nodes, relative to the integrator's tolerance, whose own
 /// errors are in them.
 const BEND: f64 = 10.0;
+/// An iteration whose difference has grown to so many times its least one will not settle.
+const RUNAWAY: f64 = 1e4;
 
 impl PlantRun<'_> {
     /// Advances to a time in s by waveform relaxation (docs/theory.md, FLS-1): in each window the plant, opened at its tear
@@ -72,24 +74,32 @@ impl PlantRun<'_> {
     ) -> Result<Option<usize>, PlantError> {
         let start = self.clone_state();
         let streams = self.now.work.streams.clone();
-        match self.relax(span, end, settings) {
-            Err(error) if span > settings.shortest => {
-                *why = Some(error);
-                self.now.work.given = None;
-                self.now.work.streams = streams;
-                self.restore(&start);
-                Ok(None)
-            }
-            done => done,
+        let mut ways = vec![settings.acceleration];
+        // Secants of every number for itself do not settle on all recycles.
+        if settings.acceleration != TearAcceleration::Anderson {
+            ways.push(TearAcceleration::Anderson);
         }
+        for acceleration in ways {
+            match self.relax(span, end, settings, acceleration) {
+                Err(error) => {
+                    *why = Some(error);
+                    self.now.work.given = None;
+                    self.now.work.streams.copy_from_slice(&streams);
+                    self.restore(&start);
+                }
+                done => return done,
+            }
+        }
+        Ok(None)
     }
 
-    /// [`Self::window`], with what goes wrong.
+    /// [`Self::window`] by one acceleration; an error where that does not settle.
     fn relax(
         &mut self,
         span: f64,
         end: f64,
         settings: &WaveformSettings,
+        acceleration: TearAcceleration,
     ) -> Result<Option<usize>, PlantError> {
         let start = self.clone_state();
         let from = self.time;
@@ -100,6 +110,7 @@ impl PlantRun<'_> {
         let mut wave = Waveform::constant(from, span, &self.plant.torn(&self.now.work));
         let size = wave.values[0].len();
         let mut iteration = NodeIteration::new();
+        let mut least = f64::INFINITY;
         for count in 1..=settings.most {
             self.restore(&start);
             self.now.work.given = Some(wave.clone());
@@ -146,10 +157,14 @@ impl PlantRun<'_> {
                 self.plant.verify(now, &self.now.y, &self.now.work)?;
                 return Ok(Some(count));
             }
+            if closure.is_nan() || closure > RUNAWAY * least {
+                break;
+            }
+            least = least.min(closure);
             let plain = made.clone();
             self.plant.weigh_heat(&mut x, true);
             self.plant.weigh_heat(&mut made, true);
-            iteration.accelerate(settings.acceleration, &x, &mut made);
+            iteration.accelerate(acceleration, &x, &mut made);
             self.plant.weigh_heat(&mut made, false);
             let pairs = made.chunks_exact(size).zip(plain.chunks_exact(size));
             for (values, (new, plain)) in wave.values.iter_mut().zip(pairs) {
@@ -158,9 +173,10 @@ impl PlantRun<'_> {
                 values.copy_from_slice(if turned { plain } else { new });
             }
         }
-        self.now.work.given = None;
-        self.restore(&start);
-        Ok(None)
+        Err(PlantError::Steps {
+            reached: from,
+            cause: "tear streams of its windows do not settle; take `monolithic` in place of `waveform`",
+        })
     }
 
     /// What the tear streams became at the present unknowns, against what they were.
