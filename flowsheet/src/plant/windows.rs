@@ -11,6 +11,15 @@ const BEND: f64 = 10.0;
 /// An iteration whose difference has grown to so many times its least one will not settle.
 const RUNAWAY: f64 = 1e4;
 
+/// The larger of two; NaN counts as the largest.
+fn larger(one: f64, other: f64) -> f64 {
+    if other > one || other.is_nan() {
+        other
+    } else {
+        one
+    }
+}
+
 impl PlantRun<'_> {
     /// Advances to a time in s by waveform relaxation (docs/theory.md, FLS-1): in each window the plant, opened at its tear
     /// streams, is followed with these given as polynomials in time, until what they become at the nodes is what they were.
@@ -128,16 +137,16 @@ impl PlantRun<'_> {
                     let middle = 0.5 * (self.time + time);
                     self.follow(middle, |_| ())?;
                     let there = self.torn_differences(middle, end)?;
-                    bend = there.into_iter().fold(bend, f64::max);
+                    bend = there.into_iter().fold(bend, larger);
                     self.follow(time, |_| ())?;
                 }
                 let there = self.torn_differences(time, end)?;
                 let pairs = closures.iter_mut().zip(there);
-                pairs.for_each(|(largest, own)| *largest = largest.max(own));
+                pairs.for_each(|(largest, own)| *largest = larger(*largest, own));
                 x.extend_from_slice(&wave.values[k]);
                 made.extend_from_slice(&self.now.work.became);
             }
-            let closure = closures.iter().copied().fold(0.0, f64::max);
+            let closure = closures.iter().copied().fold(0.0, larger);
             if closure <= LOOP_CLOSURE * 10.0 {
                 if bend > BEND * self.tolerance.max(LOOP_CLOSURE * 100.0)
                     && span > settings.shortest
